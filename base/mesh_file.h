@@ -1,0 +1,18 @@
+// base/mesh_file.h - triangle meshes as files.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "base/triangle_mesh.h"
+
+namespace kerf {
+
+/// Binary STL (80-byte head "kerf ...", little endian, unit mm; facet normals computed) or binary little-endian PLY with
+/// shared vertices. Written to a temporary name in the same folder and renamed only when all bytes are on the disk: on
+/// error (disk full, no such folder) nothing is left and an existing file is untouched. The message names the file and
+/// the system's reason. "-" writes to stdout.
+Done write_stl(const std::string& path, const TriangleMesh& mesh);
+Done write_ply(const std::string& path, const TriangleMesh& mesh);
+
+}  // namespace kerf

@@ -1,0 +1,82 @@
+// stock/cutter/cutter.h - a cutter as a surface of revolution about the spindle axis.
+//
+//        |<- shank ->|            A profile is a chain of line and arc pieces from the tip (radius 0, or the edge of a
+//        |           |            flat bottom) outward and upward:
+//     ___|           |___
+//    |       flutes      |             z
+//    |                   |             |        . end of the last piece: radius R
+//     \                 /              |      _/
+//      `--__       __--'               |__.--'        height_mm(r): lowest point of the cutter at radius r
+//           `--.--'                    +------------ r
+//              tip (z = 0)
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace kerf {
+
+/// One piece of a profile, radius not decreasing from start to end. All mm; r is the distance from the spindle axis, z
+/// the height above the tip.
+struct ProfilePiece {
+  enum class Kind { kLine, kArc };
+  Kind kind = Kind::kLine;
+  double r0 = 0, z0 = 0;  ///< inner end
+  double r1 = 0, z1 = 0;  ///< outer end
+  /// kArc: circle through both ends. The cutter is on the upper side; `convex` arcs bulge outward (ball, bull-nose:
+  /// the centre is above the arc), others are hollow (corner-rounding cutter: the centre is below).
+  double center_r = 0, center_z = 0, radius = 0;
+  bool convex = true;
+};
+
+/// A cylinder of the tool above the flutes, kept for collision checks. mm above the tip.
+struct ToolSection {
+  double diameter_mm = 0;
+  double from_z_mm = 0;
+  double to_z_mm = 0;
+};
+
+/// Immutable after construction.
+class Cutter {
+ public:
+  /// Checks the pieces: finite, a connected chain that starts at radius 0 and z = 0 is the lowest point, radius not
+  /// decreasing, last radius above 0. Vertical steps are allowed (a line with r0 == r1). The message names the piece.
+  static Result<Cutter> from_profile(std::string spec, std::vector<ProfilePiece> pieces);
+
+  const std::string& spec() const { return spec_; }  ///< canonical SHAPE text, e.g. "bull:10:2:flute=22"
+  std::span<const ProfilePiece> profile() const { return pieces_; }
+  double radius_mm() const { return pieces_.back().r1; }
+
+  /// Lowest point of the cutter above its tip at distance r from the axis: +infinity beyond radius_mm(). O(pieces).
+  double height_mm(double r) const;
+
+  /// True if some part of the cutter is wider than a part above it within the flutes (lollipop, T-slot): a Z-map cannot
+  /// hold what it cuts. `undercut_from_mm` then says from which radius inward the neck begins.
+  bool undercuts() const { return neck_radius_mm_.has_value(); }
+  std::optional<double> neck_radius_mm() const { return neck_radius_mm_; }
+  void set_neck_radius_mm(double r) { neck_radius_mm_ = r; }
+
+  std::optional<double> flute_length_mm() const { return flute_length_mm_; }
+  void set_flute_length_mm(double length) { flute_length_mm_ = length; }
+  std::optional<double> shank_diameter_mm() const { return shank_diameter_mm_; }
+  void set_shank_diameter_mm(double d) { shank_diameter_mm_ = d; }
+  std::span<const ToolSection> holder() const { return holder_; }
+  void set_holder(std::vector<ToolSection> holder) { holder_ = std::move(holder); }
+  void set_spec(std::string spec) { spec_ = std::move(spec); }
+
+ private:
+  Cutter() = default;
+  std::string spec_;
+  std::vector<ProfilePiece> pieces_;
+  std::optional<double> neck_radius_mm_;
+  std::optional<double> flute_length_mm_;
+  std::optional<double> shank_diameter_mm_;
+  std::vector<ToolSection> holder_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,47 @@
+// stock/cutter/tool_hints.h - tools and blanks that CAM systems and people write into comments.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/geometry.h"
+#include "stock/cutter/cutter.h"
+
+namespace kerf {
+
+/// One comment of a program: where, its text without parentheses or semicolon, and whether inches were in force there
+/// (G20 seen before it and no G21 since; the first G20/G21 of the program counts for comments before it).
+struct CommentText {
+  std::uint32_t line = 0;
+  std::string text;
+  bool inches = false;
+};
+
+/// A tool that a comment describes.
+struct ToolHint {
+  int tool = 0;          ///< number; -1 when the dialect gives none (then it means the next tool to be used after `line`)
+  std::uint32_t line = 0;
+  std::string dialect;   ///< "fusion", "cambam", "cutviewer", ... for messages
+  std::string shape;     ///< SHAPE text, parse_shape() accepts it
+  bool shape_guessed = false;  ///< only the diameter was written; a flat cutter is assumed
+};
+std::vector<ToolHint> find_tool_hints(std::span<const CommentText> comments);
+
+/// A blank that comments describe: LinuxCNC 2.10's (WORKPIECE,BOX|CYLINDER|TUBE,...) (several add up) and CutViewer's
+/// (STOCK/BLOCK,...). SPEC text as --stock takes it, parts joined by " + ".
+struct BlankHint {
+  std::uint32_t line = 0;
+  std::string dialect;   ///< "workpiece" | "cutviewer"
+  std::string spec;      ///< parse_blank() accepts it
+};
+std::optional<BlankHint> find_blank_hint(std::span<const CommentText> comments);
+
+/// Shape from the free text of a tool table remark ("1/16 end mill", "45/60 v-bit", "6 mm straight ball end"), with the
+/// table's diameter; nullopt if the text names no kind of cutter.
+std::optional<ToolHint> shape_from_remark(int tool, double diameter_mm, std::string_view remark);
+
+}  // namespace kerf
