@@ -8,11 +8,14 @@
 
 namespace kerf {
 
-/// Writes to `path` under a temporary name (".NAME.XXXXXX" beside it), and renames on commit(). The destructor removes
-/// what was not committed; so does remove_uncommitted_files() from a signal-driven exit. "-" is stdout and is written as
-/// it comes. Buffered (1 MB). Not for several threads at once.
+/// Writes to `path` under a temporary name (".NAME.XXXXXX" beside it), and renames on commit().
+/// The destructor removes what was not committed; so does remove_uncommitted_files(). A symbolic
+/// link stays, and the file that it leads to is replaced. "-" (stdout), devices and pipes cannot be
+/// replaced: they are written as the bytes come. Buffered (1 MB). Does not sync: whole after a
+/// crash of kerf, not after a power cut. Not for several threads at once.
 class AtomicFile {
  public:
+  /// Error: "writing out/part.stl: No such file or directory", "writing out: Is a directory".
   static Result<AtomicFile> create(const std::string& path);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&& other) noexcept;
@@ -20,16 +23,31 @@ class AtomicFile {
 
   /// Errors are kept and reported by commit().
   void write(const void* data, std::size_t bytes);
-  /// Flushes, closes, renames. Error: "writing part.stl: No space left on device"; the temporary file is then gone.
+  /// Flushes, closes, renames. Error: "writing part.stl: No space left on device"; the temporary
+  /// file is then gone, and a file that was there before is untouched. Once per file.
   Done commit();
 
  private:
+  struct Registration;  // one entry of the list that remove_uncommitted_files() walks
   AtomicFile() = default;
-  std::string path_;
-  std::string temporary_path_;
+  static Registration* enroll(const std::string& temporary_path);
+  void release();
+  void flush();
+  void discard();
+  friend void remove_uncommitted_files();
+
+  std::string path_;            // as the caller wrote it, for messages
+  std::string target_path_;     // where links lead to; empty if written as it comes
+  std::string temporary_path_;  // empty if written as it comes
+  Registration* registration_ = nullptr;
   int fd_ = -1;
   int error_number_ = 0;
   std::string buffer_;
 };
+
+/// Removes the temporary files of all AtomicFiles of this process that are neither committed nor
+/// destroyed; their commit() then reports an error. For the way out after Ctrl-C: may be called
+/// from any thread and from a signal handler (uses lock-free atomics and unlink() alone).
+void remove_uncommitted_files();
 
 }  // namespace kerf

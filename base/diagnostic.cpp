@@ -19,9 +19,12 @@ std::string printable(const std::string& text) {
 
 const char* to_string(Severity severity) {
   switch (severity) {
-    case Severity::kNote: return "note";
-    case Severity::kWarning: return "warning";
-    case Severity::kError: return "error";
+    case Severity::kNote:
+      return "note";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kError:
+      return "error";
   }
   return "error";
 }
@@ -39,7 +42,9 @@ std::string to_string(const Diagnostic& d) {
   out += fmt::format("{}: {}\n", to_string(d.severity), printable(d.message));
   if (!d.excerpt.empty()) {
     out += fmt::format("{:>6} | {}\n", d.line, printable(d.excerpt));
-    if (d.column > 0) out += fmt::format("{:>6} | {}^\n", "", std::string(static_cast<std::size_t>(d.column) - 1, ' '));
+    if (d.column > 0)
+      out += fmt::format("{:>6} | {}^\n", "",
+                         std::string(static_cast<std::size_t>(d.column) - 1, ' '));
   }
   if (!d.hint.empty()) out += fmt::format("   hint: {}\n", printable(d.hint));
   return out;

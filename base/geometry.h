@@ -13,7 +13,8 @@ using Vec3 = glm::dvec3;
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// Axis-aligned box, mm. Default-constructed it is empty: min > max, and the first extend() makes it a point.
+/// Axis-aligned box, mm. Default-constructed it is empty: min > max, and the first extend() makes
+/// it a point.
 struct Box {
   Vec3 min{std::numeric_limits<double>::infinity()};
   Vec3 max{-std::numeric_limits<double>::infinity()};

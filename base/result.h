@@ -8,17 +8,20 @@
 
 namespace kerf {
 
-/// Why something failed, in one sentence that names the object ("disk full while writing part.stl").
+/// Why something failed, in one sentence that names the object ("disk full while writing
+/// part.stl").
 struct Error {
   std::string message;
 };
 
-/// For failures of the outside world and of single values. Many faults at once are a list of Diagnostic instead
-/// (diagnostic.h); our own mistakes are asserts. `Result<std::monostate>` for "done or why not".
+/// For failures of the outside world and of single values. Many faults at once are a list of
+/// Diagnostic instead (diagnostic.h); our own mistakes are asserts. `Result<std::monostate>` for
+/// "done or why not".
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}      // NOLINT: implicit so that `return value;` reads well
+  Result(T value)
+      : state_(std::move(value)) {}  // NOLINT: implicit so that `return value;` reads well
   Result(Error error) : state_(std::move(error)) {}  // NOLINT
   explicit operator bool() const { return state_.index() == 0; }
   T& value() { return assert(*this), std::get<0>(state_); }

@@ -1,4 +1,5 @@
-// base/triangle_mesh.h - an indexed triangle mesh, the one currency between stock models, files and pictures.
+// base/triangle_mesh.h - an indexed triangle mesh, the one currency between stock models, files and
+// pictures.
 #pragma once
 
 #include <array>
@@ -8,7 +9,8 @@
 
 namespace kerf {
 
-/// Corners in mm, single precision; triangles counter-clockwise seen from outside (normals point out of the material).
+/// Corners in mm, single precision; triangles counter-clockwise seen from outside (normals point
+/// out of the material).
 struct TriangleMesh {
   std::vector<glm::vec3> positions_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -1,4 +1,5 @@
-// interp_bridge/motion.h - what the machine is told to do, after the modal fold: mm, mm/min, tip in the workpiece frame.
+// interp_bridge/motion.h - what the machine is told to do, after the modal fold: mm, mm/min, tip in
+// the workpiece frame.
 #pragma once
 
 #include <array>
@@ -8,8 +9,8 @@
 
 namespace kerf {
 
-/// Where a motion comes from. `file` indexes ProgramSource::files (0 = the program itself, others are called O-word
-/// subroutine files); `line` is 1-based, 0 = not known.
+/// Where a motion comes from. `file` indexes ProgramSource::files (0 = the program itself, others
+/// are called O-word subroutine files); `line` is 1-based, 0 = not known.
 struct SourceRef {
   std::uint32_t file = 0;
   std::uint32_t line = 0;
@@ -17,20 +18,22 @@ struct SourceRef {
 };
 
 enum class MotionKind : std::uint8_t {
-  kTraverse,    ///< G0 and the rapid parts of cycles
-  kFeed,        ///< straight, at feed
-  kArc,         ///< circular or helical, at feed
-  kThread,      ///< straight, synchronised with the spindle (G33, G76), or the in-and-out of a rigid tap
-  kProbe,       ///< straight probing move; the tip does not cut
-  kDwell,       ///< no motion, `duration_s`
+  kTraverse,  ///< G0 and the rapid parts of cycles
+  kFeed,      ///< straight, at feed
+  kArc,       ///< circular or helical, at feed
+  kThread,    ///< straight, synchronised with the spindle (G33, G76), or the in-and-out of a rigid
+              ///< tap
+  kProbe,     ///< straight probing move; the tip does not cut
+  kDwell,     ///< no motion, `duration_s`
   kToolChange,  ///< `tool` is the new tool; no motion
   kStop,        ///< M0, M1, M60: the program waits for the operator
   kProgramEnd,  ///< M2, M30 or closing %
 };
 
-/// Circular part of a motion: the tip turns about an axis through `center_mm` along `axis` (unit vector) by `sweep_rad`
-/// (right-hand rule about `axis`, |sweep| > 2 pi for several turns) while it moves along the axis linearly in angle.
-/// If the distances of start and end from the axis differ (spiral), the radius changes linearly in angle too.
+/// Circular part of a motion: the tip turns about an axis through `center_mm` along `axis` (unit
+/// vector) by `sweep_rad` (right-hand rule about `axis`, |sweep| > 2 pi for several turns) while it
+/// moves along the axis linearly in angle. If the distances of start and end from the axis differ
+/// (spiral), the radius changes linearly in angle too.
 struct ArcGeometry {
   Vec3 center_mm{0};
   Vec3 axis{0, 0, 1};
@@ -39,28 +42,30 @@ struct ArcGeometry {
 
 enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise };
 
-/// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that the program writes
-/// under its first work offset, in mm (ABC in degrees). from_mm of a step is to_mm of the one before, except where an
-/// offset change moves the frame under a standing tool: then too, both ends are true workpiece positions.
+/// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
+/// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
+/// to_mm of the one before, except where an offset change moves the frame under a standing tool:
+/// then too, both ends are true workpiece positions.
 struct Motion {
   MotionKind kind = MotionKind::kTraverse;
   SpindleState spindle = SpindleState::kStopped;
   bool flood = false;
   bool mist = false;
-  bool feed_per_rev = false;      ///< G95: feed is mm per revolution
-  /// False only for motions before the first one whose start is known: rs274 starts at 0,0,0 and the real machine does
-  /// not, so the first traverse has no true start. kerf must not cut along such a move; `to_mm` is right.
+  bool feed_per_rev = false;  ///< G95: feed is mm per revolution
+  /// False only for motions before the first one whose start is known: rs274 starts at 0,0,0 and
+  /// the real machine does not, so the first traverse has no true start. kerf must not cut along
+  /// such a move; `to_mm` is right.
   bool start_known = true;
-  int tool = 0;                   ///< tool number in the spindle, 0 = none
+  int tool = 0;  ///< tool number in the spindle, 0 = none
   SourceRef source;
   Vec3 from_mm{0};
   Vec3 to_mm{0};
   std::array<double, 3> from_abc_deg{};
   std::array<double, 3> to_abc_deg{};
-  ArcGeometry arc;                ///< kArc only
-  double feed_mm_per_min = 0;     ///< programmed; 0 for traverses
-  double spindle_rpm = 0;         ///< programmed S
-  double duration_s = 0;          ///< kDwell only
+  ArcGeometry arc;             ///< kArc only
+  double feed_mm_per_min = 0;  ///< programmed; 0 for traverses
+  double spindle_rpm = 0;      ///< programmed S
+  double duration_s = 0;       ///< kDwell only
 };
 
 }  // namespace kerf

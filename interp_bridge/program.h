@@ -1,4 +1,5 @@
-// interp_bridge/program.h - from an NC program (file, saved listing or stdin) to a stream of motions.
+// interp_bridge/program.h - from an NC program (file, saved listing or stdin) to a stream of
+// motions.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,8 @@
 
 namespace kerf {
 
-/// A comment of the program, for tool and stock hints (CAM headers). Text without its parentheses or semicolon.
+/// A comment of the program, for tool and stock hints (CAM headers). Text without its parentheses
+/// or semicolon.
 struct ProgramComment {
   SourceRef source;
   std::string text;
@@ -27,64 +29,81 @@ struct ProgramComment {
 
 /// What to interpret and how.
 struct ProgramOptions {
-  std::string path;                       ///< NC file, .canon listing (also .canon text under any name), or "-" (canonical text on stdin)
-  std::string tool_table_path;            ///< LinuxCNC tool.tbl; empty: the tools the program names, no offsets
-  bool block_delete = true;               ///< skip lines that begin with '/', as LinuxCNC does when it starts
-  std::string rs274_path = "rs274";       ///< looked up in PATH
-  std::uint64_t max_commands = 50'000'000;  ///< canonical commands after which a program counts as endless
-  double max_silent_s = 20.0;             ///< seconds without a canonical command after which it counts as endless
+  std::string path;  ///< NC file, .canon listing (also .canon text under any name), or "-"
+                     ///< (canonical text on stdin)
+  std::string
+      tool_table_path;       ///< LinuxCNC tool.tbl; empty: the tools the program names, no offsets
+  bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
+  std::string rs274_path = "rs274";  ///< looked up in PATH
+  std::uint64_t max_commands =
+      50'000'000;  ///< canonical commands after which a program counts as endless
+  double max_silent_s =
+      20.0;  ///< seconds without a canonical command after which it counts as endless
 };
 
 /// Counts and facts known once the stream has ended (or was stopped).
 struct ProgramSummary {
-  std::vector<std::string> files;                          ///< SourceRef::file indexes this; [0] is the program
-  std::size_t program_lines = 0;                           ///< physical lines of files[0]
-  std::string interpreter;                                 ///< "text" | "canon"
-  std::map<std::string, std::uint64_t> canonical_commands; ///< by name
-  std::vector<std::string> foreign_lines;                  ///< text that was not canonical ((PRINT,..), messages), first 100
+  std::vector<std::string> files;  ///< SourceRef::file indexes this; [0] is the program
+  std::size_t program_lines = 0;   ///< physical lines of files[0]
+  std::string interpreter;         ///< "text" | "canon"
+  std::map<std::string, std::uint64_t> canonical_commands;  ///< by name
+  std::vector<std::string>
+      foreign_lines;  ///< text that was not canonical ((PRINT,..), messages), first 100
   std::uint64_t foreign_line_count = 0;
-  bool has_program_end = false;                            ///< M2, M30 or a closing %
-  bool has_rotary_motion = false;                          ///< any A, B or C motion
-  bool stopped_early = false;                              ///< by the stop token, the consumer, or a limit
-  double interpret_s = 0;                                  ///< wall seconds until the interpreter was done
+  bool has_program_end = false;    ///< M2, M30 or a closing %
+  bool has_rotary_motion = false;  ///< any A, B or C motion
+  bool stopped_early = false;      ///< by the stop token, the consumer, or a limit
+  double interpret_s = 0;          ///< wall seconds until the interpreter was done
 };
 
-/// Receives motions in program order, a batch at a time; the span is valid during the call only. Return false to stop.
+/// Receives motions in program order, a batch at a time; the span is valid during the call only.
+/// Return false to stop.
 using MotionSink = std::function<bool(std::span<const Motion>)>;
 
-/// One NC program being read. Streams: memory does not grow with the program's length (other than the comments of its
-/// first 2000 lines).
+/// One NC program being read. Streams: memory does not grow with the program's length (other than
+/// the comments of its first 2000 lines).
 class Program {
  public:
-  /// Looks at the source without interpreting it: exists, is a regular readable file (or stdin), is text, is not empty,
-  /// rs274 is installed if it is needed. Errors are Diagnostics with exact texts (tested).
-  static std::unique_ptr<Program> open(const ProgramOptions& options, Diagnostics& diagnostics);  ///< null on error
+  /// Looks at the source without interpreting it: exists, is a regular readable file (or stdin), is
+  /// text, is not empty, rs274 is installed if it is needed. Errors are Diagnostics with exact
+  /// texts (tested).
+  static std::unique_ptr<Program> open(const ProgramOptions& options,
+                                       Diagnostics& diagnostics);  ///< null on error
   virtual ~Program() = default;
 
-  /// Comments of the source text, `;` ones included: all that carry a tool or stock hint can be found here before run().
-  /// For stdin: empty.
+  /// Comments of the source text, `;` ones included: all that carry a tool or stock hint can be
+  /// found here before run(). For stdin: empty.
   virtual const std::vector<ProgramComment>& comments() const = 0;
 
-  /// Interprets to the end, calling `sink` from this thread with batches. Diagnostics of the interpreter (errors with file:line,
-  /// a missing program end as a warning, an endless program) are appended. Returns the summary, complete or partial.
-  /// Leaves no process, no temporary file. Call once.
-  virtual ProgramSummary run(const MotionSink& sink, std::stop_token stop, Diagnostics& diagnostics) = 0;
+  /// Interprets to the end, calling `sink` from this thread with batches. Diagnostics of the
+  /// interpreter (errors with file:line, a missing program end as a warning, an endless program)
+  /// are appended. Returns the summary, complete or partial. Leaves no process, no temporary file.
+  /// Call once.
+  virtual ProgramSummary run(const MotionSink& sink, std::stop_token stop,
+                             Diagnostics& diagnostics) = 0;
 
-  /// Bytes of the source already interpreted / in all, for a progress bar; any thread. Total 0 = not known (stdin).
+  /// Bytes of the source already interpreted / in all, for a progress bar; any thread. Total 0 =
+  /// not known (stdin).
   virtual double progress() const = 0;  ///< 0..1, or < 0 if not known
 };
 
-/// A row of a LinuxCNC tool table, lengths in mm (the caller says what unit the table is in; mm by default).
+/// A row of a LinuxCNC tool table, lengths in mm (the caller says what unit the table is in; mm by
+/// default).
 struct ToolTableRow {
   int tool = 0;
   int pocket = 0;
   double diameter_mm = 0;
   Vec3 offset_mm{0};
+  double front_angle_deg = 0;  ///< I, lathe
+  double back_angle_deg = 0;   ///< J, lathe
+  int orientation = 0;         ///< Q, lathe: 0 to 9
   std::string remark;
   int line = 0;
 };
 
-/// Reads tool.tbl as LinuxCNC does, but accepts tabs (with a warning). Bad rows are diagnostics with line and column.
-Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagnostics& diagnostics);
+/// Reads tool.tbl as LinuxCNC does, but accepts tabs (with a warning). Bad rows are diagnostics
+/// with line and column.
+Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path,
+                                                  Diagnostics& diagnostics);
 
 }  // namespace kerf

@@ -14,11 +14,11 @@ namespace kerf {
 struct BlankBody {
   enum class Kind { kBox, kCylinder, kTube };
   Kind kind = Kind::kBox;
-  Box bounds_mm;                ///< of the body
-  char axis = 'z';              ///< kCylinder, kTube: x, y or z
-  Vec3 center_mm{0};            ///< a point on that axis
+  Box bounds_mm;      ///< of the body
+  char axis = 'z';    ///< kCylinder, kTube: x, y or z
+  Vec3 center_mm{0};  ///< a point on that axis
   double diameter_mm = 0;
-  double inner_diameter_mm = 0; ///< kTube
+  double inner_diameter_mm = 0;  ///< kTube
 };
 
 /// Several bodies add up (union). `state_file` set: the blank is a saved workpiece instead.
@@ -28,9 +28,10 @@ struct Blank {
   Box bounds_mm() const;
 };
 
-/// SPEC: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | tube:x,y,z0:z1:d:inner[:axis] | state:FILE ; several joined by '+'.
-/// stl: and sheet: are named as not supported by this version. Zero or negative sizes, reversed corners, non-numbers are
-/// errors that show what was found and what is allowed.
+/// SPEC: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | tube:x,y,z0:z1:d:inner[:axis] |
+/// state:FILE ; several joined by '+'. stl: and sheet: are named as not supported by this version.
+/// Zero or negative sizes, reversed corners, non-numbers are errors that show what was found and
+/// what is allowed.
 Result<Blank> parse_blank(std::string_view spec);
 
 /// "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0": for messages.

@@ -12,10 +12,10 @@
 namespace kerf {
 
 struct PictureOptions {
-  int width_px = 1600;
+  int width_px = 1600;  ///< 64 to 8192, both
   int height_px = 1200;
-  Box blank_mm;             ///< drawn as a thin outline with its sizes written on it
-  std::string caption;      ///< small text at the lower left ("3D_Chips.ngc  zmap 0.05 mm")
+  Box blank_mm;         ///< drawn as a thin outline with its sizes written on it
+  std::string caption;  ///< small text at the lower left ("3D_Chips.ngc  zmap 0.05 mm")
 };
 
 /// 8-bit RGB, rows from the top.
@@ -25,8 +25,13 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
-/// The mesh shaded from a three-quarter view (from front right above), sharp edges drawn, X/Y/Z axes at the origin of the
-/// workpiece frame, blank outline, sizes in mm as labels. Antialiased. Error if no renderer can be had, with the reason.
+/// The mesh shaded from a three-quarter view (from front right above), sharp edges drawn, X/Y/Z
+/// axes at the origin of the workpiece frame (in a corner of the picture if the origin is far
+/// away), blank outline, sizes in mm as labels. Antialiased. An empty mesh shows the outline alone;
+/// an empty blank is not drawn. Same pixels for the same input on the same driver. About 0.6 s for
+/// 400 000 triangles on one core without a GPU. Calls from several threads wait for each other.
+/// Error if no renderer can be had, with the reason; if the size is not allowed; if mesh and blank
+/// are both empty.
 Result<Picture> draw_part(const TriangleMesh& mesh, const PictureOptions& options);
 
 /// PNG; written under a temporary name and renamed. "-" is stdout.

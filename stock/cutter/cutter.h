@@ -1,14 +1,14 @@
 // stock/cutter/cutter.h - a cutter as a surface of revolution about the spindle axis.
 //
-//        |<- shank ->|            A profile is a chain of line and arc pieces from the tip (radius 0, or the edge of a
-//        |           |            flat bottom) outward and upward:
-//     ___|           |___
-//    |       flutes      |             z
-//    |                   |             |        . end of the last piece: radius R
-//     \                 /              |      _/
-//      `--__       __--'               |__.--'        height_mm(r): lowest point of the cutter at radius r
-//           `--.--'                    +------------ r
-//              tip (z = 0)
+//      |<- shank ->|        A profile is a chain of line and arc pieces from the tip (radius 0)
+//      |           |        outward and upward:
+//   ___|           |___
+//  |       flutes      |        z
+//  |                   |        |        . end of the last piece: radius_mm()
+//   \                 /         |      _/
+//    `--__       __--'          |__.--'      height_mm(r): lowest point of the cutter at radius r
+//         `--.--'               +------------ r
+//            tip (z = 0)
 #pragma once
 
 #include <limits>
@@ -21,15 +21,16 @@
 
 namespace kerf {
 
-/// One piece of a profile, radius not decreasing from start to end. All mm; r is the distance from the spindle axis, z
-/// the height above the tip.
+/// One piece of a profile, radius not decreasing from start to end. All mm; r is the distance from
+/// the spindle axis, z the height above the tip.
 struct ProfilePiece {
   enum class Kind { kLine, kArc };
   Kind kind = Kind::kLine;
   double r0 = 0, z0 = 0;  ///< inner end
   double r1 = 0, z1 = 0;  ///< outer end
-  /// kArc: circle through both ends. The cutter is on the upper side; `convex` arcs bulge outward (ball, bull-nose:
-  /// the centre is above the arc), others are hollow (corner-rounding cutter: the centre is below).
+  /// kArc: circle through both ends. The cutter is on the upper side; `convex` arcs bulge outward
+  /// (ball, bull-nose: the centre is above the arc), others are hollow (corner-rounding cutter: the
+  /// centre is below).
   double center_r = 0, center_z = 0, radius = 0;
   bool convex = true;
 };
@@ -44,19 +45,22 @@ struct ToolSection {
 /// Immutable after construction.
 class Cutter {
  public:
-  /// Checks the pieces: finite, a connected chain that starts at radius 0 and z = 0 is the lowest point, radius not
-  /// decreasing, last radius above 0. Vertical steps are allowed (a line with r0 == r1). The message names the piece.
+  /// Checks the pieces: finite, a connected chain that starts at radius 0 and z = 0 is the lowest
+  /// point, radius not decreasing, last radius above 0. Vertical steps are allowed (a line with r0
+  /// == r1). The message names the piece.
   static Result<Cutter> from_profile(std::string spec, std::vector<ProfilePiece> pieces);
 
-  const std::string& spec() const { return spec_; }  ///< canonical SHAPE text, e.g. "bull:10:2:flute=22"
+  /// Canonical SHAPE text, e.g. "bull:10:2:flute=22".
+  const std::string& spec() const { return spec_; }
   std::span<const ProfilePiece> profile() const { return pieces_; }
   double radius_mm() const { return pieces_.back().r1; }
 
-  /// Lowest point of the cutter above its tip at distance r from the axis: +infinity beyond radius_mm(). O(pieces).
+  /// Lowest point of the cutter above its tip at distance r from the axis: +infinity beyond
+  /// radius_mm(). O(pieces).
   double height_mm(double r) const;
 
-  /// True if some part of the cutter is wider than a part above it within the flutes (lollipop, T-slot): a Z-map cannot
-  /// hold what it cuts. `undercut_from_mm` then says from which radius inward the neck begins.
+  /// True if some part of the cutter is wider than a part above it within the flutes (lollipop,
+  /// T-slot): a Z-map cannot hold what it cuts. neck_radius_mm() is the radius of the part above.
   bool undercuts() const { return neck_radius_mm_.has_value(); }
   std::optional<double> neck_radius_mm() const { return neck_radius_mm_; }
   void set_neck_radius_mm(double r) { neck_radius_mm_ = r; }

@@ -1,4 +1,5 @@
-// stock/cutter/shape_spec.h - cutters from SHAPE text ("bull:10:2:flute=22:shank=10:holder=32x20+40x25").
+// stock/cutter/shape_spec.h - cutters from SHAPE text
+// ("bull:10:2:flute=22:shank=10:holder=32x20+40x25").
 #pragma once
 
 #include <string>
@@ -9,10 +10,32 @@
 
 namespace kerf {
 
-/// SHAPE: flat:D  ball:D  bull:D:R  vee:D:ANGLE[:TIP]  taper:D:ANGLE[:R]  drill:D:ANGLE  lollipop:D:SHAFT
-/// tslot:D:T:SHAFT  profile:FILE ; each may add :flute=L:shank=D:holder=DxL[+DxL..]. mm and degrees (vee, drill: included
-/// angle; taper: half angle at the side, D at the tip). The error names the part that is wrong, what was found and what
-/// is allowed. Reads a file only for profile:.
+/// SHAPE, in mm and degrees; letter case does not matter:
+///     flat:D             end mill
+///     ball:D             hemisphere of diameter D
+///     bull:D:R           corner radius R from 0 to D/2 (D/2 is a ball)
+///     vee:D:ANGLE[:TIP]  included angle ANGLE, largest diameter D, flat tip of diameter TIP
+///     taper:D:ANGLE[:R]  tip diameter D; ANGLE of one side to the axis; R rounds the tip (below)
+///     drill:D:ANGLE      point angle (included); 180 is a flat drill
+///     lollipop:D:SHAFT   sphere on a shaft: its lower hemisphere and a neck (Cutter::undercuts)
+///     tslot:D:T:SHAFT    disc of thickness T on a shaft: flat, with a neck
+///     profile:FILE       outline from a file (profile_file.h)
+/// Each may add, in any order, divided by colons:
+///     flute=L            the cutting part ends L above the tip, at least as high as the shape
+///     shank=D[xL]        cylinder from the end of the flutes up; L only below a holder
+///     holder=DxL[+..]    cylinders that stack upward from the end of the shank; needs flute=.
+///                        A shank without L counts as hidden in the holder, which then begins at
+///                        the end of the flutes: the cautious reading
+///
+/// taper: the circle of radius R has its centre at radius D/2 - R and meets the cone tangentially;
+/// R = D/2 is a tapered ball nose. The cone ends at the flute length, or three tip diameters above
+/// the tip. lollipop, tslot: the flutes are as high as the shape and the shank has diameter SHAFT
+/// unless the options say otherwise. profile: options in the file count unless the text has them.
+///
+/// Ranges: diameters 0.001 to 1000 mm, lengths to 2000 mm. spec() of the result is the canonical
+/// text: shortest numbers, options in the order above; it parses to the same cutter. The error
+/// names the part that is wrong, what was found and what is allowed. Reads a file only for
+/// profile:.
 Result<Cutter> parse_shape(std::string_view spec);
 
 /// A `N=SHAPE` argument of --tool.

@@ -13,8 +13,9 @@
 
 namespace kerf {
 
-/// One comment of a program: where, its text without parentheses or semicolon, and whether inches were in force there
-/// (G20 seen before it and no G21 since; the first G20/G21 of the program counts for comments before it).
+/// One comment of a program: where, its text without parentheses or semicolon, and whether inches
+/// were in force there (G20 seen before it and no G21 since; the first G20/G21 of the program
+/// counts for comments before it).
 struct CommentText {
   std::uint32_t line = 0;
   std::string text;
@@ -23,25 +24,31 @@ struct CommentText {
 
 /// A tool that a comment describes.
 struct ToolHint {
-  int tool = 0;          ///< number; -1 when the dialect gives none (then it means the next tool to be used after `line`)
+  /// Number; -1 when the dialect gives none: then the next tool to be used after `line` is meant,
+  /// and of several such hints before that use the last one counts.
+  int tool = 0;
   std::uint32_t line = 0;
-  std::string dialect;   ///< "fusion", "cambam", "cutviewer", ... for messages
-  std::string shape;     ///< SHAPE text, parse_shape() accepts it
-  bool shape_guessed = false;  ///< only the diameter was written; a flat cutter is assumed
+  std::string dialect;  ///< "fusion", "cambam", "cutviewer", ... for messages
+  std::string shape;    ///< SHAPE text, parse_shape() accepts it
+  /// The text gives less than the shape needs: only a diameter (a flat cutter is assumed), a V-bit
+  /// without its angle (90 degrees), a bull-nose or tapered cutter without its radius or angle.
+  bool shape_guessed = false;
 };
+/// In the order of the comments, at most the first 10000; a tool that a list repeats with the same
+/// shape comes once. Comments longer than 512 characters are passed over.
 std::vector<ToolHint> find_tool_hints(std::span<const CommentText> comments);
 
-/// A blank that comments describe: LinuxCNC 2.10's (WORKPIECE,BOX|CYLINDER|TUBE,...) (several add up) and CutViewer's
-/// (STOCK/BLOCK,...). SPEC text as --stock takes it, parts joined by " + ".
+/// A blank that comments describe: LinuxCNC 2.10's (WORKPIECE,BOX|CYLINDER|TUBE,...) (several add
+/// up) and CutViewer's (STOCK/BLOCK,...). SPEC text as --stock takes it, parts joined by " + ".
 struct BlankHint {
   std::uint32_t line = 0;
-  std::string dialect;   ///< "workpiece" | "cutviewer"
-  std::string spec;      ///< parse_blank() accepts it
+  std::string dialect;  ///< "workpiece" | "cutviewer"
+  std::string spec;     ///< parse_blank() accepts it
 };
 std::optional<BlankHint> find_blank_hint(std::span<const CommentText> comments);
 
-/// Shape from the free text of a tool table remark ("1/16 end mill", "45/60 v-bit", "6 mm straight ball end"), with the
-/// table's diameter; nullopt if the text names no kind of cutter.
+/// Shape from the free text of a tool table remark ("1/16 end mill", "45/60 v-bit", "6 mm straight
+/// ball end"), with the table's diameter; nullopt if the text names no kind of cutter.
 std::optional<ToolHint> shape_from_remark(int tool, double diameter_mm, std::string_view remark);
 
 }  // namespace kerf

@@ -18,25 +18,32 @@ namespace kerf {
 enum class ZMapKernel { kAuto, kScalar, kAvx2 };
 
 struct ZMapOptions {
-  Blank blank;            ///< bodies, workpiece frame
-  double cell_mm = 0.1;   ///< greatest edge of a cell: the true edges divide the blank evenly. Sets the accuracy of vertical walls: cell / 2
-  int threads = 1;        ///< cutting threads, >= 1
+  Blank blank;           ///< bodies, workpiece frame
+  double cell_mm = 0.1;  ///< greatest edge of a cell: the true edges divide the blank evenly. Sets
+                         ///< the accuracy of vertical walls: cell / 2
+  int threads = 1;       ///< cutting threads, >= 1
   ZMapKernel kernel = ZMapKernel::kAuto;
 };
 
-/// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no undercuts. Reads no files,
-/// knows no GL. A cell whose height is the floor holds no material.
+/// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no
+/// undercuts. Reads no files, knows no GL. A cell whose height is the floor holds no material.
 /// Source: one-dexel case of T. Van Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
 class ZMap final : public StockModel {
  public:
-  /// Error if cell_mm is not finite or <= 0, exceeds the blank, or makes more than kMaxCells cells (then the message says
-  /// how much memory it would take), or if a body cannot be held (cylinder along x or y).
+  /// Error if cell_mm is not finite or <= 0, exceeds the blank, or makes more than kMaxCells cells
+  /// (then the message says how much memory it would take), or if a body cannot be held (cylinder
+  /// along x or y).
   static Result<std::unique_ptr<ZMap>> create(const ZMapOptions& options);
+  /// Error if the cutter has an undercut or a hollow bottom: what it cuts has several surfaces above one
+  /// point, or none that depends on one height only. cut() must not be given such a cutter.
+  static Done can_cut(const Cutter& cutter);
   ~ZMap() override;
 
-  void cut(const Cutter& cutter, std::span<const CutMove> moves, std::vector<CutReport>& reports) override;
+  void cut(const Cutter& cutter, std::span<const CutMove> moves,
+           std::vector<CutReport>& reports) override;
   void finish(std::vector<CutReport>& reports) override;
-  std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move, double tolerance_mm) const override;
+  std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
+                                       double tolerance_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::string name() const override { return "zmap"; }
   Box bounds_mm() const override;
@@ -54,10 +61,12 @@ class ZMap final : public StockModel {
   /// All heights row by row (y outer, x inner).
   std::vector<float> heights_mm() const;
 
-  /// Saves and loads the workpiece (kerf-state/1: text head, then tiles; format in stock/zmap/state_file.h). Written to a
-  /// temporary name and renamed. A damaged file is an error that says where.
+  /// Saves and loads the workpiece (kerf-state/1: text head, then tiles; format in
+  /// stock/zmap/state_file.h). Written to a temporary name and renamed. A damaged file is an error
+  /// that says where.
   Done save(const std::string& path) const;
-  static Result<std::unique_ptr<ZMap>> load(const std::string& path, int threads = 1, ZMapKernel kernel = ZMapKernel::kAuto);
+  static Result<std::unique_ptr<ZMap>> load(const std::string& path, int threads = 1,
+                                            ZMapKernel kernel = ZMapKernel::kAuto);
 
   static constexpr std::size_t kMaxCells = std::size_t{1} << 30;
 

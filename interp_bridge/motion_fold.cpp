@@ -1,0 +1,454 @@
+#include "interp_bridge/motion_fold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+constexpr double kInchMm = 25.4;
+
+/// rs274 prints four decimals of the program's unit.
+constexpr double kPrintResolution = 1e-4;
+
+/// Ends closer than this are a full turn, as in LinuxCNC's own arc code (CIRCLE_FUZZ).
+constexpr double kFullTurnFuzz_rad = 1e-6;
+
+/// Without a cap on rpm (G96 without D) the speed at the axis would be infinite; a radius below
+/// this counts as this.
+constexpr double kSmallestTurningRadius_mm = 0.5;
+
+/// Degrees to (cos, sin), exact for multiples of 90 so that a part turned by R90 keeps its digits.
+std::pair<double, double> cos_sin(double degrees) {
+  const double quarter = degrees / 90.0;
+  if (quarter == std::floor(quarter) && std::abs(quarter) < 1e9) {
+    constexpr std::array<std::pair<double, double>, 4> kQuarters = {
+        {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+    return kQuarters[static_cast<std::size_t>(static_cast<std::int64_t>(quarter) & 3)];
+  }
+  const double radians = degrees * (kPi / 180.0);
+  return {std::cos(radians), std::sin(radians)};
+}
+
+Vec3 turned(const Vec3& p, double cosine, double sine) {
+  return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, p.z};
+}
+
+/// Where the numbers of ARC_FEED go: x, y, z index of the first, second and normal axis. In this
+/// order the three are right-handed in every plane, so that a positive rotation is
+/// counter-clockwise about +normal.
+struct PlaneAxes {
+  int first;
+  int second;
+  int normal;
+};
+
+PlaneAxes axes_of(CanonicalPlane plane) {
+  switch (plane) {
+    case CanonicalPlane::kYz:
+      return {1, 2, 0};
+    case CanonicalPlane::kXz:
+      return {2, 0, 1};
+    case CanonicalPlane::kXy:
+    case CanonicalPlane::kUnknown:
+      break;
+  }
+  return {0, 1, 2};
+}
+
+/// 0.0 for -0.0, which rs274 prints, and which would reach reports.
+double without_sign_of_zero(double value) { return value + 0.0; }
+
+}  // namespace
+
+double arc_sweep_rad(const Vec2& start, const Vec2& end, int turns, double resolution,
+                     bool as_printed) {
+  const double direction = turns < 0 ? -1.0 : 1.0;
+  const double start_radius = glm::length(start);
+  const double end_radius = glm::length(end);
+  const double cross = start.x * end.y - start.y * end.x;
+  double sweep = direction * std::atan2(cross, glm::dot(start, end));
+  // Rounding to four decimals turns the ends about the centre by up to one digit, so a full turn
+  // may show as a sliver. It is one if nothing but rounding separates the ends, or if they lie on
+  // one ray at different radii (a spiral).
+  const double sliver = std::abs(sweep) * std::max(start_radius, end_radius);
+  const double radial = std::abs(end_radius - start_radius);
+  const bool ends_meet = as_printed ? start == end : sliver + radial <= 3 * resolution;
+  const bool on_one_ray = sliver <= 1.5 * resolution && radial >= 5 * resolution;
+  if (ends_meet || on_one_ray || std::abs(sweep) <= kFullTurnFuzz_rad) {
+    sweep = 2 * kPi;
+  } else if (sweep < 0) {
+    sweep += 2 * kPi;
+  }
+  const double full_turns = std::max(0.0, std::abs(static_cast<double>(turns)) - 1.0);
+  return direction * (sweep + full_turns * 2 * kPi);
+}
+
+MotionFold::MotionFold(std::vector<int> tool_by_index) : tool_by_index_(std::move(tool_by_index)) {}
+
+Vec3 MotionFold::work_from_program(const Vec3& p_mm) const {
+  if (same_frame_) return p_mm;
+  return turned(p_mm, turn_cos_, turn_sin_) + shift_mm_;
+}
+
+Vec3 MotionFold::program_from_work(const Vec3& w_mm) const {
+  if (same_frame_) return w_mm;
+  return turned(w_mm - shift_mm_, turn_cos_, -turn_sin_);
+}
+
+std::array<double, 3> MotionFold::work_abc(const double* program_abc_deg) const {
+  std::array<double, 3> abc{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    abc[i] = without_sign_of_zero(program_abc_deg[i]);
+    if (same_frame_) continue;
+    abc[i] += frame_.g5x_abc_deg[i] + frame_.g92_abc_deg[i];
+    abc[i] -= work_.g5x_abc_deg[i] + work_.g92_abc_deg[i];
+  }
+  return abc;
+}
+
+Vec3 MotionFold::scaled(const CanonicalCommand& command, std::size_t first) const {
+  return {without_sign_of_zero(command.number(first) * unit_mm_),
+          without_sign_of_zero(command.number(first + 1) * unit_mm_),
+          without_sign_of_zero(command.number(first + 2) * unit_mm_)};
+}
+
+void MotionFold::frame_changed() {
+  if (!work_fixed_) return;
+  const bool same = frame_ == work_;
+  if (same && same_frame_) return;
+  position_as_printed_ = false;
+  same_frame_ = same;
+  if (same) return;
+  std::tie(turn_cos_, turn_sin_) = cos_sin(frame_.rotation_deg - work_.rotation_deg);
+  const auto [work_cos, work_sin] = cos_sin(work_.rotation_deg);
+  shift_mm_ = turned(frame_.g92_mm, turn_cos_, turn_sin_) +
+              turned(frame_.g5x_mm - work_.g5x_mm, work_cos, -work_sin) - work_.g92_mm;
+}
+
+void MotionFold::fix_workpiece_frame() {
+  work_ = frame_;
+  work_fixed_ = true;
+  same_frame_ = true;
+}
+
+Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion>& out) {
+  Motion& motion = out.emplace_back();
+  motion.kind = kind;
+  motion.source = source;
+  motion.tool = tool_;
+  motion.flood = flood_;
+  motion.mist = mist_;
+  motion.start_known = position_known_;
+  motion.from_mm = position_mm_;
+  motion.to_mm = position_mm_;
+  motion.from_abc_deg = abc_deg_;
+  motion.to_abc_deg = abc_deg_;
+  motion.spindle = spindles_[spindle_].state;
+  motion.spindle_rpm = rpm_;
+  return motion;
+}
+
+void MotionFold::update_rpm() {
+  const Spindle& spindle = spindles_[spindle_];
+  rpm_ = spindle.speed;
+  if (spindle.surface_max_rpm <= 0) return;
+  // G96 turns about X0 of the program.
+  const double x_mm = std::abs(program_from_work(position_mm_).x);
+  rpm_ *= spindle.surface_unit_mm / (2 * kPi * std::max(x_mm, kSmallestTurningRadius_mm));
+  rpm_ = std::min(rpm_, spindle.surface_max_rpm);
+}
+
+void MotionFold::move_to(Motion& motion, const Vec3& to_mm,
+                         const std::array<double, 3>& to_abc_deg) {
+  motion.to_mm = to_mm;
+  motion.to_abc_deg = to_abc_deg;
+  if (!position_known_) {
+    motion.from_mm = to_mm;
+    motion.from_abc_deg = to_abc_deg;
+    has_rotary_motion_ |= to_abc_deg != std::array<double, 3>{};
+  }
+  has_rotary_motion_ |= motion.from_abc_deg != motion.to_abc_deg;
+  position_mm_ = to_mm;
+  abc_deg_ = to_abc_deg;
+  position_known_ = true;
+  position_as_printed_ = true;
+  if (spindles_[spindle_].surface_max_rpm > 0) {
+    update_rpm();
+    motion.spindle_rpm = rpm_;
+  }
+}
+
+void MotionFold::set_feed(Motion& motion) const {
+  if (synchronised_) {
+    motion.feed_per_rev = true;
+    motion.feed_mm_per_min = pitch_mm_;
+    return;
+  }
+  motion.feed_per_rev = feed_per_rev_;
+  const bool only_turns =
+      motion.from_mm == motion.to_mm && motion.from_abc_deg != motion.to_abc_deg;
+  motion.feed_mm_per_min = only_turns ? feed_ : feed_mm_;
+}
+
+void MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
+                               std::vector<Motion>& out) {
+  if (!work_fixed_) fix_workpiece_frame();
+  Motion& motion = append(kind, source, out);
+  move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]));
+  if (kind != MotionKind::kTraverse) set_feed(motion);
+}
+
+FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef source,
+                                std::vector<Motion>& out) {
+  if (!work_fixed_) fix_workpiece_frame();
+  if (plane_ == CanonicalPlane::kUnknown) {
+    position_known_ = false;
+    return FoldRemark::kArcPlaneUnknown;
+  }
+  const PlaneAxes axes = axes_of(plane_);
+  const auto number = [&](std::size_t i) {
+    return without_sign_of_zero(command.number(i) * unit_mm_);
+  };
+  const int turns = command.integer(4);
+  Vec3 end_mm{0};
+  end_mm[axes.first] = number(0);
+  end_mm[axes.second] = number(1);
+  end_mm[axes.normal] = number(5);
+  const Vec3 start_mm = position_known_ ? program_from_work(position_mm_) : end_mm;
+  Vec3 center_mm{0};
+  center_mm[axes.first] = number(2);
+  center_mm[axes.second] = number(3);
+  center_mm[axes.normal] = start_mm[axes.normal];
+  Vec3 normal{0};
+  normal[axes.normal] = 1;
+
+  const Vec2 start{start_mm[axes.first] - center_mm[axes.first],
+                   start_mm[axes.second] - center_mm[axes.second]};
+  const Vec2 end{end_mm[axes.first] - center_mm[axes.first],
+                 end_mm[axes.second] - center_mm[axes.second]};
+  const bool start_known = position_known_;
+  const bool as_printed = position_as_printed_;
+  // No rotation, or no radius: LinuxCNC moves straight.
+  const double resolution_mm = kPrintResolution * unit_mm_;
+  const bool straight = turns == 0 || (glm::length(start) < resolution_mm / 2 &&
+                                       glm::length(end) < resolution_mm / 2);
+  Motion& motion = append(straight ? MotionKind::kFeed : MotionKind::kArc, source, out);
+  move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]));
+  set_feed(motion);
+  if (straight) return FoldRemark::kNone;
+  motion.arc.center_mm = work_from_program(center_mm);
+  motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
+  if (start_known) {
+    motion.arc.sweep_rad = arc_sweep_rad(start, end, turns, resolution_mm, as_printed);
+  }
+  return FoldRemark::kNone;
+}
+
+void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef source,
+                                std::vector<Motion>& out) {
+  if (!work_fixed_) fix_workpiece_frame();
+  const Vec3 bottom_mm = work_from_program(scaled(command, 0));
+  const bool top_known = position_known_;
+  const Vec3 top_mm = position_mm_;
+  const auto abc_deg = abc_deg_;
+  Motion& down = append(MotionKind::kThread, source, out);
+  move_to(down, bottom_mm, abc_deg);
+  set_feed(down);
+  if (!top_known) {
+    // Back to where it came from, which nobody has said.
+    position_known_ = false;
+    return;
+  }
+  Motion& up = append(MotionKind::kThread, source, out);
+  move_to(up, top_mm, abc_deg);
+  set_feed(up);
+}
+
+void MotionFold::change_tool_length(const CanonicalCommand& command) {
+  const Vec3 offset_mm = scaled(command, 0);
+  const std::array<double, 3> abc_deg = {command.number(3), command.number(4), command.number(5)};
+  if (offset_mm == tool_offset_mm_ && abc_deg == tool_offset_abc_deg_) return;
+  if (position_known_) {
+    const auto [work_cos, work_sin] = cos_sin(work_.rotation_deg);
+    position_mm_ += turned(tool_offset_mm_ - offset_mm, work_cos, -work_sin);
+    for (std::size_t i = 0; i < 3; ++i) abc_deg_[i] += tool_offset_abc_deg_[i] - abc_deg[i];
+    position_as_printed_ = false;
+  }
+  tool_offset_mm_ = offset_mm;
+  tool_offset_abc_deg_ = abc_deg;
+}
+
+bool MotionFold::fold_frame(const CanonicalCommand& command) {
+  switch (command.name) {
+    case CanonicalName::kUseLengthUnits: {
+      constexpr std::array<double, 3> kUnits_mm = {kInchMm, 1.0, 10.0};
+      const double unit_mm = kUnits_mm[static_cast<std::size_t>(command.integer(0))];
+      if (unit_mm != unit_mm_) position_as_printed_ = false;
+      unit_mm_ = unit_mm;
+      return true;
+    }
+    case CanonicalName::kSetG5xOffset:
+      frame_.g5x_mm = scaled(command, 1);
+      for (std::size_t i = 0; i < 3; ++i) frame_.g5x_abc_deg[i] = command.number(4 + i);
+      frame_changed();
+      return true;
+    case CanonicalName::kSetG92Offset:
+      frame_.g92_mm = scaled(command, 0);
+      for (std::size_t i = 0; i < 3; ++i) frame_.g92_abc_deg[i] = command.number(3 + i);
+      frame_changed();
+      return true;
+    case CanonicalName::kSetXyRotation:
+      frame_.rotation_deg = without_sign_of_zero(command.number(0));
+      frame_changed();
+      return true;
+    case CanonicalName::kSelectPlane:
+      plane_ = static_cast<CanonicalPlane>(command.integer(0));
+      return true;
+    case CanonicalName::kUseToolLengthOffset:
+      change_tool_length(command);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool MotionFold::fold_spindle(const CanonicalCommand& command) {
+  const auto for_each = [&](auto change) {
+    // -1 is all of them (M5 $-1); numbers beyond the last spindle are not on any machine.
+    const int number = command.integer(0);
+    for (std::size_t i = 0; i < kMaxSpindles; ++i) {
+      if (number == -1 || number == static_cast<int>(i)) change(spindles_[i]);
+    }
+    const auto turning = std::find_if(spindles_.begin(), spindles_.end(), [](const Spindle& one) {
+      return one.state != SpindleState::kStopped;
+    });
+    spindle_ = turning == spindles_.end()
+                   ? 0
+                   : static_cast<std::size_t>(std::distance(spindles_.begin(), turning));
+    update_rpm();
+    return true;
+  };
+  switch (command.name) {
+    case CanonicalName::kStartSpindleClockwise:
+      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kClockwise; });
+    case CanonicalName::kStartSpindleCounterclockwise:
+      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kCounterclockwise; });
+    case CanonicalName::kStopSpindleTurning:
+      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kStopped; });
+    case CanonicalName::kSetSpindleSpeed:
+      return for_each([&](Spindle& spindle) { spindle.speed = command.number(1); });
+    case CanonicalName::kSetSpindleMode:
+      // Surface speed is m/min in G21 and ft/min in G20.
+      return for_each([&](Spindle& spindle) {
+        spindle.surface_max_rpm = command.number(1);
+        spindle.surface_unit_mm = unit_mm_ == kInchMm ? 304.8 : 1000.0;
+      });
+    default:
+      return false;
+  }
+}
+
+bool MotionFold::fold_feed(const CanonicalCommand& command) {
+  switch (command.name) {
+    case CanonicalName::kSetFeedRate:
+      feed_ = command.number(0);
+      feed_mm_ = feed_ * unit_mm_;
+      return true;
+    case CanonicalName::kSetFeedMode:
+      feed_per_rev_ = command.integer(1) != 0;
+      return true;
+    case CanonicalName::kStartSpeedFeedSync:
+      synchronised_ = true;
+      if (command.argument_count == 2) {
+        pitch_mm_ = command.number(0) * unit_mm_;
+        synchronised_by_speed_ = command.integer(1) != 0;
+      }
+      return true;
+    case CanonicalName::kStopSpeedFeedSynch:
+      synchronised_ = false;
+      return true;
+    case CanonicalName::kFloodOn:
+      return flood_ = true;
+    case CanonicalName::kMistOn:
+      return mist_ = true;
+    case CanonicalName::kFloodOff:
+      flood_ = false;
+      return true;
+    case CanonicalName::kMistOff:
+      mist_ = false;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
+                            std::vector<Motion>& out) {
+  switch (command.name) {
+    case CanonicalName::kDwell:
+      append(MotionKind::kDwell, source, out).duration_s = command.number(0);
+      return true;
+    case CanonicalName::kSelectTool:
+      selected_tool_ = command.integer(0);
+      return true;
+    case CanonicalName::kChangeTool:
+      // The printed number is a row of the table, not a tool.
+      tool_ = selected_tool_;
+      append(MotionKind::kToolChange, source, out);
+      return true;
+    case CanonicalName::kChangeToolNumber: {
+      const auto row = static_cast<std::size_t>(std::max(0, command.integer(0)));
+      tool_ = row < tool_by_index_.size() ? tool_by_index_[row] : command.integer(0);
+      append(MotionKind::kToolChange, source, out);
+      return true;
+    }
+    case CanonicalName::kProgramStop:
+    case CanonicalName::kOptionalProgramStop:
+      append(MotionKind::kStop, source, out);
+      return true;
+    case CanonicalName::kProgramEnd:
+    case CanonicalName::kFinish:
+      has_program_end_ = true;
+      append(MotionKind::kProgramEnd, source, out);
+      return true;
+    default:
+      return false;
+  }
+}
+
+FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
+                            std::vector<Motion>& out) {
+  switch (command.name) {
+    case CanonicalName::kStraightFeed: {
+      const bool thread = synchronised_ && !synchronised_by_speed_;
+      fold_straight(thread ? MotionKind::kThread : MotionKind::kFeed, command, source, out);
+      return FoldRemark::kNone;
+    }
+    case CanonicalName::kStraightTraverse:
+      fold_straight(MotionKind::kTraverse, command, source, out);
+      return FoldRemark::kNone;
+    case CanonicalName::kStraightProbe:
+      fold_straight(MotionKind::kProbe, command, source, out);
+      return FoldRemark::kNone;
+    case CanonicalName::kArcFeed:
+      return fold_arc(command, source, out);
+    case CanonicalName::kRigidTap:
+      fold_rigid_tap(command, source, out);
+      return FoldRemark::kNone;
+    case CanonicalName::kNurbsFeed:
+      position_known_ = false;
+      return FoldRemark::kSplineLost;
+    default:
+      if (!fold_frame(command) && !fold_spindle(command) && !fold_feed(command)) {
+        fold_event(command, source, out);
+      }
+      return FoldRemark::kNone;
+  }
+}
+
+}  // namespace kerf

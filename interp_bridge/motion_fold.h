@@ -1,0 +1,140 @@
+// interp_bridge/motion_fold.h - canonical commands in, motions out: units, offsets, rotation, tool,
+// spindle, feed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/geometry.h"
+#include "interp_bridge/canonical.h"
+#include "interp_bridge/motion.h"
+
+namespace kerf {
+
+/// What a command means that no Motion can say.
+enum class FoldRemark : std::uint8_t {
+  kNone,
+  kSplineLost,  ///< G5, G5.2, G6: the listing holds no control points; where the tip is now is not
+                ///< known
+  kArcPlaneUnknown,  ///< an arc in a plane of U, V, W; its end is not known
+};
+
+/// Folds the modal state of a listing into motions.
+///
+/// A printed point p (program coordinates, unit u = 25.4 or 1 mm in force) is, as LinuxCNC computes
+/// it,
+///
+///     tip in the machine frame   = R(rotation) * (p * u + g92) + g5x        R turns about Z; a, b,
+///     c only add offsets machine position           = tip + tool length offset
+///
+/// and the workpiece frame is the frame (g5x, g92, rotation) in force at the first motion: while it
+/// stays in force, Motion positions are the printed numbers in mm, bit for bit. It stands still in
+/// the machine, so an offset that changes later moves the program's numbers, not the tip. A tool
+/// length offset that changes under a standing machine moves the tip (the new tool's, or the newly
+/// measured one) by the difference; that is the only case in which a step does not begin where the
+/// one before ended.
+///
+/// Feed: in mm/min, or mm per revolution with `feed_per_rev`; degrees/min where a step only turns
+/// A, B or C. A thread's feed is its pitch, per revolution. Rpm under G96 (constant surface speed)
+/// is that at the end of the step. Steps before the first motion have start_known = false and stand
+/// at the origin; the first motion has it too, with from_mm = to_mm. Its unnamed axes count as
+/// known afterwards, at 0, as the listing says.
+class MotionFold {
+ public:
+  /// `tool_by_index`: tool number of each row of the interpreter's tool table, [0] = none, for
+  /// CHANGE_TOOL_NUMBER (M61), which prints the row. Empty: the printed number is taken for the
+  /// tool's.
+  explicit MotionFold(std::vector<int> tool_by_index = {});
+
+  /// Appends the steps of `command` (0, 1, or 2 for a rigid tap) to `out`.
+  FoldRemark fold(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+
+  int tool() const { return tool_; }
+  bool has_rotary_motion() const { return has_rotary_motion_; }
+  bool has_program_end() const { return has_program_end_; }
+
+ private:
+  /// What turns program coordinates into machine coordinates. mm, degrees.
+  struct Frame {
+    Vec3 g5x_mm{0};
+    Vec3 g92_mm{0};
+    std::array<double, 3> g5x_abc_deg{};
+    std::array<double, 3> g92_abc_deg{};
+    double rotation_deg = 0;
+    bool operator==(const Frame&) const = default;
+  };
+  struct Spindle {
+    SpindleState state = SpindleState::kStopped;
+    double speed = 0;            ///< rpm; under G96 m/min or ft/min
+    double surface_max_rpm = 0;  ///< > 0: G96
+    double surface_unit_mm = 0;  ///< mm in one unit of surface speed: 1000 or 304.8
+  };
+  static constexpr std::size_t kMaxSpindles = 8;  ///< EMCMOT_MAX_SPINDLES
+
+  Vec3 work_from_program(const Vec3& p_mm) const;
+  Vec3 program_from_work(const Vec3& w_mm) const;
+  std::array<double, 3> work_abc(const double* program_abc_deg) const;
+  Vec3 scaled(const CanonicalCommand& command, std::size_t first) const;
+  void frame_changed();
+  void fix_workpiece_frame();
+  Motion& append(MotionKind kind, SourceRef source, std::vector<Motion>& out);
+  void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg);
+  void set_feed(Motion& motion) const;
+  void update_rpm();
+  void fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
+                     std::vector<Motion>& out);
+  FoldRemark fold_arc(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+  void fold_rigid_tap(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+  bool fold_frame(const CanonicalCommand& command);
+  bool fold_spindle(const CanonicalCommand& command);
+  bool fold_feed(const CanonicalCommand& command);
+  bool fold_event(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+  void change_tool_length(const CanonicalCommand& command);
+
+  std::vector<int> tool_by_index_;
+  Frame frame_;
+  Frame work_;  ///< the workpiece frame, once fixed
+  bool work_fixed_ = false;
+  bool same_frame_ = true;  ///< frame_ == work_: numbers pass unchanged
+  double turn_cos_ = 1;     ///< of frame_.rotation - work_.rotation
+  double turn_sin_ = 0;
+  Vec3 shift_mm_{0};  ///< w = turn * p + shift
+  Vec3 tool_offset_mm_{0};
+  std::array<double, 3> tool_offset_abc_deg_{};
+  double unit_mm_ = 1;
+  CanonicalPlane plane_ = CanonicalPlane::kXy;
+
+  Vec3 position_mm_{0};  ///< tip, workpiece frame
+  std::array<double, 3> abc_deg_{};
+  bool position_known_ = false;
+  bool position_as_printed_ =
+      true;  ///< no change of frame or unit since: equal digits mean equal points
+
+  int tool_ = 0;
+  int selected_tool_ = 0;
+  std::array<Spindle, kMaxSpindles> spindles_{};
+  std::size_t spindle_ = 0;  ///< the one that motions speak of: the first that turns
+  double rpm_ = 0;
+  bool flood_ = false;
+  bool mist_ = false;
+  double feed_ = 0;  ///< as printed: for steps that only turn
+  double feed_mm_ = 0;
+  bool feed_per_rev_ = false;
+  bool synchronised_ = false;  ///< between START_ and STOP_SPEED_FEED_SYNC
+  bool synchronised_by_speed_ = false;
+  double pitch_mm_ = 0;
+  bool has_rotary_motion_ = false;
+  bool has_program_end_ = false;
+};
+
+/// Angle from `start` to `end` about the origin as LinuxCNC reads an arc: `turns` > 0
+/// counter-clockwise, < 0 clockwise, |turns| = number of turns begun, so that |sweep| lies in
+/// ((|turns| - 1) * 2 pi, |turns| * 2 pi]. Ends that coincide are a full turn. `resolution` is the
+/// size of the last printed digit; `as_printed`: start and end carry the same rounding, so that a
+/// full circle has equal ends.
+double arc_sweep_rad(const Vec2& start, const Vec2& end, int turns, double resolution,
+                     bool as_printed);
+
+}  // namespace kerf

@@ -1,0 +1,342 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "interp_bridge/canonical_reader.h"
+#include "interp_bridge/private_folder.h"
+#include "interp_bridge/program_kinds.h"
+#include "interp_bridge/program_prepare.h"
+#include "interp_bridge/rs274_messages.h"
+#include "interp_bridge/rs274_process.h"
+#include "interp_bridge/tool_table.h"
+
+namespace kerf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Of what rs274 writes to stderr, its message is the end.
+constexpr std::size_t kMaxStderrBytes = 64 * 1024;
+constexpr std::size_t kMaxStdoutLineBytes = 4096;
+
+/// The second run of a program that fell silent need not wait as long to call it so.
+constexpr double kSilenceAgain_s = 2.0;
+
+enum class Ending { kComplete, kStopped, kTooMany, kSilent };
+
+/// The three pipes of the child, read by turns in one thread, so that none of them can fill up and
+/// stop it.
+class Conversation {
+ public:
+  Conversation(Rs274Process& process, CanonicalReader& reader, double max_silent_s)
+      : reader_(reader), max_silent_s_(max_silent_s), buffer_(64 * 1024) {
+    fds_[kListing] = {process.listing_fd(), POLLIN, 0};
+    fds_[kStdout] = {process.stdout_fd(), POLLIN, 0};
+    fds_[kStderr] = {process.stderr_fd(), POLLIN, 0};
+  }
+
+  template <class OnProgress>
+  Ending listen(const std::stop_token& stop, const OnProgress& on_progress);
+  const std::string& stderr_text() const { return stderr_text_; }
+
+ private:
+  enum { kListing, kStdout, kStderr };
+
+  bool readable(int index) const { return fds_[index].fd >= 0 && fds_[index].revents != 0; }
+  std::size_t read_some(int index, std::span<char> room);
+  void take_stdout(std::string_view text);
+  void take_stderr(std::string_view text);
+
+  CanonicalReader& reader_;
+  double max_silent_s_;
+  std::array<pollfd, 3> fds_{};
+  std::vector<char> buffer_;
+  std::string stdout_line_;
+  std::string stderr_text_;
+};
+
+/// 0: nothing came. At the end of a pipe it is taken out of the poll.
+std::size_t Conversation::read_some(int index, std::span<char> room) {
+  const ssize_t got = read(fds_[static_cast<std::size_t>(index)].fd, room.data(), room.size());
+  if (got > 0) return static_cast<std::size_t>(got);
+  if (got == 0 || (errno != EINTR && errno != EAGAIN)) {
+    fds_[static_cast<std::size_t>(index)].fd = -1;
+  }
+  return 0;
+}
+
+void Conversation::take_stdout(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    const std::size_t room = kMaxStdoutLineBytes - stdout_line_.size();
+    stdout_line_ += line.substr(0, room);
+    if (line.size() == text.size()) return;
+    reader_.add_foreign(stdout_line_);
+    stdout_line_.clear();
+    text.remove_prefix(line.size() + 1);
+  }
+}
+
+void Conversation::take_stderr(std::string_view text) {
+  stderr_text_ += text;
+  if (stderr_text_.size() > 2 * kMaxStderrBytes) {
+    stderr_text_.erase(0, stderr_text_.size() - kMaxStderrBytes);
+  }
+}
+
+template <class OnProgress>
+Ending Conversation::listen(const std::stop_token& stop, const OnProgress& on_progress) {
+  auto heard = Clock::now();
+  const auto is_open = [](const pollfd& pipe) { return pipe.fd >= 0; };
+  while (std::any_of(fds_.begin(), fds_.end(), is_open)) {
+    if (stop.stop_requested()) return Ending::kStopped;
+    for (pollfd& pipe : fds_) pipe.revents = 0;
+    poll(fds_.data(), fds_.size(), kReaderPatience_ms);
+    if (readable(kListing)) {
+      const std::size_t got = read_some(kListing, reader_.room());
+      if (got > 0 && !reader_.received(got)) {
+        return reader_.too_many_commands() ? Ending::kTooMany : Ending::kStopped;
+      }
+      // After the sink: the time it takes is not the child's.
+      if (got > 0) heard = Clock::now();
+      on_progress();
+    } else {
+      if (!reader_.flush_if_old()) return Ending::kStopped;
+      const std::chrono::duration<double> silent = Clock::now() - heard;
+      if (silent.count() > max_silent_s_) return Ending::kSilent;
+    }
+    if (readable(kStdout)) take_stdout({buffer_.data(), read_some(kStdout, buffer_)});
+    if (readable(kStderr)) take_stderr({buffer_.data(), read_some(kStderr, buffer_)});
+  }
+  if (!stdout_line_.empty()) reader_.add_foreign(stdout_line_);
+  return Ending::kComplete;
+}
+
+class NcProgram final : public Program {
+ public:
+  NcProgram(const ProgramOptions& options, std::string rs274, std::vector<ToolTableRow> tools,
+            TextSurvey survey)
+      : options_(options),
+        rs274_(std::move(rs274)),
+        tools_(std::move(tools)),
+        survey_(std::move(survey)) {}
+
+  const std::vector<ProgramComment>& comments() const override { return survey_.comments; }
+  ProgramSummary run(const MotionSink& sink, std::stop_token stop,
+                     Diagnostics& diagnostics) override;
+  double progress() const override { return progress_; }
+
+ private:
+  /// A child that can be listened to, and what it needs while it runs.
+  struct Session {
+    PrivateFolder folder;  // first: removed after the child is gone
+    PreparedProgram prepared;
+    InterpreterToolTable table;
+    Rs274Options child;
+    Rs274Process process;
+
+    std::string copy_path() const { return folder.path() + "/nc/" + prepared.main_name; }
+  };
+  Result<Session> start_session() const;
+  CanonicalReaderOptions reader_options(const Session& session) const;
+  void report(Severity severity, SourceRef place, std::string message, std::string hint,
+              const ProgramSummary& summary, Diagnostics& diagnostics) const;
+  void report_ending(Ending ending, Session& session, CanonicalReader& reader,
+                     const std::string& stderr_text, const std::stop_token& stop,
+                     ProgramSummary& summary, Diagnostics& diagnostics) const;
+  void report_exit(Rs274Process::Exit exit, CanonicalReader& reader, const std::string& stderr_text,
+                   ProgramSummary& summary, Diagnostics& diagnostics) const;
+  std::string silence_message(const Session& session) const;
+  SourceRef source_before_silence(const Session& session, const std::stop_token& stop) const;
+
+  ProgramOptions options_;
+  std::string rs274_;
+  std::vector<ToolTableRow> tools_;
+  TextSurvey survey_;
+  std::atomic<double> progress_{0};
+};
+
+Result<NcProgram::Session> NcProgram::start_session() const {
+  auto folder = PrivateFolder::create();
+  if (!folder) return Error{folder.error()};
+  const std::string nc = folder->path() + "/nc";
+  const std::string home = folder->path() + "/home";
+  for (const std::string& path : {nc, home}) {
+    if (mkdir(path.c_str(), 0700) != 0) {
+      return Error{fmt::format("cannot make the folder {}: {}", path, std::strerror(errno))};
+    }
+  }
+  auto prepared = prepare_program(options_.path, nc);
+  if (!prepared) return Error{prepared.error()};
+  InterpreterToolTable table = interpreter_tool_table(tools_, prepared->tools);
+  const std::string table_path = folder->path() + "/tool.tbl";
+  std::ofstream table_file(table_path);
+  if (!(table_file << table.text << std::flush)) {
+    return Error{fmt::format("cannot write {}: {}", table_path, std::strerror(errno))};
+  }
+  Rs274Options child;
+  child.executable = rs274_;
+  child.program = prepared->main_name;
+  child.folder = nc;
+  child.home = home;
+  child.tool_table = table_path;
+  child.block_delete = options_.block_delete;
+  auto process = Rs274Process::start(child);
+  if (!process) return Error{process.error()};
+  return Session{std::move(*folder), std::move(*prepared), std::move(table), std::move(child),
+                 std::move(*process)};
+}
+
+CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
+  CanonicalReaderOptions reading;
+  reading.listing_name = "rs274's output";
+  reading.numbered_source = true;
+  reading.unnumbered = session.prepared.unnumbered;
+  reading.tool_by_index = session.table.tool_by_index;
+  reading.diameters_known = !options_.tool_table_path.empty();
+  reading.max_commands = options_.max_commands;
+  return reading;
+}
+
+void NcProgram::report(Severity severity, SourceRef place, std::string message, std::string hint,
+                       const ProgramSummary& summary, Diagnostics& diagnostics) const {
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  if (place.file < summary.files.size()) diagnostic.file = summary.files[place.file];
+  diagnostic.line = static_cast<int>(place.line);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostics.push_back(std::move(diagnostic));
+}
+
+std::string NcProgram::silence_message(const Session& session) const {
+  std::string message = fmt::format(
+      "no motion or other command for {} s; the program counts as endless", options_.max_silent_s);
+  std::uint64_t left = session.process.read_offset(session.copy_path());
+  std::size_t line = 1;
+  TextPieces pieces(session.copy_path());
+  std::string_view piece;
+  while (left > 0 && pieces.next(piece)) {
+    const std::string_view read = piece.substr(0, static_cast<std::size_t>(left));
+    line += static_cast<std::size_t>(std::count(read.begin(), read.end(), '\n'));
+    left -= read.size();
+  }
+  if (line > 1 && line < session.prepared.lines) {
+    message += fmt::format(" (rs274 has read up to line {} at most)", line);
+  }
+  return message;
+}
+
+/// rs274 keeps up to 4 KB of its listing to itself, so that the last line that we saw is not the
+/// last one before the silence. A second run without that buffer tells; whatever else it says is
+/// known already.
+SourceRef NcProgram::source_before_silence(const Session& session,
+                                           const std::stop_token& stop) const {
+  Rs274Options child = session.child;
+  child.unbuffered = true;
+  auto process = Rs274Process::start(child);
+  if (!process) return {};
+  ProgramSummary scratch;
+  Diagnostics ignored;
+  const MotionSink sink = [](std::span<const Motion>) { return true; };
+  CanonicalReader reader(reader_options(session), sink, scratch, ignored);
+  Conversation conversation(*process, reader, std::min(kSilenceAgain_s, options_.max_silent_s));
+  conversation.listen(stop, [] {});
+  return reader.last_source();
+}
+
+void NcProgram::report_exit(Rs274Process::Exit exit, CanonicalReader& reader,
+                            const std::string& stderr_text, ProgramSummary& summary,
+                            Diagnostics& diagnostics) const {
+  if (exit.signal != 0) {
+    report(Severity::kError, reader.last_source(),
+           fmt::format("rs274 was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
+           {}, summary, diagnostics);
+    return;
+  }
+  if (exit.status != 0) {
+    diagnostics.push_back(interpreter_diagnostic(stderr_text, summary.files, reader.last_source(),
+                                                 summary.program_lines));
+    return;
+  }
+  if (!summary.has_program_end) {
+    report(Severity::kWarning, reader.last_source(), "the program ended without M2, M30 or %", {},
+           summary, diagnostics);
+  }
+}
+
+void NcProgram::report_ending(Ending ending, Session& session, CanonicalReader& reader,
+                              const std::string& stderr_text, const std::stop_token& stop,
+                              ProgramSummary& summary, Diagnostics& diagnostics) const {
+  summary.stopped_early = ending != Ending::kComplete;
+  const SourceRef place = reader.last_source();
+  switch (ending) {
+    case Ending::kComplete:
+      report_exit(session.process.wait(), reader, stderr_text, summary, diagnostics);
+      break;
+    case Ending::kStopped:
+      break;
+    case Ending::kTooMany:
+      report(Severity::kError, place,
+             fmt::format("more than {} canonical commands; the program counts as endless",
+                         options_.max_commands),
+             "a loop whose condition stays true?", summary, diagnostics);
+      break;
+    case Ending::kSilent: {
+      const std::string message = silence_message(session);
+      session.process.kill();
+      report(Severity::kError, source_before_silence(session, stop), message,
+             "this line did something last; a loop behind it whose condition stays true?", summary,
+             diagnostics);
+      break;
+    }
+  }
+}
+
+ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
+                              Diagnostics& diagnostics) {
+  const auto begin = Clock::now();
+  ProgramSummary summary;
+  summary.files = {options_.path};
+  summary.program_lines = survey_.lines;
+  summary.interpreter = "text";
+  auto session = start_session();
+  if (!session) {
+    report(Severity::kError, {}, session.error(), {}, summary, diagnostics);
+    return summary;
+  }
+  summary.files = session->prepared.files;
+  CanonicalReader reader(reader_options(*session), sink, summary, diagnostics);
+  Conversation conversation(session->process, reader, options_.max_silent_s);
+  const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
+  const Ending ending = conversation.listen(stop, [&] {
+    const SourceRef source = reader.last_source();
+    if (source.file == 0) progress_ = std::min(1.0, static_cast<double>(source.line) / lines);
+  });
+  reader.finish();
+  report_ending(ending, *session, reader, conversation.stderr_text(), stop, summary, diagnostics);
+  if (ending == Ending::kComplete) progress_ = 1;
+  summary.interpret_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  return summary;
+}
+
+}  // namespace
+
+std::unique_ptr<Program> make_nc_program(const ProgramOptions& options, std::string rs274,
+                                         std::vector<ToolTableRow> tools, TextSurvey survey) {
+  return std::make_unique<NcProgram>(options, std::move(rs274), std::move(tools),
+                                     std::move(survey));
+}
+
+}  // namespace kerf

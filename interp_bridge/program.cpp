@@ -1,0 +1,130 @@
+#include "interp_bridge/program.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "interp_bridge/program_kinds.h"
+#include "interp_bridge/rs274_process.h"
+#include "interp_bridge/tool_table.h"
+
+namespace kerf {
+namespace {
+
+void report(Diagnostics& diagnostics, const std::string& file, std::string message,
+            std::string hint = {}, std::size_t line = 0) {
+  Diagnostic diagnostic;
+  diagnostic.file = file;
+  diagnostic.line = static_cast<int>(line);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostics.push_back(std::move(diagnostic));
+}
+
+bool ends_with(const std::string& text, std::string_view tail) {
+  return text.size() >= tail.size() &&
+         text.compare(text.size() - tail.size(), tail.npos, tail) == 0;
+}
+
+bool is_regular_file(const std::string& path, Diagnostics& diagnostics) {
+  struct stat status {};
+  if (path.empty()) {
+    report(diagnostics, {}, "no program is named");
+    return false;
+  }
+  if (stat(path.c_str(), &status) != 0) {
+    report(diagnostics, path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    return false;
+  }
+  if (S_ISDIR(status.st_mode)) {
+    report(diagnostics, path, "is a folder; a program is an NC file or a canonical listing");
+    return false;
+  }
+  if (!S_ISREG(status.st_mode)) {
+    report(diagnostics, path, "is not a regular file",
+           "canonical text from a pipe is read from stdin: -");
+    return false;
+  }
+  return true;
+}
+
+/// Reads the whole text once. False: it is not a program, which has been reported.
+bool survey_file(const std::string& path, TextSurvey& survey, Diagnostics& diagnostics) {
+  TextPieces pieces(path);
+  TextSurveyor surveyor(ends_with(path, ".canon"));
+  std::string_view piece;
+  while (pieces.next(piece)) {
+    if (surveyor.survey().bytes == 0 && piece.substr(0, 2) == "\x1f\x8b") {
+      report(diagnostics, path, "is compressed (gzip); a program is plain text",
+             "gunzip it first, or pipe a listing: zcat part.canon.gz | kerf run -");
+      return false;
+    }
+    surveyor.add(piece);
+    if (surveyor.survey().nul_line != 0) break;
+  }
+  survey = surveyor.take();
+  if (!pieces.error().empty()) {
+    report(diagnostics, path, fmt::format("cannot be read: {}", std::strerror(errno)));
+  } else if (survey.nul_line != 0) {
+    report(diagnostics, path, "is not text: it holds a NUL byte", "a program is plain text",
+           survey.nul_line);
+  } else if (survey.bytes == 0) {
+    report(diagnostics, path, "is empty");
+  } else if (survey.blank) {
+    report(diagnostics, path, "is empty: it holds only white space");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+/// Faults of single rows are for whoever reads the table for its shapes (read_tool_table); they are
+/// not said twice.
+bool read_tools(const std::string& path, std::vector<ToolTableRow>& rows,
+                Diagnostics& diagnostics) {
+  if (path.empty()) return true;
+  Diagnostics row_faults;
+  auto read = read_tool_table(path, row_faults);
+  if (read) {
+    rows = std::move(*read);
+    return true;
+  }
+  report(diagnostics, {}, read.error());
+  return false;
+}
+
+}  // namespace
+
+std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
+  std::vector<ToolTableRow> tools;
+  if (!read_tools(options.tool_table_path, tools, diagnostics)) return nullptr;
+  std::vector<int> tool_by_index;
+  if (!tools.empty()) {
+    tool_by_index.push_back(0);
+    for (const ToolTableRow& row : tools) tool_by_index.push_back(row.tool);
+  }
+  if (options.path == "-") return make_listing_program(options, std::move(tool_by_index), {});
+  TextSurvey survey;
+  if (!is_regular_file(options.path, diagnostics) ||
+      !survey_file(options.path, survey, diagnostics)) {
+    return nullptr;
+  }
+  if (survey.listing) {
+    return make_listing_program(options, std::move(tool_by_index), std::move(survey));
+  }
+  std::string rs274 = find_executable(options.rs274_path);
+  if (rs274.empty()) {
+    report(
+        diagnostics, {},
+        fmt::format("LinuxCNC's interpreter was not found: no executable {}{}", options.rs274_path,
+                    options.rs274_path.find('/') == std::string::npos ? " in PATH" : ""),
+        "sudo apt install linuxcnc-uspace");
+    return nullptr;
+  }
+  return make_nc_program(options, std::move(rs274), std::move(tools), std::move(survey));
+}
+
+}  // namespace kerf

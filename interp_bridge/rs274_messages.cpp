@@ -1,0 +1,164 @@
+#include "interp_bridge/rs274_messages.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+
+#include "interp_bridge/program_prepare.h"
+#include "interp_bridge/source_text.h"
+
+namespace kerf {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Said on every run, or of the var file that we keep from being written.
+bool is_routine(std::string_view line) {
+  return line == "executing" || line.substr(0, 29) == "link (updating variable file)";
+}
+
+/// The number that LineNumberer put in front of the line.
+std::optional<std::uint64_t> number_of(std::string_view echo) {
+  if (!echo.empty() && echo.front() == '/') echo.remove_prefix(1);
+  if (echo.size() < 2 || echo.front() != 'N' || !is_digit(echo[1])) return std::nullopt;
+  std::uint64_t n = 0;
+  std::from_chars(echo.data() + 1, echo.data() + echo.size(), n);
+  return n;
+}
+
+/// Messages quote lines ('N38o999 if [1]'); the number in the quote is ours.
+std::string without_our_numbers(std::string message) {
+  for (std::size_t quote = message.find('\''); quote != message.npos;
+       quote = message.find('\'', quote + 1)) {
+    std::size_t at = quote + 1;
+    if (at < message.size() && message[at] == '/') ++at;
+    if (at + 1 >= message.size() || message[at] != 'N' || !is_digit(message[at + 1])) continue;
+    std::size_t end = at + 1;
+    while (end < message.size() && is_digit(message[end])) ++end;
+    message.erase(at, end - at);
+  }
+  return message;
+}
+
+/// "EOF in file:part.ngc seeking o-word: o<nosuch> from line: 2" is the one message with a place of
+/// its own.
+std::optional<std::uint32_t> line_in(const std::string& message) {
+  constexpr std::string_view kMark = " from line: ";
+  const std::size_t mark = message.find(kMark);
+  if (mark == message.npos) return std::nullopt;
+  std::uint32_t line = 0;
+  const char* const first = message.data() + mark + kMark.size();
+  const auto [end, error] = std::from_chars(first, message.data() + message.size(), line);
+  return error == std::errc() && line > 0 ? std::optional(line) : std::nullopt;
+}
+
+std::uint32_t file_in(const std::string& message, const std::vector<std::string>& files) {
+  constexpr std::string_view kMark = "file:";
+  const std::size_t mark = message.find(kMark);
+  if (mark == message.npos) return 0;
+  const std::string_view rest = std::string_view(message).substr(mark + kMark.size());
+  for (std::uint32_t i = 0; i < files.size(); ++i) {
+    const std::string name = std::filesystem::path(files[i]).filename().string();
+    const bool same = rest.substr(0, name.size()) == name;
+    if (same && rest.substr(name.size(), 1) == " ") return i;
+  }
+  return 0;
+}
+
+/// A line that kept its text has no number: the first one with that text from `after` on.
+std::uint32_t find_line(const std::string& path, const std::string& text, std::uint32_t after) {
+  if (text.empty()) return after;
+  TextPieces pieces(path);
+  std::string_view piece;
+  std::uint32_t line = 0;
+  while (pieces.next(piece)) {
+    while (!piece.empty()) {
+      const std::string_view candidate = piece.substr(0, piece.find('\n'));
+      ++line;
+      // rs274 echoes no more than it could hold of an over-long line.
+      const bool starts = candidate.substr(0, text.size()) == text;
+      if (line >= after && starts) return line;
+      piece.remove_prefix(std::min(piece.size(), candidate.size() + 1));
+    }
+  }
+  return after;
+}
+
+std::string hint_for(const std::string& message) {
+  const auto has = [&](const char* part) { return message.find(part) != message.npos; };
+  if (has("seeking o-word")) {
+    return "a subroutine that the program calls must be in it, or in NAME.ngc beside it";
+  }
+  if (has("Bad character '\\357'")) return "store the program without a byte order mark";
+  if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
+    return "rs274 knows the axes X Y Z A B C only";
+  }
+  if (has("not found in the tool table")) return "give the machine's table with --tool-table";
+  return {};
+}
+
+}  // namespace
+
+InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
+  std::vector<std::string_view> lines;
+  while (!stderr_text.empty()) {
+    const std::string_view line = stderr_text.substr(0, stderr_text.find('\n'));
+    stderr_text.remove_prefix(std::min(stderr_text.size(), line.size() + 1));
+    if (!is_routine(line)) lines.push_back(line);
+  }
+  InterpreterMessage result;
+  if (lines.empty()) return result;
+  if (lines.size() > 1) {
+    result.echo = std::string(lines.back());
+    lines.pop_back();
+  }
+  for (std::string_view line : lines) {
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) {
+      line.remove_suffix(1);
+    }
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.front()))) {
+      line.remove_prefix(1);
+    }
+    if (line.empty()) continue;
+    if (!result.message.empty()) result.message += "; ";
+    result.message += line;
+  }
+  return result;
+}
+
+Diagnostic interpreter_diagnostic(std::string_view stderr_text,
+                                  const std::vector<std::string>& files, SourceRef last_source,
+                                  std::size_t program_lines) {
+  const InterpreterMessage said = parse_interpreter_message(stderr_text);
+  Diagnostic diagnostic;
+  constexpr std::string_view kNoEnd = "File ended with no percent sign";
+  if (said.message.substr(0, kNoEnd.size()) == kNoEnd) {
+    diagnostic.severity = Severity::kWarning;
+    diagnostic.file = files.empty() ? "" : files[0];
+    diagnostic.line = static_cast<int>(program_lines);
+    diagnostic.message = "the program has no end: " + said.message;
+    diagnostic.hint = "end it with M2 or M30, or put it between two lines of %";
+    return diagnostic;
+  }
+  SourceRef place = last_source;
+  if (const auto line = line_in(said.message)) {
+    place = {file_in(said.message, files), *line};
+  } else if (const auto n = number_of(said.echo)) {
+    place = source_of_n(*n);
+  } else if (place.file < files.size()) {
+    place.line = find_line(files[place.file], said.echo, place.line);
+  }
+  diagnostic.message =
+      said.message.empty() ? "rs274 stopped without a message" : without_our_numbers(said.message);
+  if (place.file < files.size()) {
+    diagnostic.file = files[place.file];
+    diagnostic.line = static_cast<int>(place.line);
+    diagnostic.excerpt = line_of_file(diagnostic.file, place.line);
+  }
+  diagnostic.hint = hint_for(said.message);
+  return diagnostic;
+}
+
+}  // namespace kerf

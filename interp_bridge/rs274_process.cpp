@@ -1,0 +1,245 @@
+#include "interp_bridge/rs274_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/close_range.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+extern char** environ;
+
+namespace kerf {
+namespace {
+
+/// The child writes far ahead of us while the stock is being cut.
+constexpr int kPipeBytes = 1 << 20;
+
+/// Where the child finds the listing's pipe, after stdin, stdout and stderr.
+constexpr int kChildListingFd = 3;
+
+struct Pipe {
+  int read_end = -1;
+  int write_end = -1;
+
+  bool open() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) return false;
+    read_end = ends[0];
+    write_end = ends[1];
+    return true;
+  }
+  void close_write() {
+    if (write_end >= 0) ::close(std::exchange(write_end, -1));
+  }
+  ~Pipe() {
+    close_write();
+    if (read_end >= 0) ::close(read_end);
+  }
+};
+
+/// INI_FILE_NAME would make rs274 read the INI of whatever LinuxCNC was started from this shell.
+std::vector<std::string> child_environment(const std::string& home) {
+  std::vector<std::string> environment;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text(*entry);
+    if (text.substr(0, 5) == "HOME=" || text.substr(0, 14) == "INI_FILE_NAME=") continue;
+    environment.emplace_back(text);
+  }
+  environment.push_back("HOME=" + home);
+  return environment;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+/// Between fork and exec: only calls that are safe there. Never returns.
+[[noreturn]] void become_rs274(const Rs274Options& options, char* const* arguments,
+                               char* const* environment, const Pipe& listing, const Pipe& out,
+                               const Pipe& err, const Pipe& failure, pid_t parent) {
+  const auto fail = [&] {
+    const int error = errno;
+    const ssize_t written = write(failure.write_end, &error, sizeof error);
+    _exit(written > 0 ? 127 : 126);
+  };
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int number : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  // Everything else that this process has open stays here.
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
+  const int null = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (null < 0 || dup2(null, STDIN_FILENO) < 0) fail();
+  const int child_stdout = options.unbuffered ? listing.write_end : out.write_end;
+  if (dup2(child_stdout, STDOUT_FILENO) < 0 || dup2(err.write_end, STDERR_FILENO) < 0) fail();
+  if (dup2(listing.write_end, kChildListingFd) < 0) fail();
+  if (chdir(options.folder.c_str()) != 0) fail();
+  execve(options.executable.c_str(), arguments, environment);
+  fail();
+  _exit(127);
+}
+
+/// dup2 onto 3 would close a pipe that sits there already, or leave its close-on-exec flag set.
+bool move_above(int& fd, int lowest) {
+  if (fd > lowest) return true;
+  const int moved = fcntl(fd, F_DUPFD_CLOEXEC, lowest + 1);
+  if (moved < 0) return false;
+  ::close(std::exchange(fd, moved));
+  return true;
+}
+
+bool open_pipes(std::initializer_list<Pipe*> pipes) {
+  for (Pipe* pipe : pipes) {
+    if (!pipe->open() || !move_above(pipe->write_end, kChildListingFd) ||
+        !move_above(pipe->read_end, kChildListingFd)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string find_executable(const std::string& name) {
+  const auto usable = [](const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) && access(path.c_str(), X_OK) == 0;
+  };
+  std::error_code ignored;
+  const auto absolute = [&](const std::string& path) {
+    return std::filesystem::absolute(path, ignored).string();
+  };
+  if (name.empty()) return {};
+  if (name.find('/') != name.npos) return usable(name) ? absolute(name) : std::string();
+  const char* const path = std::getenv("PATH");
+  std::string_view folders = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
+  while (!folders.empty()) {
+    const std::string_view folder = folders.substr(0, folders.find(':'));
+    folders.remove_prefix(std::min(folders.size(), folder.size() + 1));
+    const std::string candidate = std::string(folder.empty() ? "." : folder) + "/" + name;
+    if (usable(candidate)) return absolute(candidate);
+  }
+  return {};
+}
+
+Result<Rs274Process> Rs274Process::start(const Rs274Options& options) {
+  const auto error = [&](int number) {
+    return Error{fmt::format("cannot start {}: {}", options.executable, std::strerror(number))};
+  };
+  Pipe listing;
+  Pipe out;
+  Pipe err;
+  Pipe failure;
+  if (!open_pipes({&listing, &out, &err, &failure})) return error(errno);
+  fcntl(listing.read_end, F_SETPIPE_SZ, kPipeBytes);  // smaller works too
+
+  std::vector<std::string> arguments = {options.executable};
+  if (options.block_delete) arguments.emplace_back("-b");
+  // A name that begins with a dash would be an option; others go as they are, since messages repeat
+  // them.
+  const std::string program =
+      options.program.front() == '-' ? "./" + options.program : options.program;
+  // No var file: a path that cannot exist is not written either. (rs274 replaces its var file, even
+  // /dev/null.)
+  arguments.insert(arguments.end(),
+                   {"-t", options.tool_table, "-v", options.home + "/none/x.var", "-g", program});
+  if (!options.unbuffered) arguments.push_back(fmt::format("/dev/fd/{}", kChildListingFd));
+  std::vector<std::string> environment = child_environment(options.home);
+  const std::vector<char*> argument_pointers = pointers(arguments);
+  const std::vector<char*> environment_pointers = pointers(environment);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) return error(errno);
+  if (pid == 0) {
+    become_rs274(options, argument_pointers.data(), environment_pointers.data(), listing, out, err,
+                 failure, parent);
+  }
+  setpgid(pid, pid);  // here too: whichever comes first, the group exists before it can be killed
+  for (Pipe* pipe : {&listing, &out, &err, &failure}) pipe->close_write();
+
+  Rs274Process process;
+  process.pid_ = pid;
+  int failed_with = 0;
+  ssize_t got = 0;
+  do {
+    got = read(failure.read_end, &failed_with, sizeof failed_with);
+  } while (got < 0 && errno == EINTR);
+  if (got == sizeof failed_with) return error(failed_with);
+  process.listing_fd_ = std::exchange(listing.read_end, -1);
+  process.stdout_fd_ = std::exchange(out.read_end, -1);
+  process.stderr_fd_ = std::exchange(err.read_end, -1);
+  return process;
+}
+
+Rs274Process::Rs274Process(Rs274Process&& other) noexcept { *this = std::move(other); }
+
+Rs274Process& Rs274Process::operator=(Rs274Process&& other) noexcept {
+  std::swap(pid_, other.pid_);
+  std::swap(listing_fd_, other.listing_fd_);
+  std::swap(stdout_fd_, other.stdout_fd_);
+  std::swap(stderr_fd_, other.stderr_fd_);
+  return *this;
+}
+
+Rs274Process::~Rs274Process() {
+  kill();
+  wait();
+  for (const int fd : {listing_fd_, stdout_fd_, stderr_fd_}) {
+    if (fd >= 0) close(fd);
+  }
+}
+
+void Rs274Process::kill() {
+  if (pid_ > 0) ::kill(-pid_, SIGKILL);
+}
+
+Rs274Process::Exit Rs274Process::wait() {
+  if (pid_ <= 0) return {};
+  int status = 0;
+  pid_t got = 0;
+  do {
+    got = waitpid(pid_, &status, 0);
+  } while (got < 0 && errno == EINTR);
+  pid_ = -1;
+  if (got < 0) return {};
+  if (WIFSIGNALED(status)) return {0, WTERMSIG(status)};
+  return {WEXITSTATUS(status), 0};
+}
+
+std::uint64_t Rs274Process::read_offset(const std::string& path) const {
+  if (pid_ <= 0) return 0;
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path proc = fmt::format("/proc/{}", pid_);
+  for (fs::directory_iterator it(proc / "fd", error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code ignored;
+    if (!fs::equivalent(it->path(), path, ignored)) continue;
+    std::ifstream info(proc / "fdinfo" / it->path().filename());
+    std::string label;
+    std::uint64_t offset = 0;
+    if (info >> label >> offset && label == "pos:") return offset;
+  }
+  return 0;
+}
+
+}  // namespace kerf

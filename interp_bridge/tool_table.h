@@ -1,0 +1,31 @@
+// interp_bridge/tool_table.h - LinuxCNC's tool table: reading text, and writing the one that rs274
+// is given.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interp_bridge/program.h"
+#include "interp_bridge/program_prepare.h"
+
+namespace kerf {
+
+/// The rows of a table's text; `path` names it in the diagnostics. Any bytes are accepted.
+std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::string& path,
+                                           Diagnostics& diagnostics);
+
+/// A tool table for rs274, and how its answers name the rows.
+struct InterpreterToolTable {
+  std::string text;
+  std::vector<int> tool_by_index;  ///< [0] = 0: no tool
+};
+
+/// The given rows, and one for every named tool without a row so that its M6 runs. rs274 2.9 takes
+/// every table for inches, so a diameter of 6 mm is written as 6 / 25.4. Length offsets are all 0:
+/// the engine works at the tool's tip, and with offsets of 0 the printed points are just that (and
+/// rs274's wrong Z after M6 behind a G43 cannot show).
+InterpreterToolTable interpreter_tool_table(const std::vector<ToolTableRow>& rows,
+                                            const NamedTools& named);
+
+}  // namespace kerf

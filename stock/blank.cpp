@@ -1,0 +1,224 @@
+#include "stock/blank.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "stock/cutter/scan.h"
+
+namespace kerf {
+namespace {
+
+/// 100 m: beyond any machine; what lies outside is a slip of the pen.
+constexpr double kMaxCoordinate_mm = 1e5;
+constexpr double kMinSize_mm = 0.001;
+constexpr std::size_t kMaxBodies = 1000;
+
+constexpr std::array<std::string_view, 6> kKinds = {"box",   "cylinder", "tube",
+                                                    "state", "stl",      "sheet"};
+constexpr std::string_view kForms =
+    "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], state:FILE";
+
+Result<Vec3> parse_point(std::string_view name, std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ',');
+  if (parts.size() != 3) {
+    return Error{fmt::format("{}: '{}' has {} {}; must be x,y,z", name, shown(text), parts.size(),
+                             parts.size() == 1 ? "value" : "values")};
+  }
+  Vec3 point(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Result<double> value = parse_within(fmt::format("{} {}", name, "XYZ"[axis]),
+                                              trim(parts[static_cast<std::size_t>(axis)]),
+                                              -kMaxCoordinate_mm, kMaxCoordinate_mm, "mm");
+    if (!value) return Error{value.error()};
+    point[axis] = *value;
+  }
+  return point;
+}
+
+/// "" if low < high by at least kMinSize_mm.
+std::string order_fault(char axis, double low, double high) {
+  if (high - low >= kMinSize_mm) return "";
+  return fmt::format("{} runs from {} to {}; the second must be at least {} mm above the first",
+                     axis, number_text(low), number_text(high), kMinSize_mm);
+}
+
+Result<BlankBody> parse_box(const std::vector<std::string_view>& fields) {
+  if (fields.size() != 3) return Error{"the form is box:x0,y0,z0:x1,y1,z1"};
+  const Result<Vec3> low = parse_point("first corner", fields[1]);
+  if (!low) return Error{low.error()};
+  const Result<Vec3> high = parse_point("second corner", fields[2]);
+  if (!high) return Error{high.error()};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string fault = order_fault("XYZ"[axis], (*low)[axis], (*high)[axis]);
+    if (!fault.empty()) return Error{fault};
+  }
+  BlankBody body;
+  body.bounds_mm = Box{*low, *high};
+  body.center_mm = (*low + *high) / 2.0;
+  return body;
+}
+
+/// Index of x, y, z; nothing else is an axis.
+std::optional<int> axis_index(std::string_view text) {
+  const std::string lower = to_lower(trim(text));
+  if (lower.size() != 1 || lower[0] < 'x' || lower[0] > 'z') return std::nullopt;
+  return lower[0] - 'x';
+}
+
+/// cylinder and tube: the point is the centre of the lower end, then the other end along the axis.
+Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool tube) {
+  const std::size_t needed = tube ? 5 : 4;
+  if (fields.size() != needed && fields.size() != needed + 1) {
+    return Error{tube ? "the form is tube:x,y,z0:z1:d:inner[:axis]"
+                      : "the form is cylinder:x,y,z0:z1:d[:axis]"};
+  }
+  int axis = 2;
+  if (fields.size() > needed) {
+    const std::optional<int> index = axis_index(fields.back());
+    if (!index) {
+      return Error{
+          fmt::format("axis: '{}' is not an axis; must be x, y or z", shown(fields.back()))};
+    }
+    axis = *index;
+  }
+  const Result<Vec3> center = parse_point("centre", fields[1]);
+  if (!center) return Error{center.error()};
+  const char letter = "XYZ"[axis];
+  const Result<double> end = parse_within(fmt::format("end {}", letter), trim(fields[2]),
+                                          -kMaxCoordinate_mm, kMaxCoordinate_mm, "mm");
+  if (!end) return Error{end.error()};
+  const std::string fault = order_fault(letter, (*center)[axis], *end);
+  if (!fault.empty()) return Error{fault};
+  const Result<double> diameter =
+      parse_within("diameter", trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, "mm");
+  if (!diameter) return Error{diameter.error()};
+  BlankBody body;
+  body.kind = tube ? BlankBody::Kind::kTube : BlankBody::Kind::kCylinder;
+  body.axis = "xyz"[axis];
+  body.center_mm = *center;
+  body.diameter_mm = *diameter;
+  if (tube) {
+    const Result<double> inner =
+        parse_within("inner diameter", trim(fields[4]), kMinSize_mm, kMaxCoordinate_mm, "mm");
+    if (!inner) return Error{inner.error()};
+    if (*inner >= *diameter) {
+      return Error{
+          fmt::format("inner diameter: {} is not allowed; must be less than the diameter, "
+                      "{} (mm)",
+                      number_text(*inner), number_text(*diameter))};
+    }
+    body.inner_diameter_mm = *inner;
+  }
+  body.bounds_mm = Box{*center - Vec3(*diameter / 2), *center + Vec3(*diameter / 2)};
+  body.bounds_mm.min[axis] = (*center)[axis];
+  body.bounds_mm.max[axis] = *end;
+  return body;
+}
+
+Result<BlankBody> parse_body(std::string_view text) {
+  const std::vector<std::string_view> fields = split(text, ':');
+  const std::string kind = to_lower(trim(fields[0]));
+  if (kind == "box") return parse_box(fields);
+  if (kind == "cylinder") return parse_round(fields, false);
+  if (kind == "tube") return parse_round(fields, true);
+  if (kind == "stl" || kind == "sheet") {
+    return Error{fmt::format("{}: is not supported by this version; forms: {}", kind, kForms)};
+  }
+  if (kind == "state") return Error{"state:FILE stands alone; it cannot be added to other bodies"};
+  if (kind.empty()) return Error{fmt::format("no stock is given; forms: {}", kForms)};
+  return Error{fmt::format("unknown stock '{}'{} Forms: {}", shown(kind),
+                           did_you_mean(kind, kKinds), kForms)};
+}
+
+/// Parts at each '+' that begins a new body: the '+' of a number is followed by a digit or a point.
+std::vector<std::string_view> split_bodies(std::string_view text) {
+  std::vector<std::string_view> bodies;
+  std::size_t begin = 0;
+  for (std::size_t at = text.find('+'); at != std::string_view::npos; at = text.find('+', at + 1)) {
+    const std::size_t next = text.find_first_not_of(" \t", at + 1);
+    const bool number = next != std::string_view::npos &&
+                        std::string_view("0123456789.").find(text[next]) != std::string_view::npos;
+    if (number) continue;
+    bodies.push_back(trim(text.substr(begin, at - begin)));
+    begin = at + 1;
+  }
+  bodies.push_back(trim(text.substr(begin)));
+  return bodies;
+}
+
+/// To 0.1 um, for messages.
+std::string rounded(double value) { return number_text(std::round(value * 1e4) / 1e4); }
+
+std::string describe(const BlankBody& body) {
+  const Vec3 low = body.bounds_mm.min;
+  const Vec3 high = body.bounds_mm.max;
+  const auto range = [&](int axis) {
+    return fmt::format("{}{}..{}", "XYZ"[axis], rounded(low[axis]), rounded(high[axis]));
+  };
+  if (body.kind == BlankBody::Kind::kBox) {
+    const Vec3 size = body.bounds_mm.size();
+    return fmt::format("box {} x {} x {} mm, {} {} {}", rounded(size.x), rounded(size.y),
+                       rounded(size.z), range(0), range(1), range(2));
+  }
+  const int axis = body.axis - 'x';
+  std::string center;
+  for (int other = 0; other < 3; ++other) {
+    if (other != axis) center += fmt::format("{}{} ", "XYZ"[other], rounded(body.center_mm[other]));
+  }
+  const std::string length = rounded(high[axis] - low[axis]);
+  if (body.kind == BlankBody::Kind::kTube) {
+    return fmt::format("tube diameter {} / {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
+                       rounded(body.inner_diameter_mm), length, "XYZ"[axis], center, range(axis));
+  }
+  return fmt::format("cylinder diameter {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
+                     length, "XYZ"[axis], center, range(axis));
+}
+
+}  // namespace
+
+Box Blank::bounds_mm() const {
+  Box bounds;
+  for (const BlankBody& body : bodies) bounds.extend(body.bounds_mm);
+  return bounds;
+}
+
+Result<Blank> parse_blank(std::string_view spec) {
+  spec = trim(spec);
+  Blank blank;
+  const std::size_t colon = spec.find(':');
+  if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "state") {
+    // A file name may hold any character, '+' and ':' too.
+    const std::string_view file = trim(spec.substr(colon + 1));
+    if (file.empty()) return Error{"state:: the file name is missing; the form is state:FILE"};
+    blank.state_file = std::string(file);
+    return blank;
+  }
+  const std::vector<std::string_view> texts = split_bodies(spec);
+  if (texts.size() > kMaxBodies) {
+    return Error{fmt::format("{} bodies; at most {} are allowed", texts.size(), kMaxBodies)};
+  }
+  for (const std::string_view text : texts) {
+    Result<BlankBody> body = parse_body(text);
+    if (!body) {
+      return Error{text.empty() ? body.error() : fmt::format("{}: {}", shown(text), body.error())};
+    }
+    blank.bodies.push_back(*body);
+  }
+  return blank;
+}
+
+std::string describe(const Blank& blank) {
+  if (!blank.state_file.empty())
+    return fmt::format("workpiece saved in {}", shown(blank.state_file));
+  std::string text;
+  for (const BlankBody& body : blank.bodies) {
+    if (!text.empty()) text += " + ";
+    text += describe(body);
+  }
+  return text;
+}
+
+}  // namespace kerf

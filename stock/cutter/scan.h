@@ -1,0 +1,44 @@
+// stock/cutter/scan.h - small pieces of text scanning shared by SHAPE, --stock and comment readers.
+// Locale plays no part.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace kerf {
+
+std::string_view trim(std::string_view text);
+/// ASCII only.
+std::string to_lower(std::string_view text);
+/// Parts between separators; always at least one.
+std::vector<std::string_view> split(std::string_view text, char separator);
+/// Words between blanks and tabs.
+std::vector<std::string_view> words_of(std::string_view text);
+
+/// Text as a message shows it: control characters as '?', long text cut after 60 characters with
+/// "...".
+std::string shown(std::string_view text);
+
+/// The whole text as a decimal number ("12", "-0.5", "+3.", "1e-3"); nullopt for anything else,
+/// also for "nan" and "inf" and numbers beyond double.
+std::optional<double> parse_decimal(std::string_view text);
+
+/// The number in `text` if it lies within [low, high]. Otherwise an error:
+///     diameter D: 'abc' is not a number
+///     diameter D: 0 is not allowed; must be from 0.001 to 1000 (mm)
+Result<double> parse_within(std::string_view name, std::string_view text, double low, double high,
+                            std::string_view unit);
+
+/// "; did you mean 'flat'?" for the candidate within two edits of `text`, "." if there is none:
+/// ends a sentence.
+std::string did_you_mean(std::string_view text, std::span<const std::string_view> candidates);
+
+/// Shortest text that reads back as the same value: "10", "0.1".
+std::string number_text(double value);
+
+}  // namespace kerf

@@ -1,0 +1,546 @@
+#include "stock/cutter/shape_spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/geometry.h"
+#include "stock/cutter/profile_file.h"
+#include "stock/cutter/scan.h"
+
+namespace kerf {
+namespace {
+
+// Ranges of what is sold as a tool, with room on both sides; beyond them the text is a slip of the
+// pen.
+constexpr double kMinDiameter_mm = 0.001;
+constexpr double kMaxDiameter_mm = 1000;
+constexpr double kMinLength_mm = 0.001;
+/// Corner radii and tip diameters: 0 or at least this.
+constexpr double kMinDetail_mm = 0.0001;
+constexpr double kMaxLength_mm = 2000;
+constexpr double kMinAngle_deg = 1;
+constexpr double kMaxIncludedAngle_deg = 179;
+constexpr double kFlatDrillAngle_deg = 180;
+constexpr double kMaxHalfAngle_deg = 80;
+constexpr std::size_t kMaxHolderSections = 32;
+/// Height of a tapered cutter's cone where the flute length is not given.
+constexpr double kTaperHeightPerTip = 3;
+/// Rounding allowance where two lengths that may be equal are compared.
+constexpr double kLengthTolerance_mm = 1e-9;
+
+struct Form {
+  std::string_view name;
+  std::string_view text;
+  std::size_t required;
+  std::size_t optional;
+  std::array<std::string_view, 3> parameters;
+};
+
+constexpr std::array<Form, 9> kForms = {{
+    {"flat", "flat:D", 1, 0, {"diameter D"}},
+    {"ball", "ball:D", 1, 0, {"diameter D"}},
+    {"bull", "bull:D:R", 2, 0, {"diameter D", "corner radius R"}},
+    {"vee", "vee:D:ANGLE[:TIP]", 2, 1, {"diameter D", "included angle ANGLE", "tip diameter TIP"}},
+    {"taper", "taper:D:ANGLE[:R]", 2, 1, {"tip diameter D", "half angle ANGLE", "corner radius R"}},
+    {"drill", "drill:D:ANGLE", 2, 0, {"diameter D", "point angle ANGLE"}},
+    {"lollipop", "lollipop:D:SHAFT", 2, 0, {"diameter D", "shaft diameter SHAFT"}},
+    {"tslot", "tslot:D:T:SHAFT", 3, 0, {"diameter D", "thickness T", "shaft diameter SHAFT"}},
+    {"profile", "profile:FILE", 1, 0, {"file name FILE"}},
+}};
+
+constexpr std::array<std::string_view, 9> kShapeNames = {
+    "flat", "ball", "bull", "vee", "taper", "drill", "lollipop", "tslot", "profile"};
+constexpr std::array<std::string_view, 3> kOptionNames = {"flute", "shank", "holder"};
+
+constexpr std::string_view kHelp =
+    "flat:D               end mill\n"
+    "ball:D               ball nose\n"
+    "bull:D:R             corner radius R, up to D/2\n"
+    "vee:D:ANGLE[:TIP]    V-bit, chamfer mill: included angle, largest diameter D, flat tip TIP\n"
+    "taper:D:ANGLE[:R]    tapered mill: tip diameter D, angle of one side, corner or ball radius "
+    "R\n"
+    "drill:D:ANGLE        point angle ANGLE\n"
+    "lollipop:D:SHAFT     ball of diameter D on a shaft\n"
+    "tslot:D:T:SHAFT      disc of thickness T on a shaft\n"
+    "profile:FILE         outline from a file\n"
+    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]   (mm, degrees)\n";
+
+ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
+  ProfilePiece piece;
+  piece.r0 = r0;
+  piece.z0 = z0;
+  piece.r1 = r1;
+  piece.z1 = z1;
+  return piece;
+}
+
+/// Lower right part of a circle, from its lowest point to the given end.
+ProfilePiece corner_piece(double center_r, double radius, double r1, double z1) {
+  ProfilePiece piece = line_piece(center_r, 0, r1, z1);
+  piece.kind = ProfilePiece::Kind::kArc;
+  piece.center_r = center_r;
+  piece.center_z = radius;
+  piece.radius = radius;
+  piece.convex = true;
+  return piece;
+}
+
+double radians(double degrees) { return degrees * (kPi / 180.0); }
+
+struct Part {
+  double diameter_mm = 0;
+  double length_mm = 0;
+};
+
+struct Options {
+  std::optional<double> flute_mm;
+  std::optional<Part> shank;  ///< length 0: not given
+  std::vector<Part> holder;
+};
+
+/// What a form makes before the options are added.
+struct Body {
+  std::vector<ProfilePiece> pieces;
+  std::string spec;
+  std::optional<double> neck_radius_mm;
+  std::optional<double> flute_mm;  ///< where the flutes end unless flute= says so
+  std::optional<double> shank_mm;  ///< diameter above it unless shank= says so
+};
+
+// ---- options ----
+
+Result<Part> parse_part(std::string_view name, std::string_view text, bool length_needed) {
+  const std::size_t cross = text.find_first_of("xX");
+  Part part;
+  const Result<double> diameter =
+      parse_within(fmt::format("{} diameter", name), text.substr(0, cross), kMinDiameter_mm,
+                   kMaxDiameter_mm, "mm");
+  if (!diameter) return Error{diameter.error()};
+  part.diameter_mm = *diameter;
+  if (cross == std::string_view::npos) {
+    if (length_needed) {
+      return Error{fmt::format("{}: '{}' has no length; write DxL (mm)", name, shown(text))};
+    }
+    return part;
+  }
+  const Result<double> length = parse_within(fmt::format("{} length", name), text.substr(cross + 1),
+                                             kMinLength_mm, kMaxLength_mm, "mm");
+  if (!length) return Error{length.error()};
+  part.length_mm = *length;
+  return part;
+}
+
+Done parse_holder(std::string_view text, Options& options) {
+  const std::vector<std::string_view> sections = split(text, '+');
+  if (sections.size() > kMaxHolderSections) {
+    return Error{fmt::format("holder: {} sections; at most {} are allowed", sections.size(),
+                             kMaxHolderSections)};
+  }
+  for (const std::string_view section : sections) {
+    const Result<Part> part = parse_part("holder", section, true);
+    if (!part) return Error{part.error()};
+    options.holder.push_back(*part);
+  }
+  return std::monostate{};
+}
+
+Done parse_option(std::string_view name, std::string_view value, Options& options) {
+  if (name == "flute") {
+    if (options.flute_mm) return Error{"flute= is given twice"};
+    const Result<double> flute =
+        parse_within("flute length", value, kMinLength_mm, kMaxLength_mm, "mm");
+    if (!flute) return Error{flute.error()};
+    options.flute_mm = *flute;
+    return std::monostate{};
+  }
+  if (name == "shank") {
+    if (options.shank) return Error{"shank= is given twice"};
+    const Result<Part> shank = parse_part("shank", value, false);
+    if (!shank) return Error{shank.error()};
+    options.shank = *shank;
+    return std::monostate{};
+  }
+  if (name == "holder") {
+    if (!options.holder.empty()) return Error{"holder= is given twice"};
+    return parse_holder(value, options);
+  }
+  return Error{
+      fmt::format("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=DxL[+DxL..]",
+                  shown(name), did_you_mean(name, kOptionNames))};
+}
+
+std::string part_text(const Part& part) {
+  std::string text = number_text(part.diameter_mm);
+  if (part.length_mm > 0) text += fmt::format("x{}", number_text(part.length_mm));
+  return text;
+}
+
+std::string options_text(const Options& options) {
+  std::string text;
+  if (options.flute_mm) text += fmt::format(":flute={}", number_text(*options.flute_mm));
+  if (options.shank) text += fmt::format(":shank={}", part_text(*options.shank));
+  for (std::size_t i = 0; i < options.holder.size(); ++i) {
+    text += fmt::format("{}{}", i == 0 ? ":holder=" : "+", part_text(options.holder[i]));
+  }
+  return text;
+}
+
+// ---- forms ----
+
+/// Reads parameter `index` of a form.
+class Values {
+ public:
+  Values(const Form& form, std::span<const std::string_view> texts) : form_(form), texts_(texts) {}
+  std::size_t count() const { return texts_.size(); }
+  Result<double> diameter(std::size_t index, double low = kMinDiameter_mm,
+                          double high = kMaxDiameter_mm) const {
+    return parse_within(form_.parameters[index], texts_[index], low, high, "mm");
+  }
+  Result<double> angle(std::size_t index, double high) const {
+    return parse_within(form_.parameters[index], texts_[index], kMinAngle_deg, high, "degrees");
+  }
+  /// A diameter that must stay clearly below D, given before it.
+  Result<double> below(std::size_t index, double limit, double low) const {
+    const Result<double> value = detail(index, low, kMaxDiameter_mm);
+    if (value && *value > limit - kMinDetail_mm) {
+      return Error{fmt::format("{}: {} is not allowed; must be less than diameter D, {} (mm)",
+                               form_.parameters[index], number_text(*value), number_text(limit))};
+    }
+    return value;
+  }
+  /// A corner radius: 0 to half the diameter.
+  Result<double> corner(std::size_t index, double diameter_mm) const {
+    return detail(index, 0, diameter_mm / 2);
+  }
+
+ private:
+  /// 0 (if `low` allows it) or at least kMinDetail_mm: less would be a step that no model can see.
+  Result<double> detail(std::size_t index, double low, double high) const {
+    const Result<double> value = diameter(index, low, high);
+    if (value && *value > 0 && *value < kMinDetail_mm) {
+      return Error{fmt::format("{}: {} is not allowed; must be 0 or at least {} (mm)",
+                               form_.parameters[index], number_text(*value),
+                               number_text(kMinDetail_mm))};
+    }
+    return value;
+  }
+
+  const Form& form_;
+  std::span<const std::string_view> texts_;
+};
+
+/// Radius of the flat bottom inside a corner arc; a flat that no model can see is none.
+double flat_radius(double radius, double corner) {
+  return radius - corner < kMinDetail_mm ? 0 : radius - corner;
+}
+
+/// Flat bottom, corner arc up to the cylinder.
+void add_bull(Body& body, double radius, double corner) {
+  const double center_r = flat_radius(radius, corner);
+  corner = corner > 0 ? radius - center_r : 0;
+  if (center_r > 0) body.pieces.push_back(line_piece(0, 0, center_r, 0));
+  if (corner > 0) body.pieces.push_back(corner_piece(center_r, corner, radius, corner));
+}
+
+/// Flat tip, cone up to `radius`.
+void add_cone(Body& body, double tip_radius, double radius, double half_angle_deg) {
+  if (tip_radius > 0) body.pieces.push_back(line_piece(0, 0, tip_radius, 0));
+  const double height = (radius - tip_radius) / std::tan(radians(half_angle_deg));
+  body.pieces.push_back(line_piece(tip_radius, 0, radius, height));
+}
+
+Result<Body> make_round(std::string_view kind, const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  Body body;
+  body.spec = fmt::format("{}:{}", kind, number_text(*d));
+  double corner = kind == "ball" ? *d / 2 : 0;
+  if (kind == "bull") {
+    const Result<double> r = values.corner(1, *d);
+    if (!r) return Error{r.error()};
+    corner = *r;
+    body.spec += fmt::format(":{}", number_text(corner));
+  }
+  add_bull(body, *d / 2, corner);
+  return body;
+}
+
+Result<Body> make_vee(const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> angle = values.angle(1, kMaxIncludedAngle_deg);
+  if (!angle) return Error{angle.error()};
+  Body body;
+  body.spec = fmt::format("vee:{}:{}", number_text(*d), number_text(*angle));
+  double tip = 0;
+  if (values.count() > 2) {
+    const Result<double> value = values.below(2, *d, 0);
+    if (!value) return Error{value.error()};
+    tip = *value;
+    if (tip > 0) body.spec += fmt::format(":{}", number_text(tip));
+  }
+  add_cone(body, tip / 2, *d / 2, *angle / 2);
+  return body;
+}
+
+Result<Body> make_drill(const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> angle = values.angle(1, kFlatDrillAngle_deg);
+  if (!angle) return Error{angle.error()};
+  Body body;
+  body.spec = fmt::format("drill:{}:{}", number_text(*d), number_text(*angle));
+  if (*angle == kFlatDrillAngle_deg) {
+    add_bull(body, *d / 2, 0);
+  } else {
+    add_cone(body, 0, *d / 2, *angle / 2);
+  }
+  return body;
+}
+
+//                  /  cone at ANGLE from the axis
+//                 /
+//        c       /   the corner circle (centre c, radius R) meets it where its normal is square to
+//        the cone:
+//        .-_   .'    r = c.r + R cos(ANGLE), z = R - R sin(ANGLE)
+//  ________ `-'
+//  |  D/2 - R |
+Result<Body> make_taper(const Values& values, const Options& options) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> angle = values.angle(1, kMaxHalfAngle_deg);
+  if (!angle) return Error{angle.error()};
+  Body body;
+  body.spec = fmt::format("taper:{}:{}", number_text(*d), number_text(*angle));
+  double corner = 0;
+  if (values.count() > 2) {
+    const Result<double> value = values.corner(2, *d);
+    if (!value) return Error{value.error()};
+    corner = *value;
+    if (corner > 0) body.spec += fmt::format(":{}", number_text(corner));
+  }
+  const double center_r = flat_radius(*d / 2, corner);
+  if (corner > 0) corner = *d / 2 - center_r;
+  const double r = center_r + corner * std::cos(radians(*angle));
+  const double z = corner * (1 - std::sin(radians(*angle)));
+  const double top = options.flute_mm.value_or(kTaperHeightPerTip * *d);
+  if (top < z + kMinLength_mm) {
+    return Error{fmt::format("flute={} ends below the cone, which begins {:.4g} mm above the tip",
+                             number_text(top), z)};
+  }
+  const double top_r = r + (top - z) * std::tan(radians(*angle));
+  if (2 * top_r > kMaxDiameter_mm) {
+    return Error{
+        fmt::format("the cone is {:.4g} mm wide at its top, {} mm above the tip; at most {} mm",
+                    2 * top_r, number_text(top), number_text(kMaxDiameter_mm))};
+  }
+  if (center_r > 0) body.pieces.push_back(line_piece(0, 0, center_r, 0));
+  if (corner > 0) body.pieces.push_back(corner_piece(center_r, corner, r, z));
+  body.pieces.push_back(line_piece(r, z, top_r, top));
+  body.flute_mm = top;
+  return body;
+}
+
+Result<Body> make_lollipop(const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> shaft = values.below(1, *d, kMinDiameter_mm);
+  if (!shaft) return Error{shaft.error()};
+  Body body;
+  body.spec = fmt::format("lollipop:{}:{}", number_text(*d), number_text(*shaft));
+  const double radius = *d / 2;
+  const double neck = *shaft / 2;
+  add_bull(body, radius, radius);
+  body.neck_radius_mm = neck;
+  body.flute_mm = radius + std::sqrt((radius - neck) * (radius + neck));
+  body.shank_mm = *shaft;
+  return body;
+}
+
+Result<Body> make_tslot(const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> thickness = values.diameter(1, kMinLength_mm, kMaxLength_mm);
+  if (!thickness) return Error{thickness.error()};
+  const Result<double> shaft = values.below(2, *d, kMinDiameter_mm);
+  if (!shaft) return Error{shaft.error()};
+  Body body;
+  body.spec =
+      fmt::format("tslot:{}:{}:{}", number_text(*d), number_text(*thickness), number_text(*shaft));
+  add_bull(body, *d / 2, 0);
+  body.neck_radius_mm = *shaft / 2;
+  body.flute_mm = *thickness;
+  body.shank_mm = *shaft;
+  return body;
+}
+
+Result<Body> make_body(const Form& form, std::span<const std::string_view> texts,
+                       const Options& options) {
+  const Values values(form, texts);
+  if (form.name == "vee") return make_vee(values);
+  if (form.name == "drill") return make_drill(values);
+  if (form.name == "taper") return make_taper(values, options);
+  if (form.name == "lollipop") return make_lollipop(values);
+  if (form.name == "tslot") return make_tslot(values);
+  return make_round(form.name, values);
+}
+
+// ---- assembly ----
+
+/// Adds flutes, shank and holder. Each begins where the one below ends. A shank without a length
+/// below a holder counts as none: the holder then begins at the end of the flutes, the cautious
+/// reading.
+Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
+  const double top = body.flute_mm.value_or(body.pieces.empty() ? 0 : body.pieces.back().z1);
+  const std::optional<double> flute = options.flute_mm ? options.flute_mm : body.flute_mm;
+  if (flute && *flute < top - kLengthTolerance_mm) {
+    return Error{fmt::format("flute={} is shorter than the cutting end, {:.4g} mm",
+                             number_text(*flute), top)};
+  }
+  if (!options.holder.empty() && !flute) {
+    return Error{"holder= needs flute=L as well: the holder begins where flutes and shank end"};
+  }
+  if (options.shank && options.shank->length_mm > 0 && options.holder.empty()) {
+    return Error{"shank=DxL needs a holder= above it; without one write shank=D"};
+  }
+  Result<Cutter> cutter = Cutter::from_profile(std::move(spec), std::move(body.pieces));
+  if (!cutter) return cutter;
+  if (body.neck_radius_mm) cutter->set_neck_radius_mm(*body.neck_radius_mm);
+  if (flute) cutter->set_flute_length_mm(*flute);
+  if (options.shank) {
+    cutter->set_shank_diameter_mm(options.shank->diameter_mm);
+  } else if (body.shank_mm) {
+    cutter->set_shank_diameter_mm(*body.shank_mm);
+  }
+  std::vector<ToolSection> holder;
+  double z = flute.value_or(0) + (options.shank ? options.shank->length_mm : 0);
+  for (const Part& part : options.holder) {
+    holder.push_back({part.diameter_mm, z, z + part.length_mm});
+    z += part.length_mm;
+  }
+  cutter->set_holder(std::move(holder));
+  return cutter;
+}
+
+/// The options of the file count unless the SHAPE text has its own.
+Result<Cutter> make_profile(std::string_view file_name, const Options& options) {
+  if (file_name.empty()) return Error{"file name FILE is missing; the form is profile:FILE"};
+  if (file_name.find('\0') != std::string_view::npos) return Error{"a file name cannot hold NUL"};
+  const std::string path(file_name);
+  Result<ProfileFile> file = read_profile_file(path);
+  if (!file) return Error{file.error()};
+  Options merged = options;
+  const auto merge = [&](std::string_view name, const std::optional<std::string>& text,
+                         bool given) -> Done {
+    if (!text || given) return std::monostate{};
+    return parse_option(name, *text, merged);
+  };
+  for (const Done& done : {merge("flute", file->flute, options.flute_mm.has_value()),
+                           merge("shank", file->shank, options.shank.has_value()),
+                           merge("holder", file->holder, !options.holder.empty())}) {
+    if (!done) return Error{fmt::format("{}: {}", shown(path), done.error())};
+  }
+  Body body;
+  body.pieces = std::move(file->pieces);
+  Result<Cutter> cutter =
+      assemble(std::move(body), merged, fmt::format("profile:{}{}", path, options_text(options)));
+  if (!cutter) return Error{fmt::format("{}: {}", shown(path), cutter.error())};
+  return cutter;
+}
+
+/// Splits "name:values:options". A profile's file name may hold colons: only the known options end
+/// it.
+Result<Cutter> parse_known(const Form& form, std::string_view rest) {
+  std::vector<std::string_view> values =
+      rest.data() ? split(rest, ':') : std::vector<std::string_view>{};
+  std::vector<std::string_view> option_texts;
+  while (!values.empty()) {
+    const std::string_view last = values.back();
+    const std::size_t equals = last.find('=');
+    if (equals == std::string_view::npos) break;
+    // A file name may hold '=' too: there only what names an option is one.
+    const std::string name = to_lower(last.substr(0, equals));
+    const bool known =
+        std::find(kOptionNames.begin(), kOptionNames.end(), name) != kOptionNames.end();
+    if (form.name == "profile" && !known) break;
+    option_texts.push_back(last);
+    values.pop_back();
+  }
+  Options options;
+  for (auto text = option_texts.rbegin(); text != option_texts.rend(); ++text) {
+    const std::size_t equals = text->find('=');
+    const Done done =
+        parse_option(to_lower(text->substr(0, equals)), text->substr(equals + 1), options);
+    if (!done) return Error{done.error()};
+  }
+  if (form.name == "profile") {
+    const std::string_view file =
+        values.empty()
+            ? std::string_view{}
+            : rest.substr(0, static_cast<std::size_t>(values.back().data() + values.back().size() -
+                                                      rest.data()));
+    return make_profile(file, options);
+  }
+  for (std::size_t i = 0; i < form.required; ++i) {
+    if (i >= values.size() || values[i].empty()) {
+      return Error{fmt::format("{} is missing; the form is {}", form.parameters[i], form.text)};
+    }
+  }
+  if (values.size() > form.required + form.optional) {
+    return Error{fmt::format("{} values are too many; the form is {}", values.size(), form.text)};
+  }
+  Result<Body> body = make_body(form, values, options);
+  if (!body) return Error{body.error()};
+  std::string spec = body->spec + options_text(options);
+  return assemble(std::move(*body), options, std::move(spec));
+}
+
+}  // namespace
+
+Result<Cutter> parse_shape(std::string_view spec) {
+  spec = trim(spec);
+  const std::size_t colon = spec.find(':');
+  const std::string name = to_lower(spec.substr(0, colon));
+  if (name.empty()) {
+    return Error{
+        "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
+        "lollipop, tslot, profile)"};
+  }
+  for (const Form& form : kForms) {
+    if (form.name != name) continue;
+    const std::string_view rest =
+        colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
+    Result<Cutter> cutter = parse_known(form, rest);
+    if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
+    return cutter;
+  }
+  return Error{
+      fmt::format("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
+                  "lollipop, tslot, profile",
+                  shown(spec), shown(name), did_you_mean(name, kShapeNames))};
+}
+
+Result<ToolShapeArgument> parse_tool_argument(std::string_view argument) {
+  const std::size_t equals = argument.find('=');
+  const std::string_view number = trim(argument.substr(0, equals));
+  int tool = 0;
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), tool);
+  if (equals == std::string_view::npos || number.empty() || error != std::errc() ||
+      stop != number.data() + number.size() || tool < 0) {
+    return Error{fmt::format("{}: not N=SHAPE with a tool number N; write for example 3=ball:6",
+                             shown(argument))};
+  }
+  Result<Cutter> cutter = parse_shape(argument.substr(equals + 1));
+  if (!cutter) return Error{fmt::format("tool {}: {}", tool, cutter.error())};
+  return ToolShapeArgument{tool, std::move(*cutter)};
+}
+
+std::string_view shape_help() { return kHelp; }
+
+}  // namespace kerf

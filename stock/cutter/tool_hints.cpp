@@ -1,0 +1,410 @@
+#include "stock/cutter/tool_hints.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "stock/cutter/free_text.h"
+#include "stock/cutter/scan.h"
+
+namespace kerf {
+namespace {
+
+/// Interpreters refuse lines of half this length; what is longer is not a tool.
+constexpr std::size_t kLongestComment = 512;
+/// More tools than any magazine holds, and few enough to compare each with all.
+constexpr std::size_t kMostHints = 10000;
+constexpr double kMmPerInch = 25.4;
+/// A drill's point: what is blunter than this is no chamfer and no taper, whatever language names
+/// it.
+constexpr double kLeastDrillAngle_deg = 100;
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string_view skip(std::string_view text, std::string_view characters) {
+  const std::size_t first = text.find_first_not_of(characters);
+  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
+}
+
+/// Digits at the start; moves `text` behind them.
+std::optional<int> take_integer(std::string_view& text) {
+  int value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || !is_digit(text.front()) || error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  return value;
+}
+
+/// "T12 rest", "T01 = rest", "TOOL: T1 = rest", "Tool 3: rest". After the bare word "tool" the
+/// number needs a separator, or it is a size ("Tool: 1/4 in end mill").
+struct NumberedText {
+  int tool = 0;
+  char separator = ' ';  ///< ':', '=', '|', '-' or ' '
+  std::string_view rest;
+};
+std::optional<NumberedText> split_tool_number(std::string_view lower) {
+  std::string_view text = lower;
+  const bool word = text.starts_with("tool");
+  if (word) text = skip(text.substr(4), " \t:#");
+  if (text.starts_with("t")) {
+    text.remove_prefix(1);
+  } else if (!word) {
+    return std::nullopt;
+  }
+  const std::optional<int> tool = take_integer(text);
+  if (!tool) return std::nullopt;
+  NumberedText numbered;
+  numbered.tool = *tool;
+  const bool touches = !text.empty() && text.front() != ' ' && text.front() != '\t';
+  text = skip(text, " \t");
+  if (!text.empty() && std::string_view(":=|-").find(text.front()) != std::string_view::npos) {
+    numbered.separator = text.front();
+    text = skip(text.substr(1), " \t>");
+  } else if (touches || (word && !lower.substr(4).starts_with(": t"))) {
+    return std::nullopt;
+  }
+  numbered.rest = text;
+  return numbered;
+}
+
+/// "KEY=number": value after the first such key that stands by itself.
+std::optional<double> field(std::string_view lower, std::string_view key) {
+  for (std::size_t at = lower.find(key); at != std::string_view::npos;
+       at = lower.find(key, at + 1)) {
+    if (at > 0 && lower[at - 1] != ' ' && lower[at - 1] != '\t' && lower[at - 1] != ',') continue;
+    std::string_view rest = skip(lower.substr(at + key.size()), " \t");
+    if (!rest.starts_with('=')) continue;
+    rest = skip(rest.substr(1), " \t");
+    if (rest.starts_with('+')) rest.remove_prefix(1);
+    const std::size_t end = std::min(rest.find_first_not_of("0123456789.-"), rest.size());
+    return parse_decimal(rest.substr(0, end));
+  }
+  return std::nullopt;
+}
+
+class HintFinder {
+ public:
+  explicit HintFinder(std::span<const CommentText> comments) : comments_(comments) {}
+
+  std::vector<ToolHint> find() {
+    for (index_ = 0; index_ < comments_.size() && hints_.size() < kMostHints; ++index_) {
+      const std::string_view text = trim(comments_[index_].text);
+      if (text.empty() || text.size() > kLongestComment) continue;
+      lower_ = to_lower(text);
+      read_comment();
+    }
+    finish_pycam();
+    return std::move(hints_);
+  }
+
+ private:
+  const CommentText& comment() const { return comments_[index_]; }
+  double unit_mm() const { return comment().inches ? kMmPerInch : 1; }
+
+  /// Each reader says whether the comment was of its dialect; the first that says so ends the
+  /// search.
+  void read_comment() {
+    if (read_pycam()) return;
+    if (read_cutviewer()) return;
+    if (read_numbered()) return;
+    if (read_turret()) return;
+    if (read_sheetcam()) return;
+    if (read_pcb2gcode()) return;
+    if (read_flatcam()) return;
+    if (read_freecad()) return;
+    if (read_tool_line()) return;
+    read_prose();
+  }
+
+  void add(int tool, std::string_view dialect, const CutterFacts& facts) {
+    add_at(comment().line, tool, dialect, facts);
+  }
+
+  /// A list that repeats a tool adds it once; a hint without a number counts for the place where it
+  /// stands.
+  void add_at(std::uint32_t line, int tool, std::string_view dialect, const CutterFacts& facts) {
+    const std::optional<ShapeText> text = shape_from_facts(facts);
+    if (!text) return;
+    const auto same = [&](const ToolHint& hint) {
+      return hint.tool == tool && hint.shape == text->shape;
+    };
+    if (tool >= 0 && std::any_of(hints_.begin(), hints_.end(), same)) return;
+    hints_.push_back({tool, line, std::string(dialect), text->shape, text->guessed});
+  }
+
+  bool read_numbered() {
+    const std::optional<NumberedText> numbered = split_tool_number(lower_);
+    if (!numbered) return false;
+    const std::optional<double> diameter = field(numbered->rest, "d");
+    if (diameter) return read_fusion(*numbered, *diameter);
+    // CamBam's list gives the bare diameter.
+    const std::optional<double> bare = parse_decimal(numbered->rest);
+    if (bare && numbered->separator == ':') {
+      CutterFacts facts;
+      facts.diameter_mm = *bare * unit_mm();
+      add(numbered->tool, "cambam", facts);
+      return true;
+    }
+    if (numbered->separator == ' ' &&
+        (numbered->rest.empty() || !starts_with_number(numbered->rest))) {
+      return false;
+    }
+    const CutterFacts facts = read_free_text(numbered->rest, comment().inches);
+    const bool listed = numbered->separator == '|' && facts.diameter_is_explicit;
+    const bool labelled = contains(numbered->rest, "dia");
+    if (facts.kind == CutterKind::kUnnamed && !listed && !labelled) return false;
+    add(numbered->tool, "list", facts);
+    return true;
+  }
+
+  static bool starts_with_number(std::string_view text) {
+    return is_digit(text.front()) || (text.size() > 1 && text.front() == '.' && is_digit(text[1]));
+  }
+
+  /// T1 [description] D=6. CR=3. TAPER=45deg - ZMIN=-5. - ball end mill
+  bool read_fusion(const NumberedText& numbered, double diameter) {
+    CutterFacts facts;
+    facts.diameter_mm = diameter * unit_mm();
+    const std::string_view text = numbered.rest;
+    const std::size_t dash = text.rfind(" - ");
+    facts.kind = kind_in(dash == std::string_view::npos ? text : text.substr(dash));
+    if (const auto corner = field(text, "cr")) facts.corner_mm = *corner * unit_mm();
+    if (const auto tip = field(text, "td")) facts.tip_mm = *tip * unit_mm();
+    facts.angle_deg = field(text, "taper");
+    facts.angle_is_half = facts.kind == CutterKind::kVee;
+    facts.tapered = contains(text, "taper") && facts.kind == CutterKind::kBall;
+    const bool blunt = facts.angle_deg.value_or(0) >= kLeastDrillAngle_deg;
+    if (facts.kind == CutterKind::kUnnamed && blunt) facts.kind = CutterKind::kDrill;
+    add(numbered.tool, "fusion", facts);
+    return true;
+  }
+
+  /// TOOL/MILL,diameter,corner radius,height,taper angle | TOOL/DRILL,diameter,point angle,height
+  /// TOOL/CHAMFER,diameter,point angle,height
+  bool read_cutviewer() {
+    if (!lower_.starts_with("tool/")) return false;
+    const std::vector<std::string_view> fields = split(std::string_view(lower_).substr(5), ',');
+    const auto value = [&](std::size_t index) {
+      return index < fields.size() ? parse_decimal(trim(fields[index])) : std::nullopt;
+    };
+    const std::string_view kind = trim(fields[0]);
+    const std::optional<double> diameter = value(1);
+    if (!diameter) return true;
+    CutterFacts facts;
+    facts.diameter_mm = *diameter * unit_mm();
+    if (kind == "mill") {
+      facts.kind = CutterKind::kFlat;
+      if (const auto corner = value(2)) facts.corner_mm = *corner * unit_mm();
+      if (const auto taper = value(4); taper && *taper > 0) {
+        facts.kind = CutterKind::kTaper;
+        facts.angle_deg = *taper;
+      }
+    } else if (kind == "drill" || kind == "centerdrill" || kind == "chamfer") {
+      facts.kind = kind == "chamfer" ? CutterKind::kVee : CutterKind::kDrill;
+      facts.angle_deg = value(2);
+    } else {
+      return true;
+    }
+    add(-1, "cutviewer", facts);
+    return true;
+  }
+
+  /// Turret No. : 0 Diameter :6.350 MM BALLNOSE
+  bool read_turret() {
+    if (!lower_.starts_with("turret no")) return false;
+    std::string_view rest = skip(std::string_view(lower_).substr(9), " .:");
+    const std::optional<int> tool = take_integer(rest);
+    if (tool) add(*tool, "turret", read_free_text(rest, comment().inches));
+    return true;
+  }
+
+  /// QtPlasmaC materials "o=0, na=.., kw=1.5" and SheetCam "Operation: .., T4: Plasma, 1.5 mm
+  /// kerf": the jet is a flat cutter as wide as the kerf.
+  bool read_sheetcam() {
+    CutterFacts facts;
+    facts.kind = CutterKind::kFlat;
+    if (lower_.starts_with("o=")) {
+      const std::optional<double> kerf = field(lower_, "kw");
+      if (!kerf) return false;
+      facts.diameter_mm = *kerf * unit_mm();
+      add(-1, "sheetcam", facts);
+      return true;
+    }
+    if (!lower_.starts_with("operation:")) return false;
+    const std::size_t comma = lower_.find(", t");
+    if (comma == std::string::npos) return false;
+    const std::optional<NumberedText> numbered =
+        split_tool_number(std::string_view(lower_).substr(comma + 2));
+    if (!numbered) return false;
+    const bool kerf = contains(numbered->rest, "kerf");
+    const CutterFacts read = read_free_text(numbered->rest, comment().inches);
+    if (kerf) facts.diameter_mm = read.diameter_mm;
+    add(numbered->tool, "sheetcam", kerf ? facts : read);
+    return true;
+  }
+
+  /// MSG, Change tool bit to mill diameter 0.20000mm | MSG, Change tool bit to drill size 0.8mm
+  bool read_pcb2gcode() {
+    constexpr std::string_view kPhrase = "change tool bit to ";
+    const std::size_t at = lower_.find(kPhrase);
+    if (at == std::string::npos) return false;
+    CutterFacts facts =
+        read_free_text(std::string_view(lower_).substr(at + kPhrase.size()), comment().inches);
+    // "mill" and "cutter" say what it does to the board, not which shape it has.
+    if (facts.kind != CutterKind::kDrill) facts.kind = CutterKind::kUnnamed;
+    add(-1, "pcb2gcode", facts);
+    return true;
+  }
+
+  /// TOOL DIAMETER: 0.1 mm | MSG, Change to Tool Dia = 0.1000 [||| Total drills for tool T1 = 10]
+  bool read_flatcam() {
+    const std::size_t at = lower_.find("tool dia");
+    if (at == std::string::npos) return false;
+    const bool line = at == 0 || std::string_view(lower_).starts_with("msg, change to tool dia");
+    if (!line) return false;
+    const std::string_view rest = std::string_view(lower_).substr(at + 5);
+    CutterFacts facts = read_free_text(rest.substr(0, rest.find("|||")), comment().inches);
+    facts.kind = contains(rest, "drill") ? CutterKind::kDrill : CutterKind::kUnnamed;
+    if (facts.diameter_is_explicit) add(-1, "flatcam", facts);
+    return true;
+  }
+
+  /// FreeCAD names the tool controller in the comment before "Begin toolchange"; some posts add "M6
+  /// T2" as a comment.
+  bool read_freecad() {
+    if (lower_ != "begin toolchange") return false;
+    if (index_ == 0) return true;
+    const CutterFacts facts =
+        read_free_text(comments_[index_ - 1].text.substr(0, kLongestComment), comment().inches);
+    if (facts.kind == CutterKind::kUnnamed || !facts.diameter_is_explicit) return true;
+    int tool = -1;
+    if (index_ + 1 < comments_.size()) {
+      const std::string next = to_lower(trim(comments_[index_ + 1].text));
+      std::string_view rest = next;
+      if (rest.starts_with("m6 t")) {
+        rest.remove_prefix(4);
+        tool = take_integer(rest).value_or(-1);
+      }
+    }
+    add(tool, "freecad", facts);
+    return true;
+  }
+
+  /// "Tool: D = 3.0 mm type END flutes 2" (Fabex), "TOOL: V-BIT {90 DEG 0.5\"}" (Vectric), "MSG,
+  /// INSERT BALLNOSE ,1/4\""
+  bool read_tool_line() {
+    std::string_view rest = lower_;
+    const bool tool = rest.starts_with("tool:");
+    const bool message = rest.starts_with("msg,");
+    if (!tool && !message) return false;
+    rest = skip(rest.substr(tool ? 5 : 4), " \t");
+    if (message && !rest.starts_with("insert ") && !rest.starts_with("load ") &&
+        !rest.starts_with("change to ")) {
+      return false;
+    }
+    const std::size_t type = rest.find(" type ");
+    const bool fabex = tool && rest.starts_with("d") && type != std::string_view::npos;
+    CutterFacts facts = read_free_text(rest, comment().inches);
+    if (fabex && contains(rest.substr(type), " end")) facts.kind = CutterKind::kFlat;
+    if (fabex && contains(rest.substr(type), "ballcone")) facts.tapered = true;
+    if (facts.kind == CutterKind::kUnnamed) return tool;
+    add(-1, fabex ? "fabex" : tool ? "tool-line" : "message", facts);
+    return true;
+  }
+
+  /// "Cutter is assumed to be a 10mm ball nose", "Ball cutter D=10.00": words in running text. The
+  /// kind must be a milling cutter's and the size must be marked as one, or every remark about the
+  /// work would be a tool.
+  void read_prose() {
+    const bool names_tool = contains(lower_, "cutter") || contains(lower_, "end mill") ||
+                            contains(lower_, "endmill") || contains(lower_, "end_mill");
+    // FreeCAD repeats the tool controller's label as the name of an operation.
+    const bool names_operation = contains(lower_, "operation") || lower_.starts_with("path:") ||
+                                 lower_.starts_with("block-name:");
+    if (!names_tool) return;
+    const CutterFacts facts = read_free_text(lower_, comment().inches);
+    const bool milling = facts.kind == CutterKind::kBall || facts.kind == CutterKind::kBull ||
+                         facts.kind == CutterKind::kFlat;
+    if (milling && facts.diameter_is_explicit && !names_operation) {
+      add(-1, "prose", facts);
+    }
+  }
+
+  // ---- PyCAM ----
+  //     [Tool]
+  //     torus_radius = 0.25
+  //     shape = ToroidalCutter
+  //     tool_radius = 3.0
+
+  bool read_pycam() {
+    if (lower_.front() == '[') {
+      finish_pycam();
+      if (lower_ != "[tool]") return false;
+      pycam_ = PyCam{};
+      pycam_->line = comment().line;
+      pycam_->inches = comment().inches;
+      return true;
+    }
+    if (!pycam_) return false;
+    const std::size_t equals = lower_.find('=');
+    if (equals == std::string::npos) {
+      finish_pycam();
+      return false;
+    }
+    const std::string_view key = trim(std::string_view(lower_).substr(0, equals));
+    const std::string_view value = trim(std::string_view(lower_).substr(equals + 1));
+    if (key == "shape") pycam_->shape = std::string(value);
+    if (key == "tool_radius") pycam_->radius = parse_decimal(value);
+    if (key == "torus_radius") pycam_->torus = parse_decimal(value);
+    return true;
+  }
+
+  void finish_pycam() {
+    if (!pycam_) return;
+    const PyCam block = *pycam_;
+    pycam_.reset();
+    if (!block.radius) return;
+    const double unit = block.inches ? kMmPerInch : 1;
+    CutterFacts facts;
+    facts.kind = kind_in(block.shape);
+    facts.diameter_mm = 2 * *block.radius * unit;
+    // The torus radius is written for every shape and counts for one.
+    if (facts.kind == CutterKind::kBull && block.torus) facts.corner_mm = *block.torus * unit;
+    add_at(block.line, -1, "pycam", facts);
+  }
+
+  struct PyCam {
+    std::uint32_t line = 0;
+    bool inches = false;
+    std::string shape;
+    std::optional<double> radius, torus;
+  };
+
+  std::span<const CommentText> comments_;
+  std::size_t index_ = 0;
+  std::string lower_;
+  std::optional<PyCam> pycam_;
+  std::vector<ToolHint> hints_;
+};
+
+}  // namespace
+
+std::vector<ToolHint> find_tool_hints(std::span<const CommentText> comments) {
+  return HintFinder(comments).find();
+}
+
+std::optional<ToolHint> shape_from_remark(int tool, double diameter_mm, std::string_view remark) {
+  CutterFacts facts = read_free_text(remark.substr(0, kLongestComment), false);
+  if (facts.kind == CutterKind::kUnnamed) return std::nullopt;
+  // The table's diameter counts; the text's only where the table has none.
+  if (std::isfinite(diameter_mm) && diameter_mm > 0) facts.diameter_mm = diameter_mm;
+  const std::optional<ShapeText> shape = shape_from_facts(facts);
+  if (!shape) return std::nullopt;
+  return ToolHint{tool, 0, "remark", shape->shape, shape->guessed};
+}
+
+}  // namespace kerf

@@ -1,0 +1,285 @@
+// stock/zmap/lanes.h - eight numbers at a time, in float or double, with AVX2 or without. Same bits
+// either way.
+//
+// Every operation is one correctly rounded IEEE operation (add, multiply, divide, square root,
+// compare): there is no fused multiply-add, so machines without it give the same result at full
+// speed. Included by one source a kernel, inside a namespace of its own (KERF_LANES_NAMESPACE),
+// because code compiled for AVX2 must never be linked into the other one.
+#ifndef KERF_LANES_NAMESPACE
+#error "define KERF_LANES_NAMESPACE before including lanes.h"
+#endif
+
+#include <cstdint>
+
+#if defined(KERF_LANES_AVX2)
+#include <immintrin.h>
+#endif
+
+namespace kerf::KERF_LANES_NAMESPACE {
+
+#if defined(KERF_LANES_AVX2)
+
+struct MaskF {
+  __m256 v;
+};
+struct F8 {
+  using Scalar = float;
+  using Mask = MaskF;
+  __m256 v;
+  static F8 all(float x) { return {_mm256_set1_ps(x)}; }
+  static F8 load(const float* p) { return {_mm256_load_ps(p)}; }
+};
+inline void store(float* p, F8 a) { _mm256_store_ps(p, a.v); }
+inline F8 operator+(F8 a, F8 b) { return {_mm256_add_ps(a.v, b.v)}; }
+inline F8 operator-(F8 a, F8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+inline F8 operator*(F8 a, F8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+inline F8 operator/(F8 a, F8 b) { return {_mm256_div_ps(a.v, b.v)}; }
+inline F8 sqrt(F8 a) { return {_mm256_sqrt_ps(a.v)}; }
+inline F8 min(F8 a, F8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+inline F8 max(F8 a, F8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+inline F8 abs(F8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
+inline MaskF operator>=(F8 a, F8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GE_OQ)}; }
+inline MaskF operator<=(F8 a, F8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)}; }
+inline MaskF operator>(F8 a, F8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)}; }
+inline MaskF operator<(F8 a, F8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)}; }
+inline MaskF operator&(MaskF a, MaskF b) { return {_mm256_and_ps(a.v, b.v)}; }
+inline MaskF operator|(MaskF a, MaskF b) { return {_mm256_or_ps(a.v, b.v)}; }
+inline MaskF and_not(MaskF a, MaskF b) { return {_mm256_andnot_ps(b.v, a.v)}; }
+inline bool any(MaskF a) { return _mm256_movemask_ps(a.v) != 0; }
+inline F8 select(MaskF m, F8 a, F8 b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
+
+/// Eight 32-bit sums.
+struct I8 {
+  __m256i v;
+  static I8 zero() { return {_mm256_setzero_si256()}; }
+};
+inline I8 operator+(I8 a, I8 b) { return {_mm256_add_epi32(a.v, b.v)}; }
+inline I8 round_to_int(F8 a) { return {_mm256_cvtps_epi32(a.v)}; }
+inline void store(std::int32_t* p, I8 a) { _mm256_store_si256(reinterpret_cast<__m256i*>(p), a.v); }
+
+struct MaskD {
+  __m256d lo, hi;
+};
+struct D8 {
+  using Scalar = double;
+  using Mask = MaskD;
+  __m256d lo, hi;
+  static D8 all(double x) { return {_mm256_set1_pd(x), _mm256_set1_pd(x)}; }
+  static D8 load(const double* p) { return {_mm256_load_pd(p), _mm256_load_pd(p + 4)}; }
+};
+inline D8 operator+(D8 a, D8 b) { return {_mm256_add_pd(a.lo, b.lo), _mm256_add_pd(a.hi, b.hi)}; }
+inline D8 operator-(D8 a, D8 b) { return {_mm256_sub_pd(a.lo, b.lo), _mm256_sub_pd(a.hi, b.hi)}; }
+inline D8 operator*(D8 a, D8 b) { return {_mm256_mul_pd(a.lo, b.lo), _mm256_mul_pd(a.hi, b.hi)}; }
+inline D8 operator/(D8 a, D8 b) { return {_mm256_div_pd(a.lo, b.lo), _mm256_div_pd(a.hi, b.hi)}; }
+inline D8 sqrt(D8 a) { return {_mm256_sqrt_pd(a.lo), _mm256_sqrt_pd(a.hi)}; }
+inline D8 min(D8 a, D8 b) { return {_mm256_min_pd(a.lo, b.lo), _mm256_min_pd(a.hi, b.hi)}; }
+inline D8 max(D8 a, D8 b) { return {_mm256_max_pd(a.lo, b.lo), _mm256_max_pd(a.hi, b.hi)}; }
+inline D8 abs(D8 a) {
+  const __m256d sign = _mm256_set1_pd(-0.0);
+  return {_mm256_andnot_pd(sign, a.lo), _mm256_andnot_pd(sign, a.hi)};
+}
+inline MaskD operator>=(D8 a, D8 b) {
+  return {_mm256_cmp_pd(a.lo, b.lo, _CMP_GE_OQ), _mm256_cmp_pd(a.hi, b.hi, _CMP_GE_OQ)};
+}
+inline MaskD operator<=(D8 a, D8 b) {
+  return {_mm256_cmp_pd(a.lo, b.lo, _CMP_LE_OQ), _mm256_cmp_pd(a.hi, b.hi, _CMP_LE_OQ)};
+}
+inline MaskD operator>(D8 a, D8 b) {
+  return {_mm256_cmp_pd(a.lo, b.lo, _CMP_GT_OQ), _mm256_cmp_pd(a.hi, b.hi, _CMP_GT_OQ)};
+}
+inline MaskD operator<(D8 a, D8 b) {
+  return {_mm256_cmp_pd(a.lo, b.lo, _CMP_LT_OQ), _mm256_cmp_pd(a.hi, b.hi, _CMP_LT_OQ)};
+}
+inline MaskD operator&(MaskD a, MaskD b) {
+  return {_mm256_and_pd(a.lo, b.lo), _mm256_and_pd(a.hi, b.hi)};
+}
+inline MaskD operator|(MaskD a, MaskD b) {
+  return {_mm256_or_pd(a.lo, b.lo), _mm256_or_pd(a.hi, b.hi)};
+}
+inline MaskD and_not(MaskD a, MaskD b) {
+  return {_mm256_andnot_pd(b.lo, a.lo), _mm256_andnot_pd(b.hi, a.hi)};
+}
+inline bool any(MaskD a) { return (_mm256_movemask_pd(a.lo) | _mm256_movemask_pd(a.hi)) != 0; }
+inline D8 select(MaskD m, D8 a, D8 b) {
+  return {_mm256_blendv_pd(b.lo, a.lo, m.lo), _mm256_blendv_pd(b.hi, a.hi, m.hi)};
+}
+inline F8 to_float(D8 a) { return {_mm256_set_m128(_mm256_cvtpd_ps(a.hi), _mm256_cvtpd_ps(a.lo))}; }
+inline MaskF to_float(MaskD a) {
+  // Bits of a double mask are all equal: keep the odd 32-bit halves.
+  const __m256 lo = _mm256_castpd_ps(a.lo), hi = _mm256_castpd_ps(a.hi);
+  const __m256 mixed = _mm256_shuffle_ps(lo, hi, _MM_SHUFFLE(3, 1, 3, 1));
+  return {
+      _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(mixed), _MM_SHUFFLE(3, 1, 2, 0)))};
+}
+
+#else
+
+struct MaskF {
+  std::int32_t v[8];
+};
+struct F8 {
+  using Scalar = float;
+  using Mask = MaskF;
+  float v[8];
+  static F8 all(float x) { return {{x, x, x, x, x, x, x, x}}; }
+  static F8 load(const float* p) {
+    F8 r;
+    for (int i = 0; i < 8; ++i) r.v[i] = p[i];
+    return r;
+  }
+};
+struct MaskD {
+  std::int64_t v[8];
+};
+struct D8 {
+  using Scalar = double;
+  using Mask = MaskD;
+  double v[8];
+  static D8 all(double x) { return {{x, x, x, x, x, x, x, x}}; }
+  static D8 load(const double* p) {
+    D8 r;
+    for (int i = 0; i < 8; ++i) r.v[i] = p[i];
+    return r;
+  }
+};
+inline void store(float* p, F8 a) {
+  for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+}
+
+/// Eight 32-bit sums.
+struct I8 {
+  std::int32_t v[8];
+  static I8 zero() { return {}; }
+};
+inline I8 operator+(I8 a, I8 b) {
+  for (int i = 0; i < 8; ++i) a.v[i] += b.v[i];
+  return a;
+}
+/// To nearest, ties to even, for 0 <= a < 2^31: the way of the AVX2 instruction.
+inline I8 round_to_int(F8 a) {
+  I8 r;
+  for (int i = 0; i < 8; ++i) r.v[i] = static_cast<std::int32_t>(__builtin_rintf(a.v[i]));
+  return r;
+}
+inline void store(std::int32_t* p, I8 a) {
+  for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+}
+
+// The same operations for both widths, lane by lane; the compiler makes of them what the machine
+// has.
+#define KERF_LANES_BINARY(T, M)                                             \
+  inline T operator+(T a, T b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] += b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline T operator-(T a, T b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] -= b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline T operator*(T a, T b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] *= b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline T operator/(T a, T b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] /= b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline T min(T a, T b) {                                                  \
+    for (int i = 0; i < 8; ++i) a.v[i] = a.v[i] < b.v[i] ? a.v[i] : b.v[i]; \
+    return a;                                                               \
+  }                                                                         \
+  inline T max(T a, T b) {                                                  \
+    for (int i = 0; i < 8; ++i) a.v[i] = a.v[i] > b.v[i] ? a.v[i] : b.v[i]; \
+    return a;                                                               \
+  }                                                                         \
+  inline M operator>=(T a, T b) {                                           \
+    M r;                                                                    \
+    for (int i = 0; i < 8; ++i) r.v[i] = -(a.v[i] >= b.v[i]);               \
+    return r;                                                               \
+  }                                                                         \
+  inline M operator<=(T a, T b) {                                           \
+    M r;                                                                    \
+    for (int i = 0; i < 8; ++i) r.v[i] = -(a.v[i] <= b.v[i]);               \
+    return r;                                                               \
+  }                                                                         \
+  inline M operator>(T a, T b) {                                            \
+    M r;                                                                    \
+    for (int i = 0; i < 8; ++i) r.v[i] = -(a.v[i] > b.v[i]);                \
+    return r;                                                               \
+  }                                                                         \
+  inline M operator<(T a, T b) {                                            \
+    M r;                                                                    \
+    for (int i = 0; i < 8; ++i) r.v[i] = -(a.v[i] < b.v[i]);                \
+    return r;                                                               \
+  }                                                                         \
+  inline M operator&(M a, M b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] &= b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline M operator|(M a, M b) {                                            \
+    for (int i = 0; i < 8; ++i) a.v[i] |= b.v[i];                           \
+    return a;                                                               \
+  }                                                                         \
+  inline M and_not(M a, M b) {                                              \
+    for (int i = 0; i < 8; ++i) a.v[i] &= ~b.v[i];                          \
+    return a;                                                               \
+  }                                                                         \
+  inline bool any(M a) {                                                    \
+    bool r = false;                                                         \
+    for (int i = 0; i < 8; ++i) r |= a.v[i] != 0;                           \
+    return r;                                                               \
+  }                                                                         \
+  inline T select(M m, T a, T b) {                                          \
+    for (int i = 0; i < 8; ++i) a.v[i] = m.v[i] ? a.v[i] : b.v[i];          \
+    return a;                                                               \
+  }
+KERF_LANES_BINARY(F8, MaskF)
+KERF_LANES_BINARY(D8, MaskD)
+#undef KERF_LANES_BINARY
+
+inline F8 sqrt(F8 a) {
+  for (int i = 0; i < 8; ++i) a.v[i] = __builtin_sqrtf(a.v[i]);
+  return a;
+}
+inline D8 sqrt(D8 a) {
+  for (int i = 0; i < 8; ++i) a.v[i] = __builtin_sqrt(a.v[i]);
+  return a;
+}
+inline F8 abs(F8 a) {
+  for (int i = 0; i < 8; ++i) a.v[i] = __builtin_fabsf(a.v[i]);
+  return a;
+}
+inline D8 abs(D8 a) {
+  for (int i = 0; i < 8; ++i) a.v[i] = __builtin_fabs(a.v[i]);
+  return a;
+}
+inline F8 to_float(D8 a) {
+  F8 r;
+  for (int i = 0; i < 8; ++i) r.v[i] = static_cast<float>(a.v[i]);
+  return r;
+}
+inline MaskF to_float(MaskD a) {
+  MaskF r;
+  for (int i = 0; i < 8; ++i) r.v[i] = static_cast<std::int32_t>(a.v[i]);
+  return r;
+}
+
+#endif
+
+/// Largest integer not above x, |x| < 2^22.
+inline F8 floor(F8 x) {
+  const F8 big = F8::all(12582912.0f);  // 1.5 * 2^23: adding it rounds to an integer
+  const F8 nearest = (x + big) - big;
+  return nearest - select(nearest > x, F8::all(1), F8::all(0));
+}
+/// The same, |x| < 2^51.
+inline D8 floor(D8 x) {
+  const D8 big = D8::all(6755399441055744.0);
+  const D8 nearest = (x + big) - big;
+  return nearest - select(nearest > x, D8::all(1), D8::all(0));
+}
+
+inline F8 to_float(F8 a) { return a; }
+inline MaskF to_float(MaskF a) { return a; }
+
+}  // namespace kerf::KERF_LANES_NAMESPACE

@@ -1,0 +1,13 @@
+// Kernel for machines with AVX2; compiled with -mavx2, called only where the machine has it.
+#define KERF_LANES_NAMESPACE zmap_avx2
+#define KERF_LANES_AVX2 1
+#include "stock/zmap/sweep_walk.h"
+
+namespace kerf::zmap_avx2 {
+
+void run_sweeps(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
+                int first_band, int band_step, SweepTotals* totals) {
+  run_all(grid, tool, ops, count, first_band, band_step, totals);
+}
+
+}  // namespace kerf::zmap_avx2

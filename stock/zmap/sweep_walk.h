@@ -1,0 +1,285 @@
+// stock/zmap/sweep_walk.h - which blocks a sweep can touch, and the loop over sweeps. Included
+// after sweep_kernel.h.
+#ifndef KERF_LANES_NAMESPACE
+#error "define KERF_LANES_NAMESPACE before including sweep_walk.h"
+#endif
+
+#include "stock/zmap/sweep_kernel.h"
+
+namespace kerf::KERF_LANES_NAMESPACE {
+
+/// Clips [low, high] to the x with lo <= a*x + b <= hi, given ia = 1/a (or +-1e6 where a is about
+/// 0).
+inline void clip(F8 ia, F8 b, F8 lo, F8 hi, F8& low, F8& high) {
+  const F8 p = (lo - b) * ia, q = (hi - b) * ia;
+  low = max(low, min(p, q));
+  high = min(high, max(p, q));
+}
+inline float inverse_or_huge(double a) {
+  if (scalar_abs(a) < 1e-6) return a < 0 ? -1e6f : 1e6f;
+  return static_cast<float>(1 / a);
+}
+
+/// How far from the axis a tool can touch on slope s, as a signed bound of rho; `ball_like` if rho
+/// = factor * sqrt(R^2 - v^2).
+struct ContactReach {
+  float factor = 0;
+  bool circular = false;
+};
+inline ContactReach contact_reach(const ConvexTool& tool, double slope) {
+  const double sign = slope > 0 ? 1 : slope < 0 ? -1 : 0;
+  if (tool.kind == ConvexTool::Kind::kFlat) return {static_cast<float>(sign), true};
+  if (tool.kind == ConvexTool::Kind::kBall)
+    return {static_cast<float>(slope / scalar_sqrt(1 + slope * slope)), true};
+  return {static_cast<float>(sign), false};
+}
+
+/// Bounds of u over the cells of a strip, for eight block rows: see sweep_kernel.h for the shape.
+struct StripBounds {
+  float lower, upper;    ///< of u over the whole strip, half a block included
+  float half_u, half_v;  ///< half extent of a block in the strip's frame
+  float radius, length, wedge_extra;
+  ContactReach reach, next_reach;
+  bool joined;
+  float turn;
+
+  [[gnu::always_inline]] explicit StripBounds(const SweepContext& c)
+      : radius(static_cast<float>(c.tool.radius)),
+        length(static_cast<float>(c.op.length)),
+        joined(c.op.joined) {
+    const SweepOp& op = c.op;
+    half_u = static_cast<float>(
+                 1.5 * (c.grid.cell_x * scalar_abs(op.cos) + c.grid.cell_y * scalar_abs(op.sin))) +
+             kBoundSlack_mm;
+    half_v = static_cast<float>(
+                 1.5 * (c.grid.cell_x * scalar_abs(op.sin) + c.grid.cell_y * scalar_abs(op.cos))) +
+             kBoundSlack_mm;
+    reach = contact_reach(c.tool, op.slope);
+    next_reach = contact_reach(c.tool, joined ? op.next_slope : 0.0);
+    turn = static_cast<float>(scalar_abs(op.cos * op.next_sin - op.sin * op.next_cos));
+    wedge_extra = joined ? 1.05f * radius * turn : 0.0f;
+    lower = (reach.factor < 0 ? reach.factor * radius : 0.0f) - half_u;
+    const float ahead = reach.factor > 0 ? reach.factor * radius : 0.0f;
+    const float ahead_next = next_reach.factor > 0 ? 1.05f * next_reach.factor * radius : 0.0f;
+    upper = length +
+            (joined && ahead_next + wedge_extra > ahead ? ahead_next + wedge_extra : ahead) +
+            half_u;
+  }
+
+  /// Tighter bounds for rows whose blocks lie between v_low and v_high from the track.
+  [[gnu::always_inline]] void tighten(F8 v_near, F8 v_far, F8& u_low, F8& u_high) const {
+    const F8 zero = F8::all(0), r2 = F8::all(radius * radius);
+    const F8 w_wide = sqrt(max(r2 - v_near * v_near, zero));
+    const F8 w_slim = reach.circular ? sqrt(max(r2 - v_far * v_far, zero)) : zero;
+    const F8 f = F8::all(reach.factor);
+    const F8 wide = reach.circular ? w_wide : F8::all(radius);
+    const F8 a = f * wide, b = f * w_slim;
+    u_low = min(a, b) - F8::all(half_u);
+    u_high = max(a, b) + F8::all(length);
+    if (joined) {
+      const F8 v_next = max(F8::all(0.95f) * v_near - F8::all(radius * turn), zero);
+      const F8 w_next =
+          next_reach.circular ? sqrt(max(r2 - v_next * v_next, zero)) : F8::all(radius);
+      const float ahead = next_reach.factor > 0 ? 1.05f * next_reach.factor : 0.0f;
+      u_high = max(u_high, F8::all(ahead) * w_next + F8::all(length + wedge_extra));
+    }
+    u_high = u_high + F8::all(half_u);
+  }
+};
+
+/// Gives `out` every run of blocks that the strip can touch. Positions are taken from the block in
+/// which the strip starts, so that they stay small.
+template <class Out>
+void walk_strip(const SweepContext& c, Out& out) {
+  const SweepOp& op = c.op;
+  const GridView& g = c.grid;
+  const StripBounds bounds(c);
+  const double block_x = 4 * g.cell_x, block_y = 4 * g.cell_y;
+  const int home_i = floor_int((op.x - g.x0) / block_x),
+            home_j = floor_int((op.y - g.y0) / block_y);
+  const double ax = op.x - g.x0 - home_i * block_x, ay = op.y - g.y0 - home_j * block_y;
+  const auto all = [](double v) { return F8::all(static_cast<float>(v)); };
+  const F8 cos = all(op.cos), sin = all(op.sin), zero = F8::all(0), radius = F8::all(bounds.radius);
+  const F8 icos = F8::all(inverse_or_huge(op.cos)), isin = F8::all(inverse_or_huge(-op.sin));
+  const F8 side = F8::all(bounds.radius + bounds.half_v), half_v = F8::all(bounds.half_v);
+  const F8 first_column = all(-home_i), last_column = all((g.nx - 1) / 4 - home_i);
+  const bool is_short = op.length + 2 * c.tool.radius <= kShortReach_mm;
+  alignas(32) static constexpr float kLane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (int first = c.first_row; first <= c.last_row; first += 8) {
+    const F8 row = F8::all(static_cast<float>(first - home_j)) + F8::load(kLane);
+    const F8 y = row * all(block_y) + all(2 * g.cell_y - ay);
+    const F8 y_sin = y * sin, y_cos = y * cos;
+    F8 low = F8::all(-1e9f), high = F8::all(1e9f);
+    clip(icos, y_sin, F8::all(bounds.lower), F8::all(bounds.upper), low, high);
+    clip(isin, y_cos, zero - side, side, low, high);
+    const F8 v1 = y_cos - low * sin, v2 = y_cos - high * sin;
+    const F8 v_min = min(v1, v2) - half_v, v_max = max(v1, v2) + half_v;
+    const F8 v_far = min(radius, max(zero - v_min, v_max));
+    const F8 v_near = min(radius, max(zero, max(v_min, zero - v_max)));
+    F8 u_low, u_high;
+    bounds.tighten(v_near, v_far, u_low, u_high);
+    clip(icos, y_sin, u_low, u_high, low, high);
+    // Block columns, relative to home_i: centres between low and high.
+    const F8 to_block = all(1 / block_x), shift = all(ax / block_x - 0.5);
+    const F8 begin = zero - floor(zero - max(low * to_block + shift, first_column));
+    const F8 end = floor(max(min(high * to_block + shift, last_column), first_column - F8::all(1)));
+    const F8 x0 = min(begin, last_column) * all(block_x) + all(0.5 * g.cell_x - ax);
+    const F8 y0 = row * all(block_y) + all(0.5 * g.cell_y - ay);
+    const F8 p0 = x0 * cos + y0 * sin;
+    alignas(32) float begins[8], counts[8], p[8], q[8], track[8];
+    store(begins, begin);
+    store(counts, end - begin + F8::all(1));
+    store(p, p0);
+    store(q, y0 * cos - x0 * sin);
+    store(track, all(op.z) + all(op.slope) * p0);
+    const int lanes = c.last_row - first < 7 ? c.last_row - first + 1 : 8;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (!(counts[lane] > 0)) continue;
+      const int b0 = static_cast<int>(begins[lane]) + home_i,
+                b1 = b0 + static_cast<int>(counts[lane]) - 1;
+      if (is_short)
+        out.add(first + lane, b0, b1, {p[lane], q[lane], track[lane]});
+      else
+        out.add(first + lane, b0, b1);
+    }
+  }
+}
+
+/// Rows of blocks between the circles `inner` and `outer` about the sweep's (x, y), within the box
+/// of the sweep's path widened by the tool's radius.
+template <class Out>
+void walk_ring(const SweepContext& c, double inner, double outer, Out& out) {
+  const GridView& g = c.grid;
+  const double margin = c.tool.radius + 1e-3;
+  const double left = c.op.min_x - margin - c.op.x, right = c.op.max_x + margin - c.op.x;
+  const double half_x = 1.5 * g.cell_x, half_y = 1.5 * g.cell_y;
+  const int last_column = (g.nx - 1) / 4;
+  const double ax = c.op.x - g.x0, ay = c.op.y - g.y0;
+  for (int bj = c.first_row; bj <= c.last_row; ++bj) {
+    const double y = (bj * 4 + 2) * g.cell_y - ay;
+    const double y_near = scalar_max(0.0, scalar_abs(y) - half_y), y_far = scalar_abs(y) + half_y;
+    if (y_near > outer + 1e-3) continue;
+    const double w = scalar_sqrt(scalar_max(0.0, outer * outer - y_near * y_near)) + 1e-3;
+    const double x0 = scalar_max(-w, left) - half_x, x1 = scalar_min(w, right) + half_x;
+    const auto blocks = [&](double from, double to) {
+      const double b0 = (ax + from) / (4 * g.cell_x) - 0.5, b1 = (ax + to) / (4 * g.cell_x) - 0.5;
+      if (b0 > b1 || b1 < 0 || b0 > last_column) return;
+      const int first = b0 <= 0 ? 0 : ceil_int(b0),
+                last = b1 >= last_column ? last_column : floor_int(b1);
+      if (first <= last) out.add(bj, first, last);
+    };
+    const double hole2 = inner * inner - y_far * y_far;
+    const double hole = inner > 0 && hole2 > 0 ? scalar_sqrt(hole2) - half_x - 1e-3 : 0.0;
+    if (hole > 8 * g.cell_x) {
+      // At least four blocks apart: no block belongs to both sides.
+      blocks(x0, scalar_min(x1, -hole));
+      blocks(scalar_max(x0, hole), x1);
+    } else {
+      blocks(x0, x1);
+    }
+  }
+}
+
+template <class Flush>
+void sweep_rows(SweepContext& c, WorkList& list, const Frame& frame, const Flush& flush) {
+  const SweepOp& op = c.op;
+  RunWriter<Flush> row(c, list, frame, flush);
+  if (op.kind == SweepOp::Kind::kStrip)
+    walk_strip(c, row);
+  else if (op.kind == SweepOp::Kind::kCap)
+    walk_ring(c, 0.0, c.tool.radius, row);
+  else
+    walk_ring(c, op.radius - c.tool.radius, op.radius + c.tool.radius, row);
+  if (list.count > 0) flush();
+}
+
+inline Frame frame_of(const SweepOp& op) {
+  return op.kind == SweepOp::Kind::kStrip ? Frame{op.cos, op.sin, op.slope} : Frame{};
+}
+
+template <class EvalD>
+void sweep_double(SweepContext& c) {
+  const Frame frame = frame_of(c.op);
+  const EvalD eval(c.tool, c.op);
+  WorkList list;
+  sweep_rows(c, list, frame, [&] { work_off_double(c, list, frame, eval); });
+}
+
+template <class EvalF, class EvalD>
+void sweep_single(SweepContext& c) {
+  if (c.op.use_double) return sweep_double<EvalD>(c);
+  const Frame frame = frame_of(c.op);
+  const EvalF eval(c.tool, c.op);
+  WorkList list;
+  sweep_rows(c, list, frame, [&] { work_off<EvalD>(c, list, frame, eval); });
+}
+
+template <template <class> class Shape, Joint kJoint>
+void sweep_strip(SweepContext& c) {
+  sweep_single<StripEval<F8, Shape<F8>, kJoint>, StripEval<D8, Shape<D8>, kJoint>>(c);
+}
+
+template <template <class> class Shape>
+void sweep_shape(SweepContext& c) {
+  switch (c.op.kind) {
+    case SweepOp::Kind::kStrip:
+      if (!c.op.joined) return sweep_strip<Shape, Joint::kNone>(c);
+      if (c.op.straight_on) return sweep_strip<Shape, Joint::kStraight>(c);
+      return sweep_strip<Shape, Joint::kTurned>(c);
+    case SweepOp::Kind::kCap:
+      return sweep_single<CapEval<F8, Shape<F8>>, CapEval<D8, Shape<D8>>>(c);
+    case SweepOp::Kind::kArc:
+      return sweep_single<ArcEval<F8, Shape<F8>>, ArcEval<D8, Shape<D8>>>(c);
+    case SweepOp::Kind::kHelix:
+      return sweep_double<HelixEval>(c);
+  }
+}
+
+inline void sweep_context(SweepContext& c) {
+  switch (c.tool.kind) {
+    case ConvexTool::Kind::kFlat:
+      return sweep_shape<FlatLanes>(c);
+    case ConvexTool::Kind::kBall:
+      return sweep_shape<BallLanes>(c);
+    case ConvexTool::Kind::kPieces:
+      return sweep_shape<PieceLanes>(c);
+  }
+}
+
+inline void sweep_block_rows(GridView& grid, const ConvexTool& tool, const SweepOp& op,
+                             int first_row, int last_row, SweepTotals* totals) {
+  SweepContext context{grid, tool, op, first_row, last_row};
+  sweep_context(context);
+  SweepTotals& sum = totals[op.report];
+  sum.removed += context.sum;
+  sum.depth = context.depth > sum.depth ? context.depth : sum.depth;
+}
+
+inline void run_all(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
+                    int first_band, int band_step, SweepTotals* totals) {
+  const double row_height = 4 * grid.cell_y;
+  const int last_block_row = (grid.ny - 1) / 4;
+  for (std::size_t n = 0; n < count; ++n) {
+    const SweepOp& op = ops[n];
+    const double from = (op.min_y - tool.radius - 1e-3 - grid.y0) / row_height;
+    const double to = (op.max_y + tool.radius + 1e-3 - grid.y0) / row_height;
+    if (to < 0 || from >= last_block_row + 1) continue;
+    if (op.max_x + tool.radius < grid.x0 ||
+        op.min_x - tool.radius > grid.x0 + grid.nx * grid.cell_x)
+      continue;
+    const int row0 = from <= 0 ? 0 : floor_int(from),
+              row1 = to >= last_block_row ? last_block_row : floor_int(to);
+    if (band_step == 1) {
+      sweep_block_rows(grid, tool, op, row0, row1, totals);
+      continue;
+    }
+    for (int band = row0 / kTileBlocks; band <= row1 / kTileBlocks; ++band) {
+      if (band % band_step != first_band) continue;
+      const int top = band * kTileBlocks, bottom = top + kTileBlocks - 1;
+      sweep_block_rows(grid, tool, op, row0 > top ? row0 : top, row1 < bottom ? row1 : bottom,
+                       totals);
+    }
+  }
+}
+
+}  // namespace kerf::KERF_LANES_NAMESPACE

@@ -1,0 +1,18 @@
+// --stock text from arbitrary bytes.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "stock/blank.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto blank = kerf::parse_blank(std::string(data, data + size));
+  if (!blank) {
+    if (blank.error().empty()) std::abort();
+    return 0;
+  }
+  if (kerf::describe(*blank).empty()) std::abort();
+  if (blank->state_file.empty() && !(blank->bounds_mm().volume_mm3() > 0)) std::abort();
+  return 0;
+}

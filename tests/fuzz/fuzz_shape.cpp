@@ -1,0 +1,36 @@
+// SHAPE text, --tool arguments and profile files from arbitrary bytes.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "stock/cutter/profile_file.h"
+#include "stock/cutter/scan.h"
+#include "stock/cutter/shape_spec.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  // Files outside are not the fuzzer's to read; the bytes stand for the file's text instead.
+  const bool names_file = kerf::to_lower(text).find("profile") != std::string::npos;
+  if (!names_file) {
+    const auto cutter = kerf::parse_shape(text);
+    if (cutter) {
+      const auto again = kerf::parse_shape(cutter->spec());
+      if (!again || again->spec() != cutter->spec()) std::abort();
+      for (int i = 0; i <= 16; ++i) {
+        const double height = cutter->height_mm(cutter->radius_mm() * i / 16);
+        if (!std::isfinite(height) || height < -1e-6) std::abort();
+      }
+    }
+    const auto argument = kerf::parse_tool_argument(text);
+    if (argument && argument->tool < 0) std::abort();
+  }
+  auto file = kerf::parse_profile_text(text, "fuzz");
+  if (file) {
+    const auto cutter = kerf::Cutter::from_profile("fuzz", std::move(file->pieces));
+    if (cutter && !std::isfinite(cutter->height_mm(cutter->radius_mm()))) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,147 @@
+#include "tests/layering/include_rules.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <regex>
+#include <span>
+#include <sstream>
+
+namespace kerf {
+namespace {
+
+struct FolderRule {
+  std::string_view folder;
+  std::vector<std::string_view> may_include;
+};
+
+/// The first row whose folder the file lies in decides.
+const std::array kFolderRules{
+    FolderRule{"base/", {"base/"}},
+    FolderRule{"stock/cutter/", {"base/", "stock/cutter/", "stock/blank.h"}},
+    FolderRule{"stock/", {"base/", "stock/"}},
+    FolderRule{"interp_bridge/", {"base/", "interp_bridge/"}},
+    FolderRule{"machine_io/", {"base/", "machine_io/"}},
+    FolderRule{"viewer/", {"base/", "viewer/"}},
+    FolderRule{"twin/app/",
+               {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
+    FolderRule{"twin/", {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
+};
+
+struct LibraryRule {
+  std::string_view header;  ///< a header, or a folder of headers if it ends in '/'
+  std::string_view folder;  ///< the only one that may include it
+};
+
+constexpr std::array kLibraryRules{
+    LibraryRule{"yaml-cpp/", "twin/config/"},
+    LibraryRule{"CLI/", "twin/app/"},
+    LibraryRule{"nlohmann/", "twin/"},
+    LibraryRule{"xxhash.h", "stock/zmap/"},
+    LibraryRule{"modbus.h", "machine_io/modbus/"},
+    LibraryRule{"modbus/", "machine_io/modbus/"},
+    LibraryRule{"linux/can.h", "machine_io/can/"},
+    LibraryRule{"linux/can/", "machine_io/can/"},
+    LibraryRule{"hal.h", "machine_io/hal/"},
+    LibraryRule{"linuxcnc/", "machine_io/hal/"},
+    LibraryRule{"GL/", "viewer/"},
+    LibraryRule{"GLES3/", "viewer/"},
+    LibraryRule{"GLFW/", "viewer/"},
+    LibraryRule{"EGL/", "viewer/"},
+    LibraryRule{"epoxy/", "viewer/"},
+    LibraryRule{"imgui/", "viewer/"},
+    LibraryRule{"imgui.h", "viewer/"},
+    LibraryRule{"png.h", "viewer/"},
+    LibraryRule{"stb/", "viewer/"},
+};
+
+bool starts_with_any(std::string_view text, std::span<const std::string_view> prefixes) {
+  for (const std::string_view prefix : prefixes) {
+    if (text.starts_with(prefix)) return true;
+  }
+  return false;
+}
+
+/// The folder of the stock model that `path` belongs to ("stock/zmap/"), or "".
+std::string_view stock_model_of(std::string_view path) {
+  constexpr std::string_view kStock = "stock/";
+  if (!path.starts_with(kStock) || path.starts_with("stock/cutter/")) return {};
+  const std::size_t end = path.find('/', kStock.size());
+  return end == std::string_view::npos ? std::string_view{} : path.substr(0, end + 1);
+}
+
+const FolderRule* rule_for(std::string_view path) {
+  for (const FolderRule& rule : kFolderRules) {
+    if (path.starts_with(rule.folder)) return &rule;
+  }
+  return nullptr;
+}
+
+std::string check_project_include(std::string_view path, bool is_test, std::string_view target,
+                                  const std::set<std::string>& project_files) {
+  if (!project_files.contains(std::string(target))) {
+    return fmt::format("\"{}\" is no file of the project (paths start at the root)", target);
+  }
+  if (target.starts_with("tests/")) {
+    return is_test ? "" : fmt::format("\"{}\" belongs to the tests", target);
+  }
+  const FolderRule* rule = rule_for(path);
+  if (rule == nullptr) {
+    return is_test ? "" : "lies in a folder that the layers of ARCHITECTURE.md do not name";
+  }
+  if (!starts_with_any(target, rule->may_include)) {
+    return fmt::format("{} may not include \"{}\"", rule->folder, target);
+  }
+  if (!is_test && target.starts_with("twin/app/") && rule->folder != "twin/app/") {
+    return fmt::format("\"{}\": only twin/app/ may include it", target);
+  }
+  const std::string_view own_model = stock_model_of(path);
+  const std::string_view other_model = stock_model_of(target);
+  if (!own_model.empty() && !other_model.empty() && own_model != other_model) {
+    return fmt::format("the model {} may not include the model header \"{}\"", own_model, target);
+  }
+  return "";
+}
+
+std::string check_library_include(std::string_view path, std::string_view target) {
+  for (const LibraryRule& rule : kLibraryRules) {
+    const bool matches =
+        rule.header.ends_with('/') ? target.starts_with(rule.header) : target == rule.header;
+    if (matches && !path.starts_with(rule.folder)) {
+      return fmt::format("<{}> appears only in {}", target, rule.folder);
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<IncludeLine> find_includes(std::string_view source_text) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">])");
+  std::vector<IncludeLine> found;
+  std::istringstream in{std::string(source_text)};
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    std::smatch match;
+    if (!std::regex_search(text, match, kInclude)) continue;
+    found.push_back({line, match[1] == "\"", match[2]});
+  }
+  return found;
+}
+
+std::vector<std::string> check_includes(std::string_view path, std::string_view source_text,
+                                        const std::set<std::string>& project_files) {
+  const bool is_test = path.starts_with("tests/");
+  const std::string_view rights = is_test ? path.substr(6) : path;
+  std::vector<std::string> violations;
+  for (const IncludeLine& include : find_includes(source_text)) {
+    std::string fault = check_library_include(rights, include.target);
+    if (fault.empty() && include.quoted) {
+      fault = check_project_include(rights, is_test, include.target, project_files);
+    }
+    if (!fault.empty()) violations.push_back(fmt::format("{}:{}: {}", path, include.line, fault));
+  }
+  return violations;
+}
+
+}  // namespace kerf

@@ -1,0 +1,147 @@
+#include "stock/blank.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace kerf {
+namespace {
+
+std::string error_of(std::string_view spec) {
+  const Result<Blank> blank = parse_blank(spec);
+  return blank ? "no error" : blank.error();
+}
+
+std::string described(std::string_view spec) {
+  const Result<Blank> blank = parse_blank(spec);
+  return blank ? describe(*blank) : blank.error();
+}
+
+TEST(Blank, Box) {
+  const Result<Blank> blank = parse_blank("box:-50,-50,-50:50,50,0");
+  ASSERT_TRUE(blank) << blank.error();
+  ASSERT_EQ(blank->bodies.size(), 1U);
+  EXPECT_EQ(blank->bodies[0].kind, BlankBody::Kind::kBox);
+  EXPECT_EQ(blank->bounds_mm(), (Box{{-50, -50, -50}, {50, 50, 0}}));
+}
+
+TEST(Blank, CylinderAlongEachAxis) {
+  const Result<Blank> z = parse_blank("cylinder:10,20,-30:0:50");
+  ASSERT_TRUE(z) << z.error();
+  EXPECT_EQ(z->bodies[0].axis, 'z');
+  EXPECT_EQ(z->bodies[0].diameter_mm, 50);
+  EXPECT_EQ(z->bodies[0].center_mm, Vec3(10, 20, -30));
+  EXPECT_EQ(z->bounds_mm(), (Box{{-15, -5, -30}, {35, 45, 0}}));
+  EXPECT_EQ(parse_blank("cylinder:10,20,-30:60:4:x")->bounds_mm(),
+            (Box{{10, 18, -32}, {60, 22, -28}}));
+  EXPECT_EQ(parse_blank("cylinder:10,20,-30:60:4:Y")->bounds_mm(),
+            (Box{{8, 20, -32}, {12, 60, -28}}));
+}
+
+TEST(Blank, Tube) {
+  const Result<Blank> blank = parse_blank("tube:0,0,-10:0:40:30");
+  ASSERT_TRUE(blank) << blank.error();
+  EXPECT_EQ(blank->bodies[0].kind, BlankBody::Kind::kTube);
+  EXPECT_EQ(blank->bodies[0].inner_diameter_mm, 30);
+  EXPECT_EQ(blank->bounds_mm(), (Box{{-20, -20, -10}, {20, 20, 0}}));
+}
+
+TEST(Blank, BodiesAddUp) {
+  // The plus signs of numbers are no separators.
+  const Result<Blank> blank =
+      parse_blank("box:0,0,-1e+1:+10,10,0 + cylinder:20,5,-5:+0:6+box:30,0,-2:31,1,0");
+  ASSERT_TRUE(blank) << blank.error();
+  EXPECT_EQ(blank->bodies.size(), 3U);
+  EXPECT_EQ(blank->bounds_mm(), (Box{{0, 0, -10}, {31, 10, 0}}));
+}
+
+TEST(Blank, StateFileMayHoldAnyCharacter) {
+  const Result<Blank> blank = parse_blank("state:a+box:1.kerf");
+  ASSERT_TRUE(blank) << blank.error();
+  EXPECT_EQ(blank->state_file, "a+box:1.kerf");
+  EXPECT_TRUE(blank->bodies.empty());
+  EXPECT_TRUE(blank->bounds_mm().empty());
+}
+
+TEST(Blank, Described) {
+  EXPECT_EQ(described("box:0,0,-20:100,60,0"), "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0");
+  EXPECT_EQ(described("cylinder:0,5,-30:0:50"),
+            "cylinder diameter 50 x 30 mm along Z, X0 Y5 Z-30..0");
+  EXPECT_EQ(described("tube:0,0,1:81:40:30:x"),
+            "tube diameter 40 / 30 x 81 mm along X, Y0 Z1 X0..81");
+  EXPECT_EQ(described("box:0,0,0:0.1,0.3,1+box:0,0,0:1,1,1"),
+            "box 0.1 x 0.3 x 1 mm, X0..0.1 Y0..0.3 Z0..1 + box 1 x 1 x 1 mm, X0..1 Y0..1 Z0..1");
+  EXPECT_EQ(described("state:part.kerf"), "workpiece saved in part.kerf");
+}
+
+constexpr const char* kForms =
+    "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
+    "state:FILE";
+
+TEST(Blank, UnknownAndUnsupportedKinds) {
+  EXPECT_EQ(error_of(""), std::string("no stock is given; forms: ") + kForms);
+  EXPECT_EQ(error_of("bax:0"),
+            std::string("bax:0: unknown stock 'bax'; did you mean 'box'? Forms: ") + kForms);
+  EXPECT_EQ(error_of("stl:part.stl"),
+            std::string("stl:part.stl: stl: is not supported by this version; forms: ") + kForms);
+  EXPECT_EQ(
+      error_of("sheet:0,0:1,1:2"),
+      std::string("sheet:0,0:1,1:2: sheet: is not supported by this version; forms: ") + kForms);
+  EXPECT_EQ(error_of("box:0,0,0:1,1,1+state:x"),
+            "state:x: state:FILE stands alone; it cannot be added to other bodies");
+  EXPECT_EQ(error_of("state:"), "state:: the file name is missing; the form is state:FILE");
+}
+
+TEST(Blank, BoxErrors) {
+  EXPECT_EQ(error_of("box:0,0,0"), "box:0,0,0: the form is box:x0,y0,z0:x1,y1,z1");
+  EXPECT_EQ(error_of("box:0,0:1,1,1"),
+            "box:0,0:1,1,1: first corner: '0,0' has 2 values; must be x,y,z");
+  EXPECT_EQ(error_of("box:0,0,0:5"), "box:0,0,0:5: second corner: '5' has 1 value; must be x,y,z");
+  EXPECT_EQ(error_of("box:0,0,0:1,b,1"), "box:0,0,0:1,b,1: second corner Y: 'b' is not a number");
+  EXPECT_EQ(error_of("box:0,0,nan:1,1,1"),
+            "box:0,0,nan:1,1,1: first corner Z: 'nan' is not a number");
+  EXPECT_EQ(error_of("box:0,0,0:1e6,1,1"),
+            "box:0,0,0:1e6,1,1: second corner X: 1000000 is not allowed; must be from -100000 to "
+            "100000 (mm)");
+  EXPECT_EQ(error_of("box:0,0,0:1,0,1"),
+            "box:0,0,0:1,0,1: Y runs from 0 to 0; the second must be at least 0.001 mm above the "
+            "first");
+  EXPECT_EQ(error_of("box:0,0,0:1,1,-1"),
+            "box:0,0,0:1,1,-1: Z runs from 0 to -1; the second must be at least 0.001 mm above the "
+            "first");
+}
+
+TEST(Blank, RoundErrors) {
+  EXPECT_EQ(error_of("cylinder:0,0,0:1"),
+            "cylinder:0,0,0:1: the form is cylinder:x,y,z0:z1:d[:axis]");
+  EXPECT_EQ(error_of("tube:0,0,0:1:5"),
+            "tube:0,0,0:1:5: the form is tube:x,y,z0:z1:d:inner[:axis]");
+  EXPECT_EQ(error_of("cylinder:0,0,0:1:5:a"),
+            "cylinder:0,0,0:1:5:a: axis: 'a' is not an axis; must be x, y or z");
+  EXPECT_EQ(error_of("cylinder:0,0,0:-1:5"),
+            "cylinder:0,0,0:-1:5: Z runs from 0 to -1; the second must be at least 0.001 mm above "
+            "the first");
+  EXPECT_EQ(error_of("cylinder:0,0,0:1:0"),
+            "cylinder:0,0,0:1:0: diameter: 0 is not allowed; must be from 0.001 to 100000 (mm)");
+  EXPECT_EQ(error_of("tube:0,0,0:1:5:5"),
+            "tube:0,0,0:1:5:5: inner diameter: 5 is not allowed; must be less than the diameter, 5 "
+            "(mm)");
+  EXPECT_EQ(error_of("tube:0,0,0:1:5:-1"),
+            "tube:0,0,0:1:5:-1: inner diameter: -1 is not allowed; must be from 0.001 to 100000 "
+            "(mm)");
+}
+
+TEST(Blank, CutAtEveryByteIsAnErrorOrABlank) {
+  const std::string text = "box:0,0,-20:100,60,0 + tube:0,0,-10:0:40:30:z+cylinder:1,2,3:4:5:x";
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    const Result<Blank> blank = parse_blank(text.substr(0, size));
+    if (blank) {
+      EXPECT_FALSE(blank->bounds_mm().empty());
+    } else {
+      EXPECT_FALSE(blank.error().empty());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,333 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "stock/blank.h"
+#include "stock/cutter/shape_spec.h"
+#include "stock/cutter/tool_hints.h"
+#include "tests/stock/program_comments.h"
+
+namespace kerf {
+namespace {
+
+/// "dialect T1 shape [guessed]" of each hint, joined by "; ".
+std::string hints_in(const std::vector<CommentText>& comments) {
+  std::string text;
+  for (const ToolHint& hint : find_tool_hints(comments)) {
+    EXPECT_TRUE(parse_shape(hint.shape)) << hint.shape;
+    text += (text.empty() ? "" : "; ") + hint.dialect + " T" + std::to_string(hint.tool) + " " +
+            hint.shape + (hint.shape_guessed ? " guessed" : "");
+  }
+  return text;
+}
+
+std::string mm(const char* text) { return hints_in({{1, text, false}}); }
+std::string inch(const char* text) { return hints_in({{1, text, true}}); }
+
+TEST(ToolHints, Fusion) {
+  EXPECT_EQ(mm("T1 D=6. CR=0. - ZMIN=-29.5 - flat end mill"), "fusion T1 flat:6");
+  EXPECT_EQ(mm("T12  D=6. CR=3. - ZMIN=-2 - BALL END MILL"), "fusion T12 ball:6");
+  EXPECT_EQ(mm("T2 D=10 CR=1.5 - ZMIN=0 - bullnose end mill"), "fusion T2 bull:10:1.5");
+  EXPECT_EQ(mm("T3 D=6 CR=0 TAPER=45deg - ZMIN=-1 - chamfer mill"), "fusion T3 vee:6:90");
+  EXPECT_EQ(mm("T3 D=6 CR=0 TAPER=30deg TD=0.5 - chamfer mill"), "fusion T3 vee:6:60:0.5");
+  EXPECT_EQ(mm("T4 D=5. CR=0. TAPER=118deg - ZMIN=-14. - drill"), "fusion T4 drill:5:118");
+  EXPECT_EQ(mm("T4 D=5. CR=0. TAPER=118deg - ZMIN=-14. - taladrar"), "fusion T4 drill:5:118");
+  EXPECT_EQ(mm("T4 D=8 CR=0 TAPER=90deg - ZMIN=-1 - spot drill"), "fusion T4 drill:8:90");
+  EXPECT_EQ(mm("T5 D=1 CR=0.5 TAPER=5deg - ZMIN=-9 - tapered mill"), "fusion T5 taper:1:5:0.5");
+  EXPECT_EQ(mm("T6 D=50. CR=0. - ZMIN=0. - face mill"), "fusion T6 flat:50");
+  EXPECT_EQ(mm("T7 D=6 CR=0 - ZMIN=-10 - right hand tap"), "fusion T7 flat:6");
+  EXPECT_EQ(mm("T8 D=12 CR=0 - ZMIN=-3 - lollipop mill"), "fusion T8 lollipop:12:6 guessed");
+  EXPECT_EQ(mm("T9 6mm carbide ball D=6. CR=0. - ZMIN=-3. - flat end mill"), "fusion T9 flat:6");
+  EXPECT_EQ(inch("T1 D=0.1875 CR=0. - ZMIN=-0.8268 - FLAT END MILL"), "fusion T1 flat:4.7625");
+  EXPECT_EQ(inch("T1 D=0.5 CR=0.25 - ZMIN=-0.6275 - BALL END MILL"), "fusion T1 ball:12.7");
+  EXPECT_EQ(mm("T1 D=0. CR=0. - ZMIN=0 - flat end mill"), "");
+  EXPECT_EQ(mm("T1 D=6 - probe"), "");
+}
+
+TEST(ToolHints, CamBam) {
+  EXPECT_EQ(mm(" T1 : 3.175 "), "cambam T1 flat:3.175 guessed");
+  EXPECT_EQ(inch("T0 : 0.125"), "cambam T0 flat:3.175 guessed");
+  EXPECT_EQ(mm("T0 : 0.0"), "");
+}
+
+TEST(ToolHints, Pcb2Gcode) {
+  EXPECT_EQ(mm("MSG, Change tool bit to mill diameter 0.20000mm"),
+            "pcb2gcode T-1 flat:0.2 guessed");
+  EXPECT_EQ(mm("MSG, Change tool bit to mill diameter 0.10000in"),
+            "pcb2gcode T-1 flat:2.54 guessed");
+  EXPECT_EQ(mm("MSG, Change tool bit to drill size 0.8mm"), "pcb2gcode T-1 drill:0.8:118");
+  EXPECT_EQ(mm("MSG, Change tool bit to mill diameter 0.00000in"), "");
+}
+
+TEST(ToolHints, FlatCam) {
+  EXPECT_EQ(mm("TOOL DIAMETER: 0.1 mm"), "flatcam T-1 flat:0.1 guessed");
+  EXPECT_EQ(inch("TOOL DIAMETER: 0.1"), "flatcam T-1 flat:2.54 guessed");
+  EXPECT_EQ(mm("MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"),
+            "flatcam T-1 drill:0.8:118");
+  EXPECT_EQ(mm("Compensated Tool Path. Diameter: 3.0"), "");
+}
+
+TEST(ToolHints, CutViewer) {
+  EXPECT_EQ(mm("TOOL/MILL,6.3500,0,1.0000,0.0"), "cutviewer T-1 flat:6.35");
+  // Half of the diameter within the decimals written.
+  EXPECT_EQ(mm("TOOL/MILL,0.7937,0.39687,1.000,0.0"), "cutviewer T-1 ball:0.7937");
+  EXPECT_EQ(mm("TOOL/MILL, 10, 2, 30, 0"), "cutviewer T-1 bull:10:2");
+  EXPECT_EQ(inch("tool/mill,.125,0,1,15"), "cutviewer T-1 taper:3.175:15");
+  EXPECT_EQ(mm("TOOL/DRILL, 5, 135, 40"), "cutviewer T-1 drill:5:135");
+  EXPECT_EQ(mm("TOOL/CHAMFER, 12, 60, 10"), "cutviewer T-1 vee:12:60");
+  EXPECT_EQ(mm("TOOL/MILL,x,0,1,0"), "");
+  EXPECT_EQ(mm("TOOL/MILL"), "");
+}
+
+TEST(ToolHints, Fabex) {
+  EXPECT_EQ(mm("Tool: D = 3.0 mm  type END flutes 2"), "fabex T-1 flat:3");
+  EXPECT_EQ(mm("Tool: D = 6.0 mm  type BALLNOSE flutes 2"), "fabex T-1 ball:6");
+  EXPECT_EQ(mm("Tool: D = 3.0 mm  type VCARVE flutes 1"), "fabex T-1 vee:3:90 guessed");
+  EXPECT_EQ(mm("Tool: D = 1.0 mm  type BALLCONE flutes 2"), "fabex T-1 ball:1 guessed");
+}
+
+TEST(ToolHints, ToolLists) {
+  EXPECT_EQ(inch("T01 = 1/2\"  END MILL   03-0086"), "list T1 flat:12.7");
+  EXPECT_EQ(inch("T1 .5 ENDMILL 03-0086"), "list T1 flat:12.7");
+  EXPECT_EQ(inch("T04 = .201\" #7 DRILL   03-0290, 135 Point Angle"), "list T4 drill:5.1054:135");
+  EXPECT_EQ(inch("T7 .3125 DRILL 03-0018"), "list T7 drill:7.9375:118");
+  EXPECT_EQ(inch("T9 = .25 CHAMFER MILL 03-0612"), "list T9 vee:6.35:90 guessed");
+  EXPECT_EQ(inch("T10 2\" FACE MILL 01-0001"), "list T10 flat:50.8");
+  EXPECT_EQ(inch("T16 = 1/4\"  REAMER      03-0650"), "list T16 flat:6.35 guessed");
+  EXPECT_EQ(mm("T212 |    3. FLAT ENDMILL | H0"), "list T212 flat:3");
+  EXPECT_EQ(mm("T01 | 0.813mm 0.0320in | 0.0000in |       0"), "list T1 flat:0.813 guessed");
+  EXPECT_EQ(mm("TOOL: T1 = 10.0 dia. ENDMILLM1000:REG"), "list T1 flat:10");
+  EXPECT_EQ(mm("Tool 3: 6mm ball nose, 2 flutes"), "list T3 ball:6");
+  EXPECT_EQ(mm("T5 - 1-1/4\" face mill"), "list T5 flat:31.75");
+  EXPECT_EQ(mm("T6 = 10mm bull nose R2"), "list T6 bull:10:2");
+  EXPECT_EQ(mm("T6 = 10mm bull nose"), "list T6 flat:10 guessed");
+  EXPECT_EQ(mm("T7 = 1/4\" 60 deg v-bit"), "list T7 vee:6.35:60");
+  EXPECT_EQ(mm("T8 = 6 mm 45 deg chamfer mill"), "list T8 vee:6:90");
+}
+
+TEST(ToolHints, ListsThatDescribeNoMillingCutter) {
+  EXPECT_EQ(inch("T02 = 35* Finish Turning Tool, Tool Nose Radius: .0157, Tool Tip: 3"), "");
+  EXPECT_EQ(inch("T03 = 60* Threading Tool, Insert: 02-0475, Tool Holder: 01-0118"), "");
+  EXPECT_EQ(inch("T12 = Cutoff Tool, Insert: 02-0494"), "");
+  EXPECT_EQ(mm("t1 is for facing and left turning, t9 parting"), "");
+  EXPECT_EQ(mm("T1 M6"), "");
+  EXPECT_EQ(mm("T1 is a 1/16th end mill"), "");
+}
+
+TEST(ToolHints, Turret) {
+  EXPECT_EQ(mm("Turret No. :   0   Diameter :6.350     MM   BALLNOSE  "), "turret T0 ball:6.35");
+}
+
+TEST(ToolHints, SheetCam) {
+  EXPECT_EQ(mm("o=0, ph=3.0, pd=0.1, ch=1.0, fr=3000, kw=1.5"), "sheetcam T-1 flat:1.5");
+  EXPECT_EQ(inch("o=0, ph=0.1, fr=100, kw=0.040"), "sheetcam T-1 flat:1.016");
+  EXPECT_EQ(mm("o=0, pd=0.5"), "");
+  EXPECT_EQ(mm("Operation: Outside Offset, 17_, T4: Plasma, 1.5 mm kerf"), "sheetcam T4 flat:1.5");
+  EXPECT_EQ(mm("Operation: Pocket, 1, T2: End Mill, 3.175 mm Diameter"), "sheetcam T2 flat:3.175");
+}
+
+TEST(ToolHints, PyCam) {
+  const auto block = [](const char* shape) {
+    return std::vector<CommentText>{{1, "[Tool]", false},
+                                    {2, "torus_radius = 0.25", false},
+                                    {3, std::string("shape = ") + shape, false},
+                                    {4, "tool_radius = 1.5", false},
+                                    {5, "", false},
+                                    {6, "[Process]", false}};
+  };
+  EXPECT_EQ(hints_in(block("CylindricalCutter")), "pycam T-1 flat:3");
+  EXPECT_EQ(hints_in(block("ToroidalCutter")), "pycam T-1 bull:3:0.25");
+  EXPECT_EQ(hints_in(block("SphericalCutter")), "pycam T-1 ball:3");
+  // A block that ends with the program counts, and keeps the line where it began.
+  std::vector<CommentText> open = block("SphericalCutter");
+  open.resize(4);
+  const std::vector<ToolHint> hints = find_tool_hints(open);
+  ASSERT_EQ(hints.size(), 1U);
+  EXPECT_EQ(hints[0].line, 1U);
+}
+
+TEST(ToolHints, FreeCad) {
+  EXPECT_EQ(hints_in({{1, "Begin operation: 3mm Endmill001", false},
+                      {2, "Path: 3mm Endmill001", false},
+                      {3, "TC: 3mm Ballend", false},
+                      {4, "Begin toolchange", false},
+                      {5, " M6 T2 ", false}}),
+            "freecad T2 ball:3");
+  EXPECT_EQ(hints_in({{1, "Begin toolchange", false}}), "");
+  EXPECT_EQ(hints_in({{1, "MillFace", false}, {2, "begin toolchange", false}}), "");
+}
+
+TEST(ToolHints, LinesThatNameATool) {
+  EXPECT_EQ(inch("TOOL: V-BIT {90 DEG 0.5\"}"), "tool-line T-1 vee:12.7:90");
+  EXPECT_EQ(mm("Tool: 1/4 in Carbide End Mill"), "tool-line T-1 flat:6.35");
+  EXPECT_EQ(mm("MSG, INSERT BALLNOSE  ,1/4\" ballnose"), "message T-1 ball:6.35");
+  EXPECT_EQ(mm("MSG, optional stop"), "");
+}
+
+TEST(ToolHints, Prose) {
+  EXPECT_EQ(inch(" and Cutter is assumed to be a 10mm ball nose "), "prose T-1 ball:10");
+  EXPECT_EQ(mm("Ball cutter D=10.00"), "prose T-1 ball:10");
+  EXPECT_EQ(mm(" 10. END_MILL_SPHER DIA. 10. "), "prose T-1 ball:10");
+  for (const char* text :
+       {"drill three bolt holes on a 5\" diameter", "allow use of 0.125 cutter diameter",
+        "Cutter does not descend more than 0.94\" below top", "use a 5mm diam",
+        "same 1/2 end mill oversize roughing", "Diamond boundary", "Rough Drill 5 mm holes",
+        "Block-name: 3mm Endmill001", "Begin operation: 3mm Endmill", "Feed 300mm/min end mill"}) {
+    EXPECT_EQ(mm(text), "") << text;
+  }
+}
+
+TEST(ToolHints, RepeatedListEntriesCountOnce) {
+  EXPECT_EQ(hints_in({{1, "T1 : 3", false}, {9, "T1 : 3", false}, {12, "T1 : 4", false}}),
+            "cambam T1 flat:3 guessed; cambam T1 flat:4 guessed");
+}
+
+TEST(ToolHints, KeepTheLine) {
+  const std::vector<ToolHint> hints = find_tool_hints(
+      comments_of("%\n(part)\nG20\n(T3 D=.5 CR=0. - ZMIN=0 - flat end mill)\nT3 M6\n"));
+  ASSERT_EQ(hints.size(), 1U);
+  EXPECT_EQ(hints[0].line, 4U);
+  EXPECT_EQ(hints[0].shape, "flat:12.7");
+}
+
+TEST(ToolHints, OverlongCommentsArePassedOver) {
+  EXPECT_EQ(hints_in({{1, "T1 : 3 " + std::string(1 << 20, '(') + " ball", false}}), "");
+  EXPECT_EQ(hints_in({{1, std::string(400, '9') + " mm ball cutter", false}}), "");
+}
+
+TEST(ToolHints, CutAtEveryByteNeverCrashes) {
+  const char* const texts[] = {
+      "T3 6mm D=6 CR=0.5 TAPER=45deg TD=.1 - ZMIN=-1 - chamfer mill",
+      "T04 = 1-1/4\" #7 DRILL   03-0290, 135 Point Angle",
+      "TOOL/MILL,0.7937,0.39687,1.000,0.0",
+      "Turret No. :   0   Diameter :6.350     MM   BALLNOSE",
+      "Operation: Outside Offset, 17_, T4: Plasma, 1.5 mm kerf",
+      "MSG, Change tool bit to mill diameter 0.20000mm",
+      "TOOL: V-BIT {90 DEG 0.5\"}",
+      "MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"};
+  std::size_t hints = 0;
+  for (const std::string text : texts) {
+    for (std::size_t size = 0; size <= text.size(); ++size) {
+      for (const ToolHint& hint : find_tool_hints(std::vector<CommentText>{
+               {1, text.substr(0, size), false}, {2, text.substr(size), true}})) {
+        EXPECT_TRUE(parse_shape(hint.shape)) << hint.shape;
+        ++hints;
+      }
+    }
+  }
+  EXPECT_GT(hints, 100U);
+}
+
+// ---- remarks ----
+
+std::string remark(double diameter_mm, const char* text) {
+  const std::optional<ToolHint> hint = shape_from_remark(5, diameter_mm, text);
+  if (!hint) return "";
+  EXPECT_EQ(hint->tool, 5);
+  EXPECT_TRUE(parse_shape(hint->shape)) << hint->shape;
+  return hint->shape + (hint->shape_guessed ? " guessed" : "");
+}
+
+TEST(ToolRemark, NamesTheKindTableGivesTheDiameter) {
+  EXPECT_EQ(remark(1.5875, "1/16 end mill"), "flat:1.5875");
+  EXPECT_EQ(remark(6.35, "45/60 v-bit "), "vee:6.35:60");
+  EXPECT_EQ(remark(6, "6 mm straight ball end "), "ball:6");
+  EXPECT_EQ(remark(1, "1 mm tapered ball end "), "ball:1 guessed");
+  EXPECT_EQ(remark(1, "1 mm tapered ball end 5 deg"), "taper:1:5:0.5");
+  EXPECT_EQ(remark(5.1054, "#7 tap drill"), "drill:5.1054:118");
+  EXPECT_EQ(remark(5, "5mm drill 118deg"), "drill:5:118");
+  EXPECT_EQ(remark(9.525, "90 deg 3/8 mill-drill"), "drill:9.525:90");
+  EXPECT_EQ(remark(16, "16 mm schaftfr\xc3\xa4ser"), "flat:16");
+  EXPECT_EQ(remark(25, "25'er fr\xe4ser"), "flat:25");
+  EXPECT_EQ(remark(101.6, "4\" Face Mill "), "flat:101.6");
+  EXPECT_EQ(remark(10, "bull nose R1.5"), "bull:10:1.5");
+  EXPECT_EQ(remark(6.35, "60 degree V bit"), "vee:6.35:60");
+  EXPECT_EQ(remark(6.35, "1/4-20 pulley tap"), "flat:6.35");
+}
+
+TEST(ToolRemark, NoKindNoShape) {
+  for (const char* text : {"", "generated", "tool 6", "3/4 roughing", "3/8 4fl carbide", "big",
+                           "No Tool", "Wear Offset 9", "probe", "turning insert"}) {
+    EXPECT_EQ(remark(6, text), "") << text;
+  }
+}
+
+TEST(ToolRemark, TextGivesTheDiameterWhereTheTableHasNone) {
+  EXPECT_EQ(remark(0, "6 mm ball end"), "ball:6");
+  EXPECT_EQ(remark(0, "1/4 end mill"), "flat:6.35");
+  EXPECT_EQ(remark(0, "end mill"), "");
+  EXPECT_EQ(remark(-1, "ball"), "");
+}
+
+// ---- blanks ----
+
+std::string blank_in(const std::vector<CommentText>& comments) {
+  const std::optional<BlankHint> hint = find_blank_hint(comments);
+  if (!hint) return "";
+  EXPECT_TRUE(parse_blank(hint->spec)) << hint->spec;
+  return hint->dialect + " " + hint->spec;
+}
+
+TEST(BlankHints, WorkpieceBodies) {
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,BOX,XMIN=0,YMIN=-5,ZMIN=-20,XMAX=100,YMAX=60,ZMAX=0", false}}),
+            "workpiece box:0,-5,-20:100,60,0");
+  EXPECT_EQ(
+      blank_in({{1, " workpiece, box, zmax = 0, xmin=0,ymin=0,zmin=-1,xmax=4,ymax=2 ", true}}),
+      "workpiece box:0,0,-25.4:101.6,50.8,0");
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,CYLINDER,AXIS=Z,X=1,Y=2,ZMIN=-30,ZMAX=0,DIAMETER=50", false}}),
+            "workpiece cylinder:1,2,-30:0:50");
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,CYLINDER,AXIS=X,XMIN=0,XMAX=80,Y=2,Z=-3,DIAMETER=50", false}}),
+            "workpiece cylinder:0,2,-3:80:50:x");
+  EXPECT_EQ(
+      blank_in({{1, "WORKPIECE,TUBE,X=0,Y=0,ZMIN=-9,ZMAX=0,DIAMETER=50,INNER_DIAMETER=30", false}}),
+      "workpiece tube:0,0,-9:0:50:30");
+}
+
+TEST(BlankHints, WorkpiecesAddUpAndBeatCutViewer) {
+  EXPECT_EQ(blank_in({{1, "STOCK/BLOCK,100,50,20,0,0,20", false},
+                      {4, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=-2,XMAX=1,YMAX=1,ZMAX=0", false},
+                      {5, "WORKPIECE,CYLINDER,AXIS=Z,X=5,Y=5,ZMIN=-3,ZMAX=0,DIAMETER=2", false}}),
+            "workpiece box:0,0,-2:1,1,0 + cylinder:5,5,-3:0:2");
+}
+
+TEST(BlankHints, CutViewerBlockFromItsOrigin) {
+  EXPECT_EQ(blank_in({{1, "STOCK/BLOCK,100,50,20,50,25,20", false}}),
+            "cutviewer box:-50,-25,-20:50,25,0");
+  EXPECT_EQ(blank_in({{1, "stock/block, 4, 2, .5, 0, 0, .5", true}}),
+            "cutviewer box:0,0,-12.7:101.6,50.8,0");
+  EXPECT_EQ(blank_in({{1, "STOCK/BLOCK,100,50,0,50,25,20", false}}), "");
+  EXPECT_EQ(blank_in({{1, "STOCK/BLOCK,100,50", false}}), "");
+}
+
+TEST(BlankHints, AnIncompleteWorkpieceIsNone) {
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=-2,XMAX=1,YMAX=1,ZMAX=0", false},
+                      {2, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=-2,XMAX=1,YMAX=1", false}}),
+            "");
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,CONE,XMIN=0", false}}), "");
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,CYLINDER,AXIS=W,X=1,Y=2,ZMIN=0,ZMAX=1,DIAMETER=5", false}}),
+            "");
+  EXPECT_EQ(blank_in({{1, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=5,XMAX=1,YMAX=1,ZMAX=0", false}}), "");
+  EXPECT_EQ(blank_in({{1, "go again to the center of the workpiece", false}}), "");
+}
+
+TEST(BlankHints, CutAtEveryByteNeverCrashes) {
+  const char* const texts[] = {
+      "WORKPIECE,BOX,XMIN=0,YMIN=-5,ZMIN=-20,XMAX=100,YMAX=60,ZMAX=10",
+      "WORKPIECE,TUBE,AXIS=X,XMIN=0,XMAX=80,Y=2,Z=-3,DIAMETER=50,INNER_DIAMETER=30",
+      "STOCK/BLOCK,100,50,20,50,25,20"};
+  int found = 0;
+  for (const std::string text : texts) {
+    for (std::size_t size = 0; size <= text.size(); ++size) {
+      const std::optional<BlankHint> hint =
+          find_blank_hint(std::vector<CommentText>{{1, text.substr(0, size), false}});
+      if (!hint) continue;
+      EXPECT_TRUE(parse_blank(hint->spec)) << hint->spec;
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 3);
+}
+
+}  // namespace
+}  // namespace kerf

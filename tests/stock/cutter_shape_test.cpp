@@ -1,0 +1,386 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stock/cutter/profile_file.h"
+#include "stock/cutter/shape_spec.h"
+
+namespace kerf {
+namespace {
+
+std::string error_of(std::string_view spec) {
+  const Result<Cutter> cutter = parse_shape(spec);
+  return cutter ? "no error" : cutter.error();
+}
+
+std::string spec_of(std::string_view spec) {
+  const Result<Cutter> cutter = parse_shape(spec);
+  return cutter ? cutter->spec() : cutter.error();
+}
+
+/// A folder of its own that goes away with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "kerf-shape-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    const std::string file = path_ + "/" + name;
+    std::ofstream(file) << text;
+    return file;
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+const std::vector<std::pair<const char*, const char*>> kCanonical = {
+    {"flat:10", "flat:10"},
+    {" FLAT:10.00 ", "flat:10"},
+    {"ball:+6", "ball:6"},
+    {"bull:10:2", "bull:10:2"},
+    {"bull:10:5", "bull:10:5"},
+    {"bull:10:0", "bull:10:0"},
+    {"vee:12.7:90", "vee:12.7:90"},
+    {"vee:12.7:90:0", "vee:12.7:90"},
+    {"vee:6:30:.2", "vee:6:30:0.2"},
+    {"taper:3:5", "taper:3:5"},
+    {"taper:3:5:1.5:flute=20", "taper:3:5:1.5:flute=20"},
+    {"drill:8:118", "drill:8:118"},
+    {"drill:8:180", "drill:8:180"},
+    {"lollipop:10:4", "lollipop:10:4"},
+    {"tslot:20:3:8", "tslot:20:3:8"},
+    {"flat:10:shank=12:flute=22", "flat:10:flute=22:shank=12"},
+    {"bull:10:2:flute=22:shank=10:holder=32x20+40x25",
+     "bull:10:2:flute=22:shank=10:holder=32x20+40x25"},
+    {"ball:6:holder=30X10:Flute=9:shank=6x21.5", "ball:6:flute=9:shank=6x21.5:holder=30x10"},
+};
+
+TEST(Shape, CanonicalTextAndRoundTrip) {
+  for (const auto& [text, canonical] : kCanonical) {
+    EXPECT_EQ(spec_of(text), canonical);
+    EXPECT_EQ(spec_of(canonical), canonical);
+    const Result<Cutter> first = parse_shape(text);
+    const Result<Cutter> second = parse_shape(canonical);
+    ASSERT_TRUE(first && second) << text;
+    for (int i = 0; i <= 100; ++i) {
+      const double r = first->radius_mm() * i / 100;
+      EXPECT_EQ(first->height_mm(r), second->height_mm(r)) << text;
+    }
+  }
+}
+
+TEST(Shape, CutAtEveryByteIsAnErrorOrAShape) {
+  for (const auto& [text, canonical] : kCanonical) {
+    const std::string whole = text;
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      const Result<Cutter> cutter = parse_shape(whole.substr(0, size));
+      if (cutter) {
+        EXPECT_EQ(spec_of(cutter->spec()), cutter->spec());
+      } else {
+        EXPECT_FALSE(cutter.error().empty());
+      }
+    }
+  }
+}
+
+TEST(Shape, FlutesShankAndHolderStackUpward) {
+  const Result<Cutter> cutter = parse_shape("bull:10:2:flute=22:shank=10x15:holder=32x20+40x25");
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->flute_length_mm(), 22);
+  EXPECT_EQ(cutter->shank_diameter_mm(), 10);
+  ASSERT_EQ(cutter->holder().size(), 2U);
+  EXPECT_EQ(cutter->holder()[0].diameter_mm, 32);
+  EXPECT_EQ(cutter->holder()[0].from_z_mm, 37);
+  EXPECT_EQ(cutter->holder()[0].to_z_mm, 57);
+  EXPECT_EQ(cutter->holder()[1].diameter_mm, 40);
+  EXPECT_EQ(cutter->holder()[1].from_z_mm, 57);
+  EXPECT_EQ(cutter->holder()[1].to_z_mm, 82);
+  // Without a shank length the holder begins where the flutes end.
+  EXPECT_EQ(parse_shape("flat:10:flute=22:shank=10:holder=32x20")->holder()[0].from_z_mm, 22);
+}
+
+TEST(Shape, PlainShapesHaveNoExtras) {
+  const Result<Cutter> cutter = parse_shape("flat:10");
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_FALSE(cutter->undercuts());
+  EXPECT_FALSE(cutter->flute_length_mm());
+  EXPECT_FALSE(cutter->shank_diameter_mm());
+  EXPECT_TRUE(cutter->holder().empty());
+}
+
+TEST(Shape, NecksOfUndercuttingCutters) {
+  const Result<Cutter> lollipop = parse_shape("lollipop:10:6");
+  ASSERT_TRUE(lollipop) << lollipop.error();
+  EXPECT_TRUE(lollipop->undercuts());
+  EXPECT_EQ(lollipop->neck_radius_mm(), 3);
+  EXPECT_EQ(lollipop->flute_length_mm(), 9);  // 5 + sqrt(5^2 - 3^2)
+  EXPECT_EQ(lollipop->shank_diameter_mm(), 6);
+  const Result<Cutter> tslot = parse_shape("tslot:20:3:8");
+  ASSERT_TRUE(tslot) << tslot.error();
+  EXPECT_EQ(tslot->neck_radius_mm(), 4);
+  EXPECT_EQ(tslot->flute_length_mm(), 3);
+  EXPECT_EQ(tslot->shank_diameter_mm(), 8);
+  EXPECT_EQ(parse_shape("tslot:20:3:8:flute=3:shank=12")->shank_diameter_mm(), 12);
+}
+
+TEST(Shape, UnknownNames) {
+  EXPECT_EQ(error_of("flatt:3"),
+            "flatt:3: unknown shape 'flatt'; did you mean 'flat'? Shapes: flat, ball, bull, vee, "
+            "taper, drill, lollipop, tslot, profile");
+  EXPECT_EQ(error_of("endmill:3"),
+            "endmill:3: unknown shape 'endmill'. Shapes: flat, ball, bull, vee, taper, drill, "
+            "lollipop, tslot, profile");
+  EXPECT_EQ(error_of("  "),
+            "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
+            "lollipop, tslot, profile)");
+  EXPECT_EQ(error_of("flat:10:flut=2"),
+            "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
+            "shank=D[xL], holder=DxL[+DxL..]");
+}
+
+TEST(Shape, MissingAndSurplusValues) {
+  EXPECT_EQ(error_of("flat"), "flat: diameter D is missing; the form is flat:D");
+  EXPECT_EQ(error_of("flat:"), "flat:: diameter D is missing; the form is flat:D");
+  EXPECT_EQ(error_of("bull:10"), "bull:10: corner radius R is missing; the form is bull:D:R");
+  EXPECT_EQ(error_of("vee:10"),
+            "vee:10: included angle ANGLE is missing; the form is vee:D:ANGLE[:TIP]");
+  EXPECT_EQ(error_of("drill:5"),
+            "drill:5: point angle ANGLE is missing; the form is drill:D:ANGLE");
+  EXPECT_EQ(error_of("tslot:20:3"),
+            "tslot:20:3: shaft diameter SHAFT is missing; the form is tslot:D:T:SHAFT");
+  EXPECT_EQ(error_of("ball:10:3"), "ball:10:3: 2 values are too many; the form is ball:D");
+  EXPECT_EQ(error_of("profile:"), "profile:: file name FILE is missing; the form is profile:FILE");
+}
+
+TEST(Shape, ValuesThatAreNoNumbersOrOutOfRange) {
+  EXPECT_EQ(error_of("flat:abc"), "flat:abc: diameter D: 'abc' is not a number");
+  EXPECT_EQ(error_of("flat:10mm"), "flat:10mm: diameter D: '10mm' is not a number");
+  EXPECT_EQ(error_of("flat:nan"), "flat:nan: diameter D: 'nan' is not a number");
+  EXPECT_EQ(error_of("flat:inf"), "flat:inf: diameter D: 'inf' is not a number");
+  EXPECT_EQ(error_of("flat:1e999"), "flat:1e999: diameter D: '1e999' is not a number");
+  EXPECT_EQ(error_of("flat:0"),
+            "flat:0: diameter D: 0 is not allowed; must be from 0.001 to 1000 (mm)");
+  EXPECT_EQ(error_of("flat:-0"),
+            "flat:-0: diameter D: 0 is not allowed; must be from 0.001 to 1000 (mm)");
+  EXPECT_EQ(error_of("ball:-6"),
+            "ball:-6: diameter D: -6 is not allowed; must be from 0.001 to 1000 (mm)");
+  EXPECT_EQ(error_of("ball:1001"),
+            "ball:1001: diameter D: 1001 is not allowed; must be from 0.001 to 1000 (mm)");
+  EXPECT_EQ(error_of("bull:10:5.1"),
+            "bull:10:5.1: corner radius R: 5.1 is not allowed; must be from 0 to 5 (mm)");
+  EXPECT_EQ(error_of("bull:10:1e-6"),
+            "bull:10:1e-6: corner radius R: 1e-06 is not allowed; must be 0 or at least 0.0001 "
+            "(mm)");
+  EXPECT_EQ(
+      error_of("vee:10:180"),
+      "vee:10:180: included angle ANGLE: 180 is not allowed; must be from 1 to 179 (degrees)");
+  EXPECT_EQ(error_of("vee:10:90:10"),
+            "vee:10:90:10: tip diameter TIP: 10 is not allowed; must be less than diameter D, 10 "
+            "(mm)");
+  EXPECT_EQ(error_of("taper:3:81"),
+            "taper:3:81: half angle ANGLE: 81 is not allowed; must be from 1 to 80 (degrees)");
+  EXPECT_EQ(error_of("drill:8:181"),
+            "drill:8:181: point angle ANGLE: 181 is not allowed; must be from 1 to 180 (degrees)");
+  EXPECT_EQ(error_of("lollipop:10:10"),
+            "lollipop:10:10: shaft diameter SHAFT: 10 is not allowed; must be less than diameter "
+            "D, 10 (mm)");
+  EXPECT_EQ(error_of("tslot:20:0:8"),
+            "tslot:20:0:8: thickness T: 0 is not allowed; must be from 0.001 to 2000 (mm)");
+}
+
+TEST(Shape, OptionsThatDoNotFit) {
+  EXPECT_EQ(error_of("flat:10:flute=0"),
+            "flat:10:flute=0: flute length: 0 is not allowed; must be from 0.001 to 2000 (mm)");
+  EXPECT_EQ(error_of("flat:10:flute=5:flute=6"), "flat:10:flute=5:flute=6: flute= is given twice");
+  EXPECT_EQ(error_of("flat:10:shank=5:shank=6"), "flat:10:shank=5:shank=6: shank= is given twice");
+  EXPECT_EQ(error_of("flat:1:flute=5:holder=3x3:holder=3x3"),
+            "flat:1:flute=5:holder=3x3:holder=3x3: holder= is given twice");
+  EXPECT_EQ(error_of("flat:10:flute=5:holder=30"),
+            "flat:10:flute=5:holder=30: holder: '30' has no length; write DxL (mm)");
+  EXPECT_EQ(error_of("flat:10:flute=5:holder=30x"),
+            "flat:10:flute=5:holder=30x: holder length: '' is not a number");
+  EXPECT_EQ(error_of("flat:10:holder=30x5"),
+            "flat:10:holder=30x5: holder= needs flute=L as well: the holder begins where flutes "
+            "and shank end");
+  EXPECT_EQ(error_of("flat:10:flute=20:shank=10x5"),
+            "flat:10:flute=20:shank=10x5: shank=DxL needs a holder= above it; without one write "
+            "shank=D");
+  EXPECT_EQ(error_of("ball:10:flute=4"),
+            "ball:10:flute=4: flute=4 is shorter than the cutting end, 5 mm");
+  EXPECT_EQ(error_of("taper:3:5:1.5:flute=1"),
+            "taper:3:5:1.5:flute=1: flute=1 ends below the cone, which begins 1.369 mm above the "
+            "tip");
+  EXPECT_EQ(error_of("taper:300:80"),
+            "taper:300:80: the cone is 1.051e+04 mm wide at its top, 900 mm above the tip; at "
+            "most 1000 mm");
+}
+
+TEST(Shape, ToolArguments) {
+  const Result<ToolShapeArgument> argument = parse_tool_argument("12=ball:6");
+  ASSERT_TRUE(argument) << argument.error();
+  EXPECT_EQ(argument->tool, 12);
+  EXPECT_EQ(argument->cutter.spec(), "ball:6");
+  for (const char* text : {"ball:6", "=ball:6", "-1=ball:6", "1.5=ball:6", "x=ball:6", ""}) {
+    const Result<ToolShapeArgument> bad = parse_tool_argument(text);
+    ASSERT_FALSE(bad) << text;
+    EXPECT_EQ(bad.error(),
+              std::string(text) + ": not N=SHAPE with a tool number N; write for example 3=ball:6");
+  }
+  const Result<ToolShapeArgument> bad = parse_tool_argument("3=ball");
+  ASSERT_FALSE(bad);
+  EXPECT_EQ(bad.error(), "tool 3: ball: diameter D is missing; the form is ball:D");
+}
+
+TEST(Shape, HelpNamesEveryShape) {
+  for (const char* name : {"flat:D", "ball:D", "bull:D:R", "vee:D:ANGLE[:TIP]", "taper:D:ANGLE[:R]",
+                           "drill:D:ANGLE", "lollipop:D:SHAFT", "tslot:D:T:SHAFT", "profile:FILE",
+                           "flute=L", "shank=D", "holder=DxL"}) {
+    EXPECT_NE(shape_help().find(name), std::string_view::npos) << name;
+  }
+}
+
+// ---- profile:FILE ----
+
+constexpr const char* kRounding =
+    "# corner rounding, radius 3\n"
+    "line 4 0\n"
+    "ARC  7 3 3 cw   # hollow\n"
+    "\n"
+    "line 8 3\n"
+    "flute 12\n"
+    "shank 10x25\n"
+    "holder 32x20+40x25\n";
+
+TEST(ProfileFile, HeightsAndOptions) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("rounding:3.txt", kRounding);
+  const Result<Cutter> cutter = parse_shape("profile:" + file);
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->spec(), "profile:" + file);
+  EXPECT_EQ(cutter->radius_mm(), 8);
+  EXPECT_EQ(cutter->height_mm(2), 0);
+  EXPECT_NEAR(cutter->height_mm(5.5), std::sqrt(9 - 1.5 * 1.5), 1e-12);
+  EXPECT_EQ(cutter->flute_length_mm(), 12);
+  EXPECT_EQ(cutter->shank_diameter_mm(), 10);
+  ASSERT_EQ(cutter->holder().size(), 2U);
+  EXPECT_EQ(cutter->holder()[0].from_z_mm, 37);
+}
+
+TEST(ProfileFile, ShapeTextOverridesTheFile) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.txt", kRounding);
+  const Result<Cutter> cutter = parse_shape("profile:" + file + ":flute=15");
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->spec(), "profile:" + file + ":flute=15");
+  EXPECT_EQ(cutter->flute_length_mm(), 15);
+  EXPECT_EQ(cutter->holder()[0].from_z_mm, 40);
+}
+
+TEST(ProfileFile, SameCutterAsTheBuiltInShape) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("ball.txt", "arc 5 5 5 ccw\n");
+  const Result<Cutter> ball = parse_shape("profile:" + file);
+  ASSERT_TRUE(ball) << ball.error();
+  const Result<Cutter> built_in = parse_shape("ball:10");
+  for (int i = 0; i <= 100; ++i) {
+    EXPECT_NEAR(ball->height_mm(0.05 * i), built_in->height_mm(0.05 * i), 1e-12);
+  }
+}
+
+TEST(ProfileFile, RoundedDecimalsOfAnUprightArcAreFitted) {
+  // Four decimals put the end a little above the centre's level.
+  const Result<ProfileFile> file = parse_profile_text("arc 3.0001 3 3 ccw\n", "a.txt");
+  ASSERT_TRUE(file) << file.error();
+  const ProfilePiece& arc = file->pieces[0];
+  EXPECT_NEAR(arc.radius, 3, 1e-3);
+  EXPECT_TRUE(Cutter::from_profile("a", file->pieces));
+}
+
+TEST(ProfileFile, HollowBottom) {
+  const Result<ProfileFile> file = parse_profile_text("start 0 0.5\nline 5 0\nline 6 2\n", "a.txt");
+  ASSERT_TRUE(file) << file.error();
+  const Result<Cutter> cutter = Cutter::from_profile("a", file->pieces);
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->height_mm(0), 0.5);
+  EXPECT_EQ(cutter->height_mm(5), 0);
+}
+
+TEST(ProfileFile, ErrorsNameFileAndLine) {
+  const auto error = [](const char* text) {
+    const Result<ProfileFile> file = parse_profile_text(text, "a.txt");
+    return file ? std::string("no error") : file.error();
+  };
+  EXPECT_EQ(error(""), "a.txt: no outline found; at least one 'line R Z' is needed");
+  EXPECT_EQ(error("flute 3\n"), "a.txt: no outline found; at least one 'line R Z' is needed");
+  EXPECT_EQ(error("\nlin 3 0"),
+            "a.txt:2: unknown keyword 'lin'; did you mean 'line'? Allowed: line, arc, start, "
+            "flute, shank, holder");
+  EXPECT_EQ(error("spline 3 0"),
+            "a.txt:1: unknown keyword 'spline'; did you mean 'line'? Allowed: line, arc, start, "
+            "flute, shank, holder");
+  EXPECT_EQ(error("line 3"), "a.txt:1: wrong number of values; the form is 'line R Z'");
+  EXPECT_EQ(error("line 3 0\narc 5 2 2"),
+            "a.txt:2: wrong number of values; the form is 'arc R Z RADIUS cw|ccw'");
+  EXPECT_EQ(error("line x 0"), "a.txt:1: R: 'x' is not a number");
+  EXPECT_EQ(error("line -1 0"), "a.txt:1: R: -1 is not allowed; must be from 0 to 500 (mm)");
+  EXPECT_EQ(error("line 1 3000"), "a.txt:1: Z: 3000 is not allowed; must be from 0 to 2000 (mm)");
+  EXPECT_EQ(error("line 3 0\nline 2 1"),
+            "a.txt:2: the radius falls from 3 to 2; the outline must run outward");
+  EXPECT_EQ(error("line 3 0\nline 3 0"), "a.txt:2: the piece has no length");
+  EXPECT_EQ(error("arc 5 5 2 ccw"),
+            "a.txt:1: arc radius 2 is too small: the ends are 7.071 mm apart");
+  EXPECT_EQ(error("arc 5 5 0 ccw"),
+            "a.txt:1: RADIUS: 0 is not allowed; must be from 0.001 to 10000 (mm)");
+  EXPECT_EQ(error("arc 5 5 5 left"), "a.txt:1: 'left' is not a sense; must be cw or ccw");
+  EXPECT_EQ(error("arc 1 5 3 ccw"),
+            "a.txt:1: the arc turns back inward; it must not pass its widest point");
+  EXPECT_EQ(error("line 3 0\nstart 0 1"), "a.txt:2: start must come before the first line or arc");
+  EXPECT_EQ(error("start 1 1"), "a.txt:1: R: 1 is not allowed; must be from 0 to 0 (mm)");
+  EXPECT_EQ(error("flute 3\nflute 4"), "a.txt:2: 'flute' is given twice");
+  EXPECT_EQ(error("holder 3x3 4x4"), "a.txt:1: 'holder' takes one value");
+}
+
+TEST(ProfileFile, ErrorsOfTheFileAsAWhole) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(error_of("profile:" + folder.path() + "/none").substr(folder.path().size() + 15),
+            folder.path() + "/none: no such file");
+  EXPECT_NE(error_of("profile:" + folder.path()).find(": not a regular file"), std::string::npos);
+  const std::string high = folder.write("high.txt", "start 0 1\nline 5 1\n");
+  EXPECT_NE(error_of("profile:" + high)
+                .find("high.txt: profile: the lowest point is at Z1; it must be at Z0, the tip"),
+            std::string::npos);
+  const std::string flute = folder.write("flute.txt", "line 5 0\nflute x\n");
+  EXPECT_NE(error_of("profile:" + flute).find("flute.txt: flute length: 'x' is not a number"),
+            std::string::npos);
+  const std::string big = folder.write("big.txt", std::string(kMaxProfileBytes + 1, '#'));
+  EXPECT_NE(error_of("profile:" + big).find("larger than 1048576 bytes"), std::string::npos);
+}
+
+TEST(ProfileFile, CutAtEveryByteNeverCrashes) {
+  const std::string text = kRounding;
+  int good = 0;
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    const Result<ProfileFile> file = parse_profile_text(text.substr(0, size), "a.txt");
+    if (file && Cutter::from_profile("a", file->pieces)) ++good;
+    if (!file) {
+      EXPECT_EQ(file.error().substr(0, 5), "a.txt");
+    }
+  }
+  EXPECT_GT(good, 30);  // cuts behind the outline that end no option in half
+}
+
+}  // namespace
+}  // namespace kerf

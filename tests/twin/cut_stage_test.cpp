@@ -1,0 +1,232 @@
+#include "twin/cut_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "stock/zmap/zmap.h"
+#include "tests/twin/motions.h"
+
+namespace kerf {
+namespace {
+
+/// A block 40 x 40 x 10 mm with its top at Z0, cut by tool 1, a flat cutter of 4 mm.
+class Shop {
+ public:
+  explicit Shop(const MotionList& program, std::size_t batch = 4096,
+                const char* tool = "1=flat:4") {
+    ZMapOptions options;
+    options.blank = parse_blank("box:0,0,-10:40,40,0").value();
+    options.cell_mm = 0.1;
+    stock_ = std::move(ZMap::create(options).value());
+    ToolSources sources;
+    sources.arguments.push_back(std::move(parse_tool_argument(tool).value()));
+    ToolTableRow row;
+    row.tool = 9;
+    row.diameter_mm = 6;
+    row.line = 2;
+    sources.table.push_back(row);
+    book_ = std::make_unique<ToolBook>(sources, false);
+    stage_ = std::make_unique<CutStage>(*stock_, *book_, log_, TimelineOptions{});
+    std::span<const Motion> left(program.list());
+    while (!left.empty()) {
+      const std::size_t count = std::min(batch, left.size());
+      stage_->take(left.first(count));
+      left = left.subspan(count);
+    }
+    stage_->finish();
+  }
+
+  const std::vector<Finding>& findings() const { return log_.kept(); }
+  std::vector<FindingId> ids() const {
+    std::vector<FindingId> out;
+    for (const Finding& f : findings()) out.push_back(f.id);
+    return out;
+  }
+  double removed_mm3() const { return stock_->blank_mm3() - stock_->remaining_mm3(); }
+  const ZMap& stock() const { return *stock_; }
+  const CutStage& stage() const { return *stage_; }
+
+ private:
+  std::unique_ptr<ZMap> stock_;
+  std::unique_ptr<ToolBook> book_;
+  FindingLog log_;
+  std::unique_ptr<CutStage> stage_;
+};
+
+MotionList started() {
+  MotionList program;
+  program.at({-5, 20, 5}).tool(1).spindle(true);
+  return program;
+}
+
+using Ids = std::vector<FindingId>;
+
+TEST(CutStage, SlotRemovesItsVolumeAndFindsNothing) {
+  const Shop shop(started().feed({-5, 20, -2}).feed({45, 20, -2}).traverse({45, 20, 5}));
+  EXPECT_EQ(shop.ids(), Ids{});
+  EXPECT_NEAR(shop.removed_mm3(), 40 * 4 * 2, 40 * 0.1 * 2);
+  const ToolUse& use = shop.stage().tools().at(0);
+  EXPECT_EQ(use.number, 1);
+  EXPECT_EQ(use.shape, "flat:4");
+  EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 0.01);
+  EXPECT_NEAR(use.max_depth_mm, 2, 1e-4);
+  EXPECT_NEAR(use.feed_mm, 7 + 50, 1e-9);
+  EXPECT_NEAR(use.cut_s, 5, 1e-9) << "50 mm at 600 mm/min";
+  EXPECT_NEAR(use.peak_mm3_per_s, use.removed_mm3 / 5, 1e-6);
+}
+
+TEST(CutStage, TraversesThroughMaterialAreOneFinding) {
+  // Down in the air, then three traverses through the block, the second deeper.
+  const Shop shop(started()
+                      .traverse({-5, 20, -1})
+                      .traverse({10, 20, -1})
+                      .traverse({10, 20, -3})
+                      .traverse({45, 20, -3})
+                      .traverse({45, 20, 5})
+                      .traverse({20, 5, 5})
+                      .traverse({20, 5, -0.5}));
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kRapidContact, FindingId::kRapidContact}));
+  const Finding& first = shop.findings()[0];
+  EXPECT_EQ(first.source.line, 3U);
+  EXPECT_EQ(first.tool, 1);
+  EXPECT_NEAR(*first.depth_mm, 3, 1e-3);
+  EXPECT_NEAR(first.position_mm->x, -2, 0.2) << "the edge of the cutter meets X0";
+  EXPECT_NEAR(first.position_mm->z, -1, 1e-6);
+  EXPECT_NEAR(*first.time_s, 60.0 * (6 + 3) / 5000, 0.01);
+  const Finding& second = shop.findings()[1];
+  EXPECT_EQ(second.source.line, 8U);
+  EXPECT_NEAR(*second.depth_mm, 0.5, 1e-3);
+}
+
+TEST(CutStage, RetractingThroughItsOwnCutIsNoContact) {
+  const Shop shop(started()
+                      .traverse({20, 20, 5})
+                      .feed({20, 20, -4})
+                      .feed({30, 20, -4})
+                      .traverse({20, 20, -4})
+                      .traverse({20, 20, 5}));
+  EXPECT_EQ(shop.ids(), Ids{});
+}
+
+TEST(CutStage, StandingSpindleIsOneFindingUntilItTurns) {
+  MotionList program = started();
+  program.spindle(false).traverse({20, 20, 5}).feed({20, 20, -1}).feed({25, 20, -1});
+  program.feed({25, 20, -4}).feed({30, 20, -4}).spindle(true).feed({35, 20, -9});
+  program.spindle(false).feed({35, 25, -9});
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kSpindleOffContact, FindingId::kSpindleOffContact}));
+  EXPECT_EQ(shop.findings()[0].source.line, 3U);
+  EXPECT_NEAR(*shop.findings()[0].depth_mm, 4, 1e-3)
+      << "the depth with the spindle turning does not count";
+  EXPECT_EQ(shop.findings()[1].source.line, 8U);
+  EXPECT_NEAR(*shop.findings()[1].depth_mm, 9, 1e-3);
+}
+
+TEST(CutStage, StandingSpindleInTheAirIsNothing) {
+  MotionList program = started();
+  program.spindle(false).feed({20, 20, 1}).feed({30, 20, 0});
+  EXPECT_EQ(Shop(program).ids(), Ids{});
+}
+
+TEST(CutStage, CuttingIntoTheTableIsOneFindingWithPlaceAndDepth) {
+  const Shop shop(started()
+                      .feed({-5, 20, -10.5})
+                      .feed({20, 20, -10.5})
+                      .feed({20, 20, -12})
+                      .feed({20, 30, -10})
+                      .feed({20, 31, -10})
+                      .feed({20, 31, -11}));
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kBelowStock, FindingId::kBelowStock}));
+  const Finding& first = shop.findings()[0];
+  EXPECT_EQ(first.source.line, 3U) << "the plunge beside the block cuts no table under it";
+  EXPECT_NEAR(first.position_mm->x, 0, 1e-9);
+  EXPECT_NEAR(*first.depth_mm, 2, 1e-9);
+  EXPECT_EQ(message_of(first),
+            "tool cuts into the table under the workpiece, 2.00 mm below its floor at X0.00 Y20.00 "
+            "Z-10.50 (tool 1)");
+  EXPECT_EQ(shop.findings()[1].source.line, 7U);
+}
+
+TEST(CutStage, ArcsBelowTheFloorAreSeen) {
+  MotionList program = started();
+  // Half a circle in XZ that hangs down from Z-9 to Z-11.
+  program.feed({18, 20, -9}).arc({22, 20, -9}, {20, 20, -9}, {0, 1, 0}, -kPi);
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kBelowStock}));
+  EXPECT_NEAR(*shop.findings()[0].depth_mm, 1, 0.01);
+}
+
+TEST(CutStage, UnknownToolsDoNotCutAndSaySoOnce) {
+  MotionList program = started();
+  program.tool(3).feed({20, 20, -5}).feed({30, 20, 5}).tool(1).traverse({20, 20, 5});
+  program.tool(3).feed({20, 20, -5});
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kToolUndefined}));
+  EXPECT_EQ(message_of(shop.findings()[0]),
+            "nothing is known of tool 3; its moves do not cut (--tool 3=SHAPE describes it)");
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kError);
+  EXPECT_EQ(shop.removed_mm3(), 0);
+}
+
+TEST(CutStage, OneArgumentServesAProgramWithoutToolChange) {
+  MotionList program;
+  program.at({-5, 20, 5}).spindle(true).feed({-5, 20, -2}).feed({45, 20, -2});
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kToolAssumed}));
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kNote);
+  EXPECT_GT(shop.removed_mm3(), 300);
+}
+
+TEST(CutStage, GuessedToolsAreNamed) {
+  MotionList program = started();
+  program.tool(9).traverse({20, 20, 5}).feed({20, 20, -1});
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), (Ids{FindingId::kToolGuessed}));
+  EXPECT_EQ(message_of(shop.findings()[0]),
+            "only the diameter of tool 9 is known (diameter in line 2 of the tool table); a flat "
+            "cutter is assumed: flat:6 (--tool 9=SHAPE says better)");
+  EXPECT_GT(shop.removed_mm3(), 20);
+}
+
+TEST(CutStage, ProbesAndMovesFromNowhereDoNotCut) {
+  MotionList program = started();
+  program.traverse({20, 20, -5});
+  program.last().start_known = false;
+  program.traverse({20, 20, 5}).probe({20, 20, -3}).traverse({20, 20, 5});
+  MotionList probing = started();
+  probing.traverse({20, 20, 5}).probe({20, 20, -3});
+  EXPECT_EQ(Shop(probing).removed_mm3(), 0);
+  EXPECT_EQ(Shop(probing).ids(), Ids{});
+  const Shop shop(program);
+  EXPECT_EQ(shop.ids(), Ids{FindingId::kRapidContact})
+      << "the way out of the block is a known move";
+  EXPECT_EQ(shop.findings()[0].source.line, 3U);
+}
+
+TEST(CutStage, MissingFeedIsSaidOnce) {
+  const Shop shop(started().feed_rate(0).feed({20, 20, 1}).feed({30, 20, 1}));
+  EXPECT_EQ(shop.ids(), Ids{FindingId::kFeedMissing});
+}
+
+TEST(CutStage, ResultDoesNotDependOnBatches) {
+  MotionList program = started();
+  program.traverse({2, 20, 5});
+  for (int i = 0; i < 200; ++i) {
+    program.feed({2 + 0.18 * i, 20 + (i % 7), -0.02 * i});
+    if (i % 50 == 49) program.traverse({2 + 0.18 * i, 20, -1});
+    if (i % 70 == 69) program.spindle(i % 140 != 69);
+  }
+  const Shop whole(program);
+  ASSERT_GE(whole.findings().size(), 2U);
+  for (const std::size_t batch : {1U, 3U, 64U}) {
+    const Shop parts(program, batch);
+    EXPECT_EQ(parts.stock().digest(), whole.stock().digest()) << "batch " << batch;
+    EXPECT_EQ(parts.ids(), whole.ids());
+    for (std::size_t i = 0; i < whole.findings().size(); ++i) {
+      EXPECT_EQ(message_of(parts.findings()[i]), message_of(whole.findings()[i]));
+    }
+    EXPECT_DOUBLE_EQ(parts.stage().tools()[0].removed_mm3, whole.stage().tools()[0].removed_mm3);
+  }
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,185 @@
+// `kerf run` from the outside: exit codes, outputs, summary. Saved listings need no LinuxCNC.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/twin/kerf_process.h"
+
+namespace kerf {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A slot of 20 mm, 1 mm deep, along X by tool 1; `tail` follows before the end.
+std::string listing_text(const std::string& tail = "") {
+  return "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+         "    2 N1     SELECT_TOOL(1)\n"
+         "    3 N1     CHANGE_TOOL(1)\n"
+         "    4 N2     SET_SPINDLE_SPEED(0, 1000.0000)\n"
+         "    5 N2     START_SPINDLE_CLOCKWISE(0)\n"
+         "    6 N3     STRAIGHT_TRAVERSE(0.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
+         "    7 N4     SET_FEED_RATE(300.0000)\n"
+         "    8 N4     STRAIGHT_FEED(0.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n"
+         "    9 N5     STRAIGHT_FEED(20.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n" +
+         tail +
+         "   11 N7     STRAIGHT_TRAVERSE(20.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
+         "   12 N8     PROGRAM_END()\n";
+}
+
+const std::string kRapidAcross =
+    "   10 N6     STRAIGHT_TRAVERSE(20.0000, 10.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n";
+
+class RunCommand : public testing::Test {
+ protected:
+  KerfResult run(std::vector<std::string> arguments, const std::string& input = "") {
+    arguments.insert(arguments.begin(), "run");
+    KerfCall call;
+    call.arguments = std::move(arguments);
+    call.folder = folder_.path();
+    call.input = input;
+    return run_kerf(call);
+  }
+  Json json(const std::string& name) {
+    return Json::parse(read_file(folder_.file(name)), nullptr, false);
+  }
+  std::vector<std::string> slot(std::vector<std::string> more) {
+    folder_.write("slot.canon", listing_text());
+    std::vector<std::string> all = {
+        "slot.canon", "--stock", "box:-5,-5,-5:25,15,0", "--tool", "1=flat:6", "--cell", "0.1"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  TestFolder folder_;
+};
+
+TEST_F(RunCommand, CleanRunLeavesItsOutputsAndExitCodeZero) {
+  const KerfResult result =
+      run(slot({"--json", "r.json", "--stl", "p.stl", "--ply", "p.ply", "--state", "p.kerf"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(listing(folder_.path()), "p.kerf p.ply p.stl r.json slot.canon");
+  const Json report = json("r.json");
+  EXPECT_EQ(report["schema"], "kerf-report/1");
+  EXPECT_EQ(report["partial"], false);
+  EXPECT_EQ(report["program"]["interpreter"], "canon");
+  EXPECT_EQ(report["program"]["canonical_commands"]["STRAIGHT_FEED"], 2);
+  // A slot of 6 mm with round ends, 1 mm deep: within half a cell along its outline.
+  const double outline = 40 + 3.14159265 * 6;
+  EXPECT_NEAR(report["stock"]["removed_mm3"].get<double>(), 20 * 6 + 3.14159265 * 9,
+              outline * 0.05);
+  EXPECT_EQ(report["tools"][0]["shape"], "flat:6");
+  EXPECT_NEAR(report["motion"]["feed_mm"].get<double>(), 26, 1e-6);
+  EXPECT_NE(result.out.find("findings  none\n"), std::string::npos) << result.out;
+}
+
+TEST_F(RunCommand, FindingsAreSaidAndGiveExitCodeOne) {
+  folder_.write("slot.canon", listing_text(kRapidAcross));
+  const KerfResult result =
+      run({"slot.canon", "--stock", "box:-5,-5,-5:25,15,0", "--tool", "1=flat:6", "--cell", "0.1"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err.substr(0, result.err.find(" at X")),
+            "slot.canon:6: error: rapid-contact: traverse touches the workpiece, 1.00 mm deep");
+  EXPECT_NE(result.out.find("findings  1 error\n"), std::string::npos);
+}
+
+TEST_F(RunCommand, ReportOnStdoutSendsTheSummaryToStderr) {
+  const KerfResult result = run(slot({"--json", "-"}));
+  EXPECT_FALSE(Json::parse(result.out, nullptr, false).is_discarded());
+  EXPECT_EQ(result.err.rfind("program   slot.canon", 0), 0U) << result.err;
+}
+
+TEST_F(RunCommand, QuietSaysNothingOfACleanRun) {
+  const KerfResult result = run(slot({"--quiet"}));
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(RunCommand, StdinGivesTheSameWorkpieceAsTheFile) {
+  std::vector<std::string> arguments = slot({"--json", "file.json"});
+  run(arguments);
+  arguments[0] = "-";
+  arguments.back() = "stdin.json";
+  const KerfResult result = run(arguments, listing_text());
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json("file.json")["stock"]["digest"], json("stdin.json")["stock"]["digest"]);
+}
+
+TEST_F(RunCommand, ThreadsAndKernelsGiveTheSameDigest) {
+  run(slot({"--json", "a.json", "--threads", "1", "--kernel", "scalar"}));
+  run(slot({"--json", "b.json", "--threads", "3"}));
+  EXPECT_EQ(json("a.json")["stock"]["digest"], json("b.json")["stock"]["digest"]);
+}
+
+TEST_F(RunCommand, GuessedBlankIsNamedForFilesAndStdin) {
+  folder_.write("slot.canon", listing_text());
+  const std::string guess =
+      ": warning: stock-guessed: no blank is given or written in the program; assumed: box 36 x 16 "
+      "x 6 mm, X-8..28 Y-8..8 Z-6..0 (the feed moves plus 5 mm; --stock SPEC says better)\n";
+  const KerfResult file = run({"slot.canon", "--tool", "1=flat:6", "--cell", "0.1"});
+  EXPECT_EQ(file.exit_code, 0);
+  EXPECT_EQ(file.err, "slot.canon" + guess);
+  const KerfResult input = run({"-", "--tool", "1=flat:6", "--cell", "0.1"}, listing_text());
+  EXPECT_EQ(input.exit_code, 0);
+  EXPECT_EQ(input.err.substr(input.err.find(": warning")), guess);
+}
+
+TEST_F(RunCommand, LongFileWithoutBlankIsReadTwiceAndALongStdinRefused) {
+  std::string tail;
+  for (int i = 0; i < 500'100; ++i) {
+    tail += i % 2 == 0
+                ? "   10 N6     STRAIGHT_FEED(0.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n"
+                : "   10 N6     STRAIGHT_FEED(20.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n";
+  }
+  folder_.write("long.canon", listing_text(tail));
+  const KerfResult file =
+      run({"long.canon", "--tool", "1=flat:6", "--cell", "0.5", "--json", "r.json"});
+  EXPECT_EQ(file.exit_code, 0) << file.err;
+  EXPECT_EQ(json("r.json")["motion"]["moves"], 500'104);
+  EXPECT_EQ(json("r.json")["stock"]["origin"], "guessed");
+  const KerfResult input = run({"-", "--tool", "1=flat:6", "--cell", "0.5"}, listing_text(tail));
+  EXPECT_EQ(input.exit_code, 2);
+  EXPECT_EQ(input.err,
+            "kerf: error: standard input has more than 500000 motions, too many to keep while the "
+            "blank is guessed from them\n"
+            "   hint: --stock SPEC gives the blank, and then any length will do\n");
+}
+
+TEST_F(RunCommand, SavedWorkpieceGoesOn) {
+  run(slot({"--state", "first.kerf", "--json", "first.json"}));
+  const KerfResult result = run(
+      {"slot.canon", "--tool", "1=flat:6", "--stock", "state:first.kerf", "--json", "again.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json("again.json")["stock"]["digest"], json("first.json")["stock"]["digest"])
+      << "the slot is cut already";
+  EXPECT_EQ(json("again.json")["tools"][0]["removed_mm3"], 0.0);
+}
+
+TEST_F(RunCommand, ToolTableDescribesTools) {
+  folder_.write("slot.canon", listing_text());
+  folder_.write("tool.tbl", "T1 P1 D6 ;6 mm ball nose\n");
+  const KerfResult result = run({"slot.canon", "--stock", "box:-5,-5,-5:25,15,0", "--tool-table",
+                                 "tool.tbl", "--json", "r.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json("r.json")["tools"][0]["shape"], "ball:6");
+}
+
+TEST_F(RunCommand, SplinesThatTheListingLacksGiveExitCodeThree) {
+  folder_.write("spline.canon", listing_text("   10 N6     NURBS_FEED(4, ...)\n"));
+  const KerfResult result =
+      run({"spline.canon", "--stock", "box:-5,-5,-5:25,15,0", "--tool", "1=flat:6"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+}
+
+TEST_F(RunCommand, HelpHasExamplesAndExitCodes) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--help"}, std::vector<std::string>{"run", "--help"}}) {
+    KerfCall call;
+    call.arguments = arguments;
+    const KerfResult result = run_kerf(call);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.out.find("kerf run part.ngc --stock"), std::string::npos);
+    EXPECT_NE(result.out.find("  4  file, interpreter or device failure"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,122 @@
+#include "twin/tools.h"
+
+#include <gtest/gtest.h>
+
+namespace kerf {
+namespace {
+
+ToolHint hint(int tool, std::uint32_t line, const char* shape, bool guessed = false) {
+  ToolHint h;
+  h.tool = tool;
+  h.line = line;
+  h.dialect = "fusion";
+  h.shape = shape;
+  h.shape_guessed = guessed;
+  return h;
+}
+
+ToolTableRow row(int tool, double diameter_mm, const char* remark) {
+  ToolTableRow r;
+  r.tool = tool;
+  r.diameter_mm = diameter_mm;
+  r.remark = remark;
+  r.line = 4;
+  return r;
+}
+
+ToolShapeArgument argument(const char* text) {
+  return std::move(parse_tool_argument(text).value());
+}
+
+std::string shape_of(ToolBook& book, int tool, std::uint32_t line = 10) {
+  const ResolvedTool& resolved = book.mount(tool, line);
+  return resolved.cutter ? resolved.cutter->spec() : "";
+}
+
+TEST(ToolBook, ArgumentsComeBeforeCommentsBeforeTheTable) {
+  ToolSources sources;
+  sources.table = {row(1, 3, "ball nose"), row(2, 3, "ball nose"), row(3, 3, "ball nose")};
+  sources.hints = {hint(1, 2, "bull:6:1"), hint(2, 3, "bull:6:1")};
+  sources.arguments.push_back(argument("1=flat:8"));
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 1), "flat:8");
+  EXPECT_EQ(book.mount(1, 10).origin, "--tool");
+  EXPECT_EQ(shape_of(book, 2), "bull:6:1");
+  EXPECT_EQ(book.mount(2, 10).origin, "comment in line 3 (fusion)");
+  EXPECT_EQ(shape_of(book, 3), "ball:3");
+  EXPECT_EQ(book.mount(3, 10).origin, "remark in line 4 of the tool table");
+  EXPECT_FALSE(book.mount(3, 10).guessed);
+}
+
+TEST(ToolBook, DiameterAloneIsAGuess) {
+  ToolSources sources;
+  sources.table = {row(5, 4, "")};
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 5), "flat:4");
+  EXPECT_TRUE(book.mount(5, 10).guessed);
+}
+
+TEST(ToolBook, WholeShapesComeBeforeGuessedOnes) {
+  ToolSources sources;
+  sources.hints = {hint(1, 1, "flat:6", true), hint(1, 9, "ball:6")};
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 1), "ball:6");
+}
+
+TEST(ToolBook, NeverGivesOneToolForAnother) {
+  ToolSources sources;
+  sources.arguments.push_back(argument("1=flat:8"));
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 2), "");
+  EXPECT_TRUE(book.mount(2, 10).trouble.empty());
+}
+
+TEST(ToolBook, CommentWithoutNumberBelongsToTheNextTool) {
+  ToolSources sources;
+  sources.hints = {hint(-1, 5, "flat:6"), hint(-1, 20, "ball:4")};
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 7, 8), "flat:6");
+  EXPECT_EQ(shape_of(book, 2, 15), "") << "the comment in line 5 is used up";
+  EXPECT_EQ(shape_of(book, 3, 25), "ball:4");
+}
+
+TEST(ToolBook, EmptySpindleTakesTheOnlyToolThatIsDescribed) {
+  ToolSources one;
+  one.arguments.push_back(argument("4=flat:8"));
+  ToolBook book(one, false);
+  EXPECT_EQ(shape_of(book, 0), "flat:8");
+  EXPECT_TRUE(book.mount(0, 1).assumed);
+  EXPECT_EQ(book.mount(0, 1).number, 4);
+
+  ToolSources two = one;
+  two.arguments.push_back(argument("5=flat:8"));
+  ToolBook unsure(two, false);
+  EXPECT_EQ(shape_of(unsure, 0), "");
+
+  ToolSources comments;
+  comments.hints = {hint(3, 2, "ball:6")};
+  ToolBook hinted(comments, false);
+  EXPECT_EQ(shape_of(hinted, 0), "ball:6");
+  EXPECT_EQ(hinted.mount(0, 1).number, 3);
+}
+
+TEST(ToolBook, UndercutsNeedAModelThatHoldsThem) {
+  ToolSources sources;
+  sources.arguments.push_back(argument("1=lollipop:6:3"));
+  ToolBook zmap(sources, false);
+  EXPECT_EQ(shape_of(zmap, 1), "");
+  EXPECT_EQ(zmap.mount(1, 1).trouble, "lollipop:6:3 cuts undercuts, which the Z-map cannot hold");
+  ToolBook other(sources, true);
+  EXPECT_EQ(shape_of(other, 1), "lollipop:6:3");
+}
+
+TEST(ToolBook, TableRowWithoutDiameterIsNoTool) {
+  ToolSources sources;
+  sources.table = {row(1, 0, "ball nose")};
+  ToolBook book(sources, false);
+  EXPECT_EQ(shape_of(book, 1), "");
+  EXPECT_EQ(book.mount(1, 1).trouble, "the tool table (line 4) gives no diameter for it");
+}
+
+}  // namespace
+}  // namespace kerf

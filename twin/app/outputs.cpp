@@ -1,0 +1,116 @@
+#include "twin/app/outputs.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/mesh_file.h"
+#include "viewer/picture.h"
+
+namespace kerf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using NamedPath = std::pair<const char*, const std::string*>;
+
+std::array<NamedPath, 5> named(const OutputPaths& paths) {
+  return {NamedPath{"--json", &paths.json}, NamedPath{"--png", &paths.png},
+          NamedPath{"--stl", &paths.stl}, NamedPath{"--ply", &paths.ply},
+          NamedPath{"--state", &paths.state}};
+}
+
+void fault(Diagnostics& diagnostics, std::string message) {
+  Diagnostic d;
+  d.message = std::move(message);
+  diagnostics.push_back(std::move(d));
+}
+
+void note_failure(const Done& done, Diagnostics& diagnostics) {
+  if (!done) fault(diagnostics, done.error());
+}
+
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+Done write_picture(const std::string& path, const TriangleMesh& mesh, const Session& session) {
+  PictureOptions options;
+  options.blank_mm = session.stock()->bounds_mm();
+  options.caption = fmt::format("{}  {} {:.3g} mm", file_name(session.report().program_path),
+                                session.stock()->name(), session.stock()->cell_mm());
+  const Result<Picture> picture = draw_part(mesh, options);
+  if (!picture) return Error{fmt::format("drawing {}: {}", path, picture.error())};
+  return write_png(path, *picture);
+}
+
+}  // namespace
+
+void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
+  const auto all = named(paths);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string& path = *all[i].second;
+      if (path.empty() || path != *all[j].second) continue;
+      fault(diagnostics, fmt::format("{} and {} both write to {}", all[j].first, all[i].first,
+                                     path == "-" ? "standard output" : path));
+    }
+  }
+}
+
+void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
+  for (const auto& [option, path] : named(paths)) {
+    if (path->empty() || *path == "-") continue;
+    struct stat info = {};
+    if (stat(path->c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
+      fault(diagnostics, fmt::format("{}: {} is a folder, not a file", option, *path));
+      continue;
+    }
+    const std::string parent = std::filesystem::path(*path).parent_path().string();
+    const std::string folder = parent.empty() ? "." : parent;
+    if (access(folder.c_str(), W_OK | X_OK) != 0) {
+      fault(diagnostics, fmt::format("{}: cannot write {}: folder {}: {}", option, *path, folder,
+                                     std::strerror(errno)));
+    }
+  }
+}
+
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, Session& session,
+                   Diagnostics& diagnostics) {
+  const Clock::time_point start = Clock::now();
+  const ZMap* stock = session.stock();
+  TimingReport& timing = session.report().timing;
+  const bool wants_mesh = !paths.png.empty() || !paths.stl.empty() || !paths.ply.empty();
+  if (stock && wants_mesh) {
+    const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
+    timing.mesh_s = std::chrono::duration<double>(Clock::now() - start).count();
+    if (!paths.png.empty()) note_failure(write_picture(paths.png, mesh, session), diagnostics);
+    if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
+    if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
+  }
+  if (stock && !paths.state.empty()) note_failure(stock->save(paths.state), diagnostics);
+  if (!stock && (wants_mesh || !paths.state.empty())) {
+    fault(diagnostics,
+          "stopped before there was a workpiece; no picture, mesh or state is written");
+  }
+  session.complete_timing();
+  if (!paths.json.empty())
+    note_failure(write_text(paths.json, json_text(session.report())), diagnostics);
+}
+
+}  // namespace kerf

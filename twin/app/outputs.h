@@ -1,0 +1,37 @@
+// twin/app/outputs.h - the files that a run leaves: report, picture, meshes, saved workpiece.
+#pragma once
+
+#include <string>
+
+#include "base/diagnostic.h"
+#include "twin/session.h"
+
+namespace kerf {
+
+/// Paths as the user wrote them; empty = not wanted, "-" = standard output.
+struct OutputPaths {
+  std::string json;
+  std::string png;
+  std::string stl;
+  std::string ply;
+  std::string state;
+
+  bool uses_stdout() const {
+    return json == "-" || png == "-" || stl == "-" || ply == "-" || state == "-";
+  }
+};
+
+/// Faults of the arguments themselves: two outputs to one place.
+void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics);
+
+/// Faults of the file system that can be seen before a minute of cutting: folder missing or not
+/// writable, path is a folder.
+void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
+
+/// Writes what is wanted, each under a temporary name that is renamed when it is whole. One that
+/// fails is a diagnostic and does not keep the others from being written. Fills in the report's
+/// mesh and total time before the JSON is written, which comes last.
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, Session& session,
+                   Diagnostics& diagnostics);
+
+}  // namespace kerf

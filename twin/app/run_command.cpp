@@ -1,0 +1,92 @@
+#include "twin/app/run_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <stop_token>
+#include <thread>
+
+#include "base/atomic_file.h"
+#include "twin/app/exit_code.h"
+#include "twin/app/progress_bar.h"
+#include "twin/app/stop_signals.h"
+
+namespace kerf {
+namespace {
+
+/// Findings printed one by one; the rest are only counted (and all are in --json).
+constexpr std::size_t kFindingsShown = 20;
+
+void print(const Diagnostics& diagnostics) {
+  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+}
+
+void print_findings(const Report& report, bool quiet) {
+  std::size_t shown = 0;
+  for (const Finding& finding : report.findings.kept()) {
+    if (quiet && finding.severity != Severity::kError) continue;
+    if (++shown > kFindingsShown) break;
+    fmt::print(stderr, "{}", to_string(diagnostic_of(finding, report.program.files)));
+  }
+  if (shown > kFindingsShown) {
+    fmt::print(stderr, "kerf: note: {} findings in all; --json FILE lists the first {}\n",
+               report.findings.total(), FindingLog::kMaxKept);
+  }
+}
+
+/// The second Ctrl-C: the interpreter ends on the stop request already made and takes its temporary
+/// folder with it; it gets a moment for that. Half-written files go as well.
+void abandon(const Session& session) {
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries && session.interpreting(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  remove_uncommitted_files();
+}
+
+int exit_code(Outcome outcome, const Report& report, const Diagnostics& diagnostics) {
+  if (outcome == Outcome::kUsageError) return kExitUsage;
+  const bool finished = outcome == Outcome::kFinished || outcome == Outcome::kLossy;
+  if (!finished || has_error(diagnostics)) return kExitFailure;
+  if (outcome == Outcome::kLossy) return kExitLossy;
+  return report.findings.count(Severity::kError) > 0 ? kExitFindings : kExitGood;
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  Diagnostics diagnostics;
+  const RunRequest request = understand(arguments, diagnostics);
+  if (has_error(diagnostics)) {
+    print(diagnostics);
+    return kExitUsage;
+  }
+  check_output_places(request.outputs, diagnostics);
+  Outcome outcome = Outcome::kFailed;
+  std::unique_ptr<Session> session;
+  if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
+  print(diagnostics);
+  if (!session) return exit_code(outcome, Report{}, diagnostics);
+  diagnostics.clear();
+
+  std::stop_source stop;
+  const StopSignals signals(stop, [&] { abandon(*session); });
+  {
+    const ProgressBar bar([&] { return session->progress(); }, !request.quiet);
+    outcome = session->run(stop.get_token(), diagnostics);
+  }
+  if (!has_error(diagnostics)) {
+    write_outputs(request.outputs, request.mesh_tolerance_mm, *session, diagnostics);
+    print_findings(session->report(), request.quiet);
+    if (!request.quiet) {
+      fmt::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
+                 summary_text(session->report()));
+    }
+  }
+  std::fflush(stdout);
+  print(diagnostics);
+  return exit_code(outcome, session->report(), diagnostics);
+}
+
+}  // namespace kerf

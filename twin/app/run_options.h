@@ -1,0 +1,46 @@
+// twin/app/run_options.h - the command line of `kerf run`, from text to checked values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "twin/app/outputs.h"
+#include "twin/session.h"
+
+namespace kerf {
+
+/// The arguments as written. Empty = not given.
+struct RunArguments {
+  std::string program;
+  std::string tool_table;
+  std::vector<std::string> tools;
+  std::string stock;
+  std::string model;
+  std::string cell;
+  std::string interp;
+  std::string threads;
+  std::string kernel;
+  std::string block_delete;
+  std::string mesh_tolerance;
+  std::string margin;
+  std::string traverse_rate;
+  std::string max_commands;
+  std::string max_seconds;
+  OutputPaths outputs;
+  bool quiet = false;
+};
+
+/// The same, understood.
+struct RunRequest {
+  SessionOptions session;
+  OutputPaths outputs;
+  double mesh_tolerance_mm = 0.01;
+  bool quiet = false;
+};
+
+/// All faults at once, as diagnostics: "--cell: '0' is not allowed; must be above 0 and at most
+/// 1000 (mm)".
+RunRequest understand(const RunArguments& arguments, Diagnostics& diagnostics);
+
+}  // namespace kerf

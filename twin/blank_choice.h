@@ -1,0 +1,55 @@
+// twin/blank_choice.h - the uncut workpiece when nobody gave one, and the cell size that suits it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "interp_bridge/program.h"
+#include "stock/blank.h"
+#include "stock/cutter/tool_hints.h"
+
+namespace kerf {
+
+/// The comments of a program with the unit that is in force at each: G20/G21 words of the program's
+/// text outside comments, or the unit lines of a saved listing. Reads the head of the file once
+/// more, up to the last comment.
+std::vector<CommentText> comments_with_units(const Program& program, const std::string& path);
+
+/// Gathers where a program works, in one pass over its motions, and makes a box of it.
+class BlankGuess {
+ public:
+  explicit BlankGuess(double margin_mm) : margin_mm_(margin_mm) {}
+
+  /// `tool_radius_mm`: of the tool in the spindle, 0 if not known.
+  void add(const Motion& motion, double tool_radius_mm);
+
+  /// A box in whole mm around the feed moves:
+  ///   X, Y   the feed moves of the tip, plus the tool's radius and the margin on every side
+  ///   top    Z0 if the program works below it (most of its sideways feed length lies there, as CAM
+  ///   programs with zero on
+  ///          the top do), else the highest sideways feed move
+  ///   floor  the lowest feed move less the margin; Z0 if the program never goes below it (zero on
+  ///   the table)
+  /// Without feed moves: around the ends of the traverses. Never empty.
+  Blank blank() const;
+
+ private:
+  double margin_mm_;
+  Box feeds_mm_;  ///< grown by the tool's radius in X and Y
+  Box all_mm_;    ///< ends of every move
+  double lowest_feed_mm_ = 0;
+  bool has_feed_ = false;
+  double sideways_above_zero_mm_ = 0;  ///< feed length in X and Y above Z0 ...
+  double sideways_below_zero_mm_ = 0;  ///< ... and below or on it
+  double highest_sideways_mm_ = 0;
+  bool has_sideways_ = false;
+};
+
+/// Least of 0.01, 0.02, 0.05, 0.1, 0.2, 0.5 mm that gives the blank at most 4 million cells, so
+/// that a whole run stays a matter of a second; 0.5 mm for blanks larger than 1 m x 1 m.
+double default_cell_mm(const Box& blank_mm);
+
+}  // namespace kerf

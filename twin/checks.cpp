@@ -1,0 +1,131 @@
+#include "twin/checks.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Arcs are searched for the floor at steps of this many degrees; the depth found is short by less
+/// than radius * (1 - cos 1) = 0.00015 radius.
+constexpr double kArcStep_deg = 2.0;
+
+/// Part of [t0, t1] where a + t * (b - a) <= limit (below) or >= limit (not below).
+bool clip(double a, double b, double limit, bool below, double& t0, double& t1) {
+  const double d = b - a;
+  const double room = limit - a;
+  if (d == 0) return below ? a <= limit : a >= limit;
+  const double t = room / d;
+  if ((d > 0) == below) {
+    t1 = std::min(t1, t);
+  } else {
+    t0 = std::max(t0, t);
+  }
+  return t0 <= t1;
+}
+
+double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
+  if (length_mm <= 0) return 0;
+  if (m.kind == MotionKind::kArc) return 0;  // the start of the arc is near enough for a time
+  return std::min(1.0, glm::length(tip - m.from_mm) / length_mm);
+}
+
+}  // namespace
+
+bool Checks::may_touch(const Motion& m, double radius_mm) const {
+  const Box way = bounds_of(m);
+  return way.min.z < bounds_mm_.max.z && way.min.x - radius_mm < bounds_mm_.max.x &&
+         way.max.x + radius_mm > bounds_mm_.min.x && way.min.y - radius_mm < bounds_mm_.max.y &&
+         way.max.y + radius_mm > bounds_mm_.min.y;
+}
+
+Finding Checks::finding_at(FindingId id, const CheckedMove& move, const Vec3& place,
+                           double fraction) const {
+  Finding finding;
+  finding.id = id;
+  finding.source = move.motion.source;
+  finding.time_s = move.step.start_s + fraction * move.step.duration_s;
+  finding.position_mm = place;
+  finding.tool = move.tool;
+  return finding;
+}
+
+void Checks::check_traverse(const CheckedMove& move) {
+  const std::optional<Contact> contact =
+      stock_.first_contact(move.cutter, cut_move_from(move.motion, 0), kContactTolerance_mm);
+  if (!contact) {
+    rapid_.reset();
+    return;
+  }
+  if (!rapid_) {
+    const double fraction = fraction_of(move.motion, contact->tip_mm, move.step.length_mm);
+    Finding finding = finding_at(FindingId::kRapidContact, move, contact->tip_mm, fraction);
+    finding.text = "traverse touches the workpiece";
+    rapid_ = log_.add(std::move(finding));
+  }
+  log_.deepen(*rapid_, contact->depth_mm);
+}
+
+void Checks::check_standing_spindle(const CheckedMove& move) {
+  const std::optional<Contact> contact =
+      stock_.first_contact(move.cutter, cut_move_from(move.motion, 0), kContactTolerance_mm);
+  if (!contact) return;
+  const double fraction = fraction_of(move.motion, contact->tip_mm, move.step.length_mm);
+  Finding finding = finding_at(FindingId::kSpindleOffContact, move, contact->tip_mm, fraction);
+  finding.text = "feed move touches the workpiece while the spindle stands";
+  finding.depth_mm = contact->depth_mm;
+  spindle_ = log_.add(std::move(finding));
+}
+
+void Checks::deepen_spindle_event(double depth_mm) {
+  if (spindle_) log_.deepen(*spindle_, depth_mm);
+}
+
+std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
+  const double limit = bounds_mm_.min.z - kContactTolerance_mm;
+  if (m.kind != MotionKind::kArc) {
+    if (std::min(m.from_mm.z, m.to_mm.z) >= limit) return std::nullopt;
+    double t0 = 0;
+    double t1 = 1;
+    bool inside = clip(m.from_mm.z, m.to_mm.z, limit, true, t0, t1);
+    for (int i = 0; inside && i < 2; ++i) {
+      inside = clip(m.from_mm[i], m.to_mm[i], bounds_mm_.min[i], false, t0, t1) &&
+               clip(m.from_mm[i], m.to_mm[i], bounds_mm_.max[i], true, t0, t1);
+    }
+    if (!inside) return std::nullopt;
+    const double lowest = std::min(point_at(m, t0).z, point_at(m, t1).z);
+    return Below{point_at(m, t0), t0, bounds_mm_.min.z - lowest};
+  }
+  if (bounds_of(m).min.z >= limit) return std::nullopt;
+  std::optional<Below> below;
+  const int steps =
+      static_cast<int>(std::ceil(std::abs(m.arc.sweep_rad) * 180 / kPi / kArcStep_deg)) + 1;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const Vec3 p = point_at(m, t);
+    const bool inside = p.z < limit && p.x >= bounds_mm_.min.x && p.x <= bounds_mm_.max.x &&
+                        p.y >= bounds_mm_.min.y && p.y <= bounds_mm_.max.y;
+    if (!inside) continue;
+    if (!below) below = Below{p, t, 0};
+    below->depth_mm = std::max(below->depth_mm, bounds_mm_.min.z - p.z);
+  }
+  return below;
+}
+
+void Checks::check_floor(const CheckedMove& move) {
+  const std::optional<Below> below = below_floor(move.motion);
+  if (!below) {
+    below_.reset();
+    return;
+  }
+  if (!below_) {
+    Finding finding = finding_at(FindingId::kBelowStock, move, below->first_mm, below->fraction);
+    finding.text = "tool cuts into the table under the workpiece";
+    below_ = log_.add(std::move(finding));
+  }
+  log_.deepen(*below_, below->depth_mm);
+}
+
+}  // namespace kerf

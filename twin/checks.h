@@ -1,0 +1,73 @@
+// twin/checks.h - troubles of single moves, joined to events: one finding from the first move that
+// shows a trouble to the last one in a row.
+#pragma once
+
+#include <optional>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "twin/finding.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+/// A contact less deep than this is none. Programs carry 4 decimals (0.1 um in mm, 2.54 um in
+/// inches), posts round to 3 (1 um, 25 um in inches at worst along a diagonal), heights are kept in
+/// single precision: 0.01 mm is above all that happens to a rapid that only retraces a cut surface,
+/// and below anything that marks a part.
+inline constexpr double kContactTolerance_mm = 0.01;
+
+/// A move with what the checks need to know of it.
+struct CheckedMove {
+  const Motion& motion;
+  const TimedStep& step;
+  const Cutter& cutter;
+  int tool = 0;
+};
+
+/// Watches the moves of one program against one workpiece. The caller calls before it cuts the
+/// move; wherever a `first_contact` is asked, the model must have been finished
+/// (StockModel::finish).
+class Checks {
+ public:
+  Checks(const StockModel& stock, FindingLog& log)
+      : stock_(stock), bounds_mm_(stock.bounds_mm()), log_(log) {}
+
+  /// False if the cutter stays clear of the blank on the whole way. Cheap: boxes only.
+  bool may_touch(const Motion& motion, double radius_mm) const;
+
+  /// rapid-contact. An event ends with the first traverse that touches nothing.
+  void check_traverse(const CheckedMove& move);
+  void clear_traverse() { rapid_.reset(); }
+
+  /// spindle-off-contact. An event lasts until the spindle turns or the tool changes; after it is
+  /// open the depths of its moves come from their cut reports (no need to ask the model before each
+  /// of them).
+  bool spindle_event_open() const { return spindle_.has_value(); }
+  void check_standing_spindle(const CheckedMove& move);
+  void deepen_spindle_event(double depth_mm);
+  void end_spindle_event() { spindle_.reset(); }
+
+  /// below-stock: the tip below the floor of the blank, inside the blank's outline (its box): the
+  /// tool cuts the table. An event ends with the first move that stays above.
+  void check_floor(const CheckedMove& move);
+
+ private:
+  struct Below {
+    Vec3 first_mm{0};
+    double fraction = 0;
+    double depth_mm = 0;
+  };
+  std::optional<Below> below_floor(const Motion& motion) const;
+  Finding finding_at(FindingId id, const CheckedMove& move, const Vec3& place,
+                     double fraction) const;
+
+  const StockModel& stock_;
+  Box bounds_mm_;
+  FindingLog& log_;
+  std::optional<FindingLog::Handle> rapid_;
+  std::optional<FindingLog::Handle> spindle_;
+  std::optional<FindingLog::Handle> below_;
+};
+
+}  // namespace kerf

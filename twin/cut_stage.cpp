@@ -1,0 +1,227 @@
+#include "twin/cut_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Moves handed to the model at once: many enough that the call costs nothing, few enough to stay
+/// in the cache.
+constexpr std::size_t kMovesPerCut = 4096;
+
+}  // namespace
+
+CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
+                   const TimelineOptions& options)
+    : stock_(stock), book_(tools), log_(log), timeline_(options), checks_(stock, log) {
+  moves_.reserve(kMovesPerCut);
+  in_flight_.reserve(2 * kMovesPerCut);
+  reports_.reserve(2 * kMovesPerCut);
+}
+
+void CutStage::take(std::span<const Motion> motions) {
+  for (const Motion& motion : motions) take_one(motion);
+  flush();
+}
+
+void CutStage::finish() {
+  flush_whole();
+  for (ToolUse& use : uses_) {
+    if (use.peak_mm3_per_s == 0) close_window(use);
+  }
+}
+
+void CutStage::take_one(const Motion& m) {
+  const TimedStep step = timeline_.add(m);
+  if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
+    flush_whole();  // with the cutter that made these moves
+    checks_.end_spindle_event();
+    spindle_tool_ = m.tool;
+    mounted_ = nullptr;
+  }
+  if (m.spindle != SpindleState::kStopped && checks_.spindle_event_open()) {
+    flush_whole();  // the depths still to come belong to the event
+    checks_.end_spindle_event();
+  }
+  if (m.kind == MotionKind::kTraverse) {
+    take_traverse(m, step);
+  } else if (is_feed(m)) {
+    take_feed(m, step);
+  }
+}
+
+/// Mounts the tool of this motion if that has not been done since the last change. True if it can
+/// cut.
+bool CutStage::mount_for(const Motion& m) {
+  if (mounted_) return mounted_->cutter.has_value();
+  mounted_ = &book_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
+  announce(*mounted_, m);
+  return mounted_->cutter.has_value();
+}
+
+void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
+  const auto known = std::find_if(uses_.begin(), uses_.end(),
+                                  [&](const ToolUse& use) { return use.number == tool.number; });
+  use_ = static_cast<std::uint32_t>(known - uses_.begin());
+  if (known != uses_.end()) return;
+  ToolUse use;
+  use.number = tool.number;
+  use.origin = tool.origin;
+  use.guessed = tool.guessed;
+  if (tool.cutter) use.shape = tool.cutter->spec();
+  uses_.push_back(use);
+  if (!tool.cutter) return;
+  Finding finding;
+  finding.source = m.source;
+  finding.tool = tool.number;
+  if (tool.assumed) {
+    finding.id = FindingId::kToolAssumed;
+    finding.severity = Severity::kNote;
+    finding.text = fmt::format(
+        "the program moves before any tool change; tool {} ({}, {}) is taken to be in the spindle",
+        tool.number, use.shape, use.origin);
+    log_.add(finding);
+  }
+  if (tool.guessed) {
+    finding.id = FindingId::kToolGuessed;
+    finding.severity = Severity::kWarning;
+    finding.text = fmt::format(
+        "only the diameter of tool {} is known ({}); a flat cutter is assumed: {} (--tool "
+        "{}=SHAPE says better)",
+        tool.number, use.origin, use.shape, tool.number);
+    log_.add(finding);
+  }
+}
+
+void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
+  // With an empty spindle a comment without a number waits for the first feed move: the traverse
+  // may just clear the way for the tool change that the comment announces.
+  if (!mounted_ && m.tool == 0 && !book_.has_arguments()) return;
+  if (!mount_for(m) || !m.start_known) return;
+  const Cutter& cutter = *mounted_->cutter;
+  if (!checks_.may_touch(m, cutter.radius_mm())) {
+    checks_.clear_traverse();
+    return;
+  }
+  const CheckedMove move{m, step, cutter, mounted_->number};
+  flush_whole();
+  checks_.check_traverse(move);
+  checks_.check_floor(move);
+  push(m, step, false);
+}
+
+void CutStage::take_feed(const Motion& m, const TimedStep& step) {
+  if (!mount_for(m)) {
+    report_undefined(m, step);
+    return;
+  }
+  uses_[use_].feed_mm += step.length_mm;
+  if (!m.start_known) return;
+  if (step.duration_s == 0 && step.length_mm > 0) report_missing_feed(m, step);
+  const Cutter& cutter = *mounted_->cutter;
+  const CheckedMove move{m, step, cutter, mounted_->number};
+  checks_.check_floor(move);
+  const bool spindle_off = m.spindle == SpindleState::kStopped;
+  if (spindle_off && !checks_.spindle_event_open() && checks_.may_touch(m, cutter.radius_mm())) {
+    flush_whole();
+    checks_.check_standing_spindle(move);
+  }
+  push(m, step, spindle_off);
+}
+
+/// Once a tool: its first feed move.
+void CutStage::report_undefined(const Motion& m, const TimedStep& step) {
+  ToolUse& use = uses_[use_];
+  const bool first = use.origin.empty();
+  use.feed_mm += step.length_mm;
+  if (!first) return;
+  use.origin = "nothing";
+  Finding finding;
+  finding.id = FindingId::kToolUndefined;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.tool = mounted_->number;
+  if (!mounted_->trouble.empty()) {
+    finding.text = fmt::format("tool {}: {}; its moves do not cut", m.tool, mounted_->trouble);
+  } else if (m.tool == 0) {
+    finding.text =
+        "feed moves with no tool in the spindle do not cut (one --tool N=SHAPE names the tool "
+        "that is in it at the start)";
+  } else {
+    finding.text = fmt::format(
+        "nothing is known of tool {}; its moves do not cut (--tool {}=SHAPE describes it)", m.tool,
+        m.tool);
+  }
+  log_.add(std::move(finding));
+}
+
+void CutStage::report_missing_feed(const Motion& m, const TimedStep& step) {
+  if (feed_missing_reported_) return;
+  feed_missing_reported_ = true;
+  Finding finding;
+  finding.id = FindingId::kFeedMissing;
+  finding.severity = Severity::kWarning;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.text =
+      "feed move without a feed rate (or without spindle speed under G95); it takes no time in "
+      "this report";
+  log_.add(std::move(finding));
+}
+
+void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
+  moves_.push_back(cut_move_from(m, next_id_++));
+  in_flight_.push_back(InFlight{step.duration_s, use_, is_feed(m), spindle_off});
+  if (moves_.size() >= kMovesPerCut) flush();
+}
+
+void CutStage::flush() {
+  if (moves_.empty()) return;
+  stock_.cut(*mounted_->cutter, moves_, reports_);
+  moves_.clear();
+  collect_reports();
+}
+
+void CutStage::flush_whole() {
+  flush();
+  if (in_flight_.empty()) return;
+  stock_.finish(reports_);
+  collect_reports();
+}
+
+void CutStage::collect_reports() {
+  assert(reports_.size() <= in_flight_.size());
+  for (std::size_t i = 0; i < reports_.size(); ++i) {
+    const CutReport& report = reports_[i];
+    const InFlight& move = in_flight_[i];
+    if (report.removed_mm3 <= 0) continue;
+    ToolUse& use = uses_[move.use];
+    use.removed_mm3 += report.removed_mm3;
+    use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
+    if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
+      checks_.deepen_spindle_event(report.depth_mm);
+    }
+    if (!move.feed) continue;
+    use.cut_s += move.duration_s;
+    use.window_s += move.duration_s;
+    use.window_mm3 += report.removed_mm3;
+    if (use.window_s >= kPeakWindow_s) close_window(use);
+  }
+  in_flight_.erase(in_flight_.begin(),
+                   in_flight_.begin() + static_cast<std::ptrdiff_t>(reports_.size()));
+  reports_.clear();
+}
+
+void CutStage::close_window(ToolUse& use) {
+  if (use.window_s > 0)
+    use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, use.window_mm3 / use.window_s);
+  use.window_s = 0;
+  use.window_mm3 = 0;
+}
+
+}  // namespace kerf

@@ -1,0 +1,93 @@
+// twin/cut_stage.h - motions in, workpiece cut: mounts tools, keeps time, checks and cuts, adds up
+// what each tool did.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "twin/checks.h"
+#include "twin/finding.h"
+#include "twin/timeline.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+/// What one tool did.
+struct ToolUse {
+  int number = 0;
+  std::string shape;  ///< SHAPE text; empty: undefined, did not cut
+  std::string origin;
+  bool guessed = false;
+  double cut_s = 0;    ///< time of feed moves that removed material
+  double feed_mm = 0;  ///< length of all its feed moves
+  double removed_mm3 = 0;
+  double max_depth_mm = 0;    ///< greatest height of material that one move removed
+  double peak_mm3_per_s = 0;  ///< greatest removal rate over kPeakWindow_s of cutting
+  double window_s = 0;        ///< cutting time and volume of the window that is open
+  double window_mm3 = 0;
+};
+
+/// Removal rates are taken over at least this much cutting time: single moves of a finishing pass
+/// last milliseconds and remove whole cells or nothing.
+inline constexpr double kPeakWindow_s = 0.5;
+
+/// The one road from motions to the workpiece. One thread calls it; per move it allocates nothing
+/// and hands moves to the model by thousands. Which moves cut: traverses, feeds, arcs and threads
+/// with a known start and a known tool. Probes, and moves of a tool of which nothing is known, do
+/// not.
+class CutStage {
+ public:
+  CutStage(StockModel& stock, ToolBook& tools, FindingLog& log, const TimelineOptions& options);
+
+  /// Motions in program order. All of them are given to the model before the call returns (which
+  /// may hold the last ones back until finish()).
+  void take(std::span<const Motion> motions);
+  /// The program is over (or stopped).
+  void finish();
+
+  const Timeline& timeline() const { return timeline_; }
+  const std::vector<ToolUse>& tools() const { return uses_; }
+
+ private:
+  /// What is needed when a move's report comes back.
+  struct InFlight {
+    double duration_s = 0;
+    std::uint32_t use = 0;  ///< index of ToolUse
+    bool feed = false;
+    bool spindle_off = false;
+  };
+
+  void take_one(const Motion& motion);
+  void take_traverse(const Motion& motion, const TimedStep& step);
+  void take_feed(const Motion& motion, const TimedStep& step);
+  bool mount_for(const Motion& motion);
+  void announce(const ResolvedTool& tool, const Motion& motion);
+  void report_undefined(const Motion& motion, const TimedStep& step);
+  void report_missing_feed(const Motion& motion, const TimedStep& step);
+  void push(const Motion& motion, const TimedStep& step, bool spindle_off);
+  void flush();        ///< hands the collected moves to the model
+  void flush_whole();  ///< and completes those that it holds back
+  void collect_reports();
+  static void close_window(ToolUse& use);
+
+  StockModel& stock_;
+  ToolBook& book_;
+  FindingLog& log_;
+  Timeline timeline_;
+  Checks checks_;
+  std::vector<ToolUse> uses_;
+  const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
+  std::uint32_t use_ = 0;
+  int spindle_tool_ = 0;
+  bool feed_missing_reported_ = false;
+  std::vector<CutMove> moves_;
+  std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
+  std::vector<CutReport> reports_;
+  std::uint64_t next_id_ = 0;
+};
+
+}  // namespace kerf

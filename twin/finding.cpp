@@ -1,0 +1,90 @@
+#include "twin/finding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf {
+namespace {
+
+/// Two decimals, and never "-0.00".
+std::string coordinate(double value) {
+  const double rounded = std::round(value * 100) / 100;
+  return fmt::format("{:.2f}", rounded == 0 ? 0.0 : rounded);
+}
+
+}  // namespace
+
+const char* to_string(FindingId id) {
+  switch (id) {
+    case FindingId::kRapidContact:
+      return "rapid-contact";
+    case FindingId::kSpindleOffContact:
+      return "spindle-off-contact";
+    case FindingId::kBelowStock:
+      return "below-stock";
+    case FindingId::kToolUndefined:
+      return "tool-undefined";
+    case FindingId::kToolGuessed:
+      return "tool-guessed";
+    case FindingId::kToolAssumed:
+      return "tool-assumed";
+    case FindingId::kStockGuessed:
+      return "stock-guessed";
+    case FindingId::kNoProgramEnd:
+      return "no-program-end";
+    case FindingId::kRotaryIgnored:
+      return "rotary-ignored";
+    case FindingId::kFeedMissing:
+      return "feed-missing";
+    case FindingId::kInterpreterError:
+      return "interpreter-error";
+    case FindingId::kInterpreterWarning:
+      return "interpreter-warning";
+    case FindingId::kInterrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::string message_of(const Finding& finding) {
+  std::string out = finding.text;
+  if (finding.depth_mm) {
+    out += fmt::format(", {:.2f} mm {}", *finding.depth_mm,
+                       finding.id == FindingId::kBelowStock ? "below its floor" : "deep");
+  }
+  if (finding.position_mm) {
+    const Vec3& p = *finding.position_mm;
+    out += fmt::format(" at X{} Y{} Z{}", coordinate(p.x), coordinate(p.y), coordinate(p.z));
+    if (finding.tool) out += fmt::format(" (tool {})", *finding.tool);
+  }
+  return out;
+}
+
+Diagnostic diagnostic_of(const Finding& finding, const std::vector<std::string>& files) {
+  Diagnostic out;
+  out.severity = finding.severity;
+  out.line = static_cast<int>(finding.source.line);
+  out.file = finding.file;
+  if (out.file.empty() && finding.source.file < files.size()) out.file = files[finding.source.file];
+  out.excerpt = finding.excerpt;
+  out.hint = finding.hint;
+  out.message = fmt::format("{}: {}", to_string(finding.id), message_of(finding));
+  return out;
+}
+
+FindingLog::Handle FindingLog::add(Finding finding) {
+  ++counts_[static_cast<std::size_t>(finding.severity)];
+  if (kept_.size() >= kMaxKept) return kMaxKept;
+  kept_.push_back(std::move(finding));
+  return kept_.size() - 1;
+}
+
+void FindingLog::deepen(Handle handle, double depth_mm) {
+  if (handle >= kept_.size()) return;
+  Finding& finding = kept_[handle];
+  finding.depth_mm = std::max(finding.depth_mm.value_or(0.0), depth_mm);
+}
+
+}  // namespace kerf

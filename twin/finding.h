@@ -1,0 +1,80 @@
+// twin/finding.h - what a dry run found wrong: typed, placed, one for each event.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "base/geometry.h"
+#include "interp_bridge/motion.h"
+
+namespace kerf {
+
+enum class FindingId : std::uint8_t {
+  kRapidContact,       ///< a traverse touches the workpiece
+  kSpindleOffContact,  ///< a feed move touches the workpiece while the spindle stands
+  kBelowStock,         ///< the tip goes below the floor of the blank, inside its outline
+  kToolUndefined,      ///< feed moves with a tool nothing is known of, or with none
+  kToolGuessed,        ///< only the diameter of the tool is known
+  kToolAssumed,        ///< the program names no tool; the only one described is taken
+  kStockGuessed,       ///< no blank is given or written in the program
+  kNoProgramEnd,       ///< neither M2, M30 nor a closing %
+  kRotaryIgnored,      ///< A, B or C motion, which this model does not have
+  kFeedMissing,        ///< feed moves without a feed rate
+  kInterpreterError,   ///< the interpreter refused a block
+  kInterpreterWarning,
+  kInterrupted,  ///< the run was stopped by the user
+};
+
+/// "rapid-contact", ...: the `id` of the report.
+const char* to_string(FindingId id);
+
+/// One event. Position, time and depth are where it was first met and the greatest depth until it
+/// stopped.
+struct Finding {
+  FindingId id = FindingId::kRapidContact;
+  Severity severity = Severity::kError;
+  SourceRef source;                 ///< line 0: the program as a whole
+  std::optional<double> time_s;     ///< seconds after the start of the program
+  std::optional<Vec3> position_mm;  ///< tool tip, workpiece frame
+  std::optional<int> tool;
+  std::optional<double> depth_mm;
+  std::string text;     ///< without id, depth, place: "traverse touches the workpiece"
+  std::string file;     ///< set where `source` cannot say it (interpreter's own messages)
+  std::string excerpt;  ///< the source line, for people; may be empty
+  std::string hint;     ///< what to do; may be empty
+};
+
+/// "traverse touches the workpiece, 2.31 mm deep at X12.40 Y3.00 Z-1.20 (tool 3)". `depth_word` is
+/// per id ("deep", "below").
+std::string message_of(const Finding& finding);
+
+/// The finding as a line for a person: file:line: error: rapid-contact: ...
+Diagnostic diagnostic_of(const Finding& finding, const std::vector<std::string>& files);
+
+/// Findings in the order in which they were met. Keeps the first kMaxKept and counts the rest, so
+/// that an endless program of troubles cannot fill the memory.
+class FindingLog {
+ public:
+  static constexpr std::size_t kMaxKept = 1000;
+  using Handle = std::size_t;
+
+  Handle add(Finding finding);
+  /// The event goes on: its depth becomes the greater of the two.
+  void deepen(Handle handle, double depth_mm);
+
+  const std::vector<Finding>& kept() const { return kept_; }
+  std::uint64_t count(Severity severity) const {
+    return counts_[static_cast<std::size_t>(severity)];
+  }
+  std::uint64_t total() const { return counts_[0] + counts_[1] + counts_[2]; }
+
+ private:
+  std::vector<Finding> kept_;
+  std::uint64_t counts_[3] = {0, 0, 0};
+};
+
+}  // namespace kerf

@@ -1,0 +1,89 @@
+#include "twin/motion_geometry.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace kerf {
+namespace {
+
+/// The two ends of an arc, taken apart into height along the axis and the vector across it.
+struct ArcEnds {
+  double along0 = 0, along1 = 0;
+  Vec3 across0{0}, across1{0};
+  double r0 = 0, r1 = 0;
+};
+
+ArcEnds arc_ends(const Motion& m) {
+  ArcEnds ends;
+  const Vec3 d0 = m.from_mm - m.arc.center_mm;
+  const Vec3 d1 = m.to_mm - m.arc.center_mm;
+  ends.along0 = glm::dot(d0, m.arc.axis);
+  ends.along1 = glm::dot(d1, m.arc.axis);
+  ends.across0 = d0 - ends.along0 * m.arc.axis;
+  ends.across1 = d1 - ends.along1 * m.arc.axis;
+  ends.r0 = glm::length(ends.across0);
+  ends.r1 = glm::length(ends.across1);
+  return ends;
+}
+
+}  // namespace
+
+double path_length_mm(const Motion& m) {
+  if (m.kind != MotionKind::kArc) return glm::length(m.to_mm - m.from_mm);
+  const ArcEnds ends = arc_ends(m);
+  const double around = 0.5 * (ends.r0 + ends.r1) * m.arc.sweep_rad;
+  const double along = ends.along1 - ends.along0;
+  const double outward = ends.r1 - ends.r0;
+  return std::sqrt(around * around + along * along + outward * outward);
+}
+
+Vec3 point_at(const Motion& m, double t) {
+  if (m.kind != MotionKind::kArc) return m.from_mm + t * (m.to_mm - m.from_mm);
+  const ArcEnds ends = arc_ends(m);
+  const double along = ends.along0 + t * (ends.along1 - ends.along0);
+  if (ends.r0 <= 0) return m.arc.center_mm + along * m.arc.axis + t * ends.across1;
+  const Vec3 u = ends.across0 / ends.r0;
+  const Vec3 v = glm::cross(m.arc.axis, u);
+  const double radius = ends.r0 + t * (ends.r1 - ends.r0);
+  const double angle = t * m.arc.sweep_rad;
+  return m.arc.center_mm + along * m.arc.axis +
+         radius * (std::cos(angle) * u + std::sin(angle) * v);
+}
+
+Box bounds_of(const Motion& m) {
+  Box box;
+  box.extend(m.to_mm);
+  if (!m.start_known) return box;
+  box.extend(m.from_mm);
+  if (m.kind != MotionKind::kArc) return box;
+  const ArcEnds ends = arc_ends(m);
+  const double radius = std::max(ends.r0, ends.r1);
+  // A circle of radius R about a unit axis n reaches R * sqrt(1 - n_i^2) along coordinate i.
+  Vec3 reach;
+  for (int i = 0; i < 3; ++i) {
+    reach[i] = radius * std::sqrt(std::max(0.0, 1.0 - m.arc.axis[i] * m.arc.axis[i]));
+  }
+  for (const double along : {ends.along0, ends.along1}) {
+    const Vec3 center = m.arc.center_mm + along * m.arc.axis;
+    box.extend(center - reach);
+    box.extend(center + reach);
+  }
+  return box;
+}
+
+bool is_feed(const Motion& m) {
+  return m.kind == MotionKind::kFeed || m.kind == MotionKind::kArc || m.kind == MotionKind::kThread;
+}
+
+CutMove cut_move_from(const Motion& m, std::uint64_t id) {
+  CutMove move;
+  move.from_mm = m.from_mm;
+  move.to_mm = m.to_mm;
+  if (m.kind == MotionKind::kArc) {
+    move.arc = CutArc{m.arc.center_mm, m.arc.axis, m.arc.sweep_rad};
+  }
+  move.id = id;
+  return move;
+}
+
+}  // namespace kerf

@@ -1,0 +1,27 @@
+// twin/motion_geometry.h - lengths, points and bounds of one motion. mm, radians.
+#pragma once
+
+#include "base/geometry.h"
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+
+namespace kerf {
+
+/// Length of the way of the tip. Helices exactly; spirals (radius changing with the angle) by their
+/// mean radius, which is right to second order in the change. 0 for motions that do not move.
+double path_length_mm(const Motion& motion);
+
+/// The tip at fraction t in [0, 1] of the way (of the angle, for arcs).
+Vec3 point_at(const Motion& motion, double t);
+
+/// Box around the way of the tip; for a motion whose start is not known, around its end. Arcs: of
+/// the full circle, so possibly larger than the arc itself.
+Box bounds_of(const Motion& motion);
+
+/// Feed, arc, thread: moves that are meant to cut.
+bool is_feed(const Motion& motion);
+
+/// The motion as the stock model takes it.
+CutMove cut_move_from(const Motion& motion, std::uint64_t id);
+
+}  // namespace kerf

@@ -1,0 +1,63 @@
+// twin/report.h - everything a dry run has to tell, as values; written as JSON (kerf-report/1) or
+// as a page of text.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/program.h"
+#include "twin/cut_stage.h"
+#include "twin/finding.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+/// The workpiece after the run.
+struct StockReport {
+  std::string model;        ///< "zmap"
+  std::string description;  ///< "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0"
+  std::string origin;       ///< "--stock", "comment in line 3 (workpiece)", "guessed"
+  double cell_mm = 0;
+  double blank_mm3 = 0;
+  double remaining_mm3 = 0;
+  Box bounds_mm;
+  std::size_t cells = 0;
+  std::string digest;
+};
+
+/// Where the time of the run went. Interpreting and cutting overlap: they do not add up to the
+/// total.
+struct TimingReport {
+  double interpret_s = 0;  ///< wall, until the interpreter was done
+  double cut_s = 0;        ///< wall, spent in the cutting stage
+  double cut_cpu_s = 0;    ///< CPU of the thread that cuts (its checks included)
+  double mesh_s = 0;       ///< wall, surface for picture and mesh files
+  double total_s = 0;      ///< wall, from the start of the run to the report
+};
+
+struct Report {
+  std::string version;
+  std::string program_path;
+  ProgramSummary program;
+  MotionTotals motion;
+  std::string time_model;
+  std::optional<StockReport> stock;  ///< absent if the run ended before there was one
+  std::vector<ToolUse> tools;
+  FindingLog findings;
+  std::string partial_reason;  ///< not empty: the program was not run to its end, and why
+  TimingReport timing;
+  double peak_rss_mb = 0;
+};
+
+/// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
+/// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
+/// tools[].origin, findings_total, timing_s.cut_cpu, motion.moves_without_feed.
+std::string json_text(const Report& report);
+
+/// The page of text that `kerf run` prints; findings are only counted (they are printed as
+/// diagnostics).
+std::string summary_text(const Report& report);
+
+}  // namespace kerf

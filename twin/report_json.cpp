@@ -1,0 +1,134 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/report.h"
+
+namespace kerf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Six decimals: a thousandth of a um. Keeps the text short and free of the last bits of a sum.
+double rounded(double value) {
+  const double r = std::round(value * 1e6) / 1e6;
+  return r == 0 ? 0.0 : r;
+}
+
+Json vector_json(const Vec3& v) { return Json::array({rounded(v.x), rounded(v.y), rounded(v.z)}); }
+
+template <class T>
+Json number_or_null(const std::optional<T>& value) {
+  return value ? Json(rounded(*value)) : Json(nullptr);
+}
+
+Json program_json(const Report& report) {
+  Json out;
+  out["path"] = report.program_path;
+  out["lines"] = report.program.program_lines;
+  out["interpreter"] = report.program.interpreter;
+  Json commands = Json::object();
+  for (const auto& [name, count] : report.program.canonical_commands) commands[name] = count;
+  out["canonical_commands"] = std::move(commands);
+  return out;
+}
+
+Json motion_json(const Report& report) {
+  const MotionTotals& m = report.motion;
+  Json out;
+  out["moves"] = m.moves;
+  out["feed_moves"] = m.feed_moves;
+  out["traverse_moves"] = m.traverse_moves;
+  out["arcs"] = m.arcs;
+  out["moves_without_feed"] = m.moves_without_feed;
+  out["feed_mm"] = rounded(m.feed_mm);
+  out["traverse_mm"] = rounded(m.traverse_mm);
+  out["duration_s"] = rounded(m.duration_s);
+  out["time_model"] = report.time_model;
+  return out;
+}
+
+Json stock_json(const Report& report) {
+  if (!report.stock) return nullptr;
+  const StockReport& s = *report.stock;
+  Json out;
+  out["model"] = s.model;
+  out["origin"] = s.origin;
+  out["cell_mm"] = rounded(s.cell_mm);
+  out["blank_mm3"] = rounded(s.blank_mm3);
+  out["removed_mm3"] = rounded(s.blank_mm3 - s.remaining_mm3);
+  out["remaining_mm3"] = rounded(s.remaining_mm3);
+  out["bounds_mm"] = Json::array({vector_json(s.bounds_mm.min), vector_json(s.bounds_mm.max)});
+  out["cells"] = s.cells;
+  out["digest"] = s.digest;
+  return out;
+}
+
+Json tools_json(const Report& report) {
+  Json out = Json::array();
+  for (const ToolUse& use : report.tools) {
+    Json tool;
+    tool["number"] = use.number;
+    tool["shape"] = use.shape.empty() ? Json(nullptr) : Json(use.shape);
+    tool["origin"] = use.origin;
+    tool["guessed"] = use.guessed;
+    tool["cut_s"] = rounded(use.cut_s);
+    tool["feed_mm"] = rounded(use.feed_mm);
+    tool["removed_mm3"] = rounded(use.removed_mm3);
+    tool["max_depth_mm"] = rounded(use.max_depth_mm);
+    tool["peak_mm3_per_s"] = rounded(use.peak_mm3_per_s);
+    out.push_back(std::move(tool));
+  }
+  return out;
+}
+
+Json findings_json(const Report& report) {
+  Json out = Json::array();
+  for (const Finding& finding : report.findings.kept()) {
+    const Diagnostic text = diagnostic_of(finding, report.program.files);
+    Json item;
+    item["id"] = to_string(finding.id);
+    item["severity"] = to_string(finding.severity);
+    item["file"] = text.file;
+    item["line"] = finding.source.line;
+    item["time_s"] = number_or_null(finding.time_s);
+    item["position_mm"] = finding.position_mm ? vector_json(*finding.position_mm) : Json(nullptr);
+    item["tool"] = finding.tool ? Json(*finding.tool) : Json(nullptr);
+    item["depth_mm"] = number_or_null(finding.depth_mm);
+    item["message"] = message_of(finding);
+    out.push_back(std::move(item));
+  }
+  return out;
+}
+
+Json timing_json(const TimingReport& t) {
+  Json out;
+  out["interpret"] = rounded(t.interpret_s);
+  out["cut"] = rounded(t.cut_s);
+  out["cut_cpu"] = rounded(t.cut_cpu_s);
+  out["mesh"] = rounded(t.mesh_s);
+  out["total"] = rounded(t.total_s);
+  return out;
+}
+
+}  // namespace
+
+std::string json_text(const Report& report) {
+  Json out;
+  out["schema"] = "kerf-report/1";
+  out["version"] = report.version;
+  out["partial"] = !report.partial_reason.empty();
+  if (!report.partial_reason.empty()) out["partial_reason"] = report.partial_reason;
+  out["program"] = program_json(report);
+  out["motion"] = motion_json(report);
+  out["stock"] = stock_json(report);
+  out["tools"] = tools_json(report);
+  out["findings"] = findings_json(report);
+  out["findings_total"] = report.findings.total();
+  out["timing_s"] = timing_json(report.timing);
+  out["peak_rss_mb"] = std::round(report.peak_rss_mb * 10) / 10;
+  // Paths and comments may hold bytes that are not UTF-8: they become U+FFFD instead of an
+  // exception.
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace kerf

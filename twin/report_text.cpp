@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "twin/report.h"
+
+namespace kerf {
+namespace {
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string distance_text(double mm) {
+  return mm < 10000 ? fmt::format("{:.1f} mm", mm) : fmt::format("{:.2f} m", mm / 1000);
+}
+
+std::string volume_text(double mm3) { return fmt::format("{:.3f} cm3", mm3 / 1000); }
+
+/// "3 errors, 1 warning"
+std::string count_text(const FindingLog& log) {
+  const auto part = [](std::uint64_t n, const char* word) {
+    return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
+  };
+  std::string out;
+  const auto add = [&](std::uint64_t n, const char* word) {
+    if (n == 0) return;
+    if (!out.empty()) out += ", ";
+    out += part(n, word);
+  };
+  add(log.count(Severity::kError), "error");
+  add(log.count(Severity::kWarning), "warning");
+  add(log.count(Severity::kNote), "note");
+  return out.empty() ? "none" : out;
+}
+
+void add_stock(std::string& out, const StockReport& s) {
+  out += fmt::format("stock     {} ({})\n", s.description, s.origin);
+  out += fmt::format("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
+                     static_cast<double>(s.cells) / 1e6);
+  const double removed = s.blank_mm3 - s.remaining_mm3;
+  const double percent = s.blank_mm3 > 0 ? 100 * removed / s.blank_mm3 : 0;
+  out += fmt::format("removed   {} of {} ({:.1f} %)\n", volume_text(removed),
+                     volume_text(s.blank_mm3), percent);
+}
+
+void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
+  const char* head = "tools     ";
+  for (const ToolUse& use : tools) {
+    const std::string shape = use.shape.empty() ? "undefined, did not cut" : use.shape;
+    out += fmt::format("{}{:<3} {}", head, use.number, shape);
+    if (!use.shape.empty()) {
+      out += fmt::format(" ({}{})", use.guessed ? "guessed from " : "", use.origin);
+      out += fmt::format(
+          "\n              removed {}, cutting {}, deepest cut {:.2f} mm, peak {:.1f} mm3/s",
+          volume_text(use.removed_mm3), duration_text(use.cut_s), use.max_depth_mm,
+          use.peak_mm3_per_s);
+    }
+    out += "\n";
+    head = "          ";
+  }
+}
+
+}  // namespace
+
+std::string summary_text(const Report& report) {
+  std::string out;
+  const MotionTotals& m = report.motion;
+  out += fmt::format("program   {}: {} lines, {} moves ({} arcs)\n", report.program_path,
+                     report.program.program_lines, m.moves, m.arcs);
+  if (report.stock) add_stock(out, *report.stock);
+  add_tools(out, report.tools);
+  out += fmt::format("time      {} ({})\n", duration_text(m.duration_s), report.time_model);
+  out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
+                     distance_text(m.traverse_mm));
+  out += fmt::format("findings  {}\n", count_text(report.findings));
+  out += fmt::format(
+      "run       {:.2f} s (interpreting {:.2f}, cutting {:.2f}, surface {:.2f}), {:.0f} MB\n",
+      report.timing.total_s, report.timing.interpret_s, report.timing.cut_s, report.timing.mesh_s,
+      report.peak_rss_mb);
+  if (!report.partial_reason.empty()) {
+    out += fmt::format("PARTIAL   {}: everything above is of the part that was run\n",
+                       report.partial_reason);
+  }
+  return out;
+}
+
+}  // namespace kerf

@@ -1,0 +1,362 @@
+#include "twin/session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <thread>
+
+#include "twin/batch_queue.h"
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Bytes that a run needs at least for each cell: its height. A surface (picture, mesh) takes as
+/// much again and more.
+constexpr double kBytesPerCell = 4.0;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double machine_memory_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+Diagnostic general_error(std::string message, std::string hint = {}) {
+  Diagnostic d;
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  return d;
+}
+
+}  // namespace
+
+Session::Session(SessionOptions options) : options_(std::move(options)), start_(Clock::now()) {}
+
+Session::~Session() = default;
+
+std::unique_ptr<Session> Session::open(SessionOptions options, Diagnostics& diagnostics,
+                                       Outcome& outcome) {
+  std::unique_ptr<Session> session(new Session(std::move(options)));
+  outcome = Outcome::kFailed;
+  const bool files_good = session->open_program(diagnostics) && session->read_tools(diagnostics);
+  if (!files_good || !session->choose_known_blank(diagnostics, outcome)) return nullptr;
+  outcome = Outcome::kFinished;
+  return session;
+}
+
+bool Session::open_program(Diagnostics& diagnostics) {
+  program_ = Program::open(options_.program, diagnostics);
+  shown_program_ = program_.get();
+  return program_ != nullptr;
+}
+
+bool Session::read_tools(Diagnostics& diagnostics) {
+  tool_sources_.arguments = options_.tools;
+  tool_sources_.hints = find_tool_hints(comments_with_units(*program_, options_.program.path));
+  if (options_.program.tool_table_path.empty()) return true;
+  auto rows = read_tool_table(options_.program.tool_table_path, diagnostics);
+  if (!rows) {
+    if (!has_error(diagnostics)) diagnostics.push_back(general_error(rows.error()));
+    return false;
+  }
+  tool_sources_.table = std::move(rows.value());
+  return !has_error(diagnostics);
+}
+
+bool Session::choose_known_blank(Diagnostics& diagnostics, Outcome& outcome) {
+  if (options_.blank) return create_stock(*options_.blank, "--stock", diagnostics, outcome);
+  const auto hint = find_blank_hint(comments_with_units(*program_, options_.program.path));
+  if (!hint) return true;  // guessed from the motions, later
+  const Result<Blank> blank = parse_blank(hint->spec);
+  if (!blank) {
+    Diagnostic d = general_error(blank.error(), "--stock SPEC overrides the comment");
+    d.file = options_.program.path;
+    d.line = static_cast<int>(hint->line);
+    diagnostics.push_back(std::move(d));
+    return false;
+  }
+  const std::string origin = fmt::format("comment in line {} ({})", hint->line, hint->dialect);
+  return create_stock(*blank, origin, diagnostics, outcome);
+}
+
+/// Cells that the model itself refuses are left to its own message.
+bool Session::refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) const {
+  const Vec3 size = blank.bounds_mm().size();
+  const double cells = std::ceil(size.x / cell_mm) * std::ceil(size.y / cell_mm);
+  const double bytes = cells * kBytesPerCell;
+  if (cells > static_cast<double>(ZMap::kMaxCells) || bytes <= machine_memory_bytes()) return false;
+  diagnostics.push_back(
+      general_error(fmt::format("--cell: {:g} mm makes {:.0f} million cells, which take {:.1f} GB "
+                                "of memory; this machine has {:.1f} GB",
+                                cell_mm, cells / 1e6, bytes / 1e9, machine_memory_bytes() / 1e9),
+                    "a greater --cell takes less: twice the cell, a quarter of the memory"));
+  return true;
+}
+
+bool Session::create_stock(const Blank& blank, const std::string& origin, Diagnostics& diagnostics,
+                           Outcome& outcome) {
+  stock_facts_.origin = origin;
+  stock_facts_.description = describe(blank);
+  outcome = Outcome::kUsageError;
+  if (!blank.state_file.empty()) {
+    if (options_.cell_mm > 0) {
+      diagnostics.push_back(
+          general_error("--cell: a saved workpiece keeps its own cells; leave --cell out"));
+      return false;
+    }
+    auto loaded = ZMap::load(blank.state_file, options_.threads, options_.kernel);
+    if (!loaded) {
+      diagnostics.push_back(general_error(loaded.error()));
+      outcome = Outcome::kFailed;
+      return false;
+    }
+    stock_ = std::move(loaded.value());
+    return true;
+  }
+  ZMapOptions options;
+  options.blank = blank;
+  options.cell_mm = options_.cell_mm > 0 ? options_.cell_mm : default_cell_mm(blank.bounds_mm());
+  options.threads = options_.threads;
+  options.kernel = options_.kernel;
+  if (refuse_memory(blank, options.cell_mm, diagnostics)) return false;
+  auto created = ZMap::create(options);
+  if (!created) {
+    const char* option = created.error().rfind("cell", 0) == 0 ? "--cell" : origin.c_str();
+    diagnostics.push_back(general_error(fmt::format("{}: {}", option, created.error())));
+    return false;
+  }
+  stock_ = std::move(created.value());
+  return true;
+}
+
+double Session::progress() const {
+  const Program* program = shown_program_;
+  return program ? program->progress() : -1.0;
+}
+
+ProgramSummary Session::interpret(Program& program, const MotionSink& sink, std::stop_token stop) {
+  interpreter_.clear();
+  shown_program_ = &program;
+  interpreting_ = true;
+  ProgramSummary summary = program.run(sink, stop, interpreter_);
+  interpreting_ = false;
+  return summary;
+}
+
+/// One batch of the first pass: bounds, and the motions themselves while they fit. False: a stdin
+/// too long to keep.
+bool Session::gather(std::span<const Motion> motions, BlankGuess& guess, ToolBook& book) {
+  kept_whole_ = kept_whole_ && kept_.size() + motions.size() <= kMaxKeptMotions;
+  if (!kept_whole_ && options_.program.path == "-") return false;
+  if (kept_whole_) {
+    kept_.insert(kept_.end(), motions.begin(), motions.end());
+  } else {
+    kept_ = {};
+  }
+  int tool = -1;
+  double radius_mm = 0;
+  for (const Motion& m : motions) {
+    if (is_feed(m) && m.tool != tool) {
+      tool = m.tool;
+      const ResolvedTool& mounted = book.mount(tool, m.source.line);
+      radius_mm = mounted.cutter ? mounted.cutter->radius_mm() : 0;
+    }
+    guess.add(m, radius_mm);
+  }
+  return true;
+}
+
+bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome) {
+  BlankGuess guess(options_.margin_mm);
+  ToolBook book(tool_sources_, true);
+  bool too_long = false;
+  kept_whole_ = true;
+  const MotionSink sink = [&](std::span<const Motion> motions) {
+    too_long = !gather(motions, guess, book);
+    return !too_long;
+  };
+  report_.program = interpret(*program_, sink, stop);
+  if (too_long) {
+    diagnostics.push_back(
+        general_error(fmt::format("standard input has more than {} motions, too many to keep while "
+                                  "the blank is guessed from them",
+                                  kMaxKeptMotions),
+                      "--stock SPEC gives the blank, and then any length will do"));
+    outcome = Outcome::kUsageError;
+    return false;
+  }
+  if (stop.stop_requested() && report_.program.stopped_early) return true;
+  const Blank blank = guess.blank();
+  if (!create_stock(blank, "guessed", diagnostics, outcome)) return false;
+  Finding finding;
+  finding.id = FindingId::kStockGuessed;
+  finding.severity = Severity::kWarning;
+  finding.text = fmt::format(
+      "no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
+      "--stock SPEC says better)",
+      describe(blank), options_.margin_mm);
+  report_.findings.add(std::move(finding));
+  return true;
+}
+
+void Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
+  const Clock::time_point start = Clock::now();
+  stage.take(motions);
+  report_.timing.cut_s += seconds_since(start);
+  if (observer_) observer_->on_cut(*stock_, motions, stage.timeline().totals().duration_s);
+}
+
+/// False: stopped before the end.
+bool Session::stream(CutStage& stage, std::stop_token stop) {
+  Program& program = second_pass_ ? *second_pass_ : *program_;
+  BatchQueue queue;
+  ProgramSummary summary;
+  std::thread reader([&] {
+    const MotionSink sink = [&](std::span<const Motion> motions) { return queue.push(motions); };
+    summary = interpret(program, sink, stop);
+    queue.close();
+  });
+  std::vector<Motion> batch;
+  while (queue.pop(batch)) cut_batch(stage, batch);
+  reader.join();
+  const double first_pass_s = report_.program.interpret_s;
+  report_.program = std::move(summary);
+  report_.program.interpret_s += first_pass_s;
+  return !(stop.stop_requested() && report_.program.stopped_early);
+}
+
+bool Session::cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics) {
+  if (!kept_whole_) {
+    const bool second = !report_.program.interpreter.empty();
+    if (second) second_pass_ = Program::open(options_.program, diagnostics);
+    return second && !second_pass_ ? true : stream(stage, stop);
+  }
+  const std::span<const Motion> all(kept_);
+  for (std::size_t at = 0; at < all.size(); at += BatchQueue::kBatchMotions) {
+    if (stop.stop_requested()) return false;
+    cut_batch(stage, all.subspan(at, std::min(BatchQueue::kBatchMotions, all.size() - at)));
+  }
+  return true;
+}
+
+Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
+  report_.version = KERF_VERSION;
+  report_.program_path = options_.program.path;
+  Outcome outcome = Outcome::kFinished;
+  if (!stock_ && !guess_blank(stop, diagnostics, outcome)) return outcome;
+  if (!stock_) return conclude(true);  // stopped while the blank was guessed
+  if (observer_) observer_->on_start(*stock_);
+  ToolBook book(tool_sources_, false);
+  CutStage stage(*stock_, book, report_.findings, options_.timeline);
+  const double cpu_before = thread_cpu_s();
+  const bool whole = cut_program(stage, stop, diagnostics);
+  const Clock::time_point finish_start = Clock::now();
+  stage.finish();
+  report_.timing.cut_s += seconds_since(finish_start);
+  report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
+  complete_report(stage);
+  if (has_error(diagnostics)) return Outcome::kFailed;
+  return conclude(!whole);
+}
+
+void Session::add_program_finding(FindingId id, Severity severity, std::string text) {
+  Finding finding;
+  finding.id = id;
+  finding.severity = severity;
+  finding.text = std::move(text);
+  report_.findings.add(std::move(finding));
+}
+
+/// The interpreter's diagnostics as findings. True if it remarked on the missing program end, which
+/// it does last.
+bool Session::take_interpreter_remarks() {
+  const bool open_ended = !report_.program.has_program_end && !report_.program.stopped_early;
+  bool end_remarked = false;
+  for (std::size_t i = 0; i < interpreter_.size(); ++i) {
+    const Diagnostic& d = interpreter_[i];
+    Finding finding;
+    finding.severity = d.severity;
+    finding.id = d.severity == Severity::kError ? FindingId::kInterpreterError
+                                                : FindingId::kInterpreterWarning;
+    const bool last_warning = i + 1 == interpreter_.size() && d.severity == Severity::kWarning;
+    if (open_ended && last_warning && d.message.find("end") != std::string::npos) {
+      finding.id = FindingId::kNoProgramEnd;
+      end_remarked = true;
+    }
+    finding.file = d.file;
+    finding.source.line = static_cast<std::uint32_t>(std::max(0, d.line));
+    finding.text = d.message;
+    finding.excerpt = d.excerpt;
+    finding.hint = d.hint;
+    report_.findings.add(std::move(finding));
+  }
+  return end_remarked;
+}
+
+/// Findings about the program as a whole, and how the run ended.
+Outcome Session::conclude(bool stopped) {
+  const ProgramSummary& program = report_.program;
+  if (program.has_rotary_motion) {
+    add_program_finding(
+        FindingId::kRotaryIgnored, Severity::kWarning,
+        "the program moves A, B or C; the Z-map has no rotary axes and cuts as if they stood");
+  }
+  report_.timing.interpret_s = program.interpret_s;
+  complete_timing();
+  if (stopped) {
+    // What the interpreter says when it is stopped is of no use to anybody.
+    report_.partial_reason = "interrupted before the end of the program";
+    add_program_finding(FindingId::kInterrupted, Severity::kNote, report_.partial_reason);
+    return Outcome::kInterrupted;
+  }
+  const bool end_remarked = take_interpreter_remarks();
+  if (has_error(interpreter_)) {
+    report_.partial_reason = "the interpreter stopped at an error";
+    return Outcome::kFailed;
+  }
+  if (!program.has_program_end && !end_remarked) {
+    add_program_finding(FindingId::kNoProgramEnd, Severity::kWarning,
+                        "the program ends without M2, M30 or a closing %");
+  }
+  return program.canonical_commands.count("NURBS_FEED") > 0 ? Outcome::kLossy : Outcome::kFinished;
+}
+
+void Session::complete_timing() {
+  report_.timing.total_s = seconds_since(start_);
+  report_.peak_rss_mb = peak_rss_mb();
+}
+
+void Session::complete_report(const CutStage& stage) {
+  report_.motion = stage.timeline().totals();
+  report_.time_model = stage.timeline().time_model();
+  report_.tools = stage.tools();
+  stock_facts_.model = stock_->name();
+  stock_facts_.cell_mm = stock_->cell_mm();
+  stock_facts_.blank_mm3 = stock_->blank_mm3();
+  stock_facts_.remaining_mm3 = stock_->remaining_mm3();
+  stock_facts_.bounds_mm = stock_->bounds_mm();
+  stock_facts_.cells = stock_->cell_count();
+  stock_facts_.digest = stock_->digest();
+  report_.stock = stock_facts_;
+}
+
+}  // namespace kerf

@@ -1,0 +1,132 @@
+// twin/session.h - one dry run: a program, a blank, tools; in the end a workpiece and a report.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/program.h"
+#include "stock/blank.h"
+#include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
+#include "twin/blank_choice.h"
+#include "twin/cut_stage.h"
+#include "twin/report.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+/// How a session ended. The order is that of the exit codes it leads to, not of badness.
+enum class Outcome {
+  kFinished,  ///< the program was run to its end
+  kLossy,  ///< so it was, but the interpreter's listing lacks moves that the program has (splines)
+  kUsageError,   ///< what was asked for makes no sense (cell larger than the blank, ...)
+  kFailed,       ///< a file or the interpreter failed; the report covers what was run
+  kInterrupted,  ///< stopped from outside; the report covers what was run
+};
+
+struct SessionOptions {
+  ProgramOptions program;
+  std::vector<ToolShapeArgument> tools;  ///< of --tool
+  std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
+  double cell_mm = 0;                    ///< 0: default_cell_mm() of the blank
+  double margin_mm = 5;                  ///< around a guessed blank
+  int threads = 1;                       ///< cutting threads
+  ZMapKernel kernel = ZMapKernel::kAuto;
+  TimelineOptions timeline;
+};
+
+/// What a session tells while it runs, for windows and tests. Every call comes from the thread in
+/// Session::run(), in program order; the workpiece may be looked at during the call only (after a
+/// `snapshot()` at any time).
+class SessionObserver {
+ public:
+  virtual ~SessionObserver() = default;
+  /// The blank is there, nothing is cut yet.
+  virtual void on_start(const StockModel& stock) = 0;
+  /// These motions have been given to the workpiece; `end_s` is the program time after the last of
+  /// them.
+  virtual void on_cut(const StockModel& stock, std::span<const Motion> motions, double end_s) = 0;
+};
+
+/// Runs a program through a Z-map. Two threads: one reads the interpreter, the caller's cuts;
+/// between them is a bounded queue, so that memory does not grow with the program and the slower
+/// side sets the pace. Without a blank the motions are needed twice. The first kMaxKeptMotions are
+/// kept (100 MB); a longer file is interpreted a second time, a longer stdin is an error that asks
+/// for --stock.
+class Session {
+ public:
+  static constexpr std::size_t kMaxKeptMotions = 500'000;
+
+  /// Checks everything that can be checked before the program is interpreted: files, comments, tool
+  /// table, blank, cell size, memory. Null on error, with diagnostics, and `outcome` says of which
+  /// kind.
+  static std::unique_ptr<Session> open(SessionOptions options, Diagnostics& diagnostics,
+                                       Outcome& outcome);
+  ~Session();
+
+  void set_observer(SessionObserver* observer) { observer_ = observer; }
+
+  /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that
+  /// leave nothing to report on (the guessed blank does not fit the memory, a stdin too long to
+  /// keep).
+  Outcome run(std::stop_token stop, Diagnostics& diagnostics);
+
+  /// 0..1, or < 0 if not known; any thread.
+  double progress() const;
+  /// True while an interpreter process may be alive; any thread.
+  bool interpreting() const { return interpreting_; }
+
+  /// After run(). The caller may add to it what it measures itself (mesh time); complete_timing()
+  /// then brings the total time and the peak memory up to date.
+  void complete_timing();
+  Report& report() { return report_; }
+  const Report& report() const { return report_; }
+  const ZMap* stock() const {
+    return stock_.get();
+  }  ///< null if the run ended before there was one
+
+ private:
+  explicit Session(SessionOptions options);
+  bool open_program(Diagnostics& diagnostics);
+  bool read_tools(Diagnostics& diagnostics);
+  bool choose_known_blank(Diagnostics& diagnostics, Outcome& outcome);
+  bool create_stock(const Blank& blank, const std::string& origin, Diagnostics& diagnostics,
+                    Outcome& outcome);
+  bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) const;
+
+  bool guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
+  bool gather(std::span<const Motion> motions, BlankGuess& guess, ToolBook& book);
+  ProgramSummary interpret(Program& program, const MotionSink& sink, std::stop_token stop);
+  bool cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
+  bool stream(CutStage& stage, std::stop_token stop);
+  void cut_batch(CutStage& stage, std::span<const Motion> motions);
+  Outcome conclude(bool stopped);
+  void add_program_finding(FindingId id, Severity severity, std::string text);
+  bool take_interpreter_remarks();
+  void complete_report(const CutStage& stage);
+
+  SessionOptions options_;
+  std::unique_ptr<Program> program_;
+  std::unique_ptr<Program>
+      second_pass_;  ///< a guessed blank and a long file: interpreted once more
+  std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
+  ToolSources tool_sources_;
+  std::unique_ptr<ZMap> stock_;
+  StockReport stock_facts_;   ///< description and origin
+  std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
+  bool kept_whole_ = false;
+  Diagnostics interpreter_;  ///< what the interpreter said in the last pass
+  SessionObserver* observer_ = nullptr;
+  Report report_;
+  std::atomic<bool> interpreting_{false};
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace kerf

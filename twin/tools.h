@@ -1,0 +1,69 @@
+// twin/tools.h - which cutter is in the spindle: shapes gathered from every source, best first.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/program.h"
+#include "stock/cutter/cutter.h"
+#include "stock/cutter/shape_spec.h"
+#include "stock/cutter/tool_hints.h"
+
+namespace kerf {
+
+/// What is known of tools before the program starts.
+struct ToolSources {
+  std::vector<ToolShapeArgument> arguments;  ///< --tool N=SHAPE
+  std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
+  std::vector<ToolTableRow> table;           ///< rows of the tool table
+};
+
+/// A tool of the program and where its shape comes from.
+struct ResolvedTool {
+  int number = 0;
+  std::optional<Cutter>
+      cutter;  ///< absent: nothing is known (`trouble` says what is wrong), it does not cut
+  std::string
+      origin;  ///< "--tool", "comment in line 3 (fusion)", "tool table line 4: its remark", ...
+  bool guessed = false;  ///< only a diameter is known: a flat cutter is assumed
+  bool assumed = false;  ///< the spindle was empty, and this is the only tool described
+  std::string trouble;
+};
+
+/// Answers "what is tool N" in the order: --tool, comments of the program, the remark in the tool
+/// table, a flat cutter of the tool table's diameter (guessed). Never gives one tool for another,
+/// with one exception that is marked `assumed`: a program that cuts before any tool change has no
+/// tool number, and then the only tool that --tool describes (or, without
+/// --tool, the only one that comments describe) is taken.
+/// Cutters with undercuts are refused where the stock model cannot hold them.
+class ToolBook {
+ public:
+  ToolBook(ToolSources sources, bool model_holds_undercuts);
+
+  /// The tool now in the spindle, on the first move it makes, at `line` of the program (0: not
+  /// known). A comment without a tool number belongs to the first tool that moves at or after its
+  /// line. The reference stays valid.
+  const ResolvedTool& mount(int tool, std::uint32_t line);
+
+  bool has_arguments() const { return !sources_.arguments.empty(); }
+
+ private:
+  ResolvedTool resolve(int tool, std::optional<std::size_t> fresh_hint) const;
+  ResolvedTool resolve_empty_spindle(std::optional<std::size_t> fresh_hint) const;
+  bool from_argument(ResolvedTool& out) const;
+  bool from_hint(ResolvedTool& out, const ToolHint& hint) const;
+  bool from_comments(ResolvedTool& out, std::optional<std::size_t> fresh_hint) const;
+  bool from_table(ResolvedTool& out) const;
+  std::optional<std::size_t> take_nameless_hint(std::uint32_t line);
+  void refuse_undercut(ResolvedTool& tool) const;
+
+  ToolSources sources_;
+  bool model_holds_undercuts_;
+  std::size_t next_hint_ = 0;  ///< hints before this one lie before the last tool change
+  std::map<int, ResolvedTool> tools_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,18 @@
+// viewer/shaders/shaders.h - the GLSL 3.30 sources of this folder, compiled in under their file
+// names.
+#pragma once
+
+namespace kerf::shaders {
+
+extern const char* const part_vert;     ///< Mesh to clip space.
+extern const char* const part_frag;     ///< Writes normal and coverage, no light.
+extern const char* const screen_vert;   ///< One triangle that covers the viewport.
+extern const char* const resolve_frag;  ///< 2 x 2 samples to one pixel.
+extern const char* const background_frag;
+extern const char* const occlusion_frag;  ///< Ambient occlusion from the depth.
+extern const char* const edges_frag;      ///< Sharp edges and silhouettes.
+extern const char* const composite_frag;  ///< Light.
+extern const char* const stroke_vert;     ///< Antialiased line with round ends, in pixels.
+extern const char* const stroke_frag;
+
+}  // namespace kerf::shaders
