@@ -28,10 +28,9 @@ inline constexpr float kHoleFilmMm = 0.001f;
 /// carried on level from the outer centres to the edge of the grid, and is closed by vertical walls
 /// and a floor.
 ///
-///       height        _____           o cell centres; at a hole the surface falls from the last
-///     |----o----o----o     \          centre with material to the floor at the first without.
-///     |                     \         .
-///     |______________________o   o    floor
+///     |---o-----o-----o              o  cell centre
+///     |                \             At a hole the surface falls to the floor between the last
+///     |_________________o     o      centre with material and the first without.
 ///
 /// tolerance_mm = 0: every cell is a vertex and all squares are divided along the same diagonal
 /// (from low x, y to high x, y). The enclosed volume is the sum of (height - floor) x cell area,
@@ -43,12 +42,12 @@ inline constexpr float kHoleFilmMm = 0.001f;
 /// up to the rounding to single precision, from the surface of all cells with the squares divided
 /// along alternating diagonals; so also at each cell centre, films aside. The worst case is
 /// measured, not estimated, wherever that saves triangles. Around holes every cell stays a vertex.
-/// Source: right-triangulated irregular networks, W. Evans, D. Kirkpatrick, G. Townsend,
-/// "Right-triangulated irregular networks", Algorithmica 30, 2001.
+/// Source: W. Evans, D. Kirkpatrick, G. Townsend, "Right-triangulated irregular networks",
+/// Algorithmica 30, 2001.
 ///
 /// Result: closed, every edge in exactly two triangles, normals outward, no triangle without area;
 /// empty if no cell holds material. threads >= 1; same result for any. O(cells) time; memory beside
-/// the result: 1 float per cell with a tolerance, 1 more if there are holes, 2 bits per cell.
+/// the result: 2 bits per cell, a float more with a tolerance, 5 bytes more if there are holes.
 TriangleMesh mesh_height_grid(const HeightGrid& grid, double tolerance_mm, int threads = 1);
 
 }  // namespace kerf

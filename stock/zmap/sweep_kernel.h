@@ -60,7 +60,7 @@ inline int floor_int(double x) {
 /// (strip: u, v; else x, y from its centre); track: height of a strip's track there.
 struct Block {
   float p, q, track;
-  std::int16_t bi, bj;
+  std::int32_t bi, bj;
   float* cells;
 };
 constexpr int kListBlocks = 256;
@@ -68,6 +68,11 @@ constexpr int kListBlocks = 256;
 struct WorkList {
   int count = 0;
   Block blocks[kListBlocks];
+};
+
+/// Blocks that lie well within the width of a strip, and those that may reach its edge.
+struct WorkLists {
+  WorkList interior, edge;
 };
 
 /// What one sweep needs on one band; knows how to walk rows and where cells are.
@@ -199,10 +204,13 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
       MaskF inside, unsure;
       eval(p + offsets.p[half], q + offsets.q[half], track + offsets.track[half], z, inside,
            unsure);
-      if (any(unsure)) [[unlikely]]
-        unsettled[unsettled_count++] = static_cast<std::int16_t>(2 * n + half);
-      else
-        lowering.apply(b.cells + 8 * half, z, inside);
+      if constexpr (!EvalF::kAlwaysSure) {
+        if (any(unsure)) [[unlikely]] {
+          unsettled[unsettled_count++] = static_cast<std::int16_t>(2 * n + half);
+          continue;
+        }
+      }
+      lowering.apply(b.cells + 8 * half, z, inside);
     }
   }
   lowering.add_to(c);
@@ -241,11 +249,14 @@ inline RunStart run_start(const SweepContext& c, const Frame& f, int bi, int bj)
 template <class Flush>
 class RunWriter {
  public:
-  RunWriter(SweepContext& c, WorkList& list, const Frame& f, const Flush& flush)
+  /// Blocks whose centre lies within `interior_mm` of the track are interior (none if negative).
+  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm, const Flush& flush)
       : c_(c),
-        list_(list),
+        lists_(lists),
         frame_(f),
         flush_(flush),
+        interior_(static_cast<float>(interior_mm)),
+        to_center_(static_cast<float>(1.5 * (c.grid.cell_y * f.cos - c.grid.cell_x * f.sin))),
         dp_(static_cast<float>(4 * c.grid.cell_x * f.cos)),
         dq_(static_cast<float>(-4 * c.grid.cell_x * f.sin)),
         dt_(static_cast<float>(f.slope * 4 * c.grid.cell_x * f.cos)) {}
@@ -269,23 +280,24 @@ class RunWriter {
 
  private:
   RunStart put(int bj, int b0, int b1, RunStart at) {
-    if (list_.count + (b1 - b0 + 1) > kListBlocks) flush_();
+    const int count = b1 - b0 + 1;
+    WorkList* const lists[2] = {&lists_.interior, &lists_.edge};
+    if (lists[0]->count + count > kListBlocks || lists[1]->count + count > kListBlocks) flush_();
     const int tile = (bj / kTileBlocks) * c_.grid.tiles_x + b0 / kTileBlocks;
     float* cells = c_.tile(tile) + ((bj % kTileBlocks) * kTileBlocks + b0 % kTileBlocks) * 16;
-    Block* out = list_.blocks + list_.count;
-    for (int bi = b0; bi <= b1; ++bi, cells += 16, ++out) {
-      *out = {at.p, at.q, at.track, static_cast<std::int16_t>(bi), static_cast<std::int16_t>(bj),
-              cells};
+    for (int bi = b0; bi <= b1; ++bi, cells += 16) {
+      WorkList& list = *lists[!(__builtin_fabsf(at.q + to_center_) <= interior_)];
+      list.blocks[list.count++] = {at.p, at.q, at.track, bi, bj, cells};
       at = {at.p + dp_, at.q + dq_, at.track + dt_};
     }
-    list_.count += b1 - b0 + 1;
     return at;
   }
 
   SweepContext& c_;
-  WorkList& list_;
+  WorkLists& lists_;
   const Frame& frame_;
   const Flush& flush_;
+  float interior_, to_center_;
   float dp_, dq_, dt_;
 };
 
@@ -303,11 +315,27 @@ inline double unsure_band(const ConvexTool& tool, double steepness, double reach
 /// What follows a strip: nothing, a strip in the same direction, or one that turns.
 enum class Joint { kNone, kStraight, kTurned };
 
-template <class T, class Shape, Joint kJoint>
+/// Distance from the track within which a strip's cells are so far from the tool's wall that no test against it is needed;
+/// negative if there is none. Balls only: their contact point keeps away from the equator by w / sqrt(1 + s^2) with
+/// w = sqrt(R^2 - v^2), and so does a wedge between two strips in nearly the same direction.
+inline double interior_width(const ConvexTool& tool, const SweepOp& op, double band, double half_block) {
+  if (tool.kind != ConvexTool::Kind::kBall || op.kind != SweepOp::Kind::kStrip) return -1;
+  double steepest2 = op.slope * op.slope, turn = 0;
+  if (op.joined) {
+    steepest2 = scalar_max(steepest2, op.next_slope * op.next_slope);
+    turn = op.straight_on ? 0.0 : scalar_abs(op.cos * op.next_sin - op.sin * op.next_cos);
+  }
+  const double r2 = tool.radius * tool.radius;
+  const double needed = (1 + steepest2) * (band + 2 * r2 * turn * (1 + turn)) + 1e-3 * r2;
+  return needed < r2 ? scalar_sqrt(r2 - needed) - half_block : -1;
+}
+
+template <class T, class Shape, Joint kJoint, bool kInterior>
 struct StripEval {
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
+  static constexpr bool kAlwaysSure = kInterior;
   Shape shape, next;
   bool edges;
   T radius2, tie, overlap, length, length_over, band, turn_cos, turn_sin, vertex_z, edge_band;
@@ -332,20 +360,28 @@ struct StripEval {
 
   void operator()(T u, T v, T track, T& z, Mask& inside, Mask& unsure) const {
     const T v2 = v * v;
-    const T w2 = radius2 - v2;
     unsure = all(0) > all(0);
     const ContactLanes<T> contact = shape.contact(track, v2, unsure);
     const T t = u - contact.rho;
     const Mask in_track = (t >= overlap) & (t <= length_over);
-    inside = (w2 >= tie) & in_track;
     z = contact.z;
-    if constexpr (!kDouble) {
-      unsure = in_track & (unsure | (abs(w2) <= band));
-      if (Shape::kMayHaveEdges && edges)
-        unsure = unsure | ((abs(t) <= edge_band) & (w2 >= all(0) - band)) |
-                 ((abs(t - length) <= edge_band) & (w2 >= all(0) - band));
+    if constexpr (kInterior) {
+      inside = in_track;
+    } else {
+      const T w2 = radius2 - v2;
+      inside = (w2 >= tie) & in_track;
+      if constexpr (!kDouble) flag_walls(t, w2, in_track, unsure);
     }
     if constexpr (kJoint != Joint::kNone) add_wedge(u, v, v2, t, z, inside, unsure);
+  }
+
+ private:
+  void flag_walls(T t, T w2, Mask in_track, Mask& unsure) const {
+    unsure = in_track & (unsure | (abs(w2) <= band));
+    if (Shape::kMayHaveEdges && edges) {
+      const Mask at_end = (abs(t) <= edge_band) | (abs(t - length) <= edge_band);
+      unsure = unsure | (at_end & (w2 >= all(0) - band));
+    }
   }
 
   void add_wedge(T u, T v, T v2, T t, T& z, Mask& inside, Mask& unsure) const {
@@ -359,18 +395,22 @@ struct StripEval {
     }
     const T rho = next.contact(all(0), v2_next, unsure_next).rho;
     const T d2 = a * a + v2;
-    const T w2 = radius2 - d2;
-    const Mask between = (t >= length + overlap) & (u_next - rho <= all(0) - overlap);
-    const Mask wedge = between & (w2 >= tie);
     const T still = vertex_z + shape.surface(d2);
+    const Mask between = (t >= length + overlap) & (u_next - rho <= all(0) - overlap);
+    Mask wedge = between;
+    if constexpr (!kInterior) {
+      const T w2 = radius2 - d2;
+      wedge = between & (w2 >= tie);
+      if constexpr (!kDouble) unsure = unsure | (between & (unsure_next | (abs(w2) <= band)));
+    }
     z = select(wedge, select(inside, min(z, still), still), z);
     inside = inside | wedge;
-    if constexpr (!kDouble) unsure = unsure | (between & (unsure_next | (abs(w2) <= band)));
   }
 };
 
 template <class T, class Shape>
 struct CapEval {
+  static constexpr bool kAlwaysSure = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
@@ -397,6 +437,7 @@ struct CapEval {
 
 template <class T, class Shape>
 struct ArcEval {
+  static constexpr bool kAlwaysSure = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);

@@ -181,16 +181,16 @@ void walk_ring(const SweepContext& c, double inner, double outer, Out& out) {
 }
 
 template <class Flush>
-void sweep_rows(SweepContext& c, WorkList& list, const Frame& frame, const Flush& flush) {
+void sweep_rows(SweepContext& c, WorkLists& lists, const Frame& frame, double interior_mm, const Flush& flush) {
   const SweepOp& op = c.op;
-  RunWriter<Flush> row(c, list, frame, flush);
+  RunWriter<Flush> out(c, lists, frame, interior_mm, flush);
   if (op.kind == SweepOp::Kind::kStrip)
-    walk_strip(c, row);
+    walk_strip(c, out);
   else if (op.kind == SweepOp::Kind::kCap)
-    walk_ring(c, 0.0, c.tool.radius, row);
+    walk_ring(c, 0.0, c.tool.radius, out);
   else
-    walk_ring(c, op.radius - c.tool.radius, op.radius + c.tool.radius, row);
-  if (list.count > 0) flush();
+    walk_ring(c, op.radius - c.tool.radius, op.radius + c.tool.radius, out);
+  flush();
 }
 
 inline Frame frame_of(const SweepOp& op) {
@@ -201,22 +201,35 @@ template <class EvalD>
 void sweep_double(SweepContext& c) {
   const Frame frame = frame_of(c.op);
   const EvalD eval(c.tool, c.op);
-  WorkList list;
-  sweep_rows(c, list, frame, [&] { work_off_double(c, list, frame, eval); });
+  WorkLists lists;
+  sweep_rows(c, lists, frame, -1, [&] { work_off_double(c, lists.edge, frame, eval); });
 }
 
-template <class EvalF, class EvalD>
-void sweep_single(SweepContext& c) {
+/// EvalI is EvalF for blocks away from the walls.
+template <class EvalF, class EvalI, class EvalD>
+void sweep_single(SweepContext& c, double interior_mm) {
   if (c.op.use_double) return sweep_double<EvalD>(c);
   const Frame frame = frame_of(c.op);
   const EvalF eval(c.tool, c.op);
-  WorkList list;
-  sweep_rows(c, list, frame, [&] { work_off<EvalD>(c, list, frame, eval); });
+  WorkLists lists;
+  sweep_rows(c, lists, frame, interior_mm, [&] {
+    if (lists.interior.count > 0) work_off<EvalD>(c, lists.interior, frame, EvalI(c.tool, c.op));
+    if (lists.edge.count > 0) work_off<EvalD>(c, lists.edge, frame, eval);
+  });
 }
 
 template <template <class> class Shape, Joint kJoint>
 void sweep_strip(SweepContext& c) {
-  sweep_single<StripEval<F8, Shape<F8>, kJoint>, StripEval<D8, Shape<D8>, kJoint>>(c);
+  const double half_block =
+      1.5 * (c.grid.cell_x * scalar_abs(c.op.sin) + c.grid.cell_y * scalar_abs(c.op.cos)) + 1e-3;
+  const double band = unsure_band(c.tool, scalar_sqrt(1 + c.op.slope * c.op.slope), c.tool.radius);
+  using Single = StripEval<F8, Shape<F8>, kJoint, false>;
+  using Twice = StripEval<D8, Shape<D8>, kJoint, false>;
+  if constexpr (Shape<F8>::kMayHaveEdges)
+    sweep_single<Single, Single, Twice>(c, -1);
+  else
+    sweep_single<Single, StripEval<F8, Shape<F8>, kJoint, true>, Twice>(
+        c, interior_width(c.tool, c.op, band, half_block));
 }
 
 template <template <class> class Shape>
@@ -226,10 +239,14 @@ void sweep_shape(SweepContext& c) {
       if (!c.op.joined) return sweep_strip<Shape, Joint::kNone>(c);
       if (c.op.straight_on) return sweep_strip<Shape, Joint::kStraight>(c);
       return sweep_strip<Shape, Joint::kTurned>(c);
-    case SweepOp::Kind::kCap:
-      return sweep_single<CapEval<F8, Shape<F8>>, CapEval<D8, Shape<D8>>>(c);
-    case SweepOp::Kind::kArc:
-      return sweep_single<ArcEval<F8, Shape<F8>>, ArcEval<D8, Shape<D8>>>(c);
+    case SweepOp::Kind::kCap: {
+      using Single = CapEval<F8, Shape<F8>>;
+      return sweep_single<Single, Single, CapEval<D8, Shape<D8>>>(c, -1);
+    }
+    case SweepOp::Kind::kArc: {
+      using Single = ArcEval<F8, Shape<F8>>;
+      return sweep_single<Single, Single, ArcEval<D8, Shape<D8>>>(c, -1);
+    }
     case SweepOp::Kind::kHelix:
       return sweep_double<HelixEval>(c);
   }

@@ -395,6 +395,21 @@ TEST(HeightMesh, tolerance_is_kept_at_sizes_up_to_forty) {
   }
 }
 
+TEST(HeightMesh, tolerance_is_kept_where_it_nearly_suffices_for_large_triangles) {
+  for (std::uint32_t seed = 0; seed < 3000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Heights ripple = noise(seed * 31337, 1.0);
+    const double bend = 0.04 * (seed % 4);
+    const TestGrid grid(9 + int(seed % 3), 9, [&](int i, int j) {
+      const int across = seed % 8 < 4 ? i + j - 8 : i - j;
+      return ripple(i, j) + bend * across * across;
+    });
+    const double tolerance = 0.4 + 0.05 * (seed % 10);
+    EXPECT_LE(greatest_deviation(grid, grid.mesh(tolerance), 1), tolerance + sampling_error(grid));
+    if (HasFailure()) return;
+  }
+}
+
 TEST(HeightMesh, walls_do_not_overlap) {
   // The sides of a grid without holes: height profiles carried on level to the corners.
   for (const double tolerance : {0.0, 1e-6}) {
@@ -422,12 +437,13 @@ TEST(HeightMesh, plates_need_few_triangles) {
 }
 
 TEST(HeightMesh, greater_tolerance_needs_fewer_triangles) {
-  const TestGrid grid(200, 150, waves());
+  const TestGrid grid(700, 531, waves());
   std::size_t before = grid.mesh(0.0).triangles.size();
   for (const double tolerance : {0.01, 0.1, 1.0}) {
-    const std::size_t count = grid.mesh(tolerance).triangles.size();
-    EXPECT_LT(count, before / 2) << tolerance;
-    before = count;
+    const TriangleMesh mesh = grid.mesh(tolerance);
+    EXPECT_LT(mesh.triangles.size(), before / 2) << tolerance;
+    EXPECT_LE(greatest_deviation(grid, mesh, 1), tolerance + sampling_error(grid));
+    before = mesh.triangles.size();
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/twin/motions.h"
 
 namespace kerf {
@@ -31,6 +33,14 @@ TEST(BlankGuess, FullCirclesCountWhole) {
   EXPECT_EQ(box, (Box{{-18, -18, -6}, {18, 18, 0}}));
 }
 
+TEST(BlankGuess, LargeArcsCountOnlyWhereTheyGo) {
+  // A nearly straight arc of 10 m radius.
+  const double angle = 0.001;
+  const Vec3 end(10000 * std::sin(angle), 10000 * (1 - std::cos(angle)), -1);
+  const Box box = guess(MotionList().at({0, 0, -1}).arc(end, {0, 10000, -1}, {0, 0, 1}, angle));
+  EXPECT_EQ(box, (Box{{-8, -8, -6}, {18, 9, 0}}));
+}
+
 TEST(BlankGuess, IsNeverEmpty) {
   EXPECT_EQ(guess(MotionList()), (Box{{-5, -5, -5}, {5, 5, 0}}));
   BlankGuess bare(0);
@@ -42,6 +52,7 @@ TEST(DefaultCell, GivesAtMostFourMillionCells) {
   EXPECT_EQ(default_cell_mm(Box{{0, 0, 0}, {100, 100, 5}}), 0.05);
   EXPECT_EQ(default_cell_mm(Box{{0, 0, 0}, {200, 200, 5}}), 0.1);
   EXPECT_EQ(default_cell_mm(Box{{0, 0, 0}, {3000, 1500, 18}}), 0.5);
+  EXPECT_EQ(default_cell_mm(Box{{0, 0, 0}, {10000, 10000, 18}}), 2.0);
   EXPECT_EQ(default_cell_mm(Box{{0, 0, 0}, {0.005, 10, 5}}), 0.005);
 }
 

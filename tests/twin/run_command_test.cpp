@@ -72,6 +72,12 @@ TEST_F(RunCommand, CleanRunLeavesItsOutputsAndExitCodeZero) {
   EXPECT_NE(result.out.find("findings  none\n"), std::string::npos) << result.out;
 }
 
+TEST_F(RunCommand, DrawsAPicture) {
+  const KerfResult result = run(slot({"--png", "slot.png"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_file(folder_.file("slot.png")).substr(0, 8), "\x89PNG\r\n\x1a\n");
+}
+
 TEST_F(RunCommand, FindingsAreSaidAndGiveExitCodeOne) {
   folder_.write("slot.canon", listing_text(kRapidAcross));
   const KerfResult result =

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "tests/twin/motions.h"
 #include "twin/motion_geometry.h"
@@ -78,18 +80,49 @@ TEST(MotionGeometry, PointsOfAnArcInXzTurnByTheRightHand) {
   EXPECT_NEAR(middle.z, 3 / std::sqrt(2.0), kTight);
 }
 
-TEST(MotionGeometry, BoundsOfAnArcHoldItsPoints) {
-  MotionList program;
-  program.at({10, 0, 0}).arc({-8, 0, -4}, {0, 0, 0}, {0, 0, 1}, kPi);
-  const Motion& arc = program.last();
-  const Box box = bounds_of(arc);
-  for (int i = 0; i <= 100; ++i) {
-    const Vec3 p = point_at(arc, i / 100.0);
-    Box grown = box;
-    grown.extend(p);
-    EXPECT_LT((grown.max - box.max).x + (box.min - grown.min).y + (box.min - grown.min).z, kTight);
+/// How far points of the way lie outside the box, and how much the box is larger than needed. mm.
+struct BoxFit {
+  double outside = 0;
+  double loose = 0;
+};
+BoxFit fit_of(const Motion& m) {
+  Box exact;
+  for (int i = 0; i <= 3600; ++i) exact.extend(point_at(m, i / 3600.0));
+  const Box box = bounds_of(m);
+  BoxFit fit;
+  for (int i = 0; i < 3; ++i) {
+    fit.outside = std::max({fit.outside, box.min[i] - exact.min[i], exact.max[i] - box.max[i]});
+    fit.loose = std::max({fit.loose, exact.min[i] - box.min[i], box.max[i] - exact.max[i]});
   }
-  EXPECT_NEAR(point_at(arc, 1).x, -8, kTight) << "a spiral ends at its end";
+  return fit;
+}
+
+TEST(MotionGeometry, BoundsOfArcsAreExactInAPlane) {
+  for (const double start_deg : {0.0, 30.0, 100.0, 200.0, 359.0}) {
+    for (const double sweep_deg : {1.0, -1.0, 45.0, -120.0, 180.0, 300.0, -360.0, 800.0}) {
+      for (const Vec3 axis : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0.6, 0, 0.8)}) {
+        const Vec3 u = glm::normalize(glm::cross(axis, Vec3(0.3, 0.5, -0.2)));
+        const Vec3 v = glm::cross(axis, u);
+        const Vec3 center(5, 6, 7);
+        const auto at = [&](double deg) {
+          return center + 10.0 * (std::cos(deg * kPi / 180) * u + std::sin(deg * kPi / 180) * v);
+        };
+        MotionList program;
+        program.at(at(start_deg))
+            .arc(at(start_deg + sweep_deg), center, axis, sweep_deg * kPi / 180);
+        const BoxFit fit = fit_of(program.last());
+        EXPECT_LT(fit.outside, 1e-9) << start_deg << " " << sweep_deg;
+        EXPECT_LT(fit.loose, 1e-4) << start_deg << " " << sweep_deg;
+      }
+    }
+  }
+}
+
+TEST(MotionGeometry, BoundsOfSpiralHelicesHoldThem) {
+  MotionList program;
+  program.at({10, 0, 0}).arc({-8, 0, -4}, {0, 0, 0}, {0, 0, 1}, 3 * kPi);
+  EXPECT_LT(fit_of(program.last()).outside, 1e-9);
+  EXPECT_NEAR(point_at(program.last(), 1).x, -8, kTight) << "a spiral ends at its end";
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+// A session by itself: what it tells its observer, and where its blank and tools come from.
+#include "twin/session.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace kerf {
+namespace {
+
+class Recorder final : public SessionObserver {
+ public:
+  void on_start(const StockModel& stock) override {
+    ++starts;
+    start_digest = stock.digest();
+  }
+  void on_cut(const StockModel&, std::span<const Motion> motions, double end) override {
+    EXPECT_EQ(starts, 1);
+    EXPECT_GE(end, end_s);
+    moves += motions.size();
+    end_s = end;
+  }
+  int starts = 0;
+  std::size_t moves = 0;
+  double end_s = 0;
+  std::string start_digest;
+};
+
+class SessionTest : public testing::Test {
+ protected:
+  SessionTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "kerf-session-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    options_.program.path = folder_ + "/part.canon";
+    options_.cell_mm = 0.1;
+  }
+  ~SessionTest() override { std::filesystem::remove_all(folder_); }
+
+  void write_listing(const std::string& comments) {
+    std::ofstream(options_.program.path)
+        << "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+        << comments << "    3 N1     SELECT_TOOL(1)\n"
+        << "    4 N1     CHANGE_TOOL(1)\n"
+        << "    5 N2     START_SPINDLE_CLOCKWISE(0)\n"
+        << "    6 N3     STRAIGHT_TRAVERSE(0.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
+        << "    7 N4     SET_FEED_RATE(300.0000)\n"
+        << "    8 N4     STRAIGHT_FEED(0.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n"
+        << "    9 N5     STRAIGHT_FEED(20.0000, 0.0000, -1.0000, 0.0000, 0.0000, 0.0000)\n"
+        << "   10 N6     PROGRAM_END()\n";
+  }
+  Outcome run(std::stop_token stop = {}) {
+    Outcome outcome = Outcome::kFailed;
+    session_ = Session::open(options_, diagnostics_, outcome);
+    if (!session_) return outcome;
+    session_->set_observer(&recorder_);
+    return session_->run(stop, diagnostics_);
+  }
+
+  std::string folder_;
+  SessionOptions options_;
+  Diagnostics diagnostics_;
+  Recorder recorder_;
+  std::unique_ptr<Session> session_;
+};
+
+TEST_F(SessionTest, TellsItsObserverEverythingInOrder) {
+  write_listing("");
+  options_.blank = parse_blank("box:-5,-5,-5:25,5,0").value();
+  options_.tools.push_back(std::move(parse_tool_argument("1=flat:6").value()));
+  ASSERT_EQ(run(), Outcome::kFinished);
+  EXPECT_EQ(recorder_.starts, 1);
+  EXPECT_GE(recorder_.moves, 3U);
+  EXPECT_DOUBLE_EQ(recorder_.end_s, session_->report().motion.duration_s);
+  EXPECT_NE(recorder_.start_digest, session_->report().stock->digest);
+  EXPECT_EQ(session_->report().motion.moves, 3U);
+}
+
+TEST_F(SessionTest, TakesBlankAndToolFromComments) {
+  write_listing(
+      "    2 N..... COMMENT(\"STOCK/BLOCK,30,10,5,5,5,5\")\n"
+      "    2 N..... COMMENT(\"T1 D=6. CR=0. - ZMIN=-1. - flat end mill\")\n");
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->origin, "comment in line 2 (cutviewer)");
+  EXPECT_EQ(report.stock->bounds_mm.size(), Vec3(30, 10, 5));
+  ASSERT_EQ(report.tools.size(), 1U);
+  EXPECT_EQ(report.tools[0].shape, "flat:6");
+  EXPECT_EQ(report.findings.total(), 0U);
+}
+
+TEST_F(SessionTest, CylindersOnTheirSideAreRefused) {
+  write_listing("");
+  options_.blank = parse_blank("cylinder:0,0,-5:25:10:x").value();
+  EXPECT_EQ(run(), Outcome::kUsageError);
+  ASSERT_EQ(diagnostics_.size(), 1U);
+  EXPECT_EQ(diagnostics_[0].message,
+            "--stock: a Z-map cannot hold a cylinder along x; its axis must be z");
+}
+
+TEST_F(SessionTest, StopRequestedBeforehandGivesAPartialOrAWholeReport) {
+  write_listing("");
+  options_.blank = parse_blank("box:-5,-5,-5:25,5,0").value();
+  std::stop_source stop;
+  stop.request_stop();
+  // A listing this short may be read whole before the stop is seen: then the report is complete.
+  const Outcome outcome = run(stop.get_token());
+  EXPECT_EQ(outcome == Outcome::kInterrupted, !session_->report().partial_reason.empty());
+}
+
+}  // namespace
+}  // namespace kerf
