@@ -10,8 +10,7 @@ namespace {
 
 /// What may stand in the parentheses, a letter an argument: n number, c coordinate, i integer, u
 /// length unit, p plane, m motion control mode with its optional tolerance, s quoted string, r raw
-/// text, ? all that follows may be missing,
-/// * anything.
+/// text, ? all that follows may be missing, * anything.
 struct CommandSpec {
   std::string_view spelling;
   const char* arguments;

@@ -44,17 +44,18 @@ enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise
 
 /// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
 /// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
-/// to_mm of the one before, except where an offset change moves the frame under a standing tool:
-/// then too, both ends are true workpiece positions.
+/// to_mm of the one before, except where a tool length offset changes under a standing machine: the
+/// tip (of the new tool) is then elsewhere, and both ends are true workpiece positions.
 struct Motion {
   MotionKind kind = MotionKind::kTraverse;
   SpindleState spindle = SpindleState::kStopped;
   bool flood = false;
   bool mist = false;
   bool feed_per_rev = false;  ///< G95: feed is mm per revolution
-  /// False only for motions before the first one whose start is known: rs274 starts at 0,0,0 and
-  /// the real machine does not, so the first traverse has no true start. kerf must not cut along
-  /// such a move; `to_mm` is right.
+  /// False where the start is not known: in the first motion (rs274 starts at 0,0,0 and the real
+  /// machine does not) and all steps before it, and after a spline, whose points the listing does
+  /// not hold. kerf must not cut along such a move; `to_mm` is right, from_mm equals it, and an arc
+  /// has a sweep of 0.
   bool start_known = true;
   int tool = 0;  ///< tool number in the spindle, 0 = none
   SourceRef source;
@@ -62,10 +63,12 @@ struct Motion {
   Vec3 to_mm{0};
   std::array<double, 3> from_abc_deg{};
   std::array<double, 3> to_abc_deg{};
-  ArcGeometry arc;             ///< kArc only
-  double feed_mm_per_min = 0;  ///< programmed; 0 for traverses
-  double spindle_rpm = 0;      ///< programmed S
-  double duration_s = 0;       ///< kDwell only
+  ArcGeometry arc;  ///< kArc only
+  /// Programmed; 0 for traverses. mm per revolution if feed_per_rev (of a thread: its pitch), and
+  /// degrees/min where only A, B or C move.
+  double feed_mm_per_min = 0;
+  double spindle_rpm = 0;  ///< programmed S; under G96, that at the end of the step
+  double duration_s = 0;   ///< kDwell only
 };
 
 }  // namespace kerf

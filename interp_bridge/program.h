@@ -29,16 +29,18 @@ struct ProgramComment {
 
 /// What to interpret and how.
 struct ProgramOptions {
-  std::string path;  ///< NC file, .canon listing (also .canon text under any name), or "-"
-                     ///< (canonical text on stdin)
-  std::string
-      tool_table_path;       ///< LinuxCNC tool.tbl; empty: the tools the program names, no offsets
+  /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
+  /// stdin.
+  std::string path;
+  /// LinuxCNC tool.tbl in mm. Empty: the tools that the program names, diameter 0. Faults of single
+  /// rows are reported by read_tool_table, not here.
+  std::string tool_table_path;
   bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
   std::string rs274_path = "rs274";  ///< looked up in PATH
-  std::uint64_t max_commands =
-      50'000'000;  ///< canonical commands after which a program counts as endless
-  double max_silent_s =
-      20.0;  ///< seconds without a canonical command after which it counts as endless
+  /// Canonical commands after which a program counts as endless.
+  std::uint64_t max_commands = 50'000'000;
+  /// Seconds without a canonical command after which it counts as endless.
+  double max_silent_s = 20.0;
 };
 
 /// Counts and facts known once the stream has ended (or was stopped).
@@ -47,8 +49,8 @@ struct ProgramSummary {
   std::size_t program_lines = 0;   ///< physical lines of files[0]
   std::string interpreter;         ///< "text" | "canon"
   std::map<std::string, std::uint64_t> canonical_commands;  ///< by name
-  std::vector<std::string>
-      foreign_lines;  ///< text that was not canonical ((PRINT,..), messages), first 100
+  /// Text that was not canonical ((PRINT,..), messages), first 100.
+  std::vector<std::string> foreign_lines;
   std::uint64_t foreign_line_count = 0;
   bool has_program_end = false;    ///< M2, M30 or a closing %
   bool has_rotary_motion = false;  ///< any A, B or C motion
@@ -61,14 +63,14 @@ struct ProgramSummary {
 using MotionSink = std::function<bool(std::span<const Motion>)>;
 
 /// One NC program being read. Streams: memory does not grow with the program's length (other than
-/// the comments of its first 2000 lines).
+/// the comments of its first 2000 lines, and at most 1000 later ones).
 class Program {
  public:
   /// Looks at the source without interpreting it: exists, is a regular readable file (or stdin), is
   /// text, is not empty, rs274 is installed if it is needed. Errors are Diagnostics with exact
   /// texts (tested).
-  static std::unique_ptr<Program> open(const ProgramOptions& options,
-                                       Diagnostics& diagnostics);  ///< null on error
+  /// Null on error.
+  static std::unique_ptr<Program> open(const ProgramOptions& options, Diagnostics& diagnostics);
   virtual ~Program() = default;
 
   /// Comments of the source text, `;` ones included: all that carry a tool or stock hint can be
@@ -82,8 +84,7 @@ class Program {
   virtual ProgramSummary run(const MotionSink& sink, std::stop_token stop,
                              Diagnostics& diagnostics) = 0;
 
-  /// Bytes of the source already interpreted / in all, for a progress bar; any thread. Total 0 =
-  /// not known (stdin).
+  /// Share of the source already interpreted, for a progress bar; any thread.
   virtual double progress() const = 0;  ///< 0..1, or < 0 if not known
 };
 

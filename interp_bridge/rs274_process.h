@@ -29,7 +29,7 @@ std::string find_executable(const std::string& name);
 /// A running rs274. Its listing comes through a pipe that is passed as the output file, so that
 /// rs274 buffers it (its stdout is not buffered: twice the time) and nothing foreign is mixed in.
 /// It runs in its own process group; the destructor kills that group and waits. The child also dies
-/// if this process does. No thread is started.
+/// if this process does, or the thread that started it. No thread is started.
 class Rs274Process {
  public:
   /// Error: "cannot start /usr/bin/rs274: Permission denied".

@@ -13,6 +13,9 @@ namespace {
 /// Cells that a blank gets at most by default: 16 MB of heights, cut and meshed well within a
 /// second.
 constexpr double kMostDefaultCells = 4.0e6;
+/// Above 0.5 mm a cell says little about a part: large blanks get more cells before they get
+/// coarser ones (256 MB of heights).
+constexpr double kMostCoarseCells = 6.4e7;
 /// A blank without thickness or width is no blank: the least size that a guess gives it.
 constexpr double kLeastGuess_mm = 1.0;
 
@@ -147,7 +150,9 @@ double default_cell_mm(const Box& blank_mm) {
       return std::min({cell, size.x, size.y});
     }
   }
-  return kSteps[std::size(kSteps) - 1];
+  double cell = kSteps[std::size(kSteps) - 1];
+  while (size.x / cell * (size.y / cell) > kMostCoarseCells) cell *= 2;
+  return cell;
 }
 
 }  // namespace kerf

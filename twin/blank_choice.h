@@ -35,6 +35,8 @@ class BlankGuess {
   ///   the table)
   /// Without feed moves: around the ends of the traverses. Never empty.
   Blank blank() const;
+  /// False: not one move has been seen.
+  bool has_moves() const { return !all_mm_.empty(); }
 
  private:
   double margin_mm_;
@@ -49,7 +51,8 @@ class BlankGuess {
 };
 
 /// Least of 0.01, 0.02, 0.05, 0.1, 0.2, 0.5 mm that gives the blank at most 4 million cells, so
-/// that a whole run stays a matter of a second; 0.5 mm for blanks larger than 1 m x 1 m.
+/// that a whole run stays a matter of a second; 0.5 mm for blanks larger than 1 m x 1 m, doubled
+/// until there are at most 64 million (above 4 m x 4 m).
 double default_cell_mm(const Box& blank_mm);
 
 }  // namespace kerf

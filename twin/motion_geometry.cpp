@@ -57,16 +57,26 @@ Box bounds_of(const Motion& m) {
   box.extend(m.from_mm);
   if (m.kind != MotionKind::kArc) return box;
   const ArcEnds ends = arc_ends(m);
+  if (ends.r0 <= 0) return box;
   const double radius = std::max(ends.r0, ends.r1);
-  // A circle of radius R about a unit axis n reaches R * sqrt(1 - n_i^2) along coordinate i.
-  Vec3 reach;
+  const Vec3 u = ends.across0 / ends.r0;
+  const Vec3 v = glm::cross(m.arc.axis, u);
+  const double turn = m.arc.sweep_rad < 0 ? -1.0 : 1.0;
   for (int i = 0; i < 3; ++i) {
-    reach[i] = radius * std::sqrt(std::max(0.0, 1.0 - m.arc.axis[i] * m.arc.axis[i]));
-  }
-  for (const double along : {ends.along0, ends.along1}) {
-    const Vec3 center = m.arc.center_mm + along * m.arc.axis;
-    box.extend(center - reach);
-    box.extend(center + reach);
+    // Coordinate i of the circle is greatest at this angle from the start, and least half a turn
+    // on.
+    const double reach = radius * std::hypot(u[i], v[i]);
+    const double greatest = std::atan2(v[i], u[i]);
+    for (const double sign : {1.0, -1.0}) {
+      double angle = turn * (sign > 0 ? greatest : greatest + kPi);
+      angle -= 2 * kPi * std::floor(angle / (2 * kPi));
+      if (angle > std::abs(m.arc.sweep_rad)) continue;
+      for (const double along : {ends.along0, ends.along1}) {
+        const double place = m.arc.center_mm[i] + along * m.arc.axis[i] + sign * reach;
+        box.min[i] = std::min(box.min[i], place);
+        box.max[i] = std::max(box.max[i], place);
+      }
+    }
   }
   return box;
 }

@@ -14,8 +14,9 @@ double path_length_mm(const Motion& motion);
 /// The tip at fraction t in [0, 1] of the way (of the angle, for arcs).
 Vec3 point_at(const Motion& motion, double t);
 
-/// Box around the way of the tip; for a motion whose start is not known, around its end. Arcs: of
-/// the full circle, so possibly larger than the arc itself.
+/// Box around the way of the tip; for a motion whose start is not known, around its end. Exact for
+/// lines and for arcs in a plane; for helices and spirals it may be larger, by the way along the
+/// axis and the change of radius at most.
 Box bounds_of(const Motion& motion);
 
 /// Feed, arc, thread: moves that are meant to cut.

@@ -207,6 +207,7 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
   if (stop.stop_requested() && report_.program.stopped_early) return true;
   const Blank blank = guess.blank();
   if (!create_stock(blank, "guessed", diagnostics, outcome)) return false;
+  if (!guess.has_moves()) return true;  // nothing will be cut: nothing to warn of
   Finding finding;
   finding.id = FindingId::kStockGuessed;
   finding.severity = Severity::kWarning;

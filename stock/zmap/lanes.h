@@ -19,6 +19,14 @@ namespace kerf::KERF_LANES_NAMESPACE {
 
 #if defined(KERF_LANES_AVX2)
 
+/// Four numbers; only what a list of blocks needs.
+struct F4 {
+  __m128 v;
+  static F4 of(float a, float b, float c, float d) { return {_mm_set_ps(d, c, b, a)}; }
+};
+inline F4 operator+(F4 a, F4 b) { return {_mm_add_ps(a.v, b.v)}; }
+inline void store(float* p, F4 a) { _mm_store_ps(p, a.v); }
+
 struct MaskF {
   __m256 v;
 };
@@ -113,6 +121,19 @@ inline MaskF to_float(MaskD a) {
 }
 
 #else
+
+/// Four numbers; only what a list of blocks needs.
+struct F4 {
+  float v[4];
+  static F4 of(float a, float b, float c, float d) { return {{a, b, c, d}}; }
+};
+inline F4 operator+(F4 a, F4 b) {
+  for (int i = 0; i < 4; ++i) a.v[i] += b.v[i];
+  return a;
+}
+inline void store(float* p, F4 a) {
+  for (int i = 0; i < 4; ++i) p[i] = a.v[i];
+}
 
 struct MaskF {
   std::int32_t v[8];

@@ -135,11 +135,9 @@ void PathBuilder::stand_at(const Vec3& tip, std::uint32_t report, std::vector<Sw
   standing_ = tip;
 }
 
-void PathBuilder::finish(std::vector<SweepOp>& ops) {
-  if (!pending_) return;
-  const Segment s = *pending_;
-  pending_.reset();
-  SweepOp op;
+SweepOp& PathBuilder::push_strip(std::vector<SweepOp>& ops) {
+  const Segment& s = *pending_;
+  SweepOp& op = ops.emplace_back();
   op.kind = SweepOp::Kind::kStrip;
   op.report = s.report;
   op.x = s.from.x;
@@ -151,8 +149,14 @@ void PathBuilder::finish(std::vector<SweepOp>& ops) {
   op.length = s.length;
   op.use_double = std::abs(s.slope) > kSlopeForFloat;
   set_box(op, s.from, s.to);
-  ops.push_back(op);
-  stand_at(s.to, s.report, ops);
+  return op;
+}
+
+void PathBuilder::finish(std::vector<SweepOp>& ops) {
+  if (!pending_) return;
+  push_strip(ops);
+  stand_at(pending_->to, pending_->report, ops);
+  pending_.reset();
 }
 
 void PathBuilder::add_segment(const Vec3& from, const Vec3& to, std::uint32_t report,
@@ -170,28 +174,25 @@ void PathBuilder::add_segment(const Vec3& from, const Vec3& to, std::uint32_t re
   s.cos = dx / s.length;
   s.sin = dy / s.length;
   s.slope = (to.z - from.z) / s.length;
-  if (pending_) {
-    const Segment& p = *pending_;
-    const double p_slope = p.slope;
-    const double turn = p.cos * s.sin - p.sin * s.cos, ahead = p.cos * s.cos + p.sin * s.sin;
-    if (p.to == from && ahead > 0 && std::abs(turn) < kJoinTurn) {
-      const std::size_t strip = ops.size();
-      finish(ops);
-      ops.resize(strip + 1);  // the wedge replaces the cap
-      SweepOp& op = ops.back();
+  if (pending_ && pending_->to == from) {
+    const double turn = pending_->cos * s.sin - pending_->sin * s.cos;
+    const double ahead = pending_->cos * s.cos + pending_->sin * s.sin;
+    if (ahead > 0 && std::abs(turn) < kJoinTurn) {
+      SweepOp& op = push_strip(ops);
+      op.straight_on = std::abs(turn) <= kStraightOn;
       // Straight on and not steeper: the next strip begins where this one ends, or before. (The
       // contact point moves ahead as the slope grows.)
-      op.straight_on = std::abs(turn) <= kStraightOn;
-      op.joined = !op.straight_on || s.slope > p_slope;
+      op.joined = !op.straight_on || s.slope > pending_->slope;
       op.next_cos = s.cos;
       op.next_sin = s.sin;
       op.next_slope = s.slope;
       op.use_double = op.use_double || std::abs(s.slope) > kSlopeForFloat;
+      pending_ = s;
       standing_ = from;
-    } else {
-      finish(ops);
+      return;
     }
   }
+  finish(ops);
   stand_at(from, report, ops);
   pending_ = s;
 }

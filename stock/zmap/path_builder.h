@@ -46,6 +46,7 @@ class PathBuilder {
                    std::vector<SweepOp>& ops);
   void add_chords(const CutMove& move, std::uint32_t report, std::vector<SweepOp>& ops);
   void add_level_arc(const CutMove& move, std::uint32_t report, std::vector<SweepOp>& ops);
+  SweepOp& push_strip(std::vector<SweepOp>& ops);  ///< of pending_
   void stand_at(const Vec3& tip, std::uint32_t report, std::vector<SweepOp>& ops);
 
   std::optional<Segment> pending_;

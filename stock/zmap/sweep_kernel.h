@@ -58,16 +58,19 @@ inline int floor_int(double x) {
 
 /// Blocks to be worked off. p, q: position of the block's first cell in the frame of the sweep
 /// (strip: u, v; else x, y from its centre); track: height of a strip's track there.
-struct Block {
-  float p, q, track;
-  std::int32_t bi, bj;
+struct alignas(32) Block {
+  float p, q, track, unused;
+  std::int64_t where;  ///< row * 2^32 + column of the block
   float* cells;
+  int bi() const { return static_cast<int>(where & 0x7fffffff); }
+  int bj() const { return static_cast<int>(where >> 32); }
 };
 constexpr int kListBlocks = 256;
 
+/// Takes one more run than kListBlocks: it is emptied before a run is added when it is above.
 struct WorkList {
   int count = 0;
-  Block blocks[kListBlocks];
+  Block blocks[kListBlocks + kTileBlocks + 1];
 };
 
 /// Blocks that lie well within the width of a strip, and those that may reach its edge.
@@ -137,7 +140,7 @@ template <class EvalD>
 inline void evaluate_double(const SweepContext& c, const Frame& f, const Block& b, int half,
                             const EvalD& eval, const BlockOffsets<D8>& offsets, F8& z,
                             MaskF& inside) {
-  const double x = c.center_x(b.bi), y = c.center_y(b.bj);
+  const double x = c.center_x(b.bi()), y = c.center_y(b.bj());
   const double p = x * f.cos + y * f.sin, q = y * f.cos - x * f.sin;
   D8 zd;
   MaskD inside_d, ignored;
@@ -194,7 +197,7 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
       eval_in_memory;  // a local whose address nobody has: its constants stay in registers
   const BlockOffsets<F8> offsets(c.grid, f.cos, f.sin, f.slope);
   Lowering lowering(c.grid);
-  std::int16_t unsettled[2 * kListBlocks];
+  std::int16_t unsettled[2 * (kListBlocks + kTileBlocks + 1)];
   int unsettled_count = 0;
   for (int n = 0; n < list.count; ++n) {
     const Block& b = list.blocks[n];
@@ -245,12 +248,13 @@ inline RunStart run_start(const SweepContext& c, const Frame& f, int bi, int bj)
   return {static_cast<float>(p), static_cast<float>(q), static_cast<float>(c.op.z + f.slope * p)};
 }
 
-/// Puts runs of blocks on the list and works it off when full.
+/// Puts runs of blocks on the lists and works them off when full.
 template <class Flush>
 class RunWriter {
  public:
   /// Blocks whose centre lies within `interior_mm` of the track are interior (none if negative).
-  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm, const Flush& flush)
+  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm,
+            const Flush& flush)
       : c_(c),
         lists_(lists),
         frame_(f),
@@ -259,10 +263,11 @@ class RunWriter {
         to_center_(static_cast<float>(1.5 * (c.grid.cell_y * f.cos - c.grid.cell_x * f.sin))),
         dp_(static_cast<float>(4 * c.grid.cell_x * f.cos)),
         dq_(static_cast<float>(-4 * c.grid.cell_x * f.sin)),
-        dt_(static_cast<float>(f.slope * 4 * c.grid.cell_x * f.cos)) {}
+        dt_(static_cast<float>(f.slope * 4 * c.grid.cell_x * f.cos)),
+        step_(F4::of(dp_, dq_, dt_, 0)) {}
 
   /// Blocks b0..b1 of row bj; positions computed afresh in double precision in each tile.
-  void add(int bj, int b0, int b1) {
+  [[gnu::noinline]] void add(int bj, int b0, int b1) {
     for (int bi = b0; bi <= b1;) {
       const int tile_end = bi | (kTileBlocks - 1), last = tile_end < b1 ? tile_end : b1;
       put(bj, bi, last, run_start(c_, frame_, bi, bj));
@@ -270,35 +275,65 @@ class RunWriter {
     }
   }
   /// The same for a short run whose start is known.
-  void add(int bj, int b0, int b1, RunStart start) {
-    for (int bi = b0; bi <= b1;) {
-      const int tile_end = bi | (kTileBlocks - 1), last = tile_end < b1 ? tile_end : b1;
-      start = put(bj, bi, last, start);
-      bi = last + 1;
-    }
+  [[gnu::always_inline]] void add(int bj, int b0, int b1, RunStart start) {
+    if (b1 <= (b0 | (kTileBlocks - 1))) [[likely]]
+      put(bj, b0, b1, start);
+    else
+      add_across_tiles(bj, b0, b1, start);
   }
 
  private:
-  RunStart put(int bj, int b0, int b1, RunStart at) {
+  [[gnu::always_inline]] void put(int bj, int b0, int b1, RunStart at) {
     const int count = b1 - b0 + 1;
-    WorkList* const lists[2] = {&lists_.interior, &lists_.edge};
-    if (lists[0]->count + count > kListBlocks || lists[1]->count + count > kListBlocks) flush_();
-    const int tile = (bj / kTileBlocks) * c_.grid.tiles_x + b0 / kTileBlocks;
-    float* cells = c_.tile(tile) + ((bj % kTileBlocks) * kTileBlocks + b0 % kTileBlocks) * 16;
-    for (int bi = b0; bi <= b1; ++bi, cells += 16) {
-      WorkList& list = *lists[!(__builtin_fabsf(at.q + to_center_) <= interior_)];
-      list.blocks[list.count++] = {at.p, at.q, at.track, bi, bj, cells};
-      at = {at.p + dp_, at.q + dq_, at.track + dt_};
+    if (lists_.interior.count > kListBlocks || lists_.edge.count > kListBlocks) flush_();
+    const unsigned column = static_cast<unsigned>(b0), row = static_cast<unsigned>(bj);
+    const unsigned tile =
+        row / kTileBlocks * static_cast<unsigned>(c_.grid.tiles_x) + column / kTileBlocks;
+    float* cells = c_.tile(static_cast<int>(tile)) +
+                   (row % kTileBlocks * kTileBlocks + column % kTileBlocks) * 16;
+    const std::int64_t where = (static_cast<std::int64_t>(bj) << 32) + b0;
+    F4 place = F4::of(at.p, at.q, at.track, 0);
+    if (count <= kBlindBlocks) {
+      // Written whether needed or not: cheaper than guessing wrongly how many there are.
+      const float q_first = at.q + to_center_,
+                  q_last = q_first + static_cast<float>(count - 1) * dq_;
+      WorkList& list = is_interior(q_first) & is_interior(q_last) ? lists_.interior : lists_.edge;
+      Block* out = list.blocks + list.count;
+      for (int k = 0; k < kBlindBlocks; ++k, place = place + step_)
+        write(out[k], place, where + k, cells + 16 * k);
+      list.count += count;
+      return;
     }
-    return at;
+    float q = at.q + to_center_;
+    for (int k = 0; k < count; ++k, place = place + step_, q += dq_) {
+      WorkList& list = is_interior(q) ? lists_.interior : lists_.edge;
+      write(list.blocks[list.count++], place, where + k, cells + 16 * k);
+    }
   }
+  static void write(Block& block, F4 place, std::int64_t where, float* cells) {
+    store(&block.p, place);
+    block.where = where;
+    block.cells = cells;
+  }
+  [[gnu::noinline]] void add_across_tiles(int bj, int b0, int b1, RunStart at) {
+    while (b0 <= b1) {
+      const int tile_end = b0 | (kTileBlocks - 1), last = tile_end < b1 ? tile_end : b1;
+      put(bj, b0, last, at);
+      const float n = static_cast<float>(last + 1 - b0);
+      at = {at.p + n * dp_, at.q + n * dq_, at.track + n * dt_};
+      b0 = last + 1;
+    }
+  }
+  bool is_interior(float q_center) const { return __builtin_fabsf(q_center) <= interior_; }
 
+  static constexpr int kBlindBlocks = 3;
   SweepContext& c_;
   WorkLists& lists_;
   const Frame& frame_;
   const Flush& flush_;
   float interior_, to_center_;
   float dp_, dq_, dt_;
+  F4 step_;
 };
 
 /// Squared-radius band beside the wall in which single precision is not trusted; `reach` bounds the
@@ -315,10 +350,12 @@ inline double unsure_band(const ConvexTool& tool, double steepness, double reach
 /// What follows a strip: nothing, a strip in the same direction, or one that turns.
 enum class Joint { kNone, kStraight, kTurned };
 
-/// Distance from the track within which a strip's cells are so far from the tool's wall that no test against it is needed;
-/// negative if there is none. Balls only: their contact point keeps away from the equator by w / sqrt(1 + s^2) with
-/// w = sqrt(R^2 - v^2), and so does a wedge between two strips in nearly the same direction.
-inline double interior_width(const ConvexTool& tool, const SweepOp& op, double band, double half_block) {
+/// Distance from the track within which a strip's cells are so far from the tool's wall that no
+/// test against it is needed; negative if there is none. Balls only: their contact point keeps away
+/// from the equator by w / sqrt(1 + s^2) with w = sqrt(R^2 - v^2), and so does a wedge between two
+/// strips in nearly the same direction.
+inline double interior_width(const ConvexTool& tool, const SweepOp& op, double band,
+                             double half_block) {
   if (tool.kind != ConvexTool::Kind::kBall || op.kind != SweepOp::Kind::kStrip) return -1;
   double steepest2 = op.slope * op.slope, turn = 0;
   if (op.joined) {

@@ -181,7 +181,8 @@ void walk_ring(const SweepContext& c, double inner, double outer, Out& out) {
 }
 
 template <class Flush>
-void sweep_rows(SweepContext& c, WorkLists& lists, const Frame& frame, double interior_mm, const Flush& flush) {
+void sweep_rows(SweepContext& c, WorkLists& lists, const Frame& frame, double interior_mm,
+                const Flush& flush) {
   const SweepOp& op = c.op;
   RunWriter<Flush> out(c, lists, frame, interior_mm, flush);
   if (op.kind == SweepOp::Kind::kStrip)

@@ -260,14 +260,18 @@ Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
 
 Done ZMap::can_cut(const Cutter& cutter) {
   if (cutter.undercuts()) {
-    return Error{fmt::format("{} cuts below itself (its neck is thinner than its head); a Z-map cannot hold undercuts",
-                             cutter.spec())};
+    return Error{fmt::format(
+        "{} cuts below itself (its neck is thinner than its head); a Z-map cannot hold undercuts",
+        cutter.spec())};
   }
   for (const ProfilePiece& piece : cutter.profile()) {
-    const bool bulges_down = piece.kind == ProfilePiece::Kind::kArc && piece.convex && piece.r0 < piece.center_r - 1e-9;
+    const bool bulges_down =
+        piece.kind == ProfilePiece::Kind::kArc && piece.convex && piece.r0 < piece.center_r - 1e-9;
     if (piece.z1 < piece.z0 - 1e-9 || bulges_down) {
-      return Error{fmt::format("{} has a hollow bottom (its profile falls from radius {:.6g} outward); a Z-map cannot cut with it",
-                               cutter.spec(), piece.r0)};
+      return Error{
+          fmt::format("{} has a hollow bottom (its profile falls from radius {:.6g} outward); a "
+                      "Z-map cannot cut with it",
+                      cutter.spec(), piece.r0)};
     }
   }
   return std::monostate{};

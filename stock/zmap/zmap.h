@@ -34,8 +34,9 @@ class ZMap final : public StockModel {
   /// (then the message says how much memory it would take), or if a body cannot be held (cylinder
   /// along x or y).
   static Result<std::unique_ptr<ZMap>> create(const ZMapOptions& options);
-  /// Error if the cutter has an undercut or a hollow bottom: what it cuts has several surfaces above one
-  /// point, or none that depends on one height only. cut() must not be given such a cutter.
+  /// Error if the cutter has an undercut or a hollow bottom: what it cuts has several surfaces
+  /// above one point, or none that depends on one height only. cut() must not be given such a
+  /// cutter.
   static Done can_cut(const Cutter& cutter);
   ~ZMap() override;
 

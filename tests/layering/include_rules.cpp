@@ -135,7 +135,8 @@ std::vector<std::string> check_includes(std::string_view path, std::string_view 
   const std::string_view rights = is_test ? path.substr(6) : path;
   std::vector<std::string> violations;
   for (const IncludeLine& include : find_includes(source_text)) {
-    std::string fault = check_library_include(rights, include.target);
+    const bool is_bound = !is_test || rule_for(rights) != nullptr;
+    std::string fault = is_bound ? check_library_include(rights, include.target) : "";
     if (fault.empty() && include.quoted) {
       fault = check_project_include(rights, is_test, include.target, project_files);
     }

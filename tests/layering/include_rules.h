@@ -29,7 +29,7 @@ std::vector<IncludeLine> find_includes(std::string_view source_text);
 /// - A header of an outside library appears only in the folder that wraps this library.
 /// - A file under tests/FOLDER has the rights of FOLDER, and may include headers of tests; no other
 /// file may. Tests of
-///   several folders (bench, fuzz, ...) may include everything of the project.
+///   several folders (bench, fuzz, ...) may include everything.
 std::vector<std::string> check_includes(std::string_view path, std::string_view source_text,
                                         const std::set<std::string>& project_files);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <vector>
 
@@ -10,95 +11,86 @@
 
 namespace kerf::test {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Height over (x, y) that one move leaves, and how close the point comes to the edge of the sweep
 /// seen from above.
 struct OracleHeight {
-  double z = std::numeric_limits<double>::infinity();
-  double edge_distance =
-      std::numeric_limits<double>::infinity();  ///< |distance to the path - radius|, mm
+  double z = kInfinity;
+  double edge_distance = kInfinity;  ///< |distance to the path - radius|, mm
 };
 
 inline Vec3 tip_at(const CutMove& m, double t) {
   if (!m.arc) return m.from_mm + t * (m.to_mm - m.from_mm);
   const Vec3 c = m.arc->center_mm, axis = m.arc->axis;
-  const auto dot = [](const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-  const auto cross = [](const Vec3& a, const Vec3& b) {
-    return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-  };
   const Vec3 from = m.from_mm - c, to = m.to_mm - c;
-  const double rise0 = dot(from, axis), rise1 = dot(to, axis);
+  const double rise0 = glm::dot(from, axis), rise1 = glm::dot(to, axis);
   const Vec3 a = from - rise0 * axis;
-  const double r0 = std::sqrt(dot(a, a)), r1 = std::sqrt(dot(to - rise1 * axis, to - rise1 * axis));
-  const Vec3 u = a / r0, v = cross(axis, u);
+  const double r0 = glm::length(a), r1 = glm::length(to - rise1 * axis);
+  const Vec3 u = a / r0, v = glm::cross(axis, u);
   const double angle = t * m.arc->sweep_rad;
   return c + (r0 + t * (r1 - r0)) * (std::cos(angle) * u + std::sin(angle) * v) +
          (rise0 + t * (rise1 - rise0)) * axis;
 }
 
-/// Dense samples, then golden-section search around the best few.
+/// Least value of f on a..b, if it has one minimum there.
+template <class F>
+double golden_minimum(const F& f, double a, double b) {
+  const double golden = 0.6180339887498949;
+  double c = b - golden * (b - a), d = a + golden * (b - a), fc = f(c), fd = f(d);
+  for (int i = 0; i < 60; ++i) {
+    if (fc < fd) {
+      b = d, d = c, fd = fc, c = b - golden * (b - a), fc = f(c);
+    } else {
+      a = c, c = d, fc = fd, d = a + golden * (b - a), fd = f(d);
+    }
+  }
+  return std::min({fc, fd, f(a), f(b)});
+}
+
+/// Samples of the path, golden-section search around every lowest one, bisection where the rim of
+/// the tool passes over the point.
 inline OracleHeight sweep_height(const Cutter& cutter, const CutMove& m, double x, double y,
-                                 int samples = 400) {
+                                 int samples) {
   OracleHeight out;
   const double radius = cutter.radius_mm();
   const auto distance = [&](double t) {
     const Vec3 p = tip_at(m, t);
     return std::hypot(x - p.x, y - p.y);
   };
+  // Beyond the rim a value that still falls toward it, so that a search finds a path that only
+  // grazes the point.
   const auto height = [&](double t) {
     const double d = distance(t);
-    return d <= radius ? tip_at(m, t).z + cutter.height_mm(d)
-                       : std::numeric_limits<double>::infinity();
+    return d <= radius ? tip_at(m, t).z + cutter.height_mm(d) : 1e9 + d;
   };
-  const auto refine = [](const auto& f, double a, double b) {
-    const double golden = 0.6180339887498949;
-    double c = b - golden * (b - a), d = a + golden * (b - a), fc = f(c), fd = f(d);
-    for (int i = 0; i < 80; ++i) {
-      if (fc < fd) {
-        b = d, d = c, fd = fc, c = b - golden * (b - a), fc = f(c);
-      } else {
-        a = c, c = d, fc = fd, d = a + golden * (b - a), fd = f(d);
-      }
-    }
-    return std::min({fc, fd, f(a), f(b)});
-  };
-  std::vector<double> z(static_cast<std::size_t>(samples) + 1), d(z.size());
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    const double t = static_cast<double>(i) / samples;
-    z[i] = height(t);
-    d[i] = distance(t);
-  }
+  const std::size_t n = static_cast<std::size_t>(samples);
   const auto at = [&](std::size_t i) { return static_cast<double>(i) / samples; };
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    const std::size_t before = i == 0 ? 0 : i - 1, after = i + 1 < z.size() ? i + 1 : i;
-    if (d[i] <= d[before] && d[i] <= d[after])
-      nearest = std::min(nearest, refine(distance, at(before), at(after)));
-    out.z = std::min(out.z, z[i]);
-    if (z[i] <= z[before] && z[i] <= z[after] && std::isfinite(z[i]))
-      out.z = std::min(out.z, refine(height, at(before), at(after)));
-    // The lowest point may lie where the rim passes over the point: find that crossing.
-    for (const std::size_t j : {before, after}) {
-      if ((d[i] <= radius) == (d[j] <= radius)) continue;
-      double in = d[i] <= radius ? at(i) : at(j), outside = d[i] <= radius ? at(j) : at(i);
-      for (int step = 0; step < 60; ++step) {
-        const double mid = 0.5 * (in + outside);
-        (distance(mid) <= radius ? in : outside) = mid;
-      }
-      out.z = std::min(out.z, height(in));
-    }
+  std::vector<double> d(n + 1), z(n + 1);
+  double widest_step = 0;
+  for (std::size_t i = 0; i <= n; ++i) {
+    d[i] = distance(at(i));
+    if (i > 0)
+      widest_step = std::max(widest_step, glm::length(tip_at(m, at(i)) - tip_at(m, at(i - 1))));
   }
-  // A path that only grazes the point between two samples.
-  for (std::size_t i = 0; i + 1 < z.size(); ++i)
-    if (d[i] > radius && d[i + 1] > radius && nearest <= radius &&
-        std::min(d[i], d[i + 1]) < radius + 0.5)
-      out.z = std::min(
-          out.z,
-          refine([&](double t) { return distance(t) <= radius ? height(t) : 1e9 + distance(t); },
-                 at(i), at(i + 1)) < 1e8
-              ? refine(
-                    [&](double t) { return distance(t) <= radius ? height(t) : 1e9 + distance(t); },
-                    at(i), at(i + 1))
-              : out.z);
+  if (*std::min_element(d.begin(), d.end()) > radius + widest_step) return out;
+  for (std::size_t i = 0; i <= n; ++i) z[i] = height(at(i));
+  double nearest = kInfinity, lowest = kInfinity;
+  for (std::size_t i = 0; i <= n; ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, n);
+    if (d[i] <= d[before] && d[i] <= d[after])
+      nearest = std::min(nearest, golden_minimum(distance, at(before), at(after)));
+    if (z[i] <= z[before] && z[i] <= z[after])
+      lowest = std::min(lowest, golden_minimum(height, at(before), at(after)));
+    if (i == n || (d[i] <= radius) == (d[i + 1] <= radius)) continue;
+    double in = d[i] <= radius ? at(i) : at(i + 1), beyond = d[i] <= radius ? at(i + 1) : at(i);
+    for (int step = 0; step < 60; ++step) {
+      const double mid = 0.5 * (in + beyond);
+      (distance(mid) <= radius ? in : beyond) = mid;
+    }
+    lowest = std::min(lowest, height(in));
+  }
+  if (lowest < 1e8) out.z = lowest;
   out.edge_distance = std::abs(nearest - radius);
   return out;
 }

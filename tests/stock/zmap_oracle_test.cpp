@@ -101,7 +101,7 @@ TEST_P(EveryShape, SingleStraightMovesMatchTheOracle) {
   std::mt19937 random(20240601);
   std::uniform_real_distribution<double> xy(-1, 13), z(-9, 2), unit(0, 1);
   int cut_cells = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 42; ++round) {
     Vec3 from(xy(random), xy(random), z(random)), to(xy(random), xy(random), z(random));
     switch (round % 6) {
       case 0:
@@ -128,10 +128,10 @@ TEST_P(EveryShape, SingleStraightMovesMatchTheOracle) {
     const auto map = make_map("box:0,0,-12:12,12,0", 0.25);
     const std::vector<CutMove> moves{line(from, to)};
     cut_all(*map, *cutter, moves);
-    cut_cells += compare(*map, *cutter, moves, 1, 60).cut_cells;
+    cut_cells += compare(*map, *cutter, moves, 2, 40).cut_cells;
     if (HasFailure()) return;
   }
-  EXPECT_GT(cut_cells, 5000);
+  EXPECT_GT(cut_cells, 500);
 }
 
 TEST_P(EveryShape, PathsOfShortSegmentsMatchTheOracle) {
@@ -139,7 +139,7 @@ TEST_P(EveryShape, PathsOfShortSegmentsMatchTheOracle) {
   ASSERT_TRUE(cutter);
   std::mt19937 random(77);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < 4; ++round) {
     SCOPED_TRACE(testing::Message() << "round " << round);
     std::vector<CutMove> moves;
     Vec3 at(2, 6 + 3 * unit(random), -2 + unit(random));
@@ -155,7 +155,7 @@ TEST_P(EveryShape, PathsOfShortSegmentsMatchTheOracle) {
     }
     const auto map = make_map("box:0,0,-12:12,12,0", 0.25);
     cut_all(*map, *cutter, moves);
-    compare(*map, *cutter, moves, 2, 8);
+    compare(*map, *cutter, moves, 3, 6);
     if (HasFailure()) return;
   }
 }
@@ -186,7 +186,7 @@ TEST_P(EveryShape, LevelArcsAndHelicesMatchTheOracle) {
                                     << sweep << " dz " << dz);
     const auto map = make_map("box:0,0,-12:12,12,0", 0.25);
     cut_all(*map, *cutter, {move});
-    compare(*map, *cutter, {move}, 2, 600);
+    compare(*map, *cutter, {move}, 3, 400);
     if (HasFailure()) return;
   }
 }
@@ -196,9 +196,9 @@ TEST_P(EveryShape, AFineGridMatchesTheOracleNearWalls) {
   ASSERT_TRUE(cutter);
   const std::vector<CutMove> moves{line(Vec3(1, 1.7, -1), Vec3(2.9, 2.3, -1.5)),
                                    line(Vec3(2.9, 2.3, -1.5), Vec3(3, 3.4, -1.1))};
-  const auto map = make_map("box:0,0,-12:4,4,0", 0.02);
+  const auto map = make_map("box:0,0,-12:4,4,0", 0.04);
   cut_all(*map, *cutter, moves);
-  const Worst worst = compare(*map, *cutter, moves, 1, 30);
+  const Worst worst = compare(*map, *cutter, moves, 1, 12);
   RecordProperty("worst_mm", std::to_string(worst.error));
 }
 
@@ -216,7 +216,7 @@ TEST(ZMapOracle, ArcsInOtherPlanesStayWithinTheChordTolerance) {
   for (int j = 0; j < map->ny(); ++j) {
     for (int i = 0; i < map->nx(); ++i) {
       const double x = box.min.x + (i + 0.5) * 0.25, y = box.min.y + (j + 0.5) * 0.25;
-      const test::OracleHeight h = sweep_height(*cutter, move, x, y, 800);
+      const test::OracleHeight h = sweep_height(*cutter, move, x, y, 300);
       if (h.edge_distance < 0.05)
         continue;  // walls: a micrometre sideways is more than one in height
       // 1 um chord error, seen at slopes up to 89 degrees of the ball's flank.
