@@ -5,7 +5,7 @@
 
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/canonical_reader.h"
-#include "program_test_support.h"
+#include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
 namespace {

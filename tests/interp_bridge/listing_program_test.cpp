@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "program_test_support.h"
+#include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
 namespace {

@@ -7,7 +7,7 @@
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/rs274_process.h"
 #include "interp_bridge/tool_table.h"
-#include "program_test_support.h"
+#include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "interp_bridge/rs274_process.h"
-#include "program_test_support.h"
+#include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
 namespace {

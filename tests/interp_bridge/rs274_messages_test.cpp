@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "program_test_support.h"
+#include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
 namespace {

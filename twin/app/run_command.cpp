@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <stop_token>
@@ -37,9 +38,9 @@ void print_findings(const Report& report, bool quiet) {
 
 /// The second Ctrl-C: the interpreter ends on the stop request already made and takes its temporary
 /// folder with it; it gets a moment for that. Half-written files go as well.
-void abandon(const Session& session) {
+void abandon(const std::atomic<Session*>& session) {
   constexpr int kTries = 200;
-  for (int i = 0; i < kTries && session.interpreting(); ++i) {
+  for (int i = 0; i < kTries && session.load() && session.load()->interpreting(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   remove_uncommitted_files();
@@ -65,13 +66,15 @@ int run_command(const RunArguments& arguments) {
   check_output_places(request.outputs, diagnostics);
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
+  // Before the session is opened: filling a large blank takes its time, too.
+  std::stop_source stop;
+  std::atomic<Session*> opened{nullptr};
+  const StopSignals signals(stop, [&] { abandon(opened); });
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
   print(diagnostics);
   if (!session) return exit_code(outcome, Report{}, diagnostics);
   diagnostics.clear();
-
-  std::stop_source stop;
-  const StopSignals signals(stop, [&] { abandon(*session); });
+  opened = session.get();
   {
     const ProgressBar bar([&] { return session->progress(); }, !request.quiet);
     outcome = session->run(stop.get_token(), diagnostics);
