@@ -146,6 +146,7 @@ SweepOp& PathBuilder::push_strip(std::vector<SweepOp>& ops) {
   op.cos = s.cos;
   op.sin = s.sin;
   op.slope = s.slope;
+  op.slope_m = s.slope_m;
   op.length = s.length;
   op.use_double = std::abs(s.slope) > kSlopeForFloat;
   set_box(op, s.from, s.to);
@@ -174,6 +175,7 @@ void PathBuilder::add_segment(const Vec3& from, const Vec3& to, std::uint32_t re
   s.cos = dx / s.length;
   s.sin = dy / s.length;
   s.slope = (to.z - from.z) / s.length;
+  s.slope_m = std::sqrt(1 + s.slope * s.slope);
   if (pending_ && pending_->to == from) {
     const double turn = pending_->cos * s.sin - pending_->sin * s.cos;
     const double ahead = pending_->cos * s.cos + pending_->sin * s.sin;
@@ -186,6 +188,7 @@ void PathBuilder::add_segment(const Vec3& from, const Vec3& to, std::uint32_t re
       op.next_cos = s.cos;
       op.next_sin = s.sin;
       op.next_slope = s.slope;
+      op.next_m = s.slope_m;
       op.use_double = op.use_double || std::abs(s.slope) > kSlopeForFloat;
       pending_ = s;
       standing_ = from;

@@ -40,7 +40,7 @@ class PathBuilder {
   struct Segment {
     Vec3 from{0}, to{0};
     std::uint32_t report = 0;
-    double length = 0, cos = 1, sin = 0, slope = 0;
+    double length = 0, cos = 1, sin = 0, slope = 0, slope_m = 1;
   };
   void add_segment(const Vec3& from, const Vec3& to, std::uint32_t report,
                    std::vector<SweepOp>& ops);

@@ -38,6 +38,9 @@ constexpr double kEdgeTie_mm = 1e-9;
 constexpr double kStripOverlap_mm = 1e-4;
 /// Height error that single precision may cause; half of the 1e-4 mm that kerf promises.
 constexpr double kSinglePrecision_mm = 5e-5;
+/// Height of a sweep where it does not come: above every blank, finite so that arithmetic stays
+/// tame.
+constexpr double kNowhere = 1e30;
 /// Slack of block bounds: they may include too much, never too little.
 constexpr float kBoundSlack_mm = 1e-3f;
 /// A strip that extends no farther than this from its start has block positions computed in single
@@ -135,29 +138,26 @@ struct Frame {
   double cos = 1, sin = 0, slope = 0;
 };
 
-/// Height and coverage of half a block in double precision.
+/// Heights of half a block in double precision.
 template <class EvalD>
-inline void evaluate_double(const SweepContext& c, const Frame& f, const Block& b, int half,
-                            const EvalD& eval, const BlockOffsets<D8>& offsets, F8& z,
-                            MaskF& inside) {
+inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b, int half,
+                          const EvalD& eval, const BlockOffsets<D8>& offsets) {
   const double x = c.center_x(b.bi()), y = c.center_y(b.bj());
   const double p = x * f.cos + y * f.sin, q = y * f.cos - x * f.sin;
-  D8 zd;
-  MaskD inside_d, ignored;
-  eval(D8::all(p) + offsets.p[half], D8::all(q) + offsets.q[half],
-       D8::all(c.op.z + f.slope * p) + offsets.track[half], zd, inside_d, ignored);
-  z = to_float(zd);
-  inside = to_float(inside_d);
+  MaskD ignored;
+  return to_float(
+      eval.template at<false>(D8::all(p) + offsets.p[half], D8::all(q) + offsets.q[half],
+                              D8::all(c.op.z + f.slope * p) + offsets.track[half], ignored));
 }
 
-/// Lowers half a block to z where inside.
+/// Lowers half a block to z (infinity where the sweep does not come).
 struct Lowering {
   F8 floor, deepest = F8::all(0), unit = F8::all(static_cast<float>(1 / kRemovedUnit_mm));
   I8 removed = I8::zero();
   explicit Lowering(const GridView& grid) : floor(F8::all(grid.floor)) {}
-  void apply(float* cells, F8 z, MaskF inside) {
+  void apply(float* cells, F8 z) {
     const F8 old = F8::load(cells);
-    const F8 now = select(inside, min(old, max(z, floor)), old);
+    const F8 now = min(max(z, floor), old);
     store(cells, now);
     const F8 gone = old - now;
     removed = removed + round_to_int(gone * unit);
@@ -181,17 +181,14 @@ template <class EvalD>
   for (int n = 0; n < count; ++n) {
     const Block& b = list.blocks[halves[n] / 2];
     const int half = halves[n] % 2;
-    F8 z;
-    MaskF inside;
-    evaluate_double(c, f, b, half, eval, offsets, z, inside);
-    lowering.apply(b.cells + 8 * half, z, inside);
+    lowering.apply(b.cells + 8 * half, evaluate_double(c, f, b, half, eval, offsets));
   }
   lowering.add_to(c);
 }
 
 /// Lowers the cells of the listed blocks to what `eval` says, in single precision where that is
 /// sure.
-template <class EvalD, class EvalF>
+template <class EvalD, bool kInterior, class EvalF>
 void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval_in_memory) {
   const EvalF eval =
       eval_in_memory;  // a local whose address nobody has: its constants stay in registers
@@ -203,17 +200,16 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
     const Block& b = list.blocks[n];
     const F8 p = F8::all(b.p), q = F8::all(b.q), track = F8::all(b.track);
     for (int half = 0; half < 2; ++half) {
-      F8 z;
-      MaskF inside, unsure;
-      eval(p + offsets.p[half], q + offsets.q[half], track + offsets.track[half], z, inside,
-           unsure);
-      if constexpr (!EvalF::kAlwaysSure) {
+      MaskF unsure;
+      const F8 z = eval.template at<kInterior>(p + offsets.p[half], q + offsets.q[half],
+                                               track + offsets.track[half], unsure);
+      if constexpr (!kInterior) {
         if (any(unsure)) [[unlikely]] {
           unsettled[unsettled_count++] = static_cast<std::int16_t>(2 * n + half);
           continue;
         }
       }
-      lowering.apply(b.cells + 8 * half, z, inside);
+      lowering.apply(b.cells + 8 * half, z);
     }
   }
   lowering.add_to(c);
@@ -227,10 +223,8 @@ void work_off_double(SweepContext& c, WorkList& list, const Frame& f, const Eval
   Lowering lowering(c.grid);
   for (int n = 0; n < list.count; ++n) {
     for (int half = 0; half < 2; ++half) {
-      F8 z;
-      MaskF inside;
-      evaluate_double(c, f, list.blocks[n], half, eval, offsets, z, inside);
-      lowering.apply(list.blocks[n].cells + 8 * half, z, inside);
+      lowering.apply(list.blocks[n].cells + 8 * half,
+                     evaluate_double(c, f, list.blocks[n], half, eval, offsets));
     }
   }
   lowering.add_to(c);
@@ -354,33 +348,35 @@ enum class Joint { kNone, kStraight, kTurned };
 /// test against it is needed; negative if there is none. Balls only: their contact point keeps away
 /// from the equator by w / sqrt(1 + s^2) with w = sqrt(R^2 - v^2), and so does a wedge between two
 /// strips in nearly the same direction.
-inline double interior_width(const ConvexTool& tool, const SweepOp& op, double band,
-                             double half_block) {
-  if (tool.kind != ConvexTool::Kind::kBall || op.kind != SweepOp::Kind::kStrip) return -1;
-  double steepest2 = op.slope * op.slope, turn = 0;
+inline double interior_width(const SweepContext& c) {
+  const SweepOp& op = c.op;
+  if (c.tool.kind != ConvexTool::Kind::kBall) return -1;
+  double steepest = op.slope_m, turn = 0;
   if (op.joined) {
-    steepest2 = scalar_max(steepest2, op.next_slope * op.next_slope);
+    steepest = scalar_max(steepest, op.next_m);
     turn = op.straight_on ? 0.0 : scalar_abs(op.cos * op.next_sin - op.sin * op.next_cos);
   }
-  const double r2 = tool.radius * tool.radius;
-  const double needed = (1 + steepest2) * (band + 2 * r2 * turn * (1 + turn)) + 1e-3 * r2;
+  const double r2 = c.tool.radius * c.tool.radius;
+  const double band = unsure_band(c.tool, op.slope_m, c.tool.radius);
+  const double needed = steepest * steepest * (band + 2 * r2 * turn * (1 + turn)) + 1e-3 * r2;
+  const double half_block =
+      1.5 * (c.grid.cell_x * scalar_abs(op.sin) + c.grid.cell_y * scalar_abs(op.cos)) + 1e-3;
   return needed < r2 ? scalar_sqrt(r2 - needed) - half_block : -1;
 }
 
-template <class T, class Shape, Joint kJoint, bool kInterior>
+template <class T, class Shape, Joint kJoint>
 struct StripEval {
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
-  static constexpr bool kAlwaysSure = kInterior;
   Shape shape, next;
   bool edges;
   T radius2, tie, overlap, length, length_over, band, turn_cos, turn_sin, vertex_z, edge_band;
 
   static T all(double x) { return T::all(static_cast<S>(x)); }
   StripEval(const ConvexTool& tool, const SweepOp& op)
-      : shape(tool, op.slope),
-        next(tool, op.next_slope),
+      : shape(tool, {op.slope, op.slope_m}),
+        next(tool, {op.next_slope, op.next_m}),
         // The contact reaches the wall: the strip then begins or ends in a step that must be placed
         // exactly.
         edges(op.slope != 0 && scalar_abs(op.slope) >= tool.wall_slope),
@@ -389,27 +385,30 @@ struct StripEval {
         overlap(all(kDouble ? -kEdgeTie_mm : -kStripOverlap_mm)),
         length(all(op.length)),
         length_over(all(op.length + (kDouble ? kEdgeTie_mm : kStripOverlap_mm))),
-        band(all(unsure_band(tool, scalar_sqrt(1 + op.slope * op.slope), tool.radius))),
+        band(all(unsure_band(tool, op.slope_m, tool.radius))),
         turn_cos(all(op.cos * op.next_cos + op.sin * op.next_sin)),
         turn_sin(all(op.cos * op.next_sin - op.sin * op.next_cos)),
         vertex_z(all(op.z + op.slope * op.length)),
         edge_band(all(2 * kStripOverlap_mm)) {}
 
-  void operator()(T u, T v, T track, T& z, Mask& inside, Mask& unsure) const {
+  /// Heights; kNowhere where the strip does not come. `unsure` where only double precision can
+  /// tell. kInterior: for blocks within interior_width(), always sure.
+  template <bool kInterior>
+  T at(T u, T v, T track, Mask& unsure) const {
     const T v2 = v * v;
     unsure = all(0) > all(0);
     const ContactLanes<T> contact = shape.contact(track, v2, unsure);
     const T t = u - contact.rho;
     const Mask in_track = (t >= overlap) & (t <= length_over);
-    z = contact.z;
-    if constexpr (kInterior) {
-      inside = in_track;
-    } else {
+    Mask inside = in_track;
+    if constexpr (!kInterior) {
       const T w2 = radius2 - v2;
       inside = (w2 >= tie) & in_track;
       if constexpr (!kDouble) flag_walls(t, w2, in_track, unsure);
     }
-    if constexpr (kJoint != Joint::kNone) add_wedge(u, v, v2, t, z, inside, unsure);
+    const T z = select(inside, contact.z, all(kNowhere));
+    if constexpr (kJoint == Joint::kNone) return z;
+    return min(z, wedge<kInterior>(u, v, v2, t, contact, unsure));
   }
 
  private:
@@ -421,33 +420,32 @@ struct StripEval {
     }
   }
 
-  void add_wedge(T u, T v, T v2, T t, T& z, Mask& inside, Mask& unsure) const {
+  /// The tool standing at the end of the strip, over the cells between this strip and the next.
+  template <bool kInterior>
+  T wedge(T u, T v, T v2, T t, const ContactLanes<T>& contact, Mask& unsure) const {
     const T a = u - length;
     Mask unsure_next = all(0) > all(0);
-    T u_next = a, v2_next = v2;
+    T u_next = a, rho;
     if constexpr (kJoint == Joint::kTurned) {
       u_next = a * turn_cos + v * turn_sin;
       const T v_next = v * turn_cos - a * turn_sin;
-      v2_next = v_next * v_next;
+      rho = next.contact(all(0), v_next * v_next, unsure_next).rho;
+    } else {
+      rho = next.rho_like(contact, v2, unsure_next);
     }
-    const T rho = next.contact(all(0), v2_next, unsure_next).rho;
     const T d2 = a * a + v2;
-    const T still = vertex_z + shape.surface(d2);
-    const Mask between = (t >= length + overlap) & (u_next - rho <= all(0) - overlap);
-    Mask wedge = between;
+    Mask between = (t >= length + overlap) & (u_next - rho <= all(0) - overlap);
     if constexpr (!kInterior) {
       const T w2 = radius2 - d2;
-      wedge = between & (w2 >= tie);
       if constexpr (!kDouble) unsure = unsure | (between & (unsure_next | (abs(w2) <= band)));
+      between = between & (w2 >= tie);
     }
-    z = select(wedge, select(inside, min(z, still), still), z);
-    inside = inside | wedge;
+    return select(between, vertex_z + shape.surface(d2), all(kNowhere));
   }
 };
 
 template <class T, class Shape>
 struct CapEval {
-  static constexpr bool kAlwaysSure = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
@@ -455,26 +453,23 @@ struct CapEval {
   T radius2, tie, tip_z, band;
   static T all(double x) { return T::all(static_cast<S>(x)); }
   CapEval(const ConvexTool& tool, const SweepOp& op)
-      : shape(tool, 0.0),
+      : shape(tool, {}),
         radius2(all(tool.radius * tool.radius)),
         tie(all(kDouble ? -2 * tool.radius * kEdgeTie_mm : 0.0)),
         tip_z(all(op.z)),
         band(all(unsure_band(tool, 1.0, tool.radius))) {}
-  void operator()(T x, T y, T, T& z, Mask& inside, Mask& unsure) const {
+  template <bool kInterior>
+  T at(T x, T y, T, Mask& unsure) const {
     const T d2 = x * x + y * y;
     const T w2 = radius2 - d2;
-    inside = w2 >= tie;
-    z = tip_z + shape.surface(d2);
-    if constexpr (!kDouble)
-      unsure = abs(w2) <= band;
-    else
-      unsure = all(0) > all(0);
+    unsure = all(0) > all(0);
+    if constexpr (!kDouble) unsure = abs(w2) <= band;
+    return select(w2 >= tie, tip_z + shape.surface(d2), all(kNowhere));
   }
 };
 
 template <class T, class Shape>
 struct ArcEval {
-  static constexpr bool kAlwaysSure = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
@@ -483,7 +478,7 @@ struct ArcEval {
   T radius2, tie, tip_z, band, path, cos0, sin0, cos1, sin1, overlap;
   static T all(double x) { return T::all(static_cast<S>(x)); }
   ArcEval(const ConvexTool& tool, const SweepOp& op)
-      : shape(tool, 0.0),
+      : shape(tool, {}),
         full(op.full_circle),
         over_half(op.over_half),
         radius2(all(tool.radius * tool.radius)),
@@ -496,13 +491,12 @@ struct ArcEval {
         cos1(all(op.end_cos)),
         sin1(all(op.end_sin)),
         overlap(all(kDouble ? -kEdgeTie_mm : -kStripOverlap_mm)) {}
-  void operator()(T x, T y, T, T& z, Mask& inside, Mask& unsure) const {
+  template <bool kInterior>
+  T at(T x, T y, T, Mask& unsure) const {
     const T d = sqrt(x * x + y * y) - path;
     const T d2 = d * d;
     const T w2 = radius2 - d2;
-    inside = w2 >= tie;
-    z = tip_z + shape.surface(d2);
-    unsure = all(0) > all(0);
+    Mask inside = w2 >= tie;
     Mask near = abs(w2) <= band;
     if (!full) {
       const Mask after_start = cos0 * y - sin0 * x >= overlap;
@@ -511,7 +505,9 @@ struct ArcEval {
       inside = inside & between;
       near = near & between;
     }
+    unsure = all(0) > all(0);
     if constexpr (!kDouble) unsure = near;
+    return select(inside, tip_z + shape.surface(d2), all(kNowhere));
   }
 };
 
@@ -561,16 +557,17 @@ struct HelixEval {
   D8 surface(D8 d2) const {
     switch (tool.kind) {
       case ConvexTool::Kind::kFlat:
-        return FlatLanes<D8>(tool, 0).surface(d2);
+        return FlatLanes<D8>(tool, {}).surface(d2);
       case ConvexTool::Kind::kBall:
-        return BallLanes<D8>(tool, 0).surface(d2);
+        return BallLanes<D8>(tool, {}).surface(d2);
       case ConvexTool::Kind::kPieces:
-        return PieceLanes<D8>(tool, 0).surface(d2);
+        return PieceLanes<D8>(tool, {}).surface(d2);
     }
     return all(0);
   }
 
-  void operator()(D8 x, D8 y, D8, D8& z, MaskD& inside, MaskD& unsure) const {
+  template <bool kInterior>
+  D8 at(D8 x, D8 y, D8, MaskD& unsure) const {
     unsure = all(0) > all(0);
     const D8 rr = sqrt(x * x + y * y);
     const D8 path = all(op.radius);
@@ -602,9 +599,9 @@ struct HelixEval {
     const D8 first = theta + psi;
     const D8 turns = floor((all(op.length) - first) / all(kTurn));
     const D8 phi = first + turns * all(kTurn);
-    inside = (closest <= all(tool.radius + kEdgeTie_mm)) & (phi >= all(0));
-    inside = and_not(inside, none);
-    z = all(op.z) - fall * phi + surface(min(d * d, all(tool.radius * tool.radius)));
+    const MaskD inside = (closest <= all(tool.radius + kEdgeTie_mm)) & (phi >= all(0));
+    const D8 z = all(op.z) - fall * phi + surface(min(d * d, all(tool.radius * tool.radius)));
+    return select(and_not(inside, none), z, all(kNowhere));
   }
 
  private:

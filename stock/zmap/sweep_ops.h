@@ -25,9 +25,10 @@ struct GridView {
       nullptr;         ///< replaces a null entry; called by the band's thread
   int nx = 0, ny = 0;  ///< cells
   int tiles_x = 0, tiles_y = 0;
-  double x0 = 0, y0 = 0;          ///< lower corner, mm
-  double cell_x = 0, cell_y = 0;  ///< mm
-  float floor = 0;                ///< nothing is cut below
+  double x0 = 0, y0 = 0;                    ///< lower corner, mm
+  double cell_x = 0, cell_y = 0;            ///< mm
+  double per_block_x = 0, per_block_y = 0;  ///< 1 / (4 * cell)
+  float floor = 0;                          ///< nothing is cut below
 };
 
 /// One piece of a convex profile: height over the tip at distance d from the axis, r0 <= d <= r1.
@@ -74,9 +75,11 @@ struct SweepOp {
   double cos = 1, sin = 0;     ///< strip: direction; arc, helix: direction from the centre to the
                                ///< start (counter-clockwise)
   double slope = 0;            ///< strip: dz per mm of XY length; helix: dz per radian
+  double slope_m = 1;          ///< strip: sqrt(1 + slope^2)
   double length = 0;           ///< strip: XY length, mm; helix: sweep, rad
   double next_cos = 1, next_sin = 0,
          next_slope = 0;            ///< joined: the next strip, relative to XY axes
+  double next_m = 1;                ///< joined: sqrt(1 + next_slope^2)
   double end_cos = 1, end_sin = 0;  ///< arc: direction to the end
   double radius = 0;                ///< arc, helix: of the tip's path
   double min_x = 0, max_x = 0, min_y = 0,

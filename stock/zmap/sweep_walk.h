@@ -26,11 +26,10 @@ struct ContactReach {
   float factor = 0;
   bool circular = false;
 };
-inline ContactReach contact_reach(const ConvexTool& tool, double slope) {
+inline ContactReach contact_reach(const ConvexTool& tool, double slope, double m) {
   const double sign = slope > 0 ? 1 : slope < 0 ? -1 : 0;
   if (tool.kind == ConvexTool::Kind::kFlat) return {static_cast<float>(sign), true};
-  if (tool.kind == ConvexTool::Kind::kBall)
-    return {static_cast<float>(slope / scalar_sqrt(1 + slope * slope)), true};
+  if (tool.kind == ConvexTool::Kind::kBall) return {static_cast<float>(slope / m), true};
   return {static_cast<float>(sign), false};
 }
 
@@ -54,8 +53,8 @@ struct StripBounds {
     half_v = static_cast<float>(
                  1.5 * (c.grid.cell_x * scalar_abs(op.sin) + c.grid.cell_y * scalar_abs(op.cos))) +
              kBoundSlack_mm;
-    reach = contact_reach(c.tool, op.slope);
-    next_reach = contact_reach(c.tool, joined ? op.next_slope : 0.0);
+    reach = contact_reach(c.tool, op.slope, op.slope_m);
+    next_reach = contact_reach(c.tool, joined ? op.next_slope : 0.0, op.next_m);
     turn = static_cast<float>(scalar_abs(op.cos * op.next_sin - op.sin * op.next_cos));
     wedge_extra = joined ? 1.05f * radius * turn : 0.0f;
     lower = (reach.factor < 0 ? reach.factor * radius : 0.0f) - half_u;
@@ -120,7 +119,7 @@ void walk_strip(const SweepContext& c, Out& out) {
     bounds.tighten(v_near, v_far, u_low, u_high);
     clip(icos, y_sin, u_low, u_high, low, high);
     // Block columns, relative to home_i: centres between low and high.
-    const F8 to_block = all(1 / block_x), shift = all(ax / block_x - 0.5);
+    const F8 to_block = all(g.per_block_x), shift = all(ax * g.per_block_x - 0.5);
     const F8 begin = zero - floor(zero - max(low * to_block + shift, first_column));
     const F8 end = floor(max(min(high * to_block + shift, last_column), first_column - F8::all(1)));
     const F8 x0 = min(begin, last_column) * all(block_x) + all(0.5 * g.cell_x - ax);
@@ -206,31 +205,22 @@ void sweep_double(SweepContext& c) {
   sweep_rows(c, lists, frame, -1, [&] { work_off_double(c, lists.edge, frame, eval); });
 }
 
-/// EvalI is EvalF for blocks away from the walls.
-template <class EvalF, class EvalI, class EvalD>
+template <class EvalF, class EvalD>
 void sweep_single(SweepContext& c, double interior_mm) {
   if (c.op.use_double) return sweep_double<EvalD>(c);
   const Frame frame = frame_of(c.op);
   const EvalF eval(c.tool, c.op);
   WorkLists lists;
   sweep_rows(c, lists, frame, interior_mm, [&] {
-    if (lists.interior.count > 0) work_off<EvalD>(c, lists.interior, frame, EvalI(c.tool, c.op));
-    if (lists.edge.count > 0) work_off<EvalD>(c, lists.edge, frame, eval);
+    if (lists.interior.count > 0) work_off<EvalD, true>(c, lists.interior, frame, eval);
+    if (lists.edge.count > 0) work_off<EvalD, false>(c, lists.edge, frame, eval);
   });
 }
 
 template <template <class> class Shape, Joint kJoint>
 void sweep_strip(SweepContext& c) {
-  const double half_block =
-      1.5 * (c.grid.cell_x * scalar_abs(c.op.sin) + c.grid.cell_y * scalar_abs(c.op.cos)) + 1e-3;
-  const double band = unsure_band(c.tool, scalar_sqrt(1 + c.op.slope * c.op.slope), c.tool.radius);
-  using Single = StripEval<F8, Shape<F8>, kJoint, false>;
-  using Twice = StripEval<D8, Shape<D8>, kJoint, false>;
-  if constexpr (Shape<F8>::kMayHaveEdges)
-    sweep_single<Single, Single, Twice>(c, -1);
-  else
-    sweep_single<Single, StripEval<F8, Shape<F8>, kJoint, true>, Twice>(
-        c, interior_width(c.tool, c.op, band, half_block));
+  sweep_single<StripEval<F8, Shape<F8>, kJoint>, StripEval<D8, Shape<D8>, kJoint>>(
+      c, interior_width(c));
 }
 
 template <template <class> class Shape>
@@ -241,12 +231,10 @@ void sweep_shape(SweepContext& c) {
       if (c.op.straight_on) return sweep_strip<Shape, Joint::kStraight>(c);
       return sweep_strip<Shape, Joint::kTurned>(c);
     case SweepOp::Kind::kCap: {
-      using Single = CapEval<F8, Shape<F8>>;
-      return sweep_single<Single, Single, CapEval<D8, Shape<D8>>>(c, -1);
+      return sweep_single<CapEval<F8, Shape<F8>>, CapEval<D8, Shape<D8>>>(c, -1);
     }
     case SweepOp::Kind::kArc: {
-      using Single = ArcEval<F8, Shape<F8>>;
-      return sweep_single<Single, Single, ArcEval<D8, Shape<D8>>>(c, -1);
+      return sweep_single<ArcEval<F8, Shape<F8>>, ArcEval<D8, Shape<D8>>>(c, -1);
     }
     case SweepOp::Kind::kHelix:
       return sweep_double<HelixEval>(c);

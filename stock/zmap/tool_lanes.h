@@ -19,6 +19,12 @@ template <class T>
 struct ContactLanes {
   T rho;
   T z;
+  T half_chord;  ///< sqrt(radius^2 - v^2), where the shape has used it: see rho_like()
+};
+
+/// A slope s with k = s / m and m = sqrt(1 + s^2).
+struct SlopeTerms {
+  double s = 0, m = 1;
 };
 
 template <class T>
@@ -26,17 +32,20 @@ struct FlatLanes {
   static constexpr bool kMayHaveEdges = true;  ///< on a slope the contact may lie on the rim
   using S = typename T::Scalar;
   T radius2, base, slope, sign;
-  FlatLanes(const ConvexTool& tool, double s)
+  FlatLanes(const ConvexTool& tool, SlopeTerms slope_terms)
       : radius2(T::all(static_cast<S>(tool.radius * tool.radius))),
         base(T::all(static_cast<S>(tool.base_z))),
-        slope(T::all(static_cast<S>(s))),
-        sign(T::all(static_cast<S>(s > 0   ? 1
-                                   : s < 0 ? -1
-                                           : 0))) {}
+        slope(T::all(static_cast<S>(slope_terms.s))),
+        sign(T::all(static_cast<S>((slope_terms.s > 0) - (slope_terms.s < 0)))) {}
   /// zu: height of the (extended) track at u; v2 = v*v <= radius2.
   ContactLanes<T> contact(T zu, T v2, typename T::Mask&) const {
-    const T rho = sign * sqrt(max(radius2 - v2, T::all(0)));
-    return {rho, zu + base - slope * rho};
+    const T w = sqrt(max(radius2 - v2, T::all(0)));
+    const T rho = sign * w;
+    return {rho, zu + base - slope * rho, w};
+  }
+  /// rho of this slope where `other` is the contact of another slope over the same v.
+  T rho_like(const ContactLanes<T>& other, T, typename T::Mask&) const {
+    return sign * other.half_chord;
   }
   T surface(T) const { return base; }
 };
@@ -45,15 +54,18 @@ template <class T>
 struct BallLanes {
   static constexpr bool kMayHaveEdges = false;
   using S = typename T::Scalar;
-  T radius2, top, k, inverse_m;
-  BallLanes(const ConvexTool& tool, double s)
+  T radius2, top, k, m;
+  BallLanes(const ConvexTool& tool, SlopeTerms slope)
       : radius2(T::all(static_cast<S>(tool.radius * tool.radius))),
         top(T::all(static_cast<S>(tool.base_z + tool.radius))),
-        k(T::all(static_cast<S>(s / scalar_sqrt(1 + s * s)))),
-        inverse_m(T::all(static_cast<S>(scalar_sqrt(1 + s * s)))) {}
+        k(T::all(static_cast<S>(slope.s / slope.m))),
+        m(T::all(static_cast<S>(slope.m))) {}
   ContactLanes<T> contact(T zu, T v2, typename T::Mask&) const {
     const T w = sqrt(max(radius2 - v2, T::all(0)));
-    return {k * w, zu + top - inverse_m * w};
+    return {k * w, zu + top - m * w, w};
+  }
+  T rho_like(const ContactLanes<T>& other, T, typename T::Mask&) const {
+    return k * other.half_chord;
   }
   T surface(T d2) const { return top - sqrt(max(radius2 - d2, T::all(0))); }
 };
@@ -66,11 +78,11 @@ struct PieceLanes {
   const ConvexTool& tool;
   T radius2, slope;
   double s;
-  PieceLanes(const ConvexTool& t, double slope_value)
+  PieceLanes(const ConvexTool& t, SlopeTerms slope_terms)
       : tool(t),
         radius2(T::all(static_cast<S>(t.radius * t.radius))),
-        slope(T::all(static_cast<S>(slope_value))),
-        s(slope_value) {}
+        slope(T::all(static_cast<S>(slope_terms.s))),
+        s(slope_terms.s) {}
 
   static T all(double x) { return T::all(static_cast<S>(x)); }
 
@@ -97,7 +109,10 @@ struct PieceLanes {
         rho = solve_by_pieces(v2, unsure);
       if (s < 0) rho = all(0) - rho;
     }
-    return {rho, zu - slope * rho + surface(rho * rho + v2)};
+    return {rho, zu - slope * rho + surface(rho * rho + v2), rho};
+  }
+  T rho_like(const ContactLanes<T>&, T v2, typename T::Mask& unsure) const {
+    return contact(all(0), v2, unsure).rho;
   }
 
  private:
