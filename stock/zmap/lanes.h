@@ -5,6 +5,8 @@
 // compare): there is no fused multiply-add, so machines without it give the same result at full
 // speed. Included by one source a kernel, inside a namespace of its own (KERF_LANES_NAMESPACE),
 // because code compiled for AVX2 must never be linked into the other one.
+#pragma once
+
 #ifndef KERF_LANES_NAMESPACE
 #error "define KERF_LANES_NAMESPACE before including lanes.h"
 #endif
@@ -23,6 +25,7 @@ namespace kerf::KERF_LANES_NAMESPACE {
 struct F4 {
   __m128 v;
   static F4 of(float a, float b, float c, float d) { return {_mm_set_ps(d, c, b, a)}; }
+  static F4 load(const float* p) { return {_mm_load_ps(p)}; }
 };
 inline F4 operator+(F4 a, F4 b) { return {_mm_add_ps(a.v, b.v)}; }
 inline void store(float* p, F4 a) { _mm_store_ps(p, a.v); }
@@ -55,6 +58,23 @@ inline MaskF operator|(MaskF a, MaskF b) { return {_mm256_or_ps(a.v, b.v)}; }
 inline MaskF and_not(MaskF a, MaskF b) { return {_mm256_andnot_ps(b.v, a.v)}; }
 inline bool any(MaskF a) { return _mm256_movemask_ps(a.v) != 0; }
 inline F8 select(MaskF m, F8 a, F8 b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
+
+/// Writes eight rows of (a, b, c, 0).
+inline void store_rows(float* out, F8 a, F8 b, F8 c) {
+  const __m256 zero = _mm256_setzero_ps();
+  const __m256 ab_low = _mm256_unpacklo_ps(a.v, b.v), ab_high = _mm256_unpackhi_ps(a.v, b.v);
+  const __m256 c_low = _mm256_unpacklo_ps(c.v, zero), c_high = _mm256_unpackhi_ps(c.v, zero);
+  const __m256 rows[4] = {_mm256_shuffle_ps(ab_low, c_low, _MM_SHUFFLE(1, 0, 1, 0)),
+                          _mm256_shuffle_ps(ab_low, c_low, _MM_SHUFFLE(3, 2, 3, 2)),
+                          _mm256_shuffle_ps(ab_high, c_high, _MM_SHUFFLE(1, 0, 1, 0)),
+                          _mm256_shuffle_ps(ab_high, c_high, _MM_SHUFFLE(3, 2, 3, 2))};
+  for (int i = 0; i < 4; ++i) {  // row i and row i + 4
+    _mm_store_ps(out + 4 * i, _mm256_castps256_ps128(rows[i]));
+    _mm_store_ps(out + 16 + 4 * i, _mm256_extractf128_ps(rows[i], 1));
+  }
+}
+/// One bit a lane.
+inline unsigned bits(MaskF a) { return static_cast<unsigned>(_mm256_movemask_ps(a.v)); }
 
 /// Eight 32-bit sums.
 struct I8 {
@@ -126,6 +146,7 @@ inline MaskF to_float(MaskD a) {
 struct F4 {
   float v[4];
   static F4 of(float a, float b, float c, float d) { return {{a, b, c, d}}; }
+  static F4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
 };
 inline F4 operator+(F4 a, F4 b) {
   for (int i = 0; i < 4; ++i) a.v[i] += b.v[i];
@@ -165,6 +186,22 @@ struct D8 {
 };
 inline void store(float* p, F8 a) {
   for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+}
+
+/// Writes eight rows of (a, b, c, 0).
+inline void store_rows(float* out, F8 a, F8 b, F8 c) {
+  for (int i = 0; i < 8; ++i) {
+    out[4 * i] = a.v[i];
+    out[4 * i + 1] = b.v[i];
+    out[4 * i + 2] = c.v[i];
+    out[4 * i + 3] = 0;
+  }
+}
+/// One bit a lane.
+inline unsigned bits(MaskF a) {
+  unsigned r = 0;
+  for (int i = 0; i < 8; ++i) r |= a.v[i] ? 1u << i : 0u;
+  return r;
 }
 
 /// Eight 32-bit sums.

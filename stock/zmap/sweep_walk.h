@@ -1,10 +1,13 @@
 // stock/zmap/sweep_walk.h - which blocks a sweep can touch, and the loop over sweeps. Included
 // after sweep_kernel.h.
+#pragma once
+
 #ifndef KERF_LANES_NAMESPACE
 #error "define KERF_LANES_NAMESPACE before including sweep_walk.h"
 #endif
 
-#include "stock/zmap/sweep_kernel.h"
+#include "stock/zmap/helix_eval.h"
+#include "stock/zmap/work_off.h"
 
 namespace kerf::KERF_LANES_NAMESPACE {
 
@@ -88,14 +91,13 @@ struct StripBounds {
 
 /// Gives `out` every run of blocks that the strip can touch. Positions are taken from the block in
 /// which the strip starts, so that they stay small.
-template <class Out>
-void walk_strip(const SweepContext& c, Out& out) {
+[[gnu::noinline]] inline void walk_strip(const SweepContext& c, RunWriter& out) {
   const SweepOp& op = c.op;
   const GridView& g = c.grid;
   const StripBounds bounds(c);
   const double block_x = 4 * g.cell_x, block_y = 4 * g.cell_y;
-  const int home_i = floor_int((op.x - g.x0) / block_x),
-            home_j = floor_int((op.y - g.y0) / block_y);
+  const int home_i = floor_int((op.x - g.x0) * g.per_block_x);
+  const int home_j = floor_int((op.y - g.y0) * g.per_block_y);
   const double ax = op.x - g.x0 - home_i * block_x, ay = op.y - g.y0 - home_j * block_y;
   const auto all = [](double v) { return F8::all(static_cast<float>(v)); };
   const F8 cos = all(op.cos), sin = all(op.sin), zero = F8::all(0), radius = F8::all(bounds.radius);
@@ -125,29 +127,32 @@ void walk_strip(const SweepContext& c, Out& out) {
     const F8 x0 = min(begin, last_column) * all(block_x) + all(0.5 * g.cell_x - ax);
     const F8 y0 = row * all(block_y) + all(0.5 * g.cell_y - ay);
     const F8 p0 = x0 * cos + y0 * sin;
-    alignas(32) float begins[8], counts[8], p[8], q[8], track[8];
-    store(begins, begin);
-    store(counts, end - begin + F8::all(1));
-    store(p, p0);
-    store(q, y0 * cos - x0 * sin);
-    store(track, all(op.z) + all(op.slope) * p0);
-    const int lanes = c.last_row - first < 7 ? c.last_row - first + 1 : 8;
-    for (int lane = 0; lane < lanes; ++lane) {
-      if (!(counts[lane] > 0)) continue;
-      const int b0 = static_cast<int>(begins[lane]) + home_i,
-                b1 = b0 + static_cast<int>(counts[lane]) - 1;
+    const F8 q0 = y0 * cos - x0 * sin, count = end - begin + F8::all(1);
+    const F8 q_first = q0 + F8::all(out.to_center());
+    const F8 q_last = q_first + (count - F8::all(1)) * F8::all(out.step_q());
+    const unsigned interior = bits(max(abs(q_first), abs(q_last)) <= F8::all(out.interior()));
+    unsigned rows =
+        bits(count > zero) & ((2u << (c.last_row - first < 7 ? c.last_row - first : 7)) - 1);
+    alignas(32) float begins[8], counts[8], starts[32];
+    store(begins, begin + F8::all(static_cast<float>(home_i)));
+    store(counts, count);
+    store_rows(starts, p0, q0, all(op.z) + all(op.slope) * p0);
+    if (is_short) out.make_room();
+    for (; rows != 0; rows &= rows - 1) {
+      const int lane = __builtin_ctz(rows);
+      const int b0 = static_cast<int>(begins[lane]), n = static_cast<int>(counts[lane]);
       if (is_short)
-        out.add(first + lane, b0, b1, {p[lane], q[lane], track[lane]});
+        out.add_short(first + lane, b0, n, starts + 4 * lane, (interior >> lane & 1) != 0);
       else
-        out.add(first + lane, b0, b1);
+        out.add(first + lane, b0, b0 + n - 1);
     }
   }
 }
 
 /// Rows of blocks between the circles `inner` and `outer` about the sweep's (x, y), within the box
 /// of the sweep's path widened by the tool's radius.
-template <class Out>
-void walk_ring(const SweepContext& c, double inner, double outer, Out& out) {
+[[gnu::noinline]] inline void walk_ring(const SweepContext& c, double inner, double outer,
+                                        RunWriter& out) {
   const GridView& g = c.grid;
   const double margin = c.tool.radius + 1e-3;
   const double left = c.op.min_x - margin - c.op.x, right = c.op.max_x + margin - c.op.x;
@@ -179,42 +184,65 @@ void walk_ring(const SweepContext& c, double inner, double outer, Out& out) {
   }
 }
 
-template <class Flush>
-void sweep_rows(SweepContext& c, WorkLists& lists, const Frame& frame, double interior_mm,
-                const Flush& flush) {
+inline Frame frame_of(const SweepOp& op) {
+  return op.kind == SweepOp::Kind::kStrip ? Frame{op.cos, op.sin, op.slope} : Frame{};
+}
+
+/// One sweep on its way: the lists, and what to do with them.
+template <class EvalF, class EvalD>
+struct SingleSweep {
+  SweepContext& c;
+  Frame frame;
+  EvalF eval;
+  WorkLists lists;
+  explicit SingleSweep(SweepContext& context)
+      : c(context), frame(frame_of(c.op)), eval(c.tool, c.op) {}
+  static void flush(void* self) {
+    SingleSweep& s = *static_cast<SingleSweep*>(self);
+    if (s.lists.interior.count > 0) work_off<EvalD, true>(s.c, s.lists.interior, s.frame, s.eval);
+    if (s.lists.edge.count > 0) work_off<EvalD, false>(s.c, s.lists.edge, s.frame, s.eval);
+  }
+};
+
+template <class EvalD>
+struct DoubleSweep {
+  SweepContext& c;
+  Frame frame;
+  EvalD eval;
+  WorkLists lists;
+  explicit DoubleSweep(SweepContext& context)
+      : c(context), frame(frame_of(c.op)), eval(c.tool, c.op) {}
+  static void flush(void* self) {
+    DoubleSweep& s = *static_cast<DoubleSweep*>(self);
+    work_off_double(s.c, s.lists.edge, s.frame, s.eval);
+  }
+};
+
+template <class Sweep>
+void walk(SweepContext& c, double interior_mm) {
+  Sweep sweep(c);
+  RunWriter out(c, sweep.lists, sweep.frame, interior_mm, &Sweep::flush, &sweep);
   const SweepOp& op = c.op;
-  RunWriter<Flush> out(c, lists, frame, interior_mm, flush);
   if (op.kind == SweepOp::Kind::kStrip)
     walk_strip(c, out);
   else if (op.kind == SweepOp::Kind::kCap)
     walk_ring(c, 0.0, c.tool.radius, out);
   else
     walk_ring(c, op.radius - c.tool.radius, op.radius + c.tool.radius, out);
-  flush();
-}
-
-inline Frame frame_of(const SweepOp& op) {
-  return op.kind == SweepOp::Kind::kStrip ? Frame{op.cos, op.sin, op.slope} : Frame{};
+  out.flush();
 }
 
 template <class EvalD>
 void sweep_double(SweepContext& c) {
-  const Frame frame = frame_of(c.op);
-  const EvalD eval(c.tool, c.op);
-  WorkLists lists;
-  sweep_rows(c, lists, frame, -1, [&] { work_off_double(c, lists.edge, frame, eval); });
+  walk<DoubleSweep<EvalD>>(c, -1);
 }
 
 template <class EvalF, class EvalD>
 void sweep_single(SweepContext& c, double interior_mm) {
-  if (c.op.use_double) return sweep_double<EvalD>(c);
-  const Frame frame = frame_of(c.op);
-  const EvalF eval(c.tool, c.op);
-  WorkLists lists;
-  sweep_rows(c, lists, frame, interior_mm, [&] {
-    if (lists.interior.count > 0) work_off<EvalD, true>(c, lists.interior, frame, eval);
-    if (lists.edge.count > 0) work_off<EvalD, false>(c, lists.edge, frame, eval);
-  });
+  if (c.op.use_double)
+    sweep_double<EvalD>(c);
+  else
+    walk<SingleSweep<EvalF, EvalD>>(c, interior_mm);
 }
 
 template <template <class> class Shape, Joint kJoint>

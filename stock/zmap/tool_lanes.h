@@ -5,6 +5,8 @@
 // convex, so this is convex in t and has one minimum, at t = u - rho with rho depending on s and v
 // only ("contact"). See also Maeng, Baek, Shin, Choi, "A Z-map update method for linearly moving
 // tools", CAD 35(11), 2003: one equation in one unknown for each grid vector.
+#pragma once
+
 #ifndef KERF_LANES_NAMESPACE
 #error "define KERF_LANES_NAMESPACE before including tool_lanes.h"
 #endif
