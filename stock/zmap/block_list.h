@@ -38,7 +38,10 @@ struct alignas(32) Block {
   float* cells;
   int column() const { return bi + static_cast<int>(steps); }
 };
-constexpr int kListBlocks = 256;
+constexpr int kListBlocks = 384;
+/// From the first cell of a block to its centre, in cells.
+constexpr double kHalfX = 0.5 * (kBlockX - 1);
+constexpr double kHalfY = 0.5 * (kBlockY - 1);
 
 /// Holds more than kListBlocks, so that room need not be looked for with every run: at most eight
 /// short runs or one run of a tile come between two looks.
@@ -63,8 +66,8 @@ struct SweepContext {
       0;  ///< heights removed, in kRemovedUnit_mm: integers, so that no order of adding matters
   float depth = 0;
 
-  double center_x(int bi) const { return (bi * 4 + 0.5) * grid.cell_x - (op.x - grid.x0); }
-  double center_y(int bj) const { return (bj * 4 + 0.5) * grid.cell_y - (op.y - grid.y0); }
+  double center_x(int bi) const { return (bi * kBlockX + 0.5) * grid.cell_x - (op.x - grid.x0); }
+  double center_y(int bj) const { return (bj * kBlockY + 0.5) * grid.cell_y - (op.y - grid.y0); }
   float* tile(int index) {
     float* cells = grid.tiles[index];
     return cells ? cells : grid.make_writable(grid.owner, index);
@@ -94,24 +97,25 @@ class RunWriter {
   using Flush = void (*)(void* with);
 
   /// Blocks whose centre lies within `interior_mm` of the track are interior (none if negative).
-  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm, Flush empty_lists,
-            void* sweep)
+  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm,
+            Flush empty_lists, void* sweep)
       : c_(c),
         lists_(lists),
         frame_(f),
         flush_(empty_lists),
         sweep_(sweep),
         interior_(static_cast<float>(interior_mm)),
-        to_center_(static_cast<float>(1.5 * (c.grid.cell_y * f.cos - c.grid.cell_x * f.sin))),
-        dp_(static_cast<float>(4 * c.grid.cell_x * f.cos)),
-        dq_(static_cast<float>(-4 * c.grid.cell_x * f.sin)),
-        dt_(static_cast<float>(f.slope * 4 * c.grid.cell_x * f.cos)),
+        to_center_(
+            static_cast<float>(kHalfY * c.grid.cell_y * f.cos - kHalfX * c.grid.cell_x * f.sin)),
+        dp_(static_cast<float>(kBlockX * c.grid.cell_x * f.cos)),
+        dq_(static_cast<float>(-kBlockX * c.grid.cell_x * f.sin)),
+        dt_(static_cast<float>(f.slope * kBlockX * c.grid.cell_x * f.cos)),
         step_(F4::of(dp_, dq_, dt_, 1)) {}
 
   /// Blocks b0..b1 of row bj; positions computed afresh in double precision in each tile.
   [[gnu::noinline]] void add(int bj, int b0, int b1) {
     for (int bi = b0; bi <= b1;) {
-      const int tile_end = bi | (kTileBlocks - 1), last = tile_end < b1 ? tile_end : b1;
+      const int tile_end = bi | (kTileBlocksX - 1), last = tile_end < b1 ? tile_end : b1;
       put(bj, bi, last - bi + 1, run_start(c_, frame_, bi, bj));
       bi = last + 1;
     }
@@ -124,7 +128,7 @@ class RunWriter {
   /// A run whose start is known; interior as the caller found. Room must have been made.
   [[gnu::always_inline]] void add_short(int bj, int b0, int count, const float* start,
                                         bool interior) {
-    if (b0 % kTileBlocks + count <= kTileBlocks && count <= kBlindBlocks) [[likely]]
+    if (b0 % kTileBlocksX + count <= kTileBlocksX && count <= kBlindBlocks) [[likely]]
       put_few(bj, b0, count, start, interior);
     else
       add_across_tiles(bj, b0, count, {start[0], start[1], start[2]});
@@ -142,9 +146,9 @@ class RunWriter {
   float* first_cell(int bj, int bi) {
     const unsigned column = static_cast<unsigned>(bi), row = static_cast<unsigned>(bj);
     const unsigned tile =
-        row / kTileBlocks * static_cast<unsigned>(c_.grid.tiles_x) + column / kTileBlocks;
+        row / kTileBlocksY * static_cast<unsigned>(c_.grid.tiles_x) + column / kTileBlocksX;
     return c_.tile(static_cast<int>(tile)) +
-           (row % kTileBlocks * kTileBlocks + column % kTileBlocks) * 16;
+           (row % kTileBlocksY * kTileBlocksX + column % kTileBlocksX) * kBlockFloats;
   }
   bool is_interior(float q_center) const { return __builtin_fabsf(q_center) <= interior_; }
   static void write(Block& block, F4 place, int bi, int bj, float* cells) {
@@ -164,8 +168,10 @@ class RunWriter {
     float* cells = first_cell(bj, b0);
     const F4 first = F4::load(start), second = first + step_;
     write(out[0], first, b0, bj, cells);
-    write(out[1], second, b0, bj, cells + 16);
-    write(out[2], second + step_, b0, bj, cells + 32);
+    write(out[1], second, b0, bj, cells + kBlockFloats);
+    const F4 third = second + step_;
+    write(out[2], third, b0, bj, cells + 2 * kBlockFloats);
+    write(out[3], third + step_, b0, bj, cells + 3 * kBlockFloats);
   }
   /// Blocks of one tile.
   void put(int bj, int b0, int count, RunStart at) {
@@ -175,13 +181,13 @@ class RunWriter {
     float q = at.q + to_center_;
     for (int k = 0; k < count; ++k, place = place + step_, q += dq_) {
       WorkList& list = is_interior(q) ? lists_.interior : lists_.edge;
-      write(list.blocks[list.count++], place, b0, bj, cells + 16 * k);
+      write(list.blocks[list.count++], place, b0, bj, cells + kBlockFloats * k);
     }
   }
   [[gnu::noinline]] void add_across_tiles(int bj, int b0, int count, RunStart at) {
     const int end = b0 + count;
     while (b0 < end) {
-      const int tile_end = (b0 | (kTileBlocks - 1)) + 1, stop = tile_end < end ? tile_end : end;
+      const int tile_end = (b0 | (kTileBlocksX - 1)) + 1, stop = tile_end < end ? tile_end : end;
       put(bj, b0, stop - b0, at);
       const float n = static_cast<float>(stop - b0);
       at = {at.p + n * dp_, at.q + n * dq_, at.track + n * dt_};
@@ -189,7 +195,7 @@ class RunWriter {
     }
   }
 
-  static constexpr int kBlindBlocks = 3;
+  static constexpr int kBlindBlocks = 4;
   SweepContext& c_;
   WorkLists& lists_;
   const Frame& frame_;

@@ -71,8 +71,8 @@ inline double interior_width(const SweepContext& c) {
   const double r2 = c.tool.radius * c.tool.radius;
   const double band = unsure_band(c.tool, op.slope_m, c.tool.radius);
   const double needed = steepest * steepest * (band + 2 * r2 * turn * (1 + turn)) + 1e-3 * r2;
-  const double half_block =
-      1.5 * (c.grid.cell_x * scalar_abs(op.sin) + c.grid.cell_y * scalar_abs(op.cos)) + 1e-3;
+  const double half_block = kHalfX * c.grid.cell_x * scalar_abs(op.sin) +
+                            kHalfY * c.grid.cell_y * scalar_abs(op.cos) + 1e-3;
   return needed < r2 ? scalar_sqrt(r2 - needed) - half_block : -1;
 }
 

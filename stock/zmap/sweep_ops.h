@@ -8,12 +8,17 @@
 
 namespace kerf {
 
-/// Heights lie in tiles of kTileCells x kTileCells cells; inside a tile in blocks of 4 x 4 cells
-/// (64 bytes: one cache line, and two lanes of eight), blocks row by row, cells of a block row by
-/// row.
-inline constexpr int kBlockCells = 4;
-inline constexpr int kTileBlocks = 16;
-inline constexpr int kTileCells = kBlockCells * kTileBlocks;
+/// Heights lie in tiles of kTileCells x kTileCells cells; inside a tile in blocks of 2 x 4 cells
+/// (one vector of eight floats), blocks row by row, cells of a block row by row. Narrow in X
+/// because the strips of a raster along X are: fewer cells that lie outside of a strip are looked
+/// at.
+inline constexpr int kBlockX = 2;
+inline constexpr int kBlockY = 4;
+inline constexpr int kBlockFloats = kBlockX * kBlockY;
+inline constexpr int kTileBlocksX = 32;
+inline constexpr int kTileBlocksY = 16;
+inline constexpr int kTileCells = kBlockX * kTileBlocksX;
+static_assert(kTileCells == kBlockY * kTileBlocksY);
 inline constexpr int kTileFloats = kTileCells * kTileCells;
 
 /// A grid as the kernels see it. Row `band` of tiles is written by one thread only.
@@ -27,7 +32,7 @@ struct GridView {
   int tiles_x = 0, tiles_y = 0;
   double x0 = 0, y0 = 0;                    ///< lower corner, mm
   double cell_x = 0, cell_y = 0;            ///< mm
-  double per_block_x = 0, per_block_y = 0;  ///< 1 / (4 * cell)
+  double per_block_x = 0, per_block_y = 0;  ///< blocks per mm
   float floor = 0;                          ///< nothing is cut below
 };
 

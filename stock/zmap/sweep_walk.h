@@ -50,11 +50,11 @@ struct StripBounds {
         length(static_cast<float>(c.op.length)),
         joined(c.op.joined) {
     const SweepOp& op = c.op;
-    half_u = static_cast<float>(
-                 1.5 * (c.grid.cell_x * scalar_abs(op.cos) + c.grid.cell_y * scalar_abs(op.sin))) +
+    half_u = static_cast<float>(kHalfX * c.grid.cell_x * scalar_abs(op.cos) +
+                                kHalfY * c.grid.cell_y * scalar_abs(op.sin)) +
              kBoundSlack_mm;
-    half_v = static_cast<float>(
-                 1.5 * (c.grid.cell_x * scalar_abs(op.sin) + c.grid.cell_y * scalar_abs(op.cos))) +
+    half_v = static_cast<float>(kHalfX * c.grid.cell_x * scalar_abs(op.sin) +
+                                kHalfY * c.grid.cell_y * scalar_abs(op.cos)) +
              kBoundSlack_mm;
     reach = contact_reach(c.tool, op.slope, op.slope_m);
     next_reach = contact_reach(c.tool, joined ? op.next_slope : 0.0, op.next_m);
@@ -95,7 +95,7 @@ struct StripBounds {
   const SweepOp& op = c.op;
   const GridView& g = c.grid;
   const StripBounds bounds(c);
-  const double block_x = 4 * g.cell_x, block_y = 4 * g.cell_y;
+  const double block_x = kBlockX * g.cell_x, block_y = kBlockY * g.cell_y;
   const int home_i = floor_int((op.x - g.x0) * g.per_block_x);
   const int home_j = floor_int((op.y - g.y0) * g.per_block_y);
   const double ax = op.x - g.x0 - home_i * block_x, ay = op.y - g.y0 - home_j * block_y;
@@ -103,12 +103,12 @@ struct StripBounds {
   const F8 cos = all(op.cos), sin = all(op.sin), zero = F8::all(0), radius = F8::all(bounds.radius);
   const F8 icos = F8::all(inverse_or_huge(op.cos)), isin = F8::all(inverse_or_huge(-op.sin));
   const F8 side = F8::all(bounds.radius + bounds.half_v), half_v = F8::all(bounds.half_v);
-  const F8 first_column = all(-home_i), last_column = all((g.nx - 1) / 4 - home_i);
+  const F8 first_column = all(-home_i), last_column = all((g.nx - 1) / kBlockX - home_i);
   const bool is_short = op.length + 2 * c.tool.radius <= kShortReach_mm;
   alignas(32) static constexpr float kLane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   for (int first = c.first_row; first <= c.last_row; first += 8) {
     const F8 row = F8::all(static_cast<float>(first - home_j)) + F8::load(kLane);
-    const F8 y = row * all(block_y) + all(2 * g.cell_y - ay);
+    const F8 y = row * all(block_y) + all(0.5 * block_y - ay);
     const F8 y_sin = y * sin, y_cos = y * cos;
     F8 low = F8::all(-1e9f), high = F8::all(1e9f);
     clip(icos, y_sin, F8::all(bounds.lower), F8::all(bounds.upper), low, high);
@@ -156,17 +156,17 @@ struct StripBounds {
   const GridView& g = c.grid;
   const double margin = c.tool.radius + 1e-3;
   const double left = c.op.min_x - margin - c.op.x, right = c.op.max_x + margin - c.op.x;
-  const double half_x = 1.5 * g.cell_x, half_y = 1.5 * g.cell_y;
-  const int last_column = (g.nx - 1) / 4;
+  const double half_x = kHalfX * g.cell_x, half_y = kHalfY * g.cell_y;
+  const int last_column = (g.nx - 1) / kBlockX;
   const double ax = c.op.x - g.x0, ay = c.op.y - g.y0;
   for (int bj = c.first_row; bj <= c.last_row; ++bj) {
-    const double y = (bj * 4 + 2) * g.cell_y - ay;
+    const double y = (bj + 0.5) * kBlockY * g.cell_y - ay;
     const double y_near = scalar_max(0.0, scalar_abs(y) - half_y), y_far = scalar_abs(y) + half_y;
     if (y_near > outer + 1e-3) continue;
     const double w = scalar_sqrt(scalar_max(0.0, outer * outer - y_near * y_near)) + 1e-3;
     const double x0 = scalar_max(-w, left) - half_x, x1 = scalar_min(w, right) + half_x;
     const auto blocks = [&](double from, double to) {
-      const double b0 = (ax + from) / (4 * g.cell_x) - 0.5, b1 = (ax + to) / (4 * g.cell_x) - 0.5;
+      const double b0 = (ax + from) * g.per_block_x - 0.5, b1 = (ax + to) * g.per_block_x - 0.5;
       if (b0 > b1 || b1 < 0 || b0 > last_column) return;
       const int first = b0 <= 0 ? 0 : ceil_int(b0),
                 last = b1 >= last_column ? last_column : floor_int(b1);
@@ -291,8 +291,8 @@ inline void sweep_block_rows(GridView& grid, const ConvexTool& tool, const Sweep
 
 inline void run_all(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
                     int first_band, int band_step, SweepTotals* totals) {
-  const double row_height = 4 * grid.cell_y;
-  const int last_block_row = (grid.ny - 1) / 4;
+  const double row_height = kBlockY * grid.cell_y;
+  const int last_block_row = (grid.ny - 1) / kBlockY;
   for (std::size_t n = 0; n < count; ++n) {
     const SweepOp& op = ops[n];
     const double from = (op.min_y - tool.radius - 1e-3 - grid.y0) / row_height;
@@ -307,9 +307,9 @@ inline void run_all(GridView& grid, const ConvexTool& tool, const SweepOp* ops, 
       sweep_block_rows(grid, tool, op, row0, row1, totals);
       continue;
     }
-    for (int band = row0 / kTileBlocks; band <= row1 / kTileBlocks; ++band) {
+    for (int band = row0 / kTileBlocksY; band <= row1 / kTileBlocksY; ++band) {
       if (band % band_step != first_band) continue;
-      const int top = band * kTileBlocks, bottom = top + kTileBlocks - 1;
+      const int top = band * kTileBlocksY, bottom = top + kTileBlocksY - 1;
       sweep_block_rows(grid, tool, op, row0 > top ? row0 : top, row1 < bottom ? row1 : bottom,
                        totals);
     }

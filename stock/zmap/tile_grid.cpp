@@ -52,19 +52,20 @@ TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny)
 }
 
 void TileGrid::copy_row(int j, float* out) const {
-  for (int i = 0; i < nx_; i += 4) {
+  for (int i = 0; i < nx_; i += kBlockX) {
     const float* from = tile(i / kTileCells, j / kTileCells) + offset(i, j);
-    std::copy_n(from, std::min(4, nx_ - i), out + i);
+    out[i] = from[0];
+    if (i + 1 < nx_) out[i + 1] = from[1];
   }
 }
 
 void TileGrid::set_row(int j, const float* in) {
-  for (int i = 0; i < nx_; i += 4) {
+  for (int i = 0; i < nx_; i += kBlockX) {
     const int tx = i / kTileCells, ty = j / kTileCells;
     std::shared_ptr<float>& shared = tiles_[index(tx, ty)];
     float* to =
         shared.use_count() == 1 ? shared.get() : make_writable(static_cast<int>(index(tx, ty)));
-    std::copy_n(in + i, std::min(4, nx_ - i), to + offset(i, j));
+    std::copy_n(in + i, std::min(kBlockX, nx_ - i), to + offset(i, j));
   }
 }
 

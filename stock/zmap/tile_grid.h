@@ -41,7 +41,8 @@ class TileGrid {
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
     const int x = i % kTileCells, y = j % kTileCells;
-    return static_cast<std::size_t>(((y / 4) * kTileBlocks + x / 4) * 16 + (y % 4) * 4 + x % 4);
+    return static_cast<std::size_t>((y / kBlockY * kTileBlocksX + x / kBlockX) * kBlockFloats +
+                                    y % kBlockY * kBlockX + x % kBlockX);
   }
 
  private:

@@ -9,22 +9,25 @@
 
 namespace kerf::KERF_LANES_NAMESPACE {
 
-/// Offsets of the 8 + 8 cells of a block from its first one, in the frame of the sweep.
+/// Offsets of the cells of a block from its first one, in the frame of the sweep.
 template <class T>
 struct BlockOffsets {
-  T p[2], q[2], track[2];
-  BlockOffsets(const GridView& grid, double cos, double sin, double slope) {
-    using S = typename T::Scalar;
-    alignas(64) static constexpr S kX[8] = {0, 1, 2, 3, 0, 1, 2, 3};
-    alignas(64) static constexpr S kY[2][8] = {{0, 0, 0, 0, 1, 1, 1, 1}, {2, 2, 2, 2, 3, 3, 3, 3}};
-    const auto all = [](double x) { return T::all(static_cast<S>(x)); };
-    const T x = T::load(kX);
-    for (int half = 0; half < 2; ++half) {
-      const T y = T::load(kY[half]);
-      p[half] = x * all(grid.cell_x * cos) + y * all(grid.cell_y * sin);
-      q[half] = y * all(grid.cell_y * cos) - x * all(grid.cell_x * sin);
-      track[half] = all(slope) * p[half];
-    }
+  T p, q, track;
+  BlockOffsets(const GridView& grid, const Frame& f)
+      : p(x() * all(grid.cell_x * f.cos) + y() * all(grid.cell_y * f.sin)),
+        q(y() * all(grid.cell_y * f.cos) - x() * all(grid.cell_x * f.sin)),
+        track(all(f.slope) * p) {}
+
+ private:
+  using S = typename T::Scalar;
+  static T all(double v) { return T::all(static_cast<S>(v)); }
+  static T x() {
+    alignas(64) static constexpr S kX[8] = {0, 1, 0, 1, 0, 1, 0, 1};
+    return T::load(kX);
+  }
+  static T y() {
+    alignas(64) static constexpr S kY[8] = {0, 0, 1, 1, 2, 2, 3, 3};
+    return T::load(kY);
   }
 };
 
@@ -43,19 +46,18 @@ inline float max_lane(F8 a) {
   return top;
 }
 
-/// Heights of half a block in double precision.
+/// Heights of a block in double precision.
 template <class EvalD>
-inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b, int half,
-                          const EvalD& eval, const BlockOffsets<D8>& offsets) {
+inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b, const EvalD& eval,
+                          const BlockOffsets<D8>& offsets) {
   const double x = c.center_x(b.column()), y = c.center_y(b.bj);
   const double p = x * f.cos + y * f.sin, q = y * f.cos - x * f.sin;
   MaskD ignored;
-  return to_float(
-      eval.template at<false>(D8::all(p) + offsets.p[half], D8::all(q) + offsets.q[half],
-                              D8::all(c.op.z + f.slope * p) + offsets.track[half], ignored));
+  return to_float(eval.template at<false>(D8::all(p) + offsets.p, D8::all(q) + offsets.q,
+                                          D8::all(c.op.z + f.slope * p) + offsets.track, ignored));
 }
 
-/// Lowers half a block to z (infinity where the sweep does not come).
+/// Lowers a block to z (kNowhere where the sweep does not come).
 struct Lowering {
   F8 floor, deepest = F8::all(0), unit = F8::all(static_cast<float>(1 / kRemovedUnit_mm));
   I8 removed = I8::zero();
@@ -75,18 +77,16 @@ struct Lowering {
   }
 };
 
-/// Half blocks that single precision could not settle: few, so everything they need is made on the
-/// spot.
+/// Blocks that single precision could not settle: few, so everything they need is made on the spot.
 template <class EvalD>
 [[gnu::noinline]] void settle(SweepContext& c, const WorkList& list, const Frame& f,
-                              const std::int16_t* halves, int count) {
+                              const std::int16_t* blocks, int count) {
   const EvalD eval(c.tool, c.op);
-  const BlockOffsets<D8> offsets(c.grid, f.cos, f.sin, f.slope);
+  const BlockOffsets<D8> offsets(c.grid, f);
   Lowering lowering(c.grid);
   for (int n = 0; n < count; ++n) {
-    const Block& b = list.blocks[halves[n] / 2];
-    const int half = halves[n] % 2;
-    lowering.apply(b.cells + 8 * half, evaluate_double(c, f, b, half, eval, offsets));
+    const Block& b = list.blocks[blocks[n]];
+    lowering.apply(b.cells, evaluate_double(c, f, b, eval, offsets));
   }
   lowering.add_to(c);
 }
@@ -95,27 +95,23 @@ template <class EvalD>
 /// sure.
 template <class EvalD, bool kInterior, class EvalF>
 void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval_in_memory) {
-  const EvalF eval =
-      eval_in_memory;  // a local whose address nobody has: its constants stay in registers
-  const BlockOffsets<F8> offsets(c.grid, f.cos, f.sin, f.slope);
+  const EvalF eval = eval_in_memory;  // nobody has its address: its constants stay in registers
+  const BlockOffsets<F8> offsets(c.grid, f);
   Lowering lowering(c.grid);
-  std::int16_t unsettled[2 * WorkList::kCapacity];
+  std::int16_t unsettled[WorkList::kCapacity];
   int unsettled_count = 0;
   for (int n = 0; n < list.count; ++n) {
     const Block& b = list.blocks[n];
-    const F8 p = F8::all(b.p), q = F8::all(b.q), track = F8::all(b.track);
-    for (int half = 0; half < 2; ++half) {
-      MaskF unsure;
-      const F8 z = eval.template at<kInterior>(p + offsets.p[half], q + offsets.q[half],
-                                               track + offsets.track[half], unsure);
-      if constexpr (!kInterior) {
-        if (any(unsure)) [[unlikely]] {
-          unsettled[unsettled_count++] = static_cast<std::int16_t>(2 * n + half);
-          continue;
-        }
+    MaskF unsure;
+    const F8 z = eval.template at<kInterior>(F8::all(b.p) + offsets.p, F8::all(b.q) + offsets.q,
+                                             F8::all(b.track) + offsets.track, unsure);
+    if constexpr (!kInterior) {
+      if (any(unsure)) [[unlikely]] {
+        unsettled[unsettled_count++] = static_cast<std::int16_t>(n);
+        continue;
       }
-      lowering.apply(b.cells + 8 * half, z);
     }
+    lowering.apply(b.cells, z);
   }
   lowering.add_to(c);
   if (unsettled_count > 0) settle<EvalD>(c, list, f, unsettled, unsettled_count);
@@ -124,14 +120,10 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
 
 template <class EvalD>
 void work_off_double(SweepContext& c, WorkList& list, const Frame& f, const EvalD& eval) {
-  const BlockOffsets<D8> offsets(c.grid, f.cos, f.sin, f.slope);
+  const BlockOffsets<D8> offsets(c.grid, f);
   Lowering lowering(c.grid);
-  for (int n = 0; n < list.count; ++n) {
-    for (int half = 0; half < 2; ++half) {
-      lowering.apply(list.blocks[n].cells + 8 * half,
-                     evaluate_double(c, f, list.blocks[n], half, eval, offsets));
-    }
-  }
+  for (int n = 0; n < list.count; ++n)
+    lowering.apply(list.blocks[n].cells, evaluate_double(c, f, list.blocks[n], eval, offsets));
   lowering.add_to(c);
   list.count = 0;
 }

@@ -172,8 +172,8 @@ void ZMap::Impl::run(std::size_t report_count) {
   view.y0 = grid.bounds_mm().min.y;
   view.cell_x = grid.cell_x_mm();
   view.cell_y = grid.cell_y_mm();
-  view.per_block_x = 1 / (4 * view.cell_x);
-  view.per_block_y = 1 / (4 * view.cell_y);
+  view.per_block_x = 1 / (kBlockX * view.cell_x);
+  view.per_block_y = 1 / (kBlockY * view.cell_y);
   view.floor = grid.floor_mm();
 
   for (const ConvexTool& tool : tools) {
