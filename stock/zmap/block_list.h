@@ -120,6 +120,25 @@ class RunWriter {
       bi = last + 1;
     }
   }
+  /// The same for a ring about the sweep's centre: interior are blocks whose centre has near <= |x|
+  /// <= far.
+  [[gnu::noinline]] void add_ring(int bj, int b0, int b1, float near, float far) {
+    const float to_middle = static_cast<float>(kHalfX * c_.grid.cell_x);
+    for (int bi = b0; bi <= b1;) {
+      const int tile_end = bi | (kTileBlocksX - 1), last = tile_end < b1 ? tile_end : b1;
+      make_room();
+      float* cells = first_cell(bj, bi);
+      const RunStart at = run_start(c_, frame_, bi, bj);
+      F4 place = F4::of(at.p, at.q, at.track, 0);
+      float x = at.p + to_middle;
+      for (int k = 0; k <= last - bi; ++k, place = place + step_, x += dp_) {
+        const float a = __builtin_fabsf(x);
+        WorkList& list = (a >= near) & (a <= far) ? lists_.interior : lists_.edge;
+        write(list.blocks[list.count++], place, bi, bj, cells + kBlockFloats * k);
+      }
+      bi = last + 1;
+    }
+  }
   /// Room for eight short runs.
   void make_room() {
     if (lists_.interior.count > kListBlocks || lists_.edge.count > kListBlocks) [[unlikely]]

@@ -57,12 +57,14 @@ inline double unsure_band(const ConvexTool& tool, double steepness, double reach
 enum class Joint { kNone, kStraight, kTurned };
 
 /// Distance from the track within which a strip's cells are so far from the tool's wall that no
-/// test against it is needed; negative if there is none. Balls only: their contact point keeps away
+/// test against it is needed; negative if there is none. The contact point of a ball keeps away
 /// from the equator by w / sqrt(1 + s^2) with w = sqrt(R^2 - v^2), and so does a wedge between two
-/// strips in nearly the same direction.
+/// strips in nearly the same direction. Other tools on a slope may touch with their rim anywhere;
+/// on the level, any tool touches beside its axis.
 inline double interior_width(const SweepContext& c) {
   const SweepOp& op = c.op;
-  if (c.tool.kind != ConvexTool::Kind::kBall) return -1;
+  const bool level = op.slope == 0 && (!op.joined || op.next_slope == 0);
+  if (c.tool.kind != ConvexTool::Kind::kBall && !level) return -1;
   double steepest = op.slope_m, turn = 0;
   if (op.joined) {
     steepest = scalar_max(steepest, op.next_m);
@@ -173,10 +175,12 @@ struct CapEval {
   template <bool kInterior>
   T at(T x, T y, T, Mask& unsure) const {
     const T d2 = x * x + y * y;
-    const T w2 = radius2 - d2;
     unsure = all(0) > all(0);
+    const T z = tip_z + shape.surface(d2);
+    if constexpr (kInterior) return z;
+    const T w2 = radius2 - d2;
     if constexpr (!kDouble) unsure = abs(w2) <= band;
-    return select(w2 >= tie, tip_z + shape.surface(d2), all(kNowhere));
+    return select(w2 >= tie, z, all(kNowhere));
   }
 };
 
@@ -207,6 +211,9 @@ struct ArcEval {
   T at(T x, T y, T, Mask& unsure) const {
     const T d = sqrt(x * x + y * y) - path;
     const T d2 = d * d;
+    unsure = all(0) > all(0);
+    const T z = tip_z + shape.surface(d2);
+    if constexpr (kInterior) return z;
     const T w2 = radius2 - d2;
     Mask inside = w2 >= tie;
     Mask near = abs(w2) <= band;
@@ -217,9 +224,8 @@ struct ArcEval {
       inside = inside & between;
       near = near & between;
     }
-    unsure = all(0) > all(0);
     if constexpr (!kDouble) unsure = near;
-    return select(inside, tip_z + shape.surface(d2), all(kNowhere));
+    return select(inside, z, all(kNowhere));
   }
 };
 

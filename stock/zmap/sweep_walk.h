@@ -149,10 +149,34 @@ struct StripBounds {
   }
 }
 
-/// Rows of blocks between the circles `inner` and `outer` about the sweep's (x, y), within the box
-/// of the sweep's path widened by the tool's radius.
-[[gnu::noinline]] inline void walk_ring(const SweepContext& c, double inner, double outer,
-                                        RunWriter& out) {
+/// What a cap or an arc covers about its centre: between two radii, and safely (no test against the
+/// wall is needed) between two others; safe_outer < 0 if nowhere.
+struct Ring {
+  double inner = 0, outer = 0;
+  double safe_inner = 0, safe_outer = -1;
+};
+
+inline Ring ring_of(const SweepContext& c) {
+  const SweepOp& op = c.op;
+  const bool cap = op.kind == SweepOp::Kind::kCap;
+  const double path = cap ? 0.0 : op.radius, r = c.tool.radius;
+  Ring ring{cap ? 0.0 : path - r, path + r, 0, -1};
+  if (op.use_double || !(cap || (op.kind == SweepOp::Kind::kArc && op.full_circle))) return ring;
+  const double safe2 = r * r - unsure_band(c.tool, 1.0, r + path);
+  if (safe2 <= 0) return ring;
+  const double safe = scalar_sqrt(safe2) - kBoundSlack_mm;
+  ring.safe_outer = path + safe;
+  ring.safe_inner = path - safe;
+  return ring;
+}
+
+/// Half the chord of a circle at distance y from its centre, 0 where there is none.
+inline double half_chord(double radius, double y) {
+  return radius > y ? scalar_sqrt(radius * radius - y * y) : 0.0;
+}
+
+/// Rows of blocks of a ring, within the box of the sweep's path widened by the tool's radius.
+[[gnu::noinline]] inline void walk_ring(const SweepContext& c, const Ring& ring, RunWriter& out) {
   const GridView& g = c.grid;
   const double margin = c.tool.radius + 1e-3;
   const double left = c.op.min_x - margin - c.op.x, right = c.op.max_x + margin - c.op.x;
@@ -162,18 +186,21 @@ struct StripBounds {
   for (int bj = c.first_row; bj <= c.last_row; ++bj) {
     const double y = (bj + 0.5) * kBlockY * g.cell_y - ay;
     const double y_near = scalar_max(0.0, scalar_abs(y) - half_y), y_far = scalar_abs(y) + half_y;
-    if (y_near > outer + 1e-3) continue;
-    const double w = scalar_sqrt(scalar_max(0.0, outer * outer - y_near * y_near)) + 1e-3;
+    if (y_near > ring.outer + 1e-3) continue;
+    const double w = half_chord(ring.outer, y_near) + 1e-3;
     const double x0 = scalar_max(-w, left) - half_x, x1 = scalar_min(w, right) + half_x;
+    // Interior blocks have all their cells between these.
+    const float far = static_cast<float>(half_chord(ring.safe_outer, y_far) - half_x - 1e-3);
+    const double gap = half_chord(ring.safe_inner, y_near);
+    const float near = static_cast<float>(gap > 0 ? gap + half_x + 1e-3 : 0.0);
     const auto blocks = [&](double from, double to) {
       const double b0 = (ax + from) * g.per_block_x - 0.5, b1 = (ax + to) * g.per_block_x - 0.5;
       if (b0 > b1 || b1 < 0 || b0 > last_column) return;
       const int first = b0 <= 0 ? 0 : ceil_int(b0),
                 last = b1 >= last_column ? last_column : floor_int(b1);
-      if (first <= last) out.add(bj, first, last);
+      if (first <= last) out.add_ring(bj, first, last, near, far);
     };
-    const double hole2 = inner * inner - y_far * y_far;
-    const double hole = inner > 0 && hole2 > 0 ? scalar_sqrt(hole2) - half_x - 1e-3 : 0.0;
+    const double hole = ring.inner > 0 ? half_chord(ring.inner, y_far) - half_x - 1e-3 : 0.0;
     if (hole > 8 * g.cell_x) {
       // At least four blocks apart: no block belongs to both sides.
       blocks(x0, scalar_min(x1, -hole));
@@ -225,10 +252,8 @@ void walk(SweepContext& c, double interior_mm) {
   const SweepOp& op = c.op;
   if (op.kind == SweepOp::Kind::kStrip)
     walk_strip(c, out);
-  else if (op.kind == SweepOp::Kind::kCap)
-    walk_ring(c, 0.0, c.tool.radius, out);
   else
-    walk_ring(c, op.radius - c.tool.radius, op.radius + c.tool.radius, out);
+    walk_ring(c, ring_of(c), out);
   out.flush();
 }
 
