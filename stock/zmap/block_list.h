@@ -15,7 +15,7 @@ namespace kerf::KERF_LANES_NAMESPACE {
 constexpr float kBoundSlack_mm = 1e-3f;
 /// A strip that extends no farther than this from its start has block positions computed in single
 /// precision.
-constexpr double kShortReach_mm = 10.0;
+constexpr double kShortReach_mm = 30.0;
 
 inline double scalar_min(double a, double b) { return a < b ? a : b; }
 inline double scalar_max(double a, double b) { return a > b ? a : b; }
@@ -66,6 +66,15 @@ struct SweepContext {
       0;  ///< heights removed, in kRemovedUnit_mm: integers, so that no order of adding matters
   float depth = 0;
 
+  /// Positions of a short strip's blocks are computed from where it starts.
+  bool is_short() const {
+    return op.kind == SweepOp::Kind::kStrip && op.length + 2 * tool.radius <= kShortReach_mm;
+  }
+  /// How far from a position computed in double precision a block may lie, mm.
+  double extent() const {
+    return is_short() ? op.length + 2 * tool.radius
+                      : kTileCells * scalar_max(grid.cell_x, grid.cell_y);
+  }
   double center_x(int bi) const { return (bi * kBlockX + 0.5) * grid.cell_x - (op.x - grid.x0); }
   double center_y(int bj) const { return (bj * kBlockY + 0.5) * grid.cell_y - (op.y - grid.y0); }
   float* tile(int index) {

@@ -42,12 +42,11 @@ constexpr double kSinglePrecision_mm = 5e-5;
 /// Height of a sweep where it does not come: above every blank, finite so that arithmetic stays
 /// tame.
 constexpr double kNowhere = 1e30;
-/// Squared-radius band beside the wall in which single precision is not trusted; `reach` bounds the
-/// coordinates involved.
-inline double unsure_band(const ConvexTool& tool, double steepness, double reach) {
-  // Rounding of a distance up to `reach`, plus that of block positions up to kShortReach_mm or a
-  // tile away from where they were computed in double precision.
-  const double rounding = 2e-7 * reach + 1.5e-6;
+/// Squared-radius band beside the wall in which single precision is not trusted. `reach` bounds the
+/// distances that are compared, `extent` how far a block may lie from where its position was
+/// computed in double precision.
+inline double unsure_band(const ConvexTool& tool, double steepness, double reach, double extent) {
+  const double rounding = 2e-7 * (reach + extent) + 5e-7;
   const double w =
       scalar_min(tool.radius, steepness * tool.radius * rounding / kSinglePrecision_mm);
   return w * w + 4 * tool.radius * rounding;
@@ -71,7 +70,7 @@ inline double interior_width(const SweepContext& c) {
     turn = op.straight_on ? 0.0 : scalar_abs(op.cos * op.next_sin - op.sin * op.next_cos);
   }
   const double r2 = c.tool.radius * c.tool.radius;
-  const double band = unsure_band(c.tool, op.slope_m, c.tool.radius);
+  const double band = unsure_band(c.tool, op.slope_m, c.tool.radius, c.extent());
   const double needed = steepest * steepest * (band + 2 * r2 * turn * (1 + turn)) + 1e-3 * r2;
   const double half_block = kHalfX * c.grid.cell_x * scalar_abs(op.sin) +
                             kHalfY * c.grid.cell_y * scalar_abs(op.cos) + 1e-3;
@@ -88,7 +87,7 @@ struct StripEval {
   T radius2, tie, overlap, length, length_over, band, turn_cos, turn_sin, vertex_z, edge_band;
 
   static T all(double x) { return T::all(static_cast<S>(x)); }
-  StripEval(const ConvexTool& tool, const SweepOp& op)
+  StripEval(const ConvexTool& tool, const SweepOp& op, double extent = 0)
       : shape(tool, {op.slope, op.slope_m}),
         next(tool, {op.next_slope, op.next_m}),
         // The contact reaches the wall: the strip then begins or ends in a step that must be placed
@@ -99,7 +98,7 @@ struct StripEval {
         overlap(all(kDouble ? -kEdgeTie_mm : -kStripOverlap_mm)),
         length(all(op.length)),
         length_over(all(op.length + (kDouble ? kEdgeTie_mm : kStripOverlap_mm))),
-        band(all(unsure_band(tool, op.slope_m, tool.radius))),
+        band(all(unsure_band(tool, op.slope_m, tool.radius, extent))),
         turn_cos(all(op.cos * op.next_cos + op.sin * op.next_sin)),
         turn_sin(all(op.cos * op.next_sin - op.sin * op.next_cos)),
         vertex_z(all(op.z + op.slope * op.length)),
@@ -166,12 +165,12 @@ struct CapEval {
   Shape shape;
   T radius2, tie, tip_z, band;
   static T all(double x) { return T::all(static_cast<S>(x)); }
-  CapEval(const ConvexTool& tool, const SweepOp& op)
+  CapEval(const ConvexTool& tool, const SweepOp& op, double extent = 0)
       : shape(tool, {}),
         radius2(all(tool.radius * tool.radius)),
         tie(all(kDouble ? -2 * tool.radius * kEdgeTie_mm : 0.0)),
         tip_z(all(op.z)),
-        band(all(unsure_band(tool, 1.0, tool.radius))) {}
+        band(all(unsure_band(tool, 1.0, tool.radius, extent))) {}
   template <bool kInterior>
   T at(T x, T y, T, Mask& unsure) const {
     const T d2 = x * x + y * y;
@@ -193,14 +192,14 @@ struct ArcEval {
   bool full, over_half;
   T radius2, tie, tip_z, band, path, cos0, sin0, cos1, sin1, overlap;
   static T all(double x) { return T::all(static_cast<S>(x)); }
-  ArcEval(const ConvexTool& tool, const SweepOp& op)
+  ArcEval(const ConvexTool& tool, const SweepOp& op, double extent = 0)
       : shape(tool, {}),
         full(op.full_circle),
         over_half(op.over_half),
         radius2(all(tool.radius * tool.radius)),
         tie(all(kDouble ? -2 * tool.radius * kEdgeTie_mm : 0.0)),
         tip_z(all(op.z)),
-        band(all(unsure_band(tool, 1.0, tool.radius + op.radius))),
+        band(all(unsure_band(tool, 1.0, tool.radius + op.radius, extent))),
         path(all(op.radius)),
         cos0(all(op.cos)),
         sin0(all(op.sin)),

@@ -104,7 +104,7 @@ struct StripBounds {
   const F8 icos = F8::all(inverse_or_huge(op.cos)), isin = F8::all(inverse_or_huge(-op.sin));
   const F8 side = F8::all(bounds.radius + bounds.half_v), half_v = F8::all(bounds.half_v);
   const F8 first_column = all(-home_i), last_column = all((g.nx - 1) / kBlockX - home_i);
-  const bool is_short = op.length + 2 * c.tool.radius <= kShortReach_mm;
+  const bool is_short = c.is_short();
   alignas(32) static constexpr float kLane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   for (int first = c.first_row; first <= c.last_row; first += 8) {
     const F8 row = F8::all(static_cast<float>(first - home_j)) + F8::load(kLane);
@@ -162,7 +162,7 @@ inline Ring ring_of(const SweepContext& c) {
   const double path = cap ? 0.0 : op.radius, r = c.tool.radius;
   Ring ring{cap ? 0.0 : path - r, path + r, 0, -1};
   if (op.use_double || !(cap || (op.kind == SweepOp::Kind::kArc && op.full_circle))) return ring;
-  const double safe2 = r * r - unsure_band(c.tool, 1.0, r + path);
+  const double safe2 = r * r - unsure_band(c.tool, 1.0, r + path, c.extent());
   if (safe2 <= 0) return ring;
   const double safe = scalar_sqrt(safe2) - kBoundSlack_mm;
   ring.safe_outer = path + safe;
@@ -223,7 +223,7 @@ struct SingleSweep {
   EvalF eval;
   WorkLists lists;
   explicit SingleSweep(SweepContext& context)
-      : c(context), frame(frame_of(c.op)), eval(c.tool, c.op) {}
+      : c(context), frame(frame_of(c.op)), eval(c.tool, c.op, c.extent()) {}
   static void flush(void* self) {
     SingleSweep& s = *static_cast<SingleSweep*>(self);
     if (s.lists.interior.count > 0) work_off<EvalD, true>(s.c, s.lists.interior, s.frame, s.eval);

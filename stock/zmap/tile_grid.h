@@ -1,6 +1,7 @@
 // stock/zmap/tile_grid.h - heights in copy-on-write tiles.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,7 @@ class TileGrid {
   /// Every cell at the floor (no material).
   TileGrid(const Box& bounds_mm, int nx, int ny);
   TileGrid(const TileGrid&) = default;
+  ~TileGrid();
 
   int nx() const { return nx_; }
   int ny() const { return ny_; }
@@ -50,9 +52,11 @@ class TileGrid {
     return static_cast<std::size_t>(ty) * static_cast<std::size_t>(tiles_x_) +
            static_cast<std::size_t>(tx);
   }
+  void meet_other_grids() const;
   Box bounds_;
   int nx_, ny_, tiles_x_, tiles_y_;
   std::vector<std::shared_ptr<float>> tiles_;
+  std::shared_ptr<std::atomic<unsigned>> meetings_;  ///< one for all copies of a grid
 };
 
 }  // namespace kerf
