@@ -142,7 +142,7 @@ class RunWriter {
       float x = at.p + to_middle;
       for (int k = 0; k <= last - bi; ++k, place = place + step_, x += dp_) {
         const float a = __builtin_fabsf(x);
-        WorkList& list = (a >= near) & (a <= far) ? lists_.interior : lists_.edge;
+        WorkList& list = ((a >= near) & (a <= far)) ? lists_.interior : lists_.edge;
         write(list.blocks[list.count++], place, bi, bj, cells + kBlockFloats * k);
       }
       bi = last + 1;
