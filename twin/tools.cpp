@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "stock/zmap/zmap.h"
+
 namespace kerf {
 
 ToolBook::ToolBook(ToolSources sources, bool model_holds_undercuts)
@@ -128,8 +130,15 @@ ResolvedTool ToolBook::resolve_empty_spindle(std::optional<std::size_t> fresh_hi
 }
 
 void ToolBook::refuse_undercut(ResolvedTool& tool) const {
-  if (!tool.cutter || model_holds_undercuts_ || !tool.cutter->undercuts()) return;
-  tool.trouble = fmt::format("{} cuts undercuts, which the Z-map cannot hold", tool.cutter->spec());
+  if (!tool.cutter || model_holds_undercuts_) return;
+  if (tool.cutter->undercuts()) {
+    tool.trouble =
+        fmt::format("{} cuts undercuts, which the Z-map cannot hold", tool.cutter->spec());
+  } else if (const Done fit = ZMap::can_cut(*tool.cutter); !fit) {
+    tool.trouble = fit.error();
+  } else {
+    return;
+  }
   tool.cutter.reset();
 }
 

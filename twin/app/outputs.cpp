@@ -77,10 +77,13 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
   for (const auto& [option, path] : named(paths)) {
     if (path->empty() || *path == "-") continue;
     struct stat info = {};
-    if (stat(path->c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
+    const bool exists = stat(path->c_str(), &info) == 0;
+    if (exists && S_ISDIR(info.st_mode)) {
       fault(diagnostics, fmt::format("{}: {} is a folder, not a file", option, *path));
       continue;
     }
+    // Devices and pipes are written as they are; only files are replaced within their folder.
+    if (exists && !S_ISREG(info.st_mode)) continue;
     const std::string parent = std::filesystem::path(*path).parent_path().string();
     const std::string folder = parent.empty() ? "." : parent;
     if (access(folder.c_str(), W_OK | X_OK) != 0) {

@@ -87,6 +87,10 @@ void read_tools(const RunArguments& arguments, Reader& reader, SessionOptions& s
                                          text, tool->cutter.spec()));
       continue;
     }
+    if (const Done fit = ZMap::can_cut(tool->cutter); !fit) {
+      reader.fault("--tool", fmt::format("'{}': {}", text, fit.error()));
+      continue;
+    }
     bool twice = false;
     for (const ToolShapeArgument& other : session.tools) twice |= other.tool == tool->tool;
     if (twice) {
