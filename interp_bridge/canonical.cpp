@@ -211,11 +211,12 @@ bool parse_plane(Cursor& cursor, double& value) {
 
 /// CANON_EXACT_STOP, CANON_EXACT_PATH, or CANON_CONTINUOUS with its tolerance.
 bool parse_control_mode(Cursor& cursor, CanonicalCommand& command) {
-  const std::string_view word = parse_word(cursor);
-  if (word != "CANON_EXACT_STOP" && word != "CANON_EXACT_PATH" && word != "CANON_CONTINUOUS") {
-    return false;
-  }
-  command.text = word;
+  constexpr std::array<std::string_view, 3> kModes = {"CANON_EXACT_STOP", "CANON_EXACT_PATH",
+                                                      "CANON_CONTINUOUS"};
+  const auto mode = std::find(kModes.begin(), kModes.end(), parse_word(cursor));
+  if (mode == kModes.end()) return false;
+  command.arguments[command.argument_count++] =
+      static_cast<double>(std::distance(kModes.begin(), mode));
   cursor.skip_blanks();
   if (cursor.done()) return true;
   if (*cursor.at++ != ',') return false;

@@ -95,9 +95,11 @@ enum class CanonicalName : std::uint8_t {
 inline constexpr std::size_t kCanonicalNameCount =
     static_cast<std::size_t>(CanonicalName::kCanonError) + 1;
 
-/// Argument of USE_LENGTH_UNITS and of SELECT_PLANE, in `arguments[0]`.
+/// Argument of USE_LENGTH_UNITS, of SELECT_PLANE and of SET_MOTION_CONTROL_MODE, in `arguments[0]`;
+/// the last has a tolerance in `arguments[1]` (program units) where the mode is kContinuous.
 enum class CanonicalUnits : std::uint8_t { kInches, kMm, kCm };
 enum class CanonicalPlane : std::uint8_t { kXy, kYz, kXz, kUnknown };
+enum class CanonicalControlMode : std::uint8_t { kExactStop, kExactPath, kContinuous };
 
 /// One call. Cheap: no allocation; the views point into the parsed line and live as long as it
 /// does.
@@ -110,7 +112,7 @@ struct CanonicalCommand {
   std::uint64_t sequence = 0;  ///< line counter of the listing; 0 = not printed (2.10's G6)
   std::uint64_t n = 0;         ///< the program's N word, if has_n
   /// Numbers in printed order, in the program's units; integers exact. Missing optional ones:
-  /// argument_count is lower. Units and planes as the value of their enum.
+  /// argument_count is lower. Units, planes and control modes as the value of their enum.
   std::array<double, kMaxArguments> arguments{};
   std::string_view spelling;  ///< the name as printed (SPINDLE.1.WAIT_ORIENT_COMPLETE)
   std::string_view

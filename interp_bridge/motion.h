@@ -42,6 +42,9 @@ struct ArcGeometry {
 
 enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise };
 
+/// How the machine runs through the corner between two moves: G61.1, G61, G64.
+enum class PathMode : std::uint8_t { kExactStop, kExactPath, kContinuous };
+
 /// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
 /// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
 /// to_mm of the one before, except where a tool length offset changes under a standing machine: the
@@ -51,6 +54,7 @@ struct Motion {
   SpindleState spindle = SpindleState::kStopped;
   bool flood = false;
   bool mist = false;
+  PathMode path_mode = PathMode::kContinuous;
   bool feed_per_rev = false;  ///< G95: feed is mm per revolution
   /// False where the start is not known: in the first motion (rs274 starts at 0,0,0 and the real
   /// machine does not) and all steps before it, and after a spline, whose points the listing does
@@ -69,6 +73,10 @@ struct Motion {
   double feed_mm_per_min = 0;
   double spindle_rpm = 0;  ///< programmed S; under G96, that at the end of the step
   double duration_s = 0;   ///< kDwell only
+  /// G64 P: how far a corner may be cut; 0 = as far as the speed wants. kContinuous only.
+  float blend_tolerance_mm = 0;
+  /// G64 Q (without Q: P): straight feeds may be merged into one within this; 0 = they are not.
+  float merge_tolerance_mm = 0;
 };
 
 }  // namespace kerf

@@ -150,6 +150,9 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.to_abc_deg = abc_deg_;
   motion.spindle = spindles_[spindle_].state;
   motion.spindle_rpm = rpm_;
+  motion.path_mode = path_mode_;
+  motion.blend_tolerance_mm = blend_tolerance_mm_;
+  motion.merge_tolerance_mm = merge_tolerance_mm_;
   return motion;
 }
 
@@ -361,6 +364,14 @@ bool MotionFold::fold_feed(const CanonicalCommand& command) {
       return true;
     case CanonicalName::kSetFeedMode:
       feed_per_rev_ = command.integer(1) != 0;
+      return true;
+    case CanonicalName::kSetMotionControlMode:
+      path_mode_ = static_cast<PathMode>(command.integer(0));
+      blend_tolerance_mm_ =
+          command.argument_count == 2 ? static_cast<float>(command.number(1) * unit_mm_) : 0.0F;
+      return true;
+    case CanonicalName::kSetNaivecamTolerance:
+      merge_tolerance_mm_ = static_cast<float>(command.number(0) * unit_mm_);
       return true;
     case CanonicalName::kStartSpeedFeedSync:
       synchronised_ = true;

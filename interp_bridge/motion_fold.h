@@ -122,6 +122,9 @@ class MotionFold {
   double feed_ = 0;  ///< as printed: for steps that only turn
   double feed_mm_ = 0;
   bool feed_per_rev_ = false;
+  PathMode path_mode_ = PathMode::kContinuous;
+  float blend_tolerance_mm_ = 0;
+  float merge_tolerance_mm_ = 0;
   bool synchronised_ = false;  ///< between START_ and STOP_SPEED_FEED_SYNC
   bool synchronised_by_speed_ = false;
   double pitch_mm_ = 0;

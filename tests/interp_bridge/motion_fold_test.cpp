@@ -348,6 +348,27 @@ TEST(MotionFold, ArcInAPlaneOfUvwIsReported) {
   EXPECT_EQ(folded.motions.size(), 1u);
 }
 
+TEST(MotionFold, PathModeAndItsTolerancesInMm) {
+  const Folded folded{"STRAIGHT_TRAVERSE(0, 0, 0, 0, 0, 0)",
+                      "USE_LENGTH_UNITS(CANON_UNITS_INCHES)",
+                      "SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS, 0.010000)",
+                      "SET_NAIVECAM_TOLERANCE(0.0050)",
+                      "STRAIGHT_FEED(1, 0, 0, 0, 0, 0)",
+                      "SET_MOTION_CONTROL_MODE(CANON_EXACT_STOP)",
+                      "STRAIGHT_FEED(2, 0, 0, 0, 0, 0)",
+                      "SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH)",
+                      "STRAIGHT_FEED(3, 0, 0, 0, 0, 0)"};
+  ASSERT_EQ(folded.motions.size(), 4u);
+  EXPECT_EQ(folded.motions[0].path_mode, PathMode::kContinuous) << "as LinuxCNC begins";
+  EXPECT_EQ(folded.motions[0].blend_tolerance_mm, 0);
+  EXPECT_EQ(folded.motions[1].path_mode, PathMode::kContinuous);
+  EXPECT_FLOAT_EQ(folded.motions[1].blend_tolerance_mm, 0.254F);
+  EXPECT_FLOAT_EQ(folded.motions[1].merge_tolerance_mm, 0.127F);
+  EXPECT_EQ(folded.motions[2].path_mode, PathMode::kExactStop);
+  EXPECT_EQ(folded.motions[2].blend_tolerance_mm, 0);
+  EXPECT_EQ(folded.motions[3].path_mode, PathMode::kExactPath);
+}
+
 TEST(MotionFold, ProbeAndProgramEnd) {
   const Folded folded{"STRAIGHT_PROBE(0, 0, -50, 0, 0, 0)", "PROGRAM_END()"};
   EXPECT_EQ(folded.motions[0].kind, MotionKind::kProbe);
