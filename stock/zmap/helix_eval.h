@@ -26,30 +26,28 @@ inline D8 angle_of(D8 y, D8 x) {
 }
 
 /// Helix that descends along its angle phi = 0..length: height z - slope*phi + f(distance). Over
-/// one cell the distance is periodic in phi; on each turn the height has one minimum behind the
-/// axis (psi in 0..pi), found by bisection over the distance d; the last turn that holds it is the
-/// lowest. Ends are caps.
+/// one cell the distance d is periodic in phi; on each turn the height has one minimum behind the
+/// axis (psi in 0..pi), where the tool's surface rises as fast as its path falls:
+///
+///     f'(d) * product * sin(psi) = slope * d        product = |cell| * radius of the path
+///
+/// For flat and ball that is solved outright, for others by bisection over d. The last turn that
+/// holds the minimum is the lowest. Ends are caps.
 struct HelixEval {
   const ConvexTool& tool;
   const SweepOp& op;
   HelixEval(const ConvexTool& t, const SweepOp& o) : tool(t), op(o) {}
   static D8 all(double x) { return D8::all(x); }
 
-  /// f'(d) * a >= b * 1, kept finite where f' is infinite.
+  /// f'(d) * a < b, kept finite where f' is infinite.
   MaskD descends(D8 d, D8 a, D8 b) const {
     D8 rise = all(0), run = all(1);
-    if (tool.kind == ConvexTool::Kind::kBall) {
-      rise = d;
-      run = sqrt(max(all(tool.radius * tool.radius) - d * d, all(0)));
-    } else if (tool.kind == ConvexTool::Kind::kPieces) {
-      for (int i = 0; i < tool.piece_count; ++i) {
-        const ToolPiece& p = tool.pieces[i];
-        const MaskD here = d >= all(p.r0);
-        const D8 y = d - all(p.center_r);
-        rise = select(here, p.arc ? y : all(p.slope), rise);
-        run =
-            select(here, p.arc ? sqrt(max(all(p.radius * p.radius) - y * y, all(0))) : all(1), run);
-      }
+    for (int i = 0; i < tool.piece_count; ++i) {
+      const ToolPiece& p = tool.pieces[i];
+      const MaskD here = d >= all(p.r0);
+      const D8 y = d - all(p.center_r);
+      rise = select(here, p.arc ? y : all(p.slope), rise);
+      run = select(here, p.arc ? sqrt(max(all(p.radius * p.radius) - y * y, all(0))) : all(1), run);
     }
     return rise * a < b * run;
   }
@@ -75,19 +73,7 @@ struct HelixEval {
     const D8 squares = rr * rr + path * path;
     const D8 limit = min(farthest, all(tool.radius + kEdgeTie_mm));
     const D8 fall = all(op.slope);
-    // sin(psi)/d grows up to d_peak and shrinks from there.
-    const D8 wide = max(rr, path), narrow = min(rr, path);
-    const D8 peak = min(max(sqrt(max(wide * wide - narrow * narrow, all(0))), closest), limit);
-    const MaskD still_falling = falls(peak, squares, product, fall);
-    D8 low = select(still_falling, peak, closest);
-    D8 high = select(still_falling, limit, peak);
-    for (int step = 0; step < 50; ++step) {
-      const D8 d = all(0.5) * (low + high);
-      const MaskD falling = falls(d, squares, product, fall);
-      low = select(falling, d, low);
-      high = select(falling, high, d);
-    }
-    const D8 d = all(0.5) * (low + high);
+    const D8 d = distance(closest, limit, squares, product, max(rr, path), min(rr, path));
     // Ended at the far side of the path without a minimum: the height falls through the whole turn.
     const MaskD none = (d >= farthest - all(1e-9)) & (limit >= farthest);
     const D8 cosine = (squares - d * d) / (all(2) * product);
@@ -105,6 +91,40 @@ struct HelixEval {
 
  private:
   static constexpr double kTurn = 6.28318530717958647693;
+  /// The last of this many halvings of at most a few hundred mm is less than a nanometre, which the
+  /// height, being at its minimum, does not show.
+  static constexpr int kHalvings = 30;
+
+  /// Of the cell from the tip where the height is lowest; `limit` if it falls up to there.
+  D8 distance(D8 closest, D8 limit, D8 squares, D8 product, D8 wide, D8 narrow) const {
+    const D8 fall = all(op.slope);
+    switch (tool.kind) {
+      case ConvexTool::Kind::kFlat:
+        return limit;
+      case ConvexTool::Kind::kBall: {
+        // With u = d^2: product^2 - (squares - u)^2 / 4 = slope^2 * (R^2 - u), the smaller root.
+        const D8 fall2 = fall * fall, r2 = all(tool.radius * tool.radius);
+        const D8 root = product * product + fall2 * (squares + fall2 - r2);
+        const D8 u = squares + all(2) * fall2 - all(2) * sqrt(max(root, all(0)));
+        return select(root > all(0), min(max(sqrt(max(u, all(0))), closest), limit), limit);
+      }
+      case ConvexTool::Kind::kPieces:
+        break;
+    }
+    // sin(psi)/d grows up to the peak and shrinks from there.
+    const D8 peak = min(max(sqrt(max(wide * wide - narrow * narrow, all(0))), closest), limit);
+    const MaskD still_falling = falls(peak, squares, product, fall);
+    D8 low = select(still_falling, peak, closest);
+    D8 high = select(still_falling, limit, peak);
+    for (int step = 0; step < kHalvings; ++step) {
+      const D8 d = all(0.5) * (low + high);
+      const MaskD falling = falls(d, squares, product, fall);
+      low = select(falling, d, low);
+      high = select(falling, high, d);
+    }
+    return all(0.5) * (low + high);
+  }
+
   MaskD falls(D8 d, D8 squares, D8 product, D8 fall) const {
     const D8 cosine = (squares - d * d) / (all(2) * product);
     const D8 sine = sqrt(max(all(1) - cosine * cosine, all(0)));
