@@ -1,6 +1,8 @@
 // Bad input, each with its exact text and exit code, through the executable.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/twin/kerf_process.h"
 
 namespace kerf {
@@ -119,6 +121,14 @@ TEST_F(BadInput, UnknownShapeAndToolZero) {
          "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n");
 }
 
+TEST_F(BadInput, CutterWithAHollowBottom) {
+  folder_.write("cup.profile", "start 0 1\nline 4 0\nline 5 0\nline 5 10\n");
+  expect(
+      run({"part.canon", "--tool", "1=profile:cup.profile"}), 2,
+      "kerf: error: --tool: '1=profile:cup.profile': profile:cup.profile has a hollow bottom (its "
+      "profile falls from radius 0 outward); a Z-map cannot cut with it\n");
+}
+
 TEST_F(BadInput, InterpreterNotInstalled) {
   KerfCall call;
   call.arguments = {"run", "part.ngc"};
@@ -144,6 +154,14 @@ TEST_F(BadInput, DiskFullWhileWritingTheStl) {
                                  "--stl", "/dev/full", "--json", "part.json"});
   expect(result, 4, "kerf: error: writing /dev/full: No space left on device\n");
   EXPECT_TRUE(file_exists(folder_.file("part.json"))) << "the other outputs are written";
+}
+
+TEST_F(BadInput, ADeviceIsWrittenAsItIs) {
+  const KerfResult result = run({"part.canon", "--stock", box_, "--tool", "1=flat:6", "--quiet",
+                                 "--stl", "/dev/null", "--json", "/dev/stderr"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("kerf-report/1"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST_F(BadInput, FileThatGetsTooLargeLeavesTheOldOneAlone) {
