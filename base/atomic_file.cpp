@@ -7,7 +7,9 @@
 #include <atomic>
 #include <cassert>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <random>
 #include <system_error>
@@ -46,6 +48,34 @@ std::string resolve_links(const std::string& path) {
   if (lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
   const std::unique_ptr<char, void (*)(void*)> resolved(realpath(path.c_str(), nullptr), std::free);
   return resolved ? std::string(resolved.get()) : path;
+}
+
+/// The descriptor of this process that a path names, or -1. Opening such a path anew would start at
+/// the beginning of a file that the process is half way through, and renaming over it would leave
+/// the descriptor with the old one.
+int named_descriptor(const std::string& path) {
+  if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  for (const char* folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    const std::size_t length = std::strlen(folder);
+    if (path.compare(0, length, folder) != 0) continue;
+    int fd = -1;
+    const char* const end = path.data() + path.size();
+    const auto [stop, error] = std::from_chars(path.data() + length, end, fd);
+    if (error == std::errc() && stop == end && fd >= 0) return fd;
+  }
+  return -1;
+}
+
+/// Exists, and is neither a file nor a folder.
+bool is_device(const std::string& path) {
+  struct stat status;
+  return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+bool is_folder(const std::string& path) {
+  struct stat status;
+  return stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
 }
 
 /// Writes everything or returns errno.
@@ -114,24 +144,22 @@ void remove_uncommitted_files() {
   }
 }
 
+bool written_as_it_comes(const std::string& path) {
+  return named_descriptor(path) >= 0 || is_device(path);
+}
+
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
   if (path.empty()) return Error{"no file name given to write to"};
   AtomicFile file;
   file.path_ = path;
-  if (path == "-") {
-    file.fd_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (written_as_it_comes(path)) {
+    const int fd = named_descriptor(path);
+    file.fd_ = fd >= 0 ? fcntl(fd, F_DUPFD_CLOEXEC, 0) : open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (file.fd_ < 0) return failure(path, errno);
     file.buffer_.reserve(kBufferBytes);
     return file;
   }
-  struct stat status;
-  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    file.fd_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a folder ends here with EISDIR
-    if (file.fd_ < 0) return failure(path, errno);
-    file.buffer_.reserve(kBufferBytes);
-    return file;
-  }
-  if (path.back() == '/') return failure(path, EISDIR);
+  if (path.back() == '/' || is_folder(path)) return failure(path, EISDIR);
   file.target_path_ = resolve_links(path);
   for (int attempt = 0; attempt < kNameAttempts && file.fd_ < 0; ++attempt) {
     file.temporary_path_ = temporary_name(file.target_path_);

@@ -10,9 +10,9 @@ namespace kerf {
 
 /// Writes to `path` under a temporary name (".NAME.XXXXXX" beside it), and renames on commit().
 /// The destructor removes what was not committed; so does remove_uncommitted_files(). A symbolic
-/// link stays, and the file that it leads to is replaced. "-" (stdout), devices and pipes cannot be
-/// replaced: they are written as the bytes come. Buffered (1 MB). Does not sync: whole after a
-/// crash of kerf, not after a power cut. Not for several threads at once.
+/// link stays, and the file that it leads to is replaced. What written_as_it_comes() names is
+/// written as the bytes come. Buffered (1 MB). Does not sync: whole after a crash of kerf, not
+/// after a power cut. Not for several threads at once.
 class AtomicFile {
  public:
   /// Error: "writing out/part.stl: No such file or directory", "writing out: Is a directory".
@@ -44,6 +44,12 @@ class AtomicFile {
   int error_number_ = 0;
   std::string buffer_;
 };
+
+/// True for what cannot be replaced under its name: "-" (stdout), what this process has open
+/// already
+/// (/dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N: whatever they lead to, a file too),
+/// devices and pipes.
+bool written_as_it_comes(const std::string& path);
 
 /// Removes the temporary files of all AtomicFiles of this process that are neither committed nor
 /// destroyed; their commit() then reports an error. For the way out after Ctrl-C: may be called

@@ -174,6 +174,29 @@ TEST(AtomicFile, dash_is_standard_output) {
   EXPECT_EQ(read_file(captured), "to stdout");
 }
 
+TEST(AtomicFile, an_open_descriptor_goes_on_where_it_is) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "log";
+  const int log = open(path.c_str(), O_RDWR | O_CREAT, 0600);
+  ASSERT_EQ(write(log, "before ", 7), 7);
+  for (const char* name : {"/dev/fd/", "/proc/self/fd/"}) {
+    EXPECT_TRUE(written_as_it_comes(name + std::to_string(log)));
+    Result<AtomicFile> file = AtomicFile::create(name + std::to_string(log));
+    ASSERT_TRUE(file) << file.error();
+    write_text(*file, "kerf ");
+    ASSERT_TRUE(file->commit());
+  }
+  ASSERT_EQ(write(log, "after", 5), 5);
+  close(log);
+  EXPECT_EQ(read_file(path), "before kerf kerf after");
+  EXPECT_EQ(folder.names(), Names{"log"});
+  EXPECT_TRUE(written_as_it_comes("/dev/stderr"));
+  EXPECT_TRUE(written_as_it_comes("/dev/null"));
+  EXPECT_FALSE(written_as_it_comes(path));
+  EXPECT_FALSE(written_as_it_comes(folder / "not there"));
+  EXPECT_FALSE(written_as_it_comes("/dev/fd/3x"));
+}
+
 // ---- Failures -----------------------------------------------------------------------------------
 
 TEST(AtomicFile, without_a_folder_is_an_error) {

@@ -1,7 +1,6 @@
 #include "twin/app/outputs.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -75,15 +75,13 @@ void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) 
 
 void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
   for (const auto& [option, path] : named(paths)) {
-    if (path->empty() || *path == "-") continue;
-    struct stat info = {};
-    const bool exists = stat(path->c_str(), &info) == 0;
-    if (exists && S_ISDIR(info.st_mode)) {
+    // Only files are replaced within their folder.
+    if (path->empty() || written_as_it_comes(*path)) continue;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(*path, ignored)) {
       fault(diagnostics, fmt::format("{}: {} is a folder, not a file", option, *path));
       continue;
     }
-    // Devices and pipes are written as they are; only files are replaced within their folder.
-    if (exists && !S_ISREG(info.st_mode)) continue;
     const std::string parent = std::filesystem::path(*path).parent_path().string();
     const std::string folder = parent.empty() ? "." : parent;
     if (access(folder.c_str(), W_OK | X_OK) != 0) {

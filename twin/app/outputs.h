@@ -17,7 +17,10 @@ struct OutputPaths {
   std::string state;
 
   bool uses_stdout() const {
-    return json == "-" || png == "-" || stl == "-" || ply == "-" || state == "-";
+    for (const std::string* path : {&json, &png, &stl, &ply, &state}) {
+      if (*path == "-" || *path == "/dev/stdout") return true;
+    }
+    return false;
   }
 };
 
