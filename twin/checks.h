@@ -48,6 +48,9 @@ class Checks {
   void deepen_spindle_event(double depth_mm);
   void end_spindle_event() { spindle_.reset(); }
 
+  /// What goes on is forgotten: the next trouble is a new event.
+  void forget_events() { rapid_ = spindle_ = below_ = std::nullopt; }
+
   /// below-stock: the tip below the floor of the blank, inside the blank's outline (its box): the
   /// tool cuts the table. An event ends with the first move that stays above.
   void check_floor(const CheckedMove& move);

@@ -29,6 +29,15 @@ void CutStage::take(std::span<const Motion> motions) {
   flush();
 }
 
+void CutStage::begin_reporting() {
+  flush_whole();
+  checks_.forget_events();
+  timeline_.begin_totals();
+  uses_.clear();
+  mounted_ = nullptr;
+  feed_missing_reported_ = false;
+}
+
 void CutStage::finish() {
   flush_whole();
   for (ToolUse& use : uses_) {

@@ -46,6 +46,8 @@ class CutStage {
   /// Motions in program order. All of them are given to the model before the call returns (which
   /// may hold the last ones back until finish()).
   void take(std::span<const Motion> motions);
+  /// What was cut so far is not reported on: tool uses and totals begin anew, the clock goes on.
+  void begin_reporting();
   /// The program is over (or stopped).
   void finish();
 

@@ -44,6 +44,8 @@ const char* to_string(FindingId id) {
       return "interpreter-warning";
     case FindingId::kInterrupted:
       return "interrupted";
+    case FindingId::kLineNotReached:
+      return "line-not-reached";
   }
   return "";
 }
@@ -75,6 +77,7 @@ Diagnostic diagnostic_of(const Finding& finding, const std::vector<std::string>&
 }
 
 FindingLog::Handle FindingLog::add(Finding finding) {
+  if (muted_) return kMaxKept;
   ++counts_[static_cast<std::size_t>(finding.severity)];
   if (kept_.size() >= kMaxKept) return kMaxKept;
   kept_.push_back(std::move(finding));

@@ -26,7 +26,8 @@ enum class FindingId : std::uint8_t {
   kFeedMissing,        ///< feed moves without a feed rate
   kInterpreterError,   ///< the interpreter refused a block
   kInterpreterWarning,
-  kInterrupted,  ///< the run was stopped by the user
+  kInterrupted,     ///< the run was stopped by the user
+  kLineNotReached,  ///< no move of the line where the report was to begin
 };
 
 /// "rapid-contact", ...: the `id` of the report.
@@ -63,6 +64,8 @@ class FindingLog {
   using Handle = std::size_t;
 
   Handle add(Finding finding);
+  /// While muted nothing is kept or counted: for moves that are cut but not reported on.
+  void set_muted(bool muted) { muted_ = muted; }
   /// The event goes on: its depth becomes the greater of the two.
   void deepen(Handle handle, double depth_mm);
 
@@ -75,6 +78,7 @@ class FindingLog {
  private:
   std::vector<Finding> kept_;
   std::uint64_t counts_[3] = {0, 0, 0};
+  bool muted_ = false;
 };
 
 }  // namespace kerf

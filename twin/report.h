@@ -10,6 +10,7 @@
 #include "interp_bridge/program.h"
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
+#include "twin/line_window.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -41,6 +42,7 @@ struct Report {
   std::string version;
   std::string program_path;
   ProgramSummary program;
+  LineRange lines;  ///< what was asked for; motion, tools and findings are of these lines alone
   MotionTotals motion;
   std::string time_model;
   std::optional<StockReport> stock;  ///< absent if the run ended before there was one
@@ -53,7 +55,8 @@ struct Report {
 
 /// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
 /// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
-/// tools[].origin, findings_total, timing_s.cut_cpu, motion.moves_without_feed.
+/// program.from_line, program.until_line (where asked for), tools[].origin, findings_total,
+/// timing_s.cut_cpu, motion.moves_without_feed.
 std::string json_text(const Report& report);
 
 /// The page of text that `kerf run` prints; findings are only counted (they are printed as

@@ -25,6 +25,8 @@ Json program_json(const Report& report) {
   Json out;
   out["path"] = report.program_path;
   out["lines"] = report.program.program_lines;
+  if (report.lines.from > 0) out["from_line"] = report.lines.from;
+  if (report.lines.until > 0) out["until_line"] = report.lines.until;
   out["interpreter"] = report.program.interpreter;
   Json commands = Json::object();
   for (const auto& [name, count] : report.program.canonical_commands) commands[name] = count;

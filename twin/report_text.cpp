@@ -37,6 +37,17 @@ std::string count_text(const FindingLog& log) {
   return out.empty() ? "none" : out;
 }
 
+/// Says what the rest of the page is about, where that is not the whole program.
+std::string lines_text(const LineRange& lines) {
+  if (lines == LineRange{}) return {};
+  std::string out = "lines     ";
+  if (lines.from > 0)
+    out += fmt::format("reported from line {} (all before it is cut)", lines.from);
+  if (lines.from > 0 && lines.until > 0) out += ", ";
+  if (lines.until > 0) out += fmt::format("run until line {}", lines.until);
+  return out + "\n";
+}
+
 void add_stock(std::string& out, const StockReport& s) {
   out += fmt::format("stock     {} ({})\n", s.description, s.origin);
   out += fmt::format("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
@@ -71,6 +82,7 @@ std::string summary_text(const Report& report) {
   const MotionTotals& m = report.motion;
   out += fmt::format("program   {}: {} lines, {} moves ({} arcs)\n", report.program_path,
                      report.program.program_lines, m.moves, m.arcs);
+  out += lines_text(report.lines);
   if (report.stock) add_stock(out, *report.stock);
   add_tools(out, report.tools);
   out += fmt::format("time      {} ({})\n", duration_text(m.duration_s), report.time_model);

@@ -49,7 +49,8 @@ Diagnostic general_error(std::string message, std::string hint = {}) {
 
 }  // namespace
 
-Session::Session(SessionOptions options) : options_(std::move(options)), start_(Clock::now()) {}
+Session::Session(SessionOptions options)
+    : options_(std::move(options)), window_(options_.lines), start_(Clock::now()) {}
 
 Session::~Session() = default;
 
@@ -219,11 +220,34 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
   return true;
 }
 
-void Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
+/// False: no more motions are wanted.
+bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
-  stage.take(motions);
+  const bool silent = !window_.begun();
+  const LineWindow::Split split = window_.split(motions);
+  motions = motions.first(split.before + split.within);
+  if (silent) {
+    report_.findings.set_muted(true);
+    stage.take(motions.first(split.before));
+    if (window_.begun()) stage.begin_reporting();
+    report_.findings.set_muted(false);
+  }
+  stage.take(motions.subspan(split.before));
   report_.timing.cut_s += seconds_since(start);
-  if (observer_) observer_->on_cut(*stock_, motions, stage.timeline().totals().duration_s);
+  if (observer_) observer_->on_cut(*stock_, motions, stage.timeline().clock_s());
+  return !window_.over();
+}
+
+/// The program is over before the part to be reported on began.
+void Session::close_window(CutStage& stage) {
+  if (window_.begun()) return;
+  report_.findings.set_muted(true);
+  stage.begin_reporting();
+  report_.findings.set_muted(false);
+  add_program_finding(
+      FindingId::kLineNotReached, Severity::kWarning,
+      fmt::format("--from-line: the program runs no move of line {} or beyond; nothing is reported",
+                  options_.lines.from));
 }
 
 /// False: stopped before the end.
@@ -237,7 +261,11 @@ bool Session::stream(CutStage& stage, std::stop_token stop) {
     queue.close();
   });
   std::vector<Motion> batch;
-  while (queue.pop(batch)) cut_batch(stage, batch);
+  while (queue.pop(batch)) {
+    if (cut_batch(stage, batch)) continue;
+    queue.close();
+    break;
+  }
   reader.join();
   const double first_pass_s = report_.program.interpret_s;
   report_.program = std::move(summary);
@@ -254,7 +282,8 @@ bool Session::cut_program(CutStage& stage, std::stop_token stop, Diagnostics& di
   const std::span<const Motion> all(kept_);
   for (std::size_t at = 0; at < all.size(); at += BatchQueue::kBatchMotions) {
     if (stop.stop_requested()) return false;
-    cut_batch(stage, all.subspan(at, std::min(BatchQueue::kBatchMotions, all.size() - at)));
+    const std::size_t count = std::min(BatchQueue::kBatchMotions, all.size() - at);
+    if (!cut_batch(stage, all.subspan(at, count))) break;
   }
   return true;
 }
@@ -262,6 +291,7 @@ bool Session::cut_program(CutStage& stage, std::stop_token stop, Diagnostics& di
 Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   report_.version = KERF_VERSION;
   report_.program_path = options_.program.path;
+  report_.lines = options_.lines;
   Outcome outcome = Outcome::kFinished;
   if (!stock_ && !guess_blank(stop, diagnostics, outcome)) return outcome;
   if (!stock_) return conclude(true);  // stopped while the blank was guessed
@@ -270,6 +300,7 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   CutStage stage(*stock_, book, report_.findings, options_.timeline);
   const double cpu_before = thread_cpu_s();
   const bool whole = cut_program(stage, stop, diagnostics);
+  close_window(stage);
   const Clock::time_point finish_start = Clock::now();
   stage.finish();
   report_.timing.cut_s += seconds_since(finish_start);
@@ -313,6 +344,15 @@ bool Session::take_interpreter_remarks() {
   return end_remarked;
 }
 
+/// The interpreter is ahead of the cutter: what it says of lines that were not to be run is of no
+/// interest.
+void Session::drop_remarks_beyond_window() {
+  if (!window_.over()) return;
+  const auto until = static_cast<int>(options_.lines.until);
+  std::erase_if(interpreter_,
+                [until](const Diagnostic& d) { return d.line <= 0 || d.line > until; });
+}
+
 /// Findings about the program as a whole, and how the run ended.
 Outcome Session::conclude(bool stopped) {
   const ProgramSummary& program = report_.program;
@@ -329,12 +369,13 @@ Outcome Session::conclude(bool stopped) {
     add_program_finding(FindingId::kInterrupted, Severity::kNote, report_.partial_reason);
     return Outcome::kInterrupted;
   }
+  drop_remarks_beyond_window();
   const bool end_remarked = take_interpreter_remarks();
   if (has_error(interpreter_)) {
     report_.partial_reason = "the interpreter stopped at an error";
     return Outcome::kFailed;
   }
-  if (!program.has_program_end && !end_remarked) {
+  if (!program.has_program_end && !end_remarked && !window_.over()) {
     add_program_finding(FindingId::kNoProgramEnd, Severity::kWarning,
                         "the program ends without M2, M30 or a closing %");
   }

@@ -17,6 +17,7 @@
 #include "stock/zmap/zmap.h"
 #include "twin/blank_choice.h"
 #include "twin/cut_stage.h"
+#include "twin/line_window.h"
 #include "twin/report.h"
 #include "twin/tools.h"
 
@@ -40,6 +41,7 @@ struct SessionOptions {
   int threads = 1;                       ///< cutting threads
   ZMapKernel kernel = ZMapKernel::kAuto;
   TimelineOptions timeline;
+  LineRange lines;  ///< cut silently up to there, reported from there, stopped there
 };
 
 /// What a session tells while it runs, for windows and tests. Every call comes from the thread in
@@ -106,9 +108,11 @@ class Session {
   ProgramSummary interpret(Program& program, const MotionSink& sink, std::stop_token stop);
   bool cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
   bool stream(CutStage& stage, std::stop_token stop);
-  void cut_batch(CutStage& stage, std::span<const Motion> motions);
+  bool cut_batch(CutStage& stage, std::span<const Motion> motions);
+  void close_window(CutStage& stage);
   Outcome conclude(bool stopped);
   void add_program_finding(FindingId id, Severity severity, std::string text);
+  void drop_remarks_beyond_window();
   bool take_interpreter_remarks();
   void complete_report(const CutStage& stage);
 
@@ -119,6 +123,7 @@ class Session {
   std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
   ToolSources tool_sources_;
   std::unique_ptr<ZMap> stock_;
+  LineWindow window_;
   StockReport stock_facts_;   ///< description and origin
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;

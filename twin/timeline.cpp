@@ -26,7 +26,7 @@ double feed_per_minute(const Motion& m) {
 
 TimedStep Timeline::add(const Motion& m) {
   TimedStep step;
-  step.start_s = totals_.duration_s;
+  step.start_s = clock_s_;
   switch (m.kind) {
     case MotionKind::kToolChange:
     case MotionKind::kStop:
@@ -64,6 +64,7 @@ TimedStep Timeline::add(const Motion& m) {
     }
   }
   totals_.duration_s += step.duration_s;
+  clock_s_ += step.duration_s;
   return step;
 }
 

@@ -42,8 +42,11 @@ class Timeline {
   explicit Timeline(const TimelineOptions& options) : options_(options) {}
 
   TimedStep add(const Motion& motion);
+  /// Sums begin anew, the clock goes on.
+  void begin_totals() { totals_ = {}; }
 
   const MotionTotals& totals() const { return totals_; }
+  double clock_s() const { return clock_s_; }  ///< program time after the last motion
   /// For the report: "length / feed; traverses at 5000 mm/min; no accelerations, tool changes and
   /// stops take no time".
   std::string time_model() const;
@@ -51,6 +54,7 @@ class Timeline {
  private:
   TimelineOptions options_;
   MotionTotals totals_;
+  double clock_s_ = 0;
 };
 
 }  // namespace kerf

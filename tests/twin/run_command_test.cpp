@@ -72,6 +72,52 @@ TEST_F(RunCommand, CleanRunLeavesItsOutputsAndExitCodeZero) {
   EXPECT_NE(result.out.find("findings  none\n"), std::string::npos) << result.out;
 }
 
+TEST_F(RunCommand, UntilALineIsAPartOfTheProgramAndNoFinding) {
+  const KerfResult result = run(slot({"--until-line", "4", "--json", "r.json"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "") << "that the end was not reached is what was asked for";
+  const Json report = json("r.json");
+  EXPECT_EQ(report["partial"], false);
+  EXPECT_EQ(report["program"]["until_line"], 4);
+  EXPECT_EQ(report["motion"]["moves"], 2);
+  EXPECT_NEAR(report["stock"]["removed_mm3"].get<double>(), 3.14159265 * 9, 1);
+  EXPECT_NE(result.out.find("lines     run until line 4\n"), std::string::npos) << result.out;
+}
+
+TEST_F(RunCommand, FromALineTheSameWorkpieceAndAReportOfTheRest) {
+  folder_.write("rapid.canon", listing_text(kRapidAcross));
+  const std::vector<std::string> common = {
+      "rapid.canon", "--stock", "box:-5,-5,-5:25,15,0", "--tool", "1=flat:6", "--cell", "0.1"};
+  std::vector<std::string> whole = common, late = common, later = common;
+  whole.insert(whole.end(), {"--json", "whole.json"});
+  late.insert(late.end(), {"--json", "late.json", "--from-line", "5"});
+  later.insert(later.end(), {"--json", "later.json", "--from-line", "7"});
+  EXPECT_EQ(run(whole).exit_code, 1);
+  EXPECT_EQ(run(late).exit_code, 1);
+  EXPECT_EQ(run(later).exit_code, 0) << "the rapid through the part lies before";
+  const Json all = json("whole.json"), rest = json("late.json"), end = json("later.json");
+  EXPECT_EQ(all["stock"], rest["stock"]);
+  EXPECT_EQ(all["stock"], end["stock"]);
+  EXPECT_EQ(all["findings"], rest["findings"]) << "the clock runs from the program's start";
+  EXPECT_EQ(rest["program"]["from_line"], 5);
+  EXPECT_EQ(rest["motion"]["moves"], 3);
+  EXPECT_NEAR(rest["motion"]["feed_mm"].get<double>(), 20, 1e-6);
+  EXPECT_LT(rest["tools"][0]["removed_mm3"], all["tools"][0]["removed_mm3"]);
+  EXPECT_EQ(end["findings_total"], 0);
+  EXPECT_EQ(end["motion"]["feed_moves"], 0);
+}
+
+TEST_F(RunCommand, FromALineThatIsNotReached) {
+  const KerfResult result = run(slot({"--from-line", "90"}));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(
+      result.err,
+      "slot.canon: warning: line-not-reached: --from-line: the program runs no move of line 90 "
+      "or beyond; nothing is reported\n");
+  EXPECT_EQ(run(slot({"--from-line", "9", "--until-line", "8"})).err,
+            "kerf: error: --from-line: 9 lies beyond --until-line 8\n");
+}
+
 TEST_F(RunCommand, DrawsAPicture) {
   KerfCall call;
   call.arguments = slot({"--png", "slot.png"});

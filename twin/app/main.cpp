@@ -68,6 +68,11 @@ void add_run_options(CLI::App& run, RunArguments& a) {
   run.add_option("--max-seconds", a.max_seconds,
                  "silent seconds after which a program counts as endless")
       ->type_name("S");
+  run.add_option("--from-line", a.from_line,
+                 "cut what comes before line N without a word, report from there")
+      ->type_name("N");
+  run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
+      ->type_name("N");
   run.add_option("--traverse-rate", a.traverse_rate,
                  "speed of traverses for the time estimate (default 5000)")
       ->type_name("MM/MIN");

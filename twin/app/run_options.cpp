@@ -23,6 +23,7 @@ constexpr Range kMeshTolerance{0, 1000, false, "mm"};
 constexpr Range kMargin{0, 10000, false, "mm"};
 constexpr Range kTraverseRate{0, 1e6, true, "mm/min"};
 constexpr Range kThreads{1, 256, false, "threads"};
+constexpr Range kLine{1, 4e9, false, "lines"};
 constexpr Range kMaxCommands{1, 1e12, false, "commands"};
 constexpr Range kMaxSeconds{0, 1e6, true, "s"};
 
@@ -139,6 +140,16 @@ void read_choices(const RunArguments& a, Reader& reader, SessionOptions& session
   }
 }
 
+void read_lines(const RunArguments& a, Reader& reader, LineRange& lines) {
+  lines.from =
+      static_cast<std::uint32_t>(reader.whole_number("--from-line", a.from_line, kLine, 0));
+  lines.until =
+      static_cast<std::uint32_t>(reader.whole_number("--until-line", a.until_line, kLine, 0));
+  if (lines.until == 0 || lines.from <= lines.until) return;
+  reader.fault("--from-line",
+               fmt::format("{} lies beyond --until-line {}", lines.from, lines.until));
+}
+
 /// One core is left to the interpreter.
 int default_threads() {
   const unsigned cores = std::thread::hardware_concurrency();
@@ -167,6 +178,7 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
                           static_cast<double>(session.program.max_commands)));
   session.program.max_silent_s =
       reader.number("--max-seconds", a.max_seconds, kMaxSeconds, session.program.max_silent_s);
+  read_lines(a, reader, session.lines);
   request.mesh_tolerance_mm = reader.number("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
                                             request.mesh_tolerance_mm);
   request.outputs = a.outputs;

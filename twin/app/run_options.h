@@ -25,6 +25,8 @@ struct RunArguments {
   std::string mesh_tolerance;
   std::string margin;
   std::string traverse_rate;
+  std::string from_line;
+  std::string until_line;
   std::string max_commands;
   std::string max_seconds;
   OutputPaths outputs;
