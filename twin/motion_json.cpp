@@ -1,0 +1,153 @@
+#include "twin/motion_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace kerf {
+namespace {
+
+/// "12.5", "-3", "0" (never "-0"), "1e+20".
+void append_number(double value, std::string& out) {
+  const double scaled = std::round(value * 1e6) / 1e6;
+  fmt::format_to(std::back_inserter(out), "{}", scaled == 0 ? 0.0 : scaled);
+  // fmt writes 5.0 for a whole double; JSON needs no ".0".
+  if (out.size() >= 2 && out.compare(out.size() - 2, 2, ".0") == 0) out.resize(out.size() - 2);
+}
+
+void append_field(const char* name, double value, std::string& out) {
+  out += ",\"";
+  out += name;
+  out += "\":";
+  append_number(value, out);
+}
+
+template <class Vector>
+void append_vector(const char* name, const Vector& v, std::string& out) {
+  out += ",\"";
+  out += name;
+  out += "\":[";
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) out += ',';
+    append_number(v[static_cast<typename Vector::size_type>(i)], out);
+  }
+  out += ']';
+}
+void append_vector(const char* name, const Vec3& v, std::string& out) {
+  append_vector(name, std::array<double, 3>{v.x, v.y, v.z}, out);
+}
+
+bool moves(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::kTraverse:
+    case MotionKind::kFeed:
+    case MotionKind::kArc:
+    case MotionKind::kThread:
+    case MotionKind::kProbe:
+      return true;
+    case MotionKind::kDwell:
+    case MotionKind::kToolChange:
+    case MotionKind::kStop:
+    case MotionKind::kProgramEnd:
+      return false;
+  }
+  return false;
+}
+
+bool is_zero(const std::array<double, 3>& abc) { return abc[0] == 0 && abc[1] == 0 && abc[2] == 0; }
+
+void append_way(const Motion& m, std::string& out) {
+  if (m.start_known) {
+    append_vector("from", m.from_mm, out);
+  } else {
+    out += ",\"from\":null";
+  }
+  append_vector("to", m.to_mm, out);
+  if (!is_zero(m.from_abc_deg) || !is_zero(m.to_abc_deg)) {
+    append_vector("from_abc", m.from_abc_deg, out);
+    append_vector("to_abc", m.to_abc_deg, out);
+  }
+  if (m.kind == MotionKind::kArc && m.start_known) {
+    append_vector("center", m.arc.center_mm, out);
+    append_vector("axis", m.arc.axis, out);
+    append_field("sweep_deg", m.arc.sweep_rad * 180 / kPi, out);
+  }
+  if (m.kind == MotionKind::kTraverse) return;
+  append_field("feed", m.feed_mm_per_min, out);
+  if (m.feed_per_rev || m.kind == MotionKind::kThread) out += ",\"feed_per_rev\":true";
+}
+
+void append_path_mode(const Motion& m, std::string& out) {
+  if (m.path_mode == PathMode::kExactStop) out += ",\"path\":\"exact-stop\"";
+  if (m.path_mode == PathMode::kExactPath) out += ",\"path\":\"exact-path\"";
+  if (m.blend_tolerance_mm > 0) append_field("blend_mm", double{m.blend_tolerance_mm}, out);
+  if (m.merge_tolerance_mm > 0) append_field("merge_mm", double{m.merge_tolerance_mm}, out);
+}
+
+void append_spindle_and_coolant(const Motion& m, std::string& out) {
+  if (m.spindle != SpindleState::kStopped) {
+    out += m.spindle == SpindleState::kClockwise ? ",\"spindle\":\"cw\"" : ",\"spindle\":\"ccw\"";
+    append_field("rpm", m.spindle_rpm, out);
+  }
+  if (!m.flood && !m.mist) return;
+  out += ",\"coolant\":[";
+  if (m.flood) out += "\"flood\"";
+  if (m.flood && m.mist) out += ',';
+  if (m.mist) out += "\"mist\"";
+  out += ']';
+}
+
+}  // namespace
+
+const char* to_string(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::kTraverse:
+      return "traverse";
+    case MotionKind::kFeed:
+      return "feed";
+    case MotionKind::kArc:
+      return "arc";
+    case MotionKind::kThread:
+      return "thread";
+    case MotionKind::kProbe:
+      return "probe";
+    case MotionKind::kDwell:
+      return "dwell";
+    case MotionKind::kToolChange:
+      return "tool-change";
+    case MotionKind::kStop:
+      return "stop";
+    case MotionKind::kProgramEnd:
+      return "program-end";
+  }
+  return "";
+}
+
+void MotionJson::set_files(const std::vector<std::string>& files) {
+  for (std::size_t i = quoted_files_.size(); i < files.size(); ++i) {
+    // Names may hold bytes that are not UTF-8.
+    quoted_files_.push_back(
+        nlohmann::json(files[i]).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
+}
+
+void MotionJson::append(const Motion& m, const TimedStep& step, std::string& out) const {
+  fmt::format_to(std::back_inserter(out), "{{\"line\":{},\"file\":", m.source.line);
+  out += m.source.file < quoted_files_.size() ? quoted_files_[m.source.file] : "null";
+  out += ",\"kind\":\"";
+  out += to_string(m.kind);
+  out += '"';
+  if (moves(m.kind)) {
+    append_way(m, out);
+    append_path_mode(m, out);
+  }
+  fmt::format_to(std::back_inserter(out), ",\"tool\":{}", m.tool);
+  append_spindle_and_coolant(m, out);
+  append_field("t", step.start_s, out);
+  append_field("duration", step.duration_s, out);
+  out += "}\n";
+}
+
+}  // namespace kerf
