@@ -23,6 +23,8 @@ class AtomicFile {
 
   /// Errors are kept and reported by commit().
   void write(const void* data, std::size_t bytes);
+  /// Something was not written; commit() will say what.
+  bool failed() const { return error_number_ != 0; }
   /// Flushes, closes, renames. Error: "writing part.stl: No space left on device"; the temporary
   /// file is then gone, and a file that was there before is untouched. Once per file.
   Done commit();

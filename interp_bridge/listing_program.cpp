@@ -82,7 +82,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
                                    Diagnostics& diagnostics) {
   const auto begin = std::chrono::steady_clock::now();
   ProgramSummary summary;
-  summary.files = {name()};
+  summary.files = files_ = {name()};
   summary.interpreter = "canon";
   const int fd = is_stdin() ? STDIN_FILENO : ::open(options_.path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) {

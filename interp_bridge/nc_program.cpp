@@ -316,7 +316,7 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
     report(Severity::kError, {}, session.error(), {}, summary, diagnostics);
     return summary;
   }
-  summary.files = session->prepared.files;
+  summary.files = files_ = session->prepared.files;
   CanonicalReader reader(reader_options(*session), sink, summary, diagnostics);
   Conversation conversation(session->process, reader, options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));

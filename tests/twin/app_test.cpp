@@ -32,7 +32,7 @@ std::string faults_of(const RunArguments& arguments) {
 TEST(RunOptions, DefaultsAreGood) {
   Diagnostics diagnostics;
   RunArguments arguments;
-  arguments.program = "part.ngc";
+  arguments.source.program = "part.ngc";
   const RunRequest request = understand(arguments, diagnostics);
   EXPECT_TRUE(diagnostics.empty());
   EXPECT_GE(request.session.threads, 1);
@@ -47,20 +47,20 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   a.threads = std::string("1.5");
   a.kernel = std::string("gpu");
   a.model = std::string("octree");
-  a.interp = std::string("bridge");
-  a.block_delete = std::string("maybe");
+  a.source.interp = std::string("bridge");
+  a.source.block_delete = std::string("maybe");
   a.mesh_tolerance = std::string("fine");
   a.margin = std::string("-1");
-  a.traverse_rate = std::string("1e999");
+  a.source.traverse_rate = std::string("1e999");
   EXPECT_EQ(faults_of(a),
-            "kerf: error: --model: octree is not in this version; allowed: zmap, auto\n"
             "kerf: error: --interp: bridge is not in this version; allowed: text\n"
-            "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
-            "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
-            "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"
             "kerf: error: --traverse-rate: '1e999' is not a number; must be above 0 and at most "
             "1e+06 (mm/min)\n"
+            "kerf: error: --model: octree is not in this version; allowed: zmap, auto\n"
+            "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
+            "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
+            "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"
             "kerf: error: --threads: 1.5 is not a whole number\n"
             "kerf: error: --mesh-tolerance: 'fine' is not a number; must be at least 0 and at most "
             "1000 (mm)\n");

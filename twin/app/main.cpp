@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
+#include "twin/app/canon_command.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/run_command.h"
 #include "twin/app/suggest.h"
@@ -27,6 +28,7 @@ constexpr const char* kExitCodes =
 constexpr const char* kExamples =
     "Examples:\n"
     "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --png part.png\n"
+    "  kerf canon part.ngc\n"
     "  kerf models\n"
     "  kerf tools\n";
 
@@ -34,16 +36,44 @@ constexpr const char* kRunExample =
     "Example:\n"
     "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n";
 
+constexpr const char* kCanonExample =
+    "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
+    "applies; mm, mm/min, s, degrees.\n\n"
+    "Example:\n"
+    "  kerf canon part.ngc | jq -c 'select(.kind == \"traverse\") | .to'\n";
+
 constexpr const char* kModels =
     "zmap   one height a cell: three-axis milling, no undercuts; exact sweeps of straight moves "
     "and of arcs in XY\n"
     "auto   the model that the motions need (zmap in this version)\n";
 
-void add_run_options(CLI::App& run, RunArguments& a) {
-  run.add_option("PROGRAM", a.program,
-                 "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
+void add_program_options(CLI::App& command, ProgramArguments& a) {
+  command
+      .add_option("PROGRAM", a.program,
+                  "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
       ->required();
-  run.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")->type_name("FILE");
+  command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
+      ->type_name("FILE");
+  command.add_option("--interp", a.interp, "interpreter: text (LinuxCNC's rs274)")
+      ->type_name("NAME");
+  command.add_option("--block-delete", a.block_delete, "skip lines that begin with / (default on)")
+      ->type_name("on|off");
+  command
+      .add_option("--max-commands", a.max_commands,
+                  "canonical commands after which a program counts as endless")
+      ->type_name("N");
+  command
+      .add_option("--max-seconds", a.max_seconds,
+                  "silent seconds after which a program counts as endless")
+      ->type_name("S");
+  command
+      .add_option("--traverse-rate", a.traverse_rate,
+                  "speed of traverses for the time estimate (default 5000)")
+      ->type_name("MM/MIN");
+}
+
+void add_run_options(CLI::App& run, RunArguments& a) {
+  add_program_options(run, a.source);
   run.add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
       ->type_name("N=SHAPE")
       ->allow_extra_args(false);
@@ -59,23 +89,11 @@ void add_run_options(CLI::App& run, RunArguments& a) {
       ->type_name("MM");
   run.add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
       ->type_name("MM");
-  run.add_option("--interp", a.interp, "interpreter: text (LinuxCNC's rs274)")->type_name("NAME");
-  run.add_option("--block-delete", a.block_delete, "skip lines that begin with / (default on)")
-      ->type_name("on|off");
-  run.add_option("--max-commands", a.max_commands,
-                 "canonical commands after which a program counts as endless")
-      ->type_name("N");
-  run.add_option("--max-seconds", a.max_seconds,
-                 "silent seconds after which a program counts as endless")
-      ->type_name("S");
   run.add_option("--from-line", a.from_line,
                  "cut what comes before line N without a word, report from there")
       ->type_name("N");
   run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
       ->type_name("N");
-  run.add_option("--traverse-rate", a.traverse_rate,
-                 "speed of traverses for the time estimate (default 5000)")
-      ->type_name("MM/MIN");
   run.add_option("--threads", a.threads,
                  "cutting threads (default: one less than the cores, at most 8)")
       ->type_name("N");
@@ -154,6 +172,14 @@ int run(int argc, char** argv) {
   add_run_options(*run_app, arguments);
   run_app->footer(std::string(kRunExample) + "\n" + kExitCodes);
   run_app->allow_extras();
+  CanonArguments canon;
+  CLI::App* canon_app = app.add_subcommand("canon", "print what a program commands as JSON lines");
+  add_program_options(*canon_app, canon.source);
+  canon_app->add_option("--out", canon.out, "where to (default -, standard output)")
+      ->type_name("FILE");
+  canon_app->add_flag("--quiet", canon.quiet, "no progress bar, no warnings");
+  canon_app->footer(std::string(kCanonExample) + "\n" + kExitCodes);
+  canon_app->allow_extras();
   CLI::App* models_app = app.add_subcommand("models", "list the workpiece models")->allow_extras();
   models_app->footer("Example:\n  kerf models\n");
   CLI::App* tools_app = app.add_subcommand("tools", "list the tool shapes")->allow_extras();
@@ -164,18 +190,21 @@ int run(int argc, char** argv) {
     return app.exit(success);  // --help, --version
   } catch (const CLI::ParseError& error) {
     // A mistyped option leaves others without what they need: name the cause, not the effect.
-    const std::vector<std::string> left = run_app->remaining();
-    if (const std::string* argument = worst_argument(left)) {
-      return refuse_argument(*argument, *run_app, false);
-    }
     Diagnostic d;
     d.message = error.what();
-    d.hint = run_app->parsed() ? "kerf run --help lists what there is"
-                               : "kerf --help lists what there is";
+    d.hint = "kerf --help lists what there is";
+    for (const CLI::App* command : {run_app, canon_app}) {
+      const std::vector<std::string> left = command->remaining();
+      if (const std::string* argument = worst_argument(left)) {
+        return refuse_argument(*argument, *command, false);
+      }
+      if (command->parsed())
+        d.hint = fmt::format("kerf {} --help lists what there is", command->get_name());
+    }
     fmt::print(stderr, "{}", to_string(d));
     return kExitUsage;
   }
-  for (const CLI::App* command : {run_app, models_app, tools_app}) {
+  for (const CLI::App* command : {run_app, canon_app, models_app, tools_app}) {
     const std::vector<std::string> left = command->remaining();
     if (const std::string* argument = worst_argument(left))
       return refuse_argument(*argument, *command, false);
@@ -194,6 +223,10 @@ int run(int argc, char** argv) {
   if (run_app->parsed()) {
     if (const int code = refuse_empty_values(*run_app); code != kExitGood) return code;
     return run_command(arguments);
+  }
+  if (canon_app->parsed()) {
+    if (const int code = refuse_empty_values(*canon_app); code != kExitGood) return code;
+    return canon_command(canon);
   }
   fmt::print(stderr, "{}", app.help());
   return kExitUsage;

@@ -6,29 +6,24 @@
 
 #include "base/diagnostic.h"
 #include "twin/app/outputs.h"
+#include "twin/app/program_options.h"
 #include "twin/session.h"
 
 namespace kerf {
 
 /// The arguments as written. Empty = not given.
 struct RunArguments {
-  std::string program;
-  std::string tool_table;
+  ProgramArguments source;
   std::vector<std::string> tools;
   std::string stock;
   std::string model;
   std::string cell;
-  std::string interp;
   std::string threads;
   std::string kernel;
-  std::string block_delete;
   std::string mesh_tolerance;
   std::string margin;
-  std::string traverse_rate;
   std::string from_line;
   std::string until_line;
-  std::string max_commands;
-  std::string max_seconds;
   OutputPaths outputs;
   bool quiet = false;
 };

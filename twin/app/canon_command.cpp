@@ -1,0 +1,83 @@
+#include "twin/app/canon_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <stop_token>
+
+#include "base/atomic_file.h"
+#include "twin/app/exit_code.h"
+#include "twin/app/progress_bar.h"
+#include "twin/app/stop_signals.h"
+#include "twin/motion_json.h"
+
+namespace kerf {
+namespace {
+
+void print(const Diagnostics& diagnostics, bool quiet) {
+  for (const Diagnostic& d : diagnostics) {
+    if (!quiet || d.severity == Severity::kError) fmt::print(stderr, "{}", to_string(d));
+  }
+}
+
+/// Motions to text to the file, a batch at a time.
+class LineWriter {
+ public:
+  LineWriter(AtomicFile& file, const TimelineOptions& options) : file_(file), timeline_(options) {}
+
+  /// False: nobody takes the text any more.
+  bool write(const std::vector<std::string>& files, std::span<const Motion> motions) {
+    json_.set_files(files);
+    text_.clear();
+    for (const Motion& m : motions) json_.append(m, timeline_.add(m), text_);
+    file_.write(text_.data(), text_.size());
+    return !file_.failed();
+  }
+
+ private:
+  AtomicFile& file_;
+  Timeline timeline_;
+  MotionJson json_;
+  std::string text_;
+};
+
+}  // namespace
+
+int canon_command(const CanonArguments& arguments) {
+  Diagnostics diagnostics;
+  OptionReader reader(diagnostics);
+  const ProgramOptions options = understand_program(arguments.source, reader);
+  const TimelineOptions timeline = understand_timeline(arguments.source, reader);
+  if (has_error(diagnostics)) {
+    print(diagnostics, arguments.quiet);
+    return kExitUsage;
+  }
+  std::stop_source stop;
+  const StopSignals signals(stop, [] { remove_uncommitted_files(); });
+  const auto program = Program::open(options, diagnostics);
+  if (!program) {
+    print(diagnostics, arguments.quiet);
+    return kExitFailure;
+  }
+  Result<AtomicFile> file = AtomicFile::create(arguments.out);
+  if (!file) {
+    fmt::print(stderr, "kerf: error: {}\n", file.error());
+    return kExitFailure;
+  }
+  LineWriter writer(*file, timeline);
+  ProgramSummary summary;
+  {
+    const bool shown = !arguments.quiet && arguments.out != "-";
+    const ProgressBar bar([&] { return program->progress(); }, shown);
+    summary = program->run(
+        [&](std::span<const Motion> motions) { return writer.write(program->files(), motions); },
+        stop.get_token(), diagnostics);
+  }
+  const Done written = file->commit();
+  print(diagnostics, arguments.quiet);
+  if (!written) fmt::print(stderr, "kerf: error: {}\n", written.error());
+  if (!written || has_error(diagnostics) || summary.stopped_early) return kExitFailure;
+  return summary.canonical_commands.count("NURBS_FEED") > 0 ? kExitLossy : kExitGood;
+}
+
+}  // namespace kerf
