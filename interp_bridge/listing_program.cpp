@@ -60,7 +60,7 @@ bool ListingProgram::read_all(int fd, CanonicalReader& reader, const std::stop_t
     pollfd wait{fd, POLLIN, 0};
     const int ready = poll(&wait, 1, kReaderPatience_ms);
     if (ready == 0) {
-      if (!reader.flush_if_old()) return false;
+      if (!reader.feeder().flush_if_old()) return false;
       continue;
     }
     const std::span<char> room = reader.room();
@@ -92,15 +92,15 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   }
   CanonicalReaderOptions reading;
   reading.listing_name = name();
-  reading.tool_by_index = tool_by_index_;
-  reading.max_commands = options_.max_commands;
+  reading.feeder.tool_by_index = tool_by_index_;
+  reading.feeder.max_commands = options_.max_commands;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);
   if (!is_stdin()) close(fd);
   reader.finish();
   summary.stopped_early = !complete;
   summary.program_lines = static_cast<std::size_t>(reader.listing_lines());
-  if (reader.too_many_commands()) {
+  if (reader.feeder().too_many_commands()) {
     report(Severity::kError,
            fmt::format("more than {} canonical commands; the program counts as endless",
                        options_.max_commands),

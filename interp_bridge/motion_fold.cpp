@@ -198,12 +198,21 @@ void MotionFold::set_feed(Motion& motion) const {
   motion.feed_mm_per_min = only_turns ? feed_ : feed_mm_;
 }
 
-void MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
-                               std::vector<Motion>& out) {
+/// U, V, W follow the other numbers, where the interpreter gives them.
+bool MotionFold::secondary_axes_moved(const CanonicalCommand& command, std::size_t first) {
+  if (command.argument_count < first + 3) return false;
+  const std::array<double, 3> uvw = {command.number(first), command.number(first + 1),
+                                     command.number(first + 2)};
+  return std::exchange(uvw_, uvw) != uvw;
+}
+
+FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& command,
+                                     SourceRef source, std::vector<Motion>& out) {
   if (!work_fixed_) fix_workpiece_frame();
   Motion& motion = append(kind, source, out);
   move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]));
   if (kind != MotionKind::kTraverse) set_feed(motion);
+  return secondary_axes_moved(command, 6) ? FoldRemark::kSecondaryAxes : FoldRemark::kNone;
 }
 
 FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef source,
@@ -244,12 +253,13 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]));
   set_feed(motion);
   if (straight) return FoldRemark::kNone;
+  const bool secondary = secondary_axes_moved(command, 9);
   motion.arc.center_mm = work_from_program(center_mm);
   motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
   if (start_known) {
     motion.arc.sweep_rad = arc_sweep_rad(start, end, turns, resolution_mm, as_printed);
   }
-  return FoldRemark::kNone;
+  return secondary ? FoldRemark::kSecondaryAxes : FoldRemark::kNone;
 }
 
 void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef source,
@@ -437,15 +447,12 @@ FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
   switch (command.name) {
     case CanonicalName::kStraightFeed: {
       const bool thread = synchronised_ && !synchronised_by_speed_;
-      fold_straight(thread ? MotionKind::kThread : MotionKind::kFeed, command, source, out);
-      return FoldRemark::kNone;
+      return fold_straight(thread ? MotionKind::kThread : MotionKind::kFeed, command, source, out);
     }
     case CanonicalName::kStraightTraverse:
-      fold_straight(MotionKind::kTraverse, command, source, out);
-      return FoldRemark::kNone;
+      return fold_straight(MotionKind::kTraverse, command, source, out);
     case CanonicalName::kStraightProbe:
-      fold_straight(MotionKind::kProbe, command, source, out);
-      return FoldRemark::kNone;
+      return fold_straight(MotionKind::kProbe, command, source, out);
     case CanonicalName::kArcFeed:
       return fold_arc(command, source, out);
     case CanonicalName::kRigidTap:

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,23 @@ enum class FoldRemark : std::uint8_t {
   kSplineLost,  ///< G5, G5.2, G6: the listing holds no control points; where the tip is now is not
                 ///< known
   kArcPlaneUnknown,  ///< an arc in a plane of U, V, W; its end is not known
+  kSecondaryAxes,    ///< U, V or W moved; the motion is that of the other axes
 };
+
+/// A NURBS of G5, G5.1 or G5.2 in the XY plane, as LinuxCNC hands it over: program coordinates and
+/// units, clamped uniform knots, degree order - 1.
+struct Spline {
+  struct Point {
+    double x = 0;
+    double y = 0;
+    double weight = 1;
+  };
+  unsigned order = 0;             ///< 2 to points.size()
+  std::span<const Point> points;  ///< the first is where the tip stands
+};
+
+/// Farthest that the chords of a spline may lie from it.
+inline constexpr double kSplineChord_mm = 1e-3;
 
 /// Folds the modal state of a listing into motions.
 ///
@@ -50,6 +67,10 @@ class MotionFold {
 
   /// Appends the steps of `command` (0, 1, or 2 for a rigid tap) to `out`.
   FoldRemark fold(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+
+  /// Appends the spline as straight feeds within kSplineChord_mm of it. kSplineLost if order and
+  /// number of points do not fit, or the start is not known.
+  FoldRemark fold_spline(const Spline& spline, SourceRef source, std::vector<Motion>& out);
 
   int tool() const { return tool_; }
   bool has_rotary_motion() const { return has_rotary_motion_; }
@@ -83,8 +104,9 @@ class MotionFold {
   void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg);
   void set_feed(Motion& motion) const;
   void update_rpm();
-  void fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
-                     std::vector<Motion>& out);
+  FoldRemark fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
+                           std::vector<Motion>& out);
+  bool secondary_axes_moved(const CanonicalCommand& command, std::size_t first);
   FoldRemark fold_arc(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void fold_rigid_tap(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   bool fold_frame(const CanonicalCommand& command);
@@ -108,6 +130,7 @@ class MotionFold {
 
   Vec3 position_mm_{0};  ///< tip, workpiece frame
   std::array<double, 3> abc_deg_{};
+  std::array<double, 3> uvw_{};  ///< as commanded last; listings do not hold them
   bool position_known_ = false;
   bool position_as_printed_ =
       true;  ///< no change of frame or unit since: equal digits mean equal points

@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "interp_bridge/canonical_reader.h"
+#include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/private_folder.h"
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/rs274_messages.h"
-#include "interp_bridge/rs274_process.h"
 #include "interp_bridge/tool_table.h"
 
 namespace kerf {
@@ -39,7 +39,7 @@ enum class Ending { kComplete, kStopped, kTooMany, kSilent };
 /// stop it.
 class Conversation {
  public:
-  Conversation(Rs274Process& process, CanonicalReader& reader, double max_silent_s)
+  Conversation(InterpreterProcess& process, CanonicalReader& reader, double max_silent_s)
       : reader_(reader), max_silent_s_(max_silent_s), buffer_(64 * 1024) {
     fds_[kListing] = {process.listing_fd(), POLLIN, 0};
     fds_[kStdout] = {process.stdout_fd(), POLLIN, 0};
@@ -82,7 +82,7 @@ void Conversation::take_stdout(std::string_view text) {
     const std::size_t room = kMaxStdoutLineBytes - stdout_line_.size();
     stdout_line_ += line.substr(0, room);
     if (line.size() == text.size()) return;
-    reader_.add_foreign(stdout_line_);
+    reader_.feeder().add_foreign(stdout_line_);
     stdout_line_.clear();
     text.remove_prefix(line.size() + 1);
   }
@@ -106,20 +106,20 @@ Ending Conversation::listen(const std::stop_token& stop, const OnProgress& on_pr
     if (readable(kListing)) {
       const std::size_t got = read_some(kListing, reader_.room());
       if (got > 0 && !reader_.received(got)) {
-        return reader_.too_many_commands() ? Ending::kTooMany : Ending::kStopped;
+        return reader_.feeder().too_many_commands() ? Ending::kTooMany : Ending::kStopped;
       }
       // After the sink: the time it takes is not the child's.
       if (got > 0) heard = Clock::now();
       on_progress();
     } else {
-      if (!reader_.flush_if_old()) return Ending::kStopped;
+      if (!reader_.feeder().flush_if_old()) return Ending::kStopped;
       const std::chrono::duration<double> silent = Clock::now() - heard;
       if (silent.count() > max_silent_s_) return Ending::kSilent;
     }
     if (readable(kStdout)) take_stdout({buffer_.data(), read_some(kStdout, buffer_)});
     if (readable(kStderr)) take_stderr({buffer_.data(), read_some(kStderr, buffer_)});
   }
-  if (!stdout_line_.empty()) reader_.add_foreign(stdout_line_);
+  if (!stdout_line_.empty()) reader_.feeder().add_foreign(stdout_line_);
   return Ending::kComplete;
 }
 
@@ -143,20 +143,23 @@ class NcProgram final : public Program {
     PrivateFolder folder;  // first: removed after the child is gone
     PreparedProgram prepared;
     InterpreterToolTable table;
-    Rs274Options child;
-    Rs274Process process;
+    InterpreterProcessOptions child;
+    InterpreterProcess process;
 
     std::string copy_path() const { return folder.path() + "/nc/" + prepared.main_name; }
   };
   Result<Session> start_session() const;
+  std::vector<std::string> rs274_arguments(const PreparedProgram& prepared, const std::string& home,
+                                           const std::string& table_path) const;
   CanonicalReaderOptions reader_options(const Session& session) const;
   void report(Severity severity, SourceRef place, std::string message, std::string hint,
               const ProgramSummary& summary, Diagnostics& diagnostics) const;
   void report_ending(Ending ending, Session& session, CanonicalReader& reader,
                      const std::string& stderr_text, const std::stop_token& stop,
                      ProgramSummary& summary, Diagnostics& diagnostics) const;
-  void report_exit(Rs274Process::Exit exit, CanonicalReader& reader, const std::string& stderr_text,
-                   ProgramSummary& summary, Diagnostics& diagnostics) const;
+  void report_exit(InterpreterProcess::Exit exit, CanonicalReader& reader,
+                   const std::string& stderr_text, ProgramSummary& summary,
+                   Diagnostics& diagnostics) const;
   std::string silence_message(const Session& session) const;
   SourceRef source_before_silence(const Session& session, const std::stop_token& stop) const;
 
@@ -185,17 +188,33 @@ Result<NcProgram::Session> NcProgram::start_session() const {
   if (!(table_file << table.text << std::flush)) {
     return Error{fmt::format("cannot write {}: {}", table_path, std::strerror(errno))};
   }
-  Rs274Options child;
+  InterpreterProcessOptions child;
   child.executable = rs274_;
-  child.program = prepared->main_name;
+  child.arguments = rs274_arguments(*prepared, home, table_path);
+  child.arguments.emplace_back(kListingPath);
   child.folder = nc;
   child.home = home;
-  child.tool_table = table_path;
-  child.block_delete = options_.block_delete;
-  auto process = Rs274Process::start(child);
+  auto process = InterpreterProcess::start(child);
   if (!process) return Error{process.error()};
   return Session{std::move(*folder), std::move(*prepared), std::move(table), std::move(child),
                  std::move(*process)};
+}
+
+/// All but the file for the listing. To a file rs274 writes 4 KB at a time, to stdout line by line,
+/// which takes twice the time.
+std::vector<std::string> NcProgram::rs274_arguments(const PreparedProgram& prepared,
+                                                    const std::string& home,
+                                                    const std::string& table_path) const {
+  std::vector<std::string> arguments;
+  if (options_.block_delete) arguments.emplace_back("-b");
+  // A name that begins with a dash would be an option; others go as they are, since messages repeat
+  // them.
+  const std::string& name = prepared.main_name;
+  const std::string program = name.front() == '-' ? "./" + name : name;
+  // No var file: a path that cannot exist is not written either. (rs274 replaces its var file, even
+  // /dev/null.)
+  arguments.insert(arguments.end(), {"-t", table_path, "-v", home + "/none/x.var", "-g", program});
+  return arguments;
 }
 
 CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
@@ -203,9 +222,9 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.listing_name = "rs274's output";
   reading.numbered_source = true;
   reading.unnumbered = session.prepared.unnumbered;
-  reading.tool_by_index = session.table.tool_by_index;
-  reading.diameters_known = !options_.tool_table_path.empty();
-  reading.max_commands = options_.max_commands;
+  reading.feeder.tool_by_index = session.table.tool_by_index;
+  reading.feeder.diameters_known = !options_.tool_table_path.empty();
+  reading.feeder.max_commands = options_.max_commands;
   return reading;
 }
 
@@ -243,9 +262,10 @@ std::string NcProgram::silence_message(const Session& session) const {
 /// known already.
 SourceRef NcProgram::source_before_silence(const Session& session,
                                            const std::stop_token& stop) const {
-  Rs274Options child = session.child;
-  child.unbuffered = true;
-  auto process = Rs274Process::start(child);
+  InterpreterProcessOptions child = session.child;
+  child.arguments.pop_back();  // without a file it prints to stdout, every command at once
+  child.listing_is_stdout = true;
+  auto process = InterpreterProcess::start(child);
   if (!process) return {};
   ProgramSummary scratch;
   Diagnostics ignored;
@@ -253,26 +273,26 @@ SourceRef NcProgram::source_before_silence(const Session& session,
   CanonicalReader reader(reader_options(session), sink, scratch, ignored);
   Conversation conversation(*process, reader, std::min(kSilenceAgain_s, options_.max_silent_s));
   conversation.listen(stop, [] {});
-  return reader.last_source();
+  return reader.feeder().last_source();
 }
 
-void NcProgram::report_exit(Rs274Process::Exit exit, CanonicalReader& reader,
+void NcProgram::report_exit(InterpreterProcess::Exit exit, CanonicalReader& reader,
                             const std::string& stderr_text, ProgramSummary& summary,
                             Diagnostics& diagnostics) const {
   if (exit.signal != 0) {
-    report(Severity::kError, reader.last_source(),
+    report(Severity::kError, reader.feeder().last_source(),
            fmt::format("rs274 was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
            {}, summary, diagnostics);
     return;
   }
   if (exit.status != 0) {
-    diagnostics.push_back(interpreter_diagnostic(stderr_text, summary.files, reader.last_source(),
-                                                 summary.program_lines));
+    diagnostics.push_back(interpreter_diagnostic(
+        stderr_text, summary.files, reader.feeder().last_source(), summary.program_lines));
     return;
   }
   if (!summary.has_program_end) {
-    report(Severity::kWarning, reader.last_source(), "the program ended without M2, M30 or %", {},
-           summary, diagnostics);
+    report(Severity::kWarning, reader.feeder().last_source(),
+           "the program ended without M2, M30 or %", {}, summary, diagnostics);
   }
 }
 
@@ -280,7 +300,7 @@ void NcProgram::report_ending(Ending ending, Session& session, CanonicalReader& 
                               const std::string& stderr_text, const std::stop_token& stop,
                               ProgramSummary& summary, Diagnostics& diagnostics) const {
   summary.stopped_early = ending != Ending::kComplete;
-  const SourceRef place = reader.last_source();
+  const SourceRef place = reader.feeder().last_source();
   switch (ending) {
     case Ending::kComplete:
       report_exit(session.process.wait(), reader, stderr_text, summary, diagnostics);
@@ -321,7 +341,7 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   Conversation conversation(session->process, reader, options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const Ending ending = conversation.listen(stop, [&] {
-    const SourceRef source = reader.last_source();
+    const SourceRef source = reader.feeder().last_source();
     if (source.file == 0) progress_ = std::min(1.0, static_cast<double>(source.line) / lines);
   });
   reader.finish();

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/program_kinds.h"
-#include "interp_bridge/rs274_process.h"
 #include "interp_bridge/tool_table.h"
 
 namespace kerf {

@@ -54,6 +54,7 @@ struct ProgramSummary {
   std::uint64_t foreign_line_count = 0;
   bool has_program_end = false;    ///< M2, M30 or a closing %
   bool has_rotary_motion = false;  ///< any A, B or C motion
+  std::uint64_t lost_splines = 0;  ///< whose points the listing does not hold
   bool stopped_early = false;      ///< by the stop token, the consumer, or a limit
   double interpret_s = 0;          ///< wall seconds until the interpreter was done
 };

@@ -379,7 +379,7 @@ Outcome Session::conclude(bool stopped) {
     add_program_finding(FindingId::kNoProgramEnd, Severity::kWarning,
                         "the program ends without M2, M30 or a closing %");
   }
-  return program.canonical_commands.count("NURBS_FEED") > 0 ? Outcome::kLossy : Outcome::kFinished;
+  return program.lost_splines > 0 ? Outcome::kLossy : Outcome::kFinished;
 }
 
 void Session::complete_timing() {

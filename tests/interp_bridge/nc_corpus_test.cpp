@@ -4,8 +4,8 @@
 
 #include <map>
 
+#include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/program_prepare.h"
-#include "interp_bridge/rs274_process.h"
 #include "interp_bridge/tool_table.h"
 #include "tests/interp_bridge/program_test_support.h"
 

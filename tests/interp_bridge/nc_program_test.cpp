@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "interp_bridge/rs274_process.h"
+#include "interp_bridge/interpreter_process.h"
 #include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {

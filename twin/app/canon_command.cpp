@@ -77,7 +77,7 @@ int canon_command(const CanonArguments& arguments) {
   print(diagnostics, arguments.quiet);
   if (!written) fmt::print(stderr, "kerf: error: {}\n", written.error());
   if (!written || has_error(diagnostics) || summary.stopped_early) return kExitFailure;
-  return summary.canonical_commands.count("NURBS_FEED") > 0 ? kExitLossy : kExitGood;
+  return summary.lost_splines > 0 ? kExitLossy : kExitGood;
 }
 
 }  // namespace kerf

@@ -1,4 +1,4 @@
-#include "interp_bridge/rs274_process.h"
+#include "interp_bridge/interpreter_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -27,9 +27,6 @@ namespace {
 /// The child writes far ahead of us while the stock is being cut.
 constexpr int kPipeBytes = 1 << 20;
 
-/// Where the child finds the listing's pipe, after stdin, stdout and stderr.
-constexpr int kChildListingFd = 3;
-
 struct Pipe {
   int read_end = -1;
   int write_end = -1;
@@ -50,8 +47,7 @@ struct Pipe {
   }
 };
 
-/// INI_FILE_NAME would make rs274 read the INI of whatever LinuxCNC was started from this shell.
-std::vector<std::string> child_environment(const std::string& home) {
+std::vector<std::string> child_environment(const std::string& home, const std::string& ini) {
   std::vector<std::string> environment;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text(*entry);
@@ -59,6 +55,7 @@ std::vector<std::string> child_environment(const std::string& home) {
     environment.emplace_back(text);
   }
   environment.push_back("HOME=" + home);
+  if (!ini.empty()) environment.push_back("INI_FILE_NAME=" + ini);
   return environment;
 }
 
@@ -70,7 +67,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 }
 
 /// Between fork and exec: only calls that are safe there. Never returns.
-[[noreturn]] void become_rs274(const Rs274Options& options, char* const* arguments,
+[[noreturn]] void become_child(const InterpreterProcessOptions& options, char* const* arguments,
                                char* const* environment, const Pipe& listing, const Pipe& out,
                                const Pipe& err, const Pipe& failure, pid_t parent) {
   const auto fail = [&] {
@@ -89,9 +86,9 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   const int null = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (null < 0 || dup2(null, STDIN_FILENO) < 0) fail();
-  const int child_stdout = options.unbuffered ? listing.write_end : out.write_end;
+  const int child_stdout = options.listing_is_stdout ? listing.write_end : out.write_end;
   if (dup2(child_stdout, STDOUT_FILENO) < 0 || dup2(err.write_end, STDERR_FILENO) < 0) fail();
-  if (dup2(listing.write_end, kChildListingFd) < 0) fail();
+  if (dup2(listing.write_end, kListingFd) < 0) fail();
   if (chdir(options.folder.c_str()) != 0) fail();
   execve(options.executable.c_str(), arguments, environment);
   fail();
@@ -109,8 +106,8 @@ bool move_above(int& fd, int lowest) {
 
 bool open_pipes(std::initializer_list<Pipe*> pipes) {
   for (Pipe* pipe : pipes) {
-    if (!pipe->open() || !move_above(pipe->write_end, kChildListingFd) ||
-        !move_above(pipe->read_end, kChildListingFd)) {
+    if (!pipe->open() || !move_above(pipe->write_end, kListingFd) ||
+        !move_above(pipe->read_end, kListingFd)) {
       return false;
     }
   }
@@ -141,7 +138,7 @@ std::string find_executable(const std::string& name) {
   return {};
 }
 
-Result<Rs274Process> Rs274Process::start(const Rs274Options& options) {
+Result<InterpreterProcess> InterpreterProcess::start(const InterpreterProcessOptions& options) {
   const auto error = [&](int number) {
     return Error{fmt::format("cannot start {}: {}", options.executable, std::strerror(number))};
   };
@@ -153,30 +150,21 @@ Result<Rs274Process> Rs274Process::start(const Rs274Options& options) {
   fcntl(listing.read_end, F_SETPIPE_SZ, kPipeBytes);  // smaller works too
 
   std::vector<std::string> arguments = {options.executable};
-  if (options.block_delete) arguments.emplace_back("-b");
-  // A name that begins with a dash would be an option; others go as they are, since messages repeat
-  // them.
-  const std::string program =
-      options.program.front() == '-' ? "./" + options.program : options.program;
-  // No var file: a path that cannot exist is not written either. (rs274 replaces its var file, even
-  // /dev/null.)
-  arguments.insert(arguments.end(),
-                   {"-t", options.tool_table, "-v", options.home + "/none/x.var", "-g", program});
-  if (!options.unbuffered) arguments.push_back(fmt::format("/dev/fd/{}", kChildListingFd));
-  std::vector<std::string> environment = child_environment(options.home);
+  arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
+  std::vector<std::string> environment = child_environment(options.home, options.ini);
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid < 0) return error(errno);
   if (pid == 0) {
-    become_rs274(options, argument_pointers.data(), environment_pointers.data(), listing, out, err,
+    become_child(options, argument_pointers.data(), environment_pointers.data(), listing, out, err,
                  failure, parent);
   }
   setpgid(pid, pid);  // here too: whichever comes first, the group exists before it can be killed
   for (Pipe* pipe : {&listing, &out, &err, &failure}) pipe->close_write();
 
-  Rs274Process process;
+  InterpreterProcess process;
   process.pid_ = pid;
   int failed_with = 0;
   ssize_t got = 0;
@@ -190,9 +178,11 @@ Result<Rs274Process> Rs274Process::start(const Rs274Options& options) {
   return process;
 }
 
-Rs274Process::Rs274Process(Rs274Process&& other) noexcept { *this = std::move(other); }
+InterpreterProcess::InterpreterProcess(InterpreterProcess&& other) noexcept {
+  *this = std::move(other);
+}
 
-Rs274Process& Rs274Process::operator=(Rs274Process&& other) noexcept {
+InterpreterProcess& InterpreterProcess::operator=(InterpreterProcess&& other) noexcept {
   std::swap(pid_, other.pid_);
   std::swap(listing_fd_, other.listing_fd_);
   std::swap(stdout_fd_, other.stdout_fd_);
@@ -200,7 +190,7 @@ Rs274Process& Rs274Process::operator=(Rs274Process&& other) noexcept {
   return *this;
 }
 
-Rs274Process::~Rs274Process() {
+InterpreterProcess::~InterpreterProcess() {
   kill();
   wait();
   for (const int fd : {listing_fd_, stdout_fd_, stderr_fd_}) {
@@ -208,11 +198,11 @@ Rs274Process::~Rs274Process() {
   }
 }
 
-void Rs274Process::kill() {
+void InterpreterProcess::kill() {
   if (pid_ > 0) ::kill(-pid_, SIGKILL);
 }
 
-Rs274Process::Exit Rs274Process::wait() {
+InterpreterProcess::Exit InterpreterProcess::wait() {
   if (pid_ <= 0) return {};
   int status = 0;
   pid_t got = 0;
@@ -225,7 +215,7 @@ Rs274Process::Exit Rs274Process::wait() {
   return {WEXITSTATUS(status), 0};
 }
 
-std::uint64_t Rs274Process::read_offset(const std::string& path) const {
+std::uint64_t InterpreterProcess::read_offset(const std::string& path) const {
   if (pid_ <= 0) return 0;
   namespace fs = std::filesystem;
   std::error_code error;

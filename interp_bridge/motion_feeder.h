@@ -1,0 +1,79 @@
+// interp_bridge/motion_feeder.h - canonical commands with their lines, handed on in batches of
+// motions: what a listing and kerf-interp's records have in common.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interp_bridge/canonical.h"
+#include "interp_bridge/motion_fold.h"
+#include "interp_bridge/program.h"
+
+namespace kerf {
+
+struct MotionFeederOptions {
+  std::vector<int> tool_by_index;  ///< of MotionFold
+  bool diameters_known =
+      true;  ///< false: warn of cutter compensation, whose radius the interpreter took as 0
+  std::uint64_t max_commands = 0;  ///< 0: any number
+};
+
+/// Counts, folds, collects the diagnostics that commands give rise to. One thread.
+class MotionFeeder {
+ public:
+  /// All references must outlive the feeder. Counts and diagnostics are appended as they come.
+  MotionFeeder(MotionFeederOptions options, const MotionSink& sink, ProgramSummary& summary,
+               Diagnostics& diagnostics);
+
+  /// False: the sink has had enough, or there were too many commands.
+  bool take(const CanonicalCommand& command, SourceRef source);
+  /// A spline with its control points; counts as one command.
+  bool take_spline(const Spline& spline, SourceRef source);
+  /// A command that is none of ours: counted. True if it is the first of its name.
+  bool take_unknown(std::string_view name);
+  void add_foreign(std::string_view line);
+
+  /// Hands over what has waited for longer than a screen would forgive (about 40 ms). False as
+  /// above.
+  bool flush_if_old();
+  /// Hands over the rest, closes the counts. `file` is named in the remarks about the whole.
+  void finish();
+
+  std::uint64_t commands() const { return commands_; }
+  bool too_many_commands() const { return too_many_; }
+  bool done() const { return sink_done_ || too_many_; }
+  /// Of the last command.
+  SourceRef last_source() const { return source_; }
+  /// A diagnostic at the last command's place.
+  Diagnostic at_source(Severity severity, std::string message) const;
+
+ private:
+  bool took(bool batch_was_empty);
+  void remark(FoldRemark remark);
+  void remark_on_text(const CanonicalCommand& command);
+  bool hand_over();
+
+  MotionFeederOptions options_;
+  const MotionSink& sink_;
+  ProgramSummary& summary_;
+  Diagnostics& diagnostics_;
+  MotionFold fold_;
+  std::vector<Motion> batch_;
+  std::chrono::steady_clock::time_point batch_since_;
+  std::array<std::uint64_t, kCanonicalNameCount> counts_{};
+  std::uint64_t commands_ = 0;
+  std::uint64_t splines_lost_ = 0;
+  bool plane_reported_ = false;
+  bool secondary_reported_ = false;
+  bool compensation_reported_ = false;
+  bool too_many_ = false;
+  bool sink_done_ = false;
+  SourceRef source_;
+};
+
+}  // namespace kerf
