@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace kerf {
 namespace {
@@ -305,6 +306,24 @@ const char* parse_arguments(const char* spec, Cursor& cursor, CanonicalCommand& 
   return cursor.done() ? nullptr : "more arguments than the command has";
 }
 
+bool argument_fits(char letter, double value) {
+  const bool whole = value == std::floor(value);
+  switch (letter) {
+    case 'c':
+      return std::abs(value) <= kLargestCoordinate;
+    case 'i':
+      return whole && std::abs(value) <= std::numeric_limits<std::int32_t>::max();
+    case 'u':
+      return whole && value >= 0 && value <= static_cast<double>(CanonicalUnits::kCm);
+    case 'p':
+      return whole && value >= 0 && value <= static_cast<double>(CanonicalPlane::kUnknown);
+    case 'm':
+      return whole && value >= 0 && value <= static_cast<double>(CanonicalControlMode::kContinuous);
+    default:
+      return std::isfinite(value);
+  }
+}
+
 /// Names sorted by spelling, for the ones that are not frequent.
 const std::vector<std::pair<std::string_view, CanonicalName>>& sorted_names() {
   static const auto names = [] {
@@ -449,6 +468,22 @@ void parse_canonical_line(std::string_view line, CanonicalLine& out) {
 
 std::string_view canonical_spelling(CanonicalName name) {
   return kSpecs[static_cast<std::size_t>(name)].spelling;
+}
+
+bool canonical_arguments_fit(const CanonicalCommand& command) {
+  const double* const values = command.arguments.data();
+  std::size_t at = 0;
+  bool optional = false;
+  for (const char* spec = kSpecs[static_cast<std::size_t>(command.name)].arguments; *spec != 0;
+       ++spec) {
+    if (*spec == '*') break;
+    optional |= *spec == '?';
+    if (*spec == '?' || *spec == 's' || *spec == 'r') continue;
+    if (at == command.argument_count) return optional;
+    if (!argument_fits(*spec, values[at++])) return false;
+  }
+  return std::all_of(values + at, values + command.argument_count,
+                     [](double value) { return std::abs(value) <= kLargestCoordinate; });
 }
 
 bool looks_canonical(std::string_view line) {

@@ -151,6 +151,11 @@ void parse_canonical_line(std::string_view line, CanonicalLine& out);
 /// "STRAIGHT_FEED" ...; for kWaitOrientComplete the form of spindle 0.
 std::string_view canonical_spelling(CanonicalName name);
 
+/// True if the numbers are what the call's line could hold: enough of them, whole where they must
+/// be, none beyond reason. For commands that come as numbers (record_reader.h); a few more numbers
+/// than the line has (U, V, W) are allowed.
+bool canonical_arguments_fit(const CanonicalCommand& command);
+
 /// True for a line that only rs274 prints: sequence, N column and a call (of any name). What tells
 /// a listing from NC text.
 bool looks_canonical(std::string_view line);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interp_bridge/canonical.h"
+#include "interp_bridge/child_listener.h"
 #include "interp_bridge/motion_feeder.h"
 #include "interp_bridge/program.h"
 
@@ -26,16 +27,15 @@ struct CanonicalReaderOptions {
 
 /// Splits and parses text, and gives the commands to a MotionFeeder. Any bytes are accepted: what
 /// is not canonical is kept as foreign text, and an incomplete last line is reported. One thread.
-class CanonicalReader {
+class CanonicalReader final : public ByteReader {
  public:
   /// All references must outlive the reader. Counts and diagnostics are appended as they come.
   CanonicalReader(CanonicalReaderOptions options, const MotionSink& sink, ProgramSummary& summary,
                   Diagnostics& diagnostics);
 
-  /// Where to put the next bytes; never empty.
-  std::span<char> room();
-  /// Takes `bytes` of room(). False: the sink has had enough, or there were too many commands.
-  bool received(std::size_t bytes);
+  std::span<char> room() override;
+  /// False: the sink has had enough, or there were too many commands.
+  bool received(std::size_t bytes) override;
   /// The listing is complete. Takes an unfinished last line, hands over the rest, closes the
   /// counts.
   void finish();

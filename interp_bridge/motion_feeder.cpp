@@ -54,7 +54,8 @@ bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {
 
 bool MotionFeeder::took(bool batch_was_empty) {
   if (batch_was_empty && !batch_.empty()) batch_since_ = std::chrono::steady_clock::now();
-  if (options_.max_commands != 0 && ++commands_ > options_.max_commands) too_many_ = true;
+  ++commands_;
+  if (options_.max_commands != 0 && commands_ > options_.max_commands) too_many_ = true;
   return (batch_.size() < kBatchMotions || hand_over()) && !too_many_;
 }
 

@@ -10,8 +10,11 @@ namespace {
 
 /// Splines of programs have a handful of points; more than this in a million-fold text is not one.
 constexpr std::size_t kMaxPoints = 10'000;
-/// A span is halved no oftener: 2^-16 of a span of a metre is 0.015 mm long.
-constexpr int kMaxHalvings = 16;
+/// A quarter of a span is halved no oftener: 2^-12 of a metre is 0.25 mm, whose sagitta is below
+/// the tolerance unless the curve has a kink there.
+constexpr int kMaxHalvings = 12;
+/// Chords of a spline that anyone would run; a longer one is taken for damage.
+constexpr std::size_t kMaxChords = 200'000;
 
 /// Clamped uniform knots, as LinuxCNC has them: 0 .. 0, 1, 2 .., n - order + 1 .. (order times
 /// each end).
@@ -68,7 +71,7 @@ void add_chords(Curve& curve, double u0, const Vec2& p0, double u1, const Vec2& 
     off = std::max(off,
                    length > 0 ? std::abs(chord.x * d.y - chord.y * d.x) / length : glm::length(d));
   }
-  if (off <= tolerance || halvings == 0) {
+  if (off <= tolerance || halvings == 0 || out.size() > kMaxChords) {
     out.push_back(p1);
     return;
   }
@@ -109,6 +112,10 @@ FoldRemark MotionFold::fold_spline(const Spline& spline, SourceRef source,
     const Vec2 to = curve.at(u1);
     add_chords(curve, u0, from, u1, to, tolerance, kMaxHalvings, points);
     from = to;
+    if (points.size() > kMaxChords) {
+      position_known_ = false;
+      return FoldRemark::kSplineLost;
+    }
   }
   const double z = program_from_work(position_mm_).z;
   for (const Vec2& p : points) {

@@ -1,11 +1,9 @@
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -14,6 +12,7 @@
 #include <utility>
 
 #include "interp_bridge/canonical_reader.h"
+#include "interp_bridge/child_listener.h"
 #include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/private_folder.h"
 #include "interp_bridge/program_kinds.h"
@@ -26,102 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of what rs274 writes to stderr, its message is the end.
-constexpr std::size_t kMaxStderrBytes = 64 * 1024;
-constexpr std::size_t kMaxStdoutLineBytes = 4096;
-
 /// The second run of a program that fell silent need not wait as long to call it so.
 constexpr double kSilenceAgain_s = 2.0;
-
-enum class Ending { kComplete, kStopped, kTooMany, kSilent };
-
-/// The three pipes of the child, read by turns in one thread, so that none of them can fill up and
-/// stop it.
-class Conversation {
- public:
-  Conversation(InterpreterProcess& process, CanonicalReader& reader, double max_silent_s)
-      : reader_(reader), max_silent_s_(max_silent_s), buffer_(64 * 1024) {
-    fds_[kListing] = {process.listing_fd(), POLLIN, 0};
-    fds_[kStdout] = {process.stdout_fd(), POLLIN, 0};
-    fds_[kStderr] = {process.stderr_fd(), POLLIN, 0};
-  }
-
-  template <class OnProgress>
-  Ending listen(const std::stop_token& stop, const OnProgress& on_progress);
-  const std::string& stderr_text() const { return stderr_text_; }
-
- private:
-  enum { kListing, kStdout, kStderr };
-
-  bool readable(int index) const { return fds_[index].fd >= 0 && fds_[index].revents != 0; }
-  std::size_t read_some(int index, std::span<char> room);
-  void take_stdout(std::string_view text);
-  void take_stderr(std::string_view text);
-
-  CanonicalReader& reader_;
-  double max_silent_s_;
-  std::array<pollfd, 3> fds_{};
-  std::vector<char> buffer_;
-  std::string stdout_line_;
-  std::string stderr_text_;
-};
-
-/// 0: nothing came. At the end of a pipe it is taken out of the poll.
-std::size_t Conversation::read_some(int index, std::span<char> room) {
-  const ssize_t got = read(fds_[static_cast<std::size_t>(index)].fd, room.data(), room.size());
-  if (got > 0) return static_cast<std::size_t>(got);
-  if (got == 0 || (errno != EINTR && errno != EAGAIN)) {
-    fds_[static_cast<std::size_t>(index)].fd = -1;
-  }
-  return 0;
-}
-
-void Conversation::take_stdout(std::string_view text) {
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    const std::size_t room = kMaxStdoutLineBytes - stdout_line_.size();
-    stdout_line_ += line.substr(0, room);
-    if (line.size() == text.size()) return;
-    reader_.feeder().add_foreign(stdout_line_);
-    stdout_line_.clear();
-    text.remove_prefix(line.size() + 1);
-  }
-}
-
-void Conversation::take_stderr(std::string_view text) {
-  stderr_text_ += text;
-  if (stderr_text_.size() > 2 * kMaxStderrBytes) {
-    stderr_text_.erase(0, stderr_text_.size() - kMaxStderrBytes);
-  }
-}
-
-template <class OnProgress>
-Ending Conversation::listen(const std::stop_token& stop, const OnProgress& on_progress) {
-  auto heard = Clock::now();
-  const auto is_open = [](const pollfd& pipe) { return pipe.fd >= 0; };
-  while (std::any_of(fds_.begin(), fds_.end(), is_open)) {
-    if (stop.stop_requested()) return Ending::kStopped;
-    for (pollfd& pipe : fds_) pipe.revents = 0;
-    poll(fds_.data(), fds_.size(), kReaderPatience_ms);
-    if (readable(kListing)) {
-      const std::size_t got = read_some(kListing, reader_.room());
-      if (got > 0 && !reader_.received(got)) {
-        return reader_.feeder().too_many_commands() ? Ending::kTooMany : Ending::kStopped;
-      }
-      // After the sink: the time it takes is not the child's.
-      if (got > 0) heard = Clock::now();
-      on_progress();
-    } else {
-      if (!reader_.feeder().flush_if_old()) return Ending::kStopped;
-      const std::chrono::duration<double> silent = Clock::now() - heard;
-      if (silent.count() > max_silent_s_) return Ending::kSilent;
-    }
-    if (readable(kStdout)) take_stdout({buffer_.data(), read_some(kStdout, buffer_)});
-    if (readable(kStderr)) take_stderr({buffer_.data(), read_some(kStderr, buffer_)});
-  }
-  if (!stdout_line_.empty()) reader_.feeder().add_foreign(stdout_line_);
-  return Ending::kComplete;
-}
 
 class NcProgram final : public Program {
  public:
@@ -154,7 +59,7 @@ class NcProgram final : public Program {
   CanonicalReaderOptions reader_options(const Session& session) const;
   void report(Severity severity, SourceRef place, std::string message, std::string hint,
               const ProgramSummary& summary, Diagnostics& diagnostics) const;
-  void report_ending(Ending ending, Session& session, CanonicalReader& reader,
+  void report_ending(ChildEnding ending, Session& session, CanonicalReader& reader,
                      const std::string& stderr_text, const std::stop_token& stop,
                      ProgramSummary& summary, Diagnostics& diagnostics) const;
   void report_exit(InterpreterProcess::Exit exit, CanonicalReader& reader,
@@ -271,8 +176,9 @@ SourceRef NcProgram::source_before_silence(const Session& session,
   Diagnostics ignored;
   const MotionSink sink = [](std::span<const Motion>) { return true; };
   CanonicalReader reader(reader_options(session), sink, scratch, ignored);
-  Conversation conversation(*process, reader, std::min(kSilenceAgain_s, options_.max_silent_s));
-  conversation.listen(stop, [] {});
+  ChildListener listener(*process, reader, reader.feeder(),
+                         std::min(kSilenceAgain_s, options_.max_silent_s));
+  listener.listen(stop, [] {});
   return reader.feeder().last_source();
 }
 
@@ -296,24 +202,24 @@ void NcProgram::report_exit(InterpreterProcess::Exit exit, CanonicalReader& read
   }
 }
 
-void NcProgram::report_ending(Ending ending, Session& session, CanonicalReader& reader,
+void NcProgram::report_ending(ChildEnding ending, Session& session, CanonicalReader& reader,
                               const std::string& stderr_text, const std::stop_token& stop,
                               ProgramSummary& summary, Diagnostics& diagnostics) const {
-  summary.stopped_early = ending != Ending::kComplete;
+  summary.stopped_early = ending != ChildEnding::kComplete;
   const SourceRef place = reader.feeder().last_source();
   switch (ending) {
-    case Ending::kComplete:
+    case ChildEnding::kComplete:
       report_exit(session.process.wait(), reader, stderr_text, summary, diagnostics);
       break;
-    case Ending::kStopped:
+    case ChildEnding::kStopped:
       break;
-    case Ending::kTooMany:
+    case ChildEnding::kTooMany:
       report(Severity::kError, place,
              fmt::format("more than {} canonical commands; the program counts as endless",
                          options_.max_commands),
              "a loop whose condition stays true?", summary, diagnostics);
       break;
-    case Ending::kSilent: {
+    case ChildEnding::kSilent: {
       const std::string message = silence_message(session);
       session.process.kill();
       report(Severity::kError, source_before_silence(session, stop), message,
@@ -338,15 +244,15 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   }
   summary.files = files_ = session->prepared.files;
   CanonicalReader reader(reader_options(*session), sink, summary, diagnostics);
-  Conversation conversation(session->process, reader, options_.max_silent_s);
+  ChildListener listener(session->process, reader, reader.feeder(), options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
-  const Ending ending = conversation.listen(stop, [&] {
+  const ChildEnding ending = listener.listen(stop, [&] {
     const SourceRef source = reader.feeder().last_source();
     if (source.file == 0) progress_ = std::min(1.0, static_cast<double>(source.line) / lines);
   });
   reader.finish();
-  report_ending(ending, *session, reader, conversation.stderr_text(), stop, summary, diagnostics);
-  if (ending == Ending::kComplete) progress_ = 1;
+  report_ending(ending, *session, reader, listener.stderr_text(), stop, summary, diagnostics);
+  if (ending == ChildEnding::kComplete) progress_ = 1;
   summary.interpret_s = std::chrono::duration<double>(Clock::now() - begin).count();
   return summary;
 }

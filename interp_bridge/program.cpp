@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "interp_bridge/interpreter_process.h"
@@ -96,6 +97,20 @@ bool read_tools(const std::string& path, std::vector<ToolTableRow>& rows,
   return false;
 }
 
+/// As ProgramOptions::kerf_interp_path says.
+std::string find_kerf_interp(const std::string& given) {
+  if (!given.empty()) return find_executable(given);
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    for (const char* place : {"kerf-interp", "../lib/kerf/kerf-interp"}) {
+      std::string found = find_executable((self.parent_path() / place).string());
+      if (!found.empty()) return found;
+    }
+  }
+  return find_executable("kerf-interp");
+}
+
 }  // namespace
 
 std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
@@ -114,6 +129,20 @@ std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostic
   }
   if (survey.listing) {
     return make_listing_program(options, std::move(tool_by_index), std::move(survey));
+  }
+  if (options.interpreter != InterpreterChoice::kText) {
+    std::string kerf_interp = find_kerf_interp(options.kerf_interp_path);
+    if (!kerf_interp.empty()) {
+      return make_bridge_program(options, std::move(kerf_interp), std::move(tools),
+                                 std::move(survey));
+    }
+    if (options.interpreter == InterpreterChoice::kBridge) {
+      report(diagnostics, {},
+             "kerf-interp was not found: neither beside kerf, nor in ../lib/kerf, nor in PATH",
+             "it is built where linuxcnc-uspace-dev and libboost-dev are installed; --interp text "
+             "does without");
+      return nullptr;
+    }
   }
   std::string rs274 = find_executable(options.rs274_path);
   if (rs274.empty()) {

@@ -27,6 +27,23 @@ struct ProgramComment {
   std::string text;
 };
 
+/// Which interpreter reads an NC file: kerf-interp (LinuxCNC's librs274 in a process of its own:
+/// exact lines and numbers, splines, U V W), or the text of rs274; kAuto takes the first that is
+/// there.
+enum class InterpreterChoice : std::uint8_t { kAuto, kBridge, kText };
+
+/// What the interpreter is told of the machine. The defaults are those of a mm machine without an
+/// INI. kerf-interp only; rs274 takes none of it.
+struct InterpreterSetup {
+  bool inch_machine = false;  ///< unit of parameter file and tool table
+  int axis_mask = 0x1ff;      ///< bit 0 is X .. bit 8 is W
+  bool random_toolchanger = false;
+  std::string ini_path;        ///< read by the interpreter itself: remaps, paths, features
+  std::string working_folder;  ///< relative paths of the INI; empty: the program's folder
+  std::string parameter_path;  ///< var file, copied before it is used; empty: none
+  std::string startup_code;    ///< run before the program
+};
+
 /// What to interpret and how.
 struct ProgramOptions {
   /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
@@ -36,24 +53,36 @@ struct ProgramOptions {
   /// rows are reported by read_tool_table, not here.
   std::string tool_table_path;
   bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
+  InterpreterChoice interpreter = InterpreterChoice::kAuto;
+  InterpreterSetup machine;
   std::string rs274_path = "rs274";  ///< looked up in PATH
+  /// Empty: beside this executable, in ../lib/kerf beside it, else looked up in PATH.
+  std::string kerf_interp_path;
   /// Canonical commands after which a program counts as endless.
   std::uint64_t max_commands = 50'000'000;
   /// Seconds without a canonical command after which it counts as endless.
   double max_silent_s = 20.0;
 };
 
+/// Something that the program does and kerf does not: a user M-code, an M66.
+struct ProgramNote {
+  SourceRef source;  ///< the first time
+  std::string text;
+  std::uint64_t count = 0;
+};
+
 /// Counts and facts known once the stream has ended (or was stopped).
 struct ProgramSummary {
   std::vector<std::string> files;  ///< SourceRef::file indexes this; [0] is the program
   std::size_t program_lines = 0;   ///< physical lines of files[0]
-  std::string interpreter;         ///< "text" | "canon"
+  std::string interpreter;         ///< "bridge" | "text" | "canon"
   std::map<std::string, std::uint64_t> canonical_commands;  ///< by name
   /// Text that was not canonical ((PRINT,..), messages), first 100.
   std::vector<std::string> foreign_lines;
   std::uint64_t foreign_line_count = 0;
   bool has_program_end = false;    ///< M2, M30 or a closing %
   bool has_rotary_motion = false;  ///< any A, B or C motion
+  std::vector<ProgramNote> notes;  ///< first 100 different ones
   std::uint64_t lost_splines = 0;  ///< whose points the listing does not hold
   bool stopped_early = false;      ///< by the stop token, the consumer, or a limit
   double interpret_s = 0;          ///< wall seconds until the interpreter was done

@@ -15,6 +15,10 @@ namespace kerf {
 std::unique_ptr<Program> make_nc_program(const ProgramOptions& options, std::string rs274,
                                          std::vector<ToolTableRow> tools, TextSurvey survey);
 
+/// NC code, interpreted by a child kerf-interp where it stands. `kerf_interp` is the full path.
+std::unique_ptr<Program> make_bridge_program(const ProgramOptions& options, std::string kerf_interp,
+                                             std::vector<ToolTableRow> tools, TextSurvey survey);
+
 /// Canonical text: a file, or stdin if options.path is "-". Lines of motions: the N column, else
 /// the listing's own line.
 std::unique_ptr<Program> make_listing_program(const ProgramOptions& options,

@@ -67,7 +67,21 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
-/// A line that kept its text has no number: the first one with that text from `after` on.
+std::string hint_for(const std::string& message) {
+  const auto has = [&](const char* part) { return message.find(part) != message.npos; };
+  if (has("seeking o-word")) {
+    return "a subroutine that the program calls must be in it, or in NAME.ngc beside it";
+  }
+  if (has("Bad character '\\357'")) return "store the program without a byte order mark";
+  if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
+    return "rs274 knows the axes X Y Z A B C only";
+  }
+  if (has("not found in the tool table")) return "give the machine's table with --tool-table";
+  return {};
+}
+
+}  // namespace
+
 std::uint32_t find_line(const std::string& path, const std::string& text, std::uint32_t after) {
   if (text.empty()) return after;
   TextPieces pieces(path);
@@ -85,21 +99,6 @@ std::uint32_t find_line(const std::string& path, const std::string& text, std::u
   }
   return after;
 }
-
-std::string hint_for(const std::string& message) {
-  const auto has = [&](const char* part) { return message.find(part) != message.npos; };
-  if (has("seeking o-word")) {
-    return "a subroutine that the program calls must be in it, or in NAME.ngc beside it";
-  }
-  if (has("Bad character '\\357'")) return "store the program without a byte order mark";
-  if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
-    return "rs274 knows the axes X Y Z A B C only";
-  }
-  if (has("not found in the tool table")) return "give the machine's table with --tool-table";
-  return {};
-}
-
-}  // namespace
 
 InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
   std::vector<std::string_view> lines;
@@ -128,20 +127,33 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
   return result;
 }
 
+Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
+                             const std::vector<std::string>& files, std::size_t program_lines) {
+  Diagnostic diagnostic;
+  constexpr std::string_view kNoEnd = "File ended with no percent sign";
+  if (message.substr(0, kNoEnd.size()) == kNoEnd) {
+    diagnostic.severity = Severity::kWarning;
+    diagnostic.file = files.empty() ? "" : files[0];
+    diagnostic.line = static_cast<int>(program_lines);
+    diagnostic.message = "the program has no end: " + message;
+    diagnostic.hint = "end it with M2 or M30, or put it between two lines of %";
+    return diagnostic;
+  }
+  diagnostic.message = message.empty() ? "the interpreter stopped without a message" : message;
+  if (const auto line = line_in(message)) place.line = *line;
+  if (place.file < files.size()) {
+    diagnostic.file = files[place.file];
+    diagnostic.line = static_cast<int>(place.line);
+    diagnostic.excerpt = line_of_file(diagnostic.file, place.line);
+  }
+  diagnostic.hint = hint_for(message);
+  return diagnostic;
+}
+
 Diagnostic interpreter_diagnostic(std::string_view stderr_text,
                                   const std::vector<std::string>& files, SourceRef last_source,
                                   std::size_t program_lines) {
   const InterpreterMessage said = parse_interpreter_message(stderr_text);
-  Diagnostic diagnostic;
-  constexpr std::string_view kNoEnd = "File ended with no percent sign";
-  if (said.message.substr(0, kNoEnd.size()) == kNoEnd) {
-    diagnostic.severity = Severity::kWarning;
-    diagnostic.file = files.empty() ? "" : files[0];
-    diagnostic.line = static_cast<int>(program_lines);
-    diagnostic.message = "the program has no end: " + said.message;
-    diagnostic.hint = "end it with M2 or M30, or put it between two lines of %";
-    return diagnostic;
-  }
   SourceRef place = last_source;
   if (const auto line = line_in(said.message)) {
     place = {file_in(said.message, files), *line};
@@ -150,15 +162,10 @@ Diagnostic interpreter_diagnostic(std::string_view stderr_text,
   } else if (place.file < files.size()) {
     place.line = find_line(files[place.file], said.echo, place.line);
   }
-  diagnostic.message =
-      said.message.empty() ? "rs274 stopped without a message" : without_our_numbers(said.message);
-  if (place.file < files.size()) {
-    diagnostic.file = files[place.file];
-    diagnostic.line = static_cast<int>(place.line);
-    diagnostic.excerpt = line_of_file(diagnostic.file, place.line);
+  if (said.message.empty()) {
+    return placed_diagnostic("rs274 stopped without a message", place, files, program_lines);
   }
-  diagnostic.hint = hint_for(said.message);
-  return diagnostic;
+  return placed_diagnostic(without_our_numbers(said.message), place, files, program_lines);
 }
 
 }  // namespace kerf

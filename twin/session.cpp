@@ -361,6 +361,15 @@ Outcome Session::conclude(bool stopped) {
         FindingId::kRotaryIgnored, Severity::kWarning,
         "the program moves A, B or C; the Z-map has no rotary axes and cuts as if they stood");
   }
+  for (const ProgramNote& note : program.notes) {
+    Finding finding;
+    finding.id = FindingId::kNotSimulated;
+    finding.severity = Severity::kNote;
+    finding.source = note.source;
+    finding.text = fmt::format("{} is passed over{}", note.text,
+                               note.count > 1 ? fmt::format(" ({} times)", note.count) : "");
+    report_.findings.add(std::move(finding));
+  }
   report_.timing.interpret_s = program.interpret_s;
   complete_timing();
   if (stopped) {

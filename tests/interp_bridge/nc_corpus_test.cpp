@@ -2,8 +2,6 @@
 // prints. Needs KERF_SHARED_DATA.
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/tool_table.h"
@@ -11,35 +9,6 @@
 
 namespace kerf {
 namespace {
-
-using Row = std::map<std::string, std::string>;
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == '\t') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-std::vector<Row> index_rows(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  const std::vector<std::string> names = split(line);
-  std::vector<Row> rows;
-  while (std::getline(file, line)) {
-    const std::vector<std::string> fields = split(line);
-    Row row;
-    for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
 
 /// The program's listing by rs274 itself, read as a listing.
 ProgramRun run_plain(const ProgramOptions& options, const TestFolder& folder) {
@@ -82,6 +51,7 @@ TEST(NcCorpus, NumberedCopiesRunAsTheProgramsDo) {
     TestFolder folder;
     ProgramOptions options;
     options.path = (root / row.at("path")).string();
+    options.interpreter = InterpreterChoice::kText;
     const auto table =
         root / "tables" / (std::filesystem::path(options.path).filename().string() + ".tbl");
     if (std::filesystem::exists(table)) options.tool_table_path = table.string();

@@ -16,7 +16,10 @@ namespace {
 
 class NcProgram : public ::testing::Test {
  protected:
-  void SetUp() override { ASSERT_NE(find_executable("rs274"), "") << "install linuxcnc-uspace"; }
+  void SetUp() override {
+    ASSERT_NE(find_executable("rs274"), "") << "install linuxcnc-uspace";
+    options_.interpreter = InterpreterChoice::kText;
+  }
   /// After every test: no child, no folder.
   void TearDown() override {
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -81,6 +82,7 @@ inline ProgramRun run_program(const ProgramOptions& options) {
 inline ProgramRun run_program(const std::string& path) {
   ProgramOptions options;
   options.path = path;
+  options.interpreter = InterpreterChoice::kText;
   return run_program(options);
 }
 
@@ -94,6 +96,36 @@ inline std::string text_of(const std::filesystem::path& path) {
 inline std::filesystem::path shared_data() {
   const char* const folder = std::getenv("KERF_SHARED_DATA");
   return folder != nullptr ? folder : "";
+}
+
+/// A row of the shared data's index, by column.
+using Row = std::map<std::string, std::string>;
+
+inline std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == '\t') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+inline std::vector<Row> index_rows(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> names = split(line);
+  std::vector<Row> rows;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> fields = split(line);
+    Row row;
+    for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 }  // namespace kerf

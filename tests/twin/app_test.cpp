@@ -47,13 +47,13 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   a.threads = std::string("1.5");
   a.kernel = std::string("gpu");
   a.model = std::string("octree");
-  a.source.interp = std::string("bridge");
+  a.source.interp = std::string("rs274");
   a.source.block_delete = std::string("maybe");
   a.mesh_tolerance = std::string("fine");
   a.margin = std::string("-1");
   a.source.traverse_rate = std::string("1e999");
   EXPECT_EQ(faults_of(a),
-            "kerf: error: --interp: bridge is not in this version; allowed: text\n"
+            "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
             "kerf: error: --traverse-rate: '1e999' is not a number; must be above 0 and at most "
             "1e+06 (mm/min)\n"

@@ -131,7 +131,7 @@ TEST_F(BadInput, CutterWithAHollowBottom) {
 
 TEST_F(BadInput, InterpreterNotInstalled) {
   KerfCall call;
-  call.arguments = {"run", "part.ngc"};
+  call.arguments = {"run", "part.ngc", "--interp", "text"};
   call.folder = folder_.path();
   call.environment["PATH"] = folder_.path();
   expect(run_kerf(call), 4,

@@ -54,7 +54,10 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       ->required();
   command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
       ->type_name("FILE");
-  command.add_option("--interp", a.interp, "interpreter: text (LinuxCNC's rs274)")
+  command
+      .add_option("--interp", a.interp,
+                  "interpreter: bridge (kerf-interp) | text (LinuxCNC's rs274) (default bridge "
+                  "where it is there)")
       ->type_name("NAME");
   command.add_option("--block-delete", a.block_delete, "skip lines that begin with / (default on)")
       ->type_name("on|off");

@@ -16,9 +16,12 @@ ProgramOptions understand_program(const ProgramArguments& a, OptionReader& reade
   options.path = a.program;
   options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {
-    reader.fault("--interp", "bridge is not in this version; allowed: text");
-  } else if (!a.interp.empty() && a.interp != "text") {
-    reader.fault("--interp", fmt::format("'{}' is no interpreter; allowed: text", a.interp));
+    options.interpreter = InterpreterChoice::kBridge;
+  } else if (a.interp == "text") {
+    options.interpreter = InterpreterChoice::kText;
+  } else if (!a.interp.empty()) {
+    reader.fault("--interp",
+                 fmt::format("'{}' is no interpreter; allowed: bridge, text", a.interp));
   }
   options.block_delete = reader.on_off("--block-delete", a.block_delete, options.block_delete);
   options.max_commands = static_cast<std::uint64_t>(reader.whole_number(

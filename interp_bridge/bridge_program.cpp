@@ -1,0 +1,313 @@
+// A program read by kerf-interp, where it stands.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "interp_bridge/child_listener.h"
+#include "interp_bridge/interpreter_process.h"
+#include "interp_bridge/private_folder.h"
+#include "interp_bridge/program_kinds.h"
+#include "interp_bridge/record_reader.h"
+#include "interp_bridge/rs274_messages.h"
+
+namespace kerf {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// A row as `kerf-interp --tools` takes it: machine units, %.17g.
+std::string tool_row(const ToolTableRow& row, double unit_mm) {
+  return fmt::format("{} {} {} {} {} 0 0 0 0 0 0 {} {} {} {}\n", row.tool, row.pocket,
+                     row.offset_mm.x / unit_mm, row.offset_mm.y / unit_mm,
+                     row.offset_mm.z / unit_mm, row.diameter_mm / unit_mm, row.front_angle_deg,
+                     row.back_angle_deg, row.orientation);
+}
+
+/// The INI of a machine that has none: subroutines may also stand where kerf was started, as on the
+/// text road.
+std::string makeshift_ini(const std::string& folder) {
+  return "[RS274NGC]\nSUBROUTINE_PATH = " + folder + "\n";
+}
+
+class BridgeProgram final : public Program {
+ public:
+  BridgeProgram(const ProgramOptions& options, std::string kerf_interp,
+                std::vector<ToolTableRow> tools, TextSurvey survey)
+      : options_(options),
+        kerf_interp_(std::move(kerf_interp)),
+        tools_(std::move(tools)),
+        survey_(std::move(survey)) {}
+
+  const std::vector<ProgramComment>& comments() const override { return survey_.comments; }
+  ProgramSummary run(const MotionSink& sink, std::stop_token stop,
+                     Diagnostics& diagnostics) override;
+  double progress() const override { return progress_; }
+
+ private:
+  /// A child that can be listened to.
+  struct Session {
+    PrivateFolder folder;  // first: removed after the child is gone
+    InterpreterProcess process;
+  };
+  /// What a run collects.
+  struct Reading {
+    const RecordReader& records;
+    const MotionFeeder& feeder;
+    const std::string& stderr_text;
+    ProgramSummary& summary;
+    Diagnostics& diagnostics;
+  };
+  Result<Session> start_session() const;
+  Result<std::vector<std::string>> arguments(const std::string& home) const;
+  void name_new_files(const std::vector<std::string>& raw);
+  std::string shown_name(const std::string& raw) const;
+  void report(Severity severity, SourceRef place, std::string message, std::string hint,
+              const Reading& reading) const;
+  void report_ending(ChildEnding ending, Session& session, const Reading& reading) const;
+  void report_exit(InterpreterProcess::Exit exit, const Reading& reading) const;
+  void report_fault(const InterpreterFault& fault, const Reading& reading) const;
+
+  ProgramOptions options_;
+  std::string kerf_interp_;
+  std::vector<ToolTableRow> tools_;
+  TextSurvey survey_;
+  std::atomic<double> progress_{0};
+};
+
+Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& home) const {
+  const InterpreterSetup& machine = options_.machine;
+  const auto cannot_write = [](const std::string& path) {
+    return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+  };
+  const std::string tool_path = home + "/tools";
+  std::ofstream tool_file(tool_path);
+  const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
+  for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm);
+  if (!tool_file.flush()) return cannot_write(tool_path);
+  // The interpreter rewrites its parameters; a path that cannot exist is not written.
+  std::string parameters = home + "/none/parameters";
+  if (!machine.parameter_path.empty()) {
+    parameters = home + "/parameters";
+    std::error_code error;
+    fs::copy_file(machine.parameter_path, parameters, error);
+    if (error) {
+      return Error{fmt::format("cannot read {}: {}", machine.parameter_path, error.message())};
+    }
+  }
+  std::vector<std::string> out = {"--records",      std::to_string(kListingFd),
+                                  "--units",        machine.inch_machine ? "inch" : "mm",
+                                  "--axes",         std::to_string(machine.axis_mask),
+                                  "--tools",        tool_path,
+                                  "--parameters",   parameters,
+                                  "--block-delete", options_.block_delete ? "on" : "off"};
+  if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
+  if (!machine.startup_code.empty()) {
+    out.insert(out.end(), {"--startup", machine.startup_code});
+  }
+  out.insert(out.end(), {"--", fs::absolute(options_.path).string()});
+  return out;
+}
+
+Result<BridgeProgram::Session> BridgeProgram::start_session() const {
+  auto folder = PrivateFolder::create();
+  if (!folder) return Error{folder.error()};
+  const std::string home = folder->path() + "/home";
+  if (mkdir(home.c_str(), 0700) != 0) {
+    return Error{fmt::format("cannot make the folder {}: {}", home, std::strerror(errno))};
+  }
+  auto given = arguments(home);
+  if (!given) return Error{given.error()};
+  InterpreterProcessOptions child;
+  child.executable = kerf_interp_;
+  child.arguments = std::move(*given);
+  child.home = home;
+  child.folder = options_.machine.working_folder.empty()
+                     ? fs::absolute(options_.path).parent_path().string()
+                     : options_.machine.working_folder;
+  child.ini = options_.machine.ini_path;
+  if (child.ini.empty()) {
+    child.ini = home + "/kerf.ini";
+    std::ofstream ini(child.ini);
+    if (!(ini << makeshift_ini(fs::current_path().string()) << std::flush)) {
+      return Error{fmt::format("cannot write {}: {}", child.ini, std::strerror(errno))};
+    }
+  }
+  auto process = InterpreterProcess::start(child);
+  if (!process) return Error{process.error()};
+  return Session{std::move(*folder), std::move(*process)};
+}
+
+/// A file as the user would name it: relative to where kerf was started, if it is beneath.
+std::string BridgeProgram::shown_name(const std::string& raw) const {
+  if (raw.empty()) return options_.path;
+  const fs::path program = fs::absolute(options_.path).lexically_normal();
+  const fs::path base = options_.machine.working_folder.empty()
+                            ? program.parent_path()
+                            : fs::path(options_.machine.working_folder);
+  const fs::path path = (base / raw).lexically_normal();  // an absolute one stays as it is
+  if (path == program) return options_.path;
+  if (path.parent_path() == program.parent_path()) {
+    // Beside the program: as the program was named.
+    return (fs::path(options_.path).parent_path() / path.filename()).string();
+  }
+  const fs::path here = path.lexically_relative(fs::current_path());
+  return here.empty() || *here.begin() == ".." ? path.string() : here.string();
+}
+
+void BridgeProgram::name_new_files(const std::vector<std::string>& raw) {
+  for (std::size_t i = files_.size(); i < raw.size(); ++i) files_.push_back(shown_name(raw[i]));
+}
+
+void BridgeProgram::report(Severity severity, SourceRef place, std::string message,
+                           std::string hint, const Reading& reading) const {
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  diagnostic.file = place.file < files_.size() ? files_[place.file] : options_.path;
+  diagnostic.line = static_cast<int>(place.line);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  reading.diagnostics.push_back(std::move(diagnostic));
+}
+
+void BridgeProgram::report_fault(const InterpreterFault& fault, const Reading& reading) const {
+  SourceRef place = fault.place;
+  // Within a call the line of a block that could not even be read is the next one, or a later one.
+  if (!fault.callers.empty() && place.file < files_.size()) {
+    place.line = find_line(files_[place.file], fault.echo, place.line);
+  }
+  Diagnostic diagnostic =
+      placed_diagnostic(fault.message, place, files_, reading.summary.program_lines);
+  if (diagnostic.excerpt.empty() && diagnostic.severity == Severity::kError) {
+    diagnostic.excerpt = fault.echo;
+  }
+  std::string callers;
+  for (const SourceRef& caller : fault.callers) {
+    if (caller.file >= files_.size()) continue;
+    callers += fmt::format("{}{}:{}", callers.empty() ? "called from " : ", from ",
+                           files_[caller.file], caller.line);
+  }
+  if (!callers.empty()) {
+    diagnostic.hint += diagnostic.hint.empty() ? callers : "; " + callers;
+  }
+  reading.diagnostics.push_back(std::move(diagnostic));
+}
+
+void BridgeProgram::report_exit(InterpreterProcess::Exit exit, const Reading& reading) const {
+  for (const InterpreterFault& fault : reading.records.faults()) report_fault(fault, reading);
+  if (exit.signal != 0) {
+    report(
+        Severity::kError, reading.records.place(),
+        fmt::format("kerf-interp was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
+        "--interp text uses rs274 instead", reading);
+    return;
+  }
+  if (!reading.records.ended()) {
+    std::string said = reading.stderr_text.substr(0, reading.stderr_text.find('\n'));
+    report(Severity::kError, reading.records.place(),
+           said.empty() ? fmt::format("kerf-interp ended with status {} in the middle", exit.status)
+                        : fmt::format("kerf-interp ended in the middle: {}", said),
+           "--interp text uses rs274 instead", reading);
+    return;
+  }
+  if (reading.records.faults().empty() && !reading.summary.has_program_end) {
+    report(Severity::kWarning, reading.records.place(), "the program ended without M2, M30 or %",
+           {}, reading);
+  }
+}
+
+void BridgeProgram::report_ending(ChildEnding ending, Session& session,
+                                  const Reading& reading) const {
+  const RecordReader& records = reading.records;
+  reading.summary.stopped_early = ending != ChildEnding::kComplete;
+  if (!records.damage().empty()) {
+    session.process.kill();
+    report(Severity::kError, records.place(),
+           fmt::format("the records of {} cannot be read: {}", kerf_interp_, records.damage()),
+           "kerf and kerf-interp must be of one version", reading);
+    return;
+  }
+  constexpr const char* kLoop = "a loop whose condition stays true?";
+  switch (ending) {
+    case ChildEnding::kComplete:
+      report_exit(session.process.wait(), reading);
+      break;
+    case ChildEnding::kStopped:
+      break;
+    case ChildEnding::kTooMany:
+      report(Severity::kError, records.place(),
+             fmt::format("more than {} canonical commands; the program counts as endless",
+                         options_.max_commands),
+             kLoop, reading);
+      break;
+    case ChildEnding::kSilent:
+      session.process.kill();
+      report(Severity::kError, records.place(),
+             fmt::format("no motion or other command for {} s; the program counts as endless",
+                         options_.max_silent_s),
+             std::string("the interpreter is here; ") + kLoop, reading);
+      break;
+  }
+}
+
+ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
+                                  Diagnostics& diagnostics) {
+  const auto begin = Clock::now();
+  ProgramSummary summary;
+  summary.files = files_ = {options_.path};
+  summary.program_lines = survey_.lines;
+  summary.interpreter = "bridge";
+  auto session = start_session();
+  if (!session) {
+    Diagnostic diagnostic;
+    diagnostic.file = options_.path;
+    diagnostic.message = session.error();
+    diagnostics.push_back(std::move(diagnostic));
+    return summary;
+  }
+  std::vector<std::string> raw_files;
+  const MotionSink named_sink = [&](std::span<const Motion> motions) {
+    name_new_files(raw_files);
+    return sink(motions);
+  };
+  MotionFeederOptions feeding;
+  feeding.diameters_known = !options_.tool_table_path.empty();
+  feeding.max_commands = options_.max_commands;
+  MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
+  RecordReader records(feeder, raw_files, summary);
+  files_.clear();  // named again by the first record
+  ChildListener listener(session->process, records, feeder, options_.max_silent_s);
+  const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
+  const ChildEnding ending = listener.listen(stop, [&] {
+    const SourceRef place = records.place();
+    if (place.file == 0) progress_ = std::min(1.0, static_cast<double>(place.line) / lines);
+  });
+  feeder.finish();
+  name_new_files(raw_files);
+  if (files_.empty()) files_.push_back(options_.path);
+  summary.files = files_;
+  const Reading reading{records, feeder, listener.stderr_text(), summary, diagnostics};
+  report_ending(ending, *session, reading);
+  if (ending == ChildEnding::kComplete) progress_ = 1;
+  summary.interpret_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  return summary;
+}
+
+}  // namespace
+
+std::unique_ptr<Program> make_bridge_program(const ProgramOptions& options, std::string kerf_interp,
+                                             std::vector<ToolTableRow> tools, TextSurvey survey) {
+  return std::make_unique<BridgeProgram>(options, std::move(kerf_interp), std::move(tools),
+                                         std::move(survey));
+}
+
+}  // namespace kerf

@@ -1,0 +1,164 @@
+// kerf-interp - LinuxCNC's interpreter in a process of its own: reads an NC program, writes what it
+// commands as records (README.md).
+#include <unistd.h>
+
+#include <array>
+#include <canon.hh>
+#include <chrono>
+#include <cstdio>
+#include <interp_base.hh>
+#include <interp_return.hh>
+#include <vector>
+
+#include "interp_bridge/kerf_interp/options.h"
+#include "interp_bridge/kerf_interp/recording.h"
+
+// ---- What librs274 expects of whoever links it
+// ------------------------------------------------------
+
+struct _object;
+extern "C" {
+_object* PyInit_interpreter(void);
+_object* PyInit_emccanon(void);
+}
+/// Python's own struct; declared here so that its headers are not needed.
+struct _inittab {
+  const char* name;
+  _object* (*function)(void);
+};
+extern _inittab builtin_modules[3];
+_inittab builtin_modules[3] = {
+    {"interpreter", PyInit_interpreter}, {"emccanon", PyInit_emccanon}, {nullptr, nullptr}};
+extern int _task;
+int _task = 0;
+USER_DEFINED_FUNCTION_TYPE USER_DEFINED_FUNCTION[USER_DEFINED_FUNCTION_NUM] = {};
+int USER_DEFINED_FUNCTION_ADD(USER_DEFINED_FUNCTION_TYPE function, int number) {
+  USER_DEFINED_FUNCTION[number] = function;
+  return 0;
+}
+
+namespace kerf::interp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How often the clock is looked at: about every half millisecond.
+constexpr unsigned kBlocksPerLook = 256;
+constexpr std::chrono::milliseconds kOldRecords{20};
+constexpr std::chrono::milliseconds kSignOfLife{200};
+
+/// M100 to M199: a machine would start a program of that name, which is its own affair.
+void user_m(int number, double p, double q) {
+  recording().records->numbers(records::kUserM, recording().line(), {100.0 + number, p, q});
+}
+
+class Runner {
+ public:
+  Runner(InterpBase& interpreter, RecordWriter& records)
+      : interpreter_(interpreter), records_(records) {}
+
+  bool run(const Options& options) {
+    if (!succeeded(interpreter_.init())) return report(0);
+    if (!options.startup.empty() && !succeeded(interpreter_.execute(options.startup.c_str()))) {
+      return report(0);
+    }
+    if (!succeeded(interpreter_.open(options.program.c_str()))) return report(0);
+    return run_blocks();
+  }
+  std::uint64_t blocks() const { return blocks_; }
+
+ private:
+  /// A block that calls an O-word from outside its own level.
+  struct Caller {
+    int file;
+    int line;
+  };
+
+  bool succeeded(int status) {
+    status_ = status;
+    return status >= 0 && status <= INTERP_MIN_ERROR;
+  }
+
+  bool run_blocks() {
+    for (;;) {
+      // An error unwinds the interpreter's calls before it is returned: its own idea of the line is
+      // then that of the outermost call.
+      if (!succeeded(interpreter_.read())) {
+        return report(callers_.empty() ? interpreter_.sequence_number() : line_ + 1);
+      }
+      if (status_ == INTERP_ENDFILE) return true;
+      line_ = interpreter_.sequence_number();
+      if (!succeeded(interpreter_.execute())) return report(line_);
+      if (status_ == INTERP_EXIT) return true;
+      const int level = interpreter_.call_level();
+      if (level != static_cast<int>(callers_.size())) follow_call(level);
+      if (++blocks_ % kBlocksPerLook == 0) look_at_clock();
+    }
+  }
+
+  void follow_call(int level) {
+    callers_.resize(static_cast<std::size_t>(level > 0 ? level : 0),
+                    Caller{recording().file(), line_});
+    recording().moved_to_level(level);
+  }
+
+  void look_at_clock() {
+    const Clock::time_point now = Clock::now();
+    if (records_.empty()) {
+      if (now - flushed_ < kSignOfLife) return;
+      records_.numbers(records::kAt, line_, {});
+    } else if (now - flushed_ < kOldRecords) {
+      return;
+    }
+    records_.flush();
+    flushed_ = now;
+  }
+
+  bool report(int line) {
+    std::array<char, 1024> text{};
+    interpreter_.error_text(status_, text.data(), text.size() - 1);
+    records_.text(records::kError, line, text.data());
+    text.fill(0);
+    interpreter_.line_text(text.data(), text.size() - 1);
+    records_.text(records::kEcho, line, text.data());
+    for (auto caller = callers_.rbegin(); caller != callers_.rend(); ++caller) {
+      records_.numbers(records::kCaller, caller->line, {static_cast<double>(caller->file)});
+    }
+    return false;
+  }
+
+  InterpBase& interpreter_;
+  RecordWriter& records_;
+  int status_ = INTERP_OK;
+  std::uint64_t blocks_ = 0;
+  int line_ = 0;  ///< of the block read last
+  std::vector<Caller> callers_;
+  Clock::time_point flushed_ = Clock::now();
+};
+
+int run(int argc, char** argv) {
+  Options options;
+  if (!read_options(argc, argv, options, recording().world)) return 2;
+  for (USER_DEFINED_FUNCTION_TYPE& function : USER_DEFINED_FUNCTION) function = user_m;
+  RecordWriter records(options.records_fd);
+  InterpBase* const interpreter = makeInterp();
+  recording().records = &records;
+  recording().begin(options.program);
+  recording().interpreter = interpreter;
+  Runner runner(*interpreter, records);
+  const bool ended = runner.run(options);
+  records.numbers(records::kEnd, 0, {ended ? 1.0 : 0.0, static_cast<double>(runner.blocks())});
+  records.flush();
+  std::fflush(nullptr);
+  return ended ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace kerf::interp
+
+int main(int argc, char** argv) {
+  const int status = kerf::interp::run(argc, argv);
+  // Without the destructors of Python and of the interpreter, which would write the parameters
+  // again.
+  _exit(status);
+}

@@ -1,0 +1,120 @@
+#include "interp_bridge/kerf_interp/options.h"
+
+#include <fcntl.h>
+#include <getopt.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace kerf::interp {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: kerf-interp [OPTION..] PROGRAM\n"
+    "Runs LinuxCNC's interpreter and writes records (README.md) to descriptor 3. Started by kerf.\n"
+    "  --records FD            another descriptor\n"
+    "  --units mm|inch         of the machine: tools, parameters (mm)\n"
+    "  --axes MASK             bit 0 is X .. bit 8 is W (511)\n"
+    "  --tools FILE            rows of 14 numbers: tool, pocket, offsets X..W, diameter, front "
+    "angle,\n"
+    "                          back angle\n"
+    "                          and orientation; machine units\n"
+    "  --parameters FILE       variable file; it is rewritten\n"
+    "  --block-delete on|off   lines that begin with / are skipped (on)\n"
+    "  --random-toolchanger    M6 swaps tools\n"
+    "  --startup BLOCK         run first\n";
+
+bool fault(const std::string& message) {
+  std::fprintf(stderr, "kerf-interp: %s\n", message.c_str());
+  return false;
+}
+
+bool read_tools(const std::string& path, World& world) {
+  std::ifstream file(path);
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::istringstream row(line);
+    CANON_TOOL_TABLE tool = empty_tool();
+    EmcPose& o = tool.offset;
+    row >> tool.toolno >> tool.pocketno >> o.tran.x >> o.tran.y >> o.tran.z >> o.a >> o.b >> o.c >>
+        o.u >> o.v >> o.w >> tool.diameter >> tool.frontangle >> tool.backangle >> tool.orientation;
+    if (!row) return fault(path + ":" + std::to_string(number) + ": not a row of tool data");
+    world.add_tool(tool);
+  }
+  return file.eof() || fault(path + ": " + std::strerror(errno));
+}
+
+bool read_number(const char* text, long least, long most, const char* option, long& value) {
+  char* end = nullptr;
+  value = std::strtol(text, &end, 10);
+  if (*text != 0 && *end == 0 && value >= least && value <= most) return true;
+  return fault(std::string(option) + ": '" + text + "' is not a number from " +
+               std::to_string(least) + " to " + std::to_string(most));
+}
+
+}  // namespace
+
+bool read_options(int argc, char** argv, Options& options, World& world) {
+  enum { kRecords = 1, kUnits, kAxes, kTools, kParameters, kBlockDelete, kRandom, kStartup };
+  static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
+                                    {"units", required_argument, nullptr, kUnits},
+                                    {"axes", required_argument, nullptr, kAxes},
+                                    {"tools", required_argument, nullptr, kTools},
+                                    {"parameters", required_argument, nullptr, kParameters},
+                                    {"block-delete", required_argument, nullptr, kBlockDelete},
+                                    {"random-toolchanger", no_argument, nullptr, kRandom},
+                                    {"startup", required_argument, nullptr, kStartup},
+                                    {nullptr, 0, nullptr, 0}};
+  long number = 0;
+  for (int code; (code = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
+    const std::string value = optarg != nullptr ? optarg : "";
+    switch (code) {
+      case kRecords:
+        if (!read_number(optarg, 0, 1023, "--records", number)) return false;
+        options.records_fd = static_cast<int>(number);
+        break;
+      case kUnits:
+        if (value != "mm" && value != "inch") return fault("--units: mm or inch");
+        world.units_per_mm = value == "mm" ? 1.0 : 1 / 25.4;
+        break;
+      case kAxes:
+        if (!read_number(optarg, 1, 511, "--axes", number)) return false;
+        world.axis_mask = static_cast<int>(number);
+        break;
+      case kTools:
+        if (!read_tools(value, world)) return false;
+        break;
+      case kParameters:
+        world.parameter_file = value;
+        break;
+      case kBlockDelete:
+        if (value != "on" && value != "off") return fault("--block-delete: on or off");
+        world.block_delete = value == "on";
+        break;
+      case kRandom:
+        world.random_toolchanger = true;
+        break;
+      case kStartup:
+        options.startup = value;
+        break;
+      default:
+        std::fputs(kUsage, stderr);
+        return false;
+    }
+  }
+  if (optind != argc - 1) {
+    std::fputs(kUsage, stderr);
+    return false;
+  }
+  options.program = argv[optind];
+  if (fcntl(options.records_fd, F_GETFD) < 0) {
+    return fault("descriptor " + std::to_string(options.records_fd) +
+                 " for the records is not open");
+  }
+  return true;
+}
+
+}  // namespace kerf::interp

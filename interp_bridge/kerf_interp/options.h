@@ -1,0 +1,19 @@
+// interp_bridge/kerf_interp/options.h - the command line of kerf-interp.
+#pragma once
+
+#include <string>
+
+#include "interp_bridge/kerf_interp/world.h"
+
+namespace kerf::interp {
+
+struct Options {
+  std::string program;
+  std::string startup;  ///< a block that is run first
+  int records_fd = 3;
+};
+
+/// Fills `options` and what it says about the machine. False: a fault, which has been printed.
+bool read_options(int argc, char** argv, Options& options, World& world);
+
+}  // namespace kerf::interp

@@ -1,0 +1,123 @@
+#include "interp_bridge/kerf_interp/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kerf::interp {
+
+CANON_TOOL_TABLE empty_tool() {
+  CANON_TOOL_TABLE tool{};
+  tool.toolno = -1;
+  tool.pocketno = -1;
+  return tool;
+}
+
+World::World() : rows_(1, empty_tool()) {
+  rows_[0].toolno = 0;
+  rows_[0].pocketno = 0;
+  spindle_direction.fill(CANON_STOPPED);
+  speed_override.fill(true);
+}
+
+Pose World::scaled(const Pose& program_units) const {
+  Pose out = program_units;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (is_length(i)) out[i] *= unit_mm();
+  }
+  return out;
+}
+
+void World::set_rotation(double degrees) {
+  const double radians = degrees * 3.14159265358979323846 / 180.0;
+  cos_ = std::cos(radians);
+  sin_ = std::sin(radians);
+}
+
+double World::tool_offset(std::size_t axis) const {
+  return is_length(axis) ? tool_offset_[axis] / unit_mm() : tool_offset_[axis];
+}
+
+/// R * (p * unit + g92) + g5x + tool offset.
+Pose World::machine_from_program(const Pose& p) const {
+  Pose m = scaled(p);
+  for (std::size_t i = 0; i < m.size(); ++i) m[i] += g92_[i];
+  const double x = m[0];
+  m[0] = x * cos_ - m[1] * sin_;
+  m[1] = x * sin_ + m[1] * cos_;
+  for (std::size_t i = 0; i < m.size(); ++i) m[i] += g5x_[i] + tool_offset_[i];
+  return m;
+}
+
+Pose World::program_from_machine(const Pose& m) const {
+  Pose p = m;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] -= g5x_[i] + tool_offset_[i];
+  const double x = p[0];
+  p[0] = x * cos_ + p[1] * sin_;
+  p[1] = p[1] * cos_ - x * sin_;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p[i] -= g92_[i];
+    if (is_length(i)) p[i] /= unit_mm();
+  }
+  return p;
+}
+
+void World::move_to(const Pose& program) { machine_ = machine_from_program(program); }
+
+void World::probe_to(const Pose& program, bool found) {
+  move_to(program);
+  probe_found_ = found;
+  probed_ = machine_;
+}
+
+void World::add_tool(const CANON_TOOL_TABLE& tool) {
+  if (rows_.size() < CANON_POCKETS_MAX) rows_.push_back(tool);
+}
+
+int World::row_of_tool(int number) {
+  if (number == 0 && !random_toolchanger) return 0;
+  const auto found = std::find_if(rows_.begin() + 1, rows_.end(),
+                                  [&](const CANON_TOOL_TABLE& t) { return t.toolno == number; });
+  if (found != rows_.end()) return static_cast<int>(found - rows_.begin());
+  if (rows_[0].toolno == number) return 0;
+  if (number <= 0 || rows_.size() >= CANON_POCKETS_MAX) return -1;
+  CANON_TOOL_TABLE tool = empty_tool();
+  tool.toolno = number;
+  tool.pocketno = static_cast<int>(rows_.size());
+  rows_.push_back(tool);
+  return tool.pocketno;
+}
+
+CANON_TOOL_TABLE World::row(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  return index >= 0 && i < rows_.size() ? rows_[i] : empty_tool();
+}
+
+void World::set_row(int index, const CANON_TOOL_TABLE& tool) {
+  if (index < 0 || index >= CANON_POCKETS_MAX) return;
+  const auto i = static_cast<std::size_t>(index);
+  if (i >= rows_.size()) rows_.resize(i + 1, empty_tool());
+  rows_[i] = tool;
+}
+
+int World::load(int index) {
+  if (random_toolchanger && index > 0) {
+    // The tool that was in the spindle takes the new one's place.
+    CANON_TOOL_TABLE taken = row(index);
+    CANON_TOOL_TABLE returned = rows_[0];
+    std::swap(taken.pocketno, returned.pocketno);
+    rows_[0] = taken;
+    set_row(index, returned);
+    loaded_ = 0;
+  } else if (index > 0) {
+    rows_[0] = row(index);
+    loaded_ = index;
+  } else if (!random_toolchanger) {
+    rows_[0] = empty_tool();
+    rows_[0].toolno = 0;
+    loaded_ = 0;
+  }
+  return rows_[0].toolno;
+}
+
+}  // namespace kerf::interp

@@ -1,0 +1,191 @@
+#include "interp_bridge/record_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+/// Holds several of the largest records (a spline of kMaxSplinePoints).
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxFiles = 100'000;
+constexpr std::size_t kMaxCallers = 100;
+constexpr std::size_t kMaxNotes = 100;
+
+double number_at(const char* payload, std::size_t index) {
+  double value = 0;
+  std::memcpy(&value, payload + 8 * index, sizeof value);
+  return value;
+}
+
+/// Numbers that kerf-interp leaves out where they are zero.
+std::uint8_t full_count(CanonicalName name, std::uint8_t count) {
+  switch (name) {
+    case CanonicalName::kStraightFeed:
+    case CanonicalName::kStraightTraverse:
+    case CanonicalName::kStraightProbe:
+      return count > 6 ? std::uint8_t{9} : std::uint8_t{6};
+    default:
+      return count;
+  }
+}
+
+}  // namespace
+
+RecordReader::RecordReader(MotionFeeder& feeder, std::vector<std::string>& files,
+                           ProgramSummary& summary)
+    : feeder_(feeder), files_(files), summary_(summary), buffer_(kBufferBytes) {}
+
+std::span<char> RecordReader::room() { return std::span<char>(buffer_).subspan(filled_); }
+
+bool RecordReader::refuse(const char* what) {
+  damage_ = what;
+  return false;
+}
+
+bool RecordReader::received(std::size_t bytes) {
+  filled_ += bytes;
+  const char* at = buffer_.data();
+  const char* const end = at + filled_;
+  if (!begun_) {
+    if (filled_ < sizeof records::kMagic) return true;
+    if (std::memcmp(at, records::kMagic, sizeof records::kMagic) != 0) {
+      return refuse("it does not begin as the records of this version of kerf-interp do");
+    }
+    begun_ = true;
+    at += sizeof records::kMagic;
+  }
+  bool go_on = true;
+  while (go_on && static_cast<std::size_t>(end - at) >= sizeof(records::Head)) {
+    records::Head head;
+    std::memcpy(&head, at, sizeof head);
+    const std::size_t size = sizeof head + records::payload_bytes(head);
+    if (static_cast<std::size_t>(end - at) < size) break;
+    go_on = take(head, at + sizeof head);
+    at += size;
+  }
+  filled_ = static_cast<std::size_t>(end - at);
+  std::memmove(buffer_.data(), at, filled_);
+  return go_on && feeder_.flush_if_old();
+}
+
+bool RecordReader::take(const records::Head& head, const char* payload) {
+  if (ended_) return refuse("records behind the last one");
+  if (records::is_text(head.code) && head.count > records::kMaxText) {
+    return refuse("a text too long");
+  }
+  const std::uint8_t name = head.code & std::uint8_t{0x7f};
+  if (name < kCanonicalNameCount) return take_command(head, payload);
+  return take_special(head, payload);
+}
+
+bool RecordReader::take_command(const records::Head& head, const char* payload) {
+  place_ = {file_, head.line};
+  command_.name = static_cast<CanonicalName>(head.code & 0x7f);
+  command_.argument_count = 0;
+  command_.text = {};
+  if (records::is_text(head.code)) {
+    command_.text = {payload, head.count};
+    // As a listing counts them: COMMENT("..") has one argument.
+    command_.argument_count = 1;
+    command_.arguments[0] = 0;
+    return feeder_.take(command_, place_);
+  }
+  if (head.count > CanonicalCommand::kMaxArguments)
+    return refuse("a command with too many numbers");
+  const auto given = static_cast<std::uint8_t>(head.count);
+  command_.argument_count = full_count(command_.name, given);
+  std::memcpy(command_.arguments.data(), payload, std::size_t{8} * given);
+  for (std::size_t i = given; i < command_.argument_count; ++i) command_.arguments[i] = 0;
+  if (!canonical_arguments_fit(command_)) return refuse("a command whose numbers do not fit");
+  return feeder_.take(command_, place_);
+}
+
+bool RecordReader::take_special(const records::Head& head, const char* payload) {
+  switch (head.code) {
+    case records::kFile:
+      return take_file(head, {payload, head.count});
+    case records::kSpline:
+      return take_spline(head, payload);
+    case records::kUserM:
+      if (head.count != 3) return refuse("a user M-code whose numbers do not fit");
+      note(head, fmt::format("M{:g} P{:g} Q{:g}", number_at(payload, 0), number_at(payload, 1),
+                             number_at(payload, 2)));
+      return true;
+    case records::kWait:
+      if (head.count != 4) return refuse("an M66 whose numbers do not fit");
+      note(head, fmt::format("M66 of {} input {:g}",
+                             number_at(payload, 1) == records::kDigitalInput ? "digital" : "analog",
+                             number_at(payload, 0)));
+      return true;
+    case records::kRotary:
+      return true;
+    case records::kAt:
+      place_ = {file_, head.line};
+      return true;
+    case records::kError:
+      if (faults_.size() < kMaxNotes) faults_.emplace_back();
+      faults_.back().place = place_ = {file_, head.line};
+      faults_.back().message.assign(payload, head.count);
+      return true;
+    case records::kEcho:
+      if (faults_.empty()) return refuse("a block without its error");
+      faults_.back().echo.assign(payload, head.count);
+      return true;
+    case records::kCaller: {
+      if (faults_.empty() || head.count != 1) return refuse("a caller without an error");
+      const double file = number_at(payload, 0);
+      if (!(file >= 0 && file < static_cast<double>(files_.size()))) {
+        return refuse("a caller in an unknown file");
+      }
+      if (faults_.back().callers.size() < kMaxCallers) {
+        faults_.back().callers.push_back({static_cast<std::uint32_t>(file), head.line});
+      }
+      return true;
+    }
+    case records::kEnd:
+      ended_ = true;
+      return true;
+    default:
+      return refuse("a record of unknown kind");
+  }
+}
+
+bool RecordReader::take_file(const records::Head& head, std::string_view name) {
+  if (name.empty() ? head.line >= files_.size() : head.line != files_.size()) {
+    return refuse("a file out of order");
+  }
+  if (files_.size() >= kMaxFiles) return refuse("too many files");
+  if (!name.empty()) files_.emplace_back(name);
+  file_ = head.line;
+  return true;
+}
+
+bool RecordReader::take_spline(const records::Head& head, const char* payload) {
+  place_ = {file_, head.line};
+  if (head.count < 4 || head.count % 3 != 1) return refuse("a spline whose numbers do not fit");
+  const double order = number_at(payload, 0);
+  points_.clear();
+  for (std::size_t i = 1; i < head.count; i += 3) {
+    points_.push_back(
+        {number_at(payload, i), number_at(payload, i + 1), number_at(payload, i + 2)});
+  }
+  const bool fits = order >= 0 && order <= static_cast<double>(points_.size());
+  return feeder_.take_spline({fits ? static_cast<unsigned>(order) : 0U, points_}, place_);
+}
+
+/// Once for every text.
+void RecordReader::note(const records::Head& head, std::string text) {
+  place_ = {file_, head.line};
+  for (ProgramNote& known : summary_.notes) {
+    if (known.text != text) continue;
+    ++known.count;
+    return;
+  }
+  if (summary_.notes.size() < kMaxNotes) summary_.notes.push_back({place_, std::move(text), 1});
+}
+
+}  // namespace kerf

@@ -1,0 +1,68 @@
+// interp_bridge/record_reader.h - the records of kerf-interp, as commands with their lines.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interp_bridge/canonical.h"
+#include "interp_bridge/child_listener.h"
+#include "interp_bridge/motion_feeder.h"
+#include "interp_bridge/record_format.h"
+
+namespace kerf {
+
+/// What the interpreter said when it gave up.
+struct InterpreterFault {
+  SourceRef place;
+  std::string message;             ///< in the interpreter's words
+  std::string echo;                ///< the block
+  std::vector<SourceRef> callers;  ///< O-word calls that led there, innermost first
+};
+
+/// Takes the stream apart and gives commands to a MotionFeeder. The bytes are not trusted: what is
+/// no record ends the reading with damage(). One thread.
+class RecordReader final : public ByteReader {
+ public:
+  /// All references must outlive the reader. `feeder` gets the commands, `files` a name for every
+  /// file that SourceRef::file then indexes (as the interpreter names it), `summary` the notes.
+  RecordReader(MotionFeeder& feeder, std::vector<std::string>& files, ProgramSummary& summary);
+
+  std::span<char> room() override;
+  /// False: the feeder is done, the stream is damaged or at its end.
+  bool received(std::size_t bytes) override;
+
+  /// Not empty: what is wrong with the stream.
+  const std::string& damage() const { return damage_; }
+  bool ended() const { return ended_; }  ///< the last record has come
+  const std::vector<InterpreterFault>& faults() const { return faults_; }
+  /// Where the interpreter was last heard of.
+  SourceRef place() const { return place_; }
+
+ private:
+  bool take(const records::Head& head, const char* payload);
+  bool take_special(const records::Head& head, const char* payload);
+  bool take_command(const records::Head& head, const char* payload);
+  bool take_file(const records::Head& head, std::string_view name);
+  bool take_spline(const records::Head& head, const char* payload);
+  void note(const records::Head& head, std::string text);
+  bool refuse(const char* what);
+
+  MotionFeeder& feeder_;
+  std::vector<std::string>& files_;
+  ProgramSummary& summary_;
+  std::vector<char> buffer_;
+  std::size_t filled_ = 0;
+  bool begun_ = false;
+  bool ended_ = false;
+  std::string damage_;
+  CanonicalCommand command_;
+  std::vector<Spline::Point> points_;
+  std::vector<InterpreterFault> faults_;
+  std::uint32_t file_ = 0;
+  SourceRef place_;
+};
+
+}  // namespace kerf
