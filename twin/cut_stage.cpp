@@ -38,8 +38,9 @@ void CutStage::begin_reporting() {
   feed_missing_reported_ = false;
 }
 
-void CutStage::finish() {
+void CutStage::finish(bool whole) {
   flush_whole();
+  if (whole) report_outside_stock();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
@@ -134,6 +135,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   if (step.duration_s == 0 && step.length_mm > 0) report_missing_feed(m, step);
   const Cutter& cutter = *mounted_->cutter;
   const CheckedMove move{m, step, cutter, mounted_->number};
+  if (!reached_stock_) note_reach(m);
   checks_.check_floor(move);
   const bool spindle_off = m.spindle == SpindleState::kStopped;
   if (spindle_off && !checks_.spindle_event_open() && checks_.may_touch(m, cutter.radius_mm())) {
@@ -141,6 +143,32 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
     checks_.check_standing_spindle(move);
   }
   push(m, step, spindle_off);
+}
+
+void CutStage::note_reach(const Motion& m) {
+  if (checks_.may_touch(m, mounted_->cutter->radius_mm())) {
+    reached_stock_ = true;
+    return;
+  }
+  feed_bounds_mm_.extend(bounds_of(m));
+}
+
+/// A program that never comes near its blank was written for another zero, or another blank.
+void CutStage::report_outside_stock() {
+  if (reached_stock_ || feed_bounds_mm_.empty()) return;
+  const auto extent = [](const Box& box) {
+    return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", box.min.x, box.max.x,
+                       box.min.y, box.max.y, box.min.z, box.max.z);
+  };
+  Finding finding;
+  finding.id = FindingId::kOutsideStock;
+  finding.severity = Severity::kWarning;
+  finding.text = fmt::format(
+      "no feed move comes near the workpiece: the moves are at {}, the blank at {}; is the blank "
+      "given "
+      "in the coordinates that the program writes?",
+      extent(feed_bounds_mm_), extent(stock_.bounds_mm()));
+  log_.add(std::move(finding));
 }
 
 /// Once a tool: its first feed move.

@@ -48,8 +48,8 @@ class CutStage {
   void take(std::span<const Motion> motions);
   /// What was cut so far is not reported on: tool uses and totals begin anew, the clock goes on.
   void begin_reporting();
-  /// The program is over (or stopped).
-  void finish();
+  /// The program is over, or stopped before its end (`whole` = false).
+  void finish(bool whole = true);
 
   const Timeline& timeline() const { return timeline_; }
   const std::vector<ToolUse>& tools() const { return uses_; }
@@ -69,6 +69,8 @@ class CutStage {
   bool mount_for(const Motion& motion);
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
+  void note_reach(const Motion& motion);
+  void report_outside_stock();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void flush();        ///< hands the collected moves to the model
@@ -86,6 +88,8 @@ class CutStage {
   std::uint32_t use_ = 0;
   int spindle_tool_ = 0;
   bool feed_missing_reported_ = false;
+  bool reached_stock_ = false;  ///< a feed move came near the blank, in boxes
+  Box feed_bounds_mm_;          ///< of all feed moves, until then
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;

@@ -44,6 +44,8 @@ const char* to_string(FindingId id) {
       return "interpreter-warning";
     case FindingId::kInterrupted:
       return "interrupted";
+    case FindingId::kOutsideStock:
+      return "outside-stock";
     case FindingId::kNotSimulated:
       return "not-simulated";
     case FindingId::kLineNotReached:

@@ -302,7 +302,7 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   const bool whole = cut_program(stage, stop, diagnostics);
   close_window(stage);
   const Clock::time_point finish_start = Clock::now();
-  stage.finish();
+  stage.finish(whole);
   report_.timing.cut_s += seconds_since(finish_start);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
   complete_report(stage);

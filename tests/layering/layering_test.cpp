@@ -77,6 +77,10 @@ TEST(Layering, PathsStartAtTheRootAndFoldersAreKnown) {
 }
 
 TEST(Layering, OutsideLibrariesStayBehindTheirFolder) {
+  EXPECT_EQ(check("interp_bridge/kerf_interp/main.cpp", "#include <interp_base.hh>\n"), Strings{});
+  EXPECT_EQ(check("interp_bridge/program.cpp", "#include <canon.hh>\n"),
+            Strings{"interp_bridge/program.cpp:1: <canon.hh> appears only in "
+                    "interp_bridge/kerf_interp/"});
   EXPECT_EQ(check("twin/run.cpp", "#include <GL/gl.h>\n"),
             Strings{"twin/run.cpp:1: <GL/gl.h> appears only in viewer/"});
   EXPECT_EQ(check("machine_io/can/can.cpp", "#include <modbus/modbus.h>\n"),

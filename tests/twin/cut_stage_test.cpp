@@ -124,7 +124,7 @@ TEST(CutStage, StandingSpindleIsOneFindingUntilItTurns) {
 TEST(CutStage, StandingSpindleInTheAirIsNothing) {
   MotionList program = started();
   program.spindle(false).feed({20, 20, 1}).feed({30, 20, 0});
-  EXPECT_EQ(Shop(program).ids(), Ids{});
+  EXPECT_EQ(Shop(program).ids(), Ids{FindingId::kOutsideStock}) << "only that it stays above";
 }
 
 TEST(CutStage, CuttingIntoTheTableIsOneFindingWithPlaceAndDepth) {
@@ -202,9 +202,21 @@ TEST(CutStage, ProbesAndMovesFromNowhereDoNotCut) {
   EXPECT_EQ(shop.findings()[0].source.line, 3U);
 }
 
+TEST(CutStage, AProgramThatNeverReachesItsBlankIsSaid) {
+  const Shop away(started().traverse({500, 20, 5}).feed({500, 20, -3}).feed({520, 30, -3}));
+  ASSERT_EQ(away.ids(), Ids{FindingId::kOutsideStock});
+  EXPECT_NE(message_of(away.findings()[0])
+                .find("the moves are at X500.0..520.0 Y20.0..30.0 Z-3.0..5.0, the blank at X"),
+            std::string::npos)
+      << message_of(away.findings()[0]);
+  EXPECT_EQ(Shop(started().traverse({500, 20, 5}).feed({500, 20, -3}).feed({20, 20, -3})).ids(),
+            Ids{});
+  EXPECT_EQ(Shop(started().traverse({500, 20, 5})).ids(), Ids{}) << "nothing was to be cut";
+}
+
 TEST(CutStage, MissingFeedIsSaidOnce) {
   const Shop shop(started().feed_rate(0).feed({20, 20, 1}).feed({30, 20, 1}));
-  EXPECT_EQ(shop.ids(), Ids{FindingId::kFeedMissing});
+  EXPECT_EQ(shop.ids(), (Ids{FindingId::kFeedMissing, FindingId::kOutsideStock}));
 }
 
 TEST(CutStage, ResultDoesNotDependOnBatches) {
