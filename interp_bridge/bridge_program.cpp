@@ -25,11 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// A row as `kerf-interp --tools` takes it: machine units, %.17g.
-std::string tool_row(const ToolTableRow& row, double unit_mm) {
-  return fmt::format("{} {} {} {} {} 0 0 0 0 0 0 {} {} {} {}\n", row.tool, row.pocket,
-                     row.offset_mm.x / unit_mm, row.offset_mm.y / unit_mm,
-                     row.offset_mm.z / unit_mm, row.diameter_mm / unit_mm, row.front_angle_deg,
+/// A row as `kerf-interp --tools` takes it: machine units, all digits.
+std::string tool_row(const ToolTableRow& row, double unit_mm, bool lengths) {
+  const Vec3 offset = lengths ? row.offset_mm / unit_mm : Vec3(0);
+  return fmt::format("{} {} {} {} {} 0 0 0 0 0 0 {} {} {} {}\n", row.tool, row.pocket, offset.x,
+                     offset.y, offset.z, row.diameter_mm / unit_mm, row.front_angle_deg,
                      row.back_angle_deg, row.orientation);
 }
 
@@ -92,7 +92,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   const std::string tool_path = home + "/tools";
   std::ofstream tool_file(tool_path);
   const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
-  for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm);
+  for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine.tool_lengths);
   if (!tool_file.flush()) return cannot_write(tool_path);
   // The interpreter rewrites its parameters; a path that cannot exist is not written.
   std::string parameters = home + "/none/parameters";
@@ -110,6 +110,9 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
                                   "--tools",        tool_path,
                                   "--parameters",   parameters,
                                   "--block-delete", options_.block_delete ? "on" : "off"};
+  if (machine.start != std::array<double, 9>{}) {
+    out.insert(out.end(), {"--start", fmt::format("{}", fmt::join(machine.start, " "))});
+  }
   if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
   if (!machine.startup_code.empty()) {
     out.insert(out.end(), {"--startup", machine.startup_code});

@@ -2,6 +2,7 @@
 // motions.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -38,6 +39,11 @@ struct InterpreterSetup {
   bool inch_machine = false;  ///< unit of parameter file and tool table
   int axis_mask = 0x1ff;      ///< bit 0 is X .. bit 8 is W
   bool random_toolchanger = false;
+  /// The lengths of the tool table count (G43). Without a known place of the machine they must not:
+  /// a program that begins with G43 and G0 X Y would find its tool a tool's length below Z0.
+  bool tool_lengths = false;
+  /// Where the machine stands at the start, machine coordinates: X Y Z A B C U V W, mm and degrees.
+  std::array<double, 9> start{};
   std::string ini_path;        ///< read by the interpreter itself: remaps, paths, features
   std::string working_folder;  ///< relative paths of the INI; empty: the program's folder
   std::string parameter_path;  ///< var file, copied before it is used; empty: none

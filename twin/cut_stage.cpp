@@ -13,20 +13,47 @@ namespace {
 /// Moves handed to the model at once: many enough that the call costs nothing, few enough to stay
 /// in the cache.
 constexpr std::size_t kMovesPerCut = 4096;
+/// Rounded limits of an INI are no finding.
+constexpr double kOverFeed = 1.01;
 
 }  // namespace
 
 CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
                    const TimelineOptions& options)
-    : stock_(stock), book_(tools), log_(log), timeline_(options), checks_(stock, log) {
+    : stock_(stock),
+      book_(tools),
+      log_(log),
+      limits_known_(options.limits_known),
+      limits_origin_(options.planner.limits_origin),
+      timeline_(options, *this),
+      checks_(stock, log) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
 }
 
 void CutStage::take(std::span<const Motion> motions) {
-  for (const Motion& motion : motions) take_one(motion);
+  for (const Motion& motion : motions) {
+    ++taken_;
+    timeline_.push(motion);
+  }
   flush();
+}
+
+void CutStage::hold_reports() {
+  holding_ = true;
+  report_from_ = kNever;
+}
+
+void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path) {
+  if (holding_) {
+    log_.set_muted(true);
+    if (stepped_ == report_from_) begin_reporting();
+  }
+  ++stepped_;
+  path_ = path;
+  cut(motion, timed);
+  log_.set_muted(false);
 }
 
 void CutStage::begin_reporting() {
@@ -36,18 +63,23 @@ void CutStage::begin_reporting() {
   uses_.clear();
   mounted_ = nullptr;
   feed_missing_reported_ = false;
+  over_feed_ = {};
+  holding_ = false;
+  log_.set_muted(false);
 }
 
 void CutStage::finish(bool whole) {
+  timeline_.finish();
   flush_whole();
+  if (holding_) begin_reporting();  // with nothing
+  report_over_feed();
   if (whole) report_outside_stock();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }
 
-void CutStage::take_one(const Motion& m) {
-  const TimedStep step = timeline_.add(m);
+void CutStage::cut(const Motion& m, const TimedStep& step) {
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     flush_whole();  // with the cutter that made these moves
     checks_.end_spindle_event();
@@ -132,7 +164,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
-  if (step.duration_s == 0 && step.length_mm > 0) report_missing_feed(m, step);
+  note_speed(m, step);
   const Cutter& cutter = *mounted_->cutter;
   const CheckedMove move{m, step, cutter, mounted_->number};
   if (!reached_stock_) note_reach(m);
@@ -211,9 +243,57 @@ void CutStage::report_missing_feed(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
+void CutStage::note_speed(const Motion& m, const TimedStep& step) {
+  if (step.length_mm <= 0) return;
+  if (step.programmed_mm_per_min <= 0) {
+    report_missing_feed(m, step);
+  } else if (step.programmed_mm_per_min > kOverFeed * step.allowed_mm_per_min) {
+    if (over_feed_.count++ > 0) return;
+    over_feed_ = {1, m.source, step.start_s, step.programmed_mm_per_min, step.allowed_mm_per_min};
+  }
+}
+
+/// One finding for the whole program: where one move is too fast, most are.
+void CutStage::report_over_feed() {
+  if (over_feed_.count == 0) return;
+  Finding finding;
+  finding.id = FindingId::kOverFeed;
+  finding.severity = limits_known_ ? Severity::kWarning : Severity::kNote;
+  finding.source = over_feed_.source;
+  finding.time_s = over_feed_.time_s;
+  finding.text = fmt::format(
+      "{} feed move{} for more than the machine can do, the first for {:.0f} mm/min where it "
+      "can do {:.0f} ({})",
+      over_feed_.count, over_feed_.count == 1 ? " asks" : "s ask", over_feed_.programmed_mm_per_min,
+      over_feed_.allowed_mm_per_min, limits_origin_);
+  log_.add(std::move(finding));
+}
+
+/// The programmed move, or what the machine makes of it.
 void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
+  if (path_.empty()) {
+    push_one(m, step.duration_s, spindle_off);
+    return;
+  }
+  Motion piece = m;
+  for (const PathPiece& part : path_) {
+    if (part.curved) {
+      piece.kind = MotionKind::kArc;
+    } else if (m.kind == MotionKind::kArc) {
+      piece.kind = MotionKind::kFeed;
+    } else {
+      piece.kind = m.kind;
+    }
+    piece.from_mm = part.from_mm;
+    piece.to_mm = part.to_mm;
+    piece.arc = part.arc;
+    push_one(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
+  }
+}
+
+void CutStage::push_one(const Motion& m, double duration_s, bool spindle_off) {
   moves_.push_back(cut_move_from(m, next_id_++));
-  in_flight_.push_back(InFlight{step.duration_s, use_, is_feed(m), spindle_off});
+  in_flight_.push_back(InFlight{duration_s, use_, is_feed(m), spindle_off});
   if (moves_.size() >= kMovesPerCut) flush();
 }
 

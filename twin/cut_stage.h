@@ -39,15 +39,18 @@ inline constexpr double kPeakWindow_s = 0.5;
 /// and hands moves to the model by thousands. Which moves cut: traverses, feeds, arcs and threads
 /// with a known start and a known tool. Probes, and moves of a tool of which nothing is known, do
 /// not.
-class CutStage {
+class CutStage : private StepSink {
  public:
   CutStage(StockModel& stock, ToolBook& tools, FindingLog& log, const TimelineOptions& options);
 
-  /// Motions in program order. All of them are given to the model before the call returns (which
-  /// may hold the last ones back until finish()).
+  /// Motions in program order. They are given to the model as soon as their times are known (which
+  /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
-  /// What was cut so far is not reported on: tool uses and totals begin anew, the clock goes on.
-  void begin_reporting();
+  /// What is taken from here on is cut, but not reported on ..
+  void hold_reports();
+  /// .. until here: tool uses and totals begin with the motion that is taken next; the clock goes
+  /// on.
+  void release_reports() { report_from_ = taken_; }
   /// The program is over, or stopped before its end (`whole` = false).
   void finish(bool whole = true);
 
@@ -63,7 +66,9 @@ class CutStage {
     bool spindle_off = false;
   };
 
-  void take_one(const Motion& motion);
+  void step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path) override;
+  void begin_reporting();
+  void cut(const Motion& motion, const TimedStep& step);
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
@@ -72,16 +77,37 @@ class CutStage {
   void note_reach(const Motion& motion);
   void report_outside_stock();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
+  void note_speed(const Motion& motion, const TimedStep& step);
+  void report_over_feed();
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
+  void push_one(const Motion& motion, double duration_s, bool spindle_off);
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
   static void close_window(ToolUse& use);
 
+  /// Feed moves that ask for more than the axes can do.
+  struct OverFeed {
+    std::uint64_t count = 0;
+    SourceRef source;  ///< the first
+    double time_s = 0;
+    double programmed_mm_per_min = 0;
+    double allowed_mm_per_min = 0;
+  };
+  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
+
   StockModel& stock_;
   ToolBook& book_;
   FindingLog& log_;
+  bool limits_known_;
+  std::string limits_origin_;
   Timeline timeline_;
+  std::uint64_t taken_ = 0;    ///< motions
+  std::uint64_t stepped_ = 0;  ///< of them, those whose time is known
+  bool holding_ = false;       ///< reports
+  std::uint64_t report_from_ = kNever;
+  std::span<const PathPiece> path_;  ///< of the present step
+  OverFeed over_feed_;
   Checks checks_;
   std::vector<ToolUse> uses_;
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move

@@ -27,6 +27,7 @@ enum class FindingId : std::uint8_t {
   kInterpreterError,   ///< the interpreter refused a block
   kInterpreterWarning,
   kInterrupted,     ///< the run was stopped by the user
+  kOverFeed,        ///< feed moves ask for more than the axes can do
   kOutsideStock,    ///< no feed move comes near the blank: offset or blank is wrong
   kNotSimulated,    ///< user M-codes, M66: what a machine would do there is not known
   kLineNotReached,  ///< no move of the line where the report was to begin

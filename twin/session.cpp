@@ -224,26 +224,20 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
   const bool silent = !window_.begun();
+  if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
   motions = motions.first(split.before + split.within);
-  if (silent) {
-    report_.findings.set_muted(true);
-    stage.take(motions.first(split.before));
-    if (window_.begun()) stage.begin_reporting();
-    report_.findings.set_muted(false);
-  }
+  stage.take(motions.first(split.before));
+  if (silent && window_.begun()) stage.release_reports();
   stage.take(motions.subspan(split.before));
   report_.timing.cut_s += seconds_since(start);
   if (observer_) observer_->on_cut(*stock_, motions, stage.timeline().clock_s());
   return !window_.over();
 }
 
-/// The program is over before the part to be reported on began.
-void Session::close_window(CutStage& stage) {
+/// The program may be over before the part to be reported on began.
+void Session::close_window() {
   if (window_.begun()) return;
-  report_.findings.set_muted(true);
-  stage.begin_reporting();
-  report_.findings.set_muted(false);
   add_program_finding(
       FindingId::kLineNotReached, Severity::kWarning,
       fmt::format("--from-line: the program runs no move of line {} or beyond; nothing is reported",
@@ -300,9 +294,10 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   CutStage stage(*stock_, book, report_.findings, options_.timeline);
   const double cpu_before = thread_cpu_s();
   const bool whole = cut_program(stage, stop, diagnostics);
-  close_window(stage);
   const Clock::time_point finish_start = Clock::now();
   stage.finish(whole);
+  if (observer_) observer_->on_cut(*stock_, {}, stage.timeline().clock_s());
+  close_window();
   report_.timing.cut_s += seconds_since(finish_start);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
   complete_report(stage);

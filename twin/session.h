@@ -52,8 +52,9 @@ class SessionObserver {
   virtual ~SessionObserver() = default;
   /// The blank is there, nothing is cut yet.
   virtual void on_start(const StockModel& stock) = 0;
-  /// These motions have been given to the workpiece; `end_s` is the program time after the last of
-  /// them.
+  /// These motions have been taken; `end_s` is the program time up to which the workpiece is cut
+  /// (the times of the last motions, and so their cuts, wait for what follows). The last call
+  /// brings no motions: everything is cut.
   virtual void on_cut(const StockModel& stock, std::span<const Motion> motions, double end_s) = 0;
 };
 
@@ -109,7 +110,7 @@ class Session {
   bool cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
   bool stream(CutStage& stage, std::stop_token stop);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
-  void close_window(CutStage& stage);
+  void close_window();
   Outcome conclude(bool stopped);
   void add_program_finding(FindingId id, Severity severity, std::string text);
   void drop_remarks_beyond_window();

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "interp_bridge/machine_limits.h"
 #include "interp_bridge/motion.h"
+#include "interp_bridge/timing/planner.h"
 
 namespace kerf {
 
 struct TimelineOptions {
-  double traverse_mm_per_min = 5000;  ///< speed of every traverse
+  MachineLimits limits = MachineLimits::small_mill();
+  bool limits_known = false;  ///< of the user's machine; false: assumed
+  PlannerOptions planner;     ///< with_path: the steps carry the planned path
 };
 
 /// Sums over the motions of a program.
@@ -29,32 +35,57 @@ struct MotionTotals {
 struct TimedStep {
   double start_s = 0;
   double duration_s = 0;
-  double length_mm = 0;
+  double length_mm = 0;              ///< as programmed
+  double programmed_mm_per_min = 0;  ///< of a feed move; 0: no feed rate in force
+  double allowed_mm_per_min = 0;     ///< by the axes, along this motion
 };
 
-/// Adds up motions at constant speed: length / feed, feed per revolution times spindle speed for
-/// G95, traverses at one stated rate, dwells as written. Accelerations are NOT modelled: a real
-/// machine takes longer, by a few per cent on long moves and several times as long on dense
-/// zigzags. Stops and tool changes take no time. Moves of rotary axes alone take their F as degrees
-/// a minute.
-class Timeline {
+/// Receives the motions with their times.
+class StepSink {
  public:
-  explicit Timeline(const TimelineOptions& options) : options_(options) {}
+  virtual ~StepSink() = default;
+  /// In program order. `path`: what the machine really runs, where it was asked for
+  /// (PlannerOptions::with_path) and the motion moves; valid during the call.
+  virtual void step(const Motion& motion, const TimedStep& timed,
+                    std::span<const PathPiece> path) = 0;
+};
 
-  TimedStep add(const Motion& motion);
-  /// Sums begin anew, the clock goes on.
-  void begin_totals() { totals_ = {}; }
+/// Times of motions under a machine's limits (TrajectoryPlanner), and their sums. A motion's time
+/// depends on those behind it, so steps come out some motions later than they go in; after finish()
+/// none is missing. The motions wait in a ring that is used again.
+class Timeline : private MotionPlanSink {
+ public:
+  /// `sink` must outlive the timeline.
+  Timeline(const TimelineOptions& options, StepSink& sink);
 
+  void push(const Motion& motion);
+  void finish() { planner_.finish(); }
+
+  /// Of the steps that have come out.
   const MotionTotals& totals() const { return totals_; }
-  double clock_s() const { return clock_s_; }  ///< program time after the last motion
-  /// For the report: "length / feed; traverses at 5000 mm/min; no accelerations, tool changes and
-  /// stops take no time".
-  std::string time_model() const;
+  /// Sums begin anew, the clock goes on. From within a step: that one is the first in the sums.
+  void begin_totals() {
+    totals_ = {};
+    totals_from_s_ = -1;
+  }
+  double clock_s() const { return clock_s_; }  ///< program time after the last step
+  /// For the report, one sentence.
+  std::string time_model() const { return planner_.time_model(); }
 
  private:
-  TimelineOptions options_;
+  void timed(const MotionTiming& timing) override;
+  void path(const PathPiece& piece) override { path_.push_back(piece); }
+  void count(const Motion& motion, const TimedStep& step);
+
+  StepSink& sink_;
+  TrajectoryPlanner planner_;
   MotionTotals totals_;
   double clock_s_ = 0;
+  double totals_from_s_ = 0;     ///< where the sums begin; negative: with the next step
+  std::vector<Motion> waiting_;  ///< ring; its size is a power of two
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::vector<PathPiece> path_;
 };
 
 }  // namespace kerf

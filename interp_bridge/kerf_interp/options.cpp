@@ -25,6 +25,7 @@ constexpr const char* kUsage =
     "  --parameters FILE       variable file; it is rewritten\n"
     "  --block-delete on|off   lines that begin with / are skipped (on)\n"
     "  --random-toolchanger    M6 swaps tools\n"
+    "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
     "  --startup BLOCK         run first\n";
 
 bool fault(const std::string& message) {
@@ -47,6 +48,16 @@ bool read_tools(const std::string& path, World& world) {
   return file.eof() || fault(path + ": " + std::strerror(errno));
 }
 
+bool read_start(const std::string& text, World& world) {
+  std::istringstream numbers(text);
+  Pose at{};
+  for (double& number : at) numbers >> number;
+  std::string more;
+  if (!numbers || numbers >> more) return fault("--start: '" + text + "' is not nine numbers");
+  world.stand_at(at);
+  return true;
+}
+
 bool read_number(const char* text, long least, long most, const char* option, long& value) {
   char* end = nullptr;
   value = std::strtol(text, &end, 10);
@@ -58,7 +69,17 @@ bool read_number(const char* text, long least, long most, const char* option, lo
 }  // namespace
 
 bool read_options(int argc, char** argv, Options& options, World& world) {
-  enum { kRecords = 1, kUnits, kAxes, kTools, kParameters, kBlockDelete, kRandom, kStartup };
+  enum {
+    kRecords = 1,
+    kUnits,
+    kAxes,
+    kTools,
+    kParameters,
+    kBlockDelete,
+    kRandom,
+    kStart,
+    kStartup
+  };
   static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
                                     {"units", required_argument, nullptr, kUnits},
                                     {"axes", required_argument, nullptr, kAxes},
@@ -66,6 +87,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"parameters", required_argument, nullptr, kParameters},
                                     {"block-delete", required_argument, nullptr, kBlockDelete},
                                     {"random-toolchanger", no_argument, nullptr, kRandom},
+                                    {"start", required_argument, nullptr, kStart},
                                     {"startup", required_argument, nullptr, kStartup},
                                     {nullptr, 0, nullptr, 0}};
   long number = 0;
@@ -96,6 +118,9 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kRandom:
         world.random_toolchanger = true;
+        break;
+      case kStart:
+        if (!read_start(value, world)) return false;
         break;
       case kStartup:
         options.startup = value;

@@ -58,6 +58,7 @@ class World {
 
   // ---- Position
   // -------------------------------------------------------------------------------------
+  void stand_at(const Pose& machine) { machine_ = machine; }
   void move_to(const Pose& program);  ///< program coordinates and units
   double position(std::size_t axis) const { return program_from_machine(machine_)[axis]; }
   /// A probing move goes to its end, and finds it there if the program insists on it (G38.2, G38.4;

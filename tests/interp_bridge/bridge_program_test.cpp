@@ -152,7 +152,17 @@ TEST_F(BridgeProgram, MetricTablesAreMetricAndInchTablesInch) {
   EXPECT_NEAR(metric.motions[2].to_mm.y, 3, 1e-9);
 }
 
+TEST_F(BridgeProgram, WithoutAKnownMachineToolLengthsDoNotCount) {
+  options_.tool_table_path = folder_.write("tool.tbl", "T1 P1 D6 Z10\n");
+  const std::string text = "G21 G90\nT1 M6\nG43 H1\nG0 X1\nG0 Z5\nM2\n";
+  EXPECT_EQ(run(text).motions[1].to_mm, Vec3(1, 0, 0));
+  options_.machine.tool_lengths = true;
+  options_.machine.start = {0, 0, 100, 0, 0, 0, 0, 0, 0};
+  EXPECT_EQ(run(text).motions[1].to_mm, Vec3(1, 0, 90));
+}
+
 TEST_F(BridgeProgram, ToolLengthsMoveTheTipOfAStandingMachine) {
+  options_.machine.tool_lengths = true;
   options_.tool_table_path = folder_.write("tool.tbl", "T1 P1 D6 Z10\nT2 P2 D10 Z30\n");
   const ProgramRun run =
       this->run("G21 G90\nT1 M6 G43 H1\nG0 X0 Y0 Z50\nT2 M6\nG43 H2\nG0 X10\nG0 Z40\nM2\n");

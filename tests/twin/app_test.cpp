@@ -51,12 +51,9 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   a.source.block_delete = std::string("maybe");
   a.mesh_tolerance = std::string("fine");
   a.margin = std::string("-1");
-  a.source.traverse_rate = std::string("1e999");
   EXPECT_EQ(faults_of(a),
             "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
-            "kerf: error: --traverse-rate: '1e999' is not a number; must be above 0 and at most "
-            "1e+06 (mm/min)\n"
             "kerf: error: --model: octree is not in this version; allowed: zmap, auto\n"
             "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
             "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"

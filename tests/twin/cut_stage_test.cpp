@@ -70,8 +70,8 @@ TEST(CutStage, SlotRemovesItsVolumeAndFindsNothing) {
   EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 0.01);
   EXPECT_NEAR(use.max_depth_mm, 2, 1e-4);
   EXPECT_NEAR(use.feed_mm, 7 + 50, 1e-9);
-  EXPECT_NEAR(use.cut_s, 5, 1e-9) << "50 mm at 600 mm/min";
-  EXPECT_NEAR(use.peak_mm3_per_s, use.removed_mm3 / 5, 1e-6);
+  EXPECT_NEAR(use.cut_s, 5, 0.03) << "50 mm at 600 mm/min, and braking";
+  EXPECT_NEAR(use.peak_mm3_per_s, use.removed_mm3 / use.cut_s, 1e-6);
 }
 
 TEST(CutStage, TraversesThroughMaterialAreOneFinding) {
@@ -91,7 +91,9 @@ TEST(CutStage, TraversesThroughMaterialAreOneFinding) {
   EXPECT_NEAR(*first.depth_mm, 3, 1e-3);
   EXPECT_NEAR(first.position_mm->x, -2, 0.2) << "the edge of the cutter meets X0";
   EXPECT_NEAR(first.position_mm->z, -1, 1e-6);
-  EXPECT_NEAR(*first.time_s, 60.0 * (6 + 3) / 5000, 0.01);
+  // A tool change of 0.3 s, 6 mm down in at least 2 sqrt(6 / 300) s, and a fifth of 15 mm along.
+  EXPECT_GT(*first.time_s, 0.3 + 0.283);
+  EXPECT_LT(*first.time_s, 0.9);
   const Finding& second = shop.findings()[1];
   EXPECT_EQ(second.source.line, 8U);
   EXPECT_NEAR(*second.depth_mm, 0.5, 1e-3);

@@ -21,20 +21,32 @@ void print(const Diagnostics& diagnostics, bool quiet) {
 }
 
 /// Motions to text to the file, a batch at a time.
-class LineWriter {
+class LineWriter : private StepSink {
  public:
-  LineWriter(AtomicFile& file, const TimelineOptions& options) : file_(file), timeline_(options) {}
+  LineWriter(AtomicFile& file, const TimelineOptions& options)
+      : file_(file), timeline_(options, *this) {}
 
   /// False: nobody takes the text any more.
   bool write(const std::vector<std::string>& files, std::span<const Motion> motions) {
     json_.set_files(files);
-    text_.clear();
-    for (const Motion& m : motions) json_.append(m, timeline_.add(m), text_);
-    file_.write(text_.data(), text_.size());
-    return !file_.failed();
+    for (const Motion& m : motions) timeline_.push(m);
+    return hand_over();
+  }
+  void finish() {
+    timeline_.finish();
+    hand_over();
   }
 
  private:
+  void step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece>) override {
+    json_.append(motion, timed, text_);
+  }
+  bool hand_over() {
+    file_.write(text_.data(), text_.size());
+    text_.clear();
+    return !file_.failed();
+  }
+
   AtomicFile& file_;
   Timeline timeline_;
   MotionJson json_;
@@ -47,7 +59,7 @@ int canon_command(const CanonArguments& arguments) {
   Diagnostics diagnostics;
   OptionReader reader(diagnostics);
   const ProgramOptions options = understand_program(arguments.source, reader);
-  const TimelineOptions timeline = understand_timeline(arguments.source, reader);
+  const TimelineOptions timeline;
   if (has_error(diagnostics)) {
     print(diagnostics, arguments.quiet);
     return kExitUsage;
@@ -73,6 +85,7 @@ int canon_command(const CanonArguments& arguments) {
         [&](std::span<const Motion> motions) { return writer.write(program->files(), motions); },
         stop.get_token(), diagnostics);
   }
+  writer.finish();
   const Done written = file->commit();
   print(diagnostics, arguments.quiet);
   if (!written) fmt::print(stderr, "kerf: error: {}\n", written.error());

@@ -69,10 +69,6 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       .add_option("--max-seconds", a.max_seconds,
                   "silent seconds after which a program counts as endless")
       ->type_name("S");
-  command
-      .add_option("--traverse-rate", a.traverse_rate,
-                  "speed of traverses for the time estimate (default 5000)")
-      ->type_name("MM/MIN");
 }
 
 void add_run_options(CLI::App& run, RunArguments& a) {
@@ -97,6 +93,11 @@ void add_run_options(CLI::App& run, RunArguments& a) {
       ->type_name("N");
   run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
       ->type_name("N");
+  run.add_option(
+         "--path", a.path,
+         "what is cut: programmed | planned, with corners rounded as the machine does under "
+         "G64 (default programmed)")
+      ->type_name("NAME");
   run.add_option("--threads", a.threads,
                  "cutting threads (default: one less than the cores, at most 8)")
       ->type_name("N");

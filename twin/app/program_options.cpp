@@ -5,7 +5,6 @@
 namespace kerf {
 namespace {
 
-constexpr OptionRange kTraverseRate{0, 1e6, true, "mm/min"};
 constexpr OptionRange kMaxCommands{1, 1e12, false, "commands"};
 constexpr OptionRange kMaxSeconds{0, 1e6, true, "s"};
 
@@ -28,13 +27,6 @@ ProgramOptions understand_program(const ProgramArguments& a, OptionReader& reade
       "--max-commands", a.max_commands, kMaxCommands, static_cast<double>(options.max_commands)));
   options.max_silent_s =
       reader.number("--max-seconds", a.max_seconds, kMaxSeconds, options.max_silent_s);
-  return options;
-}
-
-TimelineOptions understand_timeline(const ProgramArguments& a, OptionReader& reader) {
-  TimelineOptions options;
-  options.traverse_mm_per_min =
-      reader.number("--traverse-rate", a.traverse_rate, kTraverseRate, options.traverse_mm_per_min);
   return options;
 }
 

@@ -5,7 +5,6 @@
 
 #include "interp_bridge/program.h"
 #include "twin/app/option_reader.h"
-#include "twin/timeline.h"
 
 namespace kerf {
 
@@ -17,11 +16,9 @@ struct ProgramArguments {
   std::string block_delete;
   std::string max_commands;
   std::string max_seconds;
-  std::string traverse_rate;
 };
 
 /// The same, understood; faults go to the reader.
 ProgramOptions understand_program(const ProgramArguments& arguments, OptionReader& reader);
-TimelineOptions understand_timeline(const ProgramArguments& arguments, OptionReader& reader);
 
 }  // namespace kerf

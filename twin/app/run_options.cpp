@@ -63,6 +63,11 @@ void read_choices(const RunArguments& a, OptionReader& reader, SessionOptions& s
   } else if (!a.model.empty() && a.model != "zmap" && a.model != "auto") {
     reader.fault("--model", fmt::format("'{}' is no model; allowed: zmap, auto", a.model));
   }
+  if (a.path == "planned") {
+    session.timeline.planner.with_path = true;
+  } else if (!a.path.empty() && a.path != "programmed") {
+    reader.fault("--path", fmt::format("'{}' is no path; allowed: programmed, planned", a.path));
+  }
   if (a.kernel == "scalar") {
     session.kernel = ZMapKernel::kScalar;
   } else if (a.kernel == "avx2") {
@@ -98,7 +103,6 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
   RunRequest request;
   SessionOptions& session = request.session;
   session.program = understand_program(a.source, reader);
-  session.timeline = understand_timeline(a.source, reader);
   read_tools(a, reader, session);
   read_stock(a, reader, session);
   read_choices(a, reader, session);

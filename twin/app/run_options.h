@@ -22,6 +22,7 @@ struct RunArguments {
   std::string kernel;
   std::string mesh_tolerance;
   std::string margin;
+  std::string path;
   std::string from_line;
   std::string until_line;
   OutputPaths outputs;

@@ -1,0 +1,52 @@
+// interp_bridge/timing/lookahead.h - how fast each corner may be passed, given the stops that may
+// follow within the planner's look-ahead.
+#pragma once
+
+#include <cstdint>
+
+#include "interp_bridge/timing/ring.h"
+#include "interp_bridge/timing/schedule.h"
+#include "interp_bridge/timing/segment.h"
+
+namespace kerf {
+
+/// Queue of segments between the corners and the clock. With w(i) the square of the speed at the
+/// end of segment i, c(i) the square of what its corner allows and g(i) = 2 a L the square of the
+/// speed that segment i can brake from,
+///
+///     w(i) = min( c(i), w(i+1) + g(i+1) ) = min over j >= i of ( c(j) + S(j) ) - S(i)
+///
+/// with S the running sum of g: the least of a sliding window, found in constant time per segment.
+/// The window ends arc_blend_depth segments on, where LinuxCNC reckons with a stop.
+class Lookahead {
+ public:
+  Lookahead(const AxisRates& rates, Schedule& schedule);
+
+  /// Appends a segment, with what its corner to the one before becomes.
+  void add(Segment segment);
+  /// The machine stops after what is queued; all of it is run.
+  void drain();
+
+ private:
+  struct Queued {
+    Segment segment;
+    double sum = 0;  ///< S, once finalized
+  };
+  struct Limit {
+    std::uint64_t number = 0;
+    double height = 0;  ///< c + S
+  };
+
+  void finalize_back(bool followed);
+  void limit_corner(std::uint64_t number, double square);
+  void retire(double horizon);
+
+  const AxisRates& rates_;
+  Schedule& schedule_;
+  Ring<Queued> queue_;
+  Ring<Limit> limits_;
+  double retired_sum_ = 0;
+  double speed_ = 0;  ///< at the end of the last retired segment
+};
+
+}  // namespace kerf

@@ -1,0 +1,304 @@
+#include "interp_bridge/timing/planner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "interp_bridge/timing/lookahead.h"
+#include "interp_bridge/timing/merge.h"
+#include "interp_bridge/timing/schedule.h"
+
+namespace kerf {
+namespace {
+
+std::array<double, 3> turned_deg(const Motion& m) {
+  return {m.to_abc_deg[0] - m.from_abc_deg[0], m.to_abc_deg[1] - m.from_abc_deg[1],
+          m.to_abc_deg[2] - m.from_abc_deg[2]};
+}
+
+double programmed_per_minute(const Motion& m) {
+  if (m.kind == MotionKind::kTraverse) return 0;
+  const bool per_revolution = m.feed_per_rev || m.kind == MotionKind::kThread;
+  return per_revolution ? m.feed_mm_per_min * m.spindle_rpm : m.feed_mm_per_min;
+}
+
+SegmentEnd end_of(PathMode mode) {
+  switch (mode) {
+    case PathMode::kExactStop:
+      return SegmentEnd::kStop;
+    case PathMode::kExactPath:
+      return SegmentEnd::kExact;
+    case PathMode::kContinuous:
+      break;
+  }
+  return SegmentEnd::kParabolic;
+}
+
+/// An arc so flat that LinuxCNC takes two lines for it; `middle` is where they meet.
+bool flat_arc(const Motion& m, Vec3& middle) {
+  if (m.path_mode != PathMode::kContinuous || m.merge_tolerance_mm <= 0) return false;
+  if (std::abs(m.arc.axis.z) < 0.9999 || std::abs(m.arc.sweep_rad) >= 2 * kPi) return false;
+  const Vec3 out = m.from_mm - m.arc.center_mm;
+  const double radius = std::hypot(out.x, out.y);
+  const double half = m.arc.sweep_rad / 2 * (m.arc.axis.z < 0 ? -1.0 : 1.0);
+  if (radius * (1.0 - std::cos(half)) >= static_cast<double>(m.merge_tolerance_mm)) return false;
+  const double c = std::cos(half);
+  const double s = std::sin(half);
+  middle = {m.arc.center_mm.x + c * out.x - s * out.y, m.arc.center_mm.y + s * out.x + c * out.y,
+            (m.from_mm.z + m.to_mm.z) / 2};
+  return true;
+}
+
+}  // namespace
+
+struct TrajectoryPlanner::Impl {
+  Impl(const MachineLimits& machine, const PlannerOptions& wanted, MotionPlanSink& sink)
+      : limits(machine),
+        options(wanted),
+        rates(machine),
+        schedule(sink, wanted.with_path),
+        lookahead(rates, schedule) {}
+
+  void push(const Motion& m);
+  void move(const Motion& m);
+  void straight(const Motion& m, const StraightRates& way, double speed);
+  void thread(const Motion& m, const MotionTiming& timing, const StraightRates& way, double speed);
+  void add_to_chain(const Vec3& from, const Vec3& to, double speed, const Motion& m);
+  void flush_chain();
+  void halt();
+  void command_waits(const Motion& m);
+  double io_wait_s(int looks);
+  void change_tool(const Motion& m);
+  void stand(const Motion& m, double seconds);
+
+  MachineLimits limits;
+  PlannerOptions options;
+  AxisRates rates;
+  Schedule schedule;
+  Lookahead lookahead;
+  MergeChain chain;
+  Motion last;  ///< where the machine stands and what is switched on
+  bool begun = false;
+  bool moved_since_change = false;
+  double io_phase_s = -1;  ///< a moment at which the I/O task looked; -1: none known
+  std::uint64_t stops = 0;
+};
+
+/// Ends the path here: the machine stands when everything queued is done.
+void TrajectoryPlanner::Impl::halt() {
+  flush_chain();
+  lookahead.drain();
+}
+
+void TrajectoryPlanner::Impl::flush_chain() {
+  if (chain.empty()) return;
+  const Vec3 to = chain.last();
+  const StraightRates way = straight_rates(rates, to - chain.start(), {});
+  if (way.length > 0) {
+    Segment segment = make_line(chain.start(), to, way, chain.speed());
+    segment.end = SegmentEnd::kParabolic;
+    segment.tolerance_mm = chain.tolerance_mm();
+    segment.first_piece = chain.first_piece();
+    segment.piece_count = chain.piece_count();
+    lookahead.add(segment);
+  } else {
+    // The merged moves return to where they began: LinuxCNC drops them.
+    lookahead.drain();
+    schedule.drop_pieces(chain.piece_count());
+  }
+  chain.clear();
+}
+
+/// The I/O task looks once in its period; a command waits for that many looks. Where in its period
+/// it was when the program began is not known: half a period then.
+double TrajectoryPlanner::Impl::io_wait_s(int looks) {
+  const double period = limits.io_period_s;
+  if (looks <= 0 || period <= 0) return 0;
+  const double now = schedule.clock_s();
+  double wait = period / 2;
+  if (io_phase_s >= 0) {
+    const double since = now - io_phase_s;
+    wait = period * (std::floor(since / period) + 1.0) - since;
+  }
+  wait += (looks - 1) * period;
+  io_phase_s = now + wait;
+  return wait;
+}
+
+void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
+  halt();
+  const int prepare = moved_since_change ? 0 : kToolPrepareLooks;
+  stand(m, io_wait_s(kToolChangeLooks + prepare) + options.tool_change_s);
+  moved_since_change = false;
+}
+
+/// What the program switched between the last motion and this one.
+void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
+  const bool spindle = m.spindle != last.spindle ||
+                       (m.spindle != SpindleState::kStopped && m.spindle_rpm != last.spindle_rpm);
+  const bool offset = m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg;
+  const int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
+  if (!spindle && !offset && coolant == 0) return;
+  halt();
+  schedule.pause(options.halt_s);
+  if (spindle && m.spindle != SpindleState::kStopped) schedule.pause(options.spindle_start_s);
+  // Switching coolant off is two commands, one for each kind.
+  const bool off = (last.flood && !m.flood) || (last.mist && !m.mist);
+  schedule.pause(io_wait_s(off ? 2 : coolant));
+}
+
+void TrajectoryPlanner::Impl::push(const Motion& m) {
+  if (begun) command_waits(m);
+  switch (m.kind) {
+    case MotionKind::kDwell:
+      stand(m, m.duration_s + options.halt_s);
+      break;
+    case MotionKind::kToolChange:
+      change_tool(m);
+      break;
+    case MotionKind::kStop:
+      ++stops;
+      stand(m, 0);
+      break;
+    case MotionKind::kProgramEnd:
+      stand(m, 0);
+      break;
+    default:
+      move(m);
+      moved_since_change = true;
+      break;
+  }
+  last = m;
+  begun = true;
+}
+
+void TrajectoryPlanner::Impl::stand(const Motion& m, double seconds) {
+  halt();
+  schedule.alone(m, {}, seconds, 0);
+}
+
+void TrajectoryPlanner::Impl::move(const Motion& m) {
+  MotionTiming timing;
+  timing.programmed_mm_per_min = programmed_per_minute(m);
+  const StraightRates way = straight_rates(rates, m.to_mm - m.from_mm, turned_deg(m));
+  const bool arc = m.kind == MotionKind::kArc;
+  const bool traverse = m.kind == MotionKind::kTraverse;
+  const bool moves = arc ? m.arc.sweep_rad != 0 : way.length > 0;
+  const bool fed = traverse || timing.programmed_mm_per_min > 0;
+  if (!m.start_known || !moves || !fed) {
+    // The machine is simply there afterwards; a move of no length does not even stop it.
+    if (moves || !m.start_known) halt();
+    schedule.open_motion(timing, 0);
+    return;
+  }
+  const double speed = traverse ? std::numeric_limits<double>::infinity()
+                                : timing.programmed_mm_per_min / 60.0;
+  const double cap = way.linear ? rates.linear_cap : rates.angular_cap;
+  if (!arc) {
+    timing.allowed_mm_per_min = std::min(way.speed, cap) * 60.0;
+    if (m.kind == MotionKind::kThread) {
+      halt();
+      thread(m, timing, way, speed);
+      return;
+    }
+    schedule.open_motion(timing, 1);
+    straight(m, way, speed);
+    return;
+  }
+  Segment segment = make_arc(rates, m, speed);
+  timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
+  Vec3 middle;
+  if (!segment.rotary && flat_arc(m, middle)) {
+    schedule.open_motion(timing, 2);
+    add_to_chain(m.from_mm, middle, speed, m);
+    add_to_chain(middle, m.to_mm, speed, m);
+    return;
+  }
+  flush_chain();
+  schedule.open_motion(timing, 1);
+  segment.end = end_of(m.path_mode);
+  segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
+  segment.piece_count = 1;
+  segment.first_piece = schedule.add_piece(segment.length_mm);
+  lookahead.add(segment);
+}
+
+void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way, double speed) {
+  const bool mergeable = m.kind == MotionKind::kFeed && !way.rotary &&
+                         m.path_mode == PathMode::kContinuous && m.merge_tolerance_mm > 0;
+  if (mergeable) {
+    add_to_chain(m.from_mm, m.to_mm, speed, m);
+    return;
+  }
+  flush_chain();
+  if (m.kind == MotionKind::kProbe) halt();
+  Segment segment = make_line(m.from_mm, m.to_mm, way, speed);
+  segment.traverse = m.kind == MotionKind::kTraverse;
+  segment.end = end_of(m.path_mode);
+  segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
+  segment.piece_count = 1;
+  segment.first_piece = schedule.add_piece(segment.length_mm);
+  lookahead.add(segment);
+  if (m.kind == MotionKind::kProbe) halt();
+}
+
+/// Follows the spindle from its index pulse on: the carriage lags while it speeds up and catches
+/// up, so that the end is where pitch times revolutions is; then it brakes.
+void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing,
+                                     const StraightRates& way, double speed) {
+  const double run = std::min(speed, way.speed);
+  const double index_wait = m.spindle_rpm > 0 ? 30.0 / m.spindle_rpm : 0.0;
+  schedule.alone(m, timing, index_wait + way.length / run + run / (2.0 * way.accel), run);
+}
+
+void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, double speed,
+                                           const Motion& m) {
+  const double tolerance = static_cast<double>(m.merge_tolerance_mm);
+  const double blend = static_cast<double>(m.blend_tolerance_mm);
+  if (!chain.empty() && !(chain.speed() == speed && chain.tolerance_mm() == blend &&
+                          chain.links(to, tolerance))) {
+    flush_chain();
+  }
+  const std::uint64_t piece = schedule.add_piece(glm::length(to - from));
+  if (chain.empty()) chain.begin(from, speed, blend, piece);
+  chain.append(to);
+}
+
+TrajectoryPlanner::TrajectoryPlanner(const MachineLimits& limits, const PlannerOptions& options,
+                                     MotionPlanSink& sink)
+    : impl_(std::make_unique<Impl>(limits, options, sink)) {}
+
+TrajectoryPlanner::~TrajectoryPlanner() = default;
+
+void TrajectoryPlanner::push(const Motion& motion) { impl_->push(motion); }
+
+void TrajectoryPlanner::finish() { impl_->halt(); }
+
+double TrajectoryPlanner::clock_s() const { return impl_->schedule.clock_s(); }
+
+std::uint64_t TrajectoryPlanner::stops() const { return impl_->stops; }
+
+std::string TrajectoryPlanner::time_model() const {
+  std::string axes;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const AxisLimits& axis = impl_->limits.axes[i];
+    if (!axis.present) continue;
+    const char* const unit = is_rotary_axis(i) ? "deg" : "mm";
+    axes += fmt::format("{}{} {:g} {}/s {:g} {}/s2", axes.empty() ? "" : ", ", kAxisLetters[i],
+                        axis.max_velocity, unit, axis.max_acceleration, unit);
+  }
+  std::string cap = "no cap on the path's speed";
+  if (std::isfinite(impl_->rates.linear_cap)) {
+    cap = fmt::format("at most {:g} mm/s along the path", impl_->rates.linear_cap);
+  }
+  return fmt::format(
+      "LinuxCNC 2.9 trajectory planner, limits of {}: {}, {}, servo period {:g} ms; tool change "
+      "{} I/O periods of {:g} s and {:g} s, spindle start {:g} s, M0 and M1 no time",
+      impl_->options.limits_origin, axes, cap, impl_->rates.cycle_s * 1000.0, kToolChangeLooks,
+      impl_->limits.io_period_s, impl_->options.tool_change_s, impl_->options.spindle_start_s);
+}
+
+}  // namespace kerf

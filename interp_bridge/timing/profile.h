@@ -1,0 +1,18 @@
+// interp_bridge/timing/profile.h - time over one segment at limited speed and acceleration.
+#pragma once
+
+namespace kerf {
+
+struct SpeedProfile {
+  double duration_s = 0;
+  double end_speed = 0;  ///< reached at the end; above `final_speed` if it could not slow down
+  double peak_speed = 0;
+};
+
+/// Trapezoid (or triangle, or part of one): starts at start_speed, runs at `target` where it can,
+/// and is at final_speed at the end if the acceleration allows it. All speeds in mm/s, >= 0;
+/// length > 0, accel > 0; target > 0. A start above `target` is slowed down first.
+SpeedProfile speed_profile(double length, double accel, double start_speed, double target,
+                           double final_speed);
+
+}  // namespace kerf

@@ -1,0 +1,118 @@
+// interp_bridge/timing/segment.h - one piece of path with its speed limits, as the planner queues
+// it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/geometry.h"
+#include "interp_bridge/machine_limits.h"
+#include "interp_bridge/motion.h"
+
+namespace kerf {
+
+/// Limits of X, Y, Z, A, B, C in the form that is needed per segment: seconds per mm (degree) and
+/// seconds squared per mm; 0 where an axis is absent or has no limit.
+struct AxisRates {
+  std::array<double, 6> slowness{};    ///< 1 / max_velocity
+  std::array<double, 6> inertia{};     ///< 1 / max_acceleration
+  Vec3 velocity{0};                    ///< of X, Y, Z; 0 = no limit
+  Vec3 acceleration{0};                ///< of X, Y, Z; 0 = no limit
+  double linear_cap = 0;               ///< mm/s
+  double angular_cap = 0;              ///< deg/s
+  double cycle_s = 0.001;
+  double kink_ratio = 0.1;
+  double gap_s = 0.004;  ///< a line shorter than this between two corners is swallowed by one
+  bool arc_blend = true;
+  int depth = 50;
+
+  explicit AxisRates(const MachineLimits& limits);
+};
+
+/// Share of an acceleration that a curved path may use across and along itself: cos and sin of 30
+/// degrees.
+inline constexpr double kAcrossShare = 0.86602540378443864676;
+inline constexpr double kAlongShare = 0.5;
+
+enum class SegmentShape : std::uint8_t { kLine, kArc, kBlend };
+
+/// What happens at the end of a segment.
+enum class SegmentEnd : std::uint8_t {
+  kStop,       ///< full stop at full deceleration: G61.1, between traverse and feed
+  kExact,      ///< G61: stop unless the corner is nearly straight
+  kParabolic,  ///< G64: half deceleration, so that the next segment may start meanwhile
+  kTangent,    ///< run through
+};
+
+///               length_mm
+///     from |----------------| to         trim_*: what the corners cut away, mm (radians of arcs)
+///       ^ trim_from      ^ trim_to
+struct Segment {
+  SegmentShape shape = SegmentShape::kLine;
+  SegmentEnd end = SegmentEnd::kStop;
+  bool traverse = false;
+  bool rotary = false;            ///< moves A, B or C
+  bool linear = true;             ///< moves X, Y or Z
+  bool begins_parabolic = false;  ///< starts while the one before slows down
+  bool finalized = false;         ///< its length does not change any more
+  double length_mm = 0;           ///< what is left of it; degrees if only A, B, C move
+  double nominal_mm = 0;          ///< as programmed
+  double request = 0;             ///< speed that the program wants, mm/s
+  double max_speed = 0;           ///< that the machine can do along it
+  double max_accel = 0;
+  double along_share = 1;     ///< of max_accel that is left along a curve
+  double corner_speed = -1;   ///< limit at its end, -1: none
+  double corner_load = 0;     ///< share of the acceleration kept for turning at its end
+  double corner_load_from = 0;  ///< ... at its start
+  double tolerance_mm = 0;    ///< G64 P
+  Vec3 from{0}, to{0};        ///< untrimmed ends
+  Vec3 tangent_from{0}, tangent_to{0};
+  ArcGeometry arc;       ///< kArc, kBlend
+  double radius_mm = 0;  ///< kArc, kBlend
+  double trim_from = 0, trim_to = 0;
+  double lead_mm = 0;  ///< kBlend: straight part before the arc, of a line that was swallowed
+  std::uint64_t first_piece = 0;
+  std::uint32_t piece_count = 0;
+
+  /// Acceleration along the path, after what corners and curvature keep for themselves.
+  double accel() const {
+    const double load = corner_load > corner_load_from ? corner_load : corner_load_from;
+    double share = (1.0 - load) * along_share;
+    if (begins_parabolic || end == SegmentEnd::kParabolic) share *= 0.5;
+    return max_accel * share;
+  }
+  /// The speed that it is run at where nothing else limits it.
+  double target(const AxisRates& rates) const {
+    const double cap = linear ? rates.linear_cap : rates.angular_cap;
+    const double wanted = request < max_speed ? request : max_speed;
+    return wanted < cap ? wanted : cap;
+  }
+  /// Point at angle (radians from the untrimmed start) of an arc.
+  Vec3 arc_point(double angle) const;
+};
+
+/// What the axes allow along a straight move: speed and acceleration along the path, its length
+/// (mm; degrees if only A, B, C move). length 0: no move.
+struct StraightRates {
+  double length = 0;
+  double speed = 0;
+  double accel = 0;
+  bool linear = false;
+  bool rotary = false;
+};
+StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
+                             const std::array<double, 3>& delta_deg);
+
+/// A straight segment; `speed` is the programmed speed in mm/s (degrees/s), infinite for traverses.
+Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straight, double speed);
+
+/// A circular or helical segment of a kArc motion.
+Segment make_arc(const AxisRates& rates, const Motion& motion, double speed);
+
+/// Caps speed so that the segment takes a servo period at least.
+void clamp_to_cycle(Segment& segment, double cycle_s);
+
+/// Fixes length and speed limits: nothing is cut from it any more.
+void finalize(Segment& segment, double cycle_s);
+
+}  // namespace kerf
