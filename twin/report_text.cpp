@@ -85,7 +85,8 @@ std::string summary_text(const Report& report) {
   out += lines_text(report.lines);
   if (report.stock) add_stock(out, *report.stock);
   add_tools(out, report.tools);
-  out += fmt::format("time      {} ({})\n", duration_text(m.duration_s), report.time_model);
+  out +=
+      fmt::format("time      {}\n          {}\n", duration_text(m.duration_s), report.time_model);
   out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
                      distance_text(m.traverse_mm));
   out += fmt::format("findings  {}\n", count_text(report.findings));

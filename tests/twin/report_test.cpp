@@ -126,7 +126,8 @@ TEST(ReportText, IsAPageThatReadsInTenSeconds) {
       "removed   30.000 cm3 of 120.000 cm3 (25.0 %)\n"
       "tools     3   ball:6 (--tool)\n"
       "              removed 30.000 cm3, cutting 1 min 01 s, deepest cut 2.50 mm, peak 40.0 mm3/s\n"
-      "time      1 h 02 min 05 s (length / feed)\n"
+      "time      1 h 02 min 05 s\n"
+      "          length / feed\n"
       "distance  feed 12.35 m, traverse 0.0 mm\n"
       "findings  1 error\n"
       "run       0.00 s (interpreting 0.00, cutting 0.00, surface 0.00), 0 MB\n");
