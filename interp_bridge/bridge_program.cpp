@@ -285,6 +285,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   MotionFeederOptions feeding;
   feeding.diameters_known = !options_.tool_table_path.empty();
   feeding.max_commands = options_.max_commands;
+  feeding.frame = &frame_;
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(feeder, raw_files, summary);
   files_.clear();  // named again by the first record

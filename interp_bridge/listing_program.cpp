@@ -94,6 +94,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.listing_name = name();
   reading.feeder.tool_by_index = tool_by_index_;
   reading.feeder.max_commands = options_.max_commands;
+  reading.feeder.frame = &frame_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);
   if (!is_stdin()) close(fd);

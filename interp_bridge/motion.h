@@ -45,6 +45,15 @@ enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise
 /// How the machine runs through the corner between two moves: G61.1, G61, G64.
 enum class PathMode : std::uint8_t { kExactStop, kExactPath, kContinuous };
 
+/// Where the workpiece frame lies in the machine: a point w of it is, in machine coordinates of the
+/// tip, R(rotation) * (w + g92) + g5x. R turns about Z.
+struct WorkpieceFrame {
+  Vec3 g5x_mm{0};
+  Vec3 g92_mm{0};
+  double rotation_deg = 0;
+  std::array<double, 3> offset_abc_deg{};  ///< added to A, B, C
+};
+
 /// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
 /// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
 /// to_mm of the one before, except where a tool length offset changes under a standing machine: the
@@ -68,6 +77,8 @@ struct Motion {
   std::array<double, 3> from_abc_deg{};
   std::array<double, 3> to_abc_deg{};
   ArcGeometry arc;  ///< kArc only
+  /// In force (G43): the machine's own coordinates are those of the tip plus this, along its axes.
+  Vec3 tool_offset_mm{0};
   /// Programmed; 0 for traverses. mm per revolution if feed_per_rev (of a thread: its pitch), and
   /// degrees/min where only A, B or C move.
   double feed_mm_per_min = 0;

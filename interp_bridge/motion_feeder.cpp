@@ -135,6 +135,10 @@ void MotionFeeder::add_foreign(std::string_view line) {
 
 bool MotionFeeder::hand_over() {
   if (batch_.empty() || sink_done_) return !sink_done_;
+  if (options_.frame != nullptr && !frame_told_ && fold_.workpiece_frame_fixed()) {
+    *options_.frame = fold_.workpiece_frame();
+    frame_told_ = true;
+  }
   sink_done_ = !sink_(batch_);
   batch_.clear();
   return !sink_done_;

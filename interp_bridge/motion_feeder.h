@@ -21,6 +21,8 @@ struct MotionFeederOptions {
   bool diameters_known =
       true;  ///< false: warn of cutter compensation, whose radius the interpreter took as 0
   std::uint64_t max_commands = 0;  ///< 0: any number
+  /// Written once, before the first motion that moves is handed over. May be null.
+  WorkpieceFrame* frame = nullptr;
 };
 
 /// Counts, folds, collects the diagnostics that commands give rise to. One thread.
@@ -73,6 +75,7 @@ class MotionFeeder {
   bool compensation_reported_ = false;
   bool too_many_ = false;
   bool sink_done_ = false;
+  bool frame_told_ = false;
   SourceRef source_;
 };
 

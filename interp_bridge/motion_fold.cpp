@@ -136,6 +136,17 @@ void MotionFold::fix_workpiece_frame() {
   same_frame_ = true;
 }
 
+WorkpieceFrame MotionFold::workpiece_frame() const {
+  WorkpieceFrame frame;
+  frame.g5x_mm = work_.g5x_mm;
+  frame.g92_mm = work_.g92_mm;
+  frame.rotation_deg = work_.rotation_deg;
+  for (std::size_t i = 0; i < 3; ++i) {
+    frame.offset_abc_deg[i] = work_.g5x_abc_deg[i] + work_.g92_abc_deg[i];
+  }
+  return frame;
+}
+
 Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion>& out) {
   Motion& motion = out.emplace_back();
   motion.kind = kind;
@@ -150,6 +161,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.to_abc_deg = abc_deg_;
   motion.spindle = spindles_[spindle_].state;
   motion.spindle_rpm = rpm_;
+  motion.tool_offset_mm = tool_offset_mm_;
   motion.path_mode = path_mode_;
   motion.blend_tolerance_mm = blend_tolerance_mm_;
   motion.merge_tolerance_mm = merge_tolerance_mm_;

@@ -72,6 +72,10 @@ class MotionFold {
   /// number of points do not fit, or the start is not known.
   FoldRemark fold_spline(const Spline& spline, SourceRef source, std::vector<Motion>& out);
 
+  /// Fixed by the first motion.
+  WorkpieceFrame workpiece_frame() const;
+  bool workpiece_frame_fixed() const { return work_fixed_; }
+
   int tool() const { return tool_; }
   bool has_rotary_motion() const { return has_rotary_motion_; }
   bool has_program_end() const { return has_program_end_; }

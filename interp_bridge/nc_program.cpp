@@ -243,7 +243,9 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
     return summary;
   }
   summary.files = files_ = session->prepared.files;
-  CanonicalReader reader(reader_options(*session), sink, summary, diagnostics);
+  CanonicalReaderOptions reading = reader_options(*session);
+  reading.feeder.frame = &frame_;
+  CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   ChildListener listener(session->process, reader, reader.feeder(), options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const ChildEnding ending = listener.listen(stop, [&] {

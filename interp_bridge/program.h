@@ -123,12 +123,15 @@ class Program {
   /// Files that SourceRef::file indexes, as far as they are known: within the sink, all that the
   /// motions name. From the thread that runs; afterwards as in the summary.
   const std::vector<std::string>& files() const { return files_; }
+  /// Known from the first batch that has a motion on. From the thread that runs.
+  const WorkpieceFrame& workpiece_frame() const { return frame_; }
 
   /// Share of the source already interpreted, for a progress bar; any thread.
   virtual double progress() const = 0;  ///< 0..1, or < 0 if not known
 
  protected:
   std::vector<std::string> files_;
+  WorkpieceFrame frame_;
 };
 
 /// A row of a LinuxCNC tool table, lengths in mm (the caller says what unit the table is in; mm by

@@ -26,7 +26,8 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       limits_known_(options.limits_known),
       limits_origin_(options.planner.limits_origin),
       timeline_(options, *this),
-      checks_(stock, log) {
+      checks_(stock, log),
+      axis_limits_(options.limits, log) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
@@ -59,6 +60,7 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
 void CutStage::begin_reporting() {
   flush_whole();
   checks_.forget_events();
+  axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();
   mounted_ = nullptr;
@@ -80,6 +82,7 @@ void CutStage::finish(bool whole) {
 }
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
+  axis_limits_.check(m, step);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     flush_whole();  // with the cutter that made these moves
     checks_.end_spindle_event();

@@ -9,6 +9,7 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
+#include "twin/axis_limits.h"
 #include "twin/checks.h"
 #include "twin/finding.h"
 #include "twin/timeline.h"
@@ -43,6 +44,8 @@ class CutStage : private StepSink {
  public:
   CutStage(StockModel& stock, ToolBook& tools, FindingLog& log, const TimelineOptions& options);
 
+  /// Before the first motion that moves: where the workpiece lies in the machine.
+  void set_frame(const WorkpieceFrame& frame) { axis_limits_.set_frame(frame); }
   /// Motions in program order. They are given to the model as soon as their times are known (which
   /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
@@ -109,6 +112,7 @@ class CutStage : private StepSink {
   std::span<const PathPiece> path_;  ///< of the present step
   OverFeed over_feed_;
   Checks checks_;
+  AxisLimitCheck axis_limits_;
   std::vector<ToolUse> uses_;
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
   std::uint32_t use_ = 0;

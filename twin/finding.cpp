@@ -44,6 +44,8 @@ const char* to_string(FindingId id) {
       return "interpreter-warning";
     case FindingId::kInterrupted:
       return "interrupted";
+    case FindingId::kAxisLimit:
+      return "axis-limit";
     case FindingId::kOverFeed:
       return "over-feed";
     case FindingId::kOutsideStock:

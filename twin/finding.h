@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -27,6 +28,7 @@ enum class FindingId : std::uint8_t {
   kInterpreterError,   ///< the interpreter refused a block
   kInterpreterWarning,
   kInterrupted,     ///< the run was stopped by the user
+  kAxisLimit,       ///< a motion leaves the soft limits of the machine
   kOverFeed,        ///< feed moves ask for more than the axes can do
   kOutsideStock,    ///< no feed move comes near the blank: offset or blank is wrong
   kNotSimulated,    ///< user M-codes, M66: what a machine would do there is not known
@@ -67,6 +69,10 @@ class FindingLog {
   using Handle = std::size_t;
 
   Handle add(Finding finding);
+  /// The event goes on, and is now better described so.
+  void reword(Handle handle, std::string text) {
+    if (handle < kept_.size()) kept_[handle].text = std::move(text);
+  }
   /// While muted nothing is kept or counted: for moves that are cut but not reported on.
   void set_muted(bool muted) { muted_ = muted; }
   /// The event goes on: its depth becomes the greater of the two.

@@ -223,6 +223,7 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
 /// False: no more motions are wanted.
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
+  stage.set_frame((second_pass_ ? *second_pass_ : *program_).workpiece_frame());
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);

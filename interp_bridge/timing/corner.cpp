@@ -48,8 +48,8 @@ struct BlendPlan {
   double cos_turn = 1;  ///< of the change of direction
   double sin_half = 0;  ///< of theta, half the angle between the arms
   double cos_half = 0;
-  double turn = 0;  ///< change of direction that the arc makes, radians
-  Vec3 u0{0}, u1{0};    ///< arms
+  double turn = 0;    ///< change of direction that the arc makes, radians
+  Vec3 u0{0}, u1{0};  ///< arms
   Vec3 binormal{0}, normal{0};
   double room0 = 0, room1 = 0;  ///< lengths that may be cut from the arms
   double tolerance = 0;
@@ -123,8 +123,8 @@ bool solve_plan(const AxisRates& rates, BlendPlan& plan, const Segment& previous
 
 /// One arm that is an arc: bends the arm towards its chord where the arc turns to the same side.
 struct CurvedArm {
-  bool inside = false;   ///< the blend lies inside the circle
-  double most_rad = 0;   ///< angle that may be cut away
+  bool inside = false;  ///< the blend lies inside the circle
+  double most_rad = 0;  ///< angle that may be cut away
   double radius = 0;
 };
 
@@ -186,8 +186,7 @@ bool place_at_line(const BlendPlan& plan, const Vec3& corner, const Vec3& u, boo
   const double way = std::min(std::abs(-along + root), std::abs(-along - root));
   place.center = corner + (line_first ? -way : way) * u + plan.radius * n;
   (line_first ? place.trim0 : place.trim1) = way;
-  (line_first ? place.trim1 : place.trim0) =
-      trim_angle(corner, place.center, arc.arc.center_mm);
+  (line_first ? place.trim1 : place.trim0) = trim_angle(corner, place.center, arc.arc.center_mm);
   return true;
 }
 
@@ -313,8 +312,7 @@ bool measure_kink(const AxisRates& rates, Segment& previous, Segment& next) {
   for (int i = 0; i < 3; ++i) {
     load = std::max(load, std::abs(change[i]) * rates.inertia[static_cast<std::size_t>(i)]);
   }
-  const bool curved =
-      previous.shape == SegmentShape::kArc || next.shape == SegmentShape::kArc;
+  const bool curved = previous.shape == SegmentShape::kArc || next.shape == SegmentShape::kArc;
   if (curved) load /= kAlongShare;
   const bool straight = load < rates.kink_ratio;
   previous.corner_speed = straight ? speed : speed * rates.kink_ratio / load;
@@ -353,8 +351,7 @@ CornerKind put_blend(const AxisRates& rates, const BlendPlace& place, Segment& p
   blend.tolerance_mm = previous.tolerance_mm;
   const bool line = previous.shape == SegmentShape::kLine;
   const double left = previous.length_mm - place.trim0;
-  const bool swallow =
-      line && !previous.begins_parabolic && left < rates.gap_s * blend.max_speed;
+  const bool swallow = line && !previous.begins_parabolic && left < rates.gap_s * blend.max_speed;
   trim(next, place.trim1, false);
   if (swallow) {
     blend.lead_mm = std::max(left, 0.0);

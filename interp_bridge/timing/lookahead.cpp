@@ -16,9 +16,7 @@ double stop_periods(SegmentEnd end, bool last) {
   return end == SegmentEnd::kExact || (end == SegmentEnd::kParabolic && last) ? 1.0 : 0.0;
 }
 
-std::size_t capacity_for(int depth) {
-  return std::bit_ceil(static_cast<std::size_t>(depth) + 8);
-}
+std::size_t capacity_for(int depth) { return std::bit_ceil(static_cast<std::size_t>(depth) + 8); }
 
 }  // namespace
 
@@ -54,8 +52,7 @@ void Lookahead::add(Segment segment) {
   const std::uint64_t depth = static_cast<std::uint64_t>(rates_.depth);
   while (queue_.size() > depth + 1) {
     // The youngest may still be shortened to half by its own corner, and must stop there.
-    const double horizon =
-        queue_[queue_.end() - 2].sum + segment.accel() * segment.length_mm;
+    const double horizon = queue_[queue_.end() - 2].sum + segment.accel() * segment.length_mm;
     retire(horizon);
   }
 }
@@ -126,8 +123,7 @@ void Lookahead::retire(double horizon) {
     speed_ = 0;
     profile.duration_s += stop_periods(segment.end, next == nullptr) * rates_.cycle_s;
     if (next != nullptr && segment.end == SegmentEnd::kParabolic) {
-      const ParabolicSpeeds speeds =
-          parabolic_speeds(segment, *next, target, next->target(rates_));
+      const ParabolicSpeeds speeds = parabolic_speeds(segment, *next, target, next->target(rates_));
       overlap = std::min(speeds.leaving, profile.peak_speed) / segment.accel();
     }
   }

@@ -25,8 +25,7 @@ class MergeChain {
   std::uint64_t first_piece() const { return first_piece_; }
   std::uint32_t piece_count() const { return static_cast<std::uint32_t>(ends_.size()); }
 
-  void begin(const Vec3& start, double speed, double blend_tolerance_mm,
-             std::uint64_t first_piece);
+  void begin(const Vec3& start, double speed, double blend_tolerance_mm, std::uint64_t first_piece);
   void append(const Vec3& end) { ends_.push_back(end); }
   /// May a feed to `end` join? O(length of the chain).
   bool links(const Vec3& end, double merge_tolerance_mm) const;

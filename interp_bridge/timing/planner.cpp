@@ -194,8 +194,8 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
     schedule.open_motion(timing, 0);
     return;
   }
-  const double speed = traverse ? std::numeric_limits<double>::infinity()
-                                : timing.programmed_mm_per_min / 60.0;
+  const double speed =
+      traverse ? std::numeric_limits<double>::infinity() : timing.programmed_mm_per_min / 60.0;
   const double cap = way.linear ? rates.linear_cap : rates.angular_cap;
   if (!arc) {
     timing.allowed_mm_per_min = std::min(way.speed, cap) * 60.0;
@@ -245,21 +245,24 @@ void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way
   if (m.kind == MotionKind::kProbe) halt();
 }
 
-/// Follows the spindle from its index pulse on: the carriage lags while it speeds up and catches
-/// up, so that the end is where pitch times revolutions is; then it brakes.
+/// Follows the spindle from its index pulse on; speeding up and braking cost one v / a together.
+/// The way out of a rigid tap follows the way in without a wait: the spindle turns round meanwhile.
 void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing,
                                      const StraightRates& way, double speed) {
   const double run = std::min(speed, way.speed);
-  const double index_wait = m.spindle_rpm > 0 ? 30.0 / m.spindle_rpm : 0.0;
-  schedule.alone(m, timing, index_wait + way.length / run + run / (2.0 * way.accel), run);
+  const bool retracts = begun && last.kind == MotionKind::kThread && m.from_mm == last.to_mm &&
+                        m.to_mm == last.from_mm;
+  double seconds = way.length / run;
+  if (!retracts) seconds += 30.0 / m.spindle_rpm + run / way.accel;
+  schedule.alone(m, timing, seconds, run);
 }
 
 void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, double speed,
                                            const Motion& m) {
   const double tolerance = static_cast<double>(m.merge_tolerance_mm);
   const double blend = static_cast<double>(m.blend_tolerance_mm);
-  if (!chain.empty() && !(chain.speed() == speed && chain.tolerance_mm() == blend &&
-                          chain.links(to, tolerance))) {
+  if (!chain.empty() &&
+      !(chain.speed() == speed && chain.tolerance_mm() == blend && chain.links(to, tolerance))) {
     flush_chain();
   }
   const std::uint64_t piece = schedule.add_piece(glm::length(to - from));

@@ -93,11 +93,12 @@ class MotionPlanSink {
 /// the machine (G10 L2 R). U, V, W take no part. [TRAJ]MAX_LINEAR_ACCELERATION is not used:
 /// LinuxCNC's planner does not either. Corners that the planner blends by overlapping two segments
 /// in time (rotary moves, corners that no arc fits) are drawn sharp in the path; the real tool
-/// passes inside. Steps that take no time have no path. Overrides, pauses and jerk limits (2.10) are not modelled.
+/// passes inside. Steps that take no time have no path. Overrides, pauses and jerk limits (2.10)
+/// are not modelled.
 ///
-/// Threads (G33, G76) run at pitch times speed and wait for the spindle's index: half a revolution
-/// on average. Nothing is known of moves without a start (Motion::start_known) or with no feed in
-/// force: they take no time.
+/// Threads (G33, G76, and the way in of a rigid tap, G33.1) run at pitch times speed and wait for
+/// the spindle's index: half a revolution on average. Nothing is known of moves without a start
+/// (Motion::start_known) or with no feed in force: they take no time.
 ///
 /// Cost: under 1 us a motion, about 0.3 us on average on CAM paths. Memory does not grow with the
 /// program; nothing is allocated once the queues have reached their size.
@@ -113,8 +114,8 @@ class TrajectoryPlanner {
   /// Brings the machine to a stop and reports what is left. More may be pushed afterwards.
   void finish();
 
-  double clock_s() const;         ///< end of the last motion that was reported
-  std::uint64_t stops() const;    ///< M0, M1, M60: their waiting is not counted
+  double clock_s() const;       ///< end of the last motion that was reported
+  std::uint64_t stops() const;  ///< M0, M1, M60: their waiting is not counted
   /// One sentence for the report: what was modelled, with which limits, and where they are from.
   std::string time_model() const;
 

@@ -158,9 +158,8 @@ void Schedule::send_arc(const Segment& segment) {
 
 void Schedule::send_blend_half(const Segment& segment, bool first) {
   const Vec3 start = segment.from + segment.lead_mm * segment.tangent_from;
-  const Vec3 middle =
-      segment.arc.center_mm +
-      turned(start - segment.arc.center_mm, segment.arc.axis, segment.arc.sweep_rad / 2);
+  const Vec3 middle = segment.arc.center_mm + turned(start - segment.arc.center_mm,
+                                                     segment.arc.axis, segment.arc.sweep_rad / 2);
   PathPiece piece;
   piece.curved = true;
   piece.from_mm = first ? start : middle;

@@ -14,12 +14,12 @@ namespace kerf {
 /// Limits of X, Y, Z, A, B, C in the form that is needed per segment: seconds per mm (degree) and
 /// seconds squared per mm; 0 where an axis is absent or has no limit.
 struct AxisRates {
-  std::array<double, 6> slowness{};    ///< 1 / max_velocity
-  std::array<double, 6> inertia{};     ///< 1 / max_acceleration
-  Vec3 velocity{0};                    ///< of X, Y, Z; 0 = no limit
-  Vec3 acceleration{0};                ///< of X, Y, Z; 0 = no limit
-  double linear_cap = 0;               ///< mm/s
-  double angular_cap = 0;              ///< deg/s
+  std::array<double, 6> slowness{};  ///< 1 / max_velocity
+  std::array<double, 6> inertia{};   ///< 1 / max_acceleration
+  Vec3 velocity{0};                  ///< of X, Y, Z; 0 = no limit
+  Vec3 acceleration{0};              ///< of X, Y, Z; 0 = no limit
+  double linear_cap = 0;             ///< mm/s
+  double angular_cap = 0;            ///< deg/s
   double cycle_s = 0.001;
   double kink_ratio = 0.1;
   double gap_s = 0.004;  ///< a line shorter than this between two corners is swallowed by one
@@ -60,12 +60,12 @@ struct Segment {
   double request = 0;             ///< speed that the program wants, mm/s
   double max_speed = 0;           ///< that the machine can do along it
   double max_accel = 0;
-  double along_share = 1;     ///< of max_accel that is left along a curve
-  double corner_speed = -1;   ///< limit at its end, -1: none
-  double corner_load = 0;     ///< share of the acceleration kept for turning at its end
+  double along_share = 1;       ///< of max_accel that is left along a curve
+  double corner_speed = -1;     ///< limit at its end, -1: none
+  double corner_load = 0;       ///< share of the acceleration kept for turning at its end
   double corner_load_from = 0;  ///< ... at its start
-  double tolerance_mm = 0;    ///< G64 P
-  Vec3 from{0}, to{0};        ///< untrimmed ends
+  double tolerance_mm = 0;      ///< G64 P
+  Vec3 from{0}, to{0};          ///< untrimmed ends
   Vec3 tangent_from{0}, tangent_to{0};
   ArcGeometry arc;       ///< kArc, kBlend
   double radius_mm = 0;  ///< kArc, kBlend

@@ -1,0 +1,331 @@
+// The planner against closed forms and against itself.
+#include "interp_bridge/timing/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "tests/interp_bridge/timing/planner_test_support.h"
+
+namespace kerf {
+namespace {
+
+/// Servo periods that a stop may cost beyond its closed form.
+constexpr double kStop_s = 0.0021;
+
+TEST(Planner, LongFeedIsATrapezoidWithHalfTheAccelerationUnderG64) {
+  // t = L / v + v / a, a halved before a stop: 100/50 + 50/250.
+  EXPECT_NEAR(plan_of(Path().feed(3000).line(100, 0).motions).clock_s, 2.2, kStop_s);
+  EXPECT_NEAR(plan_of(Path(PathMode::kExactStop).feed(3000).line(100, 0).motions).clock_s, 2.1,
+              kStop_s);
+}
+
+TEST(Planner, ShortFeedIsATriangle) {
+  // t = 2 sqrt(L / a): 1 mm never reaches 50 mm/s.
+  const Plan plan = plan_of(Path(PathMode::kExactStop).feed(3000).line(1, 0).motions);
+  EXPECT_NEAR(plan.clock_s, 2 * std::sqrt(1 / 500.0), kStop_s);
+  EXPECT_NEAR(plan.timings[0].peak_mm_per_min, 60 * std::sqrt(500.0), 1e-6);
+  EXPECT_EQ(plan.timings[0].programmed_mm_per_min, 3000);
+  EXPECT_EQ(plan.timings[0].allowed_mm_per_min, 6000);
+}
+
+TEST(Planner, SquareStopsAtEveryCorner) {
+  const auto square = [](PathMode mode) {
+    return Path(mode).feed(3000).line(20, 0).line(20, 20).line(0, 20).line(0, 0).motions;
+  };
+  EXPECT_NEAR(plan_of(square(PathMode::kExactStop)).clock_s, 4 * (20 / 50.0 + 50 / 500.0),
+              4 * kStop_s);
+  // G61 keeps a tenth of the acceleration for the corners where it stops.
+  EXPECT_NEAR(plan_of(square(PathMode::kExactPath)).clock_s, 4 * (20 / 50.0 + 50 / 450.0),
+              4 * kStop_s);
+}
+
+TEST(Planner, ToleranceLimitsHowFarCornersAreCut) {
+  PlannerOptions options;
+  options.with_path = true;
+  const auto square = [](double tolerance) {
+    return Path(PathMode::kContinuous, tolerance)
+        .feed(3000)
+        .line(20, 0)
+        .line(20, 20)
+        .line(0, 20)
+        .line(0, 0)
+        .motions;
+  };
+  const MachineLimits mill = MachineLimits::small_mill();
+  for (const double tolerance : {0.01, 0.1, 0.5}) {
+    const Plan plan = plan_of(square(tolerance), mill, options);
+    // The arc that passes the corner at `tolerance`: R = tolerance / (sqrt 2 - 1) saves
+    // (2 - pi/2) R at each of three corners.
+    const double radius = tolerance / (std::sqrt(2.0) - 1);
+    EXPECT_NEAR(path_length(plan), 80 - 3 * (2 - kPi / 2) * radius, 1e-6);
+    double nearest = 1e9;
+    for (const PathPiece& p : plan.pieces) {
+      nearest = std::min(nearest, glm::length(p.from_mm - Vec3(20, 0, 0)));
+    }
+    EXPECT_NEAR(nearest, tolerance, 1e-6);
+  }
+  // Without P as far as the speed wants: a real machine was measured at 71.8 mm.
+  EXPECT_NEAR(path_length(plan_of(square(0), mill, options)), 71.8, 0.1);
+}
+
+TEST(Planner, CirclesKeepToTheirCentripetalAcceleration) {
+  // v^2 / r = 0.866 a; the rest is left for speeding up.
+  const Plan plan =
+      plan_of(Path(PathMode::kExactStop).feed(6000).arc(0, 0, -1, 0, 40 * kPi).motions);
+  const double speed = std::sqrt(500 * std::sqrt(3.0) / 2);
+  EXPECT_NEAR(plan.timings[0].allowed_mm_per_min, 60 * speed, 1e-6);
+  EXPECT_NEAR(plan.timings[0].peak_mm_per_min, 60 * speed, 1e-6);
+  EXPECT_NEAR(plan.clock_s, 40 * kPi / speed + speed / 250, kStop_s);
+}
+
+TEST(Planner, FeedAboveWhatTheAxesDoIsTold) {
+  const Plan plan =
+      plan_of(Path().feed(9000).line(100, 0).line(100, 0, -80).line(0, 0, -80).motions);
+  EXPECT_EQ(plan.timings[0].allowed_mm_per_min, 6000);
+  EXPECT_EQ(plan.timings[1].allowed_mm_per_min, 3600);  // Z is slower
+  EXPECT_EQ(plan.timings[0].programmed_mm_per_min, 9000);
+  for (const MotionTiming& t : plan.timings) {
+    EXPECT_LE(t.peak_mm_per_min, t.allowed_mm_per_min * (1 + 1e-12));
+  }
+  // The axes alone would allow a diagonal traverse 141 mm/s; the machine's cap is 100.
+  EXPECT_NEAR(plan_of(Path().rapid(300, 300).motions).timings[0].peak_mm_per_min, 6000, 1e-9);
+}
+
+TEST(Planner, SplittingAStraightFeedChangesNothing) {
+  for (const PathMode mode : {PathMode::kExactPath, PathMode::kContinuous}) {
+    const double whole = plan_of(Path(mode).feed(3000).line(60, 30).motions).clock_s;
+    for (const int parts : {2, 7, 40}) {
+      Path path(mode);
+      path.feed(3000);
+      for (int i = 1; i <= parts; ++i) path.line(60.0 * i / parts, 30.0 * i / parts);
+      const double split = plan_of(path.motions).clock_s;
+      // Only the last part brakes at half acceleration (G64): never slower than the whole.
+      EXPECT_LE(split, whole + 1e-3);
+      EXPECT_GT(split,
+                plan_of(Path(PathMode::kExactStop).feed(3000).line(60, 30).motions).clock_s - 2e-3);
+    }
+  }
+}
+
+TEST(Planner, MergedFeedsShareTheTimeOfOneLine) {
+  Path path(PathMode::kContinuous, 0.01, 0.01);
+  path.feed(3000);
+  for (int i = 1; i <= 100; ++i) path.line(i, i % 2 == 0 ? 0 : 0.005);
+  const Plan plan = plan_of(path.motions);
+  EXPECT_NEAR(plan.clock_s, plan_of(Path().feed(3000).line(100, 0).motions).clock_s, 1e-6);
+  ASSERT_EQ(plan.timings.size(), 100u);
+  for (const MotionTiming& t : plan.timings) EXPECT_NEAR(t.duration_s, 0.022, 1e-4);
+}
+
+TEST(Planner, ServoPeriodCapsTheSpeedOfDenseCode) {
+  Path path;
+  path.feed(60000);
+  for (int i = 1; i <= 2000; ++i) path.line(i * 0.02, 0);
+  const Plan plan = plan_of(path.motions);
+  for (const MotionTiming& t : plan.timings) EXPECT_GE(t.duration_s, 0.001 - 1e-9);
+}
+
+TEST(Planner, ScalesWithLengthsSpeedsAndAccelerations) {
+  // Ten times the lengths, speeds and accelerations: the same time.
+  const auto path = [](double s) {
+    return Path(PathMode::kContinuous, 0.1 * s)
+        .feed(3000 * s)
+        .line(30 * s, 0)
+        .line(35 * s, 20 * s)
+        .arc(15 * s, 20 * s, 25 * s, 20 * s, kPi)
+        .line(15 * s, 0, 4 * s)
+        .motions;
+  };
+  MachineLimits large = MachineLimits::small_mill();
+  for (AxisLimits& axis : large.axes) {
+    axis.max_velocity *= 10;
+    axis.max_acceleration *= 10;
+  }
+  large.max_linear_velocity_mm_per_s *= 10;
+  const double time = plan_of(path(1)).clock_s;
+  EXPECT_NEAR(plan_of(path(10), large).clock_s, time, 1e-5 * time);
+}
+
+TEST(Planner, WaitsAndStops) {
+  Path path;
+  path.feed(3000).line(10, 0).dwell(1.25).step(MotionKind::kStop).line(20, 0);
+  path.step(MotionKind::kProgramEnd);
+  Plan plan;
+  TrajectoryPlanner planner(MachineLimits::small_mill(), {}, plan);
+  for (const Motion& m : path.motions) planner.push(m);
+  // The machine stands at the dwell: everything before it, and it, is known at once.
+  EXPECT_GE(plan.timings.size(), 3u);
+  planner.finish();
+  ASSERT_EQ(plan.timings.size(), path.motions.size());
+  EXPECT_EQ(planner.stops(), 1u);
+  EXPECT_NEAR(plan.timings[1].duration_s, 1.25, 0.005);
+  EXPECT_EQ(plan.timings[2].duration_s, 0);
+  PlannerOptions slow;
+  slow.tool_change_s = 8;
+  slow.spindle_start_s = 2;
+  Path tools;
+  tools.rapid(10, 0).step(MotionKind::kToolChange);
+  tools.state().spindle = SpindleState::kClockwise;
+  tools.state().spindle_rpm = 6000;
+  tools.rapid(0, 0);
+  const double quick = plan_of(tools.motions).clock_s;
+  EXPECT_NEAR(plan_of(tools.motions, MachineLimits::small_mill(), slow).clock_s, quick + 10, 1e-9);
+}
+
+TEST(Planner, ThreadsFollowTheSpindle) {
+  Path path;
+  path.state().spindle = SpindleState::kClockwise;
+  path.state().spindle_rpm = 600;
+  path.rapid(0, 0, -10).rapid(0, 0, 0);
+  for (Motion& m : path.motions) {
+    m.kind = MotionKind::kThread;
+    m.feed_mm_per_min = 1.5;
+  }
+  // Half a turn of waiting, 10 mm at 15 mm/s, 15 mm/s at 300 mm/s2; a rigid tap comes out at once.
+  const Plan plan = plan_of(path.motions);
+  EXPECT_NEAR(plan.timings[0].duration_s, 0.05 + 10 / 15.0 + 15 / 300.0, 1e-9);
+  EXPECT_NEAR(plan.timings[1].duration_s, 10 / 15.0, 1e-9);
+  EXPECT_EQ(plan.timings[0].programmed_mm_per_min, 900);
+}
+
+TEST(Planner, RotaryMovesTakeFeedAsDegrees) {
+  // 3000 deg/min = 50 deg/s, half of 360 deg/s2 at both ends.
+  EXPECT_NEAR(plan_of(Path().feed(3000).turn(90).motions).clock_s, 1.8 + 50 / 180.0, kStop_s);
+  const Plan plan = plan_of(Path().feed(9000).turn(90).motions);
+  EXPECT_EQ(plan.timings[0].allowed_mm_per_min, 5400);
+}
+
+TEST(Planner, UnknownStartsAndMissingFeedsTakeNoTime) {
+  Path path;
+  path.rapid(100, 0).feed(0).line(50, 0).feed(600).line(50, 0).line(60, 0);
+  path.motions[0].start_known = false;
+  const Plan plan = plan_of(path.motions);
+  ASSERT_EQ(plan.timings.size(), 4u);
+  EXPECT_EQ(plan.timings[0].duration_s, 0);
+  EXPECT_EQ(plan.timings[1].duration_s, 0);
+  EXPECT_EQ(plan.timings[2].duration_s, 0);
+  EXPECT_GT(plan.timings[3].duration_s, 1);
+}
+
+/// A path of lines and arcs that turn at random, some tangent, some folding back.
+std::vector<Motion> random_path(unsigned seed, int count) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const std::array<PathMode, 3> modes = {PathMode::kContinuous, PathMode::kExactPath,
+                                         PathMode::kExactStop};
+  Path path(modes[seed % 5 == 0 ? 1 : (seed % 7 == 0 ? 2 : 0)], seed % 3 == 0 ? 0 : 0.02,
+            seed % 2 == 0 ? 0 : 0.02);
+  path.feed(600 + 6000 * unit(random));
+  double x = 0, y = 0, heading = 0;
+  for (int i = 0; i < count; ++i) {
+    heading += (unit(random) - 0.5) * (unit(random) < 0.7 ? 0.3 : 6);
+    const double length = std::pow(10.0, 2 * unit(random) - 1);
+    const double kind = unit(random);
+    if (kind < 0.15) {
+      const double sweep = (unit(random) - 0.5) * 6;
+      const double side = sweep > 0 ? 1 : -1;
+      const double cx = x - side * length * std::sin(heading);
+      const double cy = y + side * length * std::cos(heading);
+      const double c = std::cos(sweep), s = std::sin(sweep);
+      const double dx = x - cx, dy = y - cy;
+      x = cx + c * dx - s * dy;
+      y = cy + s * dx + c * dy;
+      path.arc(x, y, cx, cy, sweep);
+      heading += sweep;
+      continue;
+    }
+    x += length * std::cos(heading);
+    y += length * std::sin(heading);
+    if (kind < 0.25) {
+      path.rapid(x, y);
+    } else {
+      path.line(x, y);
+    }
+  }
+  return path.motions;
+}
+
+TEST(Planner, ResultsComeInOrderAndLieEndToEnd) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const std::vector<Motion> motions = random_path(seed, 300);
+    const Plan plan = plan_of(motions);
+    ASSERT_EQ(plan.timings.size(), motions.size()) << "seed " << seed;
+    double clock = 0;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      EXPECT_EQ(plan.timings[i].index, i);
+      EXPECT_NEAR(plan.timings[i].start_s, clock, 1e-9) << "seed " << seed << " motion " << i;
+      EXPECT_GE(plan.timings[i].duration_s, 0);
+      EXPECT_TRUE(std::isfinite(plan.timings[i].duration_s));
+      clock = plan.timings[i].start_s + plan.timings[i].duration_s;
+    }
+    EXPECT_NEAR(clock, plan.clock_s, 1e-9);
+  }
+}
+
+TEST(Planner, PlannedPathHasNoGapsAndIsNotRunFasterThanAllowed) {
+  PlannerOptions options;
+  options.with_path = true;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const std::vector<Motion> motions = random_path(seed, 300);
+    const Plan plan = plan_of(motions, MachineLimits::small_mill(), options);
+    ASSERT_FALSE(plan.pieces.empty());
+    double longest = 0;
+    for (std::size_t i = 1; i < plan.pieces.size(); ++i) {
+      const double gap = glm::length(plan.pieces[i].from_mm - plan.pieces[i - 1].to_mm);
+      longest = std::max(longest, gap);
+      const Vec3 r0 = plan.pieces[i].from_mm - plan.pieces[i].arc.center_mm;
+      const Vec3 r1 = plan.pieces[i].to_mm - plan.pieces[i].arc.center_mm;
+      if (plan.pieces[i].curved) {
+        EXPECT_NEAR(glm::length(r0), glm::length(r1), 1e-6) << "seed " << seed;
+      }
+    }
+    EXPECT_LT(longest, 1e-6) << "seed " << seed;
+    EXPECT_LT(glm::length(plan.pieces.back().to_mm - motions.back().to_mm), 1e-9);
+    EXPECT_GE(plan.clock_s, path_length(plan) / 100.0) << "seed " << seed;
+  }
+}
+
+TEST(Planner, WithTheProgrammedPathUnderG61) {
+  PlannerOptions options;
+  options.with_path = true;
+  std::vector<Motion> motions = random_path(3, 100);
+  for (Motion& m : motions) {
+    m.path_mode = PathMode::kExactPath;
+    m.merge_tolerance_mm = 0;
+  }
+  const Plan plan = plan_of(motions, MachineLimits::small_mill(), options);
+  ASSERT_EQ(plan.pieces.size(), motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    EXPECT_EQ(plan.pieces[i].from_mm, motions[i].from_mm);
+    EXPECT_EQ(plan.pieces[i].to_mm, motions[i].to_mm);
+    EXPECT_EQ(plan.pieces_before[i], i + 1);
+  }
+}
+
+TEST(Planner, DelayIsBounded) {
+  Plan plan;
+  TrajectoryPlanner planner(MachineLimits::small_mill(), {}, plan);
+  Path path;
+  path.feed(3000);
+  for (int i = 1; i <= 5000; ++i) path.line(i, i % 2);
+  for (std::size_t i = 0; i < path.motions.size(); ++i) {
+    planner.push(path.motions[i]);
+    ASSERT_LE(i + 1 - plan.timings.size(), 60u);
+  }
+}
+
+TEST(Planner, SaysWhichLimitsItUsed) {
+  Plan plan;
+  const TrajectoryPlanner planner(MachineLimits::small_mill(), {}, plan);
+  EXPECT_EQ(planner.time_model(),
+            "LinuxCNC 2.9 trajectory planner, limits of a small mill (no INI given): X 100 mm/s "
+            "500 mm/s2, Y 100 mm/s 500 mm/s2, Z 60 mm/s 300 mm/s2, A 90 deg/s 360 deg/s2, B 90 "
+            "deg/s 360 deg/s2, C 90 deg/s 360 deg/s2, at most 100 mm/s along the path, servo "
+            "period 1 ms; tool change 3 I/O periods of 0.1 s and 0 s, spindle start 0 s, M0 and "
+            "M1 no time");
+}
+
+}  // namespace
+}  // namespace kerf
