@@ -1,6 +1,8 @@
 // A program read by kerf-interp, where it stands.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -35,9 +37,35 @@ std::string tool_row(const ToolTableRow& row, double unit_mm, bool lengths) {
 
 /// The INI of a machine that has none: subroutines may also stand where kerf was started, as on the
 /// text road.
-std::string makeshift_ini(const std::string& folder) {
-  return "[RS274NGC]\nSUBROUTINE_PATH = " + folder + "\n";
+std::string makeshift_ini(const std::string& folder, bool random_toolchanger) {
+  return fmt::format("[RS274NGC]\nSUBROUTINE_PATH = {}\n[EMCIO]\nRANDOM_TOOLCHANGER = {}\n", folder,
+                     random_toolchanger ? 1 : 0);
 }
+
+/// Size and time of a file's contents, to see whether they changed while they were read.
+class Contents {
+ public:
+  explicit Contents(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    known_ = fd_ >= 0 && fstat(fd_, &begin_) == 0;
+  }
+  Contents(const Contents&) = delete;
+  Contents& operator=(const Contents&) = delete;
+  ~Contents() {
+    if (fd_ >= 0) close(fd_);
+  }
+  /// A file that was replaced under its name has not changed: it is read as it was.
+  bool changed() const {
+    struct stat now {};
+    if (!known_ || fstat(fd_, &now) != 0) return false;
+    return now.st_size != begin_.st_size || now.st_mtim.tv_sec != begin_.st_mtim.tv_sec ||
+           now.st_mtim.tv_nsec != begin_.st_mtim.tv_nsec;
+  }
+
+ private:
+  int fd_;
+  struct stat begin_ {};
+  bool known_ = false;
+};
 
 class BridgeProgram final : public Program {
  public:
@@ -69,7 +97,6 @@ class BridgeProgram final : public Program {
   };
   Result<Session> start_session() const;
   Result<std::vector<std::string>> arguments(const std::string& home) const;
-  void name_new_files(const std::vector<std::string>& raw);
   std::string shown_name(const std::string& raw) const;
   void report(Severity severity, SourceRef place, std::string message, std::string hint,
               const Reading& reading) const;
@@ -141,7 +168,8 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
   if (child.ini.empty()) {
     child.ini = home + "/kerf.ini";
     std::ofstream ini(child.ini);
-    if (!(ini << makeshift_ini(fs::current_path().string()) << std::flush)) {
+    if (!(ini << makeshift_ini(fs::current_path().string(), options_.machine.random_toolchanger)
+              << std::flush)) {
       return Error{fmt::format("cannot write {}: {}", child.ini, std::strerror(errno))};
     }
   }
@@ -167,10 +195,6 @@ std::string BridgeProgram::shown_name(const std::string& raw) const {
   return here.empty() || *here.begin() == ".." ? path.string() : here.string();
 }
 
-void BridgeProgram::name_new_files(const std::vector<std::string>& raw) {
-  for (std::size_t i = files_.size(); i < raw.size(); ++i) files_.push_back(shown_name(raw[i]));
-}
-
 void BridgeProgram::report(Severity severity, SourceRef place, std::string message,
                            std::string hint, const Reading& reading) const {
   Diagnostic diagnostic;
@@ -188,14 +212,27 @@ void BridgeProgram::report_fault(const InterpreterFault& fault, const Reading& r
   if (!fault.callers.empty() && place.file < files_.size()) {
     place.line = find_line(files_[place.file], fault.echo, place.line);
   }
-  Diagnostic diagnostic =
-      placed_diagnostic(fault.message, place, files_, reading.summary.program_lines);
+  // Before the first block the fault is of the INI or of the parameters, and the interpreter rather
+  // prints than returns it.
+  const bool of_setup = place.line == 0 && fault.callers.empty();
+  std::string message = one_line(of_setup ? reading.stderr_text : fault.message);
+  if (message.empty()) message = one_line(fault.message);
+  // An error of the code that serves a remap comes without a line; that of the call is the nearest.
+  if (place.line == 0 && !of_setup) place = fault.callers.front();
+  Diagnostic diagnostic = placed_diagnostic(message, place, files_, reading.summary.program_lines);
+  const InterpreterSetup& machine = options_.machine;
+  if (of_setup && fault.message.rfind("Parameter file", 0) == 0) {
+    diagnostic.file = machine.parameter_path;
+  } else if (of_setup && !reading.stderr_text.empty() && !machine.ini_path.empty()) {
+    diagnostic.file = machine.ini_path;
+  }
   if (diagnostic.excerpt.empty() && diagnostic.severity == Severity::kError) {
     diagnostic.excerpt = fault.echo;
   }
   std::string callers;
   for (const SourceRef& caller : fault.callers) {
-    if (caller.file >= files_.size()) continue;
+    // A call that fails is its own caller.
+    if (caller.file >= files_.size() || (callers.empty() && caller == fault.place)) continue;
     callers += fmt::format("{}{}:{}", callers.empty() ? "called from " : ", from ",
                            files_[caller.file], caller.line);
   }
@@ -269,6 +306,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.files = files_ = {options_.path};
   summary.program_lines = survey_.lines;
   summary.interpreter = "bridge";
+  const Contents contents(options_.path);
   auto session = start_session();
   if (!session) {
     Diagnostic diagnostic;
@@ -277,9 +315,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
     diagnostics.push_back(std::move(diagnostic));
     return summary;
   }
-  std::vector<std::string> raw_files;
   const MotionSink named_sink = [&](std::span<const Motion> motions) {
-    name_new_files(raw_files);
+    if (files_.size() != summary.files.size()) files_ = summary.files;
     return sink(motions);
   };
   MotionFeederOptions feeding;
@@ -287,8 +324,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.max_commands = options_.max_commands;
   feeding.frame = &frame_;
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
-  RecordReader records(feeder, raw_files, summary);
-  files_.clear();  // named again by the first record
+  RecordReader records(
+      feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);
   ChildListener listener(session->process, records, feeder, options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const ChildEnding ending = listener.listen(stop, [&] {
@@ -296,11 +333,15 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
     if (place.file == 0) progress_ = std::min(1.0, static_cast<double>(place.line) / lines);
   });
   feeder.finish();
-  name_new_files(raw_files);
-  if (files_.empty()) files_.push_back(options_.path);
-  summary.files = files_;
+  if (summary.files.empty()) summary.files.push_back(options_.path);  // it never spoke
+  files_ = summary.files;
   const Reading reading{records, feeder, listener.stderr_text(), summary, diagnostics};
   report_ending(ending, *session, reading);
+  if (contents.changed()) {
+    report(Severity::kError, {0, 0},
+           "the program was changed while it was read: this result is that of no program",
+           "run it again", reading);
+  }
   if (ending == ChildEnding::kComplete) progress_ = 1;
   summary.interpret_s = std::chrono::duration<double>(Clock::now() - begin).count();
   return summary;

@@ -84,11 +84,12 @@ bool survey_file(const std::string& path, TextSurvey& survey, Diagnostics& diagn
 
 /// Faults of single rows are for whoever reads the table for its shapes (read_tool_table); they are
 /// not said twice.
-bool read_tools(const std::string& path, std::vector<ToolTableRow>& rows,
+bool read_tools(const ProgramOptions& options, std::vector<ToolTableRow>& rows,
                 Diagnostics& diagnostics) {
-  if (path.empty()) return true;
+  if (options.tool_table_path.empty()) return true;
   Diagnostics row_faults;
-  auto read = read_tool_table(path, row_faults);
+  auto read = read_tool_table(options.tool_table_path, row_faults,
+                              options.machine.inch_machine ? 25.4 : 1.0);
   if (read) {
     rows = std::move(*read);
     return true;
@@ -115,7 +116,7 @@ std::string find_kerf_interp(const std::string& given) {
 
 std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
   std::vector<ToolTableRow> tools;
-  if (!read_tools(options.tool_table_path, tools, diagnostics)) return nullptr;
+  if (!read_tools(options, tools, diagnostics)) return nullptr;
   std::vector<int> tool_by_index;
   if (!tools.empty()) {
     tool_by_index.push_back(0);

@@ -55,8 +55,8 @@ struct ProgramOptions {
   /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
   /// stdin.
   std::string path;
-  /// LinuxCNC tool.tbl in mm. Empty: the tools that the program names, diameter 0. Faults of single
-  /// rows are reported by read_tool_table, not here.
+  /// LinuxCNC tool.tbl, in mm or in the unit of `machine`. Empty: the tools that the program names,
+  /// diameter 0. Faults of single rows are reported by read_tool_table, not here.
   std::string tool_table_path;
   bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
   InterpreterChoice interpreter = InterpreterChoice::kAuto;
@@ -150,7 +150,8 @@ struct ToolTableRow {
 
 /// Reads tool.tbl as LinuxCNC does, but accepts tabs (with a warning). Bad rows are diagnostics
 /// with line and column.
-Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path,
-                                                  Diagnostics& diagnostics);
+/// `unit_mm`: mm in one unit of the table, 1 or 25.4.
+Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagnostics& diagnostics,
+                                                  double unit_mm = 1);
 
 }  // namespace kerf

@@ -33,11 +33,31 @@ std::uint8_t full_count(CanonicalName name, std::uint8_t count) {
   }
 }
 
+/// Calls whose argument is a text; all others have numbers or nothing.
+constexpr bool carries_text(CanonicalName name) {
+  switch (name) {
+    case CanonicalName::kComment:
+    case CanonicalName::kMessage:
+    case CanonicalName::kLog:
+    case CanonicalName::kLogOpen:
+    case CanonicalName::kLogAppend:
+    case CanonicalName::kCanonError:
+      return true;
+    default:
+      return false;
+  }
+}
+static_assert(kCanonicalNameCount <= records::kFile, "codes of calls and of other records meet");
+
 }  // namespace
 
-RecordReader::RecordReader(MotionFeeder& feeder, std::vector<std::string>& files,
-                           ProgramSummary& summary)
-    : feeder_(feeder), files_(files), summary_(summary), buffer_(kBufferBytes) {}
+RecordReader::RecordReader(MotionFeeder& feeder, FileNames file_names, ProgramSummary& summary)
+    : feeder_(feeder),
+      file_names_(std::move(file_names)),
+      summary_(summary),
+      buffer_(kBufferBytes) {
+  summary_.files.clear();
+}
 
 std::span<char> RecordReader::room() { return std::span<char>(buffer_).subspan(filled_); }
 
@@ -87,6 +107,9 @@ bool RecordReader::take_command(const records::Head& head, const char* payload) 
   command_.name = static_cast<CanonicalName>(head.code & 0x7f);
   command_.argument_count = 0;
   command_.text = {};
+  if (records::is_text(head.code) != carries_text(command_.name)) {
+    return refuse("a command of the wrong form");
+  }
   if (records::is_text(head.code)) {
     command_.text = {payload, head.count};
     // As a listing counts them: COMMENT("..") has one argument.
@@ -138,7 +161,7 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     case records::kCaller: {
       if (faults_.empty() || head.count != 1) return refuse("a caller without an error");
       const double file = number_at(payload, 0);
-      if (!(file >= 0 && file < static_cast<double>(files_.size()))) {
+      if (!(file >= 0 && file < static_cast<double>(summary_.files.size()))) {
         return refuse("a caller in an unknown file");
       }
       if (faults_.back().callers.size() < kMaxCallers) {
@@ -155,11 +178,12 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
 }
 
 bool RecordReader::take_file(const records::Head& head, std::string_view name) {
-  if (name.empty() ? head.line >= files_.size() : head.line != files_.size()) {
+  std::vector<std::string>& files = summary_.files;
+  if (name.empty() ? head.line >= files.size() : head.line != files.size()) {
     return refuse("a file out of order");
   }
-  if (files_.size() >= kMaxFiles) return refuse("too many files");
-  if (!name.empty()) files_.emplace_back(name);
+  if (files.size() >= kMaxFiles) return refuse("too many files");
+  if (!name.empty()) files.push_back(file_names_(std::string(name)));
   file_ = head.line;
   return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,9 +27,12 @@ struct InterpreterFault {
 /// no record ends the reading with damage(). One thread.
 class RecordReader final : public ByteReader {
  public:
-  /// All references must outlive the reader. `feeder` gets the commands, `files` a name for every
-  /// file that SourceRef::file then indexes (as the interpreter names it), `summary` the notes.
-  RecordReader(MotionFeeder& feeder, std::vector<std::string>& files, ProgramSummary& summary);
+  /// What the user calls a file that the interpreter names so.
+  using FileNames = std::function<std::string(const std::string&)>;
+
+  /// All references must outlive the reader. `feeder` gets the commands, `summary` the notes and,
+  /// as soon as a record names it, every file that SourceRef::file indexes (its list starts anew).
+  RecordReader(MotionFeeder& feeder, FileNames file_names, ProgramSummary& summary);
 
   std::span<char> room() override;
   /// False: the feeder is done, the stream is damaged or at its end.
@@ -51,7 +55,7 @@ class RecordReader final : public ByteReader {
   bool refuse(const char* what);
 
   MotionFeeder& feeder_;
-  std::vector<std::string>& files_;
+  FileNames file_names_;
   ProgramSummary& summary_;
   std::vector<char> buffer_;
   std::size_t filled_ = 0;

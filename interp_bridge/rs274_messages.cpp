@@ -100,19 +100,20 @@ std::uint32_t find_line(const std::string& path, const std::string& text, std::u
   return after;
 }
 
-InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
+namespace {
+
+std::vector<std::string_view> telling_lines(std::string_view text) {
   std::vector<std::string_view> lines;
-  while (!stderr_text.empty()) {
-    const std::string_view line = stderr_text.substr(0, stderr_text.find('\n'));
-    stderr_text.remove_prefix(std::min(stderr_text.size(), line.size() + 1));
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
     if (!is_routine(line)) lines.push_back(line);
   }
-  InterpreterMessage result;
-  if (lines.empty()) return result;
-  if (lines.size() > 1) {
-    result.echo = std::string(lines.back());
-    lines.pop_back();
-  }
+  return lines;
+}
+
+std::string joined(const std::vector<std::string_view>& lines) {
+  std::string text;
   for (std::string_view line : lines) {
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) {
       line.remove_suffix(1);
@@ -121,9 +122,24 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
       line.remove_prefix(1);
     }
     if (line.empty()) continue;
-    if (!result.message.empty()) result.message += "; ";
-    result.message += line;
+    if (!text.empty()) text += "; ";
+    text += line;
   }
+  return text;
+}
+
+}  // namespace
+
+std::string one_line(std::string_view text) { return joined(telling_lines(text)); }
+
+InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
+  std::vector<std::string_view> lines = telling_lines(stderr_text);
+  InterpreterMessage result;
+  if (lines.size() > 1) {
+    result.echo = std::string(lines.back());
+    lines.pop_back();
+  }
+  result.message = joined(lines);
   return result;
 }
 

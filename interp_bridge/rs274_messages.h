@@ -30,6 +30,9 @@ Diagnostic interpreter_diagnostic(std::string_view stderr_text,
 /// The first line of a file, from `after` on, that begins with `text`; `after` if there is none.
 std::uint32_t find_line(const std::string& path, const std::string& text, std::uint32_t after);
 
+/// The lines of a message as one, "a; b", without those that are said on every run.
+std::string one_line(std::string_view text);
+
 /// The same for a fault of kerf-interp, which knows its place.
 Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
                              const std::vector<std::string>& files, std::size_t program_lines);

@@ -227,8 +227,8 @@ std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::str
   return rows;
 }
 
-Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path,
-                                                  Diagnostics& diagnostics) {
+Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagnostics& diagnostics,
+                                                  double unit_mm) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
     return Error{fmt::format("cannot read {}: {}", path, std::strerror(errno))};
@@ -247,7 +247,12 @@ Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path,
     }
   }
   if (!pieces.error().empty()) return Error{pieces.error()};
-  return parse_tool_table(text, path, diagnostics);
+  std::vector<ToolTableRow> rows = parse_tool_table(text, path, diagnostics);
+  for (ToolTableRow& row : rows) {
+    row.diameter_mm *= unit_mm;
+    row.offset_mm *= unit_mm;
+  }
+  return rows;
 }
 
 InterpreterToolTable interpreter_tool_table(const std::vector<ToolTableRow>& rows,

@@ -74,7 +74,8 @@ bool Session::read_tools(Diagnostics& diagnostics) {
   tool_sources_.arguments = options_.tools;
   tool_sources_.hints = find_tool_hints(comments_with_units(*program_, options_.program.path));
   if (options_.program.tool_table_path.empty()) return true;
-  auto rows = read_tool_table(options_.program.tool_table_path, diagnostics);
+  auto rows = read_tool_table(options_.program.tool_table_path, diagnostics,
+                              options_.program.machine.inch_machine ? 25.4 : 1.0);
   if (!rows) {
     if (!has_error(diagnostics)) diagnostics.push_back(general_error(rows.error()));
     return false;

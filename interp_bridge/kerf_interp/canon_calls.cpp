@@ -19,22 +19,20 @@ World& world() { return recording().world; }
 
 constexpr std::uint8_t code(CanonicalName name) { return static_cast<std::uint8_t>(name); }
 
-/// Motions bring the line of their block, which is not the one being read when cutter compensation
-/// held them back; those of G70 to G72 bring 0.
-int line_of(int line) { return line > 0 ? line : recording().line(); }
-
-void record(CanonicalName name, int line, std::initializer_list<double> values) {
-  recording().records->numbers(code(name), line_of(line), values);
+void record(CanonicalName name, int move_line, std::initializer_list<double> values) {
+  const int line = recording().line_of_move(move_line);
+  recording().records->numbers(code(name), line, values);
 }
 void record(CanonicalName name, std::initializer_list<double> values = {}) {
-  record(name, recording().line(), values);
+  const int line = recording().line_now();
+  recording().records->numbers(code(name), line, values);
 }
 void record_text(CanonicalName name, const char* text) {
-  recording().records->text(code(name) | kerf::records::kText, recording().line(),
+  recording().records->text(code(name) | kerf::records::kText, recording().line_now(),
                             text != nullptr ? text : "");
 }
 void record_special(kerf::records::Code special, std::initializer_list<double> values) {
-  recording().records->numbers(special, recording().line(), values);
+  recording().records->numbers(special, recording().line_now(), values);
 }
 
 Pose pose(const EmcPose& p) { return {p.tran.x, p.tran.y, p.tran.z, p.a, p.b, p.c, p.u, p.v, p.w}; }
@@ -43,7 +41,7 @@ Pose pose(const EmcPose& p) { return {p.tran.x, p.tran.y, p.tran.z, p.a, p.b, p.
 void record_move(CanonicalName name, int line, const Pose& p) {
   std::size_t count = p.size();
   while (count > 3 && p[count - 1] == 0) --count;
-  recording().records->numbers(code(name), line_of(line), p.data(), count);
+  recording().records->numbers(code(name), recording().line_of_move(line), p.data(), count);
 }
 
 std::size_t spindle_index(int spindle) {
@@ -103,7 +101,7 @@ void SET_XY_ROTATION(double degrees) {
 void USE_TOOL_LENGTH_OFFSET(EmcPose offset) {
   world().set_tool_offset(pose(offset));
   const Pose p = pose(offset);
-  recording().records->numbers(code(CanonicalName::kUseToolLengthOffset), recording().line(),
+  recording().records->numbers(code(CanonicalName::kUseToolLengthOffset), recording().line_now(),
                                p.data(), p.size());
 }
 
@@ -159,7 +157,8 @@ void NURBS_FEED(int line, std::vector<CONTROL_POINT> points, unsigned int order)
   }
   std::vector<double> values = {static_cast<double>(order)};
   for (const CONTROL_POINT& p : points) values.insert(values.end(), {p.X, p.Y, p.W});
-  recording().records->numbers(kerf::records::kSpline, line_of(line), values.data(), values.size());
+  recording().records->numbers(kerf::records::kSpline, recording().line_of_move(line),
+                               values.data(), values.size());
   Pose end{};
   for (std::size_t i = 0; i < end.size(); ++i) end[i] = world().position(i);
   end[0] = points.back().X;

@@ -10,6 +10,7 @@
 #include <interp_return.hh>
 #include <vector>
 
+#include "interp_bridge/canonical.h"
 #include "interp_bridge/kerf_interp/options.h"
 #include "interp_bridge/kerf_interp/recording.h"
 
@@ -49,7 +50,7 @@ constexpr std::chrono::milliseconds kSignOfLife{200};
 
 /// M100 to M199: a machine would start a program of that name, which is its own affair.
 void user_m(int number, double p, double q) {
-  recording().records->numbers(records::kUserM, recording().line(), {100.0 + number, p, q});
+  recording().records->numbers(records::kUserM, recording().line_now(), {100.0 + number, p, q});
 }
 
 class Runner {
@@ -59,6 +60,12 @@ class Runner {
 
   bool run(const Options& options) {
     if (!succeeded(interpreter_.init())) return report(0);
+    // Only a random tool changer begins with a tool; said as M61 would.
+    const int mounted = recording().world.row(0).toolno;
+    if (mounted > 0) {
+      records_.numbers(static_cast<std::uint8_t>(CanonicalName::kChangeToolNumber), 0,
+                       {0.0, static_cast<double>(mounted)});
+    }
     if (!options.startup.empty() && !succeeded(interpreter_.execute(options.startup.c_str()))) {
       return report(0);
     }
@@ -88,10 +95,16 @@ class Runner {
       }
       if (status_ == INTERP_ENDFILE) return true;
       line_ = interpreter_.sequence_number();
+      recording().begin_block(line_);
       if (!succeeded(interpreter_.execute())) return report(line_);
       if (status_ == INTERP_EXIT) return true;
       const int level = interpreter_.call_level();
-      if (level != static_cast<int>(callers_.size())) follow_call(level);
+      if (level != static_cast<int>(callers_.size())) {
+        recording().block_does_not_move();
+        follow_call(level);
+      } else if (level > 0) {
+        recording().find_file();
+      }
       if (++blocks_ % kBlocksPerLook == 0) look_at_clock();
     }
   }

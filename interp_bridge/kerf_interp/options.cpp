@@ -28,6 +28,9 @@ constexpr const char* kUsage =
     "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
     "  --startup BLOCK         run first\n";
 
+/// With the endings that the interpreter puts behind it (".new", ".bak") less than its 256.
+constexpr std::size_t kLongestParameterName = 240;
+
 bool fault(const std::string& message) {
   std::fprintf(stderr, "kerf-interp: %s\n", message.c_str());
   return false;
@@ -101,6 +104,8 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
       case kUnits:
         if (value != "mm" && value != "inch") return fault("--units: mm or inch");
         world.units_per_mm = value == "mm" ? 1.0 : 1 / 25.4;
+        // As LinuxCNC starts: in the units of the machine.
+        world.units = value == "mm" ? CANON_UNITS_MM : CANON_UNITS_INCHES;
         break;
       case kAxes:
         if (!read_number(optarg, 1, 511, "--axes", number)) return false;
@@ -110,6 +115,11 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         if (!read_tools(value, world)) return false;
         break;
       case kParameters:
+        // The interpreter would cut a longer name off, and then write another file.
+        if (value.size() > kLongestParameterName) {
+          return fault("--parameters: a name of " + std::to_string(value.size()) +
+                       " bytes is not allowed; at most " + std::to_string(kLongestParameterName));
+        }
         world.parameter_file = value;
         break;
       case kBlockDelete:
@@ -134,6 +144,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     std::fputs(kUsage, stderr);
     return false;
   }
+  if (world.random_toolchanger) world.mount_pocket_0();
   options.program = argv[optind];
   if (fcntl(options.records_fd, F_GETFD) < 0) {
     return fault("descriptor " + std::to_string(options.records_fd) +

@@ -16,18 +16,37 @@ void Recording::begin(const std::string& program) {
   records->text(records::kFile, 0, program);
 }
 
-void Recording::moved_to_level(int level) {
-  records->set_level(level);
-  std::array<char, PATH_MAX> name{};
+void Recording::change_file(int index, std::string_view name) {
+  if (index == file_) return;
+  file_ = index;
+  records->text(records::kFile, index, name);
+}
+
+void Recording::find_file() {
+  restore_file_ = false;
+  std::array<char, PATH_MAX> name;
+  name.front() = name.back() = 0;
   if (interpreter != nullptr) interpreter->file(name.data(), name.size() - 1);
-  const std::string text(name[0] != 0 ? name.data() : files_[0].c_str());
+  const std::string_view text(name.front() != 0 ? name.data() : files_[0].c_str());
+  if (files_[static_cast<std::size_t>(file_)] == text) return;
   const auto found = std::find(files_.begin(), files_.end(), text);
   const int index = static_cast<int>(found - files_.begin());
-  if (index == file_) return;
-  const bool fresh = found == files_.end();
-  if (fresh) files_.push_back(text);
-  file_ = index;
-  records->text(records::kFile, index, fresh ? text : std::string());
+  if (found != files_.end()) return change_file(index, {});
+  files_.emplace_back(text);
+  change_file(index, text);
+}
+
+/// Moves come in the order of their blocks, so the block is the first with that line from the last
+/// move's on. (A later one may have the same number in another file.)
+void Recording::find_earlier_block(int line) {
+  const std::size_t oldest = blocks_ >= kRecent ? blocks_ - kRecent + 1 : 1;
+  for (std::size_t i = std::max(moved_, oldest); i <= blocks_; ++i) {
+    const Block& block = recent_[i % kRecent];
+    if (block.line != line) continue;
+    moved_ = i;
+    restore_file_ = block.file != file_;
+    return change_file(block.file, {});
+  }
 }
 
 }  // namespace kerf::interp

@@ -74,6 +74,14 @@ void World::add_tool(const CANON_TOOL_TABLE& tool) {
   if (rows_.size() < CANON_POCKETS_MAX) rows_.push_back(tool);
 }
 
+void World::mount_pocket_0() {
+  const auto mounted = std::find_if(rows_.begin() + 1, rows_.end(),
+                                    [](const CANON_TOOL_TABLE& t) { return t.pocketno == 0; });
+  if (mounted == rows_.end()) return;
+  rows_[0] = *mounted;
+  rows_.erase(mounted);
+}
+
 int World::row_of_tool(int number) {
   if (number == 0 && !random_toolchanger) return 0;
   const auto found = std::find_if(rows_.begin() + 1, rows_.end(),

@@ -71,6 +71,8 @@ class World {
   // ------------------------------------------------------------------------------------------
   /// Rows 1.. in the order of the table; row 0 is the spindle. Lengths in machine units.
   void add_tool(const CANON_TOOL_TABLE& tool);
+  /// A random tool changer's pocket 0 is the spindle: what the table has there is mounted.
+  void mount_pocket_0();
   /// The row of a tool, made (with no diameter) if there is none: a program whose tools the table
   /// does not know is still to be run. -1 if there is no more room.
   int row_of_tool(int number);

@@ -154,7 +154,9 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
   if (begun) command_waits(m);
   switch (m.kind) {
     case MotionKind::kDwell:
-      stand(m, m.duration_s + options.halt_s);
+      halt();
+      schedule.pause(options.halt_s);
+      stand(m, m.duration_s);
       break;
     case MotionKind::kToolChange:
       change_tool(m);
@@ -184,7 +186,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   MotionTiming timing;
   timing.programmed_mm_per_min = programmed_per_minute(m);
   const StraightRates way = straight_rates(rates, m.to_mm - m.from_mm, turned_deg(m));
-  const bool arc = m.kind == MotionKind::kArc;
+  const bool arc = m.kind == MotionKind::kArc && has_radius(m);
   const bool traverse = m.kind == MotionKind::kTraverse;
   const bool moves = arc ? m.arc.sweep_rad != 0 : way.length > 0;
   const bool fed = traverse || timing.programmed_mm_per_min > 0;

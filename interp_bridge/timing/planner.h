@@ -34,7 +34,7 @@ inline constexpr int kToolChangeLooks = 3;
 inline constexpr int kToolPrepareLooks = 2;
 
 /// One motion in time. Motions follow each other; a gap between one's end and the next one's start
-/// is a wait for a spindle, coolant or offset command. The time of the program is
+/// is a wait for a command (spindle, coolant, offset, dwell). The time of the program is
 /// TrajectoryPlanner::clock_s().
 struct MotionTiming {
   std::uint64_t index = 0;  ///< of the motion: 0 for the first that was pushed
@@ -90,11 +90,11 @@ class MotionPlanSink {
 /// half to the motion before, half to the one after.
 ///
 /// Axis limits apply along the axes of the workpiece frame: exact unless that is rotated against
-/// the machine (G10 L2 R). U, V, W take no part. [TRAJ]MAX_LINEAR_ACCELERATION is not used:
-/// LinuxCNC's planner does not either. Corners that the planner blends by overlapping two segments
-/// in time (rotary moves, corners that no arc fits) are drawn sharp in the path; the real tool
-/// passes inside. Steps that take no time have no path. Overrides, pauses and jerk limits (2.10)
-/// are not modelled.
+/// the machine (G10 L2 R). U, V, W take no part. Of the limits, max_linear_acceleration,
+/// arc_blend_fallback and arc_blend_ramp_hz are not used: what was measured depends on none of
+/// them. Corners that the planner blends by overlapping two segments in time (rotary moves, corners
+/// that no arc fits) are drawn sharp in the path; the real tool passes inside. Steps that take no
+/// time have no path. Overrides, pauses and jerk limits (2.10) are not modelled.
 ///
 /// Threads (G33, G76, and the way in of a rigid tap, G33.1) run at pitch times speed and wait for
 /// the spindle's index: half a revolution on average. Nothing is known of moves without a start

@@ -32,7 +32,7 @@ double inverse(double limit) { return limit > 0 && std::isfinite(limit) ? 1.0 / 
 
 /// The least limit among the axes that turn about `axis`.
 double least_across(const Vec3& axis, const Vec3& limit) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kUnlimited;
   for (int i = 0; i < 3; ++i) {
     // An axis that stands along the arc's own takes no part in the turning.
     const bool takes_part = std::abs(axis[i]) < 0.9999;
@@ -85,9 +85,8 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
   result.linear = linear > 0;
   result.rotary = turned > 0;
   result.length = result.linear ? linear : std::sqrt(turned);
-  const double none = std::numeric_limits<double>::infinity();
-  result.speed = time > 0 ? result.length / time : none;
-  result.accel = time2 > 0 ? result.length / time2 : none;
+  result.speed = time > 0 ? std::min(result.length / time, kUnlimited) : kUnlimited;
+  result.accel = time2 > 0 ? std::min(result.length / time2, kUnlimited) : kUnlimited;
   return result;
 }
 
@@ -110,6 +109,11 @@ Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straigh
   }
   segment.tangent_to = segment.tangent_from;
   return segment;
+}
+
+bool has_radius(const Motion& motion) {
+  const ArcParts parts = arc_parts(motion.from_mm, motion.to_mm, motion.arc);
+  return std::min(parts.radius_from, parts.radius_to) > kLeastRadius_mm;
 }
 
 Segment make_arc(const AxisRates& rates, const Motion& motion, double speed) {

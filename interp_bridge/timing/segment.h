@@ -34,6 +34,11 @@ struct AxisRates {
 inline constexpr double kAcrossShare = 0.86602540378443864676;
 inline constexpr double kAlongShare = 0.5;
 
+/// Stands for a limit that is not there, mm/s and mm/s2 (degrees): finite, so that sums stay so.
+inline constexpr double kUnlimited = 1e6;
+/// Arcs of a smaller radius are run as straight lines, mm.
+inline constexpr double kLeastRadius_mm = 1e-6;
+
 enum class SegmentShape : std::uint8_t { kLine, kArc, kBlend };
 
 /// What happens at the end of a segment.
@@ -106,7 +111,8 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
 /// A straight segment; `speed` is the programmed speed in mm/s (degrees/s), infinite for traverses.
 Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straight, double speed);
 
-/// A circular or helical segment of a kArc motion.
+/// A circular or helical segment of a kArc motion that has_radius().
+bool has_radius(const Motion& motion);
 Segment make_arc(const AxisRates& rates, const Motion& motion, double speed);
 
 /// Caps speed so that the segment takes a servo period at least.

@@ -259,7 +259,8 @@ TEST_F(BridgeProgram, ParametersAreReadInMachineUnitsAndNotWritten) {
   EXPECT_NEAR(this->run("G21 G90\nG0 X0 Y0 Z0\nG53 G0 X0\nM2\n").motions[1].to_mm.x, -177.8, 1e-6);
   options_.machine.inch_machine = false;
   options_.machine.parameter_path = folder_.write("bad.var", "5163 0\n5161 0\n5162 0\n");
-  EXPECT_EQ(this->run("G0 X0\nM2\n").messages(), part() + ": error: Parameter file out of order\n");
+  EXPECT_EQ(this->run("G0 X0\nM2\n").messages(),
+            folder_.path("bad.var") + ": error: Parameter file out of order\n");
   options_.machine.parameter_path = folder_.path("nix.var");
   EXPECT_EQ(
       this->run("G0 X0\nM2\n").messages(),
@@ -370,6 +371,130 @@ TEST_F(BridgeProgram, AProgramThatIsReplacedWhileItIsReadRunsAsItWas) {
   EXPECT_TRUE(diagnostics.empty());
   EXPECT_EQ(moves, 200'001U);
   EXPECT_TRUE(summary.has_program_end);
+}
+
+TEST_F(BridgeProgram, CompensationKeepsTheFileOfAMoveThatItHoldsBack) {
+  folder_.write("arm.ngc", "o<arm> sub\n\n\n\n\n\n\n\n\nG1 Y20\nG1 X30\no<arm> endsub\nM2\n");
+  const ProgramRun run = this->run(
+      "G21 G90 F100\nG0 X0 Y0\nG41.1 D2\nG1 X10 Y0\nG1 X20\no<arm> call\nG1 X40\nG40\nG0 X50\n"
+      "M2\n");
+  EXPECT_FALSE(has_error(run.diagnostics)) << run.messages();
+  std::vector<SourceRef> feeds;
+  for (const Motion& motion : run.motions) {
+    if (motion.kind == MotionKind::kFeed) feeds.push_back(motion.source);
+  }
+  EXPECT_EQ(feeds, (std::vector<SourceRef>{{0, 4}, {0, 5}, {1, 10}, {1, 11}, {0, 7}}));
+}
+
+TEST_F(BridgeProgram, TwoRemapsOfOneBlockAreInTheirOwnFiles) {
+  folder_.write("first.ngc", "o<first> sub\nG0 X1\no<first> endsub\nM2\n");
+  folder_.write("second.ngc", "o<second> sub\n\nG0 X2\no<second> endsub\nM2\n");
+  options_.machine.ini_path =
+      folder_.write("machine.ini",
+                    "[RS274NGC]\nSUBROUTINE_PATH = .\nREMAP = M400 modalgroup=5 ngc=first\n"
+                    "REMAP = M401 modalgroup=6 ngc=second\n");
+  const ProgramRun run = this->run("G21\nM400 M401\nG0 X3\nM2\n");
+  EXPECT_EQ(run.messages(), "");
+  std::vector<SourceRef> moves;
+  for (const Motion& motion : run.motions) {
+    if (motion.kind == MotionKind::kTraverse) moves.push_back(motion.source);
+  }
+  EXPECT_EQ(moves, (std::vector<SourceRef>{{1, 2}, {2, 3}, {0, 3}}));
+  EXPECT_EQ(run.summary.files.at(2), folder_.path("second.ngc"));
+}
+
+TEST_F(BridgeProgram, FaultsOfAnIniAreSaid) {
+  const std::string ini =
+      folder_.write("machine.ini", "[RS274NGC]\nREMAP = M400 modalgroup=5 ngc=nix\n");
+  options_.machine.ini_path = ini;
+  EXPECT_EQ(run("G0 X1\nM2\n").messages(),
+            ini +
+                ": error: INTERP_REMAP: NGC file not found: ngc=nix; REMAP INI Line:2 = M400 "
+                "modalgroup=5 ngc=nix\n");
+}
+
+TEST_F(BridgeProgram, PythonRemapThatRaises) {
+  folder_.write("top.py", "import remap\n");
+  folder_.write("remap.py",
+                "def m400(self, **words):\n    raise RuntimeError('no such luck')\n"
+                "def m401(self, **words):\n    return 2\n");
+  options_.machine.ini_path = folder_.write(
+      "machine.ini",
+      "[PYTHON]\nTOPLEVEL = top.py\nPATH_PREPEND = .\n[RS274NGC]\n"
+      "REMAP = M400 modalgroup=5 python=m400\nREMAP = M401 modalgroup=5 python=m401\n");
+  const ProgramRun raises = run("G21\nG0 X1\nM400\nM2\n");
+  EXPECT_EQ(raises.motions.size(), 1U);
+  EXPECT_EQ(raises.messages(),
+            part() + ":3: error: pycall(m400):; Traceback (most recent call last):; File \"" +
+                folder_.path("remap.py") +
+                "\", line 2, in m400; raise RuntimeError('no such luck'); RuntimeError: no such "
+                "luck\n     3 | M400\n");
+  // Not a generator, as one that returns a number by mistake.
+  const ProgramRun confused = run("G21\nG0 X1\nM401\nM2\n");
+  ASSERT_EQ(confused.diagnostics.size(), 1U) << confused.messages();
+  EXPECT_EQ(confused.diagnostics[0].file, part());
+  EXPECT_EQ(confused.diagnostics[0].line, 3);
+}
+
+TEST_F(BridgeProgram, LogFileOfTheIniIsNotWritten) {
+  const std::string log = folder_.write("machine.log", "of the running machine\n");
+  options_.machine.ini_path = folder_.write(
+      "machine.ini",
+      "[EMC]\nDEBUG = 0x7fffffff\n[RS274NGC]\nLOG_LEVEL = 9\nLOG_FILE = " + log + "\n");
+  EXPECT_EQ(run("G0 X1\nM2\n").messages(), "");
+  EXPECT_EQ(text_of(log), "of the running machine\n");
+  options_.machine.ini_path = folder_.write(
+      "machine.ini", "[RS274NGC]\nLOG_LEVEL = 9\nLOG_FILE = " + folder_.path("none.log") + "\n");
+  EXPECT_EQ(run("G0 X1\nM2\n").messages(), "");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("none.log")));
+}
+
+TEST_F(BridgeProgram, RandomToolChangerSwapsPockets) {
+  options_.machine.random_toolchanger = true;
+  options_.machine.tool_lengths = true;
+  // Pocket 0 is the spindle.
+  options_.tool_table_path =
+      folder_.write("tool.tbl", "T1 P1 D6 Z10\nT5 P0 D2 Z5\nT2 P2 D10 Z30\n");
+  const ProgramRun run = this->run(
+      "G21 G90\nG0 X#5403\nT1 M6\nG0 X#5403\nT2 M6\nG0 X#5403\nT5 M6\nG0 X#5403\nT1 M6\n"
+      "G0 X#5403\nM2\n");
+  EXPECT_EQ(run.messages(), "");
+  std::vector<std::pair<int, double>> moves;
+  for (const Motion& m : run.motions) {
+    if (m.kind == MotionKind::kTraverse) moves.emplace_back(m.tool, m.to_mm.x);
+  }
+  const std::vector<std::pair<int, double>> expected = {{5, 5}, {1, 10}, {2, 30}, {5, 5}, {1, 10}};
+  EXPECT_EQ(moves, expected);
+}
+
+TEST_F(BridgeProgram, ErrorOfASubroutineThatRunsNotOfItsText) {
+  // Such an error unwinds the calls before it is told.
+  const std::string sub = folder_.write("dry.ngc", "o<dry> sub\nG0 X2\nG1 X3\no<dry> endsub\nM2\n");
+  EXPECT_EQ(
+      run("G21\n\no<dry> call\nM2\n").messages(),
+      sub + ":3: error: Cannot do g1 with zero feed rate\n     3 | G1 X3\n   hint: called from " +
+          part() + ":3\n");
+}
+
+TEST_F(BridgeProgram, AProgramThatIsEditedWhileItIsReadIsSaid) {
+  std::string text = "G21 G90 F1000\n";
+  for (int i = 0; i < 200'000; ++i) text += "G1 X" + std::to_string(i % 100) + "\n";
+  options_.path = folder_.write("part.ngc", text + "M2\n");
+  Diagnostics diagnostics;
+  const auto program = Program::open(options_, diagnostics);
+  ASSERT_NE(program, nullptr);
+  bool edited = false;
+  program->run(
+      [&](std::span<const Motion>) {
+        if (!std::exchange(edited, true)) std::ofstream(part(), std::ios::app) << "G0 X7\n";
+        return true;
+      },
+      {}, diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(to_string(diagnostics[0]),
+            part() +
+                ": error: the program was changed while it was read: this result is that of no "
+                "program\n   hint: run it again\n");
 }
 
 }  // namespace

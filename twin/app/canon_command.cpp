@@ -58,15 +58,14 @@ class LineWriter : private StepSink {
 int canon_command(const CanonArguments& arguments) {
   Diagnostics diagnostics;
   OptionReader reader(diagnostics);
-  const ProgramOptions options = understand_program(arguments.source, reader);
-  const TimelineOptions timeline;
+  const ProgramRequest request = understand_program(arguments.source, reader);
   if (has_error(diagnostics)) {
     print(diagnostics, arguments.quiet);
     return kExitUsage;
   }
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
-  const auto program = Program::open(options, diagnostics);
+  const auto program = Program::open(request.program, diagnostics);
   if (!program) {
     print(diagnostics, arguments.quiet);
     return kExitFailure;
@@ -76,7 +75,7 @@ int canon_command(const CanonArguments& arguments) {
     fmt::print(stderr, "kerf: error: {}\n", file.error());
     return kExitFailure;
   }
-  LineWriter writer(*file, timeline);
+  LineWriter writer(*file, request.timeline);
   ProgramSummary summary;
   {
     const bool shown = !arguments.quiet && arguments.out != "-";

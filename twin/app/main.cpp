@@ -52,6 +52,10 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       .add_option("PROGRAM", a.program,
                   "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
       ->required();
+  command
+      .add_option("--ini", a.ini,
+                  "LinuxCNC INI of the machine: limits, speeds, tool table, offsets, startup code")
+      ->type_name("FILE");
   command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
       ->type_name("FILE");
   command

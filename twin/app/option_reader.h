@@ -30,6 +30,8 @@ class OptionReader {
   /// "on" or "off".
   bool on_off(const char* option, const std::string& text, bool fallback);
 
+  Diagnostics& diagnostics() { return diagnostics_; }
+
  private:
   Diagnostics& diagnostics_;
 };

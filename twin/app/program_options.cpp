@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "twin/machine_setup.h"
+
 namespace kerf {
 namespace {
 
@@ -10,10 +14,18 @@ constexpr OptionRange kMaxSeconds{0, 1e6, true, "s"};
 
 }  // namespace
 
-ProgramOptions understand_program(const ProgramArguments& a, OptionReader& reader) {
-  ProgramOptions options;
+ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reader) {
+  ProgramRequest request;
+  ProgramOptions& options = request.program;
   options.path = a.program;
-  options.tool_table_path = a.tool_table;
+  if (!a.ini.empty()) {
+    MachineSetup setup;
+    read_machine_setup(a.ini, setup, reader.diagnostics());
+    options.machine = std::move(setup.interpreter);
+    options.tool_table_path = std::move(setup.tool_table_path);
+    request.timeline = std::move(setup.timeline);
+  }
+  if (!a.tool_table.empty()) options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {
     options.interpreter = InterpreterChoice::kBridge;
   } else if (a.interp == "text") {
@@ -27,7 +39,7 @@ ProgramOptions understand_program(const ProgramArguments& a, OptionReader& reade
       "--max-commands", a.max_commands, kMaxCommands, static_cast<double>(options.max_commands)));
   options.max_silent_s =
       reader.number("--max-seconds", a.max_seconds, kMaxSeconds, options.max_silent_s);
-  return options;
+  return request;
 }
 
 }  // namespace kerf

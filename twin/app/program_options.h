@@ -5,12 +5,14 @@
 
 #include "interp_bridge/program.h"
 #include "twin/app/option_reader.h"
+#include "twin/timeline.h"
 
 namespace kerf {
 
 /// The arguments as written. Empty = not given.
 struct ProgramArguments {
   std::string program;
+  std::string ini;
   std::string tool_table;
   std::string interp;
   std::string block_delete;
@@ -18,7 +20,13 @@ struct ProgramArguments {
   std::string max_seconds;
 };
 
-/// The same, understood; faults go to the reader.
-ProgramOptions understand_program(const ProgramArguments& arguments, OptionReader& reader);
+/// The same, understood.
+struct ProgramRequest {
+  ProgramOptions program;
+  TimelineOptions timeline;
+};
+
+/// Reads the INI, if one is given. Faults go to the reader.
+ProgramRequest understand_program(const ProgramArguments& arguments, OptionReader& reader);
 
 }  // namespace kerf

@@ -102,7 +102,9 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
   OptionReader reader(diagnostics);
   RunRequest request;
   SessionOptions& session = request.session;
-  session.program = understand_program(a.source, reader);
+  ProgramRequest source = understand_program(a.source, reader);
+  session.program = std::move(source.program);
+  session.timeline = std::move(source.timeline);
   read_tools(a, reader, session);
   read_stock(a, reader, session);
   read_choices(a, reader, session);

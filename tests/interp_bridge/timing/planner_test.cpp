@@ -160,7 +160,7 @@ TEST(Planner, WaitsAndStops) {
   planner.finish();
   ASSERT_EQ(plan.timings.size(), path.motions.size());
   EXPECT_EQ(planner.stops(), 1u);
-  EXPECT_NEAR(plan.timings[1].duration_s, 1.25, 0.005);
+  EXPECT_EQ(plan.timings[1].duration_s, 1.25);
   EXPECT_EQ(plan.timings[2].duration_s, 0);
   PlannerOptions slow;
   slow.tool_change_s = 8;
@@ -313,6 +313,34 @@ TEST(Planner, DelayIsBounded) {
   for (std::size_t i = 0; i < path.motions.size(); ++i) {
     planner.push(path.motions[i]);
     ASSERT_LE(i + 1 - plan.timings.size(), 60u);
+  }
+}
+
+TEST(Planner, OddMotionsAndMissingLimitsGiveFiniteTimes) {
+  MachineLimits bare;  // no axis known at all
+  MachineLimits no_z = MachineLimits::small_mill();
+  no_z.axes[2] = {};
+  MachineLimits parabolic = MachineLimits::small_mill();
+  parabolic.arc_blend = false;
+  for (const MachineLimits& limits : {bare, no_z, parabolic}) {
+    for (const double tolerance : {0.0, 0.05}) {
+      Path path(PathMode::kContinuous, tolerance, tolerance);
+      path.feed(1000).line(1, 0, 1).line(1, 0, 1).line(0, 0, 0).line(0, 0, 5);
+      path.arc(0, 0, 0, 0, kPi);      // no radius, no length
+      path.arc(3, 0, 0, 0, kPi);      // begins at its centre
+      path.arc(3, 0, 2, 0, 4 * kPi);  // two turns
+      path.arc(3 + 1e-9, 0, 3, 1e-5, 1e-4);
+      path.line(3, 1e-13).line(3, 1e-13 + 1e-12).turn(5).turn(0).line(0, 0, 0).line(3, 0);
+      path.line(-3, 0).line(3, 1e-7);
+      const Plan plan = plan_of(path.motions, limits);
+      ASSERT_EQ(plan.timings.size(), path.motions.size());
+      for (const MotionTiming& t : plan.timings) {
+        EXPECT_TRUE(std::isfinite(t.duration_s) && t.duration_s >= 0) << t.index;
+        EXPECT_TRUE(std::isfinite(t.start_s) && std::isfinite(t.peak_mm_per_min)) << t.index;
+      }
+      EXPECT_GT(plan.clock_s, 1.0);
+      EXPECT_LT(plan.clock_s, 60.0);
+    }
   }
 }
 

@@ -1,0 +1,180 @@
+#include "twin/machine_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+namespace kerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MachineSetupTest : public testing::Test {
+ protected:
+  MachineSetupTest() {
+    std::string name = (fs::temp_directory_path() / "kerf-ini-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~MachineSetupTest() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ + "/" + name) << text;
+    return folder_ + "/" + name;
+  }
+  bool read(const std::string& text) {
+    diagnostics_.clear();
+    setup_ = {};
+    return read_machine_setup(write("mill.ini", text), setup_, diagnostics_);
+  }
+  std::string messages() const {
+    std::string out;
+    for (const Diagnostic& d : diagnostics_) out += to_string(d);
+    return out;
+  }
+  const AxisLimits& axis(char letter) const {
+    return setup_.timeline.limits.axes[std::string("XYZABCUVW").find(letter)];
+  }
+
+  std::string folder_;
+  MachineSetup setup_;
+  Diagnostics diagnostics_;
+};
+
+const char* const kMill =
+    "[TRAJ]\nCOORDINATES = X Y Z A\nLINEAR_UNITS = mm\nMAX_LINEAR_VELOCITY = 90\n"
+    "[KINS]\nKINEMATICS = trivkins\nJOINTS = 4\n"
+    "[EMCMOT]\nSERVO_PERIOD = 2000000\n[EMCIO]\nTOOL_TABLE = tool.tbl\nCYCLE_TIME = 0.05\n"
+    "[RS274NGC]\nPARAMETER_FILE = mill.var\nRS274NGC_STARTUP_CODE = G21 G64 P0.01\n"
+    "[AXIS_X]\nMAX_VELOCITY = 80\nMAX_ACCELERATION = 400\nMIN_LIMIT = -1\nMAX_LIMIT = 401.5\n"
+    "[JOINT_1]\nMAX_VELOCITY = 70\nMAX_ACCELERATION = 300\nMIN_LIMIT = 0\nMAX_LIMIT = 300\n"
+    "[AXIS_Z]\nMAX_VELOCITY = 50\nMAX_ACCELERATION = 200\n[JOINT_2]\nHOME = 90\n"
+    "[AXIS_A]\nMAX_VELOCITY = 36\nMAX_ACCELERATION = 72\nMIN_LIMIT = -360\nMAX_LIMIT = 360\n";
+
+TEST_F(MachineSetupTest, AMetricMill) {
+  write("tool.tbl", "T1 P1 D6\n");
+  write("mill.var", "5161\t0\n");
+  ASSERT_TRUE(read(kMill)) << messages();
+  EXPECT_EQ(messages(), "");
+  EXPECT_FALSE(setup_.interpreter.inch_machine);
+  EXPECT_EQ(setup_.interpreter.axis_mask, 15);
+  EXPECT_EQ(setup_.interpreter.start[2], 90);
+  EXPECT_TRUE(setup_.interpreter.tool_lengths);
+  EXPECT_EQ(setup_.interpreter.startup_code, "G21 G64 P0.01");
+  EXPECT_EQ(setup_.interpreter.ini_path, folder_ + "/mill.ini");
+  EXPECT_EQ(setup_.interpreter.working_folder, folder_);
+  EXPECT_EQ(setup_.interpreter.parameter_path, folder_ + "/mill.var");
+  EXPECT_EQ(setup_.tool_table_path, folder_ + "/tool.tbl");
+  EXPECT_EQ(axis('X').max, 401.5);
+  EXPECT_EQ(axis('X').max_velocity, 80);
+  EXPECT_EQ(axis('Y').max_acceleration, 300) << "of its joint";
+  EXPECT_EQ(axis('Y').max, 300);
+  EXPECT_TRUE(std::isinf(axis('Z').max)) << "no limit given";
+  EXPECT_EQ(axis('A').min, -360);
+  EXPECT_FALSE(axis('B').present);
+  const MachineLimits& limits = setup_.timeline.limits;
+  EXPECT_EQ(limits.max_linear_velocity_mm_per_s, 90);
+  EXPECT_DOUBLE_EQ(limits.servo_period_s, 0.002);
+  EXPECT_EQ(limits.io_period_s, 0.05);
+  EXPECT_TRUE(setup_.timeline.limits_known);
+}
+
+TEST_F(MachineSetupTest, AnInchMillInMmInside) {
+  write("mill.var", "5161\t0\n");
+  ASSERT_TRUE(
+      read("[TRAJ]\nCOORDINATES = XYZA\nLINEAR_UNITS = inch\nMAX_VELOCITY = 2\n"
+           "[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+           "[AXIS_X]\nMAX_VELOCITY = 1\nMAX_ACCELERATION = 10\nMAX_LIMIT = 20\n"
+           "[AXIS_A]\nMAX_VELOCITY = 36\nMAX_LIMIT = 90\n[JOINT_2]\nHOME = 4\n"))
+      << messages();
+  EXPECT_TRUE(setup_.interpreter.inch_machine);
+  EXPECT_DOUBLE_EQ(axis('X').max, 508);
+  EXPECT_DOUBLE_EQ(axis('X').max_velocity, 25.4);
+  EXPECT_DOUBLE_EQ(axis('X').max_acceleration, 254);
+  EXPECT_EQ(axis('A').max, 90) << "degrees stay";
+  EXPECT_DOUBLE_EQ(setup_.interpreter.start[2], 101.6);
+  EXPECT_DOUBLE_EQ(setup_.timeline.limits.max_linear_velocity_mm_per_s, 50.8);
+}
+
+TEST_F(MachineSetupTest, WithoutAParameterFileLimitsAreNotChecked) {
+  write("tool.tbl", "T1 P1 D6\n");
+  ASSERT_TRUE(read(kMill));
+  EXPECT_EQ(messages(),
+            folder_ + "/mill.ini:14:18: warning: [RS274NGC]PARAMETER_FILE: cannot read " + folder_ +
+                "/mill.var: No such file or directory\n"
+                "    14 | PARAMETER_FILE = mill.var\n"
+                "       |                  ^\n"
+                "   hint: work offsets count as 0, and limits are not checked\n");
+  EXPECT_TRUE(std::isinf(axis('X').max));
+  EXPECT_EQ(axis('X').max_velocity, 80);
+}
+
+TEST_F(MachineSetupTest, FaultsNameTheirPlacesAllAtOnce) {
+  write("mill.var", "5161\t0\n");
+  EXPECT_FALSE(
+      read("[TRAJ]\nLINEAR_UNITS = furlong\n[EMCIO]\nTOOL_TABLE = nix.tbl\n[RS274NGC]\n"
+           "PARAMETER_FILE = mill.var\n[AXIS_X]\nMAX_VELOCITY = 0\nMAX_LIMIT = far\n"));
+  std::string out;
+  for (const Diagnostic& d : diagnostics_) {
+    out += std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message + "\n";
+  }
+  EXPECT_EQ(out,
+            "2:16: [TRAJ]LINEAR_UNITS: 'furlong' is not a number\n"
+            "9:13: [AXIS_X]MAX_LIMIT: 'far' is not a number\n"
+            "8:16: [AXIS_X]MAX_VELOCITY: 0 is not allowed; must be above 0\n"
+            "4:14: [EMCIO]TOOL_TABLE: cannot read " +
+                folder_ + "/nix.tbl: No such file or directory\n");
+  MachineSetup setup;
+  Diagnostics missing;
+  EXPECT_FALSE(read_machine_setup(folder_ + "/nix.ini", setup, missing));
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_EQ(missing[0].message, "cannot read " + folder_ + "/nix.ini: No such file or directory");
+}
+
+TEST_F(MachineSetupTest, JointsOfAGantryAndUnknownKinematics) {
+  write("mill.var", "5161\t0\n");
+  ASSERT_TRUE(
+      read("[KINS]\nKINEMATICS = trivkins coordinates=xyyz kinstype=BOTH\n[RS274NGC]\n"
+           "PARAMETER_FILE = mill.var\n[JOINT_3]\nMAX_VELOCITY = 7\nHOME = 5\n"))
+      << messages();
+  EXPECT_EQ(setup_.kinematics, "trivkins");
+  EXPECT_EQ(axis('Z').max_velocity, 7);
+  EXPECT_EQ(setup_.interpreter.start[2], 5);
+  ASSERT_TRUE(read("[KINS]\nKINEMATICS = xyzac-trt-kins\n"));
+  EXPECT_NE(
+      messages().find("mill.ini:2:14: warning: the kinematics xyzac-trt-kins are not modelled"),
+      std::string::npos)
+      << messages();
+}
+
+/// Every sample that LinuxCNC installs loads, or says where and why not.
+TEST_F(MachineSetupTest, SamplesOfLinuxcnc) {
+  const fs::path samples = "/usr/share/doc/linuxcnc/examples/sample-configs";
+  if (!fs::is_directory(samples)) GTEST_SKIP() << "no sample configurations of LinuxCNC";
+  std::size_t good = 0;
+  std::size_t bad = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(samples)) {
+    if (entry.path().extension() != ".ini" || !entry.is_regular_file()) continue;
+    MachineSetup setup;
+    Diagnostics diagnostics;
+    if (read_machine_setup(entry.path().string(), setup, diagnostics)) {
+      ++good;
+      EXPECT_GT(setup.interpreter.axis_mask, 0) << entry.path();
+      continue;
+    }
+    ++bad;
+    for (const Diagnostic& d : diagnostics) {
+      if (d.severity != Severity::kError) continue;
+      EXPECT_NE(d.line, 0) << entry.path();
+      std::cout << to_string(d);
+    }
+  }
+  EXPECT_GE(good, 280U);
+  std::cout << good << " samples load, " << bad << " say why not\n";
+}
+
+}  // namespace
+}  // namespace kerf

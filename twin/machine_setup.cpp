@@ -1,0 +1,234 @@
+#include "twin/machine_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "interp_bridge/ini_file.h"
+
+namespace kerf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kInchMm = 25.4;
+
+/// Reads values of an INI and reports what is wrong with them.
+class IniReader {
+ public:
+  IniReader(IniFile& ini, Diagnostics& diagnostics) : ini_(ini), diagnostics_(diagnostics) {}
+
+  std::string text(const char* section, const char* key) {
+    const IniEntry* const entry = ini_.find(section, key);
+    return entry != nullptr ? entry->value : std::string();
+  }
+
+  /// Absent: nothing. Not a number, or not above `least`: an error.
+  std::optional<double> number(const std::string& section, const char* key,
+                               std::optional<double> above = {}) {
+    const IniEntry* const entry = ini_.find(section, key);
+    if (entry == nullptr || entry->value.empty()) return std::nullopt;
+    // LinuxCNC reads the number in front and passes over what follows.
+    const std::string& value = entry->value;
+    const bool plus = value[0] == '+';
+    double result = 0;
+    const char* const begin = value.data() + (plus ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, value.data() + value.size(), result);
+    const bool ends = end == value.data() + value.size() || *end == ' ' || *end == '\t' ||
+                      *end == '#' || *end == ';';
+    if (error != std::errc() || !ends || !std::isfinite(result)) {
+      fault(*entry, fmt::format("[{}]{}: '{}' is not a number", section, key, value));
+      return std::nullopt;
+    }
+    if (above && !(result > *above)) {
+      fault(*entry, fmt::format("[{}]{}: {} is not allowed; must be above {:g}", section, key,
+                                value, *above));
+      return std::nullopt;
+    }
+    return result;
+  }
+
+  void fault(const IniEntry& entry, std::string message, std::string hint = {},
+             Severity severity = Severity::kError) {
+    Diagnostic d;
+    d.severity = severity;
+    d.file = entry.file < ini_.files().size() ? ini_.files()[entry.file] : std::string();
+    d.line = entry.line;
+    d.column = entry.value_column;
+    d.excerpt = entry.excerpt;
+    d.message = std::move(message);
+    d.hint = std::move(hint);
+    diagnostics_.push_back(std::move(d));
+  }
+
+  IniFile& file() { return ini_; }
+
+ private:
+  IniFile& ini_;
+  Diagnostics& diagnostics_;
+};
+
+/// mm in one unit of the machine. [TRAJ]LINEAR_UNITS: mm, inch and their other names, or units per
+/// mm.
+double read_unit_mm(IniReader& reader) {
+  const IniEntry* const entry = reader.file().find("TRAJ", "LINEAR_UNITS");
+  if (entry == nullptr) return 1;
+  const std::string& value = entry->value;
+  if (value == "mm" || value == "metric") return 1;
+  if (value == "inch" || value == "in" || value == "imperial") return kInchMm;
+  if (const auto per_mm = reader.number("TRAJ", "LINEAR_UNITS", 0.0)) {
+    if (std::abs(*per_mm - 1) < 1e-3) return 1;
+    if (std::abs(*per_mm - 1 / kInchMm) < 1e-3) return kInchMm;
+    reader.fault(*entry, fmt::format("[TRAJ]LINEAR_UNITS: {} is neither mm nor inch", value));
+  }
+  return 1;
+}
+
+/// The letter of every joint, in order: "XYZ", "XYYZ" for a gantry.
+std::string read_joint_letters(IniReader& reader, std::string& kinematics) {
+  const std::string words = reader.text("KINS", "KINEMATICS");
+  kinematics = words.substr(0, words.find_first_of(" \t"));
+  std::string letters;
+  const auto mark = words.find("coordinates=");
+  const std::string from = mark != words.npos ? words.substr(mark + 12) : "";
+  for (const char c : from.substr(0, from.find_first_of(" \t"))) {
+    letters += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  if (!letters.empty()) return letters;
+  for (const char c : reader.text("TRAJ", "COORDINATES")) {
+    const char upper = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (std::find(kAxisLetters.begin(), kAxisLetters.end(), upper) != kAxisLetters.end()) {
+      letters += upper;
+    }
+  }
+  return letters.empty() ? "XYZ" : letters;
+}
+
+std::optional<double> axis_number(IniReader& reader, char letter, int joint, const char* key,
+                                  std::optional<double> above = {}) {
+  if (auto value = reader.number(fmt::format("AXIS_{}", letter), key, above)) return value;
+  return reader.number(fmt::format("JOINT_{}", joint), key, above);
+}
+
+void read_axes(IniReader& reader, const std::string& letters, double unit_mm, MachineSetup& setup) {
+  MachineLimits& limits = setup.timeline.limits;
+  limits = MachineLimits{};
+  setup.interpreter.axis_mask = 0;
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    const char letter = kAxisLetters[axis];
+    const std::size_t joint = letters.find(letter);
+    if (joint == letters.npos) continue;
+    const int n = static_cast<int>(joint);
+    const double unit = is_rotary_axis(axis) ? 1 : unit_mm;
+    AxisLimits& out = limits.axes[axis];
+    out.present = true;
+    setup.interpreter.axis_mask |= 1 << axis;
+    if (const auto value = axis_number(reader, letter, n, "MIN_LIMIT")) out.min = *value * unit;
+    if (const auto value = axis_number(reader, letter, n, "MAX_LIMIT")) out.max = *value * unit;
+    // What LinuxCNC takes where the INI has no such key: 1 unit/s, 1 unit/s2.
+    out.max_velocity = axis_number(reader, letter, n, "MAX_VELOCITY", 0.0).value_or(1) * unit;
+    out.max_acceleration =
+        axis_number(reader, letter, n, "MAX_ACCELERATION", 0.0).value_or(1) * unit;
+    const auto home = reader.number(fmt::format("JOINT_{}", n), "HOME");
+    setup.interpreter.start[axis] = home.value_or(0) * unit;
+  }
+}
+
+void read_planner(IniReader& reader, double unit_mm, MachineLimits& limits) {
+  const auto scaled = [&](const char* key, double scale, double& out) {
+    const auto value = reader.number("TRAJ", key, 0.0);
+    if (value) out = *value * scale;
+    return value.has_value();
+  };
+  if (!scaled("MAX_LINEAR_VELOCITY", unit_mm, limits.max_linear_velocity_mm_per_s)) {
+    scaled("MAX_VELOCITY", unit_mm, limits.max_linear_velocity_mm_per_s);
+  }
+  scaled("MAX_ANGULAR_VELOCITY", 1, limits.max_angular_velocity_deg_per_s);
+  scaled("MAX_LINEAR_ACCELERATION", unit_mm, limits.max_linear_acceleration_mm_per_s2);
+  scaled("ARC_BLEND_RAMP_FREQ", 1, limits.arc_blend_ramp_hz);
+  scaled("ARC_BLEND_KINK_RATIO", 1, limits.arc_blend_kink_ratio);
+  if (const auto v = reader.number("TRAJ", "ARC_BLEND_ENABLE")) limits.arc_blend = *v != 0;
+  if (const auto v = reader.number("TRAJ", "ARC_BLEND_FALLBACK_ENABLE")) {
+    limits.arc_blend_fallback = *v != 0;
+  }
+  if (const auto v = reader.number("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH", 0.0)) {
+    limits.arc_blend_depth = static_cast<int>(std::min(*v, 1000.0));
+  }
+  if (const auto v = reader.number("TRAJ", "ARC_BLEND_GAP_CYCLES")) {
+    limits.arc_blend_gap_cycles = static_cast<int>(std::clamp(*v, 0.0, 1000.0));
+  }
+  if (const auto v = reader.number("EMCMOT", "SERVO_PERIOD", 0.0))
+    limits.servo_period_s = *v * 1e-9;
+  if (const auto v = reader.number("EMCIO", "CYCLE_TIME", 0.0)) limits.io_period_s = *v;
+}
+
+/// An existing file that a key names; a fault of `severity` if it is missing.
+std::string read_path(IniReader& reader, const char* section, const char* key,
+                      const std::string& folder, Severity severity) {
+  const IniEntry* const entry = reader.file().find(section, key);
+  if (entry == nullptr || entry->value.empty()) return {};
+  std::string path = resolve_ini_path(entry->value, folder);
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return path;
+  reader.fault(
+      *entry,
+      fmt::format("[{}]{}: cannot read {}: {}", section, key, path,
+                  error ? error.message() : "No such file or directory"),
+      severity == Severity::kWarning ? "work offsets count as 0, and limits are not checked" : "",
+      severity);
+  return {};
+}
+
+}  // namespace
+
+bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics) {
+  Result<IniFile> ini = IniFile::read(path, diagnostics);
+  if (!ini) {
+    Diagnostic d;
+    d.message = ini.error();
+    diagnostics.push_back(std::move(d));
+    return false;
+  }
+  IniReader reader(*ini, diagnostics);
+  InterpreterSetup& interpreter = setup.interpreter;
+  interpreter.ini_path = fs::absolute(path).lexically_normal().string();
+  interpreter.working_folder = fs::path(interpreter.ini_path).parent_path().string();
+  const double unit_mm = read_unit_mm(reader);
+  interpreter.inch_machine = unit_mm != 1;
+  read_axes(reader, read_joint_letters(reader, setup.kinematics), unit_mm, setup);
+  read_planner(reader, unit_mm, setup.timeline.limits);
+  setup.timeline.limits_known = true;
+  setup.timeline.planner.limits_origin = path;
+  setup.tool_table_path =
+      read_path(reader, "EMCIO", "TOOL_TABLE", interpreter.working_folder, Severity::kError);
+  // A machine that has not run yet has none: all offsets are 0.
+  interpreter.parameter_path = read_path(reader, "RS274NGC", "PARAMETER_FILE",
+                                         interpreter.working_folder, Severity::kWarning);
+  if (interpreter.parameter_path.empty()) {
+    // Where the work lies in the machine is not known, so neither is what lies beyond its limits.
+    for (AxisLimits& axis : setup.timeline.limits.axes) {
+      axis.min = -std::numeric_limits<double>::infinity();
+      axis.max = std::numeric_limits<double>::infinity();
+    }
+  }
+  interpreter.startup_code = reader.text("RS274NGC", "RS274NGC_STARTUP_CODE");
+  interpreter.random_toolchanger = reader.number("EMCIO", "RANDOM_TOOLCHANGER").value_or(0) != 0;
+  interpreter.tool_lengths = true;
+  if (const IniEntry* const kins = ini->find("KINS", "KINEMATICS");
+      kins != nullptr && setup.kinematics != "trivkins") {
+    reader.fault(
+        *kins,
+        fmt::format("the kinematics {} are not modelled: positions are taken as those of the "
+                    "tip in a machine with straight axes",
+                    setup.kinematics),
+        {}, Severity::kWarning);
+  }
+  return !has_error(diagnostics);
+}
+
+}  // namespace kerf

@@ -1,0 +1,30 @@
+// twin/machine_setup.h - the user's machine as its LinuxCNC INI describes it (--ini).
+#pragma once
+
+#include <string>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/program.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+/// What a dry run takes from an INI. Lengths in mm, whatever the machine's unit.
+struct MachineSetup {
+  /// Units, axes, start at home, parameter file, startup code, random tool changer, paths.
+  InterpreterSetup interpreter;
+  std::string tool_table_path;  ///< [EMCIO]TOOL_TABLE; empty: none
+  TimelineOptions timeline;     ///< limits, their origin, servo and I/O periods
+  std::string kinematics;       ///< [KINS]KINEMATICS: "trivkins"
+};
+
+/// Reads the INI at `path`. Relative paths in it are relative to its folder, as LinuxCNC (which
+/// runs there) takes them. Limits of an axis come from [AXIS_L], else from [JOINT_n] of the joint
+/// that moves it. All faults at once, with line and column; false if there was an error.
+///
+/// Not read: [HAL], [APPLICATIONS] and all else that says how the machine is driven and shown. The
+/// interpreter reads [RS274NGC], [EMCIO], [AXIS_*] and [PYTHON] itself (remaps, subroutine paths,
+/// features).
+bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics);
+
+}  // namespace kerf
