@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace kerf {
@@ -47,6 +48,16 @@ constexpr bool carries_text(CanonicalName name) {
       return false;
   }
 }
+
+/// The tool's number, which a listing's line does not have.
+bool tool_fits(const CanonicalCommand& command) {
+  const bool changes = command.name == CanonicalName::kChangeTool ||
+                       command.name == CanonicalName::kChangeToolNumber;
+  if (!changes || command.argument_count < 2) return true;
+  const double tool = command.number(1);
+  return tool == std::floor(tool) && std::abs(tool) <= std::numeric_limits<std::int32_t>::max();
+}
+
 static_assert(kCanonicalNameCount <= records::kFile, "codes of calls and of other records meet");
 
 }  // namespace
@@ -123,7 +134,9 @@ bool RecordReader::take_command(const records::Head& head, const char* payload) 
   command_.argument_count = full_count(command_.name, given);
   std::memcpy(command_.arguments.data(), payload, std::size_t{8} * given);
   for (std::size_t i = given; i < command_.argument_count; ++i) command_.arguments[i] = 0;
-  if (!canonical_arguments_fit(command_)) return refuse("a command whose numbers do not fit");
+  if (!canonical_arguments_fit(command_) || !tool_fits(command_)) {
+    return refuse("a command whose numbers do not fit");
+  }
   return feeder_.take(command_, place_);
 }
 
