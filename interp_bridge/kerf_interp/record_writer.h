@@ -36,7 +36,7 @@ class RecordWriter {
     const std::size_t bytes = (text.size() + 7) / 8 * 8;
     char* out = begin(code, line, text.size(), bytes);
     std::memset(out, 0, bytes);
-    std::memcpy(out, text.data(), text.size());
+    if (!text.empty()) std::memcpy(out, text.data(), text.size());
   }
 
   bool empty() const { return used_ == 0; }
