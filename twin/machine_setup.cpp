@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "interp_bridge/ini_file.h"
 
@@ -184,6 +186,77 @@ std::string read_path(IniReader& reader, const char* section, const char* key,
   return {};
 }
 
+/// Keys of the sections that say what a program does, as LinuxCNC 2.9 knows them, besides those
+/// that are asked for above. The interpreter reads those of RS274NGC; the others do not matter to a
+/// dry run.
+constexpr std::array<std::string_view, 50> kKnownKeys = {
+    "TRAJ.ANGULAR_UNITS",
+    "TRAJ.AXES",
+    "TRAJ.CYCLE_TIME",
+    "TRAJ.DEFAULT_ACCELERATION",
+    "TRAJ.DEFAULT_ANGULAR_ACCELERATION",
+    "TRAJ.DEFAULT_ANGULAR_VELOCITY",
+    "TRAJ.DEFAULT_LINEAR_ACCELERATION",
+    "TRAJ.DEFAULT_LINEAR_VELOCITY",
+    "TRAJ.DEFAULT_VELOCITY",
+    "TRAJ.HOME",
+    "TRAJ.HOMEMOD",
+    "TRAJ.MAX_ACCELERATION",
+    "TRAJ.MAX_ANGULAR_ACCELERATION",
+    "TRAJ.NO_FORCE_HOMING",
+    "TRAJ.NO_PROBE_HOME_ERROR",
+    "TRAJ.NO_PROBE_JOG_ERROR",
+    "TRAJ.POSITION_FILE",
+    "TRAJ.SPINDLES",
+    "TRAJ.TPMOD",
+    "KINS.JOINTS",
+    "EMCIO.EMCIO",
+    "EMCIO.TOOL_CHANGE_AT_G30",
+    "EMCIO.TOOL_CHANGE_QUILL_UP",
+    "EMCIO.TOOL_CHANGE_WITH_SPINDLE_ON",
+    "RS274NGC.CENTER_ARC_RADIUS_TOLERANCE_INCH",
+    "RS274NGC.CENTER_ARC_RADIUS_TOLERANCE_MM",
+    "RS274NGC.DISABLE_FANUC_STYLE_SUB",
+    "RS274NGC.DISABLE_G92_PERSISTENCE",
+    "RS274NGC.FEATURES",
+    "RS274NGC.HAL_PIN_VARS",
+    "RS274NGC.INI_VARS",
+    "RS274NGC.LOG_FILE",
+    "RS274NGC.LOG_LEVEL",
+    "RS274NGC.NO_DOWNCASE_OWORD",
+    "RS274NGC.ON_ABORT_COMMAND",
+    "RS274NGC.ORIENT_OFFSET",
+    "RS274NGC.OWORD_NARGS",
+    "RS274NGC.OWORD_WARNONLY",
+    "RS274NGC.PARAMETER_G73_PECK_CLEARANCE",
+    "RS274NGC.PARAMETER_G83_PECK_CLEARANCE",
+    "RS274NGC.PYTHON_TASK",
+    "RS274NGC.REMAP",
+    "RS274NGC.RETAIN_G43",
+    "RS274NGC.SUBROUTINE_PATH",
+    "RS274NGC.USER_M_PATH",
+    "RS274NGC.WIZARD_ROOT",
+    "EMCIO.DEBUG",
+    "TRAJ.COORDINATES",
+    "TRAJ.ARC_BLEND_SMOOTHING_THRESHOLD",
+    "RS274NGC.USER_DEFINED_FUNCTION_MAX_DIRS"};
+
+/// Keys that a dry run would need to know, and does not.
+void list_what_is_not_understood(IniReader& reader) {
+  for (const IniEntry& entry : reader.file().entries()) {
+    const bool matters = entry.section == "TRAJ" || entry.section == "KINS" ||
+                         entry.section == "EMCIO" || entry.section == "RS274NGC";
+    if (!matters || entry.asked || entry.shadowed) continue;
+    const std::string name = entry.section + "." + entry.key;
+    if (std::find(kKnownKeys.begin(), kKnownKeys.end(), name) != kKnownKeys.end()) continue;
+    const bool modelled_not = name == "EMCIO.TOOL_CHANGE_POSITION" || name == "EMCIO.DB_PROGRAM";
+    reader.fault(entry,
+                 fmt::format("[{}]{} is {}", entry.section, entry.key,
+                             modelled_not ? "not modelled" : "not understood; it is passed over"),
+                 {}, Severity::kNote);
+  }
+}
+
 }  // namespace
 
 bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics) {
@@ -228,6 +301,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
                     setup.kinematics),
         {}, Severity::kWarning);
   }
+  list_what_is_not_understood(reader);
   return !has_error(diagnostics);
 }
 

@@ -20,7 +20,8 @@ struct MachineSetup {
 
 /// Reads the INI at `path`. Relative paths in it are relative to its folder, as LinuxCNC (which
 /// runs there) takes them. Limits of an axis come from [AXIS_L], else from [JOINT_n] of the joint
-/// that moves it. All faults at once, with line and column; false if there was an error.
+/// that moves it. All faults at once, with line and column; false if there was an error. Keys of
+/// [TRAJ], [KINS], [EMCIO] and [RS274NGC] that are not understood are notes.
 ///
 /// Not read: [HAL], [APPLICATIONS] and all else that says how the machine is driven and shown. The
 /// interpreter reads [RS274NGC], [EMCIO], [AXIS_*] and [PYTHON] itself (remaps, subroutine paths,

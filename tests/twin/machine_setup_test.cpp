@@ -134,6 +134,21 @@ TEST_F(MachineSetupTest, FaultsNameTheirPlacesAllAtOnce) {
   EXPECT_EQ(missing[0].message, "cannot read " + folder_ + "/nix.ini: No such file or directory");
 }
 
+TEST_F(MachineSetupTest, WhatIsNotUnderstoodIsListed) {
+  write("mill.var", "5161\t0\n");
+  ASSERT_TRUE(
+      read("[TRAJ]\nMAX_LINEAR_VELOCTY = 5\nSPINDLES = 1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+           "REMAP = M400\n[EMCIO]\nTOOL_CHANGE_POSITION = 0 0 0\n[HAL]\nANYTHING = 1\n"));
+  std::string out;
+  for (const Diagnostic& d : diagnostics_) {
+    EXPECT_EQ(d.severity, Severity::kNote);
+    out += std::to_string(d.line) + ": " + d.message + "\n";
+  }
+  EXPECT_EQ(out,
+            "2: [TRAJ]MAX_LINEAR_VELOCTY is not understood; it is passed over\n"
+            "8: [EMCIO]TOOL_CHANGE_POSITION is not modelled\n");
+}
+
 TEST_F(MachineSetupTest, JointsOfAGantryAndUnknownKinematics) {
   write("mill.var", "5161\t0\n");
   ASSERT_TRUE(
