@@ -165,11 +165,15 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
                      ? fs::absolute(options_.path).parent_path().string()
                      : options_.machine.working_folder;
   child.ini = options_.machine.ini_path;
-  if (child.ini.empty()) {
+  if (child.ini.empty() || !options_.machine.ini_text.empty()) {
+    // LinuxCNC's own start script puts the includes in place; the interpreter does not know them.
     child.ini = home + "/kerf.ini";
+    const std::string text =
+        options_.machine.ini_path.empty()
+            ? makeshift_ini(fs::current_path().string(), options_.machine.random_toolchanger)
+            : options_.machine.ini_text;
     std::ofstream ini(child.ini);
-    if (!(ini << makeshift_ini(fs::current_path().string(), options_.machine.random_toolchanger)
-              << std::flush)) {
+    if (!(ini << text << std::flush)) {
       return Error{fmt::format("cannot write {}: {}", child.ini, std::strerror(errno))};
     }
   }

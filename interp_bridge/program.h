@@ -45,6 +45,7 @@ struct InterpreterSetup {
   /// Where the machine stands at the start, machine coordinates: X Y Z A B C U V W, mm and degrees.
   std::array<double, 9> start{};
   std::string ini_path;        ///< read by the interpreter itself: remaps, paths, features
+  std::string ini_text;        ///< of ini_path with its #INCLUDEs in place; empty: it has none
   std::string working_folder;  ///< relative paths of the INI; empty: the program's folder
   std::string parameter_path;  ///< var file, copied before it is used; empty: none
   std::string startup_code;    ///< run before the program

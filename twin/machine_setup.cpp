@@ -271,6 +271,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   InterpreterSetup& interpreter = setup.interpreter;
   interpreter.ini_path = fs::absolute(path).lexically_normal().string();
   interpreter.working_folder = fs::path(interpreter.ini_path).parent_path().string();
+  interpreter.ini_text = ini->expanded_text();
   const double unit_mm = read_unit_mm(reader);
   interpreter.inch_machine = unit_mm != 1;
   read_axes(reader, read_joint_letters(reader, setup.kinematics), unit_mm, setup);

@@ -281,6 +281,16 @@ TEST_F(BridgeProgram, StartupCodeAndAxisMask) {
   EXPECT_EQ(this->run("G0 A1\nM2\n").messages().rfind(part() + ":1: error: ", 0), 0U);
 }
 
+TEST_F(BridgeProgram, TheTextOfAnIniWithIncludesReachesTheInterpreter) {
+  folder_.write("subs/far.ngc", "o<far> sub\nG0 X7\no<far> endsub\nM2\n");
+  options_.machine.ini_path = folder_.write("mill.ini", "#INCLUDE paths.inc\n");
+  EXPECT_TRUE(has_error(run("o<far> call\nM2\n").diagnostics)) << "not found without the path";
+  options_.machine.ini_text = "[RS274NGC]\nSUBROUTINE_PATH = " + folder_.path("subs") + "\n";
+  const ProgramRun found = run("o<far> call\nM2\n");
+  EXPECT_EQ(found.messages(), "");
+  EXPECT_EQ(found.motions.front().to_mm.x, 7);
+}
+
 TEST_F(BridgeProgram, ForeignOutputIsKept) {
   const ProgramRun run = this->run("(PRINT, hello)\nG0 X1\nM2\n");
   ASSERT_EQ(run.summary.foreign_lines.size(), 1U);

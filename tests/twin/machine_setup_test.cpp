@@ -134,6 +134,16 @@ TEST_F(MachineSetupTest, FaultsNameTheirPlacesAllAtOnce) {
   EXPECT_EQ(missing[0].message, "cannot read " + folder_ + "/nix.ini: No such file or directory");
 }
 
+TEST_F(MachineSetupTest, IncludesAreFollowedAndHandedToTheInterpreter) {
+  write("mill.var", "5161\t0\n");
+  write("axes.inc", "[AXIS_X]\nMAX_VELOCITY = 33\n[RS274NGC]\nPARAMETER_FILE = mill.var\n");
+  ASSERT_TRUE(read("[TRAJ]\nLINEAR_UNITS = mm\n#INCLUDE axes.inc\n")) << messages();
+  EXPECT_EQ(axis('X').max_velocity, 33);
+  EXPECT_NE(setup_.interpreter.ini_text.find("MAX_VELOCITY = 33"), std::string::npos);
+  ASSERT_TRUE(read("[RS274NGC]\nPARAMETER_FILE = mill.var\n"));
+  EXPECT_EQ(setup_.interpreter.ini_text, "");
+}
+
 TEST_F(MachineSetupTest, WhatIsNotUnderstoodIsListed) {
   write("mill.var", "5161\t0\n");
   ASSERT_TRUE(
