@@ -290,7 +290,7 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
     case ChildEnding::kTooMany:
       report(Severity::kError, records.place(),
              fmt::format("more than {} canonical commands; the program counts as endless",
-                         options_.max_commands),
+                         command_limit(options_, survey_.lines)),
              kLoop, reading);
       break;
     case ChildEnding::kSilent:
@@ -325,8 +325,9 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   };
   MotionFeederOptions feeding;
   feeding.diameters_known = !options_.tool_table_path.empty();
-  feeding.max_commands = options_.max_commands;
+  feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
+  if (options_.machine.start_known) feeding.start = options_.machine.start;
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);

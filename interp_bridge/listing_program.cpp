@@ -93,7 +93,10 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   CanonicalReaderOptions reading;
   reading.listing_name = name();
   reading.feeder.tool_by_index = tool_by_index_;
-  reading.feeder.max_commands = options_.max_commands;
+  // A file has an end; a pipe may have none.
+  const std::uint64_t limit =
+      is_stdin() ? command_limit(options_, 0) : options_.max_commands.value_or(0);
+  reading.feeder.max_commands = limit;
   reading.feeder.frame = &frame_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);
@@ -103,9 +106,8 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.program_lines = static_cast<std::size_t>(reader.listing_lines());
   if (reader.feeder().too_many_commands()) {
     report(Severity::kError,
-           fmt::format("more than {} canonical commands; the program counts as endless",
-                       options_.max_commands),
-           {}, diagnostics);
+           fmt::format("more than {} canonical commands; the program counts as endless", limit), {},
+           diagnostics);
   } else if (complete && reader.commands() == 0) {
     const bool empty = reader.listing_lines() == 0;
     report(Severity::kError,

@@ -25,6 +25,7 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
       summary_(summary),
       diagnostics_(diagnostics),
       fold_(options_.tool_by_index) {
+  if (options_.start) fold_.stand_at(*options_.start);
   batch_.reserve(kBatchMotions + kMotionsPerCommand);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,8 @@ struct MotionFeederOptions {
   bool diameters_known =
       true;  ///< false: warn of cutter compensation, whose radius the interpreter took as 0
   std::uint64_t max_commands = 0;  ///< 0: any number
+  /// Of MotionFold::stand_at.
+  std::optional<std::array<double, 9>> start;
   /// Written once, before the first motion that moves is handed over. May be null.
   WorkpieceFrame* frame = nullptr;
 };

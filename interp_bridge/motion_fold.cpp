@@ -134,6 +134,17 @@ void MotionFold::fix_workpiece_frame() {
   work_ = frame_;
   work_fixed_ = true;
   same_frame_ = true;
+  if (!stands_at_) return;
+  const std::array<double, 9>& at = *stands_at_;
+  const auto [work_cos, work_sin] = cos_sin(work_.rotation_deg);
+  const Vec3 tip_mm = Vec3{at[0], at[1], at[2]} - tool_offset_mm_ - work_.g5x_mm;
+  position_mm_ = turned(tip_mm, work_cos, -work_sin) - work_.g92_mm;
+  for (std::size_t i = 0; i < 3; ++i) {
+    abc_deg_[i] = at[3 + i] - tool_offset_abc_deg_[i] - work_.g5x_abc_deg[i] - work_.g92_abc_deg[i];
+  }
+  has_rotary_motion_ |= abc_deg_ != std::array<double, 3>{};
+  position_known_ = true;
+  position_as_printed_ = false;
 }
 
 WorkpieceFrame MotionFold::workpiece_frame() const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,14 +57,18 @@ inline constexpr double kSplineChord_mm = 1e-3;
 /// Feed: in mm/min, or mm per revolution with `feed_per_rev`; degrees/min where a step only turns
 /// A, B or C. A thread's feed is its pitch, per revolution. Rpm under G96 (constant surface speed)
 /// is that at the end of the step. Steps before the first motion have start_known = false and stand
-/// at the origin; the first motion has it too, with from_mm = to_mm. Its unnamed axes count as
-/// known afterwards, at 0, as the listing says.
+/// at the origin; the first motion has it too, with from_mm = to_mm, unless stand_at() has said
+/// where the machine is. Its unnamed axes count as known afterwards, at 0, as the listing says.
 class MotionFold {
  public:
   /// `tool_by_index`: tool number of each row of the interpreter's tool table, [0] = none, for
   /// CHANGE_TOOL_NUMBER (M61), which prints the row. Empty: the printed number is taken for the
   /// tool's.
   explicit MotionFold(std::vector<int> tool_by_index = {});
+
+  /// Before the first command: the machine stands at `machine_position` (X Y Z A B C U V W of the
+  /// machine frame, mm and degrees), so that the first motion has a start.
+  void stand_at(const std::array<double, 9>& machine_position) { stands_at_ = machine_position; }
 
   /// Appends the steps of `command` (0, 1, or 2 for a rigid tap) to `out`.
   FoldRemark fold(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
@@ -136,6 +141,7 @@ class MotionFold {
   std::array<double, 3> abc_deg_{};
   std::array<double, 3> uvw_{};  ///< as commanded last; listings do not hold them
   bool position_known_ = false;
+  std::optional<std::array<double, 9>> stands_at_;  ///< until the workpiece frame is fixed
   bool position_as_printed_ =
       true;  ///< no change of frame or unit since: equal digits mean equal points
 

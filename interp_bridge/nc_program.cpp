@@ -129,7 +129,7 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.unnumbered = session.prepared.unnumbered;
   reading.feeder.tool_by_index = session.table.tool_by_index;
   reading.feeder.diameters_known = !options_.tool_table_path.empty();
-  reading.feeder.max_commands = options_.max_commands;
+  reading.feeder.max_commands = command_limit(options_, survey_.lines);
   return reading;
 }
 
@@ -216,7 +216,7 @@ void NcProgram::report_ending(ChildEnding ending, Session& session, CanonicalRea
     case ChildEnding::kTooMany:
       report(Severity::kError, place,
              fmt::format("more than {} canonical commands; the program counts as endless",
-                         options_.max_commands),
+                         command_limit(options_, survey_.lines)),
              "a loop whose condition stays true?", summary, diagnostics);
       break;
     case ChildEnding::kSilent: {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -113,6 +114,12 @@ std::string find_kerf_interp(const std::string& given) {
 }
 
 }  // namespace
+
+std::uint64_t command_limit(const ProgramOptions& options, std::size_t lines) {
+  constexpr std::uint64_t kLeast = 50'000'000;
+  constexpr std::uint64_t kOfALine = 4;
+  return options.max_commands.value_or(std::max(kLeast, kOfALine * lines));
+}
 
 std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
   std::vector<ToolTableRow> tools;

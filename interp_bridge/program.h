@@ -44,6 +44,8 @@ struct InterpreterSetup {
   bool tool_lengths = false;
   /// Where the machine stands at the start, machine coordinates: X Y Z A B C U V W, mm and degrees.
   std::array<double, 9> start{};
+  /// That is where it stands, and the work offsets are known too: the first move has a start.
+  bool start_known = false;
   std::string ini_path;        ///< read by the interpreter itself: remaps, paths, features
   std::string ini_text;        ///< of ini_path with its #INCLUDEs in place; empty: it has none
   std::string working_folder;  ///< relative paths of the INI; empty: the program's folder
@@ -65,11 +67,15 @@ struct ProgramOptions {
   std::string rs274_path = "rs274";  ///< looked up in PATH
   /// Empty: beside this executable, in ../lib/kerf beside it, else looked up in PATH.
   std::string kerf_interp_path;
-  /// Canonical commands after which a program counts as endless.
-  std::uint64_t max_commands = 50'000'000;
+  /// Canonical commands after which a program counts as endless; 0: any number. Not given: 50
+  /// million, and for longer programs 4 a line.
+  std::optional<std::uint64_t> max_commands;
   /// Seconds without a canonical command after which it counts as endless.
   double max_silent_s = 20.0;
 };
+
+/// ProgramOptions::max_commands for a source of so many lines.
+std::uint64_t command_limit(const ProgramOptions& options, std::size_t lines);
 
 /// Something that the program does and kerf does not: a user M-code, an M66.
 struct ProgramNote {

@@ -283,7 +283,8 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   // A machine that has not run yet has none: all offsets are 0.
   interpreter.parameter_path = read_path(reader, "RS274NGC", "PARAMETER_FILE",
                                          interpreter.working_folder, Severity::kWarning);
-  if (interpreter.parameter_path.empty()) {
+  interpreter.start_known = !interpreter.parameter_path.empty();
+  if (!interpreter.start_known) {
     // Where the work lies in the machine is not known, so neither is what lies beyond its limits.
     for (AxisLimits& axis : setup.timeline.limits.axes) {
       axis.min = -std::numeric_limits<double>::infinity();

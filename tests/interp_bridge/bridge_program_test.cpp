@@ -161,6 +161,29 @@ TEST_F(BridgeProgram, WithoutAKnownMachineToolLengthsDoNotCount) {
   EXPECT_EQ(run(text).motions[1].to_mm, Vec3(1, 0, 90));
 }
 
+TEST_F(BridgeProgram, TheFirstMoveBeginsWhereTheMachineStands) {
+  options_.tool_table_path = folder_.write("tool.tbl", "T1 P1 D6 Z10\n");
+  options_.machine.tool_lengths = true;
+  options_.machine.start = {5, 7, 100, 30, 0, 0, 0, 0, 0};
+  options_.machine.start_known = true;
+  const ProgramRun plain = run("G21 G90\nG10 L2 P1 X1 Y2 Z3 A10 R90\nT1 M6 G43 H1\nG0 Z5 A0\nM2\n");
+  EXPECT_EQ(plain.messages(), "");
+  const Motion* move = nullptr;
+  for (const Motion& m : plain.motions) {
+    if (m.kind == MotionKind::kTraverse) move = &m;
+  }
+  ASSERT_NE(move, nullptr);
+  EXPECT_TRUE(move->start_known);
+  // Machine = R(90 degrees) * work + (1, 2, 3) + (0, 0, 10) of the tool.
+  EXPECT_NEAR(move->from_mm.x, 5, 1e-9);
+  EXPECT_NEAR(move->from_mm.y, -4, 1e-9);
+  EXPECT_NEAR(move->from_mm.z, 87, 1e-9);
+  EXPECT_NEAR(move->from_abc_deg[0], 20, 1e-9);
+  EXPECT_NEAR(move->to_mm.x, 5, 1e-9);
+  EXPECT_NEAR(move->to_mm.y, -4, 1e-9);
+  EXPECT_NEAR(move->to_mm.z, 5, 1e-9);
+}
+
 TEST_F(BridgeProgram, ToolLengthsMoveTheTipOfAStandingMachine) {
   options_.machine.tool_lengths = true;
   options_.tool_table_path = folder_.write("tool.tbl", "T1 P1 D6 Z10\nT2 P2 D10 Z30\n");

@@ -67,7 +67,8 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       ->type_name("on|off");
   command
       .add_option("--max-commands", a.max_commands,
-                  "canonical commands after which a program counts as endless")
+                  "canonical commands after which a program counts as endless (default 50 million, "
+                  "or 4 a line if that is more)")
       ->type_name("N");
   command
       .add_option("--max-seconds", a.max_seconds,

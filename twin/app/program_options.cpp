@@ -35,8 +35,10 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
                  fmt::format("'{}' is no interpreter; allowed: bridge, text", a.interp));
   }
   options.block_delete = reader.on_off("--block-delete", a.block_delete, options.block_delete);
-  options.max_commands = static_cast<std::uint64_t>(reader.whole_number(
-      "--max-commands", a.max_commands, kMaxCommands, static_cast<double>(options.max_commands)));
+  if (!a.max_commands.empty()) {
+    options.max_commands = static_cast<std::uint64_t>(
+        reader.whole_number("--max-commands", a.max_commands, kMaxCommands, 0));
+  }
   options.max_silent_s =
       reader.number("--max-seconds", a.max_seconds, kMaxSeconds, options.max_silent_s);
   return request;
