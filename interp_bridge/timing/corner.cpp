@@ -1,3 +1,5 @@
+// The sizes of the arcs, the shares and the thresholds are those of LinuxCNC 2.9 (its tp folder:
+// blendmath.c), so that corners are rounded where it rounds them.
 #include "interp_bridge/timing/corner.h"
 
 #include <algorithm>
