@@ -1,11 +1,8 @@
 #include "twin/session.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <time.h>
-#include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
 #include <thread>
 
 #include "twin/batch_queue.h"
@@ -16,35 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Bytes that a run needs at least for each cell: its height. A surface (picture, mesh) takes as
-/// much again and more.
-constexpr double kBytesPerCell = 4.0;
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
-
-double peak_rss_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-double machine_memory_bytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-Diagnostic general_error(std::string message, std::string hint = {}) {
-  Diagnostic d;
-  d.message = std::move(message);
-  d.hint = std::move(hint);
-  return d;
 }
 
 }  // namespace
@@ -71,83 +41,24 @@ bool Session::open_program(Diagnostics& diagnostics) {
 }
 
 bool Session::read_tools(Diagnostics& diagnostics) {
-  tool_sources_.arguments = options_.tools;
-  tool_sources_.hints = find_tool_hints(comments_with_units(*program_, options_.program.path));
-  if (options_.program.tool_table_path.empty()) return true;
-  auto rows = read_tool_table(options_.program.tool_table_path, diagnostics,
-                              options_.program.machine.inch_machine ? 25.4 : 1.0);
-  if (!rows) {
-    if (!has_error(diagnostics)) diagnostics.push_back(general_error(rows.error()));
-    return false;
-  }
-  tool_sources_.table = std::move(rows.value());
-  return !has_error(diagnostics);
+  return gather_tool_sources(options_.tools, program_.get(), options_.program, tool_sources_,
+                             diagnostics);
 }
 
 bool Session::choose_known_blank(Diagnostics& diagnostics, Outcome& outcome) {
   if (options_.blank) return create_stock(*options_.blank, "--stock", diagnostics, outcome);
-  const auto hint = find_blank_hint(comments_with_units(*program_, options_.program.path));
-  if (!hint) return true;  // guessed from the motions, later
-  const Result<Blank> blank = parse_blank(hint->spec);
-  if (!blank) {
-    Diagnostic d = general_error(blank.error(), "--stock SPEC overrides the comment");
-    d.file = options_.program.path;
-    d.line = static_cast<int>(hint->line);
-    diagnostics.push_back(std::move(d));
-    return false;
-  }
-  const std::string origin = fmt::format("comment in line {} ({})", hint->line, hint->dialect);
-  return create_stock(*blank, origin, diagnostics, outcome);
-}
-
-/// Cells that the model itself refuses are left to its own message.
-bool Session::refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) const {
-  const Vec3 size = blank.bounds_mm().size();
-  const double cells = std::ceil(size.x / cell_mm) * std::ceil(size.y / cell_mm);
-  const double bytes = cells * kBytesPerCell;
-  if (cells > static_cast<double>(ZMap::kMaxCells) || bytes <= machine_memory_bytes()) return false;
-  diagnostics.push_back(
-      general_error(fmt::format("--cell: {:g} mm makes {:.0f} million cells, which take {:.1f} GB "
-                                "of memory; this machine has {:.1f} GB",
-                                cell_mm, cells / 1e6, bytes / 1e9, machine_memory_bytes() / 1e9),
-                    "a greater --cell takes less: twice the cell, a quarter of the memory"));
-  return true;
+  CommentBlank found;
+  if (!find_comment_blank(*program_, options_.program.path, found, diagnostics)) return false;
+  // Without one it is guessed from the motions, later.
+  return !found.blank || create_stock(*found.blank, found.origin, diagnostics, outcome);
 }
 
 bool Session::create_stock(const Blank& blank, const std::string& origin, Diagnostics& diagnostics,
                            Outcome& outcome) {
-  stock_facts_.origin = origin;
-  stock_facts_.description = describe(blank);
-  outcome = Outcome::kUsageError;
-  if (!blank.state_file.empty()) {
-    if (options_.cell_mm > 0) {
-      diagnostics.push_back(
-          general_error("--cell: a saved workpiece keeps its own cells; leave --cell out"));
-      return false;
-    }
-    auto loaded = ZMap::load(blank.state_file, options_.threads, options_.kernel);
-    if (!loaded) {
-      diagnostics.push_back(general_error(loaded.error()));
-      outcome = Outcome::kFailed;
-      return false;
-    }
-    stock_ = std::move(loaded.value());
-    return true;
-  }
-  ZMapOptions options;
-  options.blank = blank;
-  options.cell_mm = options_.cell_mm > 0 ? options_.cell_mm : default_cell_mm(blank.bounds_mm());
-  options.threads = options_.threads;
-  options.kernel = options_.kernel;
-  if (refuse_memory(blank, options.cell_mm, diagnostics)) return false;
-  auto created = ZMap::create(options);
-  if (!created) {
-    const char* option = created.error().rfind("cell", 0) == 0 ? "--cell" : origin.c_str();
-    diagnostics.push_back(general_error(fmt::format("{}: {}", option, created.error())));
-    return false;
-  }
-  stock_ = std::move(created.value());
-  return true;
+  StockSetup setup = make_stock(blank, options_.stock, origin, diagnostics, outcome);
+  stock_ = std::move(setup.stock);
+  stock_facts_ = std::move(setup.facts);
+  return stock_ != nullptr;
 }
 
 double Session::progress() const {
@@ -397,14 +308,7 @@ void Session::complete_report(const CutStage& stage) {
   report_.motion = stage.timeline().totals();
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
-  stock_facts_.model = stock_->name();
-  stock_facts_.cell_mm = stock_->cell_mm();
-  stock_facts_.blank_mm3 = stock_->blank_mm3();
-  stock_facts_.remaining_mm3 = stock_->remaining_mm3();
-  stock_facts_.bounds_mm = stock_->bounds_mm();
-  stock_facts_.cells = stock_->cell_count();
-  stock_facts_.digest = stock_->digest();
-  report_.stock = stock_facts_;
+  report_.stock = stock_report(*stock_, stock_facts_);
 }
 
 }  // namespace kerf

@@ -18,28 +18,19 @@
 #include "twin/blank_choice.h"
 #include "twin/cut_stage.h"
 #include "twin/line_window.h"
+#include "twin/outcome.h"
 #include "twin/report.h"
+#include "twin/session_parts.h"
 #include "twin/tools.h"
 
 namespace kerf {
-
-/// How a session ended. The order is that of the exit codes it leads to, not of badness.
-enum class Outcome {
-  kFinished,  ///< the program was run to its end
-  kLossy,  ///< so it was, but the interpreter's listing lacks moves that the program has (splines)
-  kUsageError,   ///< what was asked for makes no sense (cell larger than the blank, ...)
-  kFailed,       ///< a file or the interpreter failed; the report covers what was run
-  kInterrupted,  ///< stopped from outside; the report covers what was run
-};
 
 struct SessionOptions {
   ProgramOptions program;
   std::vector<ToolShapeArgument> tools;  ///< of --tool
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
-  double cell_mm = 0;                    ///< 0: default_cell_mm() of the blank
-  double margin_mm = 5;                  ///< around a guessed blank
-  int threads = 1;                       ///< cutting threads
-  ZMapKernel kernel = ZMapKernel::kAuto;
+  StockSettings stock;
+  double margin_mm = 5;  ///< around a guessed blank
   TimelineOptions timeline;
   LineRange lines;  ///< cut silently up to there, reported from there, stopped there
 };
@@ -102,7 +93,6 @@ class Session {
   bool choose_known_blank(Diagnostics& diagnostics, Outcome& outcome);
   bool create_stock(const Blank& blank, const std::string& origin, Diagnostics& diagnostics,
                     Outcome& outcome);
-  bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) const;
 
   bool guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
   bool gather(std::span<const Motion> motions, BlankGuess& guess, ToolBook& book);

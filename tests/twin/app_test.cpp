@@ -35,22 +35,22 @@ TEST(RunOptions, DefaultsAreGood) {
   arguments.source.program = "part.ngc";
   const RunRequest request = understand(arguments, diagnostics);
   EXPECT_TRUE(diagnostics.empty());
-  EXPECT_GE(request.session.threads, 1);
-  EXPECT_EQ(request.session.cell_mm, 0);
+  EXPECT_GE(request.session.stock.threads, 1);
+  EXPECT_EQ(request.session.stock.cell_mm, 0);
   EXPECT_EQ(request.mesh_tolerance_mm, 0.01);
   EXPECT_TRUE(request.session.program.block_delete);
 }
 
 TEST(RunOptions, AllFaultsComeAtOnce) {
   RunArguments a;
-  a.cell = std::string("0");
-  a.threads = std::string("1.5");
-  a.kernel = std::string("gpu");
-  a.model = std::string("octree");
+  a.work.cell = std::string("0");
+  a.work.threads = std::string("1.5");
+  a.work.kernel = std::string("gpu");
+  a.work.model = std::string("octree");
   a.source.interp = std::string("rs274");
   a.source.block_delete = std::string("maybe");
   a.mesh_tolerance = std::string("fine");
-  a.margin = std::string("-1");
+  a.work.margin = std::string("-1");
   EXPECT_EQ(faults_of(a),
             "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
@@ -65,7 +65,7 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
 
 TEST(RunOptions, ToolsGivenTwiceOrWithUndercutsAreRefused) {
   RunArguments a;
-  a.tools = {"1=flat:6", "1=ball:6", "2=lollipop:6:3"};
+  a.work.tools = {"1=flat:6", "1=ball:6", "2=lollipop:6:3"};
   EXPECT_EQ(faults_of(a),
             "kerf: error: --tool: '1=ball:6': tool 1 is given twice\n"
             "kerf: error: --tool: '2=lollipop:6:3': lollipop:6:3 cuts undercuts, which the Z-map "

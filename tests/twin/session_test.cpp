@@ -35,7 +35,7 @@ class SessionTest : public testing::Test {
     std::string name = (std::filesystem::temp_directory_path() / "kerf-session-XXXXXX").string();
     folder_ = mkdtemp(name.data());
     options_.program.path = folder_ + "/part.canon";
-    options_.cell_mm = 0.1;
+    options_.stock.cell_mm = 0.1;
   }
   ~SessionTest() override { std::filesystem::remove_all(folder_); }
 

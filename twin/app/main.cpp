@@ -76,48 +76,62 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       ->type_name("S");
 }
 
-void add_run_options(CLI::App& run, RunArguments& a) {
-  add_program_options(run, a.source);
-  run.add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
+void add_work_options(CLI::App& command, WorkArguments& a) {
+  command
+      .add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
       ->type_name("N=SHAPE")
       ->allow_extra_args(false);
-  run.add_option("--stock", a.stock,
-                 "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
-                 "state:FILE (a "
-                 "saved workpiece); several joined by +")
+  command
+      .add_option("--stock", a.stock,
+                  "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
+                  "state:FILE (a "
+                  "saved workpiece); several joined by +")
       ->type_name("SPEC");
-  run.add_option("--model", a.model, "workpiece model: zmap | auto (default auto)")
+  command.add_option("--model", a.model, "workpiece model: zmap | auto (default auto)")
       ->type_name("NAME");
-  run.add_option("--cell", a.cell,
-                 "edge of a cell (default: suits the blank, at most 4 million cells)")
+  command
+      .add_option("--cell", a.cell,
+                  "edge of a cell (default: suits the blank, at most 4 million cells)")
       ->type_name("MM");
-  run.add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
+  command
+      .add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
       ->type_name("MM");
+  command
+      .add_option("--path", a.path,
+                  "what is cut: programmed | planned, with corners rounded as the machine does "
+                  "under G64 (default programmed)")
+      ->type_name("NAME");
+  command
+      .add_option("--threads", a.threads,
+                  "cutting threads (default: one less than the cores, at most 8)")
+      ->type_name("N");
+  command.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
+      ->type_name("NAME");
+}
+
+void add_output_options(CLI::App& command, OutputPaths& a, std::string& mesh_tolerance) {
+  command.add_option("--json", a.json, "report, schema kerf-report/1")->type_name("FILE");
+  command.add_option("--png", a.png, "picture of the finished part")->type_name("FILE");
+  command.add_option("--stl", a.stl, "finished part as a closed mesh, binary STL")
+      ->type_name("FILE");
+  command.add_option("--ply", a.ply, "the same as binary PLY")->type_name("FILE");
+  command.add_option("--state", a.state, "finished workpiece, for --stock state:FILE")
+      ->type_name("FILE");
+  command
+      .add_option("--mesh-tolerance", mesh_tolerance,
+                  "how far meshes may lie from the model (default 0.01; 0 = every cell)")
+      ->type_name("MM");
+}
+
+void add_run_options(CLI::App& run, RunArguments& a) {
+  add_program_options(run, a.source);
+  add_work_options(run, a.work);
   run.add_option("--from-line", a.from_line,
                  "cut what comes before line N without a word, report from there")
       ->type_name("N");
   run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
       ->type_name("N");
-  run.add_option(
-         "--path", a.path,
-         "what is cut: programmed | planned, with corners rounded as the machine does under "
-         "G64 (default programmed)")
-      ->type_name("NAME");
-  run.add_option("--threads", a.threads,
-                 "cutting threads (default: one less than the cores, at most 8)")
-      ->type_name("N");
-  run.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
-      ->type_name("NAME");
-  run.add_option("--json", a.outputs.json, "report, schema kerf-report/1")->type_name("FILE");
-  run.add_option("--png", a.outputs.png, "picture of the finished part")->type_name("FILE");
-  run.add_option("--stl", a.outputs.stl, "finished part as a closed mesh, binary STL")
-      ->type_name("FILE");
-  run.add_option("--ply", a.outputs.ply, "the same as binary PLY")->type_name("FILE");
-  run.add_option("--state", a.outputs.state, "finished workpiece, for --stock state:FILE")
-      ->type_name("FILE");
-  run.add_option("--mesh-tolerance", a.mesh_tolerance,
-                 "how far meshes may lie from the model (default 0.01; 0 = every cell)")
-      ->type_name("MM");
+  add_output_options(run, a.outputs, a.mesh_tolerance);
   run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
 }
 

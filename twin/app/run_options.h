@@ -2,11 +2,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "base/diagnostic.h"
 #include "twin/app/outputs.h"
 #include "twin/app/program_options.h"
+#include "twin/app/work_options.h"
 #include "twin/session.h"
 
 namespace kerf {
@@ -14,15 +14,8 @@ namespace kerf {
 /// The arguments as written. Empty = not given.
 struct RunArguments {
   ProgramArguments source;
-  std::vector<std::string> tools;
-  std::string stock;
-  std::string model;
-  std::string cell;
-  std::string threads;
-  std::string kernel;
+  WorkArguments work;
   std::string mesh_tolerance;
-  std::string margin;
-  std::string path;
   std::string from_line;
   std::string until_line;
   OutputPaths outputs;

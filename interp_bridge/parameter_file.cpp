@@ -1,0 +1,112 @@
+#include "interp_bridge/parameter_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+namespace kerf {
+namespace {
+
+// Numbers of LinuxCNC's parameters (manual: "Numbered parameters").
+constexpr int kG92Active = 5210;
+constexpr int kG92First = 5211;
+constexpr int kWorkOffset = 5220;
+constexpr int kWorkOffsetFirst = 5221;
+constexpr int kWorkOffsetStride = 20;
+constexpr int kRotation = 9;  // after the nine axes
+constexpr int kMostParameters = 5602;
+
+const char* skip_blanks(const char* at, const char* end) {
+  while (at != end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+  return at;
+}
+
+struct Line {
+  int number = 0;
+  double value = 0;
+};
+
+/// False with `column` where the line stops being "number value".
+bool read_line(const std::string& text, Line& line, int& column) {
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const char* at = skip_blanks(begin, end);
+  const auto number = std::from_chars(at, end, line.number);
+  column = static_cast<int>(at - begin) + 1;
+  if (number.ec != std::errc{} || line.number < 1 || line.number >= kMostParameters) return false;
+  at = skip_blanks(number.ptr, end);
+  const auto value = std::from_chars(at, end, line.value);
+  column = static_cast<int>(at - begin) + 1;
+  if (value.ec != std::errc{}) return false;
+  at = skip_blanks(value.ptr, end);
+  column = static_cast<int>(at - begin) + 1;
+  return at == end;
+}
+
+bool is_blank(const std::string& text) {
+  return text.find_first_not_of(" \t\r") == std::string::npos;
+}
+
+}  // namespace
+
+int ParameterFile::work_offset_index() const {
+  const double written = value(kWorkOffset);
+  return written >= 1 && written <= 9 ? static_cast<int>(written) : 1;
+}
+
+WorkpieceFrame ParameterFile::frame(int index, double unit_mm) const {
+  WorkpieceFrame frame;
+  const int first = kWorkOffsetFirst + (index - 1) * kWorkOffsetStride;
+  const bool shifted = value(kG92Active) != 0;
+  for (int i = 0; i < 3; ++i) {
+    frame.g5x_mm[i] = value(first + i) * unit_mm;
+    if (shifted) frame.g92_mm[i] = value(kG92First + i) * unit_mm;
+    frame.offset_abc_deg[static_cast<std::size_t>(i)] =
+        value(first + 3 + i) + (shifted ? value(kG92First + 3 + i) : 0.0);
+  }
+  frame.rotation_deg = value(first + kRotation);
+  return frame;
+}
+
+Result<ParameterFile> read_parameter_file(const std::string& path, Diagnostics& diagnostics) {
+  errno = 0;
+  std::ifstream file(path);
+  const auto unreadable = [&] {
+    return Error{fmt::format("reading {}: {}", path,
+                             std::strerror(errno != 0 ? errno : EIO))};
+  };
+  if (!file) return unreadable();
+  ParameterFile out;
+  std::string text;
+  int before = 0;
+  for (int number = 1; std::getline(file, text); ++number) {
+    if (is_blank(text)) continue;
+    Line line;
+    Diagnostic fault;
+    fault.severity = Severity::kWarning;
+    fault.file = path;
+    fault.line = number;
+    if (!read_line(text, line, fault.column)) {
+      fault.message = "is not a parameter: a number from 1 to 5601 and its value are expected";
+      fault.excerpt = text.substr(0, 80);
+      diagnostics.push_back(std::move(fault));
+      continue;
+    }
+    if (line.number <= before) {
+      fault.column = 1;
+      fault.message = fmt::format("parameter {} after {}: LinuxCNC wants them in rising order",
+                                  line.number, before);
+      fault.excerpt = text.substr(0, 80);
+      diagnostics.push_back(std::move(fault));
+    }
+    before = line.number;
+    out.values[line.number] = line.value;
+  }
+  if (file.bad()) return unreadable();
+  return out;
+}
+
+}  // namespace kerf

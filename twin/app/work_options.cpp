@@ -1,0 +1,101 @@
+#include "twin/app/work_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace kerf {
+namespace {
+
+constexpr OptionRange kCell{0, 1000, true, "mm"};
+constexpr OptionRange kMargin{0, 10000, false, "mm"};
+constexpr OptionRange kThreads{1, 256, false, "threads"};
+
+void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkRequest& work) {
+  for (const std::string& text : arguments.tools) {
+    Result<ToolShapeArgument> tool = parse_tool_argument(text);
+    if (!tool) {
+      reader.fault("--tool", tool.error());
+      continue;
+    }
+    if (tool->tool == 0) {
+      reader.fault("--tool",
+                   fmt::format("'{}': tool 0 is the empty spindle; numbers begin at 1", text));
+      continue;
+    }
+    if (tool->cutter.undercuts()) {
+      reader.fault("--tool", fmt::format("'{}': {} cuts undercuts, which the Z-map cannot hold",
+                                         text, tool->cutter.spec()));
+      continue;
+    }
+    if (const Done fit = ZMap::can_cut(tool->cutter); !fit) {
+      reader.fault("--tool", fmt::format("'{}': {}", text, fit.error()));
+      continue;
+    }
+    bool twice = false;
+    for (const ToolShapeArgument& other : work.tools) twice |= other.tool == tool->tool;
+    if (twice) {
+      reader.fault("--tool", fmt::format("'{}': tool {} is given twice", text, tool->tool));
+      continue;
+    }
+    work.tools.push_back(std::move(tool.value()));
+  }
+}
+
+void read_stock(const WorkArguments& arguments, OptionReader& reader, WorkRequest& work) {
+  if (arguments.stock.empty()) return;
+  Result<Blank> blank = parse_blank(arguments.stock);
+  if (blank) {
+    work.blank = std::move(blank.value());
+  } else {
+    reader.fault("--stock", blank.error());
+  }
+}
+
+void read_choices(const WorkArguments& a, OptionReader& reader, WorkRequest& work) {
+  if (a.model == "mmap" || a.model == "octree" || a.model == "sheet" || a.model == "turning") {
+    reader.fault("--model", fmt::format("{} is not in this version; allowed: zmap, auto", a.model));
+  } else if (!a.model.empty() && a.model != "zmap" && a.model != "auto") {
+    reader.fault("--model", fmt::format("'{}' is no model; allowed: zmap, auto", a.model));
+  }
+  if (a.path == "planned") {
+    work.planned_path = true;
+  } else if (a.path == "programmed") {
+    work.planned_path = false;
+  } else if (!a.path.empty()) {
+    reader.fault("--path", fmt::format("'{}' is no path; allowed: programmed, planned", a.path));
+  }
+  if (a.kernel == "scalar") {
+    work.stock.kernel = ZMapKernel::kScalar;
+  } else if (a.kernel == "avx2") {
+    work.stock.kernel = ZMapKernel::kAvx2;
+    if (!zmap_has_avx2())
+      reader.fault("--kernel", "this machine cannot run avx2; allowed: auto, scalar");
+  } else if (!a.kernel.empty() && a.kernel != "auto") {
+    reader.fault("--kernel",
+                 fmt::format("'{}' is no kernel; allowed: auto, scalar, avx2", a.kernel));
+  }
+}
+
+/// One core is left to the interpreter.
+int default_threads() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  return cores > 2 ? static_cast<int>(std::min(cores - 1, 8U)) : 1;
+}
+
+}  // namespace
+
+WorkRequest understand_work(const WorkArguments& a, OptionReader& reader) {
+  WorkRequest work;
+  read_tools(a, reader, work);
+  read_stock(a, reader, work);
+  read_choices(a, reader, work);
+  work.stock.cell_mm = reader.number("--cell", a.cell, kCell, 0);
+  work.margin_mm = reader.number("--margin", a.margin, kMargin, work.margin_mm);
+  work.stock.threads =
+      static_cast<int>(reader.whole_number("--threads", a.threads, kThreads, default_threads()));
+  return work;
+}
+
+}  // namespace kerf

@@ -1,0 +1,103 @@
+// twin/live/path_follower.h - where on the programmed path a machine is, from where its tip is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "interp_bridge/motion.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+struct FollowOptions {
+  /// A tip this near to the path is on it. mm.
+  double tolerance_mm = 0.5;
+  /// Of several places that the tip may be at, the first is taken that is this much worse than the
+  /// best. mm.
+  double ambiguity_mm = 0.02;
+  /// How much faster than planned the machine may run: feed override, and errors of the model.
+  double haste = 2.5;
+  /// And how far ahead of the plan it may be besides. s.
+  double slack_s = 0.1;
+};
+
+/// What of the machine is needed to find it on the path.
+struct FollowedPlace {
+  Vec3 tip_mm{0};
+  double elapsed_s = 0;  ///< since the place before
+  int line = -1;         ///< program line that the machine says it is on; < 1: it does not say
+  int tool = -1;         ///< tool number that it says is in the spindle; -1: it does not say
+};
+
+/// Where the tip was found.
+struct FollowedPoint {
+  bool on_path = false;
+  double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
+                           ///< the part that was searched; infinite: there is no path to search
+  Vec3 place_mm{0};        ///< on the path
+  SourceRef source;        ///< of the motion there
+  double program_s = 0;    ///< program time there, by the plan
+};
+
+/// Follows a machine along a program, forward only. The path is given piece by piece as the
+/// interpreter and the planner yield it; what the machine has passed is forgotten, so memory is
+/// that of the look-ahead.
+///
+/// A tip is looked for from the last point found on, as far as the machine can have come in the
+/// time that has passed (FollowOptions::haste). Among equally good places the first is taken: the
+/// follower may lag, it never runs ahead of the machine. Where the machine names its line, places
+/// on that line go first. Motions of another tool are beyond reach until the machine says that it
+/// has changed.
+class PathFollower {
+ public:
+  explicit PathFollower(const FollowOptions& options) : options_(options) {}
+
+  /// The next step of the program, as Timeline gives it. Steps that do not move, or whose start is
+  /// not known, are no path.
+  void append(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path);
+
+  /// Looks for the tip. If it is on the path, the path up to there has been `driven`: each call one
+  /// motion or part of one, in order, without gaps from where the last one ended.
+  using Drive = std::function<void(const Motion& part, double duration_s)>;
+  FollowedPoint follow(const FollowedPlace& place, const Drive& drive);
+
+  /// Once found, and not further on than its last search (which follow() decides): the machine is
+  /// somewhere on the path.
+  bool found() const { return found_; }
+  /// Program time of the point found last; of the path's beginning before that. s.
+  double program_s() const;
+  /// Program time of the end of what has been appended.
+  double end_s() const { return end_s_; }
+  bool passed_all() const;
+
+ private:
+  struct Piece {
+    Motion motion;
+    double start_s = 0;
+    double duration_s = 0;
+    double time_at(double t) const { return start_s + t * duration_s; }
+  };
+  struct Candidate {
+    std::size_t piece = 0;
+    double t = 0;
+    double distance_mm = std::numeric_limits<double>::infinity();
+  };
+  void add(const Motion& motion, double start_s, double duration_s);
+  std::size_t reach(const FollowedPlace& place) const;
+  std::optional<Candidate> search(const Vec3& tip, std::size_t end, int line) const;
+  void drive_to(const Candidate& to, const Drive& drive);
+
+  FollowOptions options_;
+  std::deque<Piece> pieces_;
+  double t_ = 0;            ///< on pieces_[0]
+  double unseen_s_ = 0;     ///< since the machine was last found on the path
+  double end_s_ = 0;
+  bool found_ = false;
+};
+
+}  // namespace kerf

@@ -1,0 +1,144 @@
+#include "twin/session_parts.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <utility>
+
+#include "twin/blank_choice.h"
+
+namespace kerf {
+namespace {
+
+/// Bytes that a run needs at least for each cell: its height. A surface (picture, mesh) takes as
+/// much again and more.
+constexpr double kBytesPerCell = 4.0;
+
+double machine_memory_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// Cells that the model itself refuses are left to its own message.
+bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) {
+  const Vec3 size = blank.bounds_mm().size();
+  const double cells = std::ceil(size.x / cell_mm) * std::ceil(size.y / cell_mm);
+  const double bytes = cells * kBytesPerCell;
+  if (cells > static_cast<double>(ZMap::kMaxCells) || bytes <= machine_memory_bytes()) return false;
+  diagnostics.push_back(
+      general_error(fmt::format("--cell: {:g} mm makes {:.0f} million cells, which take {:.1f} GB "
+                                "of memory; this machine has {:.1f} GB",
+                                cell_mm, cells / 1e6, bytes / 1e9, machine_memory_bytes() / 1e9),
+                    "a greater --cell takes less: twice the cell, a quarter of the memory"));
+  return true;
+}
+
+std::unique_ptr<ZMap> load_stock(const Blank& blank, const StockSettings& settings,
+                                 Diagnostics& diagnostics, Outcome& outcome) {
+  if (settings.cell_mm > 0) {
+    diagnostics.push_back(
+        general_error("--cell: a saved workpiece keeps its own cells; leave --cell out"));
+    return nullptr;
+  }
+  auto loaded = ZMap::load(blank.state_file, settings.threads, settings.kernel);
+  if (loaded) return std::move(loaded.value());
+  diagnostics.push_back(general_error(loaded.error()));
+  outcome = Outcome::kFailed;
+  return nullptr;
+}
+
+std::unique_ptr<ZMap> fill_stock(const Blank& blank, const StockSettings& settings,
+                                 const std::string& origin, Diagnostics& diagnostics) {
+  ZMapOptions options;
+  options.blank = blank;
+  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
+  options.threads = settings.threads;
+  options.kernel = settings.kernel;
+  if (refuse_memory(blank, options.cell_mm, diagnostics)) return nullptr;
+  auto created = ZMap::create(options);
+  if (created) return std::move(created.value());
+  const char* option = created.error().rfind("cell", 0) == 0 ? "--cell" : origin.c_str();
+  diagnostics.push_back(general_error(fmt::format("{}: {}", option, created.error())));
+  return nullptr;
+}
+
+}  // namespace
+
+Diagnostic general_error(std::string message, std::string hint) {
+  Diagnostic d;
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  return d;
+}
+
+StockSetup make_stock(const Blank& blank, const StockSettings& settings, const std::string& origin,
+                      Diagnostics& diagnostics, Outcome& outcome) {
+  outcome = Outcome::kUsageError;
+  StockSetup setup;
+  setup.facts.origin = origin;
+  setup.facts.description = describe(blank);
+  setup.stock = blank.state_file.empty() ? fill_stock(blank, settings, origin, diagnostics)
+                                         : load_stock(blank, settings, diagnostics, outcome);
+  return setup;
+}
+
+bool find_comment_blank(const Program& program, const std::string& path, CommentBlank& found,
+                        Diagnostics& diagnostics) {
+  const auto hint = find_blank_hint(comments_with_units(program, path));
+  if (!hint) return true;
+  Result<Blank> blank = parse_blank(hint->spec);
+  if (!blank) {
+    Diagnostic d = general_error(blank.error(), "--stock SPEC overrides the comment");
+    d.file = path;
+    d.line = static_cast<int>(hint->line);
+    diagnostics.push_back(std::move(d));
+    return false;
+  }
+  found.blank = std::move(blank.value());
+  found.origin = fmt::format("comment in line {} ({})", hint->line, hint->dialect);
+  return true;
+}
+
+bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const Program* program,
+                         const ProgramOptions& options, ToolSources& sources,
+                         Diagnostics& diagnostics) {
+  sources.arguments = arguments;
+  if (program) sources.hints = find_tool_hints(comments_with_units(*program, options.path));
+  if (options.tool_table_path.empty()) return true;
+  auto rows = read_tool_table(options.tool_table_path, diagnostics,
+                              options.machine.inch_machine ? 25.4 : 1.0);
+  if (!rows) {
+    if (!has_error(diagnostics)) diagnostics.push_back(general_error(rows.error()));
+    return false;
+  }
+  sources.table = std::move(rows.value());
+  return !has_error(diagnostics);
+}
+
+StockReport stock_report(const ZMap& stock, const StockReport& facts) {
+  StockReport report = facts;
+  report.model = stock.name();
+  report.cell_mm = stock.cell_mm();
+  report.blank_mm3 = stock.blank_mm3();
+  report.remaining_mm3 = stock.remaining_mm3();
+  report.bounds_mm = stock.bounds_mm();
+  report.cells = stock.cell_count();
+  report.digest = stock.digest();
+  return report;
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+}  // namespace kerf
