@@ -33,12 +33,30 @@ bool BatchQueue::pop(std::vector<Motion>& batch) {
   std::unique_lock lock(mutex_);
   not_empty_.wait(lock, [&] { return closed_ || !full_.empty(); });
   if (full_.empty()) return false;
-  if (batch.capacity() > 0) spare_.push_back(std::move(batch));
-  batch = std::move(full_.front());
-  full_.pop_front();
+  take_oldest(batch);
   lock.unlock();
   not_full_.notify_one();
   return true;
+}
+
+bool BatchQueue::try_pop(std::vector<Motion>& batch) {
+  std::unique_lock lock(mutex_);
+  if (full_.empty()) return false;
+  take_oldest(batch);
+  lock.unlock();
+  not_full_.notify_one();
+  return true;
+}
+
+bool BatchQueue::drained() const {
+  const std::lock_guard lock(mutex_);
+  return closed_ && full_.empty();
+}
+
+void BatchQueue::take_oldest(std::vector<Motion>& batch) {
+  if (batch.capacity() > 0) spare_.push_back(std::move(batch));
+  batch = std::move(full_.front());
+  full_.pop_front();
 }
 
 void BatchQueue::close() {

@@ -24,11 +24,17 @@ class BatchQueue {
   bool push(std::span<const Motion> motions);
   /// Swaps the oldest batch into `batch`. Waits for one; false when the queue is closed and empty.
   bool pop(std::vector<Motion>& batch);
+  /// The same without waiting: false if there is none just now.
+  bool try_pop(std::vector<Motion>& batch);
+  /// Closed, and all is handed out.
+  bool drained() const;
   /// Either side: no more motions come, or no more are wanted. What waits is still handed out.
   void close();
 
  private:
-  std::mutex mutex_;
+  void take_oldest(std::vector<Motion>& batch);
+
+  mutable std::mutex mutex_;
   std::condition_variable not_full_;
   std::condition_variable not_empty_;
   std::deque<std::vector<Motion>> full_;

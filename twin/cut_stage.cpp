@@ -41,6 +41,11 @@ void CutStage::take(std::span<const Motion> motions) {
   flush();
 }
 
+void CutStage::take_timed(const Motion& motion, const TimedStep& timed) {
+  ++taken_;
+  step(motion, timed, {});
+}
+
 void CutStage::hold_reports() {
   holding_ = true;
   report_from_ = kNever;

@@ -49,6 +49,11 @@ class CutStage : private StepSink {
   /// Motions in program order. They are given to the model as soon as their times are known (which
   /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
+  /// A motion of a machine that is watched: its time is known. Not to be mixed with take(), whose
+  /// motions wait for theirs.
+  void take_timed(const Motion& motion, const TimedStep& timed);
+  /// All that was taken is in the workpiece.
+  void complete() { flush_whole(); }
   /// What is taken from here on is cut, but not reported on ..
   void hold_reports();
   /// .. until here: tool uses and totals begin with the motion that is taken next; the clock goes

@@ -14,6 +14,11 @@ std::string coordinate(double value) {
   return fmt::format("{:.2f}", rounded == 0 ? 0.0 : rounded);
 }
 
+const char* depth_word(FindingId id) {
+  if (id == FindingId::kBelowStock) return "below its floor";
+  return id == FindingId::kOffPath ? "off at most, first" : "deep";
+}
+
 }  // namespace
 
 const char* to_string(FindingId id) {
@@ -52,6 +57,12 @@ const char* to_string(FindingId id) {
       return "outside-stock";
     case FindingId::kNotSimulated:
       return "not-simulated";
+    case FindingId::kSourceGap:
+      return "source-gap";
+    case FindingId::kOffPath:
+      return "off-path";
+    case FindingId::kToolMismatch:
+      return "tool-mismatch";
     case FindingId::kLineNotReached:
       return "line-not-reached";
   }
@@ -62,7 +73,7 @@ std::string message_of(const Finding& finding) {
   std::string out = finding.text;
   if (finding.depth_mm) {
     out += fmt::format(", {:.2f} mm {}", *finding.depth_mm,
-                       finding.id == FindingId::kBelowStock ? "below its floor" : "deep");
+                       depth_word(finding.id));
   }
   if (finding.position_mm) {
     const Vec3& p = *finding.position_mm;

@@ -95,8 +95,8 @@ NearestPoint nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
     double t = std::atan2(view.y, view.x) / sweep;
     t += turn * std::ceil((from_t - t) / turn - 1);  // the passage before from_t
     for (; t <= 1 + turn; t += turn) {
-      const double at = std::clamp(plain ? t : view.refined(t), from_t, 1.0);
-      consider(at);
+      consider(std::clamp(t, from_t, 1.0));
+      if (!plain) consider(std::clamp(view.refined(t), from_t, 1.0));
     }
   }
   consider(1.0);

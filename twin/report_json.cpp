@@ -102,6 +102,43 @@ Json findings_json(const Report& report) {
   return out;
 }
 
+Json live_json(const LiveReport& live) {
+  const LiveFacts& f = live.facts;
+  Json out;
+  out["source"] = live.source;
+  out["samples"] = f.samples;
+  out["incomplete"] = f.incomplete;
+  out["duration_s"] = rounded(live.duration_s);
+  out["rate_hz"] = rounded(live.rate_hz);
+  out["errors"] = live.status.errors;
+  out["reconnects"] = live.status.reconnects;
+  out["lost"] = live.status.lost;
+  out["duplicates"] = live.status.duplicates;
+  out["disordered"] = live.status.disordered;
+  out["dropped"] = live.dropped;
+  out["trouble"] = live.status.trouble;
+  out["gaps"] = f.gaps;
+  out["gap_s"] = rounded(f.gap_s);
+  out["gap_max_mm"] = rounded(f.gap_max_mm);
+  out["path_mm"] = rounded(f.path_mm);
+  out["chord_mm"] = rounded(f.chord_mm);
+  out["on_path"] = f.on_path;
+  out["off_path"] = f.off_path;
+  out["off_path_max_mm"] = rounded(f.off_path_max_mm);
+  out["following_max_mm"] = rounded(f.following_max_mm);
+  out["following_mean_mm"] =
+      rounded(f.on_path > 0 ? f.following_sum_mm / static_cast<double>(f.on_path) : 0);
+  out["tool_changes"] = f.tool_changes;
+  out["age_ms"] = {{"median", rounded(live.age_median_ms)},
+                   {"p99", rounded(live.age_p99_ms)},
+                   {"max", rounded(live.age_max_ms)}};
+  out["clock"] = {{"offset_s", rounded(live.clock_offset_s)},
+                  {"jitter_ms", rounded(live.jitter_ms)},
+                  {"steps", live.clock_steps}};
+  out["warnings_ahead"] = live.warnings_ahead;
+  return out;
+}
+
 Json timing_json(const TimingReport& t) {
   Json out;
   out["interpret"] = rounded(t.interpret_s);
@@ -124,6 +161,7 @@ std::string json_text(const Report& report) {
   out["motion"] = motion_json(report);
   out["stock"] = stock_json(report);
   out["tools"] = tools_json(report);
+  if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);
   out["findings_total"] = report.findings.total();
   out["timing_s"] = timing_json(report.timing);

@@ -226,32 +226,6 @@ void Session::add_program_finding(FindingId id, Severity severity, std::string t
   report_.findings.add(std::move(finding));
 }
 
-/// The interpreter's diagnostics as findings. True if it remarked on the missing program end, which
-/// it does last.
-bool Session::take_interpreter_remarks() {
-  const bool open_ended = !report_.program.has_program_end && !report_.program.stopped_early;
-  bool end_remarked = false;
-  for (std::size_t i = 0; i < interpreter_.size(); ++i) {
-    const Diagnostic& d = interpreter_[i];
-    Finding finding;
-    finding.severity = d.severity;
-    finding.id = d.severity == Severity::kError ? FindingId::kInterpreterError
-                                                : FindingId::kInterpreterWarning;
-    const bool last_warning = i + 1 == interpreter_.size() && d.severity == Severity::kWarning;
-    if (open_ended && last_warning && d.message.find("end") != std::string::npos) {
-      finding.id = FindingId::kNoProgramEnd;
-      end_remarked = true;
-    }
-    finding.file = d.file;
-    finding.source.line = static_cast<std::uint32_t>(std::max(0, d.line));
-    finding.text = d.message;
-    finding.excerpt = d.excerpt;
-    finding.hint = d.hint;
-    report_.findings.add(std::move(finding));
-  }
-  return end_remarked;
-}
-
 /// The interpreter is ahead of the cutter: what it says of lines that were not to be run is of no
 /// interest.
 void Session::drop_remarks_beyond_window() {
@@ -287,7 +261,8 @@ Outcome Session::conclude(bool stopped) {
     return Outcome::kInterrupted;
   }
   drop_remarks_beyond_window();
-  const bool end_remarked = take_interpreter_remarks();
+  const bool open_ended = !program.has_program_end && !program.stopped_early;
+  const bool end_remarked = add_interpreter_findings(interpreter_, open_ended, report_.findings);
   if (has_error(interpreter_)) {
     report_.partial_reason = "the interpreter stopped at an error";
     return Outcome::kFailed;

@@ -104,7 +104,6 @@ class Session {
   Outcome conclude(bool stopped);
   void add_program_finding(FindingId id, Severity severity, std::string text);
   void drop_remarks_beyond_window();
-  bool take_interpreter_remarks();
   void complete_report(const CutStage& stage);
 
   SessionOptions options_;

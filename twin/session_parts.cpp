@@ -5,6 +5,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -115,6 +116,29 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const 
   }
   sources.table = std::move(rows.value());
   return !has_error(diagnostics);
+}
+
+bool add_interpreter_findings(const Diagnostics& said, bool open_ended, FindingLog& log) {
+  bool end_remarked = false;
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    const Diagnostic& d = said[i];
+    Finding finding;
+    finding.severity = d.severity;
+    finding.id = d.severity == Severity::kError ? FindingId::kInterpreterError
+                                                : FindingId::kInterpreterWarning;
+    const bool last_warning = i + 1 == said.size() && d.severity == Severity::kWarning;
+    if (open_ended && last_warning && d.message.find("end") != std::string::npos) {
+      finding.id = FindingId::kNoProgramEnd;
+      end_remarked = true;
+    }
+    finding.file = d.file;
+    finding.source.line = static_cast<std::uint32_t>(std::max(0, d.line));
+    finding.text = d.message;
+    finding.excerpt = d.excerpt;
+    finding.hint = d.hint;
+    log.add(std::move(finding));
+  }
+  return end_remarked;
 }
 
 StockReport stock_report(const ZMap& stock, const StockReport& facts) {

@@ -49,6 +49,10 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const 
                          const ProgramOptions& options, ToolSources& sources,
                          Diagnostics& diagnostics);
 
+/// The interpreter's diagnostics as findings. True if it remarked on the missing program end, which
+/// it does last. `open_ended`: the program ran to its end, and had none of its own.
+bool add_interpreter_findings(const Diagnostics& said, bool open_ended, FindingLog& log);
+
 /// The stock part of the report, from the workpiece as it is now.
 StockReport stock_report(const ZMap& stock, const StockReport& facts);
 

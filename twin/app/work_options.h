@@ -30,7 +30,7 @@ struct WorkRequest {
   std::vector<ToolShapeArgument> tools;
   std::optional<Blank> blank;
   StockSettings stock;
-  double margin_mm = 5;  ///< around a guessed blank
+  double margin_mm = 5;              ///< around a guessed blank
   std::optional<bool> planned_path;  ///< what is cut; nothing: the command's default
 };
 

@@ -29,6 +29,9 @@ struct FollowOptions {
 /// What of the machine is needed to find it on the path.
 struct FollowedPlace {
   Vec3 tip_mm{0};
+  /// tip_mm is where a tool of no length would have its tip: the lengths are those that the program
+  /// has in force (Motion::tool_offset_mm, Z).
+  bool without_length = false;
   double elapsed_s = 0;  ///< since the place before
   int line = -1;         ///< program line that the machine says it is on; < 1: it does not say
   int tool = -1;         ///< tool number that it says is in the spindle; -1: it does not say
@@ -40,8 +43,10 @@ struct FollowedPoint {
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
   Vec3 place_mm{0};        ///< on the path
-  SourceRef source;        ///< of the motion there
-  double program_s = 0;    ///< program time there, by the plan
+  double tool_length_mm = 0;  ///< in force there, by the program
+  int tool = 0;               ///< in the spindle there, by the program
+  SourceRef source;           ///< of the motion there
+  double program_s = 0;       ///< program time there, by the plan
 };
 
 /// Follows a machine along a program, forward only. The path is given piece by piece as the
@@ -66,8 +71,7 @@ class PathFollower {
   using Drive = std::function<void(const Motion& part, double duration_s)>;
   FollowedPoint follow(const FollowedPlace& place, const Drive& drive);
 
-  /// Once found, and not further on than its last search (which follow() decides): the machine is
-  /// somewhere on the path.
+  /// The machine has been on the path.
   bool found() const { return found_; }
   /// Program time of the point found last; of the path's beginning before that. s.
   double program_s() const;
@@ -78,8 +82,9 @@ class PathFollower {
  private:
   struct Piece {
     Motion motion;
-    double start_s = 0;
+    double start_s = 0;  ///< program time
     double duration_s = 0;
+    double moved_s = 0;  ///< time in motion before it: without dwells and tool changes
     double time_at(double t) const { return start_s + t * duration_s; }
   };
   struct Candidate {
@@ -89,14 +94,16 @@ class PathFollower {
   };
   void add(const Motion& motion, double start_s, double duration_s);
   std::size_t reach(const FollowedPlace& place) const;
-  std::optional<Candidate> search(const Vec3& tip, std::size_t end, int line) const;
+  std::optional<Candidate> search(const FollowedPlace& place, std::size_t end, int line,
+                                  int tool) const;
   void drive_to(const Candidate& to, const Drive& drive);
 
   FollowOptions options_;
   std::deque<Piece> pieces_;
-  double t_ = 0;            ///< on pieces_[0]
-  double unseen_s_ = 0;     ///< since the machine was last found on the path
+  double t_ = 0;         ///< on pieces_[0]
+  double unseen_s_ = 0;  ///< since the machine was last found on the path
   double end_s_ = 0;
+  double moved_s_ = 0;  ///< time in motion of all that was appended
   bool found_ = false;
 };
 

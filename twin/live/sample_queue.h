@@ -16,6 +16,7 @@ namespace kerf {
 struct ArrivedSample {
   AxisSample sample;
   std::chrono::steady_clock::time_point arrival;
+  std::uint64_t lost = 0;  ///< samples known to be lost before this one, in all
 };
 
 /// One producer, one consumer. Holds kCapacity samples (2 MB): 16 s at 1 kHz. Nothing is allocated

@@ -1,0 +1,335 @@
+#include "twin/live/live_cutter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stock/cutter/shape_spec.h"
+#include "tests/twin/live/live_shop.h"
+
+namespace kerf {
+namespace {
+
+std::unique_ptr<ZMap> block() {
+  ZMapOptions options;
+  options.blank = parse_blank("box:0,0,-10:40,40,0").value();
+  options.cell_mm = 0.1;
+  return std::move(ZMap::create(options).value());
+}
+
+ToolSources cutters() {
+  ToolSources sources;
+  sources.arguments.push_back(std::move(parse_tool_argument("1=flat:4").value()));
+  sources.arguments.push_back(std::move(parse_tool_argument("2=ball:6").value()));
+  return sources;
+}
+
+/// The workpiece of a dry run.
+std::unique_ptr<ZMap> dry_run(std::span<const Motion> program) {
+  auto stock = block();
+  ToolBook book(cutters(), false);
+  FindingLog log;
+  CutStage stage(*stock, book, log, TimelineOptions{});
+  stage.take(program);
+  stage.finish();
+  return stock;
+}
+
+/// A machine that is watched.
+class Watch {
+ public:
+  explicit Watch(LiveCutOptions options = {}, const MotionList* program = nullptr)
+      : stock_(block()) {
+    std::unique_ptr<Program> listed;
+    if (program) listed = std::make_unique<ListedProgram>(program->list());
+    options.wait_for_program = true;
+    cutter_ = std::make_unique<LiveCutter>(*stock_, cutters(), log_, options, std::move(listed));
+  }
+  void run(const RunningMachine& machine, double rate_hz, bool with_line = false) {
+    const double end_s = machine.duration_s();
+    for (int i = 0; i <= static_cast<int>(end_s * rate_hz) + 1; ++i) {
+      const double t = std::min(end_s, i / rate_hz);
+      cutter_->take(machine.sample(t, with_line), i / rate_hz, false);
+      cutter_->look();
+      for (AheadWarning& warning : cutter_->take_warnings()) {
+        warnings.push_back({std::move(warning), t});
+      }
+    }
+    cutter_->finish();
+  }
+  void see(Vec3 tip, double t_s, int tool = 1, bool lost = false,
+           double rpm = std::numeric_limits<double>::quiet_NaN()) {
+    AxisSample sample;
+    for (int i = 0; i < 3; ++i) sample.set(static_cast<std::size_t>(i), tip[i]);
+    sample.tool = tool;
+    sample.spindle_rpm = rpm;
+    cutter_->take(sample, t_s, lost);
+  }
+  double removed_mm3() {
+    cutter_->look();
+    return stock_->blank_mm3() - stock_->remaining_mm3();
+  }
+  std::vector<FindingId> ids() const {
+    std::vector<FindingId> out;
+    for (const Finding& f : log_.kept()) out.push_back(f.id);
+    return out;
+  }
+  LiveCutter& cutter() { return *cutter_; }
+  const ZMap& stock() const { return *stock_; }
+  const FindingLog& log() const { return log_; }
+
+  struct Told {
+    AheadWarning warning;
+    double at_s;
+  };
+  std::vector<Told> warnings;
+
+ private:
+  std::unique_ptr<ZMap> stock_;
+  FindingLog log_;
+  std::unique_ptr<LiveCutter> cutter_;
+};
+
+double worst_difference_mm(const ZMap& a, const ZMap& b) {
+  double worst = 0;
+  for (int j = 0; j < a.ny(); ++j) {
+    for (int i = 0; i < a.nx(); ++i) {
+      worst = std::max(worst, std::abs(static_cast<double>(a.height_mm(i, j) - b.height_mm(i, j))));
+    }
+  }
+  return worst;
+}
+
+MotionList pocket() {
+  MotionList program;
+  program.at({-5, -5, 5}).tool(1).spindle(true).feed_rate(3000);
+  program.traverse({10, 10, 5}).feed({10, 10, -2});
+  for (int i = 0; i < 8; ++i) {
+    program.feed({i % 2 ? 10.0 : 30.0, 10 + 2.0 * i, -2});
+    program.feed({i % 2 ? 10.0 : 30.0, 12 + 2.0 * i, -2});
+  }
+  program.arc({30, 26, -4}, {20, 26, -2}, {0, 0, 1}, 2 * kPi + kPi);
+  program.traverse({30, 26, 5}).tool(2).spindle(true);
+  program.traverse({20, 20, 5}).feed({20, 20, -5}).feed({35, 35, -3}).traverse({35, 35, 5});
+  return program;
+}
+
+TEST(LiveCutter, WithAProgramTheWorkpieceIsThatOfTheDryRun) {
+  const MotionList program = pocket();
+  const auto wanted = dry_run(program.list());
+  const RunningMachine machine(program.list());
+  for (const double rate_hz : {1000.0, 100.0, 10.0, 5.0}) {
+    Watch watch({}, &program);
+    watch.run(machine, rate_hz);
+    EXPECT_LT(worst_difference_mm(watch.stock(), *wanted), 2e-5) << rate_hz << " Hz";
+    EXPECT_EQ(watch.ids(), std::vector<FindingId>{}) << rate_hz << " Hz";
+    EXPECT_EQ(watch.cutter().facts().off_path, 0U);
+    EXPECT_EQ(watch.cutter().facts().tool_changes, 1U);
+  }
+}
+
+TEST(LiveCutter, WithoutOneChordsAreCutAndLieAsMuchAsTheyMust) {
+  const MotionList program = pocket();
+  const auto wanted = dry_run(program.list());
+  const RunningMachine machine(program.list());
+  LiveCutOptions options;
+  options.gap_s = 1;
+  Watch fast(options);
+  fast.run(machine, 1000);
+  EXPECT_NEAR(fast.stock().remaining_mm3(), wanted->remaining_mm3(), 2);
+  Watch slow(options);
+  slow.run(machine, 10);
+  // 5 mm between samples: corners and arcs are cut short.
+  EXPECT_GT(std::abs(slow.stock().remaining_mm3() - wanted->remaining_mm3()), 20);
+  EXPECT_GT(worst_difference_mm(slow.stock(), *wanted), 0.5);
+}
+
+TEST(LiveCutter, AStraightWayIsCutExactly) {
+  Watch watch;
+  watch.see({10, 20, 1}, 0);
+  watch.see({10, 20, -1}, 0.1);
+  EXPECT_NEAR(watch.removed_mm3(), kPi * 4, 0.3);
+  watch.see({30, 20, -1}, 0.2);
+  EXPECT_NEAR(watch.removed_mm3(), kPi * 4 + 80, 0.3);
+  // Standing still, and going back over what is cut, removes nothing.
+  const double removed = watch.removed_mm3();
+  watch.see({30, 20, -1}, 0.3);
+  watch.see({10, 20, -1}, 0.4);
+  EXPECT_EQ(watch.removed_mm3(), removed);
+}
+
+TEST(LiveCutter, GapsAreMarkedCutOrIgnored) {
+  struct Case {
+    GapPolicy policy;
+    bool cut;
+    std::size_t findings;
+  };
+  for (const Case& c : {Case{GapPolicy::kMark, false, 1}, Case{GapPolicy::kCut, true, 1},
+                        Case{GapPolicy::kIgnore, false, 0}}) {
+    LiveCutOptions options;
+    options.gap = c.policy;
+    Watch watch(options);
+    watch.see({10, 20, -1}, 0);
+    watch.see({10.01, 20, -1}, 0.7);  // too little to speak of
+    const double before = watch.removed_mm3();
+    watch.see({30, 20, -1}, 1.3, 2);
+    EXPECT_EQ(watch.removed_mm3() > before + 1, c.cut);
+    ASSERT_EQ(watch.log().kept().size(), c.findings);
+    EXPECT_EQ(watch.cutter().facts().gaps, 1U);
+    if (c.findings == 0) continue;
+    EXPECT_EQ(watch.log().kept()[0].id, FindingId::kSourceGap);
+    const std::string& text = watch.log().kept()[0].text;
+    EXPECT_EQ(text.substr(0, 60), "no positions for 0.600 s, the machine is 19.99 mm further on");
+    EXPECT_NE(text.find("the tool was changed meanwhile, from 1 to 2"), text.npos) << text;
+  }
+}
+
+TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
+  LiveCutOptions options;
+  options.most_mm_per_s = 100;
+  Watch watch(options);
+  watch.see({10, 20, -1}, 0);
+  watch.see({11, 20, -1}, 0.01);  // 100 mm/s
+  EXPECT_TRUE(watch.ids().empty());
+  watch.see({21, 20, -1}, 0.02);  // 1000 mm/s
+  ASSERT_EQ(watch.ids().size(), 1U);
+  EXPECT_EQ(watch.log().kept()[0].text.substr(0, 23), "positions jump: within ");
+  watch.see({21.5, 20, -1}, 0.03, 1, true);
+  EXPECT_EQ(watch.ids().size(), 2U);
+}
+
+TEST(LiveCutter, APositionThatIsMissingIsNamedAndNothingIsCut) {
+  Watch watch;
+  AxisSample sample;
+  sample.set(0, 20);
+  sample.set(2, -1);
+  watch.cutter().take(sample, 0, false);
+  EXPECT_FALSE(watch.cutter().place().known);
+  EXPECT_EQ(watch.cutter().place().missing_axes, "Y");
+  EXPECT_EQ(watch.cutter().facts().incomplete, 1U);
+  EXPECT_EQ(watch.removed_mm3(), 0);
+}
+
+TEST(LiveCutter, AStandingSpindleInTheStockIsFound) {
+  Watch watch;
+  watch.see({10, 20, 1}, 0, 1, false, 0);
+  watch.see({10, 20, -1}, 0.1, 1, false, 0);
+  watch.removed_mm3();
+  ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSpindleOffContact});
+}
+
+TEST(LiveCutter, AMachineBesideThePathIsFoundAndWhatItDoesIsCut) {
+  const MotionList program = pocket();
+  const RunningMachine machine(program.list());
+  Watch watch({}, &program);
+  double t = 0;  // until it is well within the pocket
+  for (; t < 2.0; t += 0.01) watch.cutter().take(machine.sample(t), t, false);
+  const double before = watch.removed_mm3();
+  AxisSample beside = machine.sample(t);
+  beside.position[2] -= 1.5;
+  for (int i = 0; i < 20; ++i, t += 0.01) watch.cutter().take(beside, t, false);
+  EXPECT_GT(watch.removed_mm3(), before + 1);
+  ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kOffPath});
+  EXPECT_NEAR(watch.log().kept()[0].depth_mm.value_or(0), 1.5, 0.01);
+  EXPECT_GT(watch.log().kept()[0].source.line, 0U);
+}
+
+TEST(LiveCutter, TheWrongToolIsFound) {
+  const MotionList program = pocket();
+  const RunningMachine machine(program.list());
+  Watch watch({}, &program);
+  for (double t = 0; t < 1.0; t += 0.01) {
+    AxisSample sample = machine.sample(t);
+    sample.tool = 2;
+    watch.cutter().take(sample, t, false);
+  }
+  ASSERT_FALSE(watch.ids().empty());
+  EXPECT_EQ(watch.ids()[0], FindingId::kToolMismatch);
+  EXPECT_EQ(watch.log().kept()[0].text,
+            "the machine has tool 2 in the spindle where the program has tool 1");
+}
+
+TEST(LiveCutter, WhatTheProgramWouldDoIsToldBeforeItHappens) {
+  MotionList program;
+  program.at({-5, 20, 5}).tool(1).spindle(true).feed_rate(600);
+  program.traverse({-3, 20, 5}).feed({-3, 20, -2}).feed({30, 20, -2});
+  program.traverse({30, 30, -2}).traverse({30, 30, 5});
+  const RunningMachine machine(program.list());
+  LiveCutOptions options;
+  options.guard_s = 2;
+  Watch watch(options, &program);
+  watch.run(machine, 100, true);
+  ASSERT_EQ(watch.warnings.size(), 1U);
+  const AheadWarning& warning = watch.warnings[0].warning;
+  EXPECT_EQ(warning.finding.id, FindingId::kRapidContact);
+  EXPECT_EQ(warning.finding.source.line, 5U);
+  // At least two seconds before it happens.
+  double happens_s = 0;
+  for (const TimedMotion& m : machine.list()) {
+    if (m.motion.source.line == 5) happens_s = m.step.start_s;
+  }
+  EXPECT_NEAR(*warning.finding.time_s, happens_s, 0.05);
+  EXPECT_GT(happens_s - watch.warnings[0].at_s, 1.9);
+  // And it did happen.
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kRapidContact});
+}
+
+TEST(LiveCutter, TheGuardLooksAtTheWorkpieceAsItReallyIs) {
+  // The program rapids through a slot that it has cut before; this machine was elsewhere meanwhile.
+  MotionList program;
+  program.at({-5, 20, 5}).tool(1).spindle(true).feed_rate(1200);
+  program.traverse({-5, 20, -1}).feed({30, 20, -1}).traverse({30, 20, 5});
+  for (int i = 0; i < 6; ++i) program.traverse({30 - i % 2, 20, 5}).dwell(0.5);
+  program.traverse({-5, 20, 5}).traverse({-5, 20, -1}).traverse({29, 20, -1});
+  const RunningMachine machine(program.list());
+  Watch good({}, &program);
+  good.run(machine, 100, true);
+  EXPECT_TRUE(good.warnings.empty());
+  for (const Finding& f : good.log().kept()) ADD_FAILURE() << f.source.line << message_of(f);
+  LiveCutOptions options;
+  options.guard_s = 1.5;
+  Watch bad(options, &program);
+  const double end_s = machine.duration_s();
+  std::vector<AheadWarning> warnings;
+  for (double t = 0; t < end_s; t += 0.01) {
+    // Half of the slot is missing from what was seen.
+    const bool unseen = machine.at(t).motion.source.line == 3 && machine.tip(t).x > 10;
+    if (!unseen) bad.cutter().take(machine.sample(t, true), t, false);
+    bad.cutter().look();
+    for (AheadWarning& w : bad.cutter().take_warnings()) warnings.push_back(std::move(w));
+  }
+  ASSERT_GE(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].finding.id, FindingId::kRapidContact);
+}
+
+TEST(LiveCutter, ToolLengthsOfTheProgramApplyWhereTheyAreInForce) {
+  // Machine coordinates: the tip plus the length in force.
+  std::vector<Motion> motions = pocket().list();
+  for (Motion& m : motions) m.tool_offset_mm = {0, 0, m.tool == 1 ? 30.0 : 50.0};
+  // The longer tool reaches 20 mm farther down when it is put in; the program goes on from there.
+  for (std::size_t i = 1; i + 1 < motions.size(); ++i) {
+    if (motions[i].kind != MotionKind::kToolChange || motions[i].tool != 2) continue;
+    motions[i - 1].to_mm.z = 50;
+    motions[i].from_mm = motions[i].to_mm = motions[i + 1].from_mm = {30, 26, 30};
+  }
+  const auto wanted = dry_run(motions);
+  const RunningMachine machine(motions);
+  LiveCutOptions options;
+  options.program_lengths = true;
+  options.gap_s = 10;
+  auto stock = block();
+  FindingLog log;
+  options.wait_for_program = true;
+  LiveCutter cutter(*stock, cutters(), log, options, std::make_unique<ListedProgram>(motions));
+  for (double t = 0; t < machine.duration_s() + 0.01; t += 0.01) {
+    AxisSample sample = machine.sample(std::min(t, machine.duration_s()));
+    sample.position[2] += sample.tool == 1 ? 30 : 50;
+    cutter.take(sample, t, false);
+  }
+  cutter.look();
+  EXPECT_LT(worst_difference_mm(*stock, *wanted), 2e-5);
+  EXPECT_EQ(cutter.facts().off_path, 0U);
+}
+
+}  // namespace
+}  // namespace kerf

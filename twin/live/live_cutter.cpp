@@ -1,0 +1,302 @@
+#include "twin/live/live_cutter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Sensors tremble: a machine that moved less has not moved. mm.
+constexpr double kStill_mm = 1e-6;
+/// What happens across a gap in which a machine moved less is nothing. mm.
+constexpr double kGapMove_mm = 0.02;
+/// Program time that is planned beyond what is looked at, so that the follower has where to look.
+constexpr double kPlannedAhead_s = 6.0;
+/// A jump is faster than the machine by this factor, and longer than this.
+constexpr double kJumpFactor = 1.5;
+constexpr double kJump_mm = 1.0;
+/// A spindle slower than this stands. rpm.
+constexpr double kStanding_rpm = 1.0;
+/// A machine that says it runs the program for so long without being seen on its path is off it.
+constexpr double kNeverSeen_s = 1.0;
+
+Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place, int tool) {
+  Finding finding;
+  finding.id = id;
+  finding.severity = severity;
+  finding.time_s = t_s;
+  finding.position_mm = place;
+  if (tool >= 0) finding.tool = tool;
+  return finding;
+}
+
+}  // namespace
+
+LiveCutter::LiveCutter(ZMap& stock, const ToolSources& tools, FindingLog& log,
+                       LiveCutOptions options, std::unique_ptr<Program> program)
+    : stock_(stock),
+      log_(log),
+      options_(std::move(options)),
+      frame_(options_.frame),
+      book_(tools, false),
+      stage_(stock, book_, log, options_.timeline),
+      follower_(options_.follow) {
+  if (program) {
+    ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
+    adopt_program_frame();
+    if (options_.guard_s > 0) {
+      guard_ = std::make_unique<LookAheadGuard>(tools, options_.timeline, options_.guard_s);
+    }
+  }
+  stage_.set_frame(work());
+}
+
+void LiveCutter::adopt_program_frame() {
+  const std::optional<WorkpieceFrame> frame = ahead_->wait_for_frame();
+  if (frame && !options_.work_known) frame_.set_work(*frame);
+}
+
+SpindleState LiveCutter::spindle() const {
+  // What nobody tells cannot be found wrong.
+  if (std::isnan(sample_.spindle_rpm)) return SpindleState::kClockwise;
+  if (std::abs(sample_.spindle_rpm) < kStanding_rpm) return SpindleState::kStopped;
+  return sample_.spindle_rpm > 0 ? SpindleState::kClockwise : SpindleState::kCounterclockwise;
+}
+
+/// The machine as the sample shows it. With the program's tool lengths the tip is that of a tool of
+/// no length, until follow() has found where in the program the machine is.
+std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, double t_s) {
+  const bool by_program = ahead_ && options_.program_lengths;
+  const auto pose = frame_.pose_of(sample, by_program ? std::optional<double>(0.0) : std::nullopt);
+  if (!pose) {
+    ++facts_.incomplete;
+    place_.known = false;
+    place_.missing_axes = frame_.missing_axes(sample);
+    return std::nullopt;
+  }
+  facts_.length_unknown |= !pose->length_known;
+  Sighting now;
+  now.tip_mm = pose->tip_mm;
+  now.t_s = t_s;
+  now.tool_length_mm = pose->tool_length_mm;
+  now.tool = frame_.tool_of(sample);
+  now.abc_deg = pose->abc_deg;
+  return now;
+}
+
+FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double elapsed_s) {
+  driven_.clear();
+  FollowedPoint point;
+  point.distance_mm = std::numeric_limits<double>::infinity();
+  if (!ahead_) return point;
+  ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
+                     options_.wait_for_program);
+  FollowedPlace place;
+  place.tip_mm = now.tip_mm;
+  const ToolLengthFrom from = options_.frame.tool_length;
+  place.without_length = options_.program_lengths && !options_.frame.workpiece_frame &&
+                         (from == ToolLengthFrom::kProgram ||
+                          (from == ToolLengthFrom::kAuto && std::isnan(sample.tool_offset_z_mm)));
+  place.elapsed_s = elapsed_s;
+  place.line = sample.line;
+  place.tool = now.tool;
+  point = follower_.follow(place, [this](const Motion& motion, double duration_s) {
+    driven_.emplace_back(motion, duration_s);
+  });
+  if (place.without_length) {
+    now.tool_length_mm = point.tool_length_mm;
+    now.tip_mm.z -= point.tool_length_mm;
+  }
+  ahead_->forget_before(follower_.program_s());
+  return point;
+}
+
+bool LiveCutter::gap_between(const Sighting& before, const Sighting& now, bool lost) const {
+  const double way_mm = glm::length(now.tip_mm - before.tip_mm);
+  if (way_mm < kGapMove_mm) return false;
+  const double elapsed_s = now.t_s - before.t_s;
+  if (lost || elapsed_s > options_.gap_s) return true;
+  return way_mm > kJump_mm && way_mm > kJumpFactor * options_.most_mm_per_s * elapsed_s;
+}
+
+void LiveCutter::note_gap(const Sighting& before, const Sighting& now) {
+  const double way_mm = glm::length(now.tip_mm - before.tip_mm);
+  const double elapsed_s = now.t_s - before.t_s;
+  ++facts_.gaps;
+  facts_.gap_s += elapsed_s;
+  facts_.gap_max_mm = std::max(facts_.gap_max_mm, way_mm);
+  if (options_.gap == GapPolicy::kIgnore) return;
+  Finding finding =
+      finding_of(FindingId::kSourceGap, Severity::kWarning, now.t_s, now.tip_mm, now.tool);
+  finding.source = place_.source;
+  const bool jump = elapsed_s <= options_.gap_s && way_mm > options_.most_mm_per_s * elapsed_s;
+  finding.text = fmt::format(
+      "{} {:.3f} s, the machine is {:.2f} mm further on; {}{}",
+      jump ? "positions jump: within" : "no positions for", elapsed_s, way_mm,
+      options_.gap == GapPolicy::kCut ? "the way between is cut all the same"
+                                      : "the way between is not cut (gap: cut would)",
+      before.tool != now.tool
+          ? fmt::format("; the tool was changed meanwhile, from {} to {}", before.tool, now.tool)
+          : std::string());
+  log_.add(std::move(finding));
+}
+
+/// The machine has another tool than the program has where the machine is.
+void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point) {
+  if (!point.on_path || now.tool < 0 || now.tool == point.tool) {
+    if (point.on_path) mismatch_told_ = false;
+    return;
+  }
+  if (std::exchange(mismatch_told_, true)) return;
+  guard_stale_ = true;
+  Finding finding =
+      finding_of(FindingId::kToolMismatch, Severity::kError, now.t_s, now.tip_mm, now.tool);
+  finding.source = point.source;
+  finding.text = fmt::format("the machine has tool {} in the spindle where the program has tool {}",
+                             now.tool, point.tool);
+  log_.add(std::move(finding));
+}
+
+void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) {
+  const bool searched = std::isfinite(point.distance_mm);
+  if (point.on_path || !searched || follower_.passed_all()) {
+    off_path_event_.reset();
+    lost_sight_s_ = 0;
+    return;
+  }
+  if (!follower_.found()) {
+    // Before the program begins a machine may be anywhere; while it says that it runs, it may not.
+    const double elapsed_s = before_ ? now.t_s - before_->t_s : 0;
+    lost_sight_s_ = sample_.line > 0 ? lost_sight_s_ + elapsed_s : 0;
+    if (lost_sight_s_ < kNeverSeen_s) return;
+  }
+  ++facts_.off_path;
+  facts_.off_path_max_mm = std::max(facts_.off_path_max_mm, point.distance_mm);
+  if (!off_path_event_) {
+    Finding finding =
+        finding_of(FindingId::kOffPath, Severity::kWarning, now.t_s, now.tip_mm, now.tool);
+    finding.source = point.source;
+    const Vec3 by = now.tip_mm - point.place_mm;
+    finding.text = fmt::format(
+        "the tip is not on the path of the program, it is beside it by X{:.3f} Y{:.3f} Z{:.3f}",
+        by.x, by.y, by.z);
+    off_path_event_ = log_.add(std::move(finding));
+  }
+  log_.deepen(*off_path_event_, point.distance_mm);
+}
+
+void LiveCutter::cut(const Motion& motion, double duration_s) {
+  TimedStep step;
+  step.start_s = t_s_;
+  step.duration_s = duration_s;
+  step.length_mm = path_length_mm(motion);
+  step.programmed_mm_per_min = duration_s > 0 ? 60 * step.length_mm / duration_s : 0;
+  step.allowed_mm_per_min = step.programmed_mm_per_min;
+  stage_.take_timed(motion, step);
+}
+
+/// The straight line from where the cutter is to where the tip is.
+void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s,
+                           bool off_path) {
+  const double length_mm = glm::length(now.tip_mm - from_mm);
+  if (length_mm < kStill_mm) return;
+  Motion motion;
+  motion.kind = MotionKind::kFeed;
+  motion.spindle = spindle();
+  motion.spindle_rpm = std::isnan(sample_.spindle_rpm) ? 0 : std::abs(sample_.spindle_rpm);
+  motion.tool = std::max(0, now.tool);
+  motion.source = {0, sample_.line > 0 ? static_cast<std::uint32_t>(sample_.line) : 0};
+  motion.from_mm = from_mm;
+  motion.to_mm = now.tip_mm;
+  motion.to_abc_deg = motion.from_abc_deg = now.abc_deg;
+  motion.tool_offset_mm = {0, 0, now.tool_length_mm};
+  motion.feed_mm_per_min = duration_s > 0 ? 60 * length_mm / duration_s : 0;
+  facts_.chord_mm += length_mm;
+  cut(motion, duration_s);
+  // The workpiece is no longer what the program makes of it.
+  guard_stale_ |= off_path;
+}
+
+/// What the follower has driven, with the tool and the spindle that the machine really has.
+void LiveCutter::cut_path(double duration_s) {
+  double planned_s = 0;
+  for (const auto& [motion, share_s] : driven_) planned_s += share_s;
+  const bool spindle_told = !std::isnan(sample_.spindle_rpm);
+  for (auto& [motion, share_s] : driven_) {
+    const int tool = frame_.tool_of(sample_);
+    if (tool >= 0) motion.tool = tool;
+    if (spindle_told) motion.spindle = spindle();
+    facts_.path_mm += path_length_mm(motion);
+    cut(motion, planned_s > 0 ? duration_s * share_s / planned_s : 0);
+  }
+}
+
+void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
+  ++facts_.samples;
+  sample_ = sample;
+  t_s_ = t_s;
+  std::optional<Sighting> seen = see(sample, t_s);
+  if (!seen) return;
+  Sighting& now = *seen;
+  const double elapsed_s = before_ ? now.t_s - before_->t_s : 0;
+  const FollowedPoint point = follow(now, sample, elapsed_s);
+  place_.known = true;
+  place_.tip_mm = now.tip_mm;
+  place_.tool = now.tool;
+  place_.followed = point.on_path;
+  place_.distance_mm = point.distance_mm;
+  if (point.on_path) {
+    place_.source = point.source;
+    place_.program_s = point.program_s;
+    program_tool_ = point.tool;
+    ++facts_.on_path;
+    facts_.following_max_mm = std::max(facts_.following_max_mm, point.distance_mm);
+    facts_.following_sum_mm += point.distance_mm;
+  }
+  note_tool(now, point);
+  note_off_path(now, point);
+  const bool first = !before_;
+  if (before_) {
+    // A machine that stands while its tool length changes: the new tip is elsewhere, and has moved
+    // through nothing.
+    const double change_mm = before_->tool_length_mm - now.tool_length_mm;
+    before_->tip_mm.z += change_mm;
+    cut_to_mm_.z += change_mm;
+    if (before_->tool != now.tool && before_->tool >= 0) ++facts_.tool_changes;
+    const bool gap = gap_between(*before_, now, lost);
+    if (gap) note_gap(*before_, now);
+    if (gap && options_.gap != GapPolicy::kCut) {
+      guard_stale_ = true;
+    } else if (point.on_path && was_on_path_) {
+      cut_path(elapsed_s);
+    } else {
+      Sighting to = now;
+      if (point.on_path) to.tip_mm = point.place_mm;
+      cut_chord(cut_to_mm_, to, elapsed_s, true);
+    }
+  }
+  cut_to_mm_ = point.on_path ? point.place_mm : now.tip_mm;
+  was_on_path_ = point.on_path;
+  before_ = now;
+  if (first) guard_stale_ = true;
+}
+
+void LiveCutter::look() {
+  stage_.complete();
+  if (!guard_ || !follower_.found() || follower_.passed_all()) return;
+  if (std::exchange(guard_stale_, false)) guard_->restart(stock_, work());
+  guard_->look(*ahead_, follower_.program_s(), program_tool_, place_.tool, warnings_);
+}
+
+void LiveCutter::finish() {
+  stage_.finish(false);
+  if (ahead_) ahead_->stop();
+}
+
+}  // namespace kerf

@@ -1,0 +1,128 @@
+// twin/live/live_cutter.h - positions of a machine in, workpiece cut: with a program along its
+// path, without one along the straight line from sample to sample.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machine_io/position_source.h"
+#include "stock/zmap/zmap.h"
+#include "twin/cut_stage.h"
+#include "twin/finding.h"
+#include "twin/live/live_facts.h"
+#include "twin/live/live_frame.h"
+#include "twin/live/look_ahead_guard.h"
+#include "twin/live/path_follower.h"
+#include "twin/live/program_ahead.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+/// What becomes of the way between two samples with a gap between them.
+enum class GapPolicy : std::uint8_t {
+  kMark,    ///< it is not cut, and is a finding
+  kCut,     ///< it is cut, and is a finding
+  kIgnore,  ///< it is not cut
+};
+
+struct LiveCutOptions {
+  LiveFrameOptions frame;
+  bool work_known = false;  ///< frame.work is the user's word; else a program's, if there is one
+  bool program_lengths = false;  ///< the tool lengths of the program's G43 are the machine's
+  FollowOptions follow;
+  GapPolicy gap = GapPolicy::kMark;
+  double gap_s = 0.5;  ///< samples farther apart than this have a gap between them
+  /// A machine cannot be faster: samples that say so have a gap between them. mm/s.
+  double most_mm_per_s = std::numeric_limits<double>::infinity();
+  TimelineOptions timeline;
+  double guard_s = 10;            ///< how far to look ahead; 0: not
+  bool wait_for_program = false;  ///< a log waits for the interpreter, a machine does not
+};
+
+/// The machine now.
+struct LivePlace {
+  bool known = false;  ///< X, Y and Z were in the last sample
+  Vec3 tip_mm{0};      ///< workpiece frame
+  int tool = -1;
+  bool followed = false;     ///< there is a program, and the tip is on its path
+  double distance_mm = 0;    ///< from the path, if there is one
+  SourceRef source;          ///< of the program's motion there
+  double program_s = 0;      ///< program time, by the plan
+  std::string missing_axes;  ///< why it is not known
+};
+
+/// One thread. Deterministic: the same samples with the same times give the same workpiece, as
+/// long as the program is waited for.
+class LiveCutter {
+ public:
+  /// `program` may be null. The references must outlive the cutter.
+  LiveCutter(ZMap& stock, const ToolSources& tools, FindingLog& log, LiveCutOptions options,
+             std::unique_ptr<Program> program);
+
+  /// The next sample, `t_s` after the first by one clock. `lost`: others are known to be missing
+  /// before it.
+  void take(const AxisSample& sample, double t_s, bool lost);
+  /// The workpiece is up to date with the samples, and the program ahead has been looked at.
+  void look();
+  void finish();
+
+  const LiveFacts& facts() const { return facts_; }
+  const LivePlace& place() const { return place_; }
+  const CutStage& stage() const { return stage_; }
+  const ProgramAhead* program() const { return ahead_.get(); }
+  /// Where the workpiece lies in the machine.
+  const WorkpieceFrame& work() const { return frame_.options().work; }
+  /// What the look-ahead has found since the last call.
+  std::vector<AheadWarning> take_warnings() { return std::exchange(warnings_, {}); }
+
+ private:
+  struct Sighting {
+    Vec3 tip_mm{0};
+    double t_s = 0;
+    double tool_length_mm = 0;
+    int tool = -1;
+    std::array<double, 3> abc_deg{};
+  };
+  void adopt_program_frame();
+  std::optional<Sighting> see(const AxisSample& sample, double t_s);
+  FollowedPoint follow(Sighting& now, const AxisSample& sample, double elapsed_s);
+  bool gap_between(const Sighting& before, const Sighting& now, bool lost) const;
+  void note_gap(const Sighting& before, const Sighting& now);
+  void note_tool(const Sighting& now, const FollowedPoint& point);
+  void note_off_path(const Sighting& now, const FollowedPoint& point);
+  void cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s, bool off_path);
+  void cut_path(double duration_s);
+  void cut(const Motion& motion, double duration_s);
+  SpindleState spindle() const;
+
+  ZMap& stock_;
+  FindingLog& log_;
+  LiveCutOptions options_;
+  LiveFrame frame_;
+  ToolBook book_;
+  CutStage stage_;
+  PathFollower follower_;
+  std::unique_ptr<ProgramAhead> ahead_;
+  std::unique_ptr<LookAheadGuard> guard_;
+  bool guard_stale_ = true;
+  std::vector<AheadWarning> warnings_;
+
+  AxisSample sample_;  ///< the last one
+  std::optional<Sighting> before_;
+  Vec3 cut_to_mm_{0};  ///< where the cutter has come to in the workpiece
+  bool was_on_path_ = false;
+  std::vector<std::pair<Motion, double>> driven_;  ///< along the path since the sample before
+  double t_s_ = 0;
+  LiveFacts facts_;
+  LivePlace place_;
+  std::optional<FindingLog::Handle> off_path_event_;
+  bool mismatch_told_ = false;
+  int program_tool_ = -1;    ///< where the machine was last on the path
+  double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
+};
+
+}  // namespace kerf

@@ -1,0 +1,26 @@
+// twin/live/live_facts.h - counts and lengths of a watched machine.
+#pragma once
+
+#include <cstdint>
+
+namespace kerf {
+
+/// What has been seen. Lengths in mm.
+struct LiveFacts {
+  std::uint64_t samples = 0;
+  std::uint64_t incomplete = 0;  ///< without X, Y or Z
+  std::uint64_t on_path = 0;
+  std::uint64_t off_path = 0;  ///< after the machine had been found on the path
+  double off_path_max_mm = 0;
+  double following_max_mm = 0;  ///< distance from the path of the samples on it
+  double following_sum_mm = 0;
+  std::uint64_t gaps = 0;
+  double gap_s = 0;       ///< in all
+  double gap_max_mm = 0;  ///< greatest straight line across one
+  double path_mm = 0;     ///< cut along the program
+  double chord_mm = 0;    ///< cut straight from sample to sample
+  std::uint64_t tool_changes = 0;
+  bool length_unknown = false;  ///< positions were read with a tool length of 0 for want of one
+};
+
+}  // namespace kerf

@@ -1,0 +1,419 @@
+#include "twin/live/live_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/blank_choice.h"
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// How long the source is given, and how long the cutter waits, before they look round.
+constexpr std::chrono::milliseconds kPatience{50};
+/// The program ahead is looked at this often, in seconds of the samples' clock.
+constexpr double kLook_s = 0.05;
+constexpr std::size_t kAges = 1 << 16;
+/// Two clocks that differ by more between two samples: one of them was set.
+constexpr double kClockStep_s = 0.2;
+/// A device's stamps that leave the arrival by more are not believed.
+constexpr double kPlausible_s = 1.0;
+/// The status is copied this seldom while a log rushes by.
+constexpr std::uint64_t kStatusEvery = 256;
+
+double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+double seconds(std::chrono::steady_clock::duration d) {
+  return std::chrono::duration<double>(d).count();
+}
+
+std::int64_t stamp_of(const AxisSample& sample) {
+  return sample.device_ns != AxisSample::kNoTime ? sample.device_ns : sample.host_ns;
+}
+
+std::int64_t steady_ns(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
+}
+
+/// Its own plan of a program, for the sum alone.
+class DurationSink : public StepSink {
+  void step(const Motion&, const TimedStep&, std::span<const PathPiece>) override {}
+};
+
+}  // namespace
+
+const char* to_string(LiveState state) {
+  switch (state) {
+    case LiveState::kWaiting:
+      return "waiting";
+    case LiveState::kLive:
+      return "live";
+    case LiveState::kStale:
+      return "stale";
+    case LiveState::kLost:
+      return "lost";
+    case LiveState::kEnded:
+      return "ended";
+  }
+  return "";
+}
+
+LiveSession::LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source)
+    : options_(std::move(options)), source_(std::move(source)), start_(Clock::now()) {
+  ages_ms_.reserve(kAges);
+}
+
+LiveSession::~LiveSession() = default;
+
+std::unique_ptr<LiveSession> LiveSession::open(LiveOptions options,
+                                               std::unique_ptr<PositionSource> source,
+                                               Diagnostics& diagnostics, Outcome& outcome) {
+  std::unique_ptr<LiveSession> session(new LiveSession(std::move(options), std::move(source)));
+  outcome = Outcome::kFailed;
+  if (!session->set_up(diagnostics, outcome)) return nullptr;
+  outcome = Outcome::kFinished;
+  return session;
+}
+
+bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
+  ProgramOptions program;
+  program.tool_table_path = options_.tool_table_path;
+  program.machine.inch_machine = options_.inch_table;
+  if (options_.program) {
+    program = *options_.program;
+    program_ = Program::open(program, diagnostics);
+    if (!program_) return false;
+  }
+  ToolSources tools;
+  if (!gather_tool_sources(options_.tools, program_.get(), program, tools, diagnostics)) {
+    return false;
+  }
+  for (const ToolTableRow& row : tools.table) {
+    options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
+  }
+  CommentBlank found;
+  if (options_.blank) {
+    found = {options_.blank, "--stock"};
+  } else if (program_ && !find_comment_blank(*program_, program.path, found, diagnostics)) {
+    return false;
+  }
+  if (!found.blank && !guess_blank(tools, diagnostics, outcome)) return false;
+  if (found.blank) {
+    StockSetup setup = make_stock(*found.blank, options_.stock, found.origin, diagnostics, outcome);
+    stock_ = std::move(setup.stock);
+    stock_facts_ = std::move(setup.facts);
+  }
+  if (!stock_) return false;
+  options_.cutting.wait_for_program = options_.log();
+  options_.cutting.gap_s = options_.stale_after_s;
+  cutter_ = std::make_unique<LiveCutter>(*stock_, tools, report_.findings, options_.cutting,
+                                         std::move(program_));
+  return true;
+}
+
+/// From the motions of the program.
+bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics,
+                              Outcome& outcome) {
+  outcome = Outcome::kUsageError;
+  if (!program_ || options_.program->path == "-") {
+    diagnostics.push_back(general_error(
+        "no blank is given: without a program there is nothing to guess it from",
+        "--stock box:x0,y0,z0:x1,y1,z1 gives it, in the coordinates of the work offset"));
+    return false;
+  }
+  const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
+  if (!first_pass) return false;
+  BlankGuess guess(options_.margin_mm);
+  ToolBook book(tools, true);
+  Diagnostics said;
+  first_pass->run(
+      [&](std::span<const Motion> motions) {
+        for (const Motion& m : motions) {
+          const ResolvedTool* tool = is_feed(m) ? &book.mount(m.tool, m.source.line) : nullptr;
+          guess.add(m, tool && tool->cutter ? tool->cutter->radius_mm() : 0);
+        }
+        return true;
+      },
+      {}, said);
+  StockSetup setup = make_stock(guess.blank(), options_.stock, "guessed", diagnostics, outcome);
+  stock_ = std::move(setup.stock);
+  stock_facts_ = std::move(setup.facts);
+  if (!stock_) return false;
+  Finding finding;
+  finding.id = FindingId::kStockGuessed;
+  finding.severity = Severity::kWarning;
+  finding.text = fmt::format(
+      "no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
+      "--stock SPEC says better)",
+      stock_facts_.description, options_.margin_mm);
+  report_.findings.add(std::move(finding));
+  return true;
+}
+
+/// A log's sample waits for its time.
+void LiveSession::pace(const AxisSample& sample, const std::stop_token& stop) {
+  if (!std::isfinite(options_.speed)) return;
+  const std::int64_t stamp = stamp_of(sample);
+  if (stamp == AxisSample::kNoTime) return;
+  if (!pace_first_ns_) {
+    pace_first_ns_ = stamp;
+    pace_start_ = Clock::now();
+  }
+  const double due_s = seconds(stamp - *pace_first_ns_) / options_.speed;
+  const auto due = pace_start_ + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(due_s));
+  while (!stop.stop_requested() && Clock::now() < due) {
+    std::this_thread::sleep_until(std::min(due, Clock::now() + kPatience));
+  }
+}
+
+void LiveSession::read_source(std::stop_token stop) {
+  AxisSample sample;
+  std::uint64_t handed = 0;
+  const auto copy_status = [&] {
+    const std::lock_guard lock(status_mutex_);
+    source_status_ = source_->status();
+  };
+  while (!stop.stop_requested()) {
+    const PositionSource::Next next = source_->next(sample, kPatience);
+    if (next != PositionSource::Next::kSample) {
+      copy_status();
+      if (next == PositionSource::Next::kEnd) break;
+      continue;
+    }
+    if (options_.log()) pace(sample, stop);
+    ArrivedSample arrived{sample, Clock::now(), source_->status().lost};
+    if (tap_) tap_(sample);
+    if (!options_.log() || handed % kStatusEvery == 0) copy_status();
+    ++handed;
+    if (!options_.log()) {
+      queue_.push_or_drop(arrived);
+    } else if (!queue_.push_waiting(arrived)) {
+      break;
+    }
+  }
+  copy_status();
+  queue_.close();
+}
+
+/// How long the whole program takes, for what remains of it.
+void LiveSession::measure_program(std::stop_token stop) {
+  Diagnostics ignored;
+  const std::unique_ptr<Program> program = Program::open(*options_.program, ignored);
+  if (!program) return;
+  DurationSink sink;
+  TimelineOptions timing = options_.cutting.timeline;
+  timing.planner.with_path = false;
+  Timeline timeline(timing, sink);
+  program->run(
+      [&](std::span<const Motion> motions) {
+        for (const Motion& m : motions) timeline.push(m);
+        return true;
+      },
+      stop, ignored);
+  if (stop.stop_requested()) return;
+  timeline.finish();
+  program_total_s_ = timeline.clock_s();
+}
+
+/// Seconds since the first sample. By the device's clock as long as that goes along with ours.
+double LiveSession::time_of(const ArrivedSample& arrived) {
+  const std::int64_t stamp = stamp_of(arrived.sample);
+  if (!first_) {
+    first_ = newest_ = arrived;
+    stamp_before_ns_ = stamp;
+    host_offset_ns_ = arrived.sample.host_ns - steady_ns(arrived.arrival);
+    return 0;
+  }
+  const double by_arrival_s = seconds(arrived.arrival - newest_.arrival);
+  double elapsed_s = by_arrival_s;
+  if (stamp != AxisSample::kNoTime && stamp_before_ns_ != AxisSample::kNoTime) {
+    const double by_stamp_s = seconds(stamp - stamp_before_ns_);
+    const bool plausible = by_stamp_s >= 0 && std::abs(by_stamp_s - by_arrival_s) < kPlausible_s;
+    const bool own_clock = arrived.sample.device_ns != AxisSample::kNoTime;
+    if (options_.log() || (own_clock && plausible)) elapsed_s = std::max(0.0, by_stamp_s);
+  }
+  stamp_before_ns_ = stamp;
+  return t_s_ + elapsed_s;
+}
+
+void LiveSession::note_clocks(const ArrivedSample& arrived, double t_s) {
+  if (options_.log()) return;
+  const AxisSample& sample = arrived.sample;
+  const std::int64_t offset_ns = sample.host_ns - steady_ns(arrived.arrival);
+  if (std::abs(seconds(offset_ns - host_offset_ns_)) > kClockStep_s) ++live_.clock_steps;
+  host_offset_ns_ = offset_ns;
+  if (sample.device_ns != AxisSample::kNoTime) {
+    const double late_s = seconds(arrived.arrival - first_->arrival) - t_s;
+    live_.jitter_ms = std::max(live_.jitter_ms, std::abs(late_s) * 1e3);
+  }
+}
+
+void LiveSession::take(const ArrivedSample& arrived) {
+  const double t_s = time_of(arrived);
+  note_clocks(arrived, t_s);
+  const std::uint64_t dropped = options_.log() ? 0 : queue_.dropped();
+  const bool lost = arrived.lost > lost_before_ || dropped > dropped_before_;
+  lost_before_ = arrived.lost;
+  dropped_before_ = dropped;
+  t_s_ = t_s;
+  newest_ = arrived;
+  cutter_->take(arrived.sample, t_s, lost);
+  if (options_.log()) return;
+  const auto age_ms = static_cast<float>(seconds(Clock::now() - arrived.arrival) * 1e3);
+  if (ages_ms_.size() < kAges) {
+    ages_ms_.push_back(age_ms);
+  } else {
+    ages_ms_[next_age_++ % kAges] = age_ms;
+  }
+  live_.age_max_ms = std::max(live_.age_max_ms, static_cast<double>(age_ms));
+}
+
+LiveState LiveSession::state_now(double age_s) const {
+  if (!first_) return LiveState::kWaiting;
+  if (options_.log() || age_s <= options_.stale_after_s) return LiveState::kLive;
+  return age_s <= options_.lost_after_s ? LiveState::kStale : LiveState::kLost;
+}
+
+/// What is new goes to the observer at once, the rest from time to time.
+void LiveSession::tell(bool ended) {
+  const auto now = Clock::now();
+  const std::vector<AheadWarning> warnings = cutter_->take_warnings();
+  live_.warnings_ahead += warnings.size();
+  ahead_.insert(ahead_.end(), warnings.begin(), warnings.end());
+  std::erase_if(ahead_, [&](const AheadWarning& w) {
+    return w.finding.time_s.value_or(0) < cutter_->place().program_s;
+  });
+  const double age_s = first_ ? seconds(now - newest_.arrival) : seconds(now - start_);
+  const LiveState state = ended ? LiveState::kEnded : state_now(age_s);
+  const auto& findings = report_.findings.kept();
+  const bool news = state != told_state_ || !warnings.empty() || told_findings_ < findings.size();
+  if (!observer_ || (!news && now - told_at_ < kStatusPeriod)) return;
+  told_at_ = now;
+  told_state_ = state;
+  LiveStatus status;
+  status.state = state;
+  status.age_s = age_s;
+  status.t_s = t_s_;
+  status.place = cutter_->place();
+  const std::vector<std::string> files =
+      cutter_->program() ? cutter_->program()->files() : std::vector<std::string>{};
+  if (status.place.source.file < files.size()) status.file = files[status.place.source.file];
+  const double total_s = program_total_s_;
+  if (total_s >= 0) status.remaining_s = std::max(0.0, total_s - status.place.program_s);
+  for (const AheadWarning& warning : ahead_) {
+    const double in_s = warning.finding.time_s.value_or(0) - status.place.program_s;
+    if (status.collision_in_s >= 0 && in_s >= status.collision_in_s) continue;
+    status.collision_in_s = in_s;
+    status.collision_line = warning.finding.source.line;
+  }
+  {
+    const std::lock_guard lock(status_mutex_);
+    status.source = source_status_;
+  }
+  status.dropped = queue_.dropped();
+  status.samples = cutter_->facts().samples;
+  if (status.place.known && !status.place.followed && std::isfinite(status.place.distance_mm)) {
+    status.off_path_mm = status.place.distance_mm;
+  }
+  for (const ToolUse& use : cutter_->stage().tools()) status.removed_mm3 += use.removed_mm3;
+  for (; told_findings_ < findings.size(); ++told_findings_) {
+    observer_->on_finding(findings[told_findings_], files);
+  }
+  for (const AheadWarning& warning : warnings) observer_->on_warning(warning, files);
+  observer_->on_status(status);
+}
+
+Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
+  report_.version = KERF_VERSION;
+  report_.program_path = options_.program ? options_.program->path : std::string();
+  live_.source = source_->describe();
+  std::stop_source end;
+  const std::stop_callback forward(stop, [&] { end.request_stop(); });
+  std::thread reader([&] { read_source(end.get_token()); });
+  std::thread measure;
+  const bool measured = options_.program && options_.program->path != "-" &&
+                        (!options_.log() || std::isfinite(options_.speed));
+  if (measured) measure = std::thread([&] { measure_program(end.get_token()); });
+  const double cpu_before = thread_cpu_s();
+  std::vector<ArrivedSample> batch;
+  double look_at_s = 0;
+  while (queue_.pop_all(batch, std::chrono::milliseconds(20))) {
+    for (const ArrivedSample& arrived : batch) {
+      take(arrived);
+      if (t_s_ < look_at_s) continue;
+      cutter_->look();
+      look_at_s = t_s_ + kLook_s;
+      tell(false);
+    }
+    tell(false);
+    const double run_s = options_.log() ? t_s_ : seconds(Clock::now() - start_);
+    if (options_.for_s > 0 && run_s >= options_.for_s) break;
+  }
+  const bool stopped = stop.stop_requested();
+  end.request_stop();
+  queue_.close();
+  reader.join();
+  if (measure.joinable()) measure.join();
+  last_state_ = state_now(first_ ? seconds(Clock::now() - newest_.arrival) : 0);
+  cutter_->look();
+  cutter_->finish();
+  tell(true);
+  report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
+  conclude(stopped);
+  const SourceStatus& status = live_.status;
+  if (status.state == SourceState::kFailed || (!first_ && !stopped)) {
+    diagnostics.push_back(general_error(fmt::format(
+        "{}: {}", live_.source, status.trouble.empty() ? "no position has come" : status.trouble)));
+    return Outcome::kFailed;
+  }
+  return outcome(stopped);
+}
+
+void LiveSession::conclude(bool stopped) {
+  live_.status = source_status_;
+  live_.facts = cutter_->facts();
+  live_.dropped = queue_.dropped();
+  live_.duration_s = t_s_;
+  if (t_s_ > 0) live_.rate_hz = static_cast<double>(live_.facts.samples - 1) / t_s_;
+  if (!ages_ms_.empty()) {
+    std::sort(ages_ms_.begin(), ages_ms_.end());
+    live_.age_median_ms = static_cast<double>(ages_ms_[ages_ms_.size() / 2]);
+    live_.age_p99_ms = static_cast<double>(ages_ms_[ages_ms_.size() * 99 / 100]);
+  }
+  if (first_ && first_->sample.device_ns != AxisSample::kNoTime) {
+    live_.clock_offset_s = seconds(first_->sample.host_ns - first_->sample.device_ns);
+  }
+  if (const ProgramAhead* program = cutter_->program()) {
+    report_.program = program->summary();
+    if (!program->complete()) report_.program.stopped_early = true;
+    const bool open_ended = !report_.program.has_program_end && !report_.program.stopped_early;
+    // Of a program that was not read to its end the interpreter only says that it was stopped.
+    if (program->complete()) {
+      add_interpreter_findings(program->diagnostics(), open_ended, report_.findings);
+    }
+  }
+  report_.time_model = options_.log() ? "as logged" : "as it happened";
+  report_.motion.duration_s = t_s_;
+  report_.tools = cutter_->stage().tools();
+  report_.stock = stock_report(*stock_, stock_facts_);
+  report_.timing.total_s = seconds(Clock::now() - start_);
+  report_.peak_rss_mb = peak_rss_mb();
+  if (stopped && options_.log()) report_.partial_reason = "interrupted before the end of the log";
+  report_.live = live_;
+}
+
+Outcome LiveSession::outcome(bool stopped) const {
+  // A log that is stopped is not finished; a machine is watched until somebody stops.
+  if (stopped && options_.log()) return Outcome::kInterrupted;
+  const LiveReport& live = live_;
+  const bool gone = !options_.log() && last_state_ != LiveState::kLive;
+  const bool lossy = live.dropped > 0 || live.status.lost > 0 || live.status.errors > 0 ||
+                     live.facts.gaps > 0 || live.facts.incomplete > 0 || gone;
+  return lossy ? Outcome::kLossy : Outcome::kFinished;
+}
+
+}  // namespace kerf

@@ -1,0 +1,164 @@
+// twin/live/live_session.h - a machine watched (shadow), or a log of one run again (replay).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/program.h"
+#include "machine_io/position_source.h"
+#include "stock/blank.h"
+#include "twin/live/live_cutter.h"
+#include "twin/live/live_report.h"
+#include "twin/live/sample_queue.h"
+#include "twin/outcome.h"
+#include "twin/report.h"
+#include "twin/session_parts.h"
+
+namespace kerf {
+
+/// How old what is shown is.
+enum class LiveState : std::uint8_t {
+  kWaiting,  ///< no position yet
+  kLive,
+  kStale,  ///< no sample for LiveOptions::stale_after_s
+  kLost,   ///< no sample for LiveOptions::lost_after_s
+  kEnded,  ///< the log is at its end, or the time asked for is over
+};
+const char* to_string(LiveState state);
+
+struct LiveOptions {
+  std::optional<ProgramOptions> program;
+  /// Without a program: where the tool table is, and its unit.
+  std::string tool_table_path;
+  bool inch_table = false;
+  std::vector<ToolShapeArgument> tools;
+  std::optional<Blank> blank;
+  StockSettings stock;
+  double margin_mm = 5;  ///< around a blank guessed from the program
+  LiveCutOptions cutting;
+  double stale_after_s = 0.5;
+  double lost_after_s = 2.0;
+  /// Of a log: program seconds a second; infinity: as fast as it goes. Of a machine: 0.
+  double speed = 0;
+  /// Ends after so many seconds; 0: with the source, or when it is stopped.
+  double for_s = 0;
+  bool log() const { return speed > 0; }
+};
+
+/// What a window or a console shows.
+struct LiveStatus {
+  LiveState state = LiveState::kWaiting;
+  double age_s = 0;  ///< of the newest sample
+  double t_s = 0;    ///< since the first sample, by its clock
+  LivePlace place;
+  std::string file;            ///< of the program's line the machine is on
+  double remaining_s = -1;     ///< of the program, by the plan; < 0: not known
+  double collision_in_s = -1;  ///< the nearest of the warnings that are still ahead; < 0: none
+  std::uint32_t collision_line = 0;
+  SourceStatus source;
+  std::uint64_t dropped = 0;  ///< samples that came faster than they could be cut
+  std::uint64_t samples = 0;
+  double off_path_mm = 0;  ///< while the tip is off the path
+  double removed_mm3 = 0;
+};
+
+/// Told from the thread in LiveSession::run().
+class LiveObserver {
+ public:
+  virtual ~LiveObserver() = default;
+  /// The state changed, or a while has passed (LiveSession::kStatusPeriod).
+  virtual void on_status(const LiveStatus& status) = 0;
+  virtual void on_finding(const Finding& finding, const std::vector<std::string>& files) = 0;
+  virtual void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) = 0;
+};
+
+/// Takes every sample, in the thread that reads the source. For recorders.
+using SampleTap = std::function<void(const AxisSample&)>;
+
+/// Two threads: one asks the source, the caller's cuts. A machine is never waited for nor made to
+/// wait: what comes faster than it can be cut is dropped and counted. A log waits.
+class LiveSession {
+ public:
+  static constexpr std::chrono::milliseconds kStatusPeriod{100};
+
+  /// Checks all that can be checked beforehand. Null on error, with diagnostics; `outcome` says of
+  /// which kind.
+  static std::unique_ptr<LiveSession> open(LiveOptions options,
+                                           std::unique_ptr<PositionSource> source,
+                                           Diagnostics& diagnostics, Outcome& outcome);
+  ~LiveSession();
+
+  void set_observer(LiveObserver* observer) { observer_ = observer; }
+  void set_tap(SampleTap tap) { tap_ = std::move(tap); }
+
+  /// Call once.
+  Outcome run(std::stop_token stop, Diagnostics& diagnostics);
+
+  /// After run().
+  Report& report() { return report_; }
+  const ZMap* stock() const { return stock_.get(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source);
+  bool set_up(Diagnostics& diagnostics, Outcome& outcome);
+  bool guess_blank(const ToolSources& tools, Diagnostics& diagnostics, Outcome& outcome);
+  void read_source(std::stop_token stop);
+  void pace(const AxisSample& sample, const std::stop_token& stop);
+  void measure_program(std::stop_token stop);
+  void take(const ArrivedSample& arrived);
+  double time_of(const ArrivedSample& arrived);
+  void note_clocks(const ArrivedSample& arrived, double t_s);
+  void tell(bool ended);
+  LiveState state_now(double age_s) const;
+  void conclude(bool stopped);
+  Outcome outcome(bool stopped) const;
+
+  LiveOptions options_;
+  std::unique_ptr<PositionSource> source_;
+  std::unique_ptr<Program> program_;
+  std::unique_ptr<ZMap> stock_;
+  StockReport stock_facts_;
+  std::unique_ptr<LiveCutter> cutter_;
+  LiveObserver* observer_ = nullptr;
+  SampleTap tap_;
+  Report report_;
+
+  SampleQueue queue_;
+  mutable std::mutex status_mutex_;  // of source_status_
+  SourceStatus source_status_;
+  std::atomic<double> program_total_s_{-1};
+
+  // of the cutting thread
+  std::optional<ArrivedSample> first_;
+  ArrivedSample newest_;
+  double t_s_ = 0;
+  std::int64_t stamp_before_ns_ = 0;
+  std::uint64_t lost_before_ = 0;
+  std::uint64_t dropped_before_ = 0;
+  LiveState told_state_ = LiveState::kWaiting;
+  LiveState last_state_ = LiveState::kWaiting;  ///< when it was stopped
+  Clock::time_point told_at_;
+  std::size_t told_findings_ = 0;
+  std::vector<AheadWarning> ahead_;  ///< warnings whose time has not come
+  LiveReport live_;
+  std::vector<float> ages_ms_;  ///< ring of the ages at which samples were cut
+  std::size_t next_age_ = 0;
+  std::int64_t host_offset_ns_ = 0;
+  // of the source's thread
+  std::optional<std::int64_t> pace_first_ns_;
+  Clock::time_point pace_start_;
+  Clock::time_point start_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,84 @@
+// twin/live/program_ahead.h - the program that a machine runs, read and planned a little ahead of
+// it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "interp_bridge/program.h"
+#include "twin/batch_queue.h"
+#include "twin/live/path_follower.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+/// A motion with its time by the plan.
+struct PlannedMotion {
+  Motion motion;
+  double start_s = 0;
+  double end_s = 0;
+};
+
+/// Interprets in a thread of its own, which waits when it is far ahead; plans in the caller's, and
+/// appends the path to a follower. Memory does not grow with the program.
+class ProgramAhead : private StepSink {
+ public:
+  /// `follower` must outlive it.
+  ProgramAhead(std::unique_ptr<Program> program, const TimelineOptions& options,
+               PathFollower& follower);
+  ~ProgramAhead();
+  ProgramAhead(const ProgramAhead&) = delete;
+  ProgramAhead& operator=(const ProgramAhead&) = delete;
+
+  /// Where the workpiece lies in the machine, by the program's first work offset. Waits for the
+  /// interpreter's first motions. Nothing if the program has none that moves.
+  std::optional<WorkpieceFrame> wait_for_frame();
+  /// Reads until `until_s` of program time is planned. `wait`: as long as it takes; else what is
+  /// there now.
+  void read_until(double until_s, bool wait);
+  /// The program has been read and planned to its end.
+  bool complete() const { return complete_; }
+
+  /// Planned, and not yet forgotten, in order.
+  const std::deque<PlannedMotion>& motions() const { return motions_; }
+  /// Number of motions that were forgotten: motions()[i] is number forgotten() + i of the program.
+  std::uint64_t forgotten() const { return forgotten_; }
+  void forget_before(double program_s);
+
+  /// Ends the interpreter, if it still runs. Then what it said is in summary() and diagnostics().
+  void stop();
+  const ProgramSummary& summary() const { return summary_; }
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+  /// Files that the motions name so far.
+  std::vector<std::string> files() const;
+
+ private:
+  void step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path) override;
+  bool plan_one_batch(bool wait);
+
+  std::unique_ptr<Program> program_;
+  PathFollower& follower_;
+  Timeline timeline_;
+  BatchQueue queue_;
+  std::vector<Motion> batch_;
+  std::deque<PlannedMotion> motions_;
+  std::uint64_t forgotten_ = 0;
+  double planned_s_ = 0;
+  bool complete_ = false;
+  mutable std::mutex mutex_;  // of the two that follow
+  std::optional<WorkpieceFrame> frame_;
+  std::vector<std::string> files_;
+  std::stop_source stop_;
+  ProgramSummary summary_;
+  Diagnostics diagnostics_;
+  std::thread thread_;
+};
+
+}  // namespace kerf
