@@ -72,8 +72,7 @@ const char* to_string(FindingId id) {
 std::string message_of(const Finding& finding) {
   std::string out = finding.text;
   if (finding.depth_mm) {
-    out += fmt::format(", {:.2f} mm {}", *finding.depth_mm,
-                       depth_word(finding.id));
+    out += fmt::format(", {:.2f} mm {}", *finding.depth_mm, depth_word(finding.id));
   }
   if (finding.position_mm) {
     const Vec3& p = *finding.position_mm;

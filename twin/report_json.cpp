@@ -1,25 +1,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/finding_json.h"
 #include "twin/report.h"
 
 namespace kerf {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Six decimals: a thousandth of a um. Keeps the text short and free of the last bits of a sum.
-double rounded(double value) {
-  const double r = std::round(value * 1e6) / 1e6;
-  return r == 0 ? 0.0 : r;
-}
-
-Json vector_json(const Vec3& v) { return Json::array({rounded(v.x), rounded(v.y), rounded(v.z)}); }
-
-template <class T>
-Json number_or_null(const std::optional<T>& value) {
-  return value ? Json(rounded(*value)) : Json(nullptr);
-}
 
 Json program_json(const Report& report) {
   Json out;
@@ -86,18 +74,7 @@ Json tools_json(const Report& report) {
 Json findings_json(const Report& report) {
   Json out = Json::array();
   for (const Finding& finding : report.findings.kept()) {
-    const Diagnostic text = diagnostic_of(finding, report.program.files);
-    Json item;
-    item["id"] = to_string(finding.id);
-    item["severity"] = to_string(finding.severity);
-    item["file"] = text.file;
-    item["line"] = finding.source.line;
-    item["time_s"] = number_or_null(finding.time_s);
-    item["position_mm"] = finding.position_mm ? vector_json(*finding.position_mm) : Json(nullptr);
-    item["tool"] = finding.tool ? Json(*finding.tool) : Json(nullptr);
-    item["depth_mm"] = number_or_null(finding.depth_mm);
-    item["message"] = message_of(finding);
-    out.push_back(std::move(item));
+    out.push_back(finding_json(finding, report.program.files));
   }
   return out;
 }

@@ -75,9 +75,64 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
   }
 }
 
+void add_live(std::string& out, const LiveReport& live) {
+  const LiveFacts& f = live.facts;
+  out += fmt::format("source    {}: {} samples in {}, {:.0f} a second\n", live.source, f.samples,
+                     duration_text(live.duration_s), live.rate_hz);
+  std::string faults;
+  const auto add = [&](std::uint64_t n, const char* what) {
+    if (n == 0) return;
+    if (!faults.empty()) faults += ", ";
+    faults += fmt::format("{} {}", n, what);
+  };
+  add(live.status.errors, "errors");
+  add(live.status.reconnects, "reconnections");
+  add(live.status.lost, "lost");
+  add(live.status.duplicates, "duplicates");
+  add(live.status.disordered, "out of order");
+  add(live.dropped, "dropped");
+  add(f.incomplete, "incomplete");
+  add(f.gaps, "gaps");
+  if (!faults.empty()) out += fmt::format("          {}\n", faults);
+  if (!live.status.trouble.empty()) {
+    out += fmt::format("          last trouble: {}\n", live.status.trouble);
+  }
+  out += fmt::format("cut       {} along the program, {} from sample to sample\n",
+                     distance_text(f.path_mm), distance_text(f.chord_mm));
+  if (f.on_path > 0) {
+    out += fmt::format(
+        "followed  {} samples on the path, {:.3f} mm from it on average, {:.3f} at "
+        "most; {} beside it, {:.2f} mm at most\n",
+        f.on_path, f.following_sum_mm / static_cast<double>(f.on_path), f.following_max_mm,
+        f.off_path, f.off_path_max_mm);
+  }
+  if (live.age_max_ms > 0) {
+    out += fmt::format("age       {:.1f} ms in the middle, {:.1f} at 99 %, {:.1f} at most\n",
+                       live.age_median_ms, live.age_p99_ms, live.age_max_ms);
+  }
+}
+
+std::string summary_text(const Report& report, const LiveReport& live) {
+  std::string out;
+  if (!report.program_path.empty()) {
+    out += fmt::format("program   {}\n", report.program_path);
+  }
+  add_live(out, live);
+  if (report.stock) add_stock(out, *report.stock);
+  add_tools(out, report.tools);
+  out += fmt::format("findings  {}\n", count_text(report.findings));
+  out += fmt::format("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,
+                     report.timing.cut_cpu_s, report.peak_rss_mb);
+  if (!report.partial_reason.empty()) {
+    out += fmt::format("PARTIAL   {}\n", report.partial_reason);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string summary_text(const Report& report) {
+  if (report.live) return summary_text(report, *report.live);
   std::string out;
   const MotionTotals& m = report.motion;
   out += fmt::format("program   {}: {} lines, {} moves ({} arcs)\n", report.program_path,

@@ -77,9 +77,7 @@ class Session {
   /// True while an interpreter process may be alive; any thread.
   bool interpreting() const { return interpreting_; }
 
-  /// After run(). The caller may add to it what it measures itself (mesh time); complete_timing()
-  /// then brings the total time and the peak memory up to date.
-  void complete_timing();
+  /// After run(). The caller may add to it what it measures itself.
   Report& report() { return report_; }
   const Report& report() const { return report_; }
   const ZMap* stock() const {
@@ -105,6 +103,7 @@ class Session {
   void add_program_finding(FindingId id, Severity severity, std::string text);
   void drop_remarks_beyond_window();
   void complete_report(const CutStage& stage);
+  void complete_timing();
 
   SessionOptions options_;
   std::unique_ptr<Program> program_;

@@ -3,7 +3,7 @@
 
 #include "twin/app/progress_bar.h"
 #include "twin/app/run_options.h"
-#include "twin/app/suggest.h"
+#include "twin/suggest.h"
 
 namespace kerf {
 namespace {

@@ -12,7 +12,7 @@
 #include "twin/app/canon_command.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/run_command.h"
-#include "twin/app/suggest.h"
+#include "twin/suggest.h"
 
 namespace kerf {
 namespace {

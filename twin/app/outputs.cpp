@@ -14,6 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/mesh_file.h"
+#include "twin/session_parts.h"
 #include "viewer/picture.h"
 
 namespace kerf {
@@ -49,11 +50,11 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-Done write_picture(const std::string& path, const TriangleMesh& mesh, const Session& session) {
+Done write_picture(const std::string& path, const TriangleMesh& mesh, const ZMap& stock,
+                   const std::string& name) {
   PictureOptions options;
-  options.blank_mm = session.stock()->bounds_mm();
-  options.caption = fmt::format("{}  {} {:.3g} mm", file_name(session.report().program_path),
-                                session.stock()->name(), session.stock()->cell_mm());
+  options.blank_mm = stock.bounds_mm();
+  options.caption = fmt::format("{}  {} {:.3g} mm", file_name(name), stock.name(), stock.cell_mm());
   const Result<Picture> picture = draw_part(mesh, options);
   if (!picture) return Error{fmt::format("drawing {}: {}", path, picture.error())};
   return write_png(path, *picture);
@@ -91,16 +92,21 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
   }
 }
 
-void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, Session& session,
-                   Diagnostics& diagnostics) {
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const ZMap* stock,
+                   Report& report, Diagnostics& diagnostics) {
   const Clock::time_point start = Clock::now();
-  const ZMap* stock = session.stock();
-  TimingReport& timing = session.report().timing;
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const std::string& name =
+      report.program_path.empty() && report.live ? report.live->source : report.program_path;
   const bool wants_mesh = !paths.png.empty() || !paths.stl.empty() || !paths.ply.empty();
   if (stock && wants_mesh) {
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
-    timing.mesh_s = std::chrono::duration<double>(Clock::now() - start).count();
-    if (!paths.png.empty()) note_failure(write_picture(paths.png, mesh, session), diagnostics);
+    report.timing.mesh_s = elapsed_s();
+    if (!paths.png.empty()) {
+      note_failure(write_picture(paths.png, mesh, *stock, name), diagnostics);
+    }
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
   }
@@ -109,9 +115,9 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, Session& 
     fault(diagnostics,
           "stopped before there was a workpiece; no picture, mesh or state is written");
   }
-  session.complete_timing();
-  if (!paths.json.empty())
-    note_failure(write_text(paths.json, json_text(session.report())), diagnostics);
+  report.timing.total_s += elapsed_s();
+  report.peak_rss_mb = peak_rss_mb();
+  if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
 }
 
 }  // namespace kerf

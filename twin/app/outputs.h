@@ -4,7 +4,8 @@
 #include <string>
 
 #include "base/diagnostic.h"
-#include "twin/session.h"
+#include "stock/zmap/zmap.h"
+#include "twin/report.h"
 
 namespace kerf {
 
@@ -33,8 +34,10 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 
 /// Writes what is wanted, each under a temporary name that is renamed when it is whole. One that
 /// fails is a diagnostic and does not keep the others from being written. Fills in the report's
-/// mesh and total time before the JSON is written, which comes last.
-void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, Session& session,
-                   Diagnostics& diagnostics);
+/// mesh time, adds it to the total, and brings the peak memory up to date before the JSON is
+/// written, which comes last.
+/// `stock`: null if there was none.
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const ZMap* stock,
+                   Report& report, Diagnostics& diagnostics);
 
 }  // namespace kerf

@@ -80,7 +80,8 @@ int run_command(const RunArguments& arguments) {
     outcome = session->run(stop.get_token(), diagnostics);
   }
   if (!has_error(diagnostics)) {
-    write_outputs(request.outputs, request.mesh_tolerance_mm, *session, diagnostics);
+    write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
+                  diagnostics);
     print_findings(session->report(), request.quiet);
     if (!request.quiet) {
       fmt::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",

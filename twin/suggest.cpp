@@ -1,4 +1,4 @@
-#include "twin/app/suggest.h"
+#include "twin/suggest.h"
 
 #include <algorithm>
 

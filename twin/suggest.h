@@ -1,4 +1,4 @@
-// twin/app/suggest.h - "did you mean": the nearest of the allowed words.
+// twin/suggest.h - "did you mean": the nearest of the allowed words.
 #pragma once
 
 #include <string>

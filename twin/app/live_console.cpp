@@ -1,0 +1,133 @@
+#include "twin/app/live_console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+
+#include "twin/live/live_json.h"
+
+namespace kerf {
+namespace {
+
+/// Findings printed one by one; the rest are only counted (and all are in --json).
+constexpr std::size_t kFindingsShown = 50;
+
+std::string time_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string age_text(double seconds) {
+  return seconds < 1 ? fmt::format("{:.0f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
+}
+
+}  // namespace
+
+std::string status_line(const LiveStatus& status) {
+  const LivePlace& place = status.place;
+  std::string out = to_string(status.state);
+  if (status.state == LiveState::kStale || status.state == LiveState::kLost) {
+    out += fmt::format(" {} old", age_text(status.age_s));
+  }
+  if (place.known) {
+    out += fmt::format("  X{:.2f} Y{:.2f} Z{:.2f}", place.tip_mm.x, place.tip_mm.y, place.tip_mm.z);
+  } else if (!place.missing_axes.empty()) {
+    out += fmt::format("  no position of {}", place.missing_axes);
+  }
+  if (place.tool >= 0) out += fmt::format("  T{}", place.tool);
+  if (place.followed) {
+    out += fmt::format("  {}:{}", std::filesystem::path(status.file).filename().string(),
+                       place.source.line);
+  } else if (status.off_path_mm > 0) {
+    out += fmt::format("  {:.2f} mm off the path", status.off_path_mm);
+  }
+  if (place.followed && status.remaining_s >= 0) {
+    out += fmt::format("  {} left", time_text(status.remaining_s));
+  }
+  if (status.collision_in_s >= 0) {
+    out += fmt::format("  COLLISION in {:.1f} s, line {}", status.collision_in_s,
+                       status.collision_line);
+  }
+  return out;
+}
+
+LiveConsole::LiveConsole(bool quiet, std::FILE* events)
+    : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) != 0), events_(events) {}
+
+LiveConsole::~LiveConsole() { wipe(); }
+
+void LiveConsole::wipe() {
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+void LiveConsole::say(const std::string& text) {
+  wipe();
+  fmt::print(stderr, "{}", text);
+  std::fflush(stderr);
+}
+
+void LiveConsole::send(const std::string& line) {
+  if (!events_ || events_error_ != 0) return;
+  if (std::fwrite(line.data(), 1, line.size(), events_) == line.size() &&
+      std::fflush(events_) == 0) {
+    return;
+  }
+  events_error_ = errno != 0 ? errno : EIO;
+}
+
+void LiveConsole::on_status(const LiveStatus& status) {
+  send(status_json(status));
+  const bool changed = !state_told_ || status.state != state_;
+  // What goes wrong is worth a line when it begins, not each time that it is tried again.
+  const bool trouble = status.source.trouble != trouble_ && status.source.errors > errors_;
+  if (!quiet_ && trouble && !status.source.trouble.empty()) {
+    say(fmt::format("kerf: {}\n", status.source.trouble));
+    trouble_ = status.source.trouble;
+  }
+  errors_ = status.source.errors;
+  if (changed && !quiet_ && status.state != LiveState::kEnded) {
+    const bool waiting = status.state == LiveState::kWaiting;
+    const std::string why =
+        waiting && !status.source.trouble.empty() ? ": " + status.source.trouble : std::string();
+    say(fmt::format("kerf: {}{}\n", status_line(status), why));
+    if (waiting) trouble_ = status.source.trouble;
+  }
+  state_told_ = true;
+  state_ = status.state;
+  if (!terminal_) return;
+  if (status.state == LiveState::kEnded) {
+    wipe();
+    return;
+  }
+  fmt::print(stderr, "\r\033[K{:.100}", status_line(status));
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void LiveConsole::on_finding(const Finding& finding, const std::vector<std::string>& files) {
+  send(finding_event_json(finding, files));
+  if (quiet_ && finding.severity != Severity::kError) return;
+  if (printed_ == kFindingsShown) {
+    ++unprinted_;
+    return;
+  }
+  ++printed_;
+  say(to_string(diagnostic_of(finding, files)));
+}
+
+void LiveConsole::on_warning(const AheadWarning& warning, const std::vector<std::string>& files) {
+  send(ahead_json(warning, files));
+  Diagnostic ahead = diagnostic_of(warning.finding, files);
+  ahead.message = fmt::format("in {:.1f} s: {}", warning.in_s, ahead.message);
+  // Each is one of a kind, and what kerf is there for.
+  say(to_string(ahead));
+}
+
+}  // namespace kerf

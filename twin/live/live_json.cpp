@@ -1,0 +1,64 @@
+#include "twin/live/live_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/finding_json.h"
+
+namespace kerf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json known(double value, bool is_known) {
+  return is_known && std::isfinite(value) ? Json(rounded(value)) : Json(nullptr);
+}
+
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string status_json(const LiveStatus& status) {
+  const LivePlace& place = status.place;
+  const bool followed = place.followed;
+  Json out;
+  out["event"] = "status";
+  out["state"] = to_string(status.state);
+  out["age_ms"] = rounded(status.age_s * 1e3);
+  out["t_s"] = rounded(status.t_s);
+  out["samples"] = status.samples;
+  out["errors"] = status.source.errors;
+  out["lost"] = status.source.lost;
+  out["dropped"] = status.dropped;
+  out["tip_mm"] = place.known ? vector_json(place.tip_mm) : Json(nullptr);
+  out["tool"] = place.tool >= 0 ? Json(place.tool) : Json(nullptr);
+  out["on_path"] = followed;
+  out["distance_mm"] = known(place.distance_mm, place.known);
+  out["file"] = followed ? Json(status.file) : Json(nullptr);
+  out["line"] = followed ? Json(place.source.line) : Json(nullptr);
+  out["program_s"] = known(place.program_s, followed);
+  out["remaining_s"] = known(status.remaining_s, followed && status.remaining_s >= 0);
+  out["removed_mm3"] = rounded(status.removed_mm3);
+  out["collision_in_s"] = known(status.collision_in_s, status.collision_in_s >= 0);
+  out["collision_line"] = status.collision_in_s >= 0 ? Json(status.collision_line) : Json(nullptr);
+  return line_of(out);
+}
+
+std::string finding_event_json(const Finding& finding, const std::vector<std::string>& files) {
+  Json out;
+  out["event"] = "finding";
+  out.update(finding_json(finding, files));
+  return line_of(out);
+}
+
+std::string ahead_json(const AheadWarning& warning, const std::vector<std::string>& files) {
+  Json out;
+  out["event"] = "ahead";
+  out["in_s"] = rounded(warning.in_s);
+  out.update(finding_json(warning.finding, files));
+  return line_of(out);
+}
+
+}  // namespace kerf
