@@ -8,14 +8,17 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <unordered_set>
 #include <utility>
 
+#include "interp_bridge/ini_include.h"
 #include "interp_bridge/source_text.h"
 
 namespace kerf {
 namespace {
 
-constexpr std::size_t kMaxIniBytes = 4 * 1024 * 1024;
+// The INI and what it includes. An entry takes a hundred times the bytes of its line.
+constexpr std::size_t kMaxIniBytes = 1024 * 1024;
 constexpr std::size_t kMaxLineBytes = 255;  // LINELEN of LinuxCNC's inifile
 constexpr int kMaxContinuedLines = 20;      // its MAX_EXTEND_LINES
 constexpr std::size_t kMaxDiagnostics =
@@ -37,30 +40,22 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-bool is_name_character(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+/// Blank, or a comment.
+bool passes_over(std::string_view line) {
+  const std::string_view words = trimmed(line);
+  return words.empty() || words[0] == '#' || words[0] == ';';
 }
 
-/// What the shell makes of the name behind #INCLUDE: quotes go, $NAME and ${NAME} become values.
-std::string shell_expanded(std::string_view text) {
-  std::string name;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '"' || c == '\'') continue;
-    if (c == '#' && at > 0 && kBlanks.find(text[at - 1]) != kBlanks.npos) break;
-    if (c != '$') {
-      name += c;
-      continue;
-    }
-    const bool braces = at + 1 < text.size() && text[at + 1] == '{';
-    std::size_t end = at + (braces ? 2 : 1);
-    const std::size_t start = end;
-    while (end < text.size() && is_name_character(text[end])) ++end;
-    const std::string variable(text.substr(start, end - start));
-    if (const char* const value = std::getenv(variable.c_str())) name += value;
-    at = braces && end < text.size() && text[end] == '}' ? end : end - 1;
-  }
-  return std::string(trimmed(name));
+bool is_include_line(std::string_view line) {
+  return line.starts_with(kIncludeWord) &&
+         (line.size() == kIncludeWord.size() ||
+          kBlanks.find(line[kIncludeWord.size()]) != kBlanks.npos);
+}
+
+/// What a diagnostic shows of a line.
+std::string excerpt_of(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return std::string(line.substr(0, kMaxLineBytes));
 }
 
 }  // namespace
@@ -71,28 +66,46 @@ class IniParser {
   IniParser(IniFile& ini, const IniIncludes& includes, Diagnostics& diagnostics)
       : ini_(ini), includes_(includes), diagnostics_(diagnostics) {}
 
-  void add_file(std::string_view text, const std::string& path, bool included);
+  void add_ini(std::string_view text, const std::string& path);
   void finish();
 
  private:
+  /// A line of the text that LinuxCNC reads.
+  struct Physical {
+    std::string_view text;
+    std::string_view excerpt;                   ///< the line as it stands in the file
+    const std::vector<int>* columns = nullptr;  ///< of every byte; null: they count up from 1
+    bool has_columns = true;
+    bool has_newline = true;
+  };
+
   /// A line, or several that backslashes join.
   struct Logical {
     std::string text;
+    std::vector<int> columns;  ///< of the bytes of `text` that stand in line `line`
+    std::uint32_t file = 0;
     int line = 0;
-    std::size_t first_part = 0;  ///< bytes of `text` that stand in line `line`
     std::string excerpt;
     int parts = 0;
   };
 
-  void add_physical(std::string_view line, Logical& logical, bool included);
+  void add_lines(std::string_view text);
+  void add_shell_lines(std::string_view text);
+  void add_included(std::string_view text, const std::string& path, const std::string& name);
+  void begin_file(std::string_view text, const std::string& path);
+  void add_remark(const std::string& text);
+  void add_physical(const Physical& line);
+  void add_part(Physical part);
+  void append_part(const Physical& part);
+  bool starts_section(std::string_view line) const;
   void add_logical(const Logical& logical);
   void add_section(std::string_view text, const Logical& logical, std::size_t at);
   void add_entry(std::string_view text, const Logical& logical, std::size_t at);
-  void include(std::string_view name, std::string_view line);
+  void include(const ShellLine& line);
   void report(Severity severity, std::size_t column, std::string_view line, std::string message,
               std::string hint = {});
   static int column_of(const Logical& logical, std::size_t at) {
-    return at < logical.first_part ? static_cast<int>(at) + 1 : 0;
+    return at < logical.columns.size() ? logical.columns[at] : 0;
   }
 
   IniFile& ini_;
@@ -100,19 +113,24 @@ class IniParser {
   Diagnostics& diagnostics_;
   std::uint32_t file_ = 0;
   int line_ = 0;
-  bool takes_includes_ = false;
+  int shell_line_ = 0;
+  std::size_t included_bytes_ = 0;
   bool warned_of_line_ends_ = false;
   bool in_section_ = false;
   bool shadowed_ = false;
   std::string section_;
+  std::unordered_set<std::string> sections_;
+  Logical logical_;
   std::size_t unreported_ = 0;
   std::size_t reported_ = 0;
+  Severity worst_unreported_ = Severity::kNote;
 };
 
 void IniParser::report(Severity severity, std::size_t column, std::string_view line,
                        std::string message, std::string hint) {
   if (++reported_ > kMaxDiagnostics) {
     ++unreported_;
+    worst_unreported_ = std::max(worst_unreported_, severity);
     return;
   }
   Diagnostic diagnostic;
@@ -121,182 +139,312 @@ void IniParser::report(Severity severity, std::size_t column, std::string_view l
   diagnostic.line = line_;
   diagnostic.column = static_cast<int>(column);
   diagnostic.message = std::move(message);
-  diagnostic.excerpt = std::string(line.substr(0, kMaxLineBytes));
+  diagnostic.excerpt = excerpt_of(line);
   diagnostic.hint = std::move(hint);
   diagnostics_.push_back(std::move(diagnostic));
 }
 
 void IniParser::finish() {
+  if (logical_.parts > 0 && !passes_over(logical_.text)) {
+    line_ = logical_.line;
+    report(Severity::kWarning, 0, logical_.excerpt,
+           "a backslash joins the last line to nothing; LinuxCNC passes over it");
+  }
   if (unreported_ == 0) return;
+  const bool is_ini = !ini_.sections_.empty();
   Diagnostic diagnostic;
-  diagnostic.severity = Severity::kError;
+  diagnostic.severity = is_ini ? worst_unreported_ : Severity::kError;
   diagnostic.file = ini_.files_[0];
-  diagnostic.message =
-      fmt::format("{} more remarks about its lines; this is not an INI", unreported_);
+  diagnostic.message = fmt::format("{} more remarks about its lines{}", unreported_,
+                                   is_ini ? "" : "; this is not an INI");
   diagnostics_.push_back(std::move(diagnostic));
 }
 
-void IniParser::add_file(std::string_view text, const std::string& path, bool included) {
-  const std::uint32_t outer_file = file_;
-  const int outer_line = line_;
+void IniParser::begin_file(std::string_view text, const std::string& path) {
   file_ = static_cast<std::uint32_t>(ini_.files_.size());
   line_ = 0;
   ini_.files_.push_back(path);
-  if (text.starts_with(kByteOrderMark)) {
-    text.remove_prefix(kByteOrderMark.size());
-    line_ = 1;
-    report(Severity::kWarning, 1, {},
-           "the file begins with a byte order mark; LinuxCNC does not understand its first line");
-    line_ = 0;
-  }
-  if (!included) {
-    takes_includes_ = text.starts_with(kIncludeWord) ||
-                      text.find(std::string("\n").append(kIncludeWord)) != text.npos;
-  }
-  Logical logical;
+  if (!text.starts_with(kByteOrderMark)) return;
+  line_ = 1;
+  report(Severity::kWarning, 1, {},
+         "the file begins with a byte order mark; LinuxCNC does not understand its first line",
+         "store it without one");
+  line_ = 0;
+}
+
+void IniParser::add_ini(std::string_view text, const std::string& path) {
+  begin_file(text, path);
+  const bool takes_includes = text.starts_with(kIncludeWord) ||
+                              text.find(std::string("\n").append(kIncludeWord)) != text.npos;
+  if (takes_includes) return add_shell_lines(text);
+  add_lines(text);
+  ini_.expanded_text_.clear();  // the INI itself will do
+}
+
+void IniParser::add_lines(std::string_view text) {
   while (!text.empty()) {
     ++line_;
-    const bool last = text.find('\n') == text.npos;
+    const bool has_newline = text.find('\n') != text.npos;
     const std::string_view line = take_line(text);
-    if (included && last && !trimmed(line).empty()) {
-      report(Severity::kWarning, 0, line,
-             "an included file without a newline at its end; LinuxCNC adds a remark of its own to "
-             "this line");
+    const std::size_t word = std::min(line.find_first_not_of(" \t"), line.size());
+    if (is_include_line(line.substr(word))) {
+      report(Severity::kWarning, word + 1, line,
+             file_ == 0
+                 ? "no #INCLUDE stands at the start of a line; LinuxCNC takes this one for a "
+                   "comment"
+                 : "#INCLUDE within an included file; LinuxCNC goes one level deep and takes "
+                   "it for a comment");
     }
-    add_physical(line, logical, included);
+    add_physical({.text = line, .excerpt = line, .has_newline = has_newline});
   }
-  if (logical.parts > 0) add_logical(logical);
+}
+
+void IniParser::add_shell_lines(std::string_view text) {
+  bool dos_line_ends = false;
+  while (!text.empty()) {
+    ShellLine line = take_shell_line(text);
+    const int last_line = line_ + line.lines;
+    ++line_;
+    ++shell_line_;
+    if (!line.complete) {
+      report(Severity::kWarning, 0, line.raw,
+             "the last line has no newline; LinuxCNC passes over it in an INI with #INCLUDE");
+    } else if (line.word() == kIncludeWord) {
+      include(line);
+    } else {
+      // A blank comes behind it, and LinuxCNC takes such a carriage return for a damaged line.
+      if (line.word().ends_with('\r') && line.rest().empty()) {
+        line.text[line.word_bytes - 1] = ' ';
+        if (!std::exchange(dos_line_ends, true)) {
+          report(Severity::kError, 0, {},
+                 "the file has DOS line ends; LinuxCNC stops here in an INI with #INCLUDE",
+                 "store it with Unix line ends");
+        }
+      }
+      add_physical({.text = line.text, .excerpt = line.raw, .columns = &line.columns});
+    }
+    line_ = last_line;
+  }
+}
+
+/// A line that LinuxCNC puts in.
+void IniParser::add_remark(const std::string& text) {
+  add_physical({.text = text, .excerpt = {}, .has_columns = false});
+}
+
+void IniParser::include(const ShellLine& line) {
+  std::string named;
+  const auto complain = [&](Severity severity, std::size_t byte, const std::string& message) {
+    report(severity, static_cast<std::size_t>(line.columns[byte]), line.raw, "#INCLUDE" + message);
+    // A backslash at the end of the name joins the next line to this one.
+    add_remark(fmt::format("# handle_includes(): <{}> CANNOT READ {}", shell_line_, named));
+  };
+  if (line.rest().empty()) return complain(Severity::kWarning, 0, " names no file");
+  const std::size_t at = line.word_bytes + 1;
+  const Result<std::string> name = shell_file_name(line.rest());
+  if (!name) return complain(Severity::kError, at, ": " + name.error());
+  named = *name;
+  if (named.empty()) return complain(Severity::kWarning, at, " names no file");
+  const std::string folder = std::filesystem::path(ini_.files_[0]).parent_path().string();
+  const std::string path = resolve_ini_path(named, folder);
+  const Result<std::string> text = includes_(path);
+  if (!text) {
+    return complain(Severity::kWarning, at,
+                    fmt::format(": {}; LinuxCNC goes on without it", text.error()));
+  }
+  if (text->size() > kMaxIniBytes - included_bytes_) {
+    return complain(Severity::kError, at,
+                    fmt::format(": with {}, the included files are larger than {} MB", path,
+                                kMaxIniBytes / (1024 * 1024)));
+  }
+  included_bytes_ += text->size();
+  add_included(*text, path, named);
+}
+
+void IniParser::add_included(std::string_view text, const std::string& path,
+                             const std::string& name) {
+  const std::uint32_t outer_file = file_;
+  const int outer_line = line_;
+  const std::string end = "#*** End   #INCLUDE file: " + name;
+  add_remark("");
+  add_remark("#*** Begin #INCLUDE file: " + name);
+  begin_file(text, path);
+  const std::size_t last = text.rfind('\n') + 1;  // 0 without a newline
+  add_lines(text.substr(0, last));
+  const std::string_view unended = text.substr(last);
+  if (!unended.empty()) {
+    ++line_;
+    report(Severity::kWarning, 0, unended,
+           "an included file without a newline at its end; LinuxCNC adds a remark of its own to "
+           "this line");
+    add_physical({.text = std::string(unended) + end, .excerpt = unended});
+  } else {
+    add_remark(end);
+  }
   file_ = outer_file;
   line_ = outer_line;
 }
 
-void IniParser::add_physical(std::string_view line, Logical& logical, bool included) {
-  if (line.find('\0') != line.npos) {
-    report(Severity::kError, line.find('\0') + 1, line, "a byte of value 0; this is not text");
+void IniParser::add_physical(const Physical& line) {
+  if (const std::size_t at = line.text.find('\0'); at != line.text.npos) {
+    const int column = line.columns != nullptr ? (*line.columns)[at] : static_cast<int>(at) + 1;
+    report(Severity::kError, static_cast<std::size_t>(column), line.excerpt,
+           "a byte of value 0; this is not text");
     return;
   }
-  const std::string_view words = trimmed(line);
-  const bool is_include =
-      words.starts_with(kIncludeWord) && (words.size() == kIncludeWord.size() ||
-                                          kBlanks.find(words[kIncludeWord.size()]) != kBlanks.npos);
-  if (is_include && included) {
-    report(Severity::kWarning, 1, line,
-           "#INCLUDE within an included file; LinuxCNC goes one level deep and takes it for a "
-           "comment");
-  } else if (is_include && takes_includes_ && logical.parts == 0) {
-    include(trimmed(words.substr(kIncludeWord.size())), line);
-    return;
+  ini_.expanded_text_.append(line.text);
+  if (line.has_newline) ini_.expanded_text_.push_back('\n');
+  if (line.text.size() > kMaxLineBytes) {
+    report(Severity::kWarning, kMaxLineBytes, line.excerpt,
+           fmt::format("a line of {} bytes; LinuxCNC takes what follows the first {} for another",
+                       line.text.size(), kMaxLineBytes));
   }
-  ini_.expanded_text_.append(line).push_back('\n');
-  if (line.size() > kMaxLineBytes) {
-    report(
-        Severity::kWarning, kMaxLineBytes, line,
-        fmt::format("a line of {} bytes; LinuxCNC reads the first {}", line.size(), kMaxLineBytes));
-    line = line.substr(0, kMaxLineBytes);
+  Physical part = line;
+  for (std::string_view left = line.text; left.size() >= kMaxLineBytes;) {
+    part.text = left.substr(0, kMaxLineBytes);
+    part.has_newline = false;
+    add_part(part);
+    left.remove_prefix(kMaxLineBytes);
+    part = {.text = left,
+            .excerpt = line.excerpt,
+            .has_columns = false,
+            .has_newline = line.has_newline};
   }
-  if (!line.empty() && line.back() == '\r') {
-    line.remove_suffix(1);
-    if (!std::exchange(warned_of_line_ends_, true)) {
-      report(Severity::kWarning, 0, {}, "the file has DOS line ends",
-             "store it with Unix line ends");
-    }
-  }
-  if (const std::size_t at = line.find('\r'); at != line.npos) {
-    report(Severity::kError, at + 1, line, "a carriage return within a line; LinuxCNC stops here");
-    return;
-  }
-  const bool continues = line.size() > 0 && line.back() == '\\';
-  if (continues) line.remove_suffix(1);
-  if (logical.parts == 0) {
-    logical = Logical{std::string(line), line_, line.size(), std::string(line), 1};
-  } else {
-    logical.text += line;
-    ++logical.parts;
-  }
-  if (continues && logical.parts <= kMaxContinuedLines) return;
-  if (continues) {
-    report(Severity::kError, 0, line,
-           fmt::format("more than {} lines joined by backslashes", kMaxContinuedLines));
-  } else {
-    add_logical(logical);
-  }
-  logical = {};
+  if (part.has_newline || !part.text.empty()) add_part(part);
 }
 
-void IniParser::include(std::string_view name, std::string_view line) {
-  if (name.empty()) {
-    report(Severity::kWarning, 1, line, "#INCLUDE names no file");
+void IniParser::add_part(Physical part) {
+  const std::size_t carriage_return = part.text.find('\r');
+  if (carriage_return != part.text.npos && carriage_return + 1 < part.text.size()) {
+    report(Severity::kError, 0, part.excerpt,
+           "a carriage return within a line; LinuxCNC stops here");
     return;
   }
-  const std::string folder = std::filesystem::path(ini_.files_[0]).parent_path().string();
-  const std::string path = resolve_ini_path(shell_expanded(name), folder);
-  const Result<std::string> text = includes_(path);
-  if (!text) {
-    const std::size_t column = static_cast<std::size_t>(name.data() - line.data()) + 1;
-    report(Severity::kWarning, column, line,
-           fmt::format("#INCLUDE: {}; LinuxCNC goes on without it", text.error()));
-    return;
+  if (carriage_return != part.text.npos && !std::exchange(warned_of_line_ends_, true)) {
+    report(Severity::kWarning, 0, {}, "the file has DOS line ends", "store it with Unix line ends");
   }
-  add_file(*text, path, true);
+  const bool joined = logical_.parts > 0;
+  const std::size_t bytes = part.text.size();
+  if (!part.has_newline && bytes > 0 && (joined || (bytes > 1 && part.text[bytes - 2] == '\\'))) {
+    report(Severity::kWarning, 0, part.excerpt,
+           "no newline behind a line that a backslash joins to another; LinuxCNC loses its last "
+           "byte");
+    part.text.remove_suffix(1);
+    part.has_newline = true;
+  }
+  // LinuxCNC looks for a section line by line, and joins those behind it only.
+  const bool is_section = starts_section(part.text);
+  const bool continues = part.has_newline && part.text.ends_with('\\') && !is_section;
+  if (continues) part.text.remove_suffix(1);
+  append_part(part);
+  if (continues && logical_.parts <= kMaxContinuedLines) return;
+  if (continues) {
+    report(Severity::kError, 0, part.excerpt,
+           fmt::format("more than {} lines joined by backslashes; LinuxCNC stops here",
+                       kMaxContinuedLines));
+  } else {
+    add_logical(logical_);
+  }
+  const bool was_header = trimmed(logical_.text).starts_with('[');
+  logical_ = {};
+  if (!joined || !is_section || was_header) return;
+  report(Severity::kWarning, 0, part.excerpt,
+         "a backslash joins this section to the line before; LinuxCNC finds it all the same");
+  append_part(part);
+  add_logical(logical_);
+  logical_ = {};
+}
+
+/// A section that a backslash joins to the line before is found if it is the first of its name.
+bool IniParser::starts_section(std::string_view line) const {
+  const std::string_view words = trimmed(line);
+  if (!words.starts_with('[')) return false;
+  const std::size_t end = words.find(']');
+  return trimmed(logical_.text).empty() ||
+         (end != words.npos && sections_.count(std::string(words.substr(1, end - 1))) == 0);
+}
+
+void IniParser::append_part(const Physical& part) {
+  if (trimmed(logical_.text).empty()) {
+    // Nothing so far but blanks: what counts stands here.
+    logical_.file = file_;
+    logical_.line = line_;
+    logical_.excerpt = excerpt_of(part.excerpt);
+    logical_.columns.assign(logical_.text.size(), 0);
+    for (std::size_t at = 0; part.has_columns && at < part.text.size(); ++at) {
+      const int counted = static_cast<int>(at) + 1;
+      logical_.columns.push_back(part.columns != nullptr ? (*part.columns)[at] : counted);
+    }
+  }
+  logical_.text += part.text;
+  ++logical_.parts;
 }
 
 void IniParser::add_logical(const Logical& logical) {
   const std::string_view text = logical.text;
   const std::size_t at = text.find_first_not_of(kBlanks);
-  if (at == text.npos || text[at] == '#' || text[at] == ';') return;
+  if (passes_over(text)) return;
+  const std::uint32_t last_file = std::exchange(file_, logical.file);
   const int last_line = std::exchange(line_, logical.line);
   if (text[at] == '[') {
     add_section(text, logical, at);
   } else {
     add_entry(text, logical, at);
   }
+  file_ = last_file;
   line_ = last_line;
 }
 
 void IniParser::add_section(std::string_view text, const Logical& logical, std::size_t at) {
+  const auto column = static_cast<std::size_t>(column_of(logical, at));
   in_section_ = true;
-  shadowed_ = false;
+  shadowed_ = true;
   section_.clear();
   const std::size_t end = text.find(']', at);
   if (end == text.npos) {
-    shadowed_ = true;
-    report(Severity::kWarning, at + 1, logical.excerpt,
+    report(Severity::kWarning, column, logical.excerpt,
            "the ] of the section is missing; LinuxCNC finds no section of this name");
     return;
   }
   section_ = std::string(text.substr(at + 1, end - at - 1));
-  if (ini_.has_section(section_)) {
-    shadowed_ = true;
-    report(Severity::kWarning, at + 1, logical.excerpt,
+  if (!sections_.insert(section_).second) {
+    report(Severity::kWarning, column, logical.excerpt,
            fmt::format("[{}] stands a second time; LinuxCNC reads the first only", section_));
     return;
   }
+  shadowed_ = false;
   ini_.sections_.push_back(section_);
 }
 
 void IniParser::add_entry(std::string_view text, const Logical& logical, std::size_t at) {
+  const auto column = static_cast<std::size_t>(column_of(logical, at));
   const std::size_t equals = text.find('=', at);
-  if (equals == text.npos) {
-    report(Severity::kWarning, at + 1, logical.excerpt,
-           "neither [SECTION] nor KEY = value; LinuxCNC passes over it");
-    return;
-  }
-  if (!in_section_) {
-    report(Severity::kWarning, at + 1, logical.excerpt,
-           "a value before the first [SECTION]; LinuxCNC does not find it");
-    return;
-  }
+  const std::size_t key_end = text.find_first_of(" \t\r=", at);
   IniEntry entry;
+  entry.key = std::string(text.substr(at, key_end - at));
+  if (!in_section_ || (equals == text.npos && key_end == text.npos)) {
+    if (logical.line == 1 && text.starts_with(kByteOrderMark)) return;  // warned of
+    report(Severity::kWarning, column, logical.excerpt,
+           equals == text.npos ? "neither [SECTION] nor KEY = value; LinuxCNC passes over it"
+                               : "a value before the first [SECTION]; LinuxCNC does not find it");
+    return;
+  }
+  if (equals == text.npos) {
+    report(Severity::kWarning, column, logical.excerpt,
+           fmt::format("neither [SECTION] nor KEY = value; LinuxCNC looks for no {} behind it",
+                       entry.key));
+  } else {
+    entry.value = std::string(trimmed(text.substr(equals + 1)));
+    const std::size_t value_at = text.find_first_not_of(kBlanks, equals + 1);
+    entry.value_column = column_of(logical, value_at == text.npos ? equals : value_at);
+  }
   entry.section = section_;
-  entry.key = std::string(text.substr(at, text.find_first_of(" \t\r=", at) - at));
-  entry.value = std::string(trimmed(text.substr(equals + 1)));
   entry.file = file_;
   entry.line = logical.line;
   entry.key_column = column_of(logical, at);
-  const std::size_t value_at = text.find_first_not_of(kBlanks, equals + 1);
-  entry.value_column = column_of(logical, value_at == text.npos ? equals : value_at);
   entry.excerpt = logical.excerpt;
   entry.shadowed = shadowed_;
+  entry.asked = equals == text.npos;
   ini_.entries_.push_back(std::move(entry));
 }
 
@@ -304,9 +452,8 @@ IniFile IniFile::parse(std::string_view text, const std::string& path, const Ini
                        Diagnostics& diagnostics) {
   IniFile ini;
   IniParser parser(ini, includes, diagnostics);
-  parser.add_file(text, path, false);
+  parser.add_ini(text, path);
   parser.finish();
-  if (ini.files_.size() == 1) ini.expanded_text_.clear();
   return ini;
 }
 

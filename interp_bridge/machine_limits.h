@@ -1,5 +1,5 @@
 // interp_bridge/machine_limits.h - how far and how fast the axes of a machine go, in mm, degrees
-// and seconds. Filled from a LinuxCNC INI (machine_ini.h), or the defaults below.
+// and seconds. Filled from a LinuxCNC INI by the twin, or the defaults below.
 #pragma once
 
 #include <array>
