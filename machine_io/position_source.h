@@ -21,7 +21,8 @@ struct AxisSample {
   static constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
   static constexpr std::int32_t kUnknown = -1;
 
-  /// When this computer had it: CLOCK_REALTIME, ns. For logs: when it was read from the file.
+  /// When this computer had it: CLOCK_REALTIME, ns. For logs: when that piece of the file was read;
+  /// for recordings of kerf: as recorded.
   std::int64_t host_ns = kNoTime;
   /// The device's own time, ns on a clock of its own: a log's stamps, the kernel's stamp of a
   /// frame, sample number times period. kNoTime if there is none. Never mixed with host_ns.
@@ -74,7 +75,7 @@ class PositionSource {
   virtual ~PositionSource() = default;
 
   /// Waits for the next sample for about `patience` (a poll that is under way may take its own
-  /// timeout). Samples come in the order of their times.
+  /// timeout). Samples come in the order of their times, but for a clock that was set back.
   virtual Next next(AxisSample& sample, std::chrono::milliseconds patience) = 0;
 
   /// From the asking thread.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "twin/motion_geometry.h"
 
@@ -42,6 +43,7 @@ void CutStage::take(std::span<const Motion> motions) {
 }
 
 void CutStage::take_timed(const Motion& motion, const TimedStep& timed) {
+  timed_ = true;
   ++taken_;
   step(motion, timed, {});
 }
@@ -324,22 +326,33 @@ void CutStage::collect_reports() {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     const CutReport& report = reports_[i];
     const InFlight& move = in_flight_[i];
-    if (report.removed_mm3 <= 0) continue;
     ToolUse& use = uses_[move.use];
+    if (move.feed) count_feed(use, move.duration_s, report.removed_mm3);
+    if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);
     }
-    if (!move.feed) continue;
-    use.cut_s += move.duration_s;
-    use.window_s += move.duration_s;
-    use.window_mm3 += report.removed_mm3;
-    if (use.window_s >= kPeakWindow_s) close_window(use);
   }
   in_flight_.erase(in_flight_.begin(),
                    in_flight_.begin() + static_cast<std::ptrdiff_t>(reports_.size()));
   reports_.clear();
+}
+
+void CutStage::count_feed(ToolUse& use, double duration_s, double removed_mm3) const {
+  if (timed_) {
+    use.grain_s += duration_s;
+    use.grain_mm3 += removed_mm3;
+    if (use.grain_s < kGrain_s) return;
+    duration_s = std::exchange(use.grain_s, 0);
+    removed_mm3 = std::exchange(use.grain_mm3, 0);
+  }
+  if (removed_mm3 <= 0) return;
+  use.cut_s += duration_s;
+  use.window_s += duration_s;
+  use.window_mm3 += removed_mm3;
+  if (use.window_s >= kPeakWindow_s) close_window(use);
 }
 
 void CutStage::close_window(ToolUse& use) {

@@ -30,11 +30,17 @@ struct ToolUse {
   double peak_mm3_per_s = 0;  ///< greatest removal rate over kPeakWindow_s of cutting
   double window_s = 0;        ///< cutting time and volume of the window that is open
   double window_mm3 = 0;
+  double grain_s = 0;  ///< time and volume of the grain that is open (take_timed)
+  double grain_mm3 = 0;
 };
 
 /// Removal rates are taken over at least this much cutting time: single moves of a finishing pass
 /// last milliseconds and remove whole cells or nothing.
 inline constexpr double kPeakWindow_s = 0.5;
+
+/// Steps of a watched machine are shorter than a cell; its cutting time is counted in grains of this
+/// many seconds that removed something.
+inline constexpr double kGrain_s = 0.05;
 
 /// The one road from motions to the workpiece. One thread calls it; per move it allocates nothing
 /// and hands moves to the model by thousands. Which moves cut: traverses, feeds, arcs and threads
@@ -92,6 +98,7 @@ class CutStage : private StepSink {
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
+  void count_feed(ToolUse& use, double duration_s, double removed_mm3) const;
   static void close_window(ToolUse& use);
 
   /// Feed moves that ask for more than the axes can do.
@@ -110,6 +117,7 @@ class CutStage : private StepSink {
   bool limits_known_;
   std::string limits_origin_;
   Timeline timeline_;
+  bool timed_ = false;         ///< motions come with their times: take_timed()
   std::uint64_t taken_ = 0;    ///< motions
   std::uint64_t stepped_ = 0;  ///< of them, those whose time is known
   bool holding_ = false;       ///< reports

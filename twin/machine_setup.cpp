@@ -274,7 +274,8 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   interpreter.ini_text = ini->expanded_text();
   const double unit_mm = read_unit_mm(reader);
   interpreter.inch_machine = unit_mm != 1;
-  read_axes(reader, read_joint_letters(reader, setup.kinematics), unit_mm, setup);
+  setup.joint_letters = read_joint_letters(reader, setup.kinematics);
+  read_axes(reader, setup.joint_letters, unit_mm, setup);
   read_planner(reader, unit_mm, setup.timeline.limits);
   setup.timeline.limits_known = true;
   setup.timeline.planner.limits_origin = path;

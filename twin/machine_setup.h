@@ -16,6 +16,7 @@ struct MachineSetup {
   std::string tool_table_path;  ///< [EMCIO]TOOL_TABLE; empty: none
   TimelineOptions timeline;     ///< limits, their origin, servo and I/O periods
   std::string kinematics;       ///< [KINS]KINEMATICS: "trivkins"
+  std::string joint_letters;    ///< axis that each joint moves: "XYZ", "XYYZ"
 };
 
 /// Reads the INI at `path`. Relative paths in it are relative to its folder, as LinuxCNC (which

@@ -95,6 +95,7 @@ Json live_json(const LiveReport& live) {
   out["dropped"] = live.dropped;
   out["trouble"] = live.status.trouble;
   out["gaps"] = f.gaps;
+  out["jumps"] = f.jumps;
   out["gap_s"] = rounded(f.gap_s);
   out["gap_max_mm"] = rounded(f.gap_max_mm);
   out["path_mm"] = rounded(f.path_mm);

@@ -25,26 +25,28 @@ const std::array kFolderRules{
     FolderRule{"viewer/", {"base/", "viewer/"}},
     FolderRule{"twin/app/",
                {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
+    FolderRule{"twin/machine/", {"base/", "interp_bridge/", "machine_io/", "twin/"}},
     FolderRule{"twin/", {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
 };
 
 struct LibraryRule {
   std::string_view header;  ///< a header, or a folder of headers if it ends in '/'
-  std::string_view folder;  ///< the only one that may include it
+  std::string_view folder;  ///< that may include it
+  std::string_view also{};  ///< another one; the only two
 };
 
 constexpr std::array kLibraryRules{
     LibraryRule{"yaml-cpp/", "twin/config/"},
-    LibraryRule{"CLI/", "twin/app/"},
+    LibraryRule{"CLI/", "twin/app/", "twin/machine/"},
     LibraryRule{"nlohmann/", "twin/"},
     LibraryRule{"xxhash.h", "stock/zmap/"},
     LibraryRule{"canon.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_base.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_return.hh", "interp_bridge/kerf_interp/"},
-    LibraryRule{"modbus.h", "machine_io/modbus/"},
-    LibraryRule{"modbus/", "machine_io/modbus/"},
-    LibraryRule{"linux/can.h", "machine_io/can/"},
-    LibraryRule{"linux/can/", "machine_io/can/"},
+    LibraryRule{"modbus.h", "machine_io/modbus/", "machine_io/simulator/"},
+    LibraryRule{"modbus/", "machine_io/modbus/", "machine_io/simulator/"},
+    LibraryRule{"linux/can.h", "machine_io/can/", "machine_io/simulator/"},
+    LibraryRule{"linux/can/", "machine_io/can/", "machine_io/simulator/"},
     LibraryRule{"hal.h", "machine_io/hal/"},
     LibraryRule{"linuxcnc/", "machine_io/hal/"},
     LibraryRule{"GL/", "viewer/"},
@@ -95,8 +97,15 @@ std::string check_project_include(std::string_view path, bool is_test, std::stri
   if (!starts_with_any(target, rule->may_include)) {
     return fmt::format("{} may not include \"{}\"", rule->folder, target);
   }
-  if (!is_test && target.starts_with("twin/app/") && rule->folder != "twin/app/") {
-    return fmt::format("\"{}\": only twin/app/ may include it", target);
+  const bool is_program = rule->folder == "twin/app/" || rule->folder == "twin/machine/";
+  if (!is_test && target.starts_with("twin/app/") && !is_program) {
+    return fmt::format("\"{}\": only twin/app/ and twin/machine/ may include it", target);
+  }
+  // It writes to devices; kerf must not.
+  constexpr std::string_view kSimulator = "machine_io/simulator/";
+  if (!is_test && target.starts_with(kSimulator) && !path.starts_with(kSimulator) &&
+      rule->folder != "twin/machine/") {
+    return fmt::format("\"{}\": only twin/machine/ may include it", target);
   }
   const std::string_view own_model = stock_model_of(path);
   const std::string_view other_model = stock_model_of(target);
@@ -110,8 +119,10 @@ std::string check_library_include(std::string_view path, std::string_view target
   for (const LibraryRule& rule : kLibraryRules) {
     const bool matches =
         rule.header.ends_with('/') ? target.starts_with(rule.header) : target == rule.header;
-    if (matches && !path.starts_with(rule.folder)) {
-      return fmt::format("<{}> appears only in {}", target, rule.folder);
+    const bool in_also = !rule.also.empty() && path.starts_with(rule.also);
+    if (matches && !path.starts_with(rule.folder) && !in_also) {
+      return fmt::format("<{}> appears only in {}{}{}", target, rule.folder,
+                         rule.also.empty() ? "" : " and ", rule.also);
     }
   }
   return "";

@@ -23,7 +23,8 @@ std::vector<IncludeLine> find_includes(std::string_view source_text);
 /// - A quoted include names a file of the project by its path from the root.
 /// - Level 0 base; level 1 stock, interp_bridge, machine_io, viewer; level 2 twin. A folder
 /// includes itself and lower
-///   levels. Within twin, only twin/app includes twin/app.
+///   levels. Within twin, only the programs (twin/app, twin/machine) include twin/app.
+/// - Only twin/machine includes machine_io/simulator, which writes to devices.
 /// - Within stock: a model (zmap, ...) includes no other model, cutter includes no model and not
 /// their seam.
 /// - A header of an outside library appears only in the folder that wraps this library.

@@ -14,9 +14,10 @@ namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
 
 const std::set<std::string> kSomeFiles{
-    "base/result.h",     "stock/blank.h",       "stock/stock_model.h", "stock/cutter/cutter.h",
-    "stock/zmap/zmap.h", "stock/sheet/sheet.h", "viewer/picture.h",    "interp_bridge/motion.h",
-    "twin/run.h",        "twin/app/options.h",  "tests/stock/oracle.h"};
+    "base/result.h",         "stock/blank.h",          "stock/stock_model.h",
+    "stock/cutter/cutter.h", "stock/zmap/zmap.h",      "stock/sheet/sheet.h",
+    "viewer/picture.h",      "interp_bridge/motion.h", "twin/run.h",
+    "twin/app/options.h",    "tests/stock/oracle.h",   "machine_io/simulator/fault.h"};
 
 Strings check(std::string_view path, std::string_view text) {
   return check_includes(path, text, kSomeFiles);
@@ -54,7 +55,21 @@ TEST(Layering, UpwardsAndSidewaysAreNot) {
   EXPECT_EQ(check("viewer/window.cpp", "#include \"twin/run.h\"\n"),
             Strings{"viewer/window.cpp:1: viewer/ may not include \"twin/run.h\""});
   EXPECT_EQ(check("twin/run.cpp", "#include \"twin/app/options.h\"\n"),
-            Strings{"twin/run.cpp:1: \"twin/app/options.h\": only twin/app/ may include it"});
+            Strings{"twin/run.cpp:1: \"twin/app/options.h\": only twin/app/ and twin/machine/ may "
+                    "include it"});
+}
+
+TEST(Layering, OnlyTheSimulatedMachineWritesToDevices) {
+  const std::string text = "#include \"machine_io/simulator/fault.h\"\n";
+  EXPECT_EQ(check("twin/machine/main.cpp", text), Strings{});
+  EXPECT_EQ(check("twin/machine/main.cpp", "#include \"twin/app/options.h\"\n"), Strings{});
+  EXPECT_EQ(check("machine_io/simulator/main.cpp", text + "#include <modbus/modbus.h>\n"),
+            Strings{});
+  for (const char* path : {"twin/app/main.cpp", "twin/run.cpp", "machine_io/modbus/poll.cpp"}) {
+    EXPECT_EQ(check(path, text),
+              Strings{std::string(path) + ":1: \"machine_io/simulator/fault.h\": only "
+                                          "twin/machine/ may include it"});
+  }
 }
 
 TEST(Layering, StockModelsDoNotKnowEachOther) {
@@ -85,7 +100,7 @@ TEST(Layering, OutsideLibrariesStayBehindTheirFolder) {
             Strings{"twin/run.cpp:1: <GL/gl.h> appears only in viewer/"});
   EXPECT_EQ(check("machine_io/can/can.cpp", "#include <modbus/modbus.h>\n"),
             Strings{"machine_io/can/can.cpp:1: <modbus/modbus.h> appears only in "
-                    "machine_io/modbus/"});
+                    "machine_io/modbus/ and machine_io/simulator/"});
   for (const char* header : {"yaml-cpp/yaml.h", "linux/can.h", "linux/can/raw.h", "GLFW/glfw3.h",
                              "EGL/egl.h", "epoxy/egl.h", "imgui/imgui.h", "imgui.h"}) {
     const std::string text = std::string("#include <") + header + ">\n";

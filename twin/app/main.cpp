@@ -4,13 +4,20 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <new>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
 #include "twin/app/canon_command.h"
+#include "twin/app/cli_options.h"
+#include "twin/app/config_command.h"
 #include "twin/app/exit_code.h"
+#include "twin/app/live_command.h"
+#include "twin/app/machine_command.h"
 #include "twin/app/run_command.h"
 #include "twin/suggest.h"
 
@@ -28,6 +35,8 @@ constexpr const char* kExitCodes =
 constexpr const char* kExamples =
     "Examples:\n"
     "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --png part.png\n"
+    "  kerf shadow -c mill.yaml --program part.ngc\n"
+    "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
     "  kerf canon part.ngc\n"
     "  kerf models\n"
     "  kerf tools\n";
@@ -42,98 +51,37 @@ constexpr const char* kCanonExample =
     "Example:\n"
     "  kerf canon part.ngc | jq -c 'select(.kind == \"traverse\") | .to'\n";
 
+constexpr const char* kShadowExample =
+    "Examples:\n"
+    "  kerf shadow --set source.type=hal --ini mill.ini --program part.ngc --stock "
+    "box:0,0,-20:100,60,0\n"
+    "  kerf shadow -c mill.yaml --record run.csv\n";
+
+constexpr const char* kReplayExample =
+    "Example:\n"
+    "  kerf replay run.csv --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --speed max --png "
+    "part.png\n";
+
+constexpr const char* kConfigExample =
+    "Examples:\n"
+    "  kerf config check mill.yaml\n"
+    "  kerf config print mill.yaml\n"
+    "  kerf config schema\n";
+
+constexpr const char* kMachineExample =
+    "Example:\n"
+    "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502\n";
+
+constexpr const char* kSources =
+    "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
+    "can      signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
+    "hal      pins of the LinuxCNC that runs on this computer\n"
+    "log      recordings of kerf, CSV, halsampler files, candump -l files\n";
+
 constexpr const char* kModels =
     "zmap   one height a cell: three-axis milling, no undercuts; exact sweeps of straight moves "
     "and of arcs in XY\n"
     "auto   the model that the motions need (zmap in this version)\n";
-
-void add_program_options(CLI::App& command, ProgramArguments& a) {
-  command
-      .add_option("PROGRAM", a.program,
-                  "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
-      ->required();
-  command
-      .add_option("--ini", a.ini,
-                  "LinuxCNC INI of the machine: limits, speeds, tool table, offsets, startup code")
-      ->type_name("FILE");
-  command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
-      ->type_name("FILE");
-  command
-      .add_option("--interp", a.interp,
-                  "interpreter: bridge (kerf-interp) | text (LinuxCNC's rs274) (default bridge "
-                  "where it is there)")
-      ->type_name("NAME");
-  command.add_option("--block-delete", a.block_delete, "skip lines that begin with / (default on)")
-      ->type_name("on|off");
-  command
-      .add_option("--max-commands", a.max_commands,
-                  "canonical commands after which a program counts as endless (default 50 million, "
-                  "or 4 a line if that is more)")
-      ->type_name("N");
-  command
-      .add_option("--max-seconds", a.max_seconds,
-                  "silent seconds after which a program counts as endless")
-      ->type_name("S");
-}
-
-void add_work_options(CLI::App& command, WorkArguments& a) {
-  command
-      .add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
-      ->type_name("N=SHAPE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--stock", a.stock,
-                  "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
-                  "state:FILE (a "
-                  "saved workpiece); several joined by +")
-      ->type_name("SPEC");
-  command.add_option("--model", a.model, "workpiece model: zmap | auto (default auto)")
-      ->type_name("NAME");
-  command
-      .add_option("--cell", a.cell,
-                  "edge of a cell (default: suits the blank, at most 4 million cells)")
-      ->type_name("MM");
-  command
-      .add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
-      ->type_name("MM");
-  command
-      .add_option("--path", a.path,
-                  "what is cut: programmed | planned, with corners rounded as the machine does "
-                  "under G64 (default programmed)")
-      ->type_name("NAME");
-  command
-      .add_option("--threads", a.threads,
-                  "cutting threads (default: one less than the cores, at most 8)")
-      ->type_name("N");
-  command.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
-      ->type_name("NAME");
-}
-
-void add_output_options(CLI::App& command, OutputPaths& a, std::string& mesh_tolerance) {
-  command.add_option("--json", a.json, "report, schema kerf-report/1")->type_name("FILE");
-  command.add_option("--png", a.png, "picture of the finished part")->type_name("FILE");
-  command.add_option("--stl", a.stl, "finished part as a closed mesh, binary STL")
-      ->type_name("FILE");
-  command.add_option("--ply", a.ply, "the same as binary PLY")->type_name("FILE");
-  command.add_option("--state", a.state, "finished workpiece, for --stock state:FILE")
-      ->type_name("FILE");
-  command
-      .add_option("--mesh-tolerance", mesh_tolerance,
-                  "how far meshes may lie from the model (default 0.01; 0 = every cell)")
-      ->type_name("MM");
-}
-
-void add_run_options(CLI::App& run, RunArguments& a) {
-  add_program_options(run, a.source);
-  add_work_options(run, a.work);
-  run.add_option("--from-line", a.from_line,
-                 "cut what comes before line N without a word, report from there")
-      ->type_name("N");
-  run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
-      ->type_name("N");
-  add_output_options(run, a.outputs, a.mesh_tolerance);
-  run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
-}
 
 std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
 
@@ -185,71 +133,115 @@ int refuse_empty_values(const CLI::App& app) {
   return code;
 }
 
+/// The commands with their arguments, and what each of them calls.
+struct Commands {
+  explicit Commands(CLI::App& app) {
+    CLI::App* const run = add(app, "run", "cut a program and report", kRunExample,
+                              [this] { return run_command(run_arguments); });
+    add_run_options(*run, run_arguments);
+    CLI::App* const shadow =
+        add(app, "shadow", "follow a machine that runs", kShadowExample,
+            [this] { return live_command(shadow_arguments, LiveCommand::kShadow); });
+    add_live_options(*shadow, shadow_arguments, LiveCommand::kShadow);
+    CLI::App* const replay =
+        add(app, "replay", "run a log of a machine again", kReplayExample,
+            [this] { return live_command(replay_arguments, LiveCommand::kReplay); });
+    add_live_options(*replay, replay_arguments, LiveCommand::kReplay);
+    CLI::App* const canon = add(app, "canon", "print what a program commands as JSON lines",
+                                kCanonExample, [this] { return canon_command(canon_arguments); });
+    add_canon_options(*canon, canon_arguments);
+    CLI::App* const config =
+        add(app, "config", "check or print a configuration, or list every key", kConfigExample,
+            [this] { return config_command(config_arguments); });
+    config->add_option("ACTION", config_arguments.action, "check | print | schema")->required();
+    config->add_option("FILE", config_arguments.file, "the configuration");
+    config->add_option("--set", config_arguments.sets, "any key of the configuration, repeatable")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    // Found and started by machine_command(), before this is asked.
+    add(app, "machine", "a simulated machine that serves its positions", kMachineExample,
+        [] { return kExitUsage; });
+    add_list(app, "models", "list the workpiece models", kModels);
+    add_list(app, "sources", "list where positions may come from", kSources);
+    add_list(app, "tools", "list the tool shapes", fmt::format("{}\n", shape_help()));
+  }
+
+  std::vector<CLI::App*> all;
+  std::vector<std::pair<CLI::App*, std::function<int()>>> calls;
+  RunArguments run_arguments;
+  LiveArguments shadow_arguments;
+  LiveArguments replay_arguments;
+  CanonArguments canon_arguments;
+  ConfigArguments config_arguments;
+
+ private:
+  CLI::App* add(CLI::App& app, const char* name, const char* purpose, const std::string& footer,
+                std::function<int()> call) {
+    CLI::App* const command = app.add_subcommand(name, purpose);
+    command->footer(footer + "\n" + kExitCodes);
+    command->allow_extras();
+    all.push_back(command);
+    calls.emplace_back(command, std::move(call));
+    return command;
+  }
+  void add_list(CLI::App& app, const char* name, const char* purpose, std::string text) {
+    add(app, name, purpose, fmt::format("Example:\n  kerf {}\n", name), [text = std::move(text)] {
+      fmt::print("{}", text);
+      return static_cast<int>(kExitGood);
+    });
+  }
+};
+
+/// A mistyped option leaves others without what they need: name the cause, not the effect.
+int refuse(const CLI::ParseError& error, const Commands& commands) {
+  Diagnostic d;
+  d.message = error.what();
+  d.hint = "kerf --help lists what there is";
+  for (const CLI::App* command : commands.all) {
+    const std::vector<std::string> left = command->remaining();
+    if (const std::string* argument = worst_argument(left)) {
+      return refuse_argument(*argument, *command, false);
+    }
+    if (command->parsed()) {
+      d.hint = fmt::format("kerf {} --help lists what there is", command->get_name());
+    }
+  }
+  fmt::print(stderr, "{}", to_string(d));
+  return kExitUsage;
+}
+
 int run(int argc, char** argv) {
-  CLI::App app("kerf: dry-runs NC programs for LinuxCNC through a model of the workpiece", "kerf");
+  if (argc > 1 && std::string_view(argv[1]) == "machine")
+    return machine_command(argc - 1, argv + 1);
+  CLI::App app(
+      "kerf: a twin of a machine under LinuxCNC: runs NC programs through a model of the "
+      "workpiece, beside the machine or without it",
+      "kerf");
   app.set_version_flag("--version", std::string("kerf ") + KERF_VERSION, "print the version");
   app.footer(std::string(kExamples) + "\n" + kExitCodes);
   app.allow_extras();
-  RunArguments arguments;
-  CLI::App* run_app = app.add_subcommand("run", "cut a program and report");
-  add_run_options(*run_app, arguments);
-  run_app->footer(std::string(kRunExample) + "\n" + kExitCodes);
-  run_app->allow_extras();
-  CanonArguments canon;
-  CLI::App* canon_app = app.add_subcommand("canon", "print what a program commands as JSON lines");
-  add_program_options(*canon_app, canon.source);
-  canon_app->add_option("--out", canon.out, "where to (default -, standard output)")
-      ->type_name("FILE");
-  canon_app->add_flag("--quiet", canon.quiet, "no progress bar, no warnings");
-  canon_app->footer(std::string(kCanonExample) + "\n" + kExitCodes);
-  canon_app->allow_extras();
-  CLI::App* models_app = app.add_subcommand("models", "list the workpiece models")->allow_extras();
-  models_app->footer("Example:\n  kerf models\n");
-  CLI::App* tools_app = app.add_subcommand("tools", "list the tool shapes")->allow_extras();
-  tools_app->footer("Example:\n  kerf tools\n");
+  Commands commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    // A mistyped option leaves others without what they need: name the cause, not the effect.
-    Diagnostic d;
-    d.message = error.what();
-    d.hint = "kerf --help lists what there is";
-    for (const CLI::App* command : {run_app, canon_app}) {
-      const std::vector<std::string> left = command->remaining();
-      if (const std::string* argument = worst_argument(left)) {
-        return refuse_argument(*argument, *command, false);
-      }
-      if (command->parsed())
-        d.hint = fmt::format("kerf {} --help lists what there is", command->get_name());
-    }
-    fmt::print(stderr, "{}", to_string(d));
-    return kExitUsage;
+    return refuse(error, commands);
   }
-  for (const CLI::App* command : {run_app, canon_app, models_app, tools_app}) {
+  for (const CLI::App* command : commands.all) {
     const std::vector<std::string> left = command->remaining();
-    if (const std::string* argument = worst_argument(left))
+    if (const std::string* argument = worst_argument(left)) {
       return refuse_argument(*argument, *command, false);
+    }
+    if (!command->parsed()) continue;
+    if (const int code = refuse_empty_values(*command); code != kExitGood) return code;
   }
   const std::vector<std::string> left = app.remaining();
-  if (const std::string* argument = worst_argument(left))
+  if (const std::string* argument = worst_argument(left)) {
     return refuse_argument(*argument, app, true);
-  if (models_app->parsed()) {
-    fmt::print("{}", kModels);
-    return kExitGood;
   }
-  if (tools_app->parsed()) {
-    fmt::print("{}\n", shape_help());
-    return kExitGood;
-  }
-  if (run_app->parsed()) {
-    if (const int code = refuse_empty_values(*run_app); code != kExitGood) return code;
-    return run_command(arguments);
-  }
-  if (canon_app->parsed()) {
-    if (const int code = refuse_empty_values(*canon_app); code != kExitGood) return code;
-    return canon_command(canon);
+  for (const auto& [command, call] : commands.calls) {
+    if (command->parsed()) return call();
   }
   fmt::print(stderr, "{}", app.help());
   return kExitUsage;

@@ -24,6 +24,7 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
     options.machine = std::move(setup.interpreter);
     options.tool_table_path = std::move(setup.tool_table_path);
     request.timeline = std::move(setup.timeline);
+    request.joint_letters = std::move(setup.joint_letters);
   }
   if (!a.tool_table.empty()) options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {

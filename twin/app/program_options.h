@@ -24,6 +24,7 @@ struct ProgramArguments {
 struct ProgramRequest {
   ProgramOptions program;
   TimelineOptions timeline;
+  std::string joint_letters;  ///< of the INI; empty: there is none
 };
 
 /// Reads the INI, if one is given. Faults go to the reader.

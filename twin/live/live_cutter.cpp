@@ -23,6 +23,8 @@ constexpr double kJumpFactor = 1.5;
 constexpr double kJump_mm = 1.0;
 /// A spindle slower than this stands. rpm.
 constexpr double kStanding_rpm = 1.0;
+/// Driven with the wrong tool: the program goes on without having changed it. mm.
+constexpr double kMismatch_mm = 1.0;
 /// A machine that says it runs the program for so long without being seen on its path is off it.
 constexpr double kNeverSeen_s = 1.0;
 
@@ -117,42 +119,73 @@ FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double
   return point;
 }
 
-bool LiveCutter::gap_between(const Sighting& before, const Sighting& now, bool lost) const {
+LiveCutter::Break LiveCutter::break_between(const Sighting& before, const Sighting& now,
+                                            bool lost) const {
   const double way_mm = glm::length(now.tip_mm - before.tip_mm);
-  if (way_mm < kGapMove_mm) return false;
+  if (way_mm < kGapMove_mm) return Break::kNone;
   const double elapsed_s = now.t_s - before.t_s;
-  if (lost || elapsed_s > options_.gap_s) return true;
-  return way_mm > kJump_mm && way_mm > kJumpFactor * options_.most_mm_per_s * elapsed_s;
+  if (lost || elapsed_s > options_.gap_s) return Break::kGap;
+  const bool jump = way_mm > kJump_mm && way_mm > kJumpFactor * options_.most_mm_per_s * elapsed_s;
+  return jump ? Break::kJump : Break::kNone;
 }
 
-void LiveCutter::note_gap(const Sighting& before, const Sighting& now) {
+/// Within boxes.
+bool LiveCutter::near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const {
+  const Box blank = stock_.bounds_mm();
+  Box way;
+  way.extend(from_mm);
+  way.extend(to_mm);
+  return way.min.z < blank.max.z && way.min.x - radius_mm < blank.max.x &&
+         way.max.x + radius_mm > blank.min.x && way.min.y - radius_mm < blank.max.y &&
+         way.max.y + radius_mm > blank.min.y;
+}
+
+void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump) {
   const double way_mm = glm::length(now.tip_mm - before.tip_mm);
   const double elapsed_s = now.t_s - before.t_s;
-  ++facts_.gaps;
-  facts_.gap_s += elapsed_s;
-  facts_.gap_max_mm = std::max(facts_.gap_max_mm, way_mm);
+  // A machine that is homed says that it is elsewhere, and has not moved.
+  const bool harmless = jump && !near_stock(before.tip_mm, before.tip_mm, 0) &&
+                        !near_stock(now.tip_mm, now.tip_mm, 0);
+  ++(harmless ? facts_.jumps : facts_.gaps);
+  if (!harmless) {
+    facts_.gap_s += elapsed_s;
+    facts_.gap_max_mm = std::max(facts_.gap_max_mm, way_mm);
+  }
   if (options_.gap == GapPolicy::kIgnore) return;
   Finding finding =
-      finding_of(FindingId::kSourceGap, Severity::kWarning, now.t_s, now.tip_mm, now.tool);
+      finding_of(FindingId::kSourceGap, harmless ? Severity::kNote : Severity::kWarning, now.t_s,
+                 now.tip_mm, now.tool);
   finding.source = place_.source;
-  const bool jump = elapsed_s <= options_.gap_s && way_mm > options_.most_mm_per_s * elapsed_s;
-  finding.text = fmt::format(
-      "{} {:.3f} s, the machine is {:.2f} mm further on; {}{}",
-      jump ? "positions jump: within" : "no positions for", elapsed_s, way_mm,
-      options_.gap == GapPolicy::kCut ? "the way between is cut all the same"
-                                      : "the way between is not cut (gap: cut would)",
-      before.tool != now.tool
-          ? fmt::format("; the tool was changed meanwhile, from {} to {}", before.tool, now.tool)
-          : std::string());
+  const char* const what_then = options_.gap == GapPolicy::kCut
+                                    ? "the way between is cut all the same"
+                                    : "the way between is not cut (gap: cut would)";
+  if (jump) {
+    finding.text = fmt::format(
+        "positions jump by {:.2f} mm within {:.3f} s, faster than the machine can be (homing? a "
+        "wrong reading?); {}",
+        way_mm, elapsed_s, what_then);
+  } else {
+    finding.text = fmt::format("no positions for {:.3f} s, the machine is {:.2f} mm further on; {}",
+                               elapsed_s, way_mm, what_then);
+  }
+  if (before.tool != now.tool) {
+    finding.text +=
+        fmt::format("; the tool was changed meanwhile, from {} to {}", before.tool, now.tool);
+  }
   log_.add(std::move(finding));
 }
 
 /// The machine has another tool than the program has where the machine is.
-void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point) {
-  if (!point.on_path || now.tool < 0 || now.tool == point.tool) {
-    if (point.on_path) mismatch_told_ = false;
+void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm) {
+  if (!point.on_path || now.tool < 0) return;
+  if (now.tool == point.tool) {
+    mismatch_told_ = false;
+    mismatch_mm_ = 0;
     return;
   }
+  // A machine that stands may have its new tool already, while its length is still the old one's.
+  mismatch_mm_ += driven_mm;
+  if (mismatch_mm_ < kMismatch_mm) return;
   if (std::exchange(mismatch_told_, true)) return;
   guard_stale_ = true;
   Finding finding =
@@ -218,6 +251,13 @@ void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double dura
   motion.tool_offset_mm = {0, 0, now.tool_length_mm};
   motion.feed_mm_per_min = duration_s > 0 ? 60 * length_mm / duration_s : 0;
   facts_.chord_mm += length_mm;
+  double radius_mm = 0;
+  if (motion.tool > 0 || book_.has_arguments()) {
+    const ResolvedTool& tool = book_.mount(motion.tool, 0);
+    if (tool.cutter) radius_mm = tool.cutter->radius_mm();
+  }
+  // Jogging in the air needs no tool that is known.
+  if (!near_stock(from_mm, now.tip_mm, radius_mm)) return;
   cut(motion, duration_s);
   // The workpiece is no longer what the program makes of it.
   guard_stale_ |= off_path;
@@ -259,7 +299,9 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     facts_.following_max_mm = std::max(facts_.following_max_mm, point.distance_mm);
     facts_.following_sum_mm += point.distance_mm;
   }
-  note_tool(now, point);
+  double driven_mm = 0;
+  for (const auto& [motion, share_s] : driven_) driven_mm += path_length_mm(motion);
+  note_tool(now, point, driven_mm);
   note_off_path(now, point);
   const bool first = !before_;
   if (before_) {
@@ -269,9 +311,9 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     before_->tip_mm.z += change_mm;
     cut_to_mm_.z += change_mm;
     if (before_->tool != now.tool && before_->tool >= 0) ++facts_.tool_changes;
-    const bool gap = gap_between(*before_, now, lost);
-    if (gap) note_gap(*before_, now);
-    if (gap && options_.gap != GapPolicy::kCut) {
+    const Break gap = break_between(*before_, now, lost);
+    if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump);
+    if (gap != Break::kNone && options_.gap != GapPolicy::kCut) {
       guard_stale_ = true;
     } else if (point.on_path && was_on_path_) {
       cut_path(elapsed_s);

@@ -90,9 +90,11 @@ class LiveCutter {
   void adopt_program_frame();
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
   FollowedPoint follow(Sighting& now, const AxisSample& sample, double elapsed_s);
-  bool gap_between(const Sighting& before, const Sighting& now, bool lost) const;
-  void note_gap(const Sighting& before, const Sighting& now);
-  void note_tool(const Sighting& now, const FollowedPoint& point);
+  enum class Break : std::uint8_t { kNone, kGap, kJump };
+  Break break_between(const Sighting& before, const Sighting& now, bool lost) const;
+  bool near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const;
+  void note_gap(const Sighting& before, const Sighting& now, bool jump);
+  void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
   void cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s, bool off_path);
   void cut_path(double duration_s);
@@ -121,6 +123,7 @@ class LiveCutter {
   LivePlace place_;
   std::optional<FindingLog::Handle> off_path_event_;
   bool mismatch_told_ = false;
+  double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
   int program_tool_ = -1;    ///< where the machine was last on the path
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
 };

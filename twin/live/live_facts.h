@@ -14,11 +14,12 @@ struct LiveFacts {
   double off_path_max_mm = 0;
   double following_max_mm = 0;  ///< distance from the path of the samples on it
   double following_sum_mm = 0;
-  std::uint64_t gaps = 0;
-  double gap_s = 0;       ///< in all
-  double gap_max_mm = 0;  ///< greatest straight line across one
-  double path_mm = 0;     ///< cut along the program
-  double chord_mm = 0;    ///< cut straight from sample to sample
+  std::uint64_t gaps = 0;   ///< in which the machine moved
+  std::uint64_t jumps = 0;  ///< faster than the machine can be, and away from the workpiece: homing
+  double gap_s = 0;         ///< in all
+  double gap_max_mm = 0;    ///< greatest straight line across one
+  double path_mm = 0;       ///< cut along the program
+  double chord_mm = 0;      ///< cut straight from sample to sample
   std::uint64_t tool_changes = 0;
   bool length_unknown = false;  ///< positions were read with a tool length of 0 for want of one
 };

@@ -350,6 +350,7 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
       tell(false);
     }
     tell(false);
+    if (rest_) std::this_thread::sleep_for(rest_());
     const double run_s = options_.log() ? t_s_ : seconds(Clock::now() - start_);
     if (options_.for_s > 0 && run_s >= options_.for_s) break;
   }

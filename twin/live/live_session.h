@@ -100,6 +100,8 @@ class LiveSession {
 
   void set_observer(LiveObserver* observer) { observer_ = observer; }
   void set_tap(SampleTap tap) { tap_ = std::move(tap); }
+  /// Asked between batches how long to sleep, to leave the computer to others.
+  void set_rest(std::function<std::chrono::microseconds()> rest) { rest_ = std::move(rest); }
 
   /// Call once.
   Outcome run(std::stop_token stop, Diagnostics& diagnostics);
@@ -132,6 +134,7 @@ class LiveSession {
   std::unique_ptr<LiveCutter> cutter_;
   LiveObserver* observer_ = nullptr;
   SampleTap tap_;
+  std::function<std::chrono::microseconds()> rest_;
   Report report_;
 
   SampleQueue queue_;

@@ -193,9 +193,24 @@ TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
   EXPECT_TRUE(watch.ids().empty());
   watch.see({21, 20, -1}, 0.02);  // 1000 mm/s
   ASSERT_EQ(watch.ids().size(), 1U);
-  EXPECT_EQ(watch.log().kept()[0].text.substr(0, 23), "positions jump: within ");
+  EXPECT_EQ(watch.log().kept()[0].text.substr(0, 45),
+            "positions jump by 10.00 mm within 0.010 s, fa");
+  EXPECT_EQ(watch.log().kept()[0].severity, Severity::kWarning);
   watch.see({21.5, 20, -1}, 0.03, 1, true);
   EXPECT_EQ(watch.ids().size(), 2U);
+}
+
+TEST(LiveCutter, AJumpFarFromTheWorkpieceIsHomingAndOnlyANote) {
+  LiveCutOptions options;
+  options.most_mm_per_s = 100;
+  Watch watch(options);
+  watch.see({0, 0, 50}, 0, 0);
+  watch.see({0, 0, 75.4}, 0.001, 0);
+  watch.see({-5, -5, 75.4}, 0.1, 0);  // in the air, with nothing in the spindle
+  ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSourceGap});
+  EXPECT_EQ(watch.log().kept()[0].severity, Severity::kNote);
+  EXPECT_EQ(watch.cutter().facts().jumps, 1U);
+  EXPECT_EQ(watch.cutter().facts().gaps, 0U);
 }
 
 TEST(LiveCutter, APositionThatIsMissingIsNamedAndNothingIsCut) {

@@ -1,0 +1,240 @@
+#include "machine_io/can/can_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+constexpr double kNanosecondsPerMillisecond = 1e6;
+constexpr double kLeastGather_ms = 0.1;
+constexpr double kMostGather_ms = 10'000.0;
+
+bool same_bits(const CanBits& a, const CanBits& b) {
+  return a.start_bit == b.start_bit && a.length == b.length && a.endian == b.endian;
+}
+
+bool same_place(const CanSignal& a, const CanSignal& b) {
+  if (a.id != b.id || a.extended != b.extended || !same_bits(a.bits, b.bits)) return false;
+  if (a.mux.has_value() != b.mux.has_value()) return false;
+  return !a.mux || (same_bits(a.mux->bits, b.mux->bits) && a.mux->value == b.mux->value);
+}
+
+/// Every mapped signal with the last part of its key.
+std::vector<std::pair<std::string, const CanSignal*>> mapped_signals(const CanMap& map) {
+  std::vector<std::pair<std::string, const CanSignal*>> all;
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    if (map.axes[i]) all.emplace_back(map.axis_keys[i], &*map.axes[i]);
+  }
+  if (map.tool) all.emplace_back("tool", &*map.tool);
+  if (map.line) all.emplace_back("line", &*map.line);
+  if (map.spindle) all.emplace_back("spindle", &*map.spindle);
+  if (map.tool_offset_z) all.emplace_back("tool_offset_z", &*map.tool_offset_z);
+  return all;
+}
+
+std::int64_t nanoseconds(double milliseconds) {
+  return std::llround(milliseconds * kNanosecondsPerMillisecond);
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const CanMap& map, const std::string& key) {
+  std::vector<std::string> faults;
+  const auto signals = mapped_signals(map);
+  for (const auto& [name, signal] : signals) {
+    const auto of_signal = validate(*signal, key + "." + name);
+    faults.insert(faults.end(), of_signal.begin(), of_signal.end());
+  }
+  if (std::none_of(map.axes.begin(), map.axes.end(), [](const auto& a) { return a.has_value(); })) {
+    faults.push_back(fmt::format("{}: no axis is mapped; at least one of {} is needed", key,
+                                 fmt::join(map.axis_keys, ", ")));
+  }
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!same_place(*signals[i].second, *signals[k].second)) continue;
+      faults.push_back(fmt::format(
+          "{0}.{1}: reads the same bits of frame {2} as {0}.{3}", key, signals[i].first,
+          can_id_text(signals[i].second->id, signals[i].second->extended), signals[k].first));
+    }
+  }
+  if (!(map.gather_ms >= kLeastGather_ms && map.gather_ms <= kMostGather_ms)) {
+    faults.push_back(fmt::format("{}.gather_ms: {} is not allowed; must be {} to {} ms", key,
+                                 map.gather_ms, kLeastGather_ms, kMostGather_ms));
+  }
+  return faults;
+}
+
+CanSignal cia402_position(std::uint8_t node, double mm_per_count) {
+  CanSignal signal;
+  signal.id = 0x380U + node;
+  signal.bits = {can_start_of_byte(2, CanEndian::kLittle), 32, CanEndian::kLittle};
+  signal.scale = mm_per_count;
+  return signal;
+}
+
+CanSignal odrive_position(std::uint8_t node, double mm_per_turn) {
+  CanSignal signal;
+  signal.id = static_cast<std::uint32_t>(node) << 5U | 9U;
+  signal.bits = {0, 32, CanEndian::kLittle};
+  signal.type = CanType::kFloat32;
+  signal.scale = mm_per_turn;
+  return signal;
+}
+
+CanAssembler::CanAssembler(const CanMap& map) : gather_ns_(nanoseconds(map.gather_ms)) {
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    names_[i] = map.axis_keys[i];
+    if (!map.axes[i]) continue;
+    add(i, *map.axes[i]);
+    mapped_ = static_cast<std::uint16_t>(mapped_ | 1U << i);
+  }
+  names_[kTool] = "tool";
+  names_[kLine] = "line";
+  names_[kSpindle] = "spindle";
+  names_[kToolOffsetZ] = "tool_offset_z";
+  if (map.tool) add(kTool, *map.tool);
+  if (map.line) add(kLine, *map.line);
+  if (map.spindle) add(kSpindle, *map.spindle);
+  if (map.tool_offset_z) add(kToolOffsetZ, *map.tool_offset_z);
+}
+
+void CanAssembler::add(std::size_t slot, const CanSignal& signal) {
+  slots_[slot].signal = signal;
+  slots_[slot].max_age_ns = nanoseconds(signal.max_age_ms);
+  used_[used_count_++] = slot;
+}
+
+void CanAssembler::forget() {
+  for (Slot& slot : slots_) slot.at_ns = AxisSample::kNoTime;
+  gathered_ = 0;
+  ready_count_ = 0;
+  newest_ns_ = AxisSample::kNoTime;
+}
+
+bool CanAssembler::note_unfit(std::size_t slot, const CanFrame& frame, CanFit fit, double value) {
+  if (fit == CanFit::kValue) {
+    // Tools and lines are counts; anything else is a wrong map or a damaged frame.
+    if (slot != kTool && slot != kLine) return false;
+    if (std::round(value) >= 0.0 &&
+        std::round(value) <= static_cast<double>(std::numeric_limits<std::int32_t>::max())) {
+      return false;
+    }
+  }
+  unfit_ = {slot, fit, frame.length, value};
+  return true;
+}
+
+CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t device_ns) {
+  assert(ready_count_ == 0);
+  std::array<Arrival, kSlots> arrivals;
+  std::size_t count = 0;
+  std::uint16_t axes = 0;
+  bool unfit = false;
+  for (std::size_t i = 0; i < used_count_; ++i) {
+    const std::size_t slot = used_[i];
+    const CanReading reading = read_can_signal(frame, slots_[slot].signal);
+    if (reading.fit == CanFit::kOther) continue;
+    if (note_unfit(slot, frame, reading.fit, reading.value)) {
+      unfit = true;
+      continue;
+    }
+    arrivals[count++] = {slot, reading.value};
+    if (slot < kMaxPositions) axes = static_cast<std::uint16_t>(axes | 1U << slot);
+  }
+  if (count == 0) return unfit ? Taken::kUnfit : Taken::kNotMapped;
+
+  bool stepped = false;
+  if (newest_ns_ != AxisSample::kNoTime && device_ns < newest_ns_) {
+    if (newest_ns_ - device_ns <= kLateNs) return Taken::kLate;
+    forget();
+    stepped = true;
+  }
+  if (gathered_ != 0 && ((gathered_ & axes) != 0 || device_ns > gather_end_ns())) {
+    flush();
+  }
+  newest_ns_ = device_ns;
+  for (std::size_t i = 0; i < count; ++i) {
+    slots_[arrivals[i].slot].value = arrivals[i].value;
+    slots_[arrivals[i].slot].at_ns = device_ns;
+  }
+  if (axes != 0) {
+    if (gathered_ == 0) gather_start_ns_ = device_ns;
+    gather_newest_ns_ = device_ns;
+    gathered_ = static_cast<std::uint16_t>(gathered_ | axes);
+    if (gathered_ == mapped_) flush();
+  }
+  if (stepped) return Taken::kClockStepped;
+  return unfit ? Taken::kUnfit : Taken::kTaken;
+}
+
+bool CanAssembler::is_known(const Slot& slot) const {
+  if (slot.at_ns == AxisSample::kNoTime) return false;
+  return slot.max_age_ns == 0 || gather_newest_ns_ - slot.at_ns <= slot.max_age_ns;
+}
+
+void CanAssembler::flush() {
+  if (gathered_ == 0) return;
+  assert(ready_count_ < ready_.size());
+  AxisSample& sample = ready_[ready_count_++];
+  sample = AxisSample{};
+  sample.device_ns = gather_newest_ns_;
+  for (std::size_t i = 0; i < used_count_; ++i) {
+    const Slot& slot = slots_[used_[i]];
+    if (!is_known(slot)) continue;
+    switch (used_[i]) {
+      case kTool:
+        sample.tool = static_cast<std::int32_t>(std::lround(slot.value));
+        break;
+      case kLine:
+        sample.line = static_cast<std::int32_t>(std::lround(slot.value));
+        break;
+      case kSpindle:
+        sample.spindle_rpm = slot.value;
+        break;
+      case kToolOffsetZ:
+        sample.tool_offset_z_mm = slot.value;
+        break;
+      default:
+        sample.position[used_[i]] = slot.value;
+        sample.known = static_cast<std::uint16_t>(sample.known | 1U << used_[i]);
+    }
+  }
+  sample.fresh = gathered_ & sample.known;
+  gathered_ = 0;
+}
+
+bool CanAssembler::next(AxisSample& sample) {
+  if (ready_count_ == 0) return false;
+  sample = ready_[0];
+  ready_[0] = ready_[1];
+  --ready_count_;
+  return true;
+}
+
+std::string CanAssembler::unfit_text() const {
+  const CanSignal& signal = slots_[unfit_.slot].signal;
+  const std::string what = fmt::format("frame {} has ", can_id_text(signal.id, signal.extended));
+  const std::string& name = names_[unfit_.slot];
+  switch (unfit_.fit) {
+    case CanFit::kTooShort:
+      return fmt::format("{}{} bytes, too few for {}: {} bits from bit {} on", what, unfit_.length,
+                         name, signal.bits.length, signal.bits.start_bit);
+    case CanFit::kNotFinite:
+      return fmt::format("{}no finite number in {}; is its type or byte order another?", what,
+                         name);
+    case CanFit::kValue:
+      return fmt::format("{}{} in {}, which must be 0 or above", what, unfit_.value, name);
+    case CanFit::kOther:
+      break;
+  }
+  return {};
+}
+
+}  // namespace kerf

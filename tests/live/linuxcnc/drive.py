@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""The DISPLAY of a headless LinuxCNC: homes it, runs one program to its end, and exits, which ends LinuxCNC.
+
+/usr/bin/python3 by its full path: LinuxCNC's modules belong to the system's Python, not to one that comes first in PATH.
+
+Environment:
+  KERF_LIVE_PROGRAM   the NC file, with its full path
+  KERF_LIVE_RESULT    JSON written at the end: program_s, homed, errors (LinuxCNC's messages)
+  KERF_LIVE_READY     shell command to be waited for after homing, before the program starts (optional)
+  KERF_LIVE_AT_END    shell command to be waited for while the machine still stands at the program's end (optional)
+  KERF_LIVE_LIMIT_S   the program is aborted after this many seconds (300)
+"""
+import json
+import os
+import subprocess
+import sys
+import time
+
+import linuxcnc
+
+POLL_S = 0.02
+STARTUP_LIMIT_S = 60
+
+
+def wait_until(what, condition, limit_s):
+    """Polls, as LinuxCNC has nothing to wait on. False after limit_s."""
+    deadline = time.monotonic() + limit_s
+    while not condition():
+        if time.monotonic() > deadline:
+            print("drive.py: gave up waiting for", what, flush=True)
+            return False
+        time.sleep(POLL_S)
+    return True
+
+
+class Machine:
+    def __init__(self):
+        self.command = linuxcnc.command()
+        self.stat = linuxcnc.stat()
+        self.channel = linuxcnc.error_channel()
+        self.errors = []
+
+    def poll(self):
+        self.stat.poll()
+        message = self.channel.poll()
+        if message:
+            self.errors.append(message[1])
+            print("LinuxCNC:", message[1], flush=True)
+        return self.stat
+
+    def task_is_up(self):
+        # The status is all zero until task has written it the first time.
+        try:
+            stat = self.poll()
+        except linuxcnc.error:
+            return False
+        return stat.linear_units > 0 and stat.axis_mask != 0 and stat.task_state == linuxcnc.STATE_ESTOP
+
+    def switch_on_and_home(self):
+        command = self.command
+        for request, value in (
+            (command.state, linuxcnc.STATE_ESTOP_RESET),
+            (command.state, linuxcnc.STATE_ON),
+            (command.mode, linuxcnc.MODE_MANUAL),
+            (command.teleop_enable, 0),
+            (command.home, -1),
+        ):
+            request(value)
+            command.wait_complete()
+
+    def is_homed(self):
+        stat = self.poll()
+        return all(stat.homed[: stat.joints]) and stat.inpos
+
+    def run(self, program, limit_s):
+        """Seconds that the program took; None if it was cut off."""
+        command = self.command
+        command.mode(linuxcnc.MODE_AUTO)
+        command.wait_complete()
+        command.program_open(program)
+        command.wait_complete()
+        begin = time.monotonic()
+        command.auto(linuxcnc.AUTO_RUN, 0)
+        # Right after AUTO_RUN the status still says idle; a refused program stays idle and has left a message.
+        wait_until(
+            "the start of the program",
+            lambda: self.poll().interp_state != linuxcnc.INTERP_IDLE or self.errors,
+            5,
+        )
+        if not wait_until("the end of the program", self.is_done, limit_s):
+            command.abort()
+            command.wait_complete()
+            return None
+        return time.monotonic() - begin
+
+    def is_done(self):
+        stat = self.poll()
+        return (
+            stat.interp_state == linuxcnc.INTERP_IDLE
+            and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
+            and stat.inpos
+            and stat.queue == 0
+        )
+
+
+def shell(name):
+    if os.environ.get(name):
+        subprocess.run(os.environ[name], shell=True, check=False)
+
+
+def main():
+    machine = Machine()
+    result = {"program_s": None, "homed": False, "errors": machine.errors}
+    if wait_until("task", machine.task_is_up, STARTUP_LIMIT_S):
+        machine.switch_on_and_home()
+        result["homed"] = wait_until("home", machine.is_homed, STARTUP_LIMIT_S)
+    if result["homed"]:
+        shell("KERF_LIVE_READY")
+        limit_s = float(os.environ.get("KERF_LIVE_LIMIT_S", "300"))
+        result["program_s"] = machine.run(os.environ["KERF_LIVE_PROGRAM"], limit_s)
+        shell("KERF_LIVE_AT_END")
+    with open(os.environ["KERF_LIVE_RESULT"], "w", encoding="utf-8") as file:
+        json.dump(result, file)
+    return 0 if result["program_s"] is not None and not machine.errors else 1
+
+
+sys.exit(main())

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "machine_io/modbus/modbus_source.h"
+#include "tests/base/temporary_folder.h"
+#include "tests/machine_io/modbus/faulty_device.h"
+#include "tests/machine_io/modbus/source_watch.h"
+
+namespace kerf {
+namespace {
+
+using std::chrono::milliseconds;
+using Next = PositionSource::Next;
+
+struct Case {
+  Fault fault;
+  const char* name;
+  const char* trouble;
+};
+
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+class RtuFault : public testing::TestWithParam<Case> {};
+
+TEST_P(RtuFault, is_named_gives_no_sample_and_is_over_when_it_ends) {
+  const auto device = FaultyDevice::rtu();
+  const ModbusSettings settings = settings_for(*device, true);
+  ASSERT_TRUE(validate(settings).empty());
+  ModbusSource source(settings);
+  EXPECT_EQ(source.describe(), fmt::format("modbus rtu {} 115200 8N1 unit 1", device->device()));
+  SourceWatch watch(source);
+  ASSERT_TRUE(watch.more_samples(5)) << source.status().trouble;
+  device->set(GetParam().fault);
+  EXPECT_TRUE(watch.trouble_with(GetParam().trouble)) << source.status().trouble;
+  const SourceStatus before = source.status();
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(watch.step(), Next::kNothing);
+  EXPECT_EQ(source.status().samples, before.samples);
+  EXPECT_EQ(source.status().state, SourceState::kConnecting);
+  device->set(Fault::kNone);
+  EXPECT_TRUE(watch.more_samples(20)) << source.status().trouble;
+  EXPECT_EQ(source.status().reconnects, 0u);
+  EXPECT_EQ(device->functions(), 1u << 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RtuFault,
+    testing::Values(
+        Case{Fault::kException1, "exception_1", "answers with exception 1 (Illegal function)"},
+        Case{Fault::kException2, "exception_2", "answers with exception 2 (Illegal data address)"},
+        Case{Fault::kException3, "exception_3", "answers with exception 3 (Illegal data value)"},
+        Case{Fault::kException4, "exception_4",
+             "answers with exception 4 (Slave device or server failure)"},
+        Case{Fault::kSilent, "silent", "holding 0..15: no answer within 100 ms"},
+        Case{Fault::kGarbage, "garbage", "holding 0..15: "},
+        Case{Fault::kHalfFrame, "half_frame", "holding 0..15: no answer within 100 ms"},
+        Case{Fault::kWrongUnit, "wrong_unit", "holding 0..15: Response not from requested slave"},
+        Case{Fault::kWrongFunction, "wrong_function", "holding 0..15: Invalid data"},
+        Case{Fault::kWrongCount, "wrong_count", "holding 0..15: Invalid data"},
+        Case{Fault::kNan, "nan", "Y reads nan, raw 7FF8 0000 0000 0000: not a position"},
+        Case{Fault::kInfinite, "infinite", "Y reads -inf, raw FFF0 0000 0000 0000: not a position"},
+        Case{Fault::kHuge, "huge", "Y reads 1e+30, raw 4629 3E59 39A0 8CEA: not a position"},
+        Case{Fault::kWrongOrder, "wrong_word_order",
+             "positions jump beyond machine limits; is word_order cdab? (X reads "}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+class RtuLate : public testing::TestWithParam<int> {};
+
+TEST_P(RtuLate, an_old_answer_never_passes_for_a_new_one) {
+  const auto device = FaultyDevice::rtu();
+  ModbusSource source(settings_for(*device, true));
+  SourceWatch watch(source);
+  ASSERT_TRUE(watch.more_samples(5)) << source.status().trouble;
+  device->set_late(milliseconds(GetParam()));
+  device->set(Fault::kLate);
+  // SourceWatch judges the age of whatever is handed out in these questions.
+  const int questions = device->questions();
+  EXPECT_TRUE(
+      watch.until([&] { return device->questions() >= questions + 5; }, std::chrono::seconds(60)));
+  EXPECT_EQ(source.status().state, SourceState::kConnecting);
+  EXPECT_TRUE(watch.trouble_with("bytes arrive after timeout_ms 100 has passed; is it too short?"))
+      << source.status().trouble;
+  device->set(Fault::kNone);
+  EXPECT_TRUE(watch.more_samples(20)) << source.status().trouble;
+}
+
+INSTANTIATE_TEST_SUITE_P(Milliseconds, RtuLate, testing::Values(150, 260, 350, 777, 1500));
+
+TEST(ModbusRtu, waits_for_a_line_that_is_absent_at_the_start_and_survives_its_loss) {
+  const TemporaryFolder folder;
+  const std::string line = folder / "line";
+  auto device = FaultyDevice::rtu();
+  ModbusSettings settings = settings_for(*device, true);
+  settings.device = line;
+  ModbusSource source(settings);
+  SourceWatch watch(source);
+  EXPECT_TRUE(watch.trouble_with("line: No such file or directory")) << source.status().trouble;
+  for (int i = 0; i < 10; ++i) {
+    std::filesystem::create_symlink(device->device(), line);
+    ASSERT_TRUE(watch.more_samples(3)) << source.status().trouble;
+    // Pulling the adapter: the kernel takes the line from whoever has it open.
+    std::filesystem::remove(line);
+    device.reset();
+    ASSERT_TRUE(watch.trouble_with("line: No such file or directory")) << source.status().trouble;
+    device = FaultyDevice::rtu();
+  }
+  EXPECT_EQ(source.status().reconnects, 9u);
+}
+
+TEST(ModbusRtu, outlives_fifty_restarts_of_the_device) {
+  const auto device = FaultyDevice::rtu();
+  ModbusSettings settings = settings_for(*device, true);
+  settings.timeout_ms = 20;
+  ModbusSource source(settings);
+  SourceWatch watch(source);
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(watch.more_samples(2)) << "restart " << i << ": " << source.status().trouble;
+    device->kill();
+    ASSERT_TRUE(watch.trouble_with("no answer within 20 ms")) << source.status().trouble;
+    device->start();
+  }
+  ASSERT_TRUE(watch.more_samples(2)) << source.status().trouble;
+  EXPECT_EQ(source.status().reconnects, 0u);
+}
+
+TEST(ModbusRtu, bytes_that_nobody_asked_for_put_the_line_out_of_trust) {
+  const auto device = FaultyDevice::rtu();
+  ModbusSource source(settings_for(*device, true));
+  SourceWatch watch(source);
+  ASSERT_TRUE(watch.more_samples(5));
+  device->chatter();
+  EXPECT_TRUE(watch.trouble_with("bytes arrived without being asked for"))
+      << source.status().trouble;
+  EXPECT_TRUE(watch.more_samples(5));
+}
+
+}  // namespace
+}  // namespace kerf

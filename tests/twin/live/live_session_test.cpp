@@ -1,0 +1,273 @@
+#include "twin/live/live_session.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "stock/cutter/shape_spec.h"
+#include "tests/twin/live/live_shop.h"
+#include "twin/live/live_json.h"
+
+namespace kerf {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Hands out what it is given, then waits or ends.
+class ListedSource final : public PositionSource {
+ public:
+  explicit ListedSource(std::vector<AxisSample> samples, bool ends = true)
+      : samples_(samples.begin(), samples.end()), ends_(ends) {}
+  Next next(AxisSample& sample, std::chrono::milliseconds patience) override {
+    if (!samples_.empty()) {
+      sample = samples_.front();
+      if (sample.host_ns == AxisSample::kNoTime) sample.host_ns = 0;
+      samples_.pop_front();
+      ++status_.samples;
+      status_.state = SourceState::kReading;
+      return Next::kSample;
+    }
+    if (ends_) {
+      status_.state = end_state;
+      return Next::kEnd;
+    }
+    std::this_thread::sleep_for(patience);
+    return Next::kNothing;
+  }
+  const SourceStatus& status() const override { return status_; }
+  std::string describe() const override { return "a list"; }
+
+  SourceState end_state = SourceState::kEnded;
+  SourceStatus status_;
+
+ private:
+  std::deque<AxisSample> samples_;
+  bool ends_;
+};
+
+LiveOptions with_block() {
+  LiveOptions options;
+  options.blank = parse_blank("box:0,0,-10:40,40,0").value();
+  options.stock.cell_mm = 0.1;
+  options.tools.push_back(std::move(parse_tool_argument("1=flat:4").value()));
+  options.speed = std::numeric_limits<double>::infinity();
+  return options;
+}
+
+AxisSample at(double x, double y, double z, double t_s) {
+  AxisSample sample;
+  sample.set(0, x);
+  sample.set(1, y);
+  sample.set(2, z);
+  sample.tool = 1;
+  sample.device_ns = static_cast<std::int64_t>(std::llround(t_s * 1e9));
+  return sample;
+}
+
+struct Told : LiveObserver {
+  void on_status(const LiveStatus& status) override {
+    if (states.empty() || states.back() != status.state) states.push_back(status.state);
+    last = status;
+    if (on_state) on_state(status);
+  }
+  void on_finding(const Finding& finding, const std::vector<std::string>&) override {
+    findings.push_back(finding.id);
+  }
+  void on_warning(const AheadWarning&, const std::vector<std::string>&) override { ++warnings; }
+  std::vector<LiveState> states;
+  std::vector<FindingId> findings;
+  int warnings = 0;
+  LiveStatus last;
+  std::function<void(const LiveStatus&)> on_state;
+};
+
+struct Watched {
+  Outcome outcome = Outcome::kFailed;
+  Diagnostics diagnostics;
+  Told told;
+  std::unique_ptr<LiveSession> session;
+
+  Watched(LiveOptions options, std::unique_ptr<PositionSource> source, std::stop_token stop = {},
+          std::function<void(const LiveStatus&)> on_state = {}) {
+    told.on_state = std::move(on_state);
+    session = LiveSession::open(std::move(options), std::move(source), diagnostics, outcome);
+    if (!session) return;
+    session->set_observer(&told);
+    outcome = session->run(stop, diagnostics);
+  }
+  Report& report() { return session->report(); }
+};
+
+TEST(LiveSession, ALogIsReplayedAndReported) {
+  Watched run(with_block(), std::make_unique<ListedSource>(std::vector{
+                                at(10, 20, 1, 0), at(10, 20, -1, 0.1), at(30, 20, -1, 0.2)}));
+  EXPECT_EQ(run.outcome, Outcome::kFinished);
+  ASSERT_TRUE(run.report().live);
+  EXPECT_EQ(run.report().live->facts.samples, 3U);
+  EXPECT_NEAR(run.report().live->duration_s, 0.2, 1e-9);
+  EXPECT_NEAR(run.report().live->rate_hz, 10, 1e-6);
+  const StockReport& stock = *run.report().stock;
+  EXPECT_NEAR(stock.blank_mm3 - stock.remaining_mm3, kPi * 4 + 80, 0.3);
+  EXPECT_EQ(run.told.states.back(), LiveState::kEnded);
+  const auto json = nlohmann::json::parse(json_text(run.report()));
+  EXPECT_EQ(json["live"]["samples"], 3);
+  EXPECT_NE(summary_text(run.report()).find("source    a list: 3 samples"), std::string::npos);
+}
+
+TEST(LiveSession, TheSameLogGivesTheSameWorkpieceAtAnySpeed) {
+  std::vector<AxisSample> samples;
+  for (int i = 0; i < 300; ++i) {
+    samples.push_back(
+        at(20 + 10 * std::cos(0.1 * i), 20 + 10 * std::sin(0.1 * i), -0.01 * i, 0.001 * i));
+  }
+  std::string digest;
+  for (const double speed : {std::numeric_limits<double>::infinity(), 1.0, 20.0}) {
+    LiveOptions options = with_block();
+    options.speed = speed;
+    const auto start = std::chrono::steady_clock::now();
+    Watched run(std::move(options), std::make_unique<ListedSource>(samples));
+    const double wall_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (speed == 1.0) {
+      EXPECT_GE(wall_s, 0.298);
+    }
+    if (digest.empty()) digest = run.report().stock->digest;
+    EXPECT_EQ(run.report().stock->digest, digest);
+  }
+}
+
+TEST(LiveSession, WhatTheSourceHasLostMakesTheResultLossy) {
+  auto source = std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(10, 20, 2, 0.1)});
+  source->status_.lost = 3;
+  Watched run(with_block(), std::move(source));
+  EXPECT_EQ(run.outcome, Outcome::kLossy);
+  EXPECT_EQ(run.report().live->status.lost, 3U);
+}
+
+TEST(LiveSession, AGapIsAFindingAndALossyResult) {
+  Watched run(with_block(),
+              std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(20, 20, 1, 3)}));
+  EXPECT_EQ(run.outcome, Outcome::kLossy);
+  EXPECT_EQ(run.told.findings, std::vector<FindingId>{FindingId::kSourceGap});
+}
+
+TEST(LiveSession, ASourceThatFailsOrSaysNothingIsAFailureWithItsReason) {
+  auto failed = std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0)});
+  failed->end_state = SourceState::kFailed;
+  failed->status_.trouble = "reading run.csv: Input/output error";
+  Watched run(with_block(), std::move(failed));
+  EXPECT_EQ(run.outcome, Outcome::kFailed);
+  ASSERT_EQ(run.diagnostics.size(), 1U);
+  EXPECT_EQ(run.diagnostics[0].message, "a list: reading run.csv: Input/output error");
+
+  Watched nothing(with_block(), std::make_unique<ListedSource>(std::vector<AxisSample>{}));
+  EXPECT_EQ(nothing.outcome, Outcome::kFailed);
+  EXPECT_EQ(nothing.diagnostics[0].message, "a list: no position has come");
+}
+
+TEST(LiveSession, AMachineThatFallsSilentIsStaleThenLost) {
+  LiveOptions options = with_block();
+  options.speed = 0;
+  options.stale_after_s = 0.05;
+  options.lost_after_s = 0.15;
+  options.for_s = 10;
+  std::stop_source stop;
+  Watched run(
+      std::move(options),
+      std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(10, 20, 0.5, 0.01)}, false),
+      stop.get_token(), [&](const LiveStatus& status) {
+        if (status.state == LiveState::kLost) stop.request_stop();
+      });
+  EXPECT_EQ(run.told.states, (std::vector{LiveState::kLive, LiveState::kStale, LiveState::kLost,
+                                          LiveState::kEnded}));
+  // It was watched to the end that the user set, but the end was not live.
+  EXPECT_EQ(run.outcome, Outcome::kLossy);
+}
+
+TEST(LiveSession, EndsAfterTheTimeAskedFor) {
+  LiveOptions options = with_block();
+  options.speed = 0;
+  options.for_s = 0.1;
+  const auto start = std::chrono::steady_clock::now();
+  Watched run(std::move(options),
+              std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0)}, false));
+  EXPECT_EQ(run.outcome, Outcome::kFinished);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
+}
+
+TEST(LiveSession, WithoutABlankThereIsNothingToCut) {
+  LiveOptions options = with_block();
+  options.blank.reset();
+  Watched run(std::move(options), std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0)}));
+  EXPECT_EQ(run.session, nullptr);
+  EXPECT_EQ(run.outcome, Outcome::kUsageError);
+  ASSERT_EQ(run.diagnostics.size(), 1U);
+  EXPECT_EQ(run.diagnostics[0].message,
+            "no blank is given: without a program there is nothing to guess it from");
+}
+
+TEST(LiveSession, EverySampleGoesThroughTheTap) {
+  std::vector<AxisSample> samples;
+  for (int i = 0; i < 50'000; ++i) samples.push_back(at(20, 20, 5 + 1e-5 * i, 0.001 * i));
+  Diagnostics diagnostics;
+  Outcome outcome = Outcome::kFailed;
+  auto session = LiveSession::open(with_block(), std::make_unique<ListedSource>(samples),
+                                   diagnostics, outcome);
+  std::size_t tapped = 0;
+  session->set_tap([&](const AxisSample&) { ++tapped; });
+  EXPECT_EQ(session->run({}, diagnostics), Outcome::kFinished);
+  EXPECT_EQ(tapped, samples.size());
+  EXPECT_EQ(session->report().live->facts.samples, samples.size());
+  EXPECT_EQ(session->report().live->dropped, 0U);
+}
+
+TEST(SampleQueue, DropsAndCountsWhatIsTooMuch) {
+  SampleQueue queue;
+  const ArrivedSample sample{};
+  for (std::size_t i = 0; i < SampleQueue::kCapacity; ++i) EXPECT_TRUE(queue.push_or_drop(sample));
+  EXPECT_FALSE(queue.push_or_drop(sample));
+  EXPECT_EQ(queue.dropped(), 1U);
+  std::vector<ArrivedSample> out;
+  EXPECT_TRUE(queue.pop_all(out, 0ms));
+  EXPECT_EQ(out.size(), SampleQueue::kCapacity);
+  EXPECT_TRUE(queue.pop_all(out, 0ms));
+  EXPECT_TRUE(out.empty());
+  queue.close();
+  EXPECT_FALSE(queue.pop_all(out, 0ms));
+  EXPECT_FALSE(queue.push_waiting(sample));
+}
+
+TEST(LiveJson, EventsAreLinesOfJson) {
+  LiveStatus status;
+  status.state = LiveState::kStale;
+  status.age_s = 0.7;
+  status.place.known = true;
+  status.place.tip_mm = {1, 2, 3};
+  status.place.tool = 4;
+  const std::string line = status_json(status);
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  const auto json = nlohmann::json::parse(line);
+  EXPECT_EQ(json["event"], "status");
+  EXPECT_EQ(json["state"], "stale");
+  EXPECT_EQ(json["age_ms"], 700);
+  EXPECT_EQ(json["tip_mm"], (std::vector<double>{1, 2, 3}));
+  EXPECT_TRUE(json["line"].is_null());
+  EXPECT_TRUE(json["collision_in_s"].is_null());
+
+  AheadWarning warning;
+  warning.finding.id = FindingId::kRapidContact;
+  warning.finding.source.line = 7;
+  warning.in_s = 2.5;
+  const auto ahead = nlohmann::json::parse(ahead_json(warning, {"part.ngc"}));
+  EXPECT_EQ(ahead["event"], "ahead");
+  EXPECT_EQ(ahead["in_s"], 2.5);
+  EXPECT_EQ(ahead["id"], "rapid-contact");
+  EXPECT_EQ(ahead["file"], "part.ngc");
+  EXPECT_EQ(ahead["line"], 7);
+}
+
+}  // namespace
+}  // namespace kerf

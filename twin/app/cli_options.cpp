@@ -1,0 +1,160 @@
+#include "twin/app/cli_options.h"
+
+namespace kerf {
+namespace {
+
+void add_program_argument(CLI::App& command, ProgramArguments& a) {
+  command
+      .add_option("PROGRAM", a.program,
+                  "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
+      ->required();
+}
+
+void add_program_options(CLI::App& command, ProgramArguments& a) {
+  command
+      .add_option("--ini", a.ini,
+                  "LinuxCNC INI of the machine: limits, speeds, tool table, offsets, startup code")
+      ->type_name("FILE");
+  command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
+      ->type_name("FILE");
+  command
+      .add_option("--interp", a.interp,
+                  "interpreter: bridge (kerf-interp) | text (LinuxCNC's rs274) (default bridge "
+                  "where it is there)")
+      ->type_name("NAME");
+  command.add_option("--block-delete", a.block_delete, "skip lines that begin with / (default on)")
+      ->type_name("on|off");
+  command
+      .add_option("--max-commands", a.max_commands,
+                  "canonical commands after which a program counts as endless (default 50 million, "
+                  "or 4 a line if that is more)")
+      ->type_name("N");
+  command
+      .add_option("--max-seconds", a.max_seconds,
+                  "silent seconds after which a program counts as endless")
+      ->type_name("S");
+}
+
+void add_work_options(CLI::App& command, WorkArguments& a) {
+  command
+      .add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
+      ->type_name("N=SHAPE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--stock", a.stock,
+                  "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
+                  "state:FILE (a "
+                  "saved workpiece); several joined by +")
+      ->type_name("SPEC");
+  command.add_option("--model", a.model, "workpiece model: zmap | auto (default auto)")
+      ->type_name("NAME");
+  command
+      .add_option("--cell", a.cell,
+                  "edge of a cell (default: suits the blank, at most 4 million cells)")
+      ->type_name("MM");
+  command
+      .add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
+      ->type_name("MM");
+  command
+      .add_option("--path", a.path,
+                  "what is cut: programmed | planned, with corners rounded as the machine does "
+                  "under G64 (default programmed; beside a machine whose INI is given: planned)")
+      ->type_name("NAME");
+  command
+      .add_option("--threads", a.threads,
+                  "cutting threads (default: one less than the cores, at most 8)")
+      ->type_name("N");
+  command.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
+      ->type_name("NAME");
+}
+
+void add_output_options(CLI::App& command, OutputPaths& a, std::string& mesh_tolerance) {
+  command.add_option("--json", a.json, "report, schema kerf-report/1")->type_name("FILE");
+  command.add_option("--png", a.png, "picture of the finished part")->type_name("FILE");
+  command.add_option("--stl", a.stl, "finished part as a closed mesh, binary STL")
+      ->type_name("FILE");
+  command.add_option("--ply", a.ply, "the same as binary PLY")->type_name("FILE");
+  command.add_option("--state", a.state, "finished workpiece, for --stock state:FILE")
+      ->type_name("FILE");
+  command
+      .add_option("--mesh-tolerance", mesh_tolerance,
+                  "how far meshes may lie from the model (default 0.01; 0 = every cell)")
+      ->type_name("MM");
+}
+
+void add_replay_options(CLI::App& replay, LiveArguments& a) {
+  replay
+      .add_option("LOG", a.log,
+                  "recording of kerf, CSV with a header, halsampler file, candump -l file, or - "
+                  "(standard input)")
+      ->required();
+  replay.add_option("--speed", a.speed, "program seconds a second, or max (default 1)")
+      ->type_name("X|max");
+  replay
+      .add_option("--pins", a.pins,
+                  "halsampler: the pins of its columns, or the .hal file that set it up")
+      ->type_name("PIN,PIN..|FILE.hal");
+}
+
+void add_shadow_options(CLI::App& shadow, LiveArguments& a) {
+  shadow.add_option("--record", a.record, "record what comes, for kerf replay")->type_name("FILE");
+  shadow.add_option("--cpu-limit", a.cpu_limit, "share of one CPU that may be used (default all)")
+      ->type_name("PERCENT");
+  shadow.add_option("--memory-limit", a.memory_limit, "memory that may be used (default all)")
+      ->type_name("MB");
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& run, RunArguments& a) {
+  add_program_argument(run, a.source);
+  add_program_options(run, a.source);
+  add_work_options(run, a.work);
+  run.add_option("--from-line", a.from_line,
+                 "cut what comes before line N without a word, report from there")
+      ->type_name("N");
+  run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
+      ->type_name("N");
+  add_output_options(run, a.outputs, a.mesh_tolerance);
+  run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
+}
+
+void add_canon_options(CLI::App& canon, CanonArguments& a) {
+  add_program_argument(canon, a.source);
+  add_program_options(canon, a.source);
+  canon.add_option("--out", a.out, "where to (default -, standard output)")->type_name("FILE");
+  canon.add_flag("--quiet", a.quiet, "no progress bar, no warnings");
+}
+
+void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
+  if (command == LiveCommand::kReplay) add_replay_options(live, a);
+  live.add_option("-c,--config", a.config, "configuration: source, machine, tools, stock")
+      ->type_name("FILE");
+  live.add_option("--set", a.sets, "any key of the configuration, repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  live.add_option("--program", a.source.program,
+                  "the program that the machine runs: its path is cut, what it does beside it is "
+                  "found, and what it would hit is told beforehand")
+      ->type_name("FILE");
+  add_program_options(live, a.source);
+  add_work_options(live, a.work);
+  if (command == LiveCommand::kShadow) add_shadow_options(live, a);
+  live.add_option("--for", a.for_s, "end after so long")->type_name("SECONDS");
+  live.add_option("--gap", a.gap,
+                  "the way between two positions with a gap between them: mark | cut | ignore "
+                  "(default mark: a finding, not cut)")
+      ->type_name("POLICY");
+  live.add_option("--look-ahead", a.look_ahead,
+                  "how far ahead of the machine the program is run (default 10, 0 = not)")
+      ->type_name("SECONDS");
+  live.add_option("--off-path", a.off_path,
+                  "how far from the program's path the tip may be (default 0.5)")
+      ->type_name("MM");
+  live.add_option("--events", a.events, "states, findings and warnings as JSON lines")
+      ->type_name("FILE");
+  add_output_options(live, a.outputs, a.mesh_tolerance);
+  live.add_flag("--quiet", a.quiet, "errors and warnings of collisions only");
+}
+
+}  // namespace kerf

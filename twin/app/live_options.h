@@ -1,0 +1,65 @@
+// twin/app/live_options.h - the command lines of `kerf shadow` and `kerf replay`, from text and
+// configuration to checked values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "twin/app/outputs.h"
+#include "twin/app/program_options.h"
+#include "twin/app/work_options.h"
+#include "twin/config/live_config.h"
+#include "twin/live/live_session.h"
+
+namespace kerf {
+
+/// The arguments as written. Empty = not given.
+struct LiveArguments {
+  ProgramArguments source;  ///< source.program is --program
+  WorkArguments work;
+  std::string config;
+  std::vector<std::string> sets;
+  std::string log;     ///< replay
+  std::string speed;   ///< replay
+  std::string pins;    ///< replay
+  std::string record;  ///< shadow
+  std::string for_s;
+  std::string gap;
+  std::string look_ahead;
+  std::string off_path;
+  std::string events;
+  std::string cpu_limit;     ///< shadow
+  std::string memory_limit;  ///< shadow
+  std::string mesh_tolerance;
+  OutputPaths outputs;
+  bool quiet = false;
+};
+
+/// The same, understood.
+struct LiveRequest {
+  LiveConfig config;
+  LiveOptions options;  ///< all but the frame, which the source has a say in
+  bool inch_machine = false;
+  std::string joint_letters;   ///< of the INI
+  std::string parameter_path;  ///< of the INI
+  OutputPaths outputs;
+  std::string record;
+  std::string events;
+  double mesh_tolerance_mm = 0.01;
+  double cpu_limit_percent = 0;  ///< 0: none
+  double memory_limit_mb = 0;    ///< 0: none
+  bool quiet = false;
+};
+
+enum class LiveCommand { kShadow, kReplay };
+
+/// All faults at once, as diagnostics. What the command line says goes before what the
+/// configuration says.
+LiveRequest understand_live(const LiveArguments& arguments, LiveCommand command,
+                            Diagnostics& diagnostics);
+
+/// How the samples of `source` are to be read: completes request.options.cutting.
+void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);
+
+}  // namespace kerf

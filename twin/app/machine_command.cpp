@@ -1,0 +1,38 @@
+#include "twin/app/machine_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "twin/app/exit_code.h"
+
+namespace kerf {
+
+int machine_command(int argc, char** argv) {
+  constexpr const char* kName = "kerf-machine";
+  std::error_code ignored;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::filesystem::path folder = self.parent_path();
+  std::string name = kName;
+  std::vector<char*> arguments(argv, argv + argc);
+  arguments[0] = name.data();
+  arguments.push_back(nullptr);
+  for (const auto& place : {folder / kName, folder / "../lib/kerf" / kName}) {
+    execv(place.c_str(), arguments.data());
+  }
+  execvp(kName, arguments.data());
+  Diagnostic d;
+  d.message = fmt::format("{}: {}", kName, std::strerror(errno));
+  d.hint = "it is built and installed beside kerf";
+  fmt::print(stderr, "{}", to_string(d));
+  return kExitFailure;
+}
+
+}  // namespace kerf

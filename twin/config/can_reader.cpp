@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "machine_io/can/dbc_file.h"
+#include "twin/config/config_reader.h"
+
+namespace kerf {
+namespace {
+
+/// The DBC file that source.dbc names, read when the first signal asks for it.
+class DbcShelf {
+ public:
+  explicit DbcShelf(const GroupReader& source) : source_(source) {}
+
+  /// False: there is none; that has been reported.
+  bool open(ConfigNode& asking) {
+    if (!source_.has("dbc")) {
+      source_.faults().at_value(asking, "needs a DBC file, and source.dbc names none");
+      return false;
+    }
+    ConfigNode* const node = source_.find("dbc");
+    if (node == nullptr) return false;
+    if (!file_) {
+      file_ = read_dbc_file(*source_.path("dbc"), said_);
+      if (has_error(said_) && file_->signals().empty()) {
+        node->faulty = true;
+        tell(Severity::kError);
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const DbcFile& file() const { return *file_; }
+
+  /// A file may have faults where no signal of the map is: then they are warnings.
+  void finish(bool all_found) {
+    if (!file_) {
+      if (ConfigNode* const node = source_.find("dbc")) {
+        source_.faults().at_key(*node, "no key of the map has a signal of it");
+      }
+      return;
+    }
+    tell(all_found ? Severity::kWarning : Severity::kError);
+  }
+
+ private:
+  void tell(Severity gravest) {
+    for (Diagnostic& one : said_) {
+      if (one.severity == Severity::kError) one.severity = gravest;
+      source_.faults().diagnostics().push_back(std::move(one));
+    }
+    said_.clear();
+  }
+
+  const GroupReader& source_;
+  std::optional<DbcFile> file_;
+  Diagnostics said_;
+};
+
+/// Reports keys that say what another key says already.
+void refuse_beside(const GroupReader& item, std::string_view chosen,
+                   std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) {
+    if (ConfigNode* const node = item.find(key)) {
+      item.faults().at_key(*node, fmt::format("has no place beside {}", chosen));
+    }
+  }
+}
+
+int start_bit_of(const GroupReader& group, CanEndian endian) {
+  if (group.find("byte") != nullptr) refuse_beside(group, "byte", {"bit"});
+  int byte = 0;
+  group.number("byte", byte);
+  int bit = can_start_of_byte(byte, endian);
+  group.number("bit", bit);
+  return bit;
+}
+
+CanEndian endian_of(const GroupReader& group) {
+  return group.word("endian") == 1 ? CanEndian::kBig : CanEndian::kLittle;
+}
+
+void read_type(const GroupReader& item, CanSignal& signal) {
+  const std::string name = item.text("type").value_or("int32");
+  const CanTypeName type = can_type_named(name).value_or(CanTypeName{CanType::kSigned, 32});
+  signal.type = type.type;
+  signal.bits.length = type.length;
+  ConfigNode* const length = item.find("length");
+  if (length != nullptr) {
+    if (type.length != 0 && static_cast<int>(length->number) != type.length) {
+      item.faults().at_value(*length, fmt::format("{} is not allowed; {} has {} bits",
+                                                  length->scalar, name, type.length));
+    }
+    signal.bits.length = static_cast<int>(length->number);
+  } else if (type.length == 0) {
+    item.missing("length", fmt::format("1 to 64 (bits), as {} has no length of its own", name));
+    signal.bits.length = 8;
+  }
+}
+
+void read_mux(const GroupReader& mux, CanSignal& signal) {
+  if (!mux.is_there()) return;
+  mux.missing("value", "the number that the bits must hold");
+  CanMux out;
+  out.bits.endian = endian_of(mux);
+  out.bits.start_bit = start_bit_of(mux, out.bits.endian);
+  mux.number("length", out.bits.length);
+  mux.number("value", out.value);
+  signal.mux = out;
+}
+
+CanSignal read_raw(const GroupReader& item) {
+  CanSignal signal;
+  item.missing("id", "the id of the frame, as 0x181",
+               "or preset: cia402, or signal: NAME of a DBC file");
+  item.number("id", signal.id);
+  item.number("extended", signal.extended);
+  signal.bits.endian = endian_of(item);
+  signal.bits.start_bit = start_bit_of(item, signal.bits.endian);
+  read_type(item, signal);
+  read_mux(item.group("mux"), signal);
+  return signal;
+}
+
+CanSignal read_preset(const GroupReader& item) {
+  const bool odrive = item.word("preset") == 1;
+  const int least = odrive ? 0 : 1;
+  const int most = odrive ? 63 : 127;
+  const std::string name = *item.text("preset");
+  item.missing("node", fmt::format("the drive's node id, {} to {}", least, most));
+  item.missing("scale", odrive ? "mm or degrees per turn" : "mm or degrees per count");
+  refuse_beside(item, "preset",
+                {"signal", "id", "extended", "byte", "bit", "length", "type", "endian", "mux"});
+  int node = least;
+  item.number("node", node);
+  if (node < least || node > most) {
+    item.faults().at_value(
+        *item.find("node"),
+        fmt::format("{} is not allowed; must be {} to {} for {}", node, least, most, name));
+    node = least;
+  }
+  const auto id = static_cast<std::uint8_t>(node);
+  return odrive ? odrive_position(id, 1) : cia402_position(id, 1);
+}
+
+std::optional<CanSignal> read_dbc_signal(const GroupReader& item, DbcShelf& shelf) {
+  refuse_beside(item, "signal",
+                {"id", "extended", "byte", "bit", "length", "type", "endian", "mux", "node"});
+  ConfigNode* const node = item.find("signal");
+  if (!shelf.open(*node)) return std::nullopt;
+  const Result<DbcSignal> found = shelf.file().find(node->scalar);
+  if (!found) {
+    item.faults().at_value(*node, found.error());
+    return std::nullopt;
+  }
+  return found->signal;
+}
+
+/// Nothing where the signal could not be found; that has been reported.
+std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, double mm_per_unit) {
+  std::optional<CanSignal> signal;
+  if (item.has("preset")) {
+    if (item.find("preset") != nullptr) signal = read_preset(item);
+  } else if (item.has("signal")) {
+    if (item.find("signal") != nullptr) signal = read_dbc_signal(item, shelf);
+  } else {
+    if (ConfigNode* const node = item.find("node")) {
+      item.faults().at_key(*node, "is for a preset, and there is none");
+    }
+    signal = read_raw(item);
+  }
+  if (!signal) return std::nullopt;
+  double scale = 1;
+  double offset = 0;
+  item.number("scale", scale);
+  item.number("offset", offset);
+  signal->scale *= scale * mm_per_unit;
+  signal->offset = (signal->offset * scale + offset) * mm_per_unit;
+  item.number("max_age_ms", signal->max_age_ms);
+  return signal;
+}
+
+}  // namespace
+
+void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& map) {
+  source.number("gather_ms", map.gather_ms);
+  if (reading.kind == CoordinateKind::kJoints) {
+    for (std::size_t i = 0; i < kMaxPositions; ++i) map.axis_keys[i] = fmt::format("J{}", i);
+  }
+  DbcShelf shelf(source);
+  bool all_found = true;
+  for (const MapItem& item : items_of(source.group("map"), reading)) {
+    if (item.name == "counter") {
+      source.faults().at_key(*item.group.node(), "only a modbus source has a counter",
+                             "a CAN drive that is silent is found by max_age_ms");
+      continue;
+    }
+    const bool length = item.name == "tool_offset_z" && reading.inch;
+    const double mm_per_unit = item.position ? reading.mm_per_unit(*item.position)
+                               : length      ? kMmPerInch
+                                             : 1;
+    const std::optional<CanSignal> signal = read_signal(item.group, shelf, mm_per_unit);
+    if (!signal) {
+      all_found = false;
+      continue;
+    }
+    if (item.position) map.axes[*item.position] = signal;
+    if (item.name == "tool") map.tool = signal;
+    if (item.name == "line") map.line = signal;
+    if (item.name == "spindle") map.spindle = signal;
+    if (item.name == "tool_offset_z") map.tool_offset_z = signal;
+  }
+  shelf.finish(all_found);
+}
+
+void read_can(const GroupReader& source, const MapReading& reading, CanSourceOptions& options) {
+  source.missing("interface", "the name of a CAN interface", "as in can0");
+  if (const std::optional<std::string> name = source.text("interface")) options.interface = *name;
+  source.number("receive_buffer_bytes", options.receive_buffer_bytes);
+  source.missing("map", "a group with at least one axis", "as in X: {id: 0x181, type: int32}");
+  read_can_map(source, reading, options.map);
+  report_faults(validate(options), source, reading);
+}
+
+}  // namespace kerf

@@ -1,0 +1,264 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "twin/config/config_reader.h"
+#include "twin/config/live_config.h"
+
+namespace kerf {
+namespace {
+
+/// A text that YAML gives back as it is: bare if that is safe, else in double quotes.
+std::string quoted(const std::string& text) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '/' || c == '-';
+  };
+  const bool safe = !text.empty() && text != "null" && text != "Null" && text != "NULL" &&
+                    text.front() != '-' && text.front() != '.' &&
+                    std::all_of(text.begin(), text.end(), is_plain);
+  if (safe) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+/// Seconds as milliseconds, without what the division into seconds left behind.
+double milliseconds(double seconds) { return std::round(seconds * 1e9) / 1e6; }
+
+class Printer {
+ public:
+  void open(std::string_view key) {
+    line(fmt::format("{}:", key));
+    ++depth_;
+  }
+  void close() { --depth_; }
+  template <class Value>
+  void put(std::string_view key, const Value& value) {
+    line(fmt::format("{}: {}", key, value));
+  }
+  void text(std::string_view key, const std::string& value) { put(key, quoted(value)); }
+  void text(std::string_view key, const std::optional<std::string>& value) {
+    if (value) text(key, *value);
+  }
+  void line(const std::string& text) { out += std::string(2 * depth_, ' ') + text + "\n"; }
+  std::string out;
+
+ private:
+  std::size_t depth_ = 0;
+};
+
+const char* name_of(ToolLengthFrom from) {
+  constexpr std::array kNames{"auto", "source", "program", "table", "none"};
+  return kNames[static_cast<std::size_t>(from)];
+}
+
+void print_machine(Printer& printer, const ConfigMachine& machine) {
+  printer.open("machine");
+  printer.text("ini", machine.ini);
+  printer.text("tool_table", machine.tool_table);
+  if (!machine.joints.empty()) printer.text("joints", machine.joints);
+  if (machine.work_offset) {
+    printer.open("work_offset");
+    printer.put("x", machine.work_offset->g5x_mm.x);
+    printer.put("y", machine.work_offset->g5x_mm.y);
+    printer.put("z", machine.work_offset->g5x_mm.z);
+    printer.put("rotation", machine.work_offset->rotation_deg);
+    printer.close();
+  }
+  printer.put("tool_length", name_of(machine.tool_length));
+  if (machine.tool) printer.put("tool", *machine.tool);
+  if (machine.max_mm_per_min) printer.put("max_speed_mm_per_min", *machine.max_mm_per_min);
+  printer.close();
+}
+
+void print_work(Printer& printer, const LiveConfig& config) {
+  if (!config.tools.empty()) {
+    printer.open("tools");
+    for (const ToolShapeArgument& tool : config.tools) {
+      printer.text(fmt::format("{}", tool.tool), tool.cutter.spec());
+    }
+    printer.close();
+  }
+  printer.open("stock");
+  if (config.stock.blank) printer.text("blank", config.stock.blank_spec);
+  if (config.stock.cell_mm) printer.put("cell_mm", *config.stock.cell_mm);
+  printer.put("margin_mm", config.stock.margin_mm);
+  printer.close();
+  printer.open("follow");
+  printer.text("program", config.follow.program);
+  if (config.follow.planned_path) {
+    printer.put("path", *config.follow.planned_path ? "planned" : "programmed");
+  }
+  printer.put("off_path_mm", config.follow.options.tolerance_mm);
+  printer.put("look_ahead_s", config.follow.look_ahead_s);
+  printer.close();
+}
+
+std::string register_text(const ModbusRegister& one) {
+  return fmt::format("register: {}, table: {}, type: {}, word_order: {}, scale: {}, offset: {}",
+                     one.address, kerf::name_of(one.table), kerf::name_of(one.type),
+                     kerf::name_of(one.order), one.scale, one.offset);
+}
+
+std::string item_key(CoordinateKind kind, std::size_t index) {
+  return kind == CoordinateKind::kJoints ? fmt::format("J{}", index)
+                                         : std::string(1, kAllAxes[index]);
+}
+
+std::string bits_text(const CanBits& bits) {
+  return fmt::format("bit: {}, length: {}, endian: {}", bits.start_bit, bits.length,
+                     bits.endian == CanEndian::kBig ? "big" : "little");
+}
+
+std::string signal_text(const CanSignal& signal) {
+  constexpr std::array kTypes{"uint", "int", "float32", "float64"};
+  std::string text = fmt::format(
+      "id: 0x{:X}, extended: {}, type: {}, {}, ", signal.id, signal.extended ? "yes" : "no",
+      kTypes[static_cast<std::size_t>(signal.type)], bits_text(signal.bits));
+  if (signal.mux) {
+    text += fmt::format("mux: {{{}, value: {}}}, ", bits_text(signal.mux->bits), signal.mux->value);
+  }
+  return text + fmt::format("scale: {}, offset: {}, max_age_ms: {}", signal.scale, signal.offset,
+                            signal.max_age_ms);
+}
+
+void print_can_map(Printer& printer, const CanMap& map, CoordinateKind kind) {
+  printer.put("gather_ms", map.gather_ms);
+  printer.open("map");
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    if (!map.axes[i]) continue;
+    printer.line(fmt::format("{}: {{{}}}", item_key(kind, i), signal_text(*map.axes[i])));
+  }
+  const auto other = [&](const char* key, const std::optional<CanSignal>& signal) {
+    if (signal) printer.line(fmt::format("{}: {{{}}}", key, signal_text(*signal)));
+  };
+  other("tool", map.tool);
+  other("line", map.line);
+  other("spindle", map.spindle);
+  other("tool_offset_z", map.tool_offset_z);
+  printer.close();
+}
+
+/// What each kind of source adds below the common keys.
+struct SourcePrinter {
+  Printer& printer;
+  CoordinateKind kind;
+
+  void operator()(const std::monostate&) const {}
+
+  void operator()(const ModbusSettings& s) const {
+    if (s.rtu) {
+      printer.open("rtu");
+      printer.text("device", s.device);
+      printer.put("baud", s.baud);
+      printer.put("parity", s.parity == 'E' ? "even" : s.parity == 'O' ? "odd" : "none");
+      printer.put("data_bits", s.data_bits);
+      printer.put("stop_bits", s.stop_bits);
+      printer.close();
+    } else {
+      const bool v6 = s.host.find(':') != s.host.npos;
+      printer.text("tcp", fmt::format("{}{}{}:{}", v6 ? "[" : "", s.host, v6 ? "]" : "", s.port));
+    }
+    printer.put("unit", s.unit);
+    printer.put("poll_hz", s.poll_hz);
+    printer.put("timeout_ms", s.timeout_ms);
+    printer.put("max_gap", s.max_gap);
+    printer.open("map");
+    for (std::size_t i = 0; i < kMaxPositions; ++i) {
+      if (!s.axes[i]) continue;
+      std::string text = register_text(*s.axes[i]);
+      if (s.ranges[i].min) text += fmt::format(", min: {}", *s.ranges[i].min);
+      if (s.ranges[i].max) text += fmt::format(", max: {}", *s.ranges[i].max);
+      text += fmt::format(", max_speed: {}", s.ranges[i].max_speed_per_s);
+      printer.line(fmt::format("{}: {{{}}}", item_key(kind, i), text));
+    }
+    const auto other = [&](const char* key, const std::optional<ModbusRegister>& one) {
+      if (one) printer.line(fmt::format("{}: {{{}}}", key, register_text(*one)));
+    };
+    other("tool", s.tool);
+    other("line", s.line);
+    other("spindle", s.spindle);
+    other("tool_offset_z", s.tool_offset_z);
+    other("counter", s.counter);
+    printer.close();
+  }
+
+  void operator()(const CanSourceOptions& options) const {
+    printer.text("interface", options.interface);
+    printer.put("receive_buffer_bytes", options.receive_buffer_bytes);
+    print_can_map(printer, options.map, kind);
+  }
+
+  void operator()(const HalSettings& settings) const {
+    printer.put("rate_hz", settings.rate_hz);
+    if (!settings.kerf_hal_path.empty()) printer.text("kerf_hal_path", settings.kerf_hal_path);
+  }
+
+  void operator()(const LogSettings& settings) const {
+    constexpr std::array kFormats{"auto", "recording", "csv", "halsampler", "candump"};
+    printer.text("file", settings.path);
+    printer.put("format", kFormats[static_cast<std::size_t>(settings.format)]);
+    if (!settings.pins.empty()) {
+      std::string pins;
+      for (const std::string& pin : settings.pins) {
+        pins += (pins.empty() ? "" : ", ") + quoted(pin);
+      }
+      printer.put("pins", "[" + pins + "]");
+    }
+    if (settings.format == LogFormat::kHalsampler) printer.put("period_s", settings.period_s);
+    if (!settings.can_interface.empty()) printer.text("interface", settings.can_interface);
+    if (settings.can_map) print_can_map(printer, *settings.can_map, kind);
+  }
+};
+
+bool in_inches(const ConfigSource& source) {
+  if (const auto* const hal = std::get_if<HalSettings>(&source)) return hal->mm_per_unit != 1;
+  if (const auto* const log = std::get_if<LogSettings>(&source)) return log->unit == LogUnit::kInch;
+  return false;
+}
+
+void print_source(Printer& printer, const LiveConfig& config) {
+  if (std::holds_alternative<std::monostate>(config.source)) return;
+  constexpr std::array kTypes{"", "modbus", "can", "hal", "log"};
+  constexpr std::array kGaps{"mark", "cut", "ignore"};
+  const ConfigSourceCommon& common = config.common;
+  printer.open("source");
+  printer.put("type", kTypes[config.source.index()]);
+  printer.put("stale_after_ms", milliseconds(common.stale_after_s));
+  printer.put("lost_after_ms", milliseconds(common.lost_after_s));
+  printer.put("gap", kGaps[static_cast<std::size_t>(common.gap)]);
+  if (common.frame) {
+    printer.put("frame", *common.frame == CoordinateFrame::kMachine ? "machine" : "workpiece");
+  }
+  printer.put("units", in_inches(config.source) ? "inch" : "mm");
+  if (common.coordinates) {
+    printer.put("coordinates", *common.coordinates == CoordinateKind::kAxes ? "axes" : "joints");
+  }
+  std::visit(SourcePrinter{printer, common.coordinates.value_or(CoordinateKind::kAxes)},
+             config.source);
+  printer.close();
+}
+
+}  // namespace
+
+std::string effective_yaml(const LiveConfig& config) {
+  Printer printer;
+  print_machine(printer, config.machine);
+  print_work(printer, config);
+  print_source(printer, config);
+  return std::move(printer.out);
+}
+
+}  // namespace kerf

@@ -1,0 +1,167 @@
+#include "twin/config/config_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <utility>
+
+#include "stock/cutter/scan.h"
+#include "stock/zmap/zmap.h"
+
+namespace kerf {
+namespace {
+
+void read_work_offset(const GroupReader& offset, ConfigMachine& machine) {
+  if (!offset.is_there()) return;
+  WorkpieceFrame frame;
+  offset.number("x", frame.g5x_mm.x);
+  offset.number("y", frame.g5x_mm.y);
+  offset.number("z", frame.g5x_mm.z);
+  offset.number("rotation", frame.rotation_deg);
+  machine.work_offset = frame;
+}
+
+void read_joints(const GroupReader& machine, std::string& joints) {
+  ConfigNode* const node = machine.find("joints");
+  if (node == nullptr) return;
+  std::string letters = node->scalar;
+  for (char& c : letters) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  if (letters.size() > kMaxPositions || letters.find_first_not_of(kAllAxes) != letters.npos) {
+    machine.faults().at_value(
+        *node,
+        fmt::format("'{}' is not allowed; must be 1 to {} letters of {}, one a joint", node->scalar,
+                    kMaxPositions, kAllAxes),
+        "XYZ: joint 0 moves X, joint 1 Y, joint 2 Z");
+    return;
+  }
+  joints = letters;
+}
+
+void read_machine(const GroupReader& machine, ConfigMachine& out) {
+  out.ini = machine.path("ini");
+  out.tool_table = machine.path("tool_table");
+  read_joints(machine, out.joints);
+  read_work_offset(machine.group("work_offset"), out);
+  constexpr std::array kFrom{ToolLengthFrom::kAuto, ToolLengthFrom::kSource,
+                             ToolLengthFrom::kProgram, ToolLengthFrom::kTable,
+                             ToolLengthFrom::kNone};
+  if (const int word = machine.word("tool_length"); word >= 0) {
+    out.tool_length = kFrom[static_cast<std::size_t>(word)];
+  }
+  machine.number("tool", out.tool);
+  machine.number("max_speed_mm_per_min", out.max_mm_per_min);
+}
+
+/// Why the Z-map cannot use it; empty: it can.
+std::string trouble_with(const ToolShapeArgument& tool,
+                         const std::vector<ToolShapeArgument>& others) {
+  if (tool.tool == 0) return "tool 0 is the empty spindle; numbers begin at 1";
+  for (const ToolShapeArgument& other : others) {
+    if (other.tool == tool.tool) return fmt::format("tool {} is given twice", tool.tool);
+  }
+  if (tool.cutter.undercuts()) {
+    return fmt::format("{} cuts undercuts, which the Z-map cannot hold", tool.cutter.spec());
+  }
+  if (const Done fit = ZMap::can_cut(tool.cutter); !fit) return fit.error();
+  return {};
+}
+
+void read_tools(const GroupReader& tools, std::vector<ToolShapeArgument>& out) {
+  if (!tools.is_there()) return;
+  for (const auto& node : tools.node()->children) {
+    if (node->faulty) continue;
+    Result<ToolShapeArgument> tool = parse_tool_argument(
+        fmt::format("{}={}", node->key, resolved_spec(*node, "profile:", tools.faults())));
+    const std::string trouble = tool ? trouble_with(*tool, out) : tool.error();
+    if (trouble.empty()) {
+      out.push_back(std::move(tool.value()));
+    } else {
+      tools.faults().at_value(*node, fmt::format("'{}': {}", shown(node->scalar), trouble));
+    }
+  }
+}
+
+void read_stock(const GroupReader& stock, ConfigStock& out) {
+  stock.number("cell_mm", out.cell_mm);
+  stock.number("margin_mm", out.margin_mm);
+  ConfigNode* const node = stock.find("blank");
+  if (node == nullptr) return;
+  const std::string spec = resolved_spec(*node, "state:", stock.faults());
+  Result<Blank> blank = parse_blank(spec);
+  if (!blank) {
+    stock.faults().at_value(*node, blank.error());
+    return;
+  }
+  out.blank = std::move(blank.value());
+  out.blank_spec = spec;
+}
+
+void read_follow(const GroupReader& follow, ConfigFollow& out) {
+  out.program = follow.path("program");
+  if (const int word = follow.word("path"); word >= 0) out.planned_path = word == 1;
+  follow.number("off_path_mm", out.options.tolerance_mm);
+  follow.number("look_ahead_s", out.look_ahead_s);
+}
+
+}  // namespace
+
+ConfigNode* GroupReader::find(std::string_view key) const {
+  ConfigNode* const node = group_ == nullptr ? nullptr : group_->child(key);
+  return node == nullptr || node->faulty ? nullptr : node;
+}
+
+bool GroupReader::has(std::string_view key) const {
+  return group_ != nullptr && group_->child(key) != nullptr;
+}
+
+GroupReader GroupReader::group(std::string_view key) const { return {find(key), faults_}; }
+
+void GroupReader::seconds(std::string_view key, double& out_s) const {
+  if (const ConfigNode* const node = find(key)) out_s = node->number / 1000;
+}
+
+std::optional<std::string> GroupReader::text(std::string_view key) const {
+  const ConfigNode* const node = find(key);
+  return node == nullptr ? std::nullopt : std::optional(node->scalar);
+}
+
+std::optional<std::string> GroupReader::path(std::string_view key) const {
+  const ConfigNode* const node = find(key);
+  return node == nullptr ? std::nullopt
+                         : std::optional(resolved_path(*node, node->scalar, faults_));
+}
+
+int GroupReader::word(std::string_view key) const {
+  const ConfigNode* const node = find(key);
+  return node == nullptr ? -1 : static_cast<int>(node->number);
+}
+
+void GroupReader::missing(std::string_view key, const std::string& what, std::string hint) const {
+  if (group_ == nullptr || has(key)) return;
+  faults_.at_key(*group_, fmt::format("{} is missing; must be {}", key, what), std::move(hint));
+}
+
+std::string resolved_path(const ConfigNode& node, const std::string& path,
+                          const ConfigFaults& faults) {
+  if (node.from_set || path.empty() || path.front() == '/' || path == "-") return path;
+  const std::filesystem::path folder = std::filesystem::path(faults.text().path()).parent_path();
+  return folder.empty() ? path : (folder / path).string();
+}
+
+std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
+                          const ConfigFaults& faults) {
+  const std::string_view text = trim(node.scalar);
+  if (to_lower(text.substr(0, prefix.size())) != prefix) return std::string(text);
+  const std::string file(trim(text.substr(prefix.size())));
+  return std::string(prefix) + resolved_path(node, file, faults);
+}
+
+void read_workshop(const GroupReader& root, LiveConfig& config) {
+  read_machine(root.group("machine"), config.machine);
+  read_tools(root.group("tools"), config.tools);
+  read_stock(root.group("stock"), config.stock);
+  read_follow(root.group("follow"), config.follow);
+}
+
+}  // namespace kerf

@@ -1,0 +1,112 @@
+// twin/config/live_config.h - the configuration file (--config): read, checked, printed again.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/motion.h"
+#include "machine_io/can/can_socket_source.h"
+#include "machine_io/hal/hal_source.h"
+#include "machine_io/logs/log_source.h"
+#include "machine_io/modbus/modbus_settings.h"
+#include "machine_io/recorder.h"
+#include "stock/blank.h"
+#include "stock/cutter/shape_spec.h"
+#include "twin/live/live_cutter.h"
+#include "twin/live/live_frame.h"
+#include "twin/live/path_follower.h"
+
+namespace kerf {
+
+/// `machine:` What is not given is empty, and comes from the command line, the INI or the program.
+struct ConfigMachine {
+  std::optional<std::string> ini;         ///< path
+  std::optional<std::string> tool_table;  ///< path
+  /// The axis that each joint moves, of XYZABCUVW: "XYZ", "XYYZ". Empty: not given.
+  std::string joints;
+  /// Where the work zero lies in the machine, mm and degrees: g5x_mm and rotation_deg are set.
+  std::optional<WorkpieceFrame> work_offset;
+  ToolLengthFrom tool_length = ToolLengthFrom::kAuto;
+  std::optional<int> tool;               ///< in the spindle, where the source does not say
+  std::optional<double> max_mm_per_min;  ///< positions that need more are a gap
+};
+
+/// `stock:`
+struct ConfigStock {
+  std::optional<Blank> blank;
+  std::string blank_spec;         ///< the text that `blank` was read from; empty without one
+  std::optional<double> cell_mm;  ///< grid size
+  double margin_mm = 5;           ///< around a blank guessed from the program
+};
+
+/// `follow:`
+struct ConfigFollow {
+  std::optional<std::string> program;  ///< path
+  std::optional<bool> planned_path;    ///< what is cut; not given: the command's default
+  FollowOptions options;               ///< tolerance_mm is off_path_mm
+  double look_ahead_s = 10;            ///< LiveCutOptions::guard_s; 0: not
+};
+
+/// What all kinds of source have in common.
+struct ConfigSourceCommon {
+  double stale_after_s = 0.5;  ///< also LiveCutOptions::gap_s: what is a gap between two samples
+  double lost_after_s = 2.0;   ///< above stale_after_s
+  GapPolicy gap = GapPolicy::kMark;
+  /// Not given: what a recording's head says, else the machine's.
+  std::optional<CoordinateFrame> frame;
+  /// What a map means: keys X..W are axes, keys J0..J8 joints. Of HAL always joints. A log whose
+  /// columns have names says it itself.
+  std::optional<CoordinateKind> coordinates;
+};
+
+using ConfigSource =
+    std::variant<std::monostate, ModbusSettings, CanSourceOptions, HalSettings, LogSettings>;
+
+/// A whole configuration as plain values, all checked. Paths are as good as they can be from the
+/// current folder: those that the file gives relative to itself have its folder in front. Lengths
+/// of maps are in mm already, whatever `units` the file had. Values not given are defaults, so an
+/// empty file (or none) is a LiveConfig{}.
+struct LiveConfig {
+  ConfigMachine machine;
+  std::vector<ToolShapeArgument> tools;
+  ConfigStock stock;
+  ConfigFollow follow;
+  ConfigSourceCommon common;
+  /// Empty: the file has no `source:`. Joints that count degrees (HalSettings and LogSettings) are
+  /// filled in by make_source(), from machine.joints.
+  ConfigSource source;
+};
+
+/// Reads the file at `path` (empty: there is none), then lays `sets` over it: "source.poll_hz=100",
+/// each a key with its dots and one plain value. A path in a set is relative to the current folder.
+///
+/// Files that it names for the source's map (dbc, pins_file) are read, all others are not looked
+/// at. All faults at once, as `file:line:column: error: key: what was found; what is allowed` with
+/// the line and, for misspelt keys, what may be meant; of a set as `--set key: ...`. Nothing if
+/// there was an error. Anchors, aliases, tags and further documents of YAML are refused; so is a
+/// file above kMaxConfig_bytes or nested deeper than kMaxConfigDepth.
+std::optional<LiveConfig> read_config(const std::string& path, const std::vector<std::string>& sets,
+                                      Diagnostics& diagnostics);
+inline constexpr std::size_t kMaxConfig_bytes = std::size_t{1} << 20U;
+inline constexpr int kMaxConfigDepth = 16;
+
+/// The same from text; `path` is its name in diagnostics, and the folder for what it names. Any
+/// bytes are accepted.
+std::optional<LiveConfig> parse_config(std::string_view text, const std::string& path,
+                                       const std::vector<std::string>& sets,
+                                       Diagnostics& diagnostics);
+
+/// The configuration as a file that reads the same again from the current folder, with every
+/// default written out. Presets, DBC names and pin files have become what they stand for; lengths
+/// are in mm (of HAL and logs, `units` stays).
+std::string effective_yaml(const LiveConfig& config);
+
+/// Every key with unit, range, default and purpose, in the order and shape of a file.
+std::string schema_text();
+
+}  // namespace kerf
