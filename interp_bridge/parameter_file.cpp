@@ -75,8 +75,7 @@ Result<ParameterFile> read_parameter_file(const std::string& path, Diagnostics& 
   errno = 0;
   std::ifstream file(path);
   const auto unreadable = [&] {
-    return Error{fmt::format("reading {}: {}", path,
-                             std::strerror(errno != 0 ? errno : EIO))};
+    return Error{fmt::format("reading {}: {}", path, std::strerror(errno != 0 ? errno : EIO))};
   };
   if (!file) return unreadable();
   ParameterFile out;

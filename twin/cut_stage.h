@@ -38,8 +38,8 @@ struct ToolUse {
 /// last milliseconds and remove whole cells or nothing.
 inline constexpr double kPeakWindow_s = 0.5;
 
-/// Steps of a watched machine are shorter than a cell; its cutting time is counted in grains of this
-/// many seconds that removed something.
+/// Steps of a watched machine are shorter than a cell; its cutting time is counted in grains of
+/// this many seconds that removed something.
 inline constexpr double kGrain_s = 0.05;
 
 /// The one road from motions to the workpiece. One thread calls it; per move it allocates nothing

@@ -40,8 +40,8 @@ class ModbusLink {
 
   /// Asks for the registers of `read` and waits for the answer, timeout_ms at most.
   virtual Answer read(const PollRead& read, std::uint16_t* words) = 0;
-  /// Brings answers and questions into step again after kBroken, working until `deadline`. A trial
-  /// read may overrun it by timeout_ms. Always settled for TCP.
+  /// Brings answers and questions into step after open() and after kBroken, working until
+  /// `deadline`. A trial read may overrun it by timeout_ms. Always settled for TCP.
   virtual Settling settle(SteadyClock::time_point deadline) = 0;
 
   const std::string& trouble() const { return trouble_; }

@@ -7,6 +7,7 @@
 //                  ^             |             |
 //                  +--longer-----+--bytes------+
 //
+// A line that has just been opened must be quiet once: somebody else may have asked.
 // The trial's answer may still be an old one, to question j. Then the answer to question j+1 comes
 // as long after it as j+1 was asked after j: the second quiet time is the longest time between two
 // questions since the fault, and one timeout more.
@@ -49,15 +50,16 @@ class RtuLink final : public ModbusLink {
   Settling settle(SteadyClock::time_point deadline) override;
 
  private:
-  enum class Phase { kTrusted, kQuietBeforeTrial, kQuietAfterTrial };
+  enum class Phase { kTrusted, kQuietAtStart, kQuietBeforeTrial, kQuietAfterTrial };
   enum class Line { kQuiet, kDeadline, kBytes, kGone };
 
   modbus_t* create() const override;
-  /// What a driver had buffered, or a master before us asked for, is nobody's answer.
+  /// What a driver had buffered, or a master before us asked for, is not our answer.
   void opened() override {
     modbus_flush(context());
     asked_at_ = SteadyClock::now();
     trust();
+    begin(Phase::kQuietAtStart);
   }
   void trust() {
     phase_ = Phase::kTrusted;
@@ -75,9 +77,9 @@ class RtuLink final : public ModbusLink {
   bool try_out();
   bool discard();
 
-  Phase phase_ = Phase::kTrusted;
   milliseconds timeout() const { return milliseconds(settings_.timeout_ms); }
 
+  Phase phase_ = Phase::kTrusted;
   milliseconds quiet_;          ///< how long the line must be silent before a trial
   milliseconds longest_gap_{};  ///< between two questions since the fault
   bool heard_late_ = false;     ///< trouble() speaks of late bytes, which says more than a timeout
@@ -146,7 +148,7 @@ void RtuLink::heard_bytes() {
   // After a trial they prove that the quiet time before it was too short.
   const milliseconds wanted = phase_ == Phase::kQuietAfterTrial ? std::max(late, 2 * quiet_) : late;
   quiet_ = std::max(quiet_, std::min(wanted, kLongestLateness));
-  begin(Phase::kQuietBeforeTrial);
+  begin(phase_ == Phase::kQuietAtStart ? phase_ : Phase::kQuietBeforeTrial);
 }
 
 /// Throws away what has arrived. False: the line is gone.
@@ -192,6 +194,7 @@ bool RtuLink::try_out() {
 ModbusLink::Settling RtuLink::settle(SteadyClock::time_point deadline) {
   while (phase_ != Phase::kTrusted) {
     const bool tried = phase_ == Phase::kQuietAfterTrial;
+    const bool needs_trial = phase_ == Phase::kQuietBeforeTrial;
     switch (listen(tried ? longest_gap_ + timeout() : quiet_, deadline)) {
       case Line::kGone:
         note(fmt::format("{}: the line is gone", settings_.device));
@@ -204,7 +207,7 @@ ModbusLink::Settling RtuLink::settle(SteadyClock::time_point deadline) {
         if (SteadyClock::now() >= deadline) return Settling::kWaiting;
         break;
       case Line::kQuiet:
-        if (tried) {
+        if (!needs_trial) {
           trust();
         } else if (!try_out()) {
           return Settling::kBroken;

@@ -96,11 +96,9 @@ std::vector<std::string> validate(const ModbusSettings& settings) {
   }
   if (!any) faults.texts.emplace_back("map: no axis is given; at least one of X to W is needed");
   const std::pair<std::string_view, const std::optional<ModbusRegister>&> others[] = {
-      {"tool", settings.tool},
-      {"line", settings.line},
-      {"spindle", settings.spindle},
-      {"tool_offset_z", settings.tool_offset_z},
-      {"counter", settings.counter}};
+      {"tool", settings.tool},       {"line", settings.line},
+      {"spindle", settings.spindle}, {"tool_offset_z", settings.tool_offset_z},
+      {"counter", settings.counter}, {"counter_begun", settings.counter_begun}};
   for (const auto& [key, wanted] : others) {
     if (wanted) check_register(faults, key, *wanted);
   }
@@ -108,6 +106,10 @@ std::vector<std::string> validate(const ModbusSettings& settings) {
     const ModbusType type = settings.counter->type;
     faults.need(type != ModbusType::kFloat32 && type != ModbusType::kFloat64, "map.counter.type",
                 name_of(type), "int16, uint16, int32 or uint32");
+  }
+  if (settings.counter_begun && !settings.counter) {
+    faults.texts.emplace_back(
+        "map.counter_begun: there is no map.counter; the two are compared with each other");
   }
   return std::move(faults.texts);
 }

@@ -75,6 +75,10 @@ struct ModbusSettings {
   /// is not handed out: that tells a dead program behind a living server from a machine that
   /// stands.
   std::optional<ModbusRegister> counter;
+  /// The same integer, which the device writes before everything else at each cycle, and `counter`
+  /// after everything else. While the two differ the answer is of two cycles: it is asked for again
+  /// at once.
+  std::optional<ModbusRegister> counter_begun;
 };
 
 /// "X".."W", "tool", "line" ...: the key of a register, in the order in which they are polled.

@@ -38,8 +38,11 @@ std::unique_ptr<ModbusLink> make_link(const ModbusSettings& settings) {
   return settings.rtu ? make_rtu_link(settings) : make_tcp_link(settings);
 }
 
-enum class Extra : std::uint8_t { kTool, kLine, kSpindle, kToolOffset, kCounter };
-constexpr std::string_view kExtraKeys[] = {"tool", "line", "spindle", "tool_offset_z", "counter"};
+enum class Extra : std::uint8_t { kTool, kLine, kSpindle, kToolOffset, kCounterBegun, kCounter };
+constexpr std::string_view kExtraKeys[] = {"tool",          "line",          "spindle",
+                                           "tool_offset_z", "counter_begun", "counter"};
+/// Answers of two cycles in a row that are asked for again. A cycle takes the device microseconds.
+constexpr int kMostTornAnswers = 10;
 
 bool is_whole(double value) {
   return value >= 0 && value <= kMaxNumber && std::abs(value - std::round(value)) < kWholeTolerance;
@@ -54,6 +57,7 @@ bool is_plausible(Extra what, double value) {
       return std::abs(value) <= kMaxRpm;
     case Extra::kToolOffset:
       return std::abs(value) <= kMaxToolOffset_mm;
+    case Extra::kCounterBegun:
     case Extra::kCounter:
       break;
   }
@@ -84,6 +88,7 @@ struct ModbusSource::Poller {
   bool read_all();
   bool fill(AxisSample& sample);
   bool fill_extra(AxisSample& sample, Extra what, double value, const std::uint16_t* words);
+  bool read_whole_cycle();
   bool counter_moved();
   void failed(std::string trouble);
 
@@ -131,6 +136,7 @@ ModbusSource::Poller::Poller(ModbusSettings given)
       {Extra::kLine, settings_.line},
       {Extra::kSpindle, settings_.spindle},
       {Extra::kToolOffset, settings_.tool_offset_z},
+      {Extra::kCounterBegun, settings_.counter_begun},
       {Extra::kCounter, settings_.counter}};
   for (const auto& [what, wanted] : extras) {
     if (!wanted) continue;
@@ -163,8 +169,7 @@ bool ModbusSource::Poller::ready(SteadyClock::time_point deadline) {
     }
     if (has_connected_) ++status_.reconnects;
     has_connected_ = true;
-    unsettled_ = false;
-    schedule_.start(SteadyClock::now());
+    unsettled_ = true;
   }
   if (!unsettled_) return true;
   switch (link_->settle(deadline)) {
@@ -173,7 +178,7 @@ bool ModbusSource::Poller::ready(SteadyClock::time_point deadline) {
       schedule_.start(SteadyClock::now());
       return true;
     case ModbusLink::Settling::kWaiting:
-      status_.trouble = link_->trouble();
+      if (!link_->trouble().empty()) status_.trouble = link_->trouble();
       return false;
     case ModbusLink::Settling::kBroken:
       failed(link_->trouble());
@@ -205,6 +210,21 @@ bool ModbusSource::Poller::read_all() {
     }
   }
   return true;
+}
+
+/// read_all() until the answer is of one cycle, where the device tells.
+bool ModbusSource::Poller::read_whole_cycle() {
+  for (int torn = 0; torn < kMostTornAnswers; ++torn) {
+    if (!read_all()) return false;
+    if (!settings_.counter_begun) return true;
+    const std::size_t last = wanted_.size() - 1;
+    if (value_of(last) == value_of(last - 1)) return true;
+  }
+  const std::size_t last = wanted_.size() - 1;
+  failed(fmt::format(
+      "{} answers in a row are of two cycles: counter_begun reads {:.0f}, counter {:.0f}",
+      kMostTornAnswers, value_of(last - 1), value_of(last)));
+  return false;
 }
 
 /// Whether the device has done anything since the last poll.
@@ -248,6 +268,7 @@ bool ModbusSource::Poller::fill_extra(AxisSample& sample, Extra what, double val
     case Extra::kToolOffset:
       sample.tool_offset_z_mm = value;
       break;
+    case Extra::kCounterBegun:
     case Extra::kCounter:
       break;
   }
@@ -275,7 +296,7 @@ bool ModbusSource::Poller::fill(AxisSample& sample) {
 
 /// One poll. False: no sample came of it; whether that was a fault, the status says.
 bool ModbusSource::Poller::poll(AxisSample& sample) {
-  if (!read_all()) return false;
+  if (!read_whole_cycle()) return false;
   const std::int64_t steady_ns = now_ns(CLOCK_MONOTONIC);
   const std::int64_t host_ns = host_stamp_.stamp(now_ns(CLOCK_REALTIME), steady_ns);
   back_off_.reset();

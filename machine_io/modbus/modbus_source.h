@@ -29,6 +29,8 @@ namespace kerf {
 ///   NaN, infinite, out of the axis' range, too fast, fractional tool number
 ///                       named with raw words; if another word order would do, with a hint:
 ///                       "positions jump beyond machine limits; is word_order cdab?"
+///   counter_begun and   asked for again at once, up to ten times
+///   counter differ
 ///   counter unchanged   counted as duplicate, named as trouble after a second
 ///
 /// When this computer's clock is set back, `host_ns` goes on by the steady clock until the clock
@@ -44,6 +46,7 @@ class ModbusSource final : public PositionSource {
   ModbusSource(const ModbusSource&) = delete;
   ModbusSource& operator=(const ModbusSource&) = delete;
 
+  /// A serial line is listened to for timeout_ms before the first poll.
   /// May overrun `patience` by one timeout_ms per read of the poll, or by a name look-up.
   /// `host_ns` is taken after the last reply of the poll, and never goes back.
   Next next(AxisSample& sample, std::chrono::milliseconds patience) override;

@@ -214,7 +214,8 @@ int live_command(const LiveArguments& arguments, LiveCommand command) {
   std::unique_ptr<PositionSource> source;
   if (!has_error(diagnostics)) source = make_source(request.config, diagnostics);
   print(diagnostics, request.quiet);
-  if (!source) return has_error(diagnostics) ? kExitFailure : kExitUsage;
+  const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
+  if (!source) return none_named ? kExitUsage : kExitFailure;
   return watch(request, std::move(source), stop);
 }
 

@@ -167,8 +167,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   if (a.work.cell.empty() && request.config.stock.cell_mm) {
     options.stock.cell_mm = *request.config.stock.cell_mm;
   }
-  options.margin_mm =
-      a.work.margin.empty() ? request.config.stock.margin_mm : work.margin_mm;
+  options.margin_mm = a.work.margin.empty() ? request.config.stock.margin_mm : work.margin_mm;
   options.stale_after_s = request.config.common.stale_after_s;
   options.lost_after_s = request.config.common.lost_after_s;
   understand_cutting(a, program, work, reader, request);

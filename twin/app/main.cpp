@@ -70,7 +70,7 @@ constexpr const char* kConfigExample =
 
 constexpr const char* kMachineExample =
     "Example:\n"
-    "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502\n";
+    "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502 --frame workpiece\n";
 
 constexpr const char* kSources =
     "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"

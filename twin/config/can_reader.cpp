@@ -147,26 +147,71 @@ CanSignal read_preset(const GroupReader& item) {
   return odrive ? odrive_position(id, 1) : cia402_position(id, 1);
 }
 
-std::optional<CanSignal> read_dbc_signal(const GroupReader& item, DbcShelf& shelf) {
+/// What a number of the map is.
+enum class Quantity : std::uint8_t { kLength, kAngle, kOther };
+
+/// A DBC file that names another unit than the one that the number is taken for.
+void check_unit(const GroupReader& item, ConfigNode& node, const DbcSignal& signal,
+                Quantity quantity, bool inch) {
+  struct Unit {
+    std::string_view name;
+    Quantity quantity;
+    double size;  // mm or degrees
+  };
+  constexpr Unit kUnits[] = {{"mm", Quantity::kLength, 1},
+                             {"cm", Quantity::kLength, 10},
+                             {"m", Quantity::kLength, 1000},
+                             {"um", Quantity::kLength, 0.001},
+                             {"\u00b5m", Quantity::kLength, 0.001},
+                             {"\u03bcm", Quantity::kLength, 0.001},
+                             {"in", Quantity::kLength, kMmPerInch},
+                             {"inch", Quantity::kLength, kMmPerInch},
+                             {"deg", Quantity::kAngle, 1},
+                             {"\u00b0", Quantity::kAngle, 1},
+                             {"rad", Quantity::kAngle, 57.29577951308232}};
+  // A scale is the user's word.
+  if (item.has("scale")) return;
+  const bool inches = inch && quantity == Quantity::kLength;
+  const double wanted = inches ? kMmPerInch : 1;
+  for (const Unit& unit : kUnits) {
+    if (unit.name != signal.unit || unit.quantity != quantity || unit.size == wanted) continue;
+    item.faults().at_value(
+        node,
+        fmt::format("{} is in {}, which is taken for {}", node.scalar, signal.unit,
+                    inches                          ? "inch"
+                    : quantity == Quantity::kLength ? "mm"
+                                                    : "degrees"),
+        fmt::format("scale: {} makes it right", unit.size / wanted));
+    return;
+  }
+}
+
+std::optional<CanSignal> read_dbc_signal(const GroupReader& item, DbcShelf& shelf,
+                                         Quantity quantity, bool inch) {
   refuse_beside(item, "signal",
                 {"id", "extended", "byte", "bit", "length", "type", "endian", "mux", "node"});
   ConfigNode* const node = item.find("signal");
-  if (!shelf.open(*node)) return std::nullopt;
+  if (!shelf.open(*node)) {
+    node->faulty = true;
+    return std::nullopt;
+  }
   const Result<DbcSignal> found = shelf.file().find(node->scalar);
   if (!found) {
     item.faults().at_value(*node, found.error());
     return std::nullopt;
   }
+  check_unit(item, *node, *found, quantity, inch);
   return found->signal;
 }
 
 /// Nothing where the signal could not be found; that has been reported.
-std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, double mm_per_unit) {
+std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, Quantity quantity,
+                                     bool inch) {
   std::optional<CanSignal> signal;
   if (item.has("preset")) {
     if (item.find("preset") != nullptr) signal = read_preset(item);
   } else if (item.has("signal")) {
-    if (item.find("signal") != nullptr) signal = read_dbc_signal(item, shelf);
+    if (item.find("signal") != nullptr) signal = read_dbc_signal(item, shelf, quantity, inch);
   } else {
     if (ConfigNode* const node = item.find("node")) {
       item.faults().at_key(*node, "is for a preset, and there is none");
@@ -174,6 +219,7 @@ std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, d
     signal = read_raw(item);
   }
   if (!signal) return std::nullopt;
+  const double mm_per_unit = inch && quantity == Quantity::kLength ? kMmPerInch : 1;
   double scale = 1;
   double offset = 0;
   item.number("scale", scale);
@@ -194,16 +240,17 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
   DbcShelf shelf(source);
   bool all_found = true;
   for (const MapItem& item : items_of(source.group("map"), reading)) {
-    if (item.name == "counter") {
+    if (item.name == "counter" || item.name == "counter_begun") {
       source.faults().at_key(*item.group.node(), "only a modbus source has a counter",
                              "a CAN drive that is silent is found by max_age_ms");
       continue;
     }
-    const bool length = item.name == "tool_offset_z" && reading.inch;
-    const double mm_per_unit = item.position ? reading.mm_per_unit(*item.position)
-                               : length      ? kMmPerInch
-                                             : 1;
-    const std::optional<CanSignal> signal = read_signal(item.group, shelf, mm_per_unit);
+    Quantity quantity = Quantity::kOther;
+    if (item.name == "tool_offset_z") quantity = Quantity::kLength;
+    if (item.position) {
+      quantity = reading.is_length(*item.position) ? Quantity::kLength : Quantity::kAngle;
+    }
+    const std::optional<CanSignal> signal = read_signal(item.group, shelf, quantity, reading.inch);
     if (!signal) {
       all_found = false;
       continue;

@@ -192,6 +192,7 @@ struct SourcePrinter {
     other("spindle", s.spindle);
     other("tool_offset_z", s.tool_offset_z);
     other("counter", s.counter);
+    other("counter_begun", s.counter_begun);
     printer.close();
   }
 

@@ -75,6 +75,8 @@ struct MapReading {
   bool inch = false;
   std::string joints;  ///< the axis of each joint
 
+  /// False: an angle.
+  bool is_length(std::size_t index) const;
   /// 25.4 where the position `index` is a length and the file is in inches, else 1.
   double mm_per_unit(std::size_t index) const;
   /// X or J0 to its index; nothing for the other kind.

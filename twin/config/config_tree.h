@@ -43,8 +43,8 @@ class ConfigText {
 
   const std::string& path() const { return path_; }
   const std::string& text() const { return text_; }
-  /// False if a quote opens at this place and none closes it before the line ends: the library takes
-  /// all that follows for a part of the text.
+  /// False if a quote opens at this place and none closes it before the line ends: the library
+  /// takes all that follows for a part of the text.
   bool quote_ends_at(int line, int column) const;
   /// With excerpt; long lines are cut. Line 0: about the file as a whole.
   Diagnostic diagnostic(int line, int column, std::string message, std::string hint = {}) const;

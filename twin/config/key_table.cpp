@@ -322,12 +322,13 @@ constexpr std::array kKeys{
             .words = "holding|input",
             .fallback = "holding",
             .purpose = "holding: function 3, input: function 4"},
-    KeySpec{.path = "source.map.ITEM.type",
-            .type = T::kWord,
-            .sources = kForModbus,
-            .words = "int16|uint16|int32|uint32|float32|float64",
-            .fallback = "float32",
-            .purpose = "of one, two or four registers; ITEM may also be counter here"},
+    KeySpec{
+        .path = "source.map.ITEM.type",
+        .type = T::kWord,
+        .sources = kForModbus,
+        .words = "int16|uint16|int32|uint32|float32|float64",
+        .fallback = "float32",
+        .purpose = "of one, two or four registers; ITEM may also be counter, counter_begun here"},
     KeySpec{.path = "source.map.ITEM.word_order",
             .type = T::kWord,
             .sources = kForModbus,
@@ -482,7 +483,8 @@ constexpr std::array kKeys{
             .axes_only = true},
 };
 
-constexpr std::string_view kSmallItems[] = {"tool", "line", "spindle", "tool_offset_z", "counter"};
+constexpr std::string_view kSmallItems[] = {"tool",          "line",    "spindle",
+                                            "tool_offset_z", "counter", "counter_begun"};
 
 }  // namespace
 

@@ -129,11 +129,13 @@ void read_kind(const GroupReader& source, const MapReading& reading, LiveConfig&
 
 }  // namespace
 
-double MapReading::mm_per_unit(std::size_t index) const {
-  if (!inch) return 1;
+bool MapReading::is_length(std::size_t index) const {
   const std::string_view letters = kind == CoordinateKind::kJoints ? joints : kAllAxes;
-  const bool rotary = index < letters.size() && letters[index] >= 'A' && letters[index] <= 'C';
-  return rotary ? 1 : kMmPerInch;
+  return index >= letters.size() || letters[index] < 'A' || letters[index] > 'C';
+}
+
+double MapReading::mm_per_unit(std::size_t index) const {
+  return inch && is_length(index) ? kMmPerInch : 1;
 }
 
 std::vector<MapItem> items_of(const GroupReader& map, const MapReading& reading) {
@@ -196,6 +198,7 @@ void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSet
   if (source.has("rtu") && source.has("tcp")) {
     source.faults().at_key(*source.node()->child("rtu"),
                            "has no place beside tcp; must be one of both");
+    read_tcp(source, settings);
   } else if (source.has("rtu")) {
     read_rtu(source.group("rtu"), settings);
   } else {
@@ -222,6 +225,7 @@ void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSet
     if (item.name == "spindle") settings.spindle = wanted;
     if (item.name == "tool_offset_z") settings.tool_offset_z = wanted;
     if (item.name == "counter") settings.counter = wanted;
+    if (item.name == "counter_begun") settings.counter_begun = wanted;
   }
   report_faults(validate(settings), source, reading);
 }

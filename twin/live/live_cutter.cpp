@@ -119,14 +119,20 @@ FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double
   return point;
 }
 
+bool LiveCutter::too_fast(const Sighting& before, const Sighting& now) const {
+  const double way_mm = glm::length(now.tip_mm - before.tip_mm);
+  return way_mm > kJump_mm &&
+         way_mm > kJumpFactor * options_.most_mm_per_s * (now.t_s - before.t_s);
+}
+
 LiveCutter::Break LiveCutter::break_between(const Sighting& before, const Sighting& now,
                                             bool lost) const {
   const double way_mm = glm::length(now.tip_mm - before.tip_mm);
   if (way_mm < kGapMove_mm) return Break::kNone;
   const double elapsed_s = now.t_s - before.t_s;
   if (lost || elapsed_s > options_.gap_s) return Break::kGap;
-  const bool jump = way_mm > kJump_mm && way_mm > kJumpFactor * options_.most_mm_per_s * elapsed_s;
-  return jump ? Break::kJump : Break::kNone;
+  // One jump is none of a machine; one after the other is a machine that is faster than is known.
+  return too_fast(before, now) && !was_fast_ ? Break::kJump : Break::kNone;
 }
 
 /// Within boxes.
@@ -312,6 +318,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     cut_to_mm_.z += change_mm;
     if (before_->tool != now.tool && before_->tool >= 0) ++facts_.tool_changes;
     const Break gap = break_between(*before_, now, lost);
+    was_fast_ = too_fast(*before_, now);
     if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump);
     if (gap != Break::kNone && options_.gap != GapPolicy::kCut) {
       guard_stale_ = true;

@@ -91,6 +91,7 @@ class LiveCutter {
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
   FollowedPoint follow(Sighting& now, const AxisSample& sample, double elapsed_s);
   enum class Break : std::uint8_t { kNone, kGap, kJump };
+  bool too_fast(const Sighting& before, const Sighting& now) const;
   Break break_between(const Sighting& before, const Sighting& now, bool lost) const;
   bool near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const;
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
@@ -117,6 +118,7 @@ class LiveCutter {
   std::optional<Sighting> before_;
   Vec3 cut_to_mm_{0};  ///< where the cutter has come to in the workpiece
   bool was_on_path_ = false;
+  bool was_fast_ = false;  ///< between the last two samples, faster than the machine can be
   std::vector<std::pair<Motion, double>> driven_;  ///< along the path since the sample before
   double t_s_ = 0;
   LiveFacts facts_;

@@ -412,8 +412,10 @@ Outcome LiveSession::outcome(bool stopped) const {
   if (stopped && options_.log()) return Outcome::kInterrupted;
   const LiveReport& live = live_;
   const bool gone = !options_.log() && last_state_ != LiveState::kLive;
-  const bool lossy = live.dropped > 0 || live.status.lost > 0 || live.status.errors > 0 ||
-                     live.facts.gaps > 0 || live.facts.incomplete > 0 || gone;
+  // A machine that could not be asked while it stood has lost nothing; a damaged log has.
+  const bool damaged = options_.log() && live.status.errors > 0;
+  const bool lossy = live.dropped > 0 || live.status.lost > 0 || damaged || live.facts.gaps > 0 ||
+                     live.facts.incomplete > 0 || gone;
   return lossy ? Outcome::kLossy : Outcome::kFinished;
 }
 

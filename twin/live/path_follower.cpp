@@ -132,6 +132,11 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (place.line > 0) at = search(place, end, place.line, place.tool);
   if (missed() && place.tool >= 0) at = search(place, end, 0, place.tool);
   if (missed()) at = search(place, end, 0, -1);
+  // A machine that was out of sight may be anywhere, and says where.
+  if (missed() && place.line > 0 && end < pieces_.size()) {
+    const auto far = search(place, pieces_.size(), place.line, place.tool);
+    if (far && far->distance_mm <= options_.tolerance_mm) at = far;
+  }
   if (!at) return point;
   const Piece& piece = pieces_[at->piece];
   point.distance_mm = at->distance_mm;

@@ -56,7 +56,8 @@ struct FollowedPoint {
 /// A tip is looked for from the last point found on, as far as the machine can have come in the
 /// time that has passed (FollowOptions::haste). Among equally good places the first is taken: the
 /// follower may lag, it never runs ahead of the machine. Where the machine names its line, places
-/// on that line go first. Motions of another tool are beyond reach until the machine says that it
+/// on that line go first, and one that was out of sight is looked for on its line as far ahead as
+/// the path is known. Motions of another tool are beyond reach until the machine says that it
 /// has changed.
 class PathFollower {
  public:

@@ -206,7 +206,11 @@ std::vector<std::uint16_t> FaultyDevice::registers(Fault fault) {
   encode_registers(ModbusType::kFloat32, order, 100 + std::fmod(x, 1), &out[12]);
   out[14] = 7;
   out[15] = 321;
-  out[16] = counter_;
+  out[16] = out[17] = counter_;
+  if (fault == Fault::kTornAlways || (fault == Fault::kTorn && counter_ % 3 != 0)) {
+    encode_registers(ModbusType::kFloat64, order, y - 0.02, &out[4]);
+    ++out[17];
+  }
   return out;
 }
 

@@ -37,14 +37,16 @@ enum class Fault {
   kHuge,
   kWrongOrder,  ///< words the other way round
   kStuck,       ///< values of the time when the fault began, and the counter too
+  kTorn,        ///< two of three answers are of two cycles: Y is older, 17 is ahead of 16
+  kTornAlways,  ///< all of them are
 };
 
 /// Holding registers, float64 abcd: 0 X, 4 Y, 8 Z; float32 abcd 12 A; uint16 14 tool, 15 line,
-/// 16 counter (+1 at every question); 17..63 are 0, but 40..43 do not exist. X is the seconds since
-/// `epoch()`, Y = 2 X + 1, Z = -X, A = 100 + (X mod 1): so that a reading tells how old it is and
-/// whether it is all from one answer. Whatever is answered under a fault that falsifies the address
-/// of the answer (transaction, unit, function ...) holds the positions of "another machine": X =
-/// kElsewhere.
+/// 16 counter (+1 at every question), 17 the same; 18..63 are 0, but 40..43 do not exist. X is the
+/// seconds since `epoch()`, Y = 2 X + 1, Z = -X, A = 100 + (X mod 1): so that a reading tells how
+/// old it is and whether it is all from one answer. Whatever is answered under a fault that
+/// falsifies the address of the answer (transaction, unit, function ...) holds the positions of
+/// "another machine": X = kElsewhere.
 class FaultyDevice {
  public:
   static constexpr double kElsewhere = 77777;

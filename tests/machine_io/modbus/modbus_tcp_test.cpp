@@ -287,6 +287,25 @@ TEST(ModbusTcp, a_counter_that_stands_still_tells_a_dead_program) {
   EXPECT_TRUE(watch.more_samples(5));
 }
 
+TEST(ModbusTcp, answers_of_two_cycles_are_asked_for_again) {
+  const auto device = FaultyDevice::tcp();
+  ModbusSettings settings = settings_for(*device, false);
+  settings.counter = ModbusRegister{16, ModbusTable::kHolding, ModbusType::kUint16};
+  settings.counter_begun = ModbusRegister{17, ModbusTable::kHolding, ModbusType::kUint16};
+  ModbusSource source(settings);
+  SourceWatch watch(source);
+  ASSERT_TRUE(watch.more_samples(5));
+  device->set(Fault::kTorn);
+  const int questions = device->questions();
+  ASSERT_TRUE(watch.more_samples(20));  // the watch judges each
+  EXPECT_GE(device->questions() - questions, 55);
+  EXPECT_EQ(source.status().errors, 0u);
+  device->set(Fault::kTornAlways);
+  EXPECT_TRUE(watch.trouble_with("10 answers in a row are of two cycles: counter_begun reads"));
+  device->set(Fault::kNone);
+  EXPECT_TRUE(watch.more_samples(5));
+}
+
 TEST(ModbusTcp, a_hang_is_not_followed_by_a_burst_of_polls) {
   const auto device = FaultyDevice::tcp();
   ModbusSettings settings = settings_for(*device, false);

@@ -198,6 +198,11 @@ TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
   EXPECT_EQ(watch.log().kept()[0].severity, Severity::kWarning);
   watch.see({21.5, 20, -1}, 0.03, 1, true);
   EXPECT_EQ(watch.ids().size(), 2U);
+  // A machine that keeps its speed is only faster than was said: it is cut after the first jump.
+  const double before = watch.removed_mm3();
+  for (int i = 0; i < 5; ++i) watch.see({21.5 - 3.0 * i, 24, -1}, 0.04 + 0.01 * i);
+  EXPECT_EQ(watch.ids().size(), 3U);
+  EXPECT_GT(watch.removed_mm3(), before + 20);
 }
 
 TEST(LiveCutter, AJumpFarFromTheWorkpieceIsHomingAndOnlyANote) {
