@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "twin/motion_geometry.h"
+#include "twin/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -16,6 +17,14 @@ namespace {
 constexpr double kStill_mm = 1e-6;
 /// What happens across a gap in which a machine moved less is nothing. mm.
 constexpr double kGapMove_mm = 0.02;
+/// Positions beyond the machine's limits by so much for so long are not its own.
+constexpr double kBeyond_mm = 1.0;
+constexpr double kBeyond_s = 2.0;
+/// Lost samples leave a gap if it is longer than this, and than so many usual periods.
+constexpr double kShortGap_s = 0.05;
+constexpr double kShortGapPeriods = 4;
+/// Share of a new interval in the usual period.
+constexpr double kPeriodShare = 0.05;
 /// Program time that is planned beyond what is looked at, so that the follower has where to look.
 constexpr double kPlannedAhead_s = 6.0;
 /// A jump is faster than the machine by this factor, and longer than this.
@@ -25,6 +34,11 @@ constexpr double kJump_mm = 1.0;
 constexpr double kStanding_rpm = 1.0;
 /// Driven with the wrong tool: the program goes on without having changed it. mm.
 constexpr double kMismatch_mm = 1.0;
+/// A machine that says it runs, and is not seen at the program's beginning, is looked for in all of
+/// it after so long.
+constexpr double kJoin_s = 0.3;
+/// And again, should it not be found, after so many times as long.
+constexpr double kJoinAgain = 4;
 /// A machine that says it runs the program for so long without being seen on its path is off it.
 constexpr double kNeverSeen_s = 1.0;
 
@@ -48,7 +62,8 @@ LiveCutter::LiveCutter(ZMap& stock, const ToolSources& tools, FindingLog& log,
       frame_(options_.frame),
       book_(tools, false),
       stage_(stock, book_, log, options_.timeline),
-      follower_(options_.follow) {
+      follower_(options_.follow),
+      join_after_s_(kJoin_s) {
   if (program) {
     ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
     adopt_program_frame();
@@ -83,6 +98,7 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
     return std::nullopt;
   }
   facts_.length_unknown |= !pose->length_known;
+  if (!options_.frame.workpiece_frame) note_limits(pose->machine_mm, t_s);
   Sighting now;
   now.tip_mm = pose->tip_mm;
   now.t_s = t_s;
@@ -92,13 +108,8 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
   return now;
 }
 
-FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double elapsed_s) {
-  driven_.clear();
-  FollowedPoint point;
-  point.distance_mm = std::numeric_limits<double>::infinity();
-  if (!ahead_) return point;
-  ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
-                     options_.wait_for_program);
+FollowedPlace LiveCutter::place_of(const Sighting& now, const AxisSample& sample,
+                                   double elapsed_s) const {
   FollowedPlace place;
   place.tip_mm = now.tip_mm;
   const ToolLengthFrom from = options_.frame.tool_length;
@@ -108,15 +119,101 @@ FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double
   place.elapsed_s = elapsed_s;
   place.line = sample.line;
   place.tool = now.tool;
-  point = follower_.follow(place, [this](const Motion& motion, double duration_s) {
+  return place;
+}
+
+FollowedPoint LiveCutter::follow(Sighting& now, const AxisSample& sample, double elapsed_s) {
+  driven_.clear();
+  FollowedPoint point;
+  point.distance_mm = std::numeric_limits<double>::infinity();
+  if (!ahead_) return point;
+  ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
+                     options_.wait_for_program);
+  const FollowedPlace place = place_of(now, sample, elapsed_s);
+  const PathFollower::Drive drive = [this](const Motion& motion, double duration_s) {
     driven_.emplace_back(motion, duration_s);
-  });
+  };
+  point = follower_.follow(place, drive);
+  if (!point.on_path && !follower_.found() && lost_sight_s_ >= join_after_s_ && join(place)) {
+    point = follower_.follow(place, drive);
+    driven_.clear();  // the way to where it was first seen has not been seen
+  }
   if (place.without_length) {
     now.tool_length_mm = point.tool_length_mm;
     now.tip_mm.z -= point.tool_length_mm;
   }
   ahead_->forget_before(follower_.program_s());
   return point;
+}
+
+/// A machine that was running when we came: finds where in the program it is, and takes what lies
+/// before as cut. False if it cannot be told.
+bool LiveCutter::join(const FollowedPlace& place) {
+  join_after_s_ *= kJoinAgain;
+  const std::optional<std::uint64_t> motion = motion_at(place);
+  if (!motion) return false;
+  cut_before(*motion);
+  Finding finding =
+      finding_of(FindingId::kLateStart, Severity::kNote, t_s_, place.tip_mm, place.tool);
+  finding.source = {0, static_cast<std::uint32_t>(place.line)};
+  finding.text =
+      "the machine was here already when it was first seen; what the program cuts before is taken "
+      "as cut";
+  log_.add(std::move(finding));
+  guard_stale_ = true;
+  return true;
+}
+
+/// Number of the first motion of the machine's line that its tip is on.
+std::optional<std::uint64_t> LiveCutter::motion_at(const FollowedPlace& place) const {
+  if (!options_.reopen || place.line <= 0) return std::nullopt;
+  const std::unique_ptr<Program> program = options_.reopen();
+  if (!program) return std::nullopt;
+  std::optional<std::uint64_t> found;
+  std::uint64_t number = 0;
+  Diagnostics ignored;
+  program->run(
+      [&](std::span<const Motion> motions) {
+        for (const Motion& m : motions) {
+          const bool here = m.source.file == 0 && m.start_known &&
+                            m.source.line == static_cast<std::uint32_t>(place.line) &&
+                            (m.kind == MotionKind::kTraverse || is_feed(m));
+          if (here &&
+              nearest_on(m, tip_on(m, place), 0).distance_mm <= options_.follow.tolerance_mm) {
+            found = number;
+            return false;
+          }
+          ++number;
+        }
+        return true;
+      },
+      {}, ignored);
+  return found;
+}
+
+/// Without a word.
+void LiveCutter::cut_before(std::uint64_t motion) {
+  stage_.hold_reports();
+  double begin_s = 0;
+  while (ahead_->forgotten() + ahead_->motions().size() <= motion) {
+    for (const PlannedMotion& planned : ahead_->motions()) begin_s = planned.end_s;
+    cut_planned(ahead_->motions().size());
+    follower_.begin_at(begin_s);
+    const std::uint64_t before = ahead_->forgotten();
+    ahead_->read_until(begin_s + kPlannedAhead_s, true);
+    if (ahead_->motions().empty() && ahead_->forgotten() == before && ahead_->complete()) break;
+  }
+  const auto left = static_cast<std::size_t>(motion - ahead_->forgotten());
+  if (left < ahead_->motions().size()) begin_s = ahead_->motions()[left].start_s;
+  cut_planned(std::min(left, ahead_->motions().size()));
+  follower_.begin_at(begin_s);
+  stage_.release_reports();
+}
+
+/// The first `count` motions that have been planned, as the program has them.
+void LiveCutter::cut_planned(std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) cut(ahead_->motions()[i].motion, 0);
+  ahead_->forget(count);
 }
 
 bool LiveCutter::too_fast(const Sighting& before, const Sighting& now) const {
@@ -130,7 +227,9 @@ LiveCutter::Break LiveCutter::break_between(const Sighting& before, const Sighti
   const double way_mm = glm::length(now.tip_mm - before.tip_mm);
   if (way_mm < kGapMove_mm) return Break::kNone;
   const double elapsed_s = now.t_s - before.t_s;
-  if (lost || elapsed_s > options_.gap_s) return Break::kGap;
+  // A sample that is missing in a quick row is no gap: the way is as short as between slow ones.
+  const bool felt = lost && elapsed_s > std::max(kShortGap_s, kShortGapPeriods * period_s_);
+  if (felt || elapsed_s > options_.gap_s) return Break::kGap;
   // One jump is none of a machine; one after the other is a machine that is faster than is known.
   return too_fast(before, now) && !was_fast_ ? Break::kJump : Break::kNone;
 }
@@ -144,6 +243,37 @@ bool LiveCutter::near_stock(const Vec3& from_mm, const Vec3& to_mm, double radiu
   return way.min.z < blank.max.z && way.min.x - radius_mm < blank.max.x &&
          way.max.x + radius_mm > blank.min.x && way.min.y - radius_mm < blank.max.y &&
          way.max.y + radius_mm > blank.min.y;
+}
+
+/// Positions of another machine, or in another unit. One that is not homed may be anywhere for a
+/// while; while it says that it runs no program, for as long as it likes.
+void LiveCutter::note_limits(const Vec3& machine_mm, double t_s) {
+  if (beyond_told_) return;
+  int beyond = -1;
+  for (int i = 0; i < 3; ++i) {
+    const AxisLimits& axis = options_.timeline.limits.axes[static_cast<std::size_t>(i)];
+    const bool outside =
+        machine_mm[i] < axis.min - kBeyond_mm || machine_mm[i] > axis.max + kBeyond_mm;
+    if (axis.present && outside) beyond = i;
+  }
+  if (beyond < 0 || sample_.line == 0) {
+    beyond_since_s_.reset();
+    return;
+  }
+  if (!beyond_since_s_) beyond_since_s_ = t_s;
+  if (t_s - *beyond_since_s_ < kBeyond_s) return;
+  beyond_told_ = true;
+  const AxisLimits& axis = options_.timeline.limits.axes[static_cast<std::size_t>(beyond)];
+  Finding finding;
+  finding.id = FindingId::kAxisLimit;
+  finding.severity = Severity::kWarning;
+  finding.time_s = t_s;
+  finding.text = fmt::format(
+      "{} stands at {:.2f}, beyond the limits of the machine ({:g} to {:g}): are these positions "
+      "of "
+      "another machine, or in another unit?",
+      "XYZ"[beyond], machine_mm[beyond], axis.min, axis.max);
+  log_.add(std::move(finding));
 }
 
 void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump) {
@@ -212,7 +342,8 @@ void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) 
   if (!follower_.found()) {
     // Before the program begins a machine may be anywhere; while it says that it runs, it may not.
     const double elapsed_s = before_ ? now.t_s - before_->t_s : 0;
-    lost_sight_s_ = sample_.line > 0 ? lost_sight_s_ + elapsed_s : 0;
+    const bool runs = sample_.line > 0 && sample_.line != ahead_->approach_line();
+    lost_sight_s_ = runs ? lost_sight_s_ + elapsed_s : 0;
     if (lost_sight_s_ < kNeverSeen_s) return;
   }
   ++facts_.off_path;
@@ -319,6 +450,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     if (before_->tool != now.tool && before_->tool >= 0) ++facts_.tool_changes;
     const Break gap = break_between(*before_, now, lost);
     was_fast_ = too_fast(*before_, now);
+    period_s_ += kPeriodShare * (std::min(elapsed_s, options_.gap_s) - period_s_);
     if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump);
     if (gap != Break::kNone && options_.gap != GapPolicy::kCut) {
       guard_stale_ = true;

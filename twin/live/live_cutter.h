@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -39,7 +40,10 @@ struct LiveCutOptions {
   /// A machine cannot be faster: samples that say so have a gap between them. mm/s.
   double most_mm_per_s = std::numeric_limits<double>::infinity();
   TimelineOptions timeline;
-  double guard_s = 10;            ///< how far to look ahead; 0: not
+  double guard_s = 10;  ///< how far to look ahead; 0: not
+  /// Opens the program once more, to find out how far a machine has come that runs it already; may
+  /// be empty.
+  std::function<std::unique_ptr<Program>()> reopen;
   bool wait_for_program = false;  ///< a log waits for the interpreter, a machine does not
 };
 
@@ -89,11 +93,17 @@ class LiveCutter {
   };
   void adopt_program_frame();
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
+  FollowedPlace place_of(const Sighting& now, const AxisSample& sample, double elapsed_s) const;
   FollowedPoint follow(Sighting& now, const AxisSample& sample, double elapsed_s);
+  bool join(const FollowedPlace& place);
+  std::optional<std::uint64_t> motion_at(const FollowedPlace& place) const;
+  void cut_before(std::uint64_t motion);
+  void cut_planned(std::size_t count);
   enum class Break : std::uint8_t { kNone, kGap, kJump };
   bool too_fast(const Sighting& before, const Sighting& now) const;
   Break break_between(const Sighting& before, const Sighting& now, bool lost) const;
   bool near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const;
+  void note_limits(const Vec3& machine_mm, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
@@ -118,16 +128,20 @@ class LiveCutter {
   std::optional<Sighting> before_;
   Vec3 cut_to_mm_{0};  ///< where the cutter has come to in the workpiece
   bool was_on_path_ = false;
+  double period_s_ = 0;    ///< usual time between samples
   bool was_fast_ = false;  ///< between the last two samples, faster than the machine can be
   std::vector<std::pair<Motion, double>> driven_;  ///< along the path since the sample before
   double t_s_ = 0;
   LiveFacts facts_;
   LivePlace place_;
   std::optional<FindingLog::Handle> off_path_event_;
+  std::optional<double> beyond_since_s_;  ///< the positions lie beyond the machine's limits
+  bool beyond_told_ = false;
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
   int program_tool_ = -1;    ///< where the machine was last on the path
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
+  double join_after_s_;      ///< lost_sight_s_ at which the whole program is searched
 };
 
 }  // namespace kerf

@@ -71,6 +71,7 @@ std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
   LivePose pose;
   const Vec3 there{axes.position[0], axes.position[1], axes.position[2]};
   for (std::size_t i = 0; i < 3; ++i) pose.abc_deg[i] = axes.position[3 + i];
+  pose.machine_mm = there;
   if (options_.workpiece_frame) {
     pose.tip_mm = there;
     return pose;

@@ -38,6 +38,8 @@ struct LiveFrameOptions {
 /// The machine at one moment.
 struct LivePose {
   Vec3 tip_mm{0};  ///< workpiece frame
+  Vec3 machine_mm{
+      0};  ///< X Y Z as the machine has them; of positions in the workpiece frame: tip_mm
   std::array<double, 3> abc_deg{};
   double tool_length_mm = 0;
   bool length_known = true;  ///< false: taken as 0 because nothing tells it

@@ -107,6 +107,12 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     stock_facts_ = std::move(setup.facts);
   }
   if (!stock_) return false;
+  if (options_.program && options_.program->path != "-") {
+    options_.cutting.reopen = [again = *options_.program] {
+      Diagnostics ignored;
+      return Program::open(again, ignored);
+    };
+  }
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
   cutter_ = std::make_unique<LiveCutter>(*stock_, tools, report_.findings, options_.cutting,

@@ -16,14 +16,22 @@ bool moves(const Motion& m) {
   return m.kind == MotionKind::kTraverse || m.kind == MotionKind::kProbe || is_feed(m);
 }
 
-/// Where the tip is if the machine is on this motion.
+}  // namespace
+
 Vec3 tip_on(const Motion& m, const FollowedPlace& place) {
   Vec3 tip = place.tip_mm;
   if (place.without_length) tip.z -= m.tool_offset_mm.z;
   return tip;
 }
 
-}  // namespace
+void PathFollower::begin_at(double program_s) {
+  while (!pieces_.empty() && pieces_.front().start_s + pieces_.front().duration_s <= program_s) {
+    pieces_.pop_front();
+  }
+  t_ = 0;
+  unseen_s_ = 0;
+  found_ = true;
+}
 
 void PathFollower::append(const Motion& motion, const TimedStep& timed,
                           std::span<const PathPiece> path) {

@@ -26,6 +26,10 @@ struct FollowOptions {
   double slack_s = 0.1;
 };
 
+/// Where the tip is, if the machine is on this motion.
+struct FollowedPlace;
+Vec3 tip_on(const Motion& motion, const FollowedPlace& place);
+
 /// What of the machine is needed to find it on the path.
 struct FollowedPlace {
   Vec3 tip_mm{0};
@@ -72,6 +76,8 @@ class PathFollower {
   using Drive = std::function<void(const Motion& part, double duration_s)>;
   FollowedPoint follow(const FollowedPlace& place, const Drive& drive);
 
+  /// The machine is at or behind `program_s`: what lies before is passed without being driven.
+  void begin_at(double program_s);
   /// The machine has been on the path.
   bool found() const { return found_; }
   /// Program time of the point found last; of the path's beginning before that. s.

@@ -86,9 +86,18 @@ void ProgramAhead::forget_before(double program_s) {
   }
 }
 
+void ProgramAhead::forget(std::size_t count) {
+  motions_.erase(motions_.begin(), motions_.begin() + static_cast<std::ptrdiff_t>(count));
+  forgotten_ += count;
+}
+
 void ProgramAhead::step(const Motion& motion, const TimedStep& timed,
                         std::span<const PathPiece> path) {
   planned_s_ = timed.start_s + timed.duration_s;
+  if (!has_moved_ && moves({&motion, 1})) {
+    has_moved_ = true;
+    if (!motion.start_known) approach_line_ = static_cast<int>(motion.source.line);
+  }
   motions_.push_back({motion, timed.start_s, planned_s_});
   follower_.append(motion, timed, path);
 }

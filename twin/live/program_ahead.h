@@ -46,11 +46,16 @@ class ProgramAhead : private StepSink {
   /// The program has been read and planned to its end.
   bool complete() const { return complete_; }
 
+  /// Line of the move by which the machine comes from wherever it was, if the program begins with
+  /// one; -1: none has been planned.
+  int approach_line() const { return approach_line_; }
+
   /// Planned, and not yet forgotten, in order.
   const std::deque<PlannedMotion>& motions() const { return motions_; }
   /// Number of motions that were forgotten: motions()[i] is number forgotten() + i of the program.
   std::uint64_t forgotten() const { return forgotten_; }
   void forget_before(double program_s);
+  void forget(std::size_t count);
 
   /// Ends the interpreter, if it still runs. Then what it said is in summary() and diagnostics().
   void stop();
@@ -72,6 +77,8 @@ class ProgramAhead : private StepSink {
   std::uint64_t forgotten_ = 0;
   double planned_s_ = 0;
   bool complete_ = false;
+  bool has_moved_ = false;
+  int approach_line_ = -1;
   mutable std::mutex mutex_;  // of the two that follow
   std::optional<WorkpieceFrame> frame_;
   std::vector<std::string> files_;

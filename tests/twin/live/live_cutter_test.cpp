@@ -197,10 +197,12 @@ TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
             "positions jump by 10.00 mm within 0.010 s, fa");
   EXPECT_EQ(watch.log().kept()[0].severity, Severity::kWarning);
   watch.see({21.5, 20, -1}, 0.03, 1, true);
+  EXPECT_EQ(watch.ids().size(), 1U) << "one sample in a quick row is no gap";
+  watch.see({22.5, 20, -1}, 0.13, 1, true);
   EXPECT_EQ(watch.ids().size(), 2U);
   // A machine that keeps its speed is only faster than was said: it is cut after the first jump.
   const double before = watch.removed_mm3();
-  for (int i = 0; i < 5; ++i) watch.see({21.5 - 3.0 * i, 24, -1}, 0.04 + 0.01 * i);
+  for (int i = 0; i < 5; ++i) watch.see({22.5 - 3.0 * i, 24, -1}, 0.14 + 0.01 * i);
   EXPECT_EQ(watch.ids().size(), 3U);
   EXPECT_GT(watch.removed_mm3(), before + 20);
 }
@@ -216,6 +218,19 @@ TEST(LiveCutter, AJumpFarFromTheWorkpieceIsHomingAndOnlyANote) {
   EXPECT_EQ(watch.log().kept()[0].severity, Severity::kNote);
   EXPECT_EQ(watch.cutter().facts().jumps, 1U);
   EXPECT_EQ(watch.cutter().facts().gaps, 0U);
+}
+
+TEST(LiveCutter, PositionsOfAnotherMachineAreSuspected) {
+  LiveCutOptions options;
+  options.timeline.limits.axes[0].present = true;
+  options.timeline.limits.axes[0].min = -250;
+  options.timeline.limits.axes[0].max = 250;
+  Watch watch(options);
+  for (int i = 0; i < 30; ++i) watch.see({812.3, 20, 60}, 0.1 * i);
+  ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kAxisLimit});
+  EXPECT_EQ(watch.log().kept()[0].text,
+            "X stands at 812.30, beyond the limits of the machine (-250 to 250): are these "
+            "positions of another machine, or in another unit?");
 }
 
 TEST(LiveCutter, APositionThatIsMissingIsNamedAndNothingIsCut) {
@@ -320,6 +335,62 @@ TEST(LiveCutter, TheGuardLooksAtTheWorkpieceAsItReallyIs) {
   }
   ASSERT_GE(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].finding.id, FindingId::kRapidContact);
+}
+
+TEST(LiveCutter, AMachineThatRunsAlreadyIsJoinedWhereItIs) {
+  MotionList program;
+  program.at({-5, 20, 5}).tool(1).spindle(true).feed_rate(600);
+  program.traverse({-3, 20, 5}).feed({-3, 20, -2});
+  for (int i = 1; i <= 60; ++i) program.feed({i % 2 ? 43.0 : -3.0, 20.0 - 0.2 * i, -2});
+  program.traverse({0, 0, 5});
+  const auto wanted = dry_run(program.list());
+  const RunningMachine machine(program.list());
+  LiveCutOptions options;
+  options.reopen = [&] { return std::make_unique<ListedProgram>(program.list()); };
+  Watch watch(options, &program);
+  const double end_s = machine.duration_s();
+  ASSERT_GT(end_s, 100);
+  for (double t = 0.6 * end_s; t < end_s + 0.02; t += 0.01) {
+    watch.cutter().take(machine.sample(std::min(t, end_s), true), t, false);
+  }
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kLateStart});
+  watch.removed_mm3();
+  EXPECT_LT(worst_difference_mm(watch.stock(), *wanted), 2e-5);
+  // What it cut before is not put down to it.
+  EXPECT_LT(watch.cutter().stage().tools()[0].cut_s, 0.45 * end_s);
+}
+
+TEST(LiveCutter, TheWayToTheProgramsFirstPositionIsNotOffItsPath) {
+  MotionList program;
+  program.at({10, 20, 5}).tool(1).spindle(true).feed_rate(600);
+  program.traverse({10, 20, 5}).traverse({10, 20, 1}).feed({10, 20, -2}).feed({30, 20, -2});
+  std::vector<Motion> motions = program.list();
+  motions[1].start_known = false;  // line 2: from wherever the machine was
+  LiveCutOptions options;
+  options.wait_for_program = true;
+  auto stock = block();
+  FindingLog log;
+  LiveCutter cutter(*stock, cutters(), log, options, std::make_unique<ListedProgram>(motions));
+  AxisSample sample;
+  sample.tool = 1;
+  sample.line = 2;
+  for (int i = 0; i <= 500; ++i) {  // five seconds
+    sample.set(0, -90 + 0.2 * i);
+    sample.set(1, 20);
+    sample.set(2, 5);
+    cutter.take(sample, 0.01 * i, false);
+  }
+  sample.line = 3;
+  sample.set(2, 3);
+  cutter.take(sample, 5.02, false);
+  EXPECT_TRUE(cutter.place().followed);
+  EXPECT_TRUE(log.kept().empty());
+  // On a line of which it is said to be, and nowhere near it, it is off the path.
+  LiveCutter lost(*stock, cutters(), log, options, std::make_unique<ListedProgram>(motions));
+  sample.set(0, -50);
+  for (int i = 0; i <= 500; ++i) lost.take(sample, 0.01 * i, false);
+  ASSERT_EQ(log.kept().size(), 1U);
+  EXPECT_EQ(log.kept()[0].id, FindingId::kOffPath);
 }
 
 TEST(LiveCutter, ToolLengthsOfTheProgramApplyWhereTheyAreInForce) {
