@@ -103,7 +103,9 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
   now.tip_mm = pose->tip_mm;
   now.t_s = t_s;
   now.tool_length_mm = pose->tool_length_mm;
-  now.tool = frame_.tool_of(sample);
+  // A program that is followed knows better than a configuration that says one tool for all.
+  const bool by_configuration = !ahead_ || program_tool_ < 0;
+  now.tool = by_configuration ? frame_.tool_of(sample) : sample.tool;
   now.abc_deg = pose->abc_deg;
   return now;
 }
@@ -118,7 +120,7 @@ FollowedPlace LiveCutter::place_of(const Sighting& now, const AxisSample& sample
                           (from == ToolLengthFrom::kAuto && std::isnan(sample.tool_offset_z_mm)));
   place.elapsed_s = elapsed_s;
   place.line = sample.line;
-  place.tool = now.tool;
+  place.tool = sample.tool;
   return place;
 }
 
@@ -313,8 +315,8 @@ void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump
 
 /// The machine has another tool than the program has where the machine is.
 void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm) {
-  if (!point.on_path || now.tool < 0) return;
-  if (now.tool == point.tool) {
+  if (!point.on_path || sample_.tool < 0) return;
+  if (sample_.tool == point.tool) {
     mismatch_told_ = false;
     mismatch_mm_ = 0;
     return;
@@ -380,7 +382,7 @@ void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double dura
   motion.kind = MotionKind::kFeed;
   motion.spindle = spindle();
   motion.spindle_rpm = std::isnan(sample_.spindle_rpm) ? 0 : std::abs(sample_.spindle_rpm);
-  motion.tool = std::max(0, now.tool);
+  motion.tool = std::max(0, now.tool >= 0 ? now.tool : program_tool_);
   motion.source = {0, sample_.line > 0 ? static_cast<std::uint32_t>(sample_.line) : 0};
   motion.from_mm = from_mm;
   motion.to_mm = now.tip_mm;
@@ -406,8 +408,7 @@ void LiveCutter::cut_path(double duration_s) {
   for (const auto& [motion, share_s] : driven_) planned_s += share_s;
   const bool spindle_told = !std::isnan(sample_.spindle_rpm);
   for (auto& [motion, share_s] : driven_) {
-    const int tool = frame_.tool_of(sample_);
-    if (tool >= 0) motion.tool = tool;
+    if (sample_.tool >= 0) motion.tool = sample_.tool;
     if (spindle_told) motion.spindle = spindle();
     facts_.path_mm += path_length_mm(motion);
     cut(motion, planned_s > 0 ? duration_s * share_s / planned_s : 0);
@@ -425,7 +426,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   const FollowedPoint point = follow(now, sample, elapsed_s);
   place_.known = true;
   place_.tip_mm = now.tip_mm;
-  place_.tool = now.tool;
+  place_.tool = now.tool >= 0 ? now.tool : point.on_path ? point.tool : program_tool_;
   place_.followed = point.on_path;
   place_.distance_mm = point.distance_mm;
   if (point.on_path) {
@@ -440,6 +441,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   for (const auto& [motion, share_s] : driven_) driven_mm += path_length_mm(motion);
   note_tool(now, point, driven_mm);
   note_off_path(now, point);
+  place_.off_path = off_path_event_.has_value();
   const bool first = !before_;
   if (before_) {
     // A machine that stands while its tool length changes: the new tip is elsewhere, and has moved

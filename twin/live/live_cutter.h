@@ -53,6 +53,7 @@ struct LivePlace {
   Vec3 tip_mm{0};      ///< workpiece frame
   int tool = -1;
   bool followed = false;     ///< there is a program, and the tip is on its path
+  bool off_path = false;     ///< it should be, and is not
   double distance_mm = 0;    ///< from the path, if there is one
   SourceRef source;          ///< of the program's motion there
   double program_s = 0;      ///< program time, by the plan

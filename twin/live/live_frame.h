@@ -32,7 +32,8 @@ struct LiveFrameOptions {
   WorkpieceFrame work;           ///< where the workpiece lies in the machine
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;
   std::map<int, double> table_length_mm;  ///< Z offsets of the tool table by tool number
-  int tool = -1;                          ///< in the spindle, where the source does not say
+  /// In the spindle, where neither the source nor a program that is followed says.
+  int tool = -1;
 };
 
 /// The machine at one moment.

@@ -322,9 +322,7 @@ void LiveSession::tell(bool ended) {
   }
   status.dropped = queue_.dropped();
   status.samples = cutter_->facts().samples;
-  if (status.place.known && !status.place.followed && std::isfinite(status.place.distance_mm)) {
-    status.off_path_mm = status.place.distance_mm;
-  }
+  if (status.place.off_path) status.off_path_mm = status.place.distance_mm;
   for (const ToolUse& use : cutter_->stage().tools()) status.removed_mm3 += use.removed_mm3;
   for (; told_findings_ < findings.size(); ++told_findings_) {
     observer_->on_finding(findings[told_findings_], files);

@@ -269,6 +269,23 @@ TEST(LiveCutter, AMachineBesideThePathIsFoundAndWhatItDoesIsCut) {
   EXPECT_GT(watch.log().kept()[0].source.line, 0U);
 }
 
+TEST(LiveCutter, WhereTheSourceNamesNoToolTheProgramDoes) {
+  const MotionList program = pocket();
+  const auto wanted = dry_run(program.list());
+  const RunningMachine machine(program.list());
+  LiveCutOptions options;
+  options.frame.tool = 1;  // as a configuration has it
+  Watch watch(options, &program);
+  for (double t = 0; t < machine.duration_s() + 0.01; t += 0.01) {
+    AxisSample sample = machine.sample(std::min(t, machine.duration_s()));
+    sample.tool = AxisSample::kUnknown;
+    watch.cutter().take(sample, t, false);
+  }
+  watch.removed_mm3();
+  EXPECT_LT(worst_difference_mm(watch.stock(), *wanted), 2e-5);
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{});
+}
+
 TEST(LiveCutter, TheWrongToolIsFound) {
   const MotionList program = pocket();
   const RunningMachine machine(program.list());
