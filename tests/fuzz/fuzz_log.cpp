@@ -17,7 +17,9 @@ namespace {
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : file_(std::tmpfile()) {
-    if (file_ == nullptr || std::fwrite(data, 1, size, file_) != size) std::abort();
+    if (file_ == nullptr) std::abort();
+    // Of an empty input `data` may be null.
+    if (size != 0 && std::fwrite(data, 1, size, file_) != size) std::abort();
     if (std::fflush(file_) != 0) std::abort();
   }
   ~Bytes() { std::fclose(file_); }
