@@ -63,6 +63,8 @@ const char* to_string(FindingId id) {
       return "off-path";
     case FindingId::kToolMismatch:
       return "tool-mismatch";
+    case FindingId::kLengthUnknown:
+      return "length-unknown";
     case FindingId::kLateStart:
       return "late-start";
     case FindingId::kLineNotReached:

@@ -35,6 +35,7 @@ enum class FindingId : std::uint8_t {
   kSourceGap,       ///< positions were missing while the machine moved: that move is not cut
   kOffPath,         ///< the machine's tip is not on the path of the program
   kToolMismatch,    ///< the machine has another tool in the spindle than the program
+  kLengthUnknown,   ///< a tool whose length nothing tells; it counts as 0
   kLateStart,       ///< the machine was running its program when it was first seen
   kLineNotReached,  ///< no move of the line where the report was to begin
 };

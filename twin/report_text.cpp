@@ -106,6 +106,11 @@ void add_live(std::string& out, const LiveReport& live) {
         f.on_path, f.following_sum_mm / static_cast<double>(f.on_path), f.following_max_mm,
         f.off_path, f.off_path_max_mm);
   }
+  if (live.jitter_ms > 0 || live.clock_steps > 0) {
+    out += fmt::format(
+        "clocks    the device's and this computer's keep together within {:.1f} ms{}\n",
+        live.jitter_ms, live.clock_steps > 0 ? "; this computer's was set meanwhile" : "");
+  }
   if (live.age_max_ms > 0) {
     out += fmt::format("age       {:.1f} ms in the middle, {:.1f} at 99 %, {:.1f} at most\n",
                        live.age_median_ms, live.age_p99_ms, live.age_max_ms);

@@ -97,7 +97,7 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
     place_.missing_axes = frame_.missing_axes(sample);
     return std::nullopt;
   }
-  facts_.length_unknown |= !pose->length_known;
+  if (!pose->length_known) note_length(frame_.tool_of(sample), t_s);
   if (!options_.frame.workpiece_frame) note_limits(pose->machine_mm, t_s);
   Sighting now;
   now.tip_mm = pose->tip_mm;
@@ -245,6 +245,24 @@ bool LiveCutter::near_stock(const Vec3& from_mm, const Vec3& to_mm, double radiu
   return way.min.z < blank.max.z && way.min.x - radius_mm < blank.max.x &&
          way.max.x + radius_mm > blank.min.x && way.min.y - radius_mm < blank.max.y &&
          way.max.y + radius_mm > blank.min.y;
+}
+
+/// Once a tool. With no tool in the spindle, or none that is known of, nothing is taken for
+/// granted.
+void LiveCutter::note_length(int tool, double t_s) {
+  if (tool <= 0 || tool == length_told_) return;
+  length_told_ = tool;
+  Finding finding;
+  finding.id = FindingId::kLengthUnknown;
+  finding.severity = Severity::kWarning;
+  finding.time_s = t_s;
+  finding.tool = tool;
+  finding.text = fmt::format(
+      "nothing tells the length of tool {} (the source does not, and no tool table has it): its "
+      "tip "
+      "is taken to be where the machine's position is (machine.tool_length: none says so, too)",
+      tool);
+  log_.add(std::move(finding));
 }
 
 /// Positions of another machine, or in another unit. One that is not homed may be anywhere for a

@@ -104,6 +104,7 @@ class LiveCutter {
   bool too_fast(const Sighting& before, const Sighting& now) const;
   Break break_between(const Sighting& before, const Sighting& now, bool lost) const;
   bool near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const;
+  void note_length(int tool, double t_s);
   void note_limits(const Vec3& machine_mm, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
@@ -138,6 +139,7 @@ class LiveCutter {
   std::optional<FindingLog::Handle> off_path_event_;
   std::optional<double> beyond_since_s_;  ///< the positions lie beyond the machine's limits
   bool beyond_told_ = false;
+  int length_told_ = 0;  ///< tool whose length is not known
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
   int program_tool_ = -1;    ///< where the machine was last on the path

@@ -21,7 +21,6 @@ struct LiveFacts {
   double path_mm = 0;       ///< cut along the program
   double chord_mm = 0;      ///< cut straight from sample to sample
   std::uint64_t tool_changes = 0;
-  bool length_unknown = false;  ///< positions were read with a tool length of 0 for want of one
 };
 
 }  // namespace kerf

@@ -40,6 +40,7 @@ class Watch {
  public:
   explicit Watch(LiveCutOptions options = {}, const MotionList* program = nullptr)
       : stock_(block()) {
+    options.frame.tool_length = length;
     std::unique_ptr<Program> listed;
     if (program) listed = std::make_unique<ListedProgram>(program->list());
     options.wait_for_program = true;
@@ -78,6 +79,8 @@ class Watch {
   const ZMap& stock() const { return *stock_; }
   const FindingLog& log() const { return log_; }
 
+  /// Positions are those of the tip.
+  static inline ToolLengthFrom length = ToolLengthFrom::kNone;
   struct Told {
     AheadWarning warning;
     double at_s;
@@ -233,6 +236,22 @@ TEST(LiveCutter, PositionsOfAnotherMachineAreSuspected) {
             "positions of another machine, or in another unit?");
 }
 
+TEST(LiveCutter, AToolWhoseLengthNobodyTellsIsNamedOnce) {
+  LiveCutOptions options;
+  auto stock = block();
+  FindingLog log;
+  LiveCutter cutter(*stock, cutters(), log, options, nullptr);
+  AxisSample sample;
+  for (std::size_t i = 0; i < 3; ++i) sample.set(i, 50);
+  for (const int tool : {0, 1, 1, 1}) {
+    sample.tool = tool;
+    cutter.take(sample, 0, false);
+  }
+  ASSERT_EQ(log.kept().size(), 1U);
+  EXPECT_EQ(log.kept()[0].id, FindingId::kLengthUnknown);
+  EXPECT_EQ(log.kept()[0].tool, 1);
+}
+
 TEST(LiveCutter, APositionThatIsMissingIsNamedAndNothingIsCut) {
   Watch watch;
   AxisSample sample;
@@ -384,6 +403,7 @@ TEST(LiveCutter, TheWayToTheProgramsFirstPositionIsNotOffItsPath) {
   std::vector<Motion> motions = program.list();
   motions[1].start_known = false;  // line 2: from wherever the machine was
   LiveCutOptions options;
+  options.frame.tool_length = ToolLengthFrom::kNone;
   options.wait_for_program = true;
   auto stock = block();
   FindingLog log;

@@ -54,6 +54,7 @@ LiveOptions with_block() {
   options.stock.cell_mm = 0.1;
   options.tools.push_back(std::move(parse_tool_argument("1=flat:4").value()));
   options.speed = std::numeric_limits<double>::infinity();
+  options.cutting.frame.tool_length = ToolLengthFrom::kNone;
   return options;
 }
 
