@@ -86,7 +86,8 @@ void LiveConsole::on_status(const LiveStatus& status) {
   send(status_json(status));
   const bool changed = !state_told_ || status.state != state_;
   // What goes wrong is worth a line when it begins, not each time that it is tried again.
-  const bool trouble = status.source.trouble != trouble_ && status.source.errors > errors_;
+  const bool counts = status.source.errors > errors_ || status.state == LiveState::kWaiting;
+  const bool trouble = status.source.trouble != trouble_ && counts;
   if (!quiet_ && trouble && !status.source.trouble.empty()) {
     say(fmt::format("kerf: {}\n", status.source.trouble));
     trouble_ = status.source.trouble;
