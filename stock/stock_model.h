@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/mesh_patch.h"
 #include "base/result.h"
 #include "base/triangle_mesh.h"
 #include "stock/cutter/cutter.h"
@@ -48,6 +49,12 @@ struct Contact {
 
 /// Workpiece as it is now. One owner thread; snapshots are cheap, immutable in effect and may go to
 /// other threads.
+///
+/// For views the workpiece is divided into tiles, 0 .. tile_count() - 1, the same for a model and
+/// all its snapshots. What follows a model that cuts does, on the model's thread,
+///     dirty = model.take_dirty_tiles();  frame = model.snapshot();
+/// and hands `frame` over. The other thread makes patches anew where frame->patch_version(tile) is
+/// no longer that of the patch it has. This holds for jumps between any two snapshots as well.
 class StockModel {
  public:
   virtual ~StockModel() = default;
@@ -69,7 +76,13 @@ class StockModel {
   virtual std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                                double tolerance_mm) const = 0;
 
+  /// The workpiece as it is now, moves held back completed. Shares its tiles with this model: costs
+  /// some nanoseconds a tile, and memory only for tiles that either of the two changes later. May
+  /// be read and dropped on another thread, also while this model cuts on.
   virtual std::unique_ptr<StockModel> snapshot() const = 0;
+  /// Memory for heights that nobody but this model or snapshot keeps: what dropping it would free.
+  /// A guess while others that share tiles with it are being changed or dropped.
+  virtual std::size_t unique_bytes() const = 0;
 
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank
@@ -82,6 +95,29 @@ class StockModel {
   /// Closed surface of the workpiece; deviates from the model by at most `tolerance_mm` (0 = every
   /// cell is kept).
   virtual TriangleMesh mesh(double tolerance_mm) const = 0;
+
+  virtual std::size_t tile_count() const = 0;
+  /// What the tile's patches can occupy: its cells, from the floor to the top of the blank.
+  virtual Box tile_box(std::uint32_t tile) const = 0;
+  /// The tiles in which a height has changed since the last call, ascending; all of them the first
+  /// time (a snapshot has not been asked yet). Exact up to collisions of a 64-bit hash. Moves held
+  /// back do not count yet. About a microsecond for each tile that moves came over; nothing is paid
+  /// before the first call.
+  virtual std::vector<std::uint32_t> take_dirty_tiles() = 0;
+  /// The tiles in which the two differ, ascending; exact. Fast where one is a snapshot of the
+  /// other, or both of a third. All tiles if `other` is another model, or of another size.
+  virtual std::vector<std::uint32_t> differing_tiles(const StockModel& other) const = 0;
+  /// Changes whenever a patch of this tile may have changed: by what was cut in the tile or at its
+  /// neighbours' borders. Equal numbers mean equal patches, whichever snapshots they come from. May
+  /// change without cause where a move came over the tile and removed nothing, unless
+  /// take_dirty_tiles() was called between that move and the snapshot.
+  virtual std::uint64_t patch_version(std::uint32_t tile) const = 0;
+  /// The tile's surface. Level n, 0 .. kPatchLevels - 1, has one cell for 2^n x 2^n, as low as the
+  /// lowest of them: what was cut, however narrow, never disappears. Neighbours of equal level meet
+  /// in the same vertices; for others there are skirts (base/mesh_patch.h).
+  virtual MeshPatch patch(std::uint32_t tile, int level) const = 0;
+
+  static constexpr int kPatchLevels = 5;
 };
 
 }  // namespace kerf

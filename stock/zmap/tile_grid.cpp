@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <new>
 
 namespace kerf {
@@ -13,24 +15,69 @@ namespace {
 
 constexpr std::size_t kTileBytes = kTileFloats * sizeof(float);
 
-std::shared_ptr<float> allocate(std::size_t bytes, std::size_t alignment) {
+float* allocate(std::size_t bytes, std::size_t alignment) {
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  float* memory = static_cast<float*>(std::aligned_alloc(alignment, rounded));
+  void* memory = std::aligned_alloc(alignment, rounded);
   if (memory == nullptr) throw std::bad_alloc();
-  return {memory, [](float* p) { std::free(p); }};
+  return static_cast<float*>(memory);
 }
 
-/// One piece of memory for all tiles of a fresh grid: large pages save most address translations of
-/// the kernel.
-std::shared_ptr<float> allocate_slab(std::size_t bytes) {
-  constexpr std::size_t kLargePage = std::size_t{1} << 21;
-  if (bytes < kLargePage) return allocate(bytes, 64);
-  std::shared_ptr<float> slab = allocate(bytes, kLargePage);
-  madvise(slab.get(), bytes, MADV_HUGEPAGE);
-  return slab;
+/// Never the same twice: one count for all grids, so that versions can be compared whatever copy
+/// they come from.
+std::uint64_t next_version() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
 }  // namespace
+
+/// Memory of tiles. Those of a fresh grid lie in one piece, which cannot be given back before all
+/// of them are; so a tile of it that nobody keeps any more serves the next copy that is made.
+class TileArena {
+ public:
+  explicit TileArena(std::size_t count) : count_(count), slab_(allocate_slab(count * kTileBytes)) {}
+  ~TileArena() { std::free(slab_); }
+  TileArena(const TileArena&) = delete;
+  TileArena& operator=(const TileArena&) = delete;
+
+  float* slab() const { return slab_; }
+  float* take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        float* const tile = free_.back();
+        free_.pop_back();
+        return tile;
+      }
+    }
+    return allocate(kTileBytes, 64);
+  }
+  void give_back(float* tile) {
+    if (std::less<>()(tile, slab_) || !std::less<>()(tile, slab_ + count_ * kTileFloats))
+      return std::free(tile);
+    const std::lock_guard lock(mutex_);
+    free_.push_back(tile);
+  }
+  /// A control block of its own for each tile: it counts the grids that share it.
+  static std::shared_ptr<float> share(const std::shared_ptr<TileArena>& arena, float* tile) {
+    return {tile, [arena](float* unused) { arena->give_back(unused); }};
+  }
+
+ private:
+  /// Large pages save most address translations of the kernel.
+  static float* allocate_slab(std::size_t bytes) {
+    constexpr std::size_t kLargePage = std::size_t{1} << 21;
+    if (bytes < kLargePage) return allocate(bytes, 64);
+    float* const slab = allocate(bytes, kLargePage);
+    madvise(slab, bytes, MADV_HUGEPAGE);
+    return slab;
+  }
+
+  std::size_t count_;
+  float* slab_;
+  std::mutex mutex_;
+  std::vector<float*> free_;
+};
 
 TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny)
     : bounds_(bounds_mm),
@@ -40,14 +87,12 @@ TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny)
       tiles_y_((ny + kTileCells - 1) / kTileCells),
       meetings_(std::make_shared<std::atomic<unsigned>>(0)) {
   const std::size_t count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
-  const std::shared_ptr<float> slab = allocate_slab(count * kTileBytes);
-  std::fill_n(slab.get(), count * kTileFloats, std::numeric_limits<float>::lowest());
+  arena_ = std::make_shared<TileArena>(count);
+  std::fill_n(arena_->slab(), count * kTileFloats, std::numeric_limits<float>::lowest());
   tiles_.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    // A control block of its own for each tile (it counts the snapshots that share it); the slab
-    // lives as long as one does.
-    tiles_.emplace_back(slab.get() + i * kTileFloats, [slab](float*) {});
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    tiles_.push_back(TileArena::share(arena_, arena_->slab() + i * kTileFloats));
+  versions_.resize(count);
   const std::vector<float> row(static_cast<std::size_t>(nx), floor_mm());
   for (int j = 0; j < ny; ++j) set_row(j, row.data());
 }
@@ -61,6 +106,17 @@ TileGrid::~TileGrid() { meet_other_grids(); }
 /// let go. (A fence would do as well, but ThreadSanitizer does not know fences.)
 void TileGrid::meet_other_grids() const { meetings_->fetch_add(1, std::memory_order_acq_rel); }
 
+Box TileGrid::tile_box(std::size_t tile_index) const {
+  const int i = static_cast<int>(tile_index) % tiles_x_ * kTileCells;
+  const int j = static_cast<int>(tile_index) / tiles_x_ * kTileCells;
+  Box box = bounds_;
+  box.min.x = bounds_.min.x + i * cell_x_mm();
+  box.min.y = bounds_.min.y + j * cell_y_mm();
+  if (i + kTileCells < nx_) box.max.x = bounds_.min.x + (i + kTileCells) * cell_x_mm();
+  if (j + kTileCells < ny_) box.max.y = bounds_.min.y + (j + kTileCells) * cell_y_mm();
+  return box;
+}
+
 void TileGrid::copy_row(int j, float* out) const {
   for (int i = 0; i < nx_; i += kBlockX) {
     const float* from = tile(i / kTileCells, j / kTileCells) + offset(i, j);
@@ -70,33 +126,35 @@ void TileGrid::copy_row(int j, float* out) const {
 }
 
 void TileGrid::set_row(int j, const float* in) {
-  const int ty = j / kTileCells;
+  begin_change();
   for (int tx = 0; tx < tiles_x_; ++tx) {
-    if (tiles_[index(tx, ty)].use_count() != 1) make_writable(static_cast<int>(index(tx, ty)));
-  }
-  meet_other_grids();
-  for (int i = 0; i < nx_; i += kBlockX) {
-    float* to = tiles_[index(i / kTileCells, ty)].get();
-    std::copy_n(in + i, std::min(kBlockX, nx_ - i), to + offset(i, j));
+    float* const to = make_writable(index(tx, j / kTileCells));
+    const int end = std::min(nx_, (tx + 1) * kTileCells);
+    for (int i = tx * kTileCells; i < end; i += kBlockX)
+      std::copy_n(in + i, std::min(kBlockX, end - i), to + offset(i, j));
   }
 }
 
-std::vector<float*> TileGrid::writable_pointers() {
-  std::vector<float*> pointers;
-  pointers.reserve(tiles_.size());
-  for (const std::shared_ptr<float>& tile : tiles_)
-    pointers.push_back(tile.use_count() == 1 ? tile.get() : nullptr);
+void TileGrid::begin_change() { change_ = next_version(); }
+
+float* TileGrid::make_writable(std::size_t tile_index) {
+  std::shared_ptr<float>& tile = tiles_[tile_index];
+  versions_[tile_index] = change_;
+  if (tile.use_count() == 1) {
+    meet_other_grids();
+    return tile.get();
+  }
+  std::shared_ptr<float> own = TileArena::share(arena_, arena_->take());
+  std::copy_n(tile.get(), kTileFloats, own.get());
   meet_other_grids();
-  return pointers;
+  tile = std::move(own);
+  return tile.get();
 }
 
-float* TileGrid::make_writable(int tile_index) {
-  std::shared_ptr<float>& shared = tiles_[static_cast<std::size_t>(tile_index)];
-  std::shared_ptr<float> own = allocate(kTileBytes, 64);
-  std::copy_n(shared.get(), kTileFloats, own.get());
-  meet_other_grids();
-  shared = std::move(own);
-  return shared.get();
+std::size_t TileGrid::unique_bytes() const {
+  const auto own =
+      std::count_if(tiles_.begin(), tiles_.end(), [](const auto& t) { return t.use_count() == 1; });
+  return static_cast<std::size_t>(own) * kTileBytes;
 }
 
 }  // namespace kerf

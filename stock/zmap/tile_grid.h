@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -10,9 +11,12 @@
 
 namespace kerf {
 
+class TileArena;
+
 /// nx x ny heights. Copying the grid is cheap: tiles are shared until one of the copies writes to
-/// them. Cells that pad the last tiles hold a height below any floor and are never read by the
-/// functions here.
+/// them. A tile has a version, a new number with every change: for the copies of one grid, equal
+/// versions of a tile mean equal heights. Cells that pad the last tiles hold a height below any
+/// floor and are never read by the functions here.
 class TileGrid {
  public:
   /// Every cell at the floor (no material).
@@ -31,14 +35,29 @@ class TileGrid {
 
   float height(int i, int j) const { return tile(i / kTileCells, j / kTileCells)[offset(i, j)]; }
   const float* tile(int tx, int ty) const { return tiles_[index(tx, ty)].get(); }
+  /// From the floor to the top of the grid's bounds.
+  Box tile_box(std::size_t tile_index) const;
   /// Heights of row j, x = 0..nx-1.
   void copy_row(int j, float* out) const;
   void set_row(int j, const float* in);
 
-  /// Pointers for the kernels: null where a tile is shared. Valid until the grid is copied.
-  std::vector<float*> writable_pointers();
-  /// Own copy of a shared tile. Calls for different tiles may run at the same time.
-  float* make_writable(int tile_index);
+  std::size_t tile_count() const { return tiles_.size(); }
+  const float* tile(std::size_t tile_index) const { return tiles_[tile_index].get(); }
+  std::uint64_t version(std::size_t tile_index) const { return versions_[tile_index]; }
+  /// Takes a change of version back where the heights have turned out to be the same.
+  void restore_version(std::size_t tile_index, std::uint64_t version) {
+    versions_[tile_index] = version;
+  }
+
+  /// To be called before a round of make_writable(): what is written until the next one counts as
+  /// one change.
+  void begin_change();
+  /// Where tile `tile_index` may be written until the grid is copied or the next change begins:
+  /// in a copy of its own if it is shared. Gives it the version of this change. Calls for
+  /// different tiles may run at the same time.
+  float* make_writable(std::size_t tile_index);
+  /// Memory of the tiles that no other grid shares.
+  std::size_t unique_bytes() const;
 
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
@@ -55,7 +74,10 @@ class TileGrid {
   void meet_other_grids() const;
   Box bounds_;
   int nx_, ny_, tiles_x_, tiles_y_;
+  std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid
   std::vector<std::shared_ptr<float>> tiles_;
+  std::vector<std::uint64_t> versions_;
+  std::uint64_t change_ = 0;
   std::shared_ptr<std::atomic<unsigned>> meetings_;  ///< one for all copies of a grid
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
@@ -14,6 +15,7 @@
 #include "stock/zmap/path_builder.h"
 #include "stock/zmap/state_file.h"
 #include "stock/zmap/tile_grid.h"
+#include "stock/zmap/tile_patch.h"
 #include "stock/zmap/worker_pool.h"
 
 namespace kerf {
@@ -133,8 +135,15 @@ struct ZMap::Impl {
   std::uint64_t pending_id = 0;  ///< move whose last segment is held back
   SweepTotals pending_totals;
 
+  /// What take_dirty_tiles() last saw of each tile; empty before its first call.
+  struct SeenTile {
+    std::uint64_t version, hash;
+  };
+  std::vector<SeenTile> seen;
+
   std::vector<SweepOp> ops;  // kept between calls to save allocations
   std::vector<SweepTotals> totals;
+  std::vector<float*> pointers;
 
   explicit Impl(TileGrid g) : grid(std::move(g)) {}
   void use_cutter(const Cutter& cutter, std::vector<CutReport>& reports);
@@ -152,17 +161,17 @@ struct ZMap::Impl {
 /// Works off `ops`; totals[0 .. report_count) receive the sums.
 void ZMap::Impl::run(std::size_t report_count) {
   if (ops.empty()) return;
-  std::vector<float*> pointers = grid.writable_pointers();
+  // No tile may be written before its first sweep has asked for it: this is how tiles come to be
+  // unshared and to have a new version, without a look at either in the kernels' loops.
+  pointers.assign(grid.tile_count(), nullptr);
+  grid.begin_change();
   GridView view;
   view.tiles = pointers.data();
-  struct Owner {
-    TileGrid* grid;
-    float** pointers;
-  } owner{&grid, pointers.data()};
-  view.owner = &owner;
-  view.make_writable = [](void* o, int tile) {
-    Owner& self = *static_cast<Owner*>(o);
-    return self.pointers[tile] = self.grid->make_writable(tile);
+  view.owner = this;
+  view.make_writable = [](void* owner, int tile) {
+    Impl& self = *static_cast<Impl*>(owner);
+    const std::size_t index = static_cast<std::size_t>(tile);
+    return self.pointers[index] = self.grid.make_writable(index);
   };
   view.nx = grid.nx();
   view.ny = grid.ny();
@@ -322,10 +331,13 @@ std::optional<Contact> ZMap::first_contact(const Cutter& cutter, const CutMove& 
 std::unique_ptr<StockModel> ZMap::snapshot() const {
   auto copy = std::make_unique<Impl>(*impl_);
   copy->pool = std::make_shared<WorkerPool>(1);
+  copy->seen.clear();
   std::vector<CutReport> ignored;
   copy->finish(ignored);
   return std::unique_ptr<StockModel>(new ZMap(std::move(copy)));
 }
+
+std::size_t ZMap::unique_bytes() const { return impl_->grid.unique_bytes(); }
 
 Box ZMap::bounds_mm() const { return impl_->grid.bounds_mm(); }
 double ZMap::cell_mm() const { return std::max(impl_->grid.cell_x_mm(), impl_->grid.cell_y_mm()); }
@@ -369,6 +381,52 @@ std::string ZMap::digest() const {
 TriangleMesh ZMap::mesh(double tolerance_mm) const {
   const std::vector<float> heights = heights_mm();
   return mesh_height_grid({nx(), ny(), bounds_mm(), heights}, tolerance_mm, impl_->pool->threads());
+}
+
+std::size_t ZMap::tile_count() const { return impl_->grid.tile_count(); }
+Box ZMap::tile_box(std::uint32_t tile) const { return impl_->grid.tile_box(tile); }
+
+std::vector<std::uint32_t> ZMap::take_dirty_tiles() {
+  TileGrid& grid = impl_->grid;
+  std::vector<Impl::SeenTile>& seen = impl_->seen;
+  const bool first = seen.empty();
+  seen.resize(grid.tile_count());
+  std::vector<std::uint32_t> dirty;
+  for (std::uint32_t i = 0; i < seen.size(); ++i) {
+    if (!first && seen[i].version == grid.version(i)) continue;
+    const std::uint64_t hash = XXH3_64bits(grid.tile(i), kTileFloats * sizeof(float));
+    if (!first && seen[i].hash == hash) {
+      grid.restore_version(i, seen[i].version);
+      continue;
+    }
+    seen[i] = {grid.version(i), hash};
+    dirty.push_back(i);
+  }
+  return dirty;
+}
+
+std::vector<std::uint32_t> ZMap::differing_tiles(const StockModel& other) const {
+  const TileGrid& a = impl_->grid;
+  const ZMap* const map = dynamic_cast<const ZMap*>(&other);
+  const TileGrid* const b = map ? &map->impl_->grid : nullptr;
+  const bool alike = b && a.nx() == b->nx() && a.ny() == b->ny() && a.bounds_mm() == b->bounds_mm();
+  std::vector<std::uint32_t> differing;
+  for (std::uint32_t i = 0; i < a.tile_count(); ++i) {
+    if (alike && a.tile(i) == b->tile(i)) continue;
+    if (!alike || std::memcmp(a.tile(i), b->tile(i), kTileFloats * sizeof(float)) != 0)
+      differing.push_back(i);
+  }
+  return differing;
+}
+
+std::uint64_t ZMap::patch_version(std::uint32_t tile) const {
+  return tile_patch_version(impl_->grid, tile);
+}
+
+MeshPatch ZMap::patch(std::uint32_t tile, int level) const {
+  MeshPatch patch = make_tile_patch(impl_->grid, tile, level);
+  patch.version = patch_version(tile);
+  return patch;
 }
 
 Done ZMap::save(const std::string& path) const {

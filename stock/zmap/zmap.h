@@ -46,6 +46,7 @@ class ZMap final : public StockModel {
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
+  std::size_t unique_bytes() const override;
   std::string name() const override { return "zmap"; }
   Box bounds_mm() const override;
   double cell_mm() const override;
@@ -54,6 +55,16 @@ class ZMap final : public StockModel {
   double remaining_mm3() const override;
   std::string digest() const override;
   TriangleMesh mesh(double tolerance_mm) const override;
+
+  /// Tiles of kTileCells x kTileCells cells, row by row from low x, y; the last ones may be
+  /// smaller.
+  std::size_t tile_count() const override;
+  Box tile_box(std::uint32_t tile) const override;
+  std::vector<std::uint32_t> take_dirty_tiles() override;
+  std::vector<std::uint32_t> differing_tiles(const StockModel& other) const override;
+  std::uint64_t patch_version(std::uint32_t tile) const override;
+  /// How it is made: stock/zmap/tile_patch.h.
+  MeshPatch patch(std::uint32_t tile, int level) const override;
 
   int nx() const;
   int ny() const;

@@ -14,5 +14,11 @@ extern const char* const edges_frag;      ///< Sharp edges and silhouettes.
 extern const char* const composite_frag;  ///< Light.
 extern const char* const stroke_vert;     ///< Antialiased line with round ends, in pixels.
 extern const char* const stroke_frag;
+extern const char* const scene_vert;  ///< The window's own: one pass, lit at once.
+extern const char* const scene_frag;
+extern const char* const path_vert;  ///< Toolpath: colour by kind, past and future.
+extern const char* const path_frag;
+extern const char* const marker_vert;  ///< Outlines, axes, markers of findings.
+extern const char* const marker_frag;
 
 }  // namespace kerf::shaders

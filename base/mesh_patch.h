@@ -1,0 +1,69 @@
+// base/mesh_patch.h - one tile of a workpiece's surface as triangles, ready to be uploaded.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+namespace kerf {
+
+/// Corner of a triangle: 16 bytes, as a vertex buffer takes them.
+///   attribute 0: 3 x GL_FLOAT at offset 0, mm, workpiece frame
+///   attribute 1: 4 x GL_INT_2_10_10_10_REV, normalised, at offset 12
+struct MeshVertex {
+  glm::vec3 position_mm;
+  /// Unit normal out of the material: x in bits 0..9, y in 10..19, z in 20..29, each as a signed
+  /// fraction of 511; bits 30 and 31 are 0. About 0.1 degrees fine.
+  std::uint32_t normal;
+};
+static_assert(sizeof(MeshVertex) == 16);
+
+/// `normal` need not be of unit length if each component is within -1..1.
+inline std::uint32_t pack_normal(const glm::vec3& normal) {
+  const auto bits = [](float value) {
+    const int steps = static_cast<int>(std::lround(std::clamp(value, -1.0f, 1.0f) * 511.0f));
+    return static_cast<std::uint32_t>(steps) & 0x3ffu;
+  };
+  return bits(normal.x) | bits(normal.y) << 10 | bits(normal.z) << 20;
+}
+
+/// Unit length again.
+inline glm::vec3 unpack_normal(std::uint32_t packed) {
+  const auto value = [packed](int shift) {
+    const int steps = static_cast<int>(packed >> shift & 0x3ffu);
+    return static_cast<float>(steps >= 512 ? steps - 1024 : steps) / 511.0f;
+  };
+  return glm::normalize(glm::vec3(value(0), value(10), value(20)));
+}
+
+/// The surface of one tile. Triangles counter-clockwise seen from outside.
+///
+///   indices[0 .. skirt_begin)    what is seen: top, walls, and the tile's share of the workpiece's
+///                                sides and floor. Over all tiles of one level this is closed.
+///   indices[skirt_begin .. end)  skirts: the tile's border carried down to the floor. To be drawn
+///                                as well where a neighbour is drawn at another level, whose border
+///                                lies elsewhere; they are inside the material otherwise.
+struct MeshPatch {
+  std::uint32_t tile = 0;
+  std::uint64_t version = 0;  ///< StockModel::patch_version() of what it was made from
+  int level = 0;              ///< 0: every cell; n: one of 2^n x 2^n cells
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint32_t> indices;  ///< three a triangle
+  std::uint32_t skirt_begin = 0;       ///< a multiple of three
+
+  std::span<const std::uint32_t> surface_indices() const {
+    return std::span(indices).first(skirt_begin);
+  }
+  std::span<const std::uint32_t> skirt_indices() const {
+    return std::span(indices).subspan(skirt_begin);
+  }
+  std::size_t bytes() const {
+    return vertices.size() * sizeof(MeshVertex) + indices.size() * sizeof(std::uint32_t);
+  }
+};
+
+}  // namespace kerf

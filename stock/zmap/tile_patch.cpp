@@ -1,0 +1,354 @@
+#include "stock/zmap/tile_patch.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <array>
+#include <cassert>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "stock/stock_model.h"
+#include "stock/zmap/tile_relief.h"
+
+namespace kerf {
+namespace {
+
+/// Quadrants of a corner, as TileRelief counts them.
+enum Quadrant : std::size_t { kA, kB, kC, kD };
+
+/// Squares of fewer cells are not looked at for being level.
+constexpr int kLeastSquare = 8;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// On which sides the tile has neighbours.
+struct Neighbors {
+  bool left, right, low, high;
+};
+
+class PatchBuilder {
+ public:
+  PatchBuilder(const TileRelief& relief, const Neighbors& neighbors, MeshPatch& patch)
+      : r_(relief), neighbors_(neighbors), patch_(patch) {
+    top_.fill(kNone);
+    bottom_.fill(kNone);
+    const std::size_t corners =
+        static_cast<std::size_t>(r_.nx() + 1) * static_cast<std::size_t>(r_.ny() + 1);
+    patch_.vertices.reserve(corners + corners / 4);
+    patch_.indices.reserve(7 * corners);
+  }
+
+  void add_surface();
+  void add_skirts();
+
+ private:
+  struct SplitCorner {
+    TileRelief::Split split;
+    std::array<std::uint32_t, 4> vertex{kNone, kNone, kNone, kNone};  ///< by group
+  };
+  using Ring = std::array<std::uint32_t, 4 * kTileCells>;
+
+  std::uint32_t add_vertex(int i, int j, float z, std::uint32_t normal) {
+    patch_.vertices.push_back({{r_.x(i), r_.y(j), z}, normal});
+    return static_cast<std::uint32_t>(patch_.vertices.size() - 1);
+  }
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const std::uint32_t corners[3] = {a, b, c};
+    patch_.indices.insert(patch_.indices.end(), corners, corners + 3);
+  }
+
+  SplitCorner& split_corner(int i, int j);
+  float z_at(int i, int j, Quadrant q);
+  std::uint32_t top_vertex(int i, int j, Quadrant q);
+  std::uint32_t bottom_vertex(int i, int j);
+
+  bool is_level(int i, int j, int size) const;
+  template <class Corner>
+  void add_fan(int i, int j, int width, int height, std::uint32_t center, bool upward,
+               const Corner& corner);
+  void add_square(int i, int j, int size);
+  void add_cell(int i, int j);
+  void add_floor();
+
+  struct WallEnd;
+  void add_walls();
+  void add_wall(int cell, bool along_y, int i, int j, bool owned_if_lower, bool owned_if_higher);
+  WallEnd wall_end(int i, int j, Quadrant upper, Quadrant lower);
+  void add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1);
+
+  const TileRelief& r_;
+  Neighbors neighbors_;
+  MeshPatch& patch_;
+  std::array<std::uint32_t, TileRelief::kSlots> top_;  ///< vertex; or number of the split corner
+  std::array<std::uint32_t, TileRelief::kSlots> bottom_;
+  std::vector<SplitCorner> splits_;
+};
+
+PatchBuilder::SplitCorner& PatchBuilder::split_corner(int i, int j) {
+  const int corner = TileRelief::slot(i, j);
+  std::uint32_t& number = top_[static_cast<std::size_t>(corner)];
+  if (number == kNone) {
+    number = static_cast<std::uint32_t>(splits_.size());
+    splits_.push_back({r_.split(corner)});
+  }
+  return splits_[number];
+}
+
+float PatchBuilder::z_at(int i, int j, Quadrant q) {
+  const int corner = TileRelief::slot(i, j);
+  return r_.is_split(corner) ? split_corner(i, j).split.z[q] : r_.corner_z(corner);
+}
+
+std::uint32_t PatchBuilder::top_vertex(int i, int j, Quadrant q) {
+  const int corner = TileRelief::slot(i, j);
+  if (!r_.is_split(corner)) [[likely]] {
+    std::uint32_t& vertex = top_[static_cast<std::size_t>(corner)];
+    if (vertex == kNone) vertex = add_vertex(i, j, r_.corner_z(corner), r_.corner_normal(corner));
+    return vertex;
+  }
+  SplitCorner& at = split_corner(i, j);
+  std::uint32_t& vertex = at.vertex[at.split.group[q]];
+  if (vertex == kNone) {
+    const glm::vec2 slope = at.split.slope[q];
+    const glm::vec3 normal = glm::normalize(glm::vec3(-slope.x, -slope.y, 1));
+    vertex = add_vertex(i, j, at.split.z[q], pack_normal(normal));
+  }
+  return vertex;
+}
+
+std::uint32_t PatchBuilder::bottom_vertex(int i, int j) {
+  std::uint32_t& vertex = bottom_[static_cast<std::size_t>(TileRelief::slot(i, j))];
+  if (vertex == kNone) vertex = add_vertex(i, j, r_.floor(), pack_normal({0, 0, -1}));
+  return vertex;
+}
+
+/// Cells of the square and around it all have one height, above the floor.
+bool PatchBuilder::is_level(int i, int j, int size) const {
+  const float z = r_.height(TileRelief::slot(i, j));
+  if (!(z > r_.floor())) return false;
+  for (int y = j - 1; y <= j + size; ++y) {
+    bool same = true;
+    for (int x = i - 1; x <= i + size; ++x) same &= r_.height(TileRelief::slot(x, y)) == z;
+    if (!same) return false;
+  }
+  return true;
+}
+
+/// Triangles from `center` to every corner on the rim of a rectangle of cells.
+template <class Corner>
+void PatchBuilder::add_fan(int i, int j, int width, int height, std::uint32_t center, bool upward,
+                           const Corner& corner) {
+  Ring ring;
+  std::size_t count = 0;
+  for (int k = 0; k < width; ++k) ring[count++] = corner(i + k, j);
+  for (int k = 0; k < height; ++k) ring[count++] = corner(i + width, j + k);
+  for (int k = width; k > 0; --k) ring[count++] = corner(i + k, j + height);
+  for (int k = height; k > 0; --k) ring[count++] = corner(i, j + k);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t a = ring[n], b = ring[n + 1 < count ? n + 1 : 0];
+    add_triangle(center, upward ? a : b, upward ? b : a);
+  }
+}
+
+void PatchBuilder::add_square(int i, int j, int size) {
+  if (i >= r_.nx() || j >= r_.ny()) return;
+  const bool whole = i + size <= r_.nx() && j + size <= r_.ny();
+  if (whole && size >= kLeastSquare && is_level(i, j, size)) {
+    const std::uint32_t up = pack_normal({0, 0, 1});
+    const int middle = size / 2;
+    const std::uint32_t center =
+        add_vertex(i + middle, j + middle, r_.height(TileRelief::slot(i, j)), up);
+    add_fan(i, j, size, size, center, true, [&](int x, int y) { return top_vertex(x, y, kA); });
+    return;
+  }
+  if (size > kLeastSquare) {
+    const int half = size / 2;
+    for (const int y : {j, j + half})
+      for (const int x : {i, i + half}) add_square(x, y, half);
+    return;
+  }
+  for (int y = j; y < std::min(j + size, r_.ny()); ++y)
+    for (int x = i; x < std::min(i + size, r_.nx()); ++x) add_cell(x, y);
+}
+
+void PatchBuilder::add_cell(int i, int j) {
+  const int cell = TileRelief::slot(i, j);
+  if (!r_.solid(cell)) return;
+  const std::uint32_t a = top_vertex(i, j, kC), b = top_vertex(i + 1, j, kD);
+  const std::uint32_t c = top_vertex(i + 1, j + 1, kA), d = top_vertex(i, j + 1, kB);
+  // Of the two diagonals the one whose middle is nearer to the cell's height.
+  const auto z = [&](std::uint32_t v) { return patch_.vertices[v].position_mm.z; };
+  const float twice = 2 * r_.height(cell);
+  const bool rising = std::abs(z(a) + z(c) - twice) <= std::abs(z(b) + z(d) - twice);
+  const std::uint32_t corners[6] = {a, b, rising ? c : d, rising ? a : b, c, d};
+  patch_.indices.insert(patch_.indices.end(), corners, corners + 6);
+}
+
+void PatchBuilder::add_floor() {
+  bool whole = true;
+  for (int j = 0; j < r_.ny(); ++j)
+    for (int i = 0; i < r_.nx(); ++i) whole &= r_.solid(TileRelief::slot(i, j));
+  const auto corner = [&](int i, int j) { return bottom_vertex(i, j); };
+  if (whole && r_.nx() > 1 && r_.ny() > 1) {
+    const std::uint32_t center = bottom_vertex(r_.nx() / 2, r_.ny() / 2);
+    add_fan(0, 0, r_.nx(), r_.ny(), center, false, corner);
+    return;
+  }
+  for (int j = 0; j < r_.ny(); ++j) {
+    for (int i = 0; i < r_.nx(); ++i) {
+      if (!r_.solid(TileRelief::slot(i, j))) continue;
+      const std::uint32_t a = corner(i, j), b = corner(i + 1, j);
+      const std::uint32_t c = corner(i + 1, j + 1), d = corner(i, j + 1);
+      add_triangle(a, c, b);
+      add_triangle(a, d, c);
+    }
+  }
+}
+
+/// One vertical edge of a wall: heights from that of the first cell to that of the second; between
+/// them those of the other cells at this corner, since walls between those end there.
+struct PatchBuilder::WallEnd {
+  int i, j;
+  std::array<float, 4> z;
+  std::size_t count = 0;
+  std::array<std::uint32_t, 4> vertex;
+};
+
+PatchBuilder::WallEnd PatchBuilder::wall_end(int i, int j, Quadrant first, Quadrant second) {
+  WallEnd end{i, j, {}, 0, {}};
+  const int corner = TileRelief::slot(i, j);
+  end.z[end.count++] = z_at(i, j, first);
+  if (!r_.is_split(corner)) return end;
+  const std::array<float, 4> all = split_corner(i, j).split.z;
+  const float last = all[second];
+  const bool down = last < end.z[0];
+  for (;;) {
+    std::optional<float> next;  // the nearest that lies beyond the present one
+    for (const float z : all) {
+      const float at = end.z[end.count - 1];
+      const bool between = down ? z < at && z >= last : z > at && z <= last;
+      if (between && (!next || (down ? z > *next : z < *next))) next = z;
+    }
+    if (!next) return end;
+    end.z[end.count++] = *next;
+  }
+}
+
+/// The wall between `cell` and the one before it in x (along_y) or in y, if this tile has it.
+void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_lower,
+                            bool owned_if_higher) {
+  const int before = along_y ? cell - 1 : cell - TileRelief::kStride;
+  if (along_y ? r_.linked_x(before) : r_.linked_y(before)) return;
+  // Seen along the edge, the first cell is at the left: walls along x are turned by a quarter.
+  WallEnd low = along_y ? wall_end(i, j, kD, kC) : wall_end(i + 1, j, kA, kD);
+  WallEnd high = along_y ? wall_end(i, j + 1, kA, kB) : wall_end(i, j, kB, kC);
+  if (low.count + high.count == 2) return;
+  const float first = low.z[0] + high.z[0];
+  const float second = low.z[low.count - 1] + high.z[high.count - 1];
+  const bool first_is_higher = first >= second;
+  if (first_is_higher ? !owned_if_lower : !owned_if_higher) return;
+
+  const glm::vec2 axis(along_y ? 1 : 0, along_y ? 0 : 1);
+  const glm::vec2 outward = first_is_higher ? axis : -axis;
+  // A side of the blank is flat to its very end.
+  const bool side = along_y ? (i == 0 && !neighbors_.left) || (i == r_.nx() && !neighbors_.right)
+                            : (j == 0 && !neighbors_.low) || (j == r_.ny() && !neighbors_.high);
+  for (WallEnd* end : {&low, &high}) {
+    const auto [bottom, top] = std::minmax(end->z[0], end->z[end->count - 1]);
+    glm::vec2 way = r_.wall_direction(TileRelief::slot(end->i, end->j), bottom, top);
+    if (side || !(glm::dot(way, outward) > 0.5f * glm::length(way))) way = outward;
+    const std::uint32_t normal = pack_normal(glm::vec3(glm::normalize(way), 0));
+    for (std::size_t n = 0; n < end->count; ++n)
+      end->vertex[n] = add_vertex(end->i, end->j, end->z[n], normal);
+  }
+  // A zip from the first cell's edge to the second's.
+  std::size_t p = 0, q = 0;
+  while (p + 1 < low.count || q + 1 < high.count) {
+    if (q + 1 == high.count || (p + 1 < low.count && p <= q)) {
+      add_triangle(low.vertex[p + 1], high.vertex[q], low.vertex[p]);
+      ++p;
+    } else {
+      add_triangle(high.vertex[q + 1], high.vertex[q], low.vertex[p]);
+      ++q;
+    }
+  }
+}
+
+void PatchBuilder::add_walls() {
+  for (int j = 0; j < r_.ny(); ++j)
+    for (int i = 0; i <= r_.nx(); ++i)
+      add_wall(TileRelief::slot(i, j), true, i, j, i > 0, i < r_.nx());
+  for (int j = 0; j <= r_.ny(); ++j)
+    for (int i = 0; i < r_.nx(); ++i)
+      add_wall(TileRelief::slot(i, j), false, i, j, j > 0, j < r_.ny());
+}
+
+void PatchBuilder::add_surface() {
+  add_square(0, 0, kTileCells);
+  add_walls();
+  add_floor();
+  patch_.skirt_begin = static_cast<std::uint32_t>(patch_.indices.size());
+}
+
+/// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right.
+void PatchBuilder::add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1) {
+  // The top's own normals: where a skirt fills a crack it must not be seen.
+  const std::uint32_t a = add_vertex(i0, j0, r_.floor(), patch_.vertices[from].normal);
+  const std::uint32_t b = add_vertex(i1, j1, r_.floor(), patch_.vertices[to].normal);
+  add_triangle(a, b, to);
+  add_triangle(a, to, from);
+}
+
+void PatchBuilder::add_skirts() {
+  const int nx = r_.nx(), ny = r_.ny();
+  const auto solid = [&](int i, int j) { return r_.solid(TileRelief::slot(i, j)); };
+  for (int j = 0; j < ny; ++j) {
+    if (neighbors_.left && solid(0, j))
+      add_skirt(top_vertex(0, j + 1, kB), top_vertex(0, j, kC), 0, j + 1, 0, j);
+    if (neighbors_.right && solid(nx - 1, j))
+      add_skirt(top_vertex(nx, j, kD), top_vertex(nx, j + 1, kA), nx, j, nx, j + 1);
+  }
+  for (int i = 0; i < nx; ++i) {
+    if (neighbors_.low && solid(i, 0))
+      add_skirt(top_vertex(i, 0, kC), top_vertex(i + 1, 0, kD), i, 0, i + 1, 0);
+    if (neighbors_.high && solid(i, ny - 1))
+      add_skirt(top_vertex(i + 1, ny, kA), top_vertex(i, ny, kB), i + 1, ny, i, ny);
+  }
+}
+
+}  // namespace
+
+MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level) {
+  assert(tile < grid.tile_count() && level >= 0 && level < StockModel::kPatchLevels);
+  MeshPatch patch;
+  patch.tile = tile;
+  patch.level = level;
+  const TileRelief relief(grid, tile, level);
+  const int tx = static_cast<int>(tile) % grid.tiles_x();
+  const int ty = static_cast<int>(tile) / grid.tiles_x();
+  const Neighbors neighbors{tx > 0, tx + 1 < grid.tiles_x(), ty > 0, ty + 1 < grid.tiles_y()};
+  PatchBuilder builder(relief, neighbors, patch);
+  builder.add_surface();
+  builder.add_skirts();
+  // A level tile fills a small part of what was reserved, and patches are kept until uploaded.
+  if (2 * patch.vertices.size() < patch.vertices.capacity()) patch.vertices.shrink_to_fit();
+  if (2 * patch.indices.size() < patch.indices.capacity()) patch.indices.shrink_to_fit();
+  return patch;
+}
+
+std::uint64_t tile_patch_version(const TileGrid& grid, std::uint32_t tile) {
+  const int tx = static_cast<int>(tile) % grid.tiles_x();
+  const int ty = static_cast<int>(tile) / grid.tiles_x();
+  std::array<std::uint64_t, 9> versions{};
+  std::size_t n = 0;
+  for (int y = ty - 1; y <= ty + 1; ++y) {
+    for (int x = tx - 1; x <= tx + 1; ++x, ++n) {
+      if (x < 0 || y < 0 || x >= grid.tiles_x() || y >= grid.tiles_y()) continue;
+      versions[n] = grid.version(static_cast<std::size_t>(y * grid.tiles_x() + x));
+    }
+  }
+  return XXH3_64bits(versions.data(), sizeof versions);
+}
+
+}  // namespace kerf

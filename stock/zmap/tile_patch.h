@@ -1,0 +1,35 @@
+// stock/zmap/tile_patch.h - the surface of one tile of a height grid, as triangles for a view.
+#pragma once
+
+#include "base/mesh_patch.h"
+#include "stock/zmap/tile_grid.h"
+
+namespace kerf {
+
+/// Level `level` of tile `tile`; `version` is left 0. Corners of the mesh lie at the corners of
+/// the cells, at the mean height of those cells about them that belong to one smooth surface;
+/// between cells that do not there is a vertical wall (which they are: tile_relief.h).
+///
+///        mean of these two --> o-----                     What the picture shows in section is a
+///                      o------/   .  |                     slope with a wall after it.
+///               -----/        .   .  |
+///                  .     .    .   .  o--------o-----
+///
+/// Against the heights of that level:
+///   - Above a cell the surface lies between the least and the greatest height of the nine cells
+///     about it, counting only those that are linked to it about one of its corners.
+///   - At its centre it misses the cell's height by no more than 1.5 x kSteepestSlope x cell (three
+///     steps to one side), and where the cells lie in a plane, by rounding.
+///   - A step between cells that are not linked is a wall in full, at the cells' common edge: no
+///     farther from the true wall than a cell.
+/// Squares of 8 x 8, 16 x 16 .. cells that are level keep only the corners at their rim.
+///
+/// Each wall belongs to the tile of the higher side, so no tile shows a wall above its own surface
+/// whatever the level of its neighbour. Over all tiles at one level each edge is in two triangles,
+/// once in each direction; in four where two pieces of material touch at one corner only.
+MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level);
+
+/// A number for the versions of the tile and of its eight neighbours.
+std::uint64_t tile_patch_version(const TileGrid& grid, std::uint32_t tile);
+
+}  // namespace kerf

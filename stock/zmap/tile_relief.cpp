@@ -1,0 +1,208 @@
+#include "stock/zmap/tile_relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace kerf {
+namespace {
+
+constexpr int kStride = TileRelief::kStride;
+constexpr int kHalo = TileRelief::kHalo;
+
+/// Lowers low[i - first] to the heights of cells first .. last-1 of row j; `first` is even. Room
+/// for one more is needed.
+void lower_to_row(const TileGrid& grid, int j, int first, int last, float* low) {
+  for (int i = first; i < last;) {
+    const float* from = grid.tile(i / kTileCells, j / kTileCells) + TileGrid::offset(i, j);
+    const int end = std::min(last, (i / kTileCells + 1) * kTileCells);
+    for (; i < end; i += kBlockX, from += kBlockFloats) {
+      float* const to = low + (i - first);
+      to[0] = std::min(to[0], from[0]);
+      to[1] = std::min(to[1], from[1]);
+    }
+  }
+}
+
+std::uint32_t packed(float x, float y, float z) {
+  const auto bits = [](float v) {
+    const float steps = v * 511.0f;
+    return static_cast<std::uint32_t>(static_cast<int>(steps + (steps < 0 ? -0.5f : 0.5f))) &
+           0x3ffu;
+  };
+  return bits(x) | bits(y) << 10 | bits(z) << 20;
+}
+
+}  // namespace
+
+TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
+    : floor_(grid.floor_mm()) {
+  const int tx = static_cast<int>(tile) % grid.tiles_x();
+  const int ty = static_cast<int>(tile) / grid.tiles_x();
+  const int span = 1 << level;
+  const auto cells = [span](int total, int t) {
+    return (std::min(kTileCells, total - t * kTileCells) + span - 1) / span;
+  };
+  nx_ = cells(grid.nx(), tx);
+  ny_ = cells(grid.ny(), ty);
+  // From the cell's number in the grid, so that neighbours agree to the bit.
+  const auto line = [span](int t, int i, int total, double origin, double edge) {
+    return static_cast<float>(origin + std::min(t * kTileCells + i * span, total) * edge);
+  };
+  const Box& box = grid.bounds_mm();
+  for (int i = 0; i <= nx_; ++i) x_[index(i)] = line(tx, i, grid.nx(), box.min.x, grid.cell_x_mm());
+  for (int j = 0; j <= ny_; ++j) y_[index(j)] = line(ty, j, grid.ny(), box.min.y, grid.cell_y_mm());
+  load_heights(grid, tx, ty, level);
+  const float cell_x = static_cast<float>(grid.cell_x_mm() * span);
+  const float cell_y = static_cast<float>(grid.cell_y_mm() * span);
+  find_links(cell_x, cell_y);
+  find_corners(cell_x, cell_y);
+}
+
+void TileRelief::load_heights(const TileGrid& grid, int tx, int ty, int level) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  const int span = 1 << level;
+  const int left = tx * kTileCells - kHalo * span, bottom = ty * kTileCells - kHalo * span;
+  const int first = std::max(0, left);
+  const int last = std::min(grid.nx(), left + (nx_ + 2 * kHalo) * span);
+  std::array<float, 2 * kTileCells + kTileCells + 2> low;
+  height_.fill(floor_);
+  for (int row = 0; row < ny_ + 2 * kHalo; ++row) {
+    const int from = std::max(0, bottom + row * span);
+    const int to = std::min(grid.ny(), bottom + (row + 1) * span);
+    if (from >= to) continue;
+    low.fill(kNone);
+    for (int j = from; j < to; ++j) lower_to_row(grid, j, first, last, low.data() + (first - left));
+    low[index(last - left)] = kNone;  // the other half of a pair of cells
+    int width = (nx_ + 2 * kHalo) * span;
+    for (int l = 0; l < level; ++l) {
+      width /= 2;
+      for (int i = 0; i < width; ++i)
+        low[index(i)] = std::min(low[index(2 * i)], low[index(2 * i + 1)]);
+    }
+    float* const out = height_.data() + row * kStride;
+    for (int i = 0; i < width; ++i)
+      out[i] = low[index(i)] == kNone ? floor_ : std::max(low[index(i)], floor_);
+  }
+}
+
+void TileRelief::find_links(float cell_x, float cell_y) {
+  const float floor = floor_;
+  const int rows = ny_ + 2 * kHalo;
+  const auto steps = [&](int next, int count, Field<float>& step) {
+    const float* const h = height_.data();
+    for (int k = 0; k < count; ++k)
+      step[index(k)] = ((h[k] > floor) & (h[k + next] > floor)) ? h[k + next] - h[k] : 0.0f;
+  };
+  steps(1, rows * kStride - 1, step_x_);
+  steps(kStride, (rows - 1) * kStride, step_y_);
+  const auto links = [&](int next, int begin, int end, float cell, const Field<float>& step,
+                         Field<float>& link) {
+    const float* const h = height_.data();
+    const float* const d = step.data();
+    float* const out = link.data();
+    const float smooth = kSmoothSlope * cell, steepest = kSteepestSlope * cell;
+    for (int k = begin; k < end; ++k) {
+      const float size = std::abs(d[k]);
+      const float before = d[k] * d[k - next], after = d[k] * d[k + next];
+      const float goes_on = before > after ? before : after;
+      const bool alike = (h[k] > floor) == (h[k + next] > floor);
+      const bool is_smooth =
+          (size <= smooth) | ((size <= steepest) & (size * size <= kMostSteepening * goes_on));
+      out[k] = (alike & is_smooth) ? 1.0f : 0.0f;
+    }
+  };
+  links(1, 1, rows * kStride - 2, cell_x, step_x_, link_x_);
+  links(kStride, kStride, (rows - 2) * kStride, cell_y, step_y_, link_y_);
+}
+
+void TileRelief::find_corners(float cell_x, float cell_y) {
+  // Links are good from one cell within the halo's edge on, slopes from two, corners from three.
+  const int begin = 2 * kStride + 2, end = (ny_ + 2 * kHalo - 2) * kStride - 2;
+  const auto slopes = [&](int next, float cell, const Field<float>& step, const Field<float>& link,
+                          Field<float>& slope) {
+    const float* const d = step.data();
+    const float* const l = link.data();
+    float* const out = slope.data();
+    const float whole = 1 / cell, half = 0.5f / cell;
+    for (int k = begin; k < end; ++k)
+      out[k] =
+          (d[k - next] * l[k - next] + d[k] * l[k]) * (l[k - next] + l[k] > 1.5f ? half : whole);
+  };
+  slopes(1, cell_x, step_x_, link_x_, slope_x_);
+  slopes(kStride, cell_y, step_y_, link_y_, slope_y_);
+
+  // Compilers do not see by themselves that the fields do not overlap.
+  const float* __restrict__ const h = height_.data();
+  const float* __restrict__ const lx = link_x_.data();
+  const float* __restrict__ const ly = link_y_.data();
+  const float* __restrict__ const sx = slope_x_.data();
+  const float* __restrict__ const sy = slope_y_.data();
+  float* __restrict__ const count = link_count_.data();
+  float* __restrict__ const z = corner_z_.data();
+  std::uint32_t* __restrict__ const normal = corner_normal_.data();
+  const int first = slot(0, 0), last = slot(nx_, ny_);
+  for (int k = first; k <= last; ++k) {
+    const int a = k - kStride - 1, b = k - kStride, c = k, d = k - 1;
+    count[k] = (lx[a] + lx[d]) + (ly[a] + ly[b]);
+    z[k] = ((h[a] + h[b]) + (h[c] + h[d])) * 0.25f;
+  }
+  for (int k = first; k <= last; ++k) {
+    const int a = k - kStride - 1, b = k - kStride, c = k, d = k - 1;
+    const float gx = ((sx[a] + sx[b]) + (sx[c] + sx[d])) * 0.25f;
+    const float gy = ((sy[a] + sy[b]) + (sy[c] + sy[d])) * 0.25f;
+    const float scale = 1 / std::sqrt(1 + gx * gx + gy * gy);
+    normal[k] = packed(-gx * scale, -gy * scale, scale);
+  }
+}
+
+TileRelief::Split TileRelief::split(int corner) const {
+  const std::array<int, 4> cells{corner - kStride - 1, corner - kStride, corner, corner - 1};
+  // Links along the way round: A-B, B-C, C-D, D-A.
+  const std::array<bool, 4> link{linked_x(cells[0]), linked_y(cells[1]), linked_x(cells[3]),
+                                 linked_y(cells[0])};
+  Split out;
+  out.group = {0, 1, 2, 3};
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      const std::size_t next = (q + 1) % 4;
+      if (link[q]) out.group[q] = out.group[next] = std::min(out.group[q], out.group[next]);
+    }
+  }
+  for (std::size_t q = 0; q < 4; ++q) {
+    float sum = 0, low = height(cells[q]), high = low, count = 0;
+    glm::vec2 slope(0);
+    for (std::size_t r = 0; r < 4; ++r) {
+      if (out.group[r] != out.group[q]) continue;
+      const std::size_t cell = index(cells[r]);
+      sum += height_[cell];
+      low = std::min(low, height_[cell]);
+      high = std::max(high, height_[cell]);
+      slope += glm::vec2(slope_x_[cell], slope_y_[cell]);
+      count += 1;
+    }
+    out.z[q] = std::clamp(sum / count, low, high);
+    out.slope[q] = slope / count;
+  }
+  return out;
+}
+
+glm::vec2 TileRelief::wall_direction(int corner, float low, float high) const {
+  // Against the middle of the wall, so that cells which are left out do not tilt the result.
+  const float middle = 0.5f * (low + high);
+  const bool between_solids = low > floor_;
+  glm::vec2 downhill(0);
+  for (int j = -2; j < 2; ++j) {
+    for (int i = -2; i < 2; ++i) {
+      const int cell = corner + j * kStride + i;
+      if (between_solids && !solid(cell)) continue;
+      const float z = std::clamp(height(cell), low, high);
+      const glm::vec2 arm(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f);
+      downhill -= (z - middle) / (arm.x * arm.x + arm.y * arm.y) * arm;
+    }
+  }
+  return downhill;
+}
+
+}  // namespace kerf

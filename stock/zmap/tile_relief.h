@@ -1,0 +1,91 @@
+// stock/zmap/tile_relief.h - one tile and its surroundings as a patch is made from them: heights
+// of cells, which of them belong to one smooth surface, and where that surface has its corners.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+#include "stock/zmap/tile_grid.h"
+
+namespace kerf {
+
+/// The lines x, y of the corners of cells divide the tile; a corner is named as the cell to its
+/// upper right. A "slot" is an index into all arrays here.
+///
+///      D | C        A..D: the four cells about a corner; `quadrant` 0..3 counts them in this
+///     ---+---       order. Corner (i, j) has cell (i, j) for its C.
+///      A | B
+///
+/// Two neighbouring cells are linked if the surface between them is smooth, else there is a wall:
+///   - their heights differ by no more than kSmoothSlope says, or
+///   - by no more than kSteepestSlope says, and the surface goes on rising (falling) beyond one of
+///     them, there at least 1 / kMostSteepening as fast.
+/// So steep flanks of a ball or a chamfer are smooth, a step in a level floor is a step, and a slot
+/// one cell wide keeps its bottom. A cell with material and one without are never linked.
+/// At a corner those of the four cells that hang together by links meet in the mean of their
+/// heights. With three links or four that is all of them; else the corner is split.
+class TileRelief {
+ public:
+  static constexpr float kSmoothSlope = 0.25f;   ///< about 14 degrees
+  static constexpr float kSteepestSlope = 6.0f;  ///< about 80 degrees
+  static constexpr float kMostSteepening = 2.5f;
+  static constexpr int kHalo = 4;  ///< cells beyond the tile; a corner depends on three
+  static constexpr int kStride = kTileCells + 2 * kHalo;
+  static constexpr int kSlots = kStride * kStride;
+
+  /// A corner of which not all four cells hang together.
+  struct Split {
+    std::array<float, 4> z;             ///< by quadrant
+    std::array<glm::vec2, 4> slope;     ///< dz/dx, dz/dy
+    std::array<std::uint8_t, 4> group;  ///< first quadrant that hangs together with this one
+  };
+
+  /// Level n: a cell is 2^n x 2^n cells of the grid, or what of them lies in it, at the least of
+  /// their heights. O(cells): 20 to 40 us.
+  TileRelief(const TileGrid& grid, std::size_t tile, int level);
+  TileRelief(const TileRelief&) = delete;
+  TileRelief& operator=(const TileRelief&) = delete;
+
+  int nx() const { return nx_; }  ///< cells of the tile
+  int ny() const { return ny_; }
+  float floor() const { return floor_; }
+  static int slot(int i, int j) { return (j + kHalo) * kStride + i + kHalo; }
+
+  float height(int cell) const { return height_[index(cell)]; }
+  bool solid(int cell) const { return height(cell) > floor_; }
+  bool linked_x(int cell) const { return link_x_[index(cell)] > 0.5f; }  ///< with the next in x
+  bool linked_y(int cell) const { return link_y_[index(cell)] > 0.5f; }
+  float x(int i) const { return x_[index(i)]; }  ///< of corner line i, mm
+  float y(int j) const { return y_[index(j)]; }
+
+  bool is_split(int corner) const { return link_count_[index(corner)] < 2.5f; }
+  /// Where is_split() is false: the one height and packed normal of the corner.
+  float corner_z(int corner) const { return corner_z_[index(corner)]; }
+  std::uint32_t corner_normal(int corner) const { return corner_normal_[index(corner)]; }
+  Split split(int corner) const;
+  /// Direction in which a wall faces that stands at this corner between heights `low` and `high`:
+  /// downhill of the heights around, cut off at these two. So a round wall looks round. Not of
+  /// unit length.
+  glm::vec2 wall_direction(int corner, float low, float high) const;
+
+ private:
+  template <class T>
+  using Field = std::array<T, kSlots>;
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void load_heights(const TileGrid& grid, int tx, int ty, int level);
+  void find_links(float cell_x, float cell_y);
+  void find_corners(float cell_x, float cell_y);
+
+  int nx_ = 0, ny_ = 0;
+  float floor_ = 0;
+  std::array<float, kTileCells + 1> x_, y_;
+  alignas(64) Field<float> height_;
+  alignas(64) Field<float> step_x_, step_y_;    ///< to the next cell; 0 where one has no material
+  alignas(64) Field<float> link_x_, link_y_;    ///< 1 or 0
+  alignas(64) Field<float> slope_x_, slope_y_;  ///< of the surface over a cell
+  alignas(64) Field<float> link_count_, corner_z_;
+  alignas(64) Field<std::uint32_t> corner_normal_;
+};
+
+}  // namespace kerf

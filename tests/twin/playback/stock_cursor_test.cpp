@@ -1,0 +1,141 @@
+#include "twin/playback/stock_cursor.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/twin/playback/tracks.h"
+#include "twin/finding_json.h"
+#include "twin/playback/frontier.h"
+
+namespace kerf {
+namespace {
+
+/// A program cut once to its end, and a cursor to go about in it.
+struct Shop {
+  Shop(std::span<const Motion> motions, std::size_t budget_bytes, double finest_s)
+      : track(test::track_of(motions)),
+        store(budget_bytes, finest_s),
+        frontier(*track, test::block_40(), test::two_tools(), TimelineOptions{}, store),
+        cursor(*track, frontier.record(), store) {
+    while (!frontier.complete()) frontier.advance(track->size());
+  }
+
+  std::string digest_at(std::size_t motion) {
+    while (!cursor.approach(motion)) {
+    }
+    return cursor.picture(0)->digest();
+  }
+
+  std::shared_ptr<const ProgramTrack> track;
+  KeyframeStore store;
+  Frontier frontier;
+  StockCursor cursor;
+};
+
+constexpr std::size_t kPlenty = std::size_t{1} << 30;
+
+/// Of every program: hundreds of places, forward and back, against a dry run of the part before
+/// them.
+void expect_dry_run_everywhere(unsigned seed, std::size_t budget_bytes) {
+  const std::vector<Motion> motions = test::varied_program(seed, 900);
+  Shop shop(motions, budget_bytes, 1e-5);
+  std::mt19937 random(seed + 100);
+  for (int n = 0; n < 60; ++n) {
+    const std::size_t place = n == 0 ? motions.size() : random() % (motions.size() + 1);
+    ASSERT_EQ(shop.digest_at(place), test::digest_after(motions, place))
+        << "seed " << seed << ", motion " << place;
+  }
+}
+
+TEST(StockCursor, EveryPlaceIsWhatADryRunLeaves) {
+  for (unsigned seed = 1; seed <= 6; ++seed) expect_dry_run_everywhere(seed, kPlenty);
+}
+
+TEST(StockCursor, WithFewKeyframesToo) {
+  for (unsigned seed = 11; seed <= 13; ++seed) expect_dry_run_everywhere(seed, 3'000'000);
+}
+
+TEST(StockCursor, TheOrderOfSeeksDoesNotMatter) {
+  const std::vector<Motion> motions = test::varied_program(21, 4000);
+  Shop shop(motions, 8'000'000, 1e-5);
+  EXPECT_GT(shop.store.count(), 3U);
+  std::mt19937 random(22);
+  std::map<std::size_t, std::string> seen;
+  for (int n = 0; n < 300; ++n) {
+    const std::size_t place = random() % 100 * (motions.size() / 100);
+    const std::string digest = shop.digest_at(place);
+    const auto [entry, fresh] = seen.try_emplace(place, digest);
+    ASSERT_EQ(entry->second, digest) << place;
+  }
+}
+
+TEST(StockCursor, SmoothRunsWithoutEndGetASeamAndStayExact) {
+  std::vector<Motion> motions;
+  MotionList program;
+  program.at({20, 20, 1}).tool(1).spindle(true);
+  for (int i = 0; i < 120'000; ++i) {
+    const double angle = i * 0.02;
+    program.feed({20 + 15 * std::cos(angle), 20 + 15 * std::sin(angle), 1 - i * 5e-5});
+  }
+  Shop shop(program.list(), kPlenty, 1e-5);
+  EXPECT_GE(shop.store.count(), 3U);
+  const std::size_t end = program.list().size();
+  const std::string whole = shop.digest_at(end);
+  const std::string half = shop.digest_at(end / 2);
+  EXPECT_NE(whole, half);
+  Shop single(program.list(), 0, 1e-5);
+  EXPECT_EQ(single.store.count(), 1U);
+  EXPECT_EQ(single.digest_at(end / 2), half);
+  EXPECT_EQ(single.digest_at(end), whole);
+}
+
+TEST(StockCursor, PartOfAMoveIsInThePictureOnly) {
+  MotionList program;
+  program.at({-5, 20, 5}).tool(1).spindle(true).feed({-5, 20, -2}).feed({45, 20, -2});
+  Shop shop(program.list(), kPlenty, 1e-5);
+  const std::string before = shop.digest_at(2);
+  const auto half = shop.cursor.picture(0.5);
+  MotionList shorter;
+  shorter.at({-5, 20, 5}).tool(1).spindle(true).feed({-5, 20, -2}).feed({20, 20, -2});
+  EXPECT_EQ(half->digest(), test::digest_after(shorter.list(), 3));
+  EXPECT_EQ(shop.digest_at(2), before);
+  EXPECT_EQ(shop.digest_at(3), test::digest_after(program.list(), 3));
+}
+
+TEST(Frontier, FindsWhatADryRunFinds) {
+  for (unsigned seed = 31; seed <= 34; ++seed) {
+    const std::vector<Motion> motions = test::varied_program(seed, 700);
+    std::vector<Finding> expected;
+    test::digest_after(motions, motions.size(), &expected);
+    const Shop shop(motions, kPlenty, 1e-5);
+    const std::vector<Finding>& found = shop.frontier.findings().kept();
+    ASSERT_EQ(found.size(), expected.size()) << seed;
+    EXPECT_GT(found.size(), 1U);
+    const std::vector<std::string> files{"part.ngc"};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(finding_json(found[i], files).dump(), finding_json(expected[i], files).dump());
+    }
+  }
+}
+
+TEST(Frontier, StopsWhereItIsTold) {
+  const std::vector<Motion> motions = test::varied_program(41, 3000);
+  const auto track = test::track_of(motions);
+  KeyframeStore store(kPlenty);
+  Frontier frontier(*track, test::block_40(), test::two_tools(), {}, store);
+  while (frontier.reached() < 1234) frontier.advance(1234);
+  EXPECT_EQ(frontier.reached(), 1234U);
+  EXPECT_FALSE(frontier.complete());
+  StockCursor cursor(*track, frontier.record(), store);
+  while (!cursor.approach(1234)) {
+  }
+  EXPECT_EQ(cursor.picture(0)->digest(), test::digest_after(motions, 1234));
+  while (!frontier.complete()) frontier.advance(track->size());
+  while (!cursor.approach(3000)) {
+  }
+  EXPECT_EQ(cursor.picture(0)->digest(), test::digest_after(motions, 3000));
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,35 @@
+// tests/viewer/virtual_display.h - an X server without a screen, and hands to type with.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "base/result.h"
+
+namespace kerf {
+
+/// Xvfb on a display number of its own choice, which is put into DISPLAY; ended by the destructor.
+class VirtualDisplay {
+ public:
+  /// Error: which Debian package is missing, or what Xvfb said.
+  static Result<VirtualDisplay> start();
+  VirtualDisplay(VirtualDisplay&& other) noexcept;
+  VirtualDisplay& operator=(VirtualDisplay&& other) noexcept;
+  ~VirtualDisplay();
+
+  const std::string& name() const { return name_; }  ///< ":7"
+
+ private:
+  VirtualDisplay(pid_t pid, std::string name) : pid_(pid), name_(std::move(name)) {}
+  pid_t pid_ = 0;
+  std::string name_;
+};
+
+/// The path of a program of PATH; empty if there is none.
+std::string find_program(const std::string& name);
+
+/// Runs xdotool with these words and waits for it; false if it failed.
+bool xdotool(const std::string& arguments);
+
+}  // namespace kerf

@@ -1,0 +1,41 @@
+#include "twin/playback/frontier.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+/// A piece of work: about a millisecond.
+constexpr std::size_t kMotionsAtOnce = 512;
+constexpr double kCellsAtOnce = 1e6;
+
+}  // namespace
+
+Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
+                   const TimelineOptions& options, KeyframeStore& store)
+    : track_(track),
+      record_(track.size()),
+      stock_(std::move(blank), track, record_, store),
+      book_(std::move(tools), false),
+      stage_(stock_, book_, log_, options) {
+  stage_.set_frame(track.frame());
+}
+
+void Frontier::advance(std::size_t end) {
+  end = std::min(end, track_.size());
+  const std::size_t first = reached_;
+  const std::shared_ptr<const Cutter> cutter = first < end ? record_.cutter(first) : nullptr;
+  double cells = 0;
+  for (; reached_ < end && reached_ - first < kMotionsAtOnce && cells < kCellsAtOnce; ++reached_) {
+    stock_.expect(first, reached_ + 1);
+    stage_.take_timed(track_.motion(reached_), track_.step(reached_));
+    if (cutter) cells += cells_under(track_.cut_move(reached_), *cutter, stock_.cell_mm());
+  }
+  stage_.take({});  // hands over what it has collected
+  if (reached_ < track_.size() || complete_) return;
+  stage_.finish();
+  complete_ = true;
+}
+
+}  // namespace kerf

@@ -1,0 +1,47 @@
+// twin/playback/frontier.h - the first cut through a program: finds, records, leaves keyframes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "twin/cut_stage.h"
+#include "twin/finding.h"
+#include "twin/playback/cut_record.h"
+#include "twin/playback/keyframe_store.h"
+#include "twin/playback/program_track.h"
+#include "twin/playback/recording_stock.h"
+#include "twin/timeline.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+/// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
+/// of the report. Everything before reached() can afterwards be cut again from the record and the
+/// keyframes. One thread.
+class Frontier {
+ public:
+  Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
+           const TimelineOptions& options, KeyframeStore& store);
+
+  /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
+  void advance(std::size_t end);
+  /// Motions that have been cut.
+  std::size_t reached() const { return reached_; }
+  /// The program is cut to its end, with all findings.
+  bool complete() const { return complete_; }
+
+  const CutRecord& record() const { return record_; }
+  const FindingLog& findings() const { return log_; }
+
+ private:
+  const ProgramTrack& track_;
+  CutRecord record_;
+  RecordingStock stock_;
+  ToolBook book_;
+  FindingLog log_;
+  CutStage stage_;
+  std::size_t reached_ = 0;
+  bool complete_ = false;
+};
+
+}  // namespace kerf

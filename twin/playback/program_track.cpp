@@ -1,0 +1,313 @@
+#include "twin/playback/program_track.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <utility>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+Vec3 read(const std::array<PackedColumn, 3>& columns, std::size_t i) {
+  return {columns[0].real_at(i), columns[1].real_at(i), columns[2].real_at(i)};
+}
+
+std::array<double, 3> read_angles(const std::array<PackedColumn, 3>& columns, std::size_t i) {
+  return {columns[0].real_at(i), columns[1].real_at(i), columns[2].real_at(i)};
+}
+
+/// Equal bits: a program's -0 stays one.
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool continues(const Motion& motion, const Motion& previous) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    if (!same_bits(motion.from_mm[axis], previous.to_mm[axis])) return false;
+    if (!same_bits(motion.from_abc_deg[index], previous.to_abc_deg[index])) return false;
+  }
+  return true;
+}
+
+std::uint64_t line_key(SourceRef source) { return std::uint64_t{source.file} << 32 | source.line; }
+
+}  // namespace
+
+const ProgramTrack::Jump* ProgramTrack::jump_at(std::size_t i) const {
+  const auto found =
+      std::lower_bound(jumps_.begin(), jumps_.end(), i,
+                       [](const Jump& jump, std::size_t motion) { return jump.motion < motion; });
+  return found != jumps_.end() && found->motion == i ? &*found : nullptr;
+}
+
+Vec3 ProgramTrack::to_mm(std::size_t i) const { return read(to_mm_, i); }
+
+Vec3 ProgramTrack::from_mm(std::size_t i) const {
+  if (const Jump* jump = jump_at(i)) return jump->from_mm;
+  return i == 0 ? Vec3{0} : to_mm(i - 1);
+}
+
+SourceRef ProgramTrack::source(std::size_t i) const {
+  return {mode_of(i).source.file, static_cast<std::uint32_t>(line_.at(i))};
+}
+
+Motion ProgramTrack::motion(std::size_t i) const {
+  Motion m = mode_of(i);
+  m.source.line = static_cast<std::uint32_t>(line_.at(i));
+  m.to_mm = to_mm(i);
+  m.to_abc_deg = read_angles(to_abc_deg_, i);
+  if (const Jump* jump = jump_at(i)) {
+    m.from_mm = jump->from_mm;
+    m.from_abc_deg = jump->from_abc_deg;
+  } else if (i > 0) {
+    m.from_mm = to_mm(i - 1);
+    m.from_abc_deg = read_angles(to_abc_deg_, i - 1);
+  }
+  m.arc.center_mm = read(arc_center_mm_, i);
+  m.arc.sweep_rad = arc_sweep_rad_.real_at(i);
+  m.feed_mm_per_min = feed_.real_at(i);
+  m.spindle_rpm = spindle_rpm_.real_at(i);
+  return m;
+}
+
+CutMove ProgramTrack::cut_move(std::size_t i) const {
+  CutMove move;
+  move.from_mm = from_mm(i);
+  move.to_mm = to_mm(i);
+  move.id = i;
+  const Motion& mode = mode_of(i);
+  if (mode.kind == MotionKind::kArc) {
+    move.arc = CutArc{read(arc_center_mm_, i), mode.arc.axis, arc_sweep_rad_.real_at(i)};
+  }
+  return move;
+}
+
+TimedStep ProgramTrack::step(std::size_t i) const {
+  TimedStep step;
+  step.start_s = start_s(i);
+  step.duration_s = duration_s_.real_at(i);
+  step.programmed_mm_per_min = programmed_.real_at(i);
+  step.allowed_mm_per_min = allowed_.real_at(i);
+  const Motion m = motion(i);
+  const bool moves = m.kind == MotionKind::kTraverse || m.kind == MotionKind::kProbe || is_feed(m);
+  if (moves && m.start_known) step.length_mm = path_length_mm(m);
+  return step;
+}
+
+TrackPlace ProgramTrack::place_before(std::size_t i) const {
+  return {i, 0, i < size() ? start_s(i) : duration_s()};
+}
+
+TrackPlace ProgramTrack::place_at(double time_s) const {
+  std::size_t first = 0;
+  std::size_t count = size();
+  while (count > 0) {  // the first motion that starts later
+    const std::size_t half = count / 2;
+    if (start_s(first + half) <= time_s) {
+      first += half + 1;
+      count -= half + 1;
+    } else {
+      count = half;
+    }
+  }
+  if (first == 0) return place_before(0);
+  const std::size_t motion = first - 1;
+  const double start = start_s(motion);
+  const double duration = duration_s_.real_at(motion);
+  if (duration <= 0 || time_s - start >= duration) {
+    return {motion + 1, 0, std::min(time_s, duration_s())};
+  }
+  return {motion, (time_s - start) / duration, time_s};
+}
+
+std::size_t ProgramTrack::line_lower_bound(SourceRef line, std::size_t motion) const {
+  const auto before = [this](std::uint32_t block, const std::pair<std::uint64_t, std::size_t>& k) {
+    return std::pair<std::uint64_t, std::size_t>(line_key(source(block)), block) < k;
+  };
+  const auto found =
+      std::lower_bound(lines_.begin(), lines_.end(), std::pair(line_key(line), motion), before);
+  return static_cast<std::size_t>(found - lines_.begin());
+}
+
+std::optional<std::size_t> ProgramTrack::first_of_line(SourceRef line, std::size_t from) const {
+  // Within a block the next motion of its line may be `from` itself.
+  if (from < size() && source(from) == line) return from;
+  const std::size_t at = line_lower_bound(line, from);
+  if (at == lines_.size() || source(lines_[at]) != line) return std::nullopt;
+  return lines_[at];
+}
+
+std::optional<SourceRef> ProgramTrack::line_with_motions(SourceRef line) const {
+  const std::size_t at = line_lower_bound(line, 0);
+  if (at == lines_.size()) return std::nullopt;
+  const SourceRef found = source(lines_[at]);
+  if (found.file != line.file) return std::nullopt;
+  return found;
+}
+
+std::size_t ProgramTrack::next_block(std::size_t i) const {
+  const std::size_t n = size();
+  for (std::size_t at = i + 1; at < n;) {
+    const std::uint64_t bits = block_start_[at / 64] >> (at % 64);
+    if (bits != 0) return at + static_cast<std::size_t>(std::countr_zero(bits));
+    at = (at / 64 + 1) * 64;
+  }
+  return n;
+}
+
+std::size_t ProgramTrack::previous_block(std::size_t i) const {
+  std::size_t end = std::min(i, size());  // looked for below this one
+  while (end > 0) {
+    const std::size_t word = (end - 1) / 64;
+    const std::size_t used = end - word * 64;
+    const std::uint64_t bits = block_start_[word] << (64 - used);
+    if (bits != 0) return end - 1 - static_cast<std::size_t>(std::countl_zero(bits));
+    end = word * 64;
+  }
+  return 0;
+}
+
+std::optional<std::size_t> ProgramTrack::next_tool_change(std::size_t i) const {
+  const auto found = std::upper_bound(tool_changes_.begin(), tool_changes_.end(), i);
+  if (found == tool_changes_.end()) return std::nullopt;
+  return *found;
+}
+
+std::optional<std::size_t> ProgramTrack::previous_tool_change(std::size_t i) const {
+  const auto found = std::lower_bound(tool_changes_.begin(), tool_changes_.end(), i);
+  if (found == tool_changes_.begin()) return std::nullopt;
+  return *(found - 1);
+}
+
+std::size_t ProgramTrack::bytes() const {
+  std::size_t sum = sizeof *this;
+  for (const auto* columns : {&to_mm_, &to_abc_deg_, &arc_center_mm_}) {
+    for (const PackedColumn& column : *columns) sum += column.bytes() - sizeof column;
+  }
+  for (const PackedColumn* column : {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_,
+                                     &duration_s_, &programmed_, &allowed_, &line_, &mode_}) {
+    sum += column->bytes() - sizeof *column;
+  }
+  sum += modes_.capacity() * sizeof(Motion) + jumps_.capacity() * sizeof(Jump);
+  sum += block_start_.capacity() * sizeof(std::uint64_t);
+  return sum + (lines_.capacity() + tool_changes_.capacity()) * sizeof(std::uint32_t);
+}
+
+ProgramTrackBuilder::ProgramTrackBuilder() : track_(new ProgramTrack) {}
+
+ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  const std::uint64_t flags =
+      static_cast<std::uint64_t>(m.kind) | static_cast<std::uint64_t>(m.spindle) << 8 |
+      static_cast<std::uint64_t>(m.path_mode) << 16 | std::uint64_t{m.flood} << 24 |
+      std::uint64_t{m.mist} << 25 | std::uint64_t{m.feed_per_rev} << 26 |
+      std::uint64_t{m.start_known} << 27;
+  const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
+  const std::uint64_t tolerances = std::uint64_t{std::bit_cast<std::uint32_t>(m.blend_tolerance_mm)}
+                                       << 32 |
+                                   std::bit_cast<std::uint32_t>(m.merge_tolerance_mm);
+  return {flags,
+          tool << 32 | m.source.file,
+          tolerances,
+          bits(m.duration_s),
+          bits(m.tool_offset_mm.x),
+          bits(m.tool_offset_mm.y),
+          bits(m.tool_offset_mm.z),
+          bits(m.arc.axis.x),
+          bits(m.arc.axis.y),
+          bits(m.arc.axis.z)};
+}
+
+std::uint64_t ProgramTrackBuilder::mode_of(const Motion& m) {
+  const ModeKey key = key_of(m);
+  if (key == last_key_ && !track_->modes_.empty()) return last_mode_;
+  const auto [entry, fresh] =
+      mode_numbers_.try_emplace(key, static_cast<std::uint32_t>(track_->modes_.size()));
+  if (fresh) {
+    Motion mode = m;
+    mode.source.line = 0;
+    mode.from_mm = mode.to_mm = Vec3{0};
+    mode.from_abc_deg = mode.to_abc_deg = {};
+    mode.arc.center_mm = Vec3{0};
+    mode.arc.sweep_rad = mode.feed_mm_per_min = mode.spindle_rpm = 0;
+    track_->modes_.push_back(mode);
+  }
+  last_key_ = key;
+  return last_mode_ = entry->second;
+}
+
+void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
+                               std::span<const PathPiece> /*path*/) {
+  ProgramTrack& t = *track_;
+  const std::size_t i = t.size();
+  if (i >= kMaxMotions) {
+    ++left_out_;
+    return;
+  }
+  const auto number = static_cast<std::uint32_t>(i);
+  if (!continues(m, previous_)) t.jumps_.push_back({number, m.from_mm, m.from_abc_deg});
+  const bool starts = i == 0 || !(m.source == previous_.source);
+  if (i % 64 == 0) t.block_start_.push_back(0);
+  if (starts) {
+    t.block_start_.back() |= std::uint64_t{1} << (i % 64);
+    t.lines_.push_back(number);
+  }
+  const bool changes = i == 0 ? m.tool != 0 : m.tool != previous_.tool;
+  if (changes || m.kind == MotionKind::kToolChange) t.tool_changes_.push_back(number);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    t.to_mm_[index].push_real(m.to_mm[axis]);
+    t.to_abc_deg_[index].push_real(m.to_abc_deg[index]);
+    t.arc_center_mm_[index].push_real(m.arc.center_mm[axis]);
+  }
+  t.arc_sweep_rad_.push_real(m.arc.sweep_rad);
+  t.feed_.push_real(m.feed_mm_per_min);
+  t.spindle_rpm_.push_real(m.spindle_rpm);
+  t.start_s_.push_real(timed.start_s);
+  t.duration_s_.push_real(timed.duration_s);
+  t.programmed_.push_real(timed.programmed_mm_per_min);
+  t.allowed_.push_real(timed.allowed_mm_per_min);
+  t.mode_.push(mode_of(m));
+  t.line_.push(m.source.line);
+  previous_ = m;
+}
+
+/// Blocks come in order of time; most programs run their lines in order, too.
+void ProgramTrackBuilder::sort_lines() {
+  ProgramTrack& t = *track_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
+  keyed.reserve(t.lines_.size());
+  for (const std::uint32_t block : t.lines_) keyed.emplace_back(line_key(t.source(block)), block);
+  if (std::is_sorted(keyed.begin(), keyed.end())) return;
+  std::sort(keyed.begin(), keyed.end());
+  std::transform(keyed.begin(), keyed.end(), t.lines_.begin(),
+                 [](const auto& entry) { return entry.second; });
+}
+
+std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::string> files,
+                                                               const WorkpieceFrame& frame) {
+  assert(track_);
+  sort_lines();
+  ProgramTrack& t = *track_;
+  t.files_ = std::move(files);
+  t.frame_ = frame;
+  for (auto* columns : {&t.to_mm_, &t.to_abc_deg_, &t.arc_center_mm_}) {
+    for (PackedColumn& column : *columns) column.shrink();
+  }
+  for (PackedColumn* column : {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_,
+                               &t.duration_s_, &t.programmed_, &t.allowed_, &t.line_, &t.mode_}) {
+    column->shrink();
+  }
+  t.modes_.shrink_to_fit();
+  t.jumps_.shrink_to_fit();
+  t.block_start_.shrink_to_fit();
+  t.lines_.shrink_to_fit();
+  t.tool_changes_.shrink_to_fit();
+  mode_numbers_.clear();
+  return std::shared_ptr<const ProgramTrack>(std::move(track_));
+}
+
+}  // namespace kerf

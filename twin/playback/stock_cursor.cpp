@@ -1,0 +1,82 @@
+#include "twin/playback/stock_cursor.h"
+
+#include <cassert>
+
+#include "twin/motion_geometry.h"
+#include "twin/motion_nearest.h"
+#include "twin/playback/recording_stock.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::size_t kMotionsAtOnce = 1024;
+constexpr double kCellsAtOnce = 2e6;
+/// Keyframes are not thought of more often than this.
+constexpr std::size_t kMotionsAnOffer = 256;
+
+}  // namespace
+
+StockCursor::StockCursor(const ProgramTrack& track, const CutRecord& record, KeyframeStore& store)
+    : track_(track), record_(record), store_(store) {
+  stock_ = store_.at_or_before(0)->stock->snapshot();
+}
+
+void StockCursor::jump_near(std::size_t goal) {
+  const Keyframe* frame = store_.at_or_before(goal);
+  assert(frame);
+  if (motion_ <= goal && frame->motion <= motion_) return;
+  stock_ = frame->stock->snapshot();
+  motion_ = offered_ = frame->motion;
+}
+
+void StockCursor::offer_keyframe() {
+  if (motion_ < offered_ + kMotionsAnOffer || !record_.breaks(motion_)) return;
+  offered_ = motion_;
+  const double cost_s = record_.cost_s(motion_);
+  if (store_.wants(motion_, cost_s)) store_.add(motion_, cost_s, stock_->snapshot());
+}
+
+bool StockCursor::approach(std::size_t goal) {
+  if (goal != goal_ || motion_ > goal) jump_near(goal);
+  goal_ = goal;
+  const std::size_t first = motion_;
+  double cells = 0;
+  moves_.clear();
+  std::shared_ptr<const Cutter> cutter;
+  const auto cut = [&] {
+    if (!moves_.empty()) stock_->cut(*cutter, moves_, reports_);
+    moves_.clear();
+  };
+  while (motion_ < goal && motion_ - first < kMotionsAtOnce && cells < kCellsAtOnce) {
+    if (record_.breaks(motion_) && motion_ >= offered_ + kMotionsAnOffer) {
+      cut();
+      offer_keyframe();
+    }
+    const std::size_t motion = motion_++;
+    if (!record_.cuts(motion)) continue;
+    if (!cutter || record_.mounts(motion)) {
+      cut();
+      cutter = record_.cutter(motion);
+    }
+    moves_.push_back(track_.cut_move(motion));
+    cells += cells_under(moves_.back(), *cutter, stock_->cell_mm());
+    if (!record_.finishes(motion)) continue;
+    cut();
+    stock_->finish(reports_);
+  }
+  cut();
+  reports_.clear();
+  return motion_ == goal;
+}
+
+std::unique_ptr<StockModel> StockCursor::picture(double fraction) const {
+  std::unique_ptr<StockModel> copy = stock_->snapshot();
+  if (fraction <= 0 || motion_ >= track_.size() || !record_.cuts(motion_)) return copy;
+  const CutMove part = cut_move_from(part_of(track_.motion(motion_), 0, fraction), motion_);
+  std::vector<CutReport> reports;
+  copy->cut(*record_.cutter(motion_), std::span(&part, 1), reports);
+  copy->finish(reports);
+  return copy;
+}
+
+}  // namespace kerf

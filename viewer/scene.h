@@ -1,0 +1,207 @@
+// viewer/scene.h - what the window shows, as values: it knows no stock model and no interpreter.
+//
+// Whoever owns the workpiece (or watches a machine) makes these values and hands them over through
+// a SceneMailbox (scene_mailbox.h). All are immutable once handed over, so they cross threads
+// without locks. Lengths in mm in the workpiece frame, times in seconds of the program.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "base/geometry.h"
+#include "base/mesh_patch.h"
+
+namespace kerf {
+
+/// One point of an outline that is turned around the tool's axis.
+struct ProfilePoint {
+  float radius_mm = 0.0f;
+  float height_mm = 0.0f;  ///< Above the tip, along the axis.
+  bool operator==(const ProfilePoint&) const = default;
+};
+
+/// Outlines from below to above. Corners between segments are drawn sharp, so arcs come as short
+/// segments of a few degrees. Open ends are closed with a disc. Any of the three may be empty.
+struct ToolShape {
+  std::vector<ProfilePoint> cutter;
+  std::vector<ProfilePoint> shank;
+  std::vector<ProfilePoint> holder;
+};
+
+struct ToolPose {
+  Vec3 tip_mm{0.0};
+  Vec3 axis{0.0, 0.0, 1.0};  ///< Unit length, from the tip to the spindle.
+  bool operator==(const ToolPose&) const = default;
+};
+
+enum class PathKind : std::uint32_t { kTraverse, kFeed, kPlanned };
+
+/// The segment that ends at the vertex is of its `kind`.
+struct PathVertex {
+  glm::vec3 position_mm{0.0f};
+  PathKind kind = PathKind::kFeed;
+};
+static_assert(sizeof(PathVertex) == 16);
+
+/// Segments of a full chunk of the toolpath. The last vertex of a chunk is the first of the next.
+inline constexpr std::size_t kPathChunkSegments = 4096;
+
+/// Part of the toolpath: vertices [index * kPathChunkSegments, ... + vertices.size()). All chunks
+/// but the last have kPathChunkSegments + 1 vertices; a path that grows sends its last one again.
+struct PathChunk {
+  std::uint32_t index = 0;
+  std::vector<PathVertex> vertices;
+};
+
+/// Cuts a path into chunks.
+std::vector<std::shared_ptr<const PathChunk>> path_chunks(const std::vector<PathVertex>& vertices);
+
+struct LineSegment {
+  glm::vec3 from_mm{0.0f};
+  glm::vec3 to_mm{0.0f};
+};
+
+/// The twelve edges; none if the box is empty.
+std::vector<LineSegment> box_outline(const Box& box);
+/// Both rims and four lines along the axis ('X', 'Y' or 'Z'), which runs from base_mm by height_mm.
+std::vector<LineSegment> cylinder_outline(const Vec3& base_mm, char axis, double radius_mm,
+                                          double height_mm);
+
+/// A frame drawn as three arrows: machine zero, a work offset.
+struct SceneFrame {
+  std::string name;  ///< "machine", "G54"
+  Vec3 origin_mm{0.0};
+  Vec3 x_axis{1.0, 0.0, 0.0};  ///< Unit vectors; z is their cross product.
+  Vec3 y_axis{0.0, 1.0, 0.0};
+  double length_mm = 0.0;  ///< Of the arrows; 0: chosen by the size of the blank.
+};
+
+/// What stays as long as the workpiece is clamped.
+struct SceneSetup {
+  std::string title;  ///< Of the window: the program, the machine.
+  Box bounds_mm;      ///< Room that "fit" shows: the blank, mostly. Parts outside are drawn too.
+  std::vector<LineSegment> blank_outline;
+  std::vector<SceneFrame> frames;
+};
+
+struct SceneFinding {
+  Severity severity = Severity::kWarning;
+  std::string file;  ///< As in ProgramText.
+  int line = 0;      ///< 1-based; 0 = none.
+  double time_s = 0.0;
+  std::optional<Vec3> position_mm;  ///< Where a marker is drawn.
+  std::string text;                 ///< One line, already in the user's language.
+};
+
+struct FindingList {
+  std::vector<SceneFinding> findings;  ///< In the order of time.
+};
+
+/// One file of a program. Lines are 1-based.
+class SourceFile {
+ public:
+  SourceFile(std::string path, std::string text);
+  const std::string& path() const { return path_; }
+  int line_count() const { return static_cast<int>(starts_.size()); }
+  /// Without its end; empty if there is no such line.
+  std::string_view line(int number) const;
+
+ private:
+  std::string path_;
+  std::string text_;
+  std::vector<std::size_t> starts_;
+};
+
+/// The program and the subroutine files that it calls. The first is the main program.
+struct ProgramText {
+  std::vector<SourceFile> files;
+};
+
+/// Where tools change, for the time slider.
+struct ToolMark {
+  double time_s = 0.0;
+  int tool = 0;
+  std::string name;
+};
+
+struct ProgramTimeline {
+  double duration_s = 0.0;  ///< 0: not known (a machine is watched).
+  std::vector<ToolMark> tools;
+};
+
+enum class PlayState {
+  kPaused,
+  kPlaying,
+  kHurrying,   ///< As fast as possible to a point asked for.
+  kFollowing,  ///< A machine leads; there is nothing to play.
+  kEnded,
+};
+
+enum class SourceFreshness {
+  kNone,   ///< A program is run, no machine is watched.
+  kLive,   ///< The newest sample is fresh.
+  kStale,  ///< It is older than the source promises; the picture is old.
+  kLost,   ///< The connection is gone.
+};
+
+struct AxisReadout {
+  char name = 'X';
+  bool is_rotary = false;  ///< degrees instead of mm
+  double machine = 0.0;
+  double work = 0.0;
+  std::optional<double> to_go;  ///< Of the present block; none where it is not known.
+};
+
+/// Everything that changes from frame to frame, other than the workpiece.
+struct Moment {
+  PlayState state = PlayState::kPaused;
+  double speed = 1.0;  ///< Of playing, times real time.
+  double time_s = 0.0;
+  int file = 0;                     ///< Into ProgramText::files.
+  int line = 0;                     ///< 0: before the program.
+  std::uint64_t past_vertices = 0;  ///< Path vertices that the tool has left behind.
+  std::optional<ToolPose> tool_pose;
+  int tool = 0;
+  std::string tool_name;       ///< "flat 10", "" if no tool.
+  double spindle_rpm = 0.0;    ///< Negative: counter-clockwise.
+  double feed_mm_per_min = 0;  ///< Programmed or measured; 0 while traversing.
+  bool is_traverse = false;
+  std::string coolant;      ///< "mist", "flood", "".
+  std::string work_offset;  ///< "G54"
+  std::vector<AxisReadout> axes;
+  double removed_mm3 = 0.0;
+  SourceFreshness source = SourceFreshness::kNone;
+  std::string source_name;       ///< "modbus 192.168.0.10", "" without a source.
+  double source_age_s = 0.0;     ///< Of the newest sample when this value was made.
+  std::vector<int> breakpoints;  ///< Lines of the main program, ascending.
+  std::string notice;  ///< A sentence for the status line: why it stopped, what is missing.
+};
+
+/// News for the window. Null and empty members: unchanged since the last update.
+struct SceneUpdate {
+  bool clears = false;  ///< Forget all patches, path and findings before applying the rest.
+  /// Of a tile the last one that comes counts, whatever its version: after a jump back it may be a
+  /// version that was shown before. A patch without triangles empties its tile.
+  std::vector<std::shared_ptr<const MeshPatch>> patches;
+  std::optional<std::uint32_t> path_chunk_count;  ///< Chunks from this number on are dropped.
+  std::vector<std::shared_ptr<const PathChunk>> path;
+  std::shared_ptr<const SceneSetup> setup;
+  std::shared_ptr<const ToolShape> tool_shape;
+  std::shared_ptr<const FindingList> findings;
+  std::shared_ptr<const ProgramText> program;
+  std::shared_ptr<const ProgramTimeline> timeline;
+  std::shared_ptr<const Moment> moment;
+};
+
+/// Applies `newer` to `older`, as if the window had taken one after the other: per tile and chunk
+/// only the newest stays. O(size of both).
+void merge(SceneUpdate* older, SceneUpdate newer);
+
+}  // namespace kerf

@@ -1,0 +1,80 @@
+// viewer/viewer_command.h - what the user asks for, as values.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/geometry.h"
+
+namespace kerf {
+
+struct PlayCommand {};
+struct PauseCommand {};
+struct StopCommand {};  ///< Back to the first block, paused.
+struct SpeedCommand {
+  double factor = 1.0;  ///< kMinSpeed .. kMaxSpeed
+};
+struct StepBlockCommand {
+  int blocks = 1;  ///< Forward, or back if negative.
+};
+/// The beginning of the first motion of a line. As fast as possible, exactly as if it had been cut
+/// from the start.
+struct SeekLineCommand {
+  std::string file;  ///< As in ProgramText; empty: the main program.
+  int line = 1;
+};
+struct SeekTimeCommand {
+  double time_s = 0.0;
+};
+struct SeekEndCommand {};
+struct NextToolCommand {
+  int step = 1;  ///< -1: the one before
+};
+struct NextFindingCommand {
+  int step = 1;
+};
+struct SeekFindingCommand {
+  int index = 0;  ///< Into FindingList::findings.
+};
+struct BreakpointCommand {
+  std::string file;
+  int line = 1;
+  bool set = true;
+};
+/// The camera came nearer or went away: how much of the workpiece a pixel shows. Sent when it
+/// changes by a factor of two; patches much finer than this need not be made.
+struct DetailCommand {
+  double pixel_mm = 1.0;
+};
+struct CloseCommand {};  ///< The window was closed; the last command that comes.
+
+using ViewerCommand =
+    std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
+                 SeekLineCommand, SeekTimeCommand, SeekEndCommand, NextToolCommand,
+                 NextFindingCommand, SeekFindingCommand, BreakpointCommand, DetailCommand,
+                 CloseCommand>;
+
+inline constexpr double kMinSpeed = 0.1;
+inline constexpr double kMaxSpeed = 1000.0;
+
+/// From the window's thread to the owner's. A later SpeedCommand, SeekTimeCommand or DetailCommand
+/// replaces one that is last in the queue (a dragged slider makes many); nothing else is dropped.
+class CommandQueue {
+ public:
+  void push(ViewerCommand command);
+  /// In order; empty if there is nothing.
+  std::vector<ViewerCommand> take();
+  /// Waits until there is something or the time is over.
+  std::vector<ViewerCommand> wait_for(std::chrono::milliseconds longest);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable filled_;
+  std::vector<ViewerCommand> commands_;
+};
+
+}  // namespace kerf

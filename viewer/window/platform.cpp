@@ -1,0 +1,111 @@
+#include "viewer/window/platform.h"
+
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <mutex>
+#include <string>
+
+namespace kerf {
+namespace {
+
+constexpr const char* kWithout = "pictures need no display: --png FILE";
+constexpr int kNeededGlVersion = 33;
+
+std::mutex wake_mutex;
+bool can_wake = false;  // guarded by wake_mutex
+
+/// The last thing GLFW complained of.
+std::string& complaint() {
+  static std::string text;
+  return text;
+}
+
+std::string display_name() {
+  for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(variable);
+    if (value != nullptr && *value != '\0') return fmt::format("{}={}", variable, value);
+  }
+  return "";
+}
+
+/// Version and renderer of the OpenGL that a window gets without asking for one.
+std::string found_gl() {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  GLFWwindow* window = glfwCreateWindow(16, 16, "", nullptr, nullptr);
+  if (window == nullptr) return "no OpenGL at all";
+  glfwMakeContextCurrent(window);
+  const auto string_of = [](GLenum name) {
+    const GLubyte* value = glGetString(name);
+    return value != nullptr ? std::string(reinterpret_cast<const char*>(value)) : "?";
+  };
+  std::string found = fmt::format("OpenGL {} ({})", string_of(GL_VERSION), string_of(GL_RENDERER));
+  glfwDestroyWindow(window);
+  return found;
+}
+
+}  // namespace
+
+Platform::~Platform() {
+  if (!is_started_) return;
+  {
+    const std::lock_guard lock(wake_mutex);
+    can_wake = false;
+  }
+  glfwTerminate();
+}
+
+Done Platform::start() {
+  complaint().clear();
+  glfwSetErrorCallback([](int, const char* text) { complaint() = text; });
+  if (glfwInit() != GLFW_TRUE) {
+    const std::string display = display_name();
+    if (display.empty()) {
+      return Error{
+          fmt::format("no window: there is no display (DISPLAY is not set); {}", kWithout)};
+    }
+    return Error{fmt::format("no window: the display {} cannot be opened ({}); {}", display,
+                             complaint(), kWithout)};
+  }
+  is_started_ = true;
+  const std::lock_guard lock(wake_mutex);
+  can_wake = true;
+  return std::monostate{};
+}
+
+Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const char* title) {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the scene has framebuffers of its own
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  GLFWwindow* window = glfwCreateWindow(width_px, height_px, title, nullptr, nullptr);
+  if (window == nullptr) {
+    const std::string reason = complaint();
+    return Error{fmt::format("no window: OpenGL 3.3 is needed; the display {} has {} ({}); {}",
+                             display_name(), found_gl(), reason, kWithout)};
+  }
+  glfwMakeContextCurrent(window);
+  if (epoxy_gl_version() < kNeededGlVersion) {
+    const int found = epoxy_gl_version();
+    glfwDestroyWindow(window);
+    return Error{fmt::format("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}",
+                             display_name(), found / 10, found % 10, kWithout)};
+  }
+  glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
+  return window;
+}
+
+void Platform::wake() {
+  const std::lock_guard lock(wake_mutex);
+  if (can_wake) glfwPostEmptyEvent();
+}
+
+}  // namespace kerf

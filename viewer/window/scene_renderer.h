@@ -1,0 +1,120 @@
+// viewer/window/scene_renderer.h - draws the scene; redraws no more of it than has changed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/picture.h"
+#include "viewer/scene.h"
+#include "viewer/window/orbit_camera.h"
+#include "viewer/window/screen_rect.h"
+
+namespace kerf {
+
+enum class SceneObject {
+  kWorkpiece,
+  kCutter,
+  kHolder,  ///< and shank
+  kTraverses,
+  kFeeds,
+  kPlanned,
+  kBlank,
+  kFrames,
+  kFindings,
+};
+inline constexpr std::size_t kSceneObjectCount = 9;
+
+struct ObjectLook {
+  bool is_visible = true;
+  float opacity = 1.0f;  ///< 0.05 .. 1
+  bool operator==(const ObjectLook&) const = default;
+};
+
+struct DrawOptions {
+  std::array<ObjectLook, kSceneObjectCount> looks{};
+  /// Redraw only what changed while the camera stands still. Off: everything, every time; for
+  /// measuring and for doubtful drivers.
+  bool is_local = true;
+  /// Of patches and path taken to the card per frame; a first patch is taken whatever its size.
+  std::size_t upload_bytes_per_frame = 4u << 20;
+  bool operator==(const DrawOptions&) const = default;
+};
+
+/// What drawing cost so far. Milliseconds are those of the graphics card (or of the software
+/// renderer), known some frames later.
+struct DrawCounters {
+  struct Kind {
+    std::uint64_t frames = 0;
+    std::uint64_t pixels = 0;     ///< of the kept scene
+    std::uint64_t triangles = 0;  ///< of the workpiece
+    double ms = 0.0;
+  };
+  Kind full;             ///< everything was drawn
+  Kind local;            ///< a rectangle was drawn
+  Kind still;            ///< nothing but the tool, if that
+  ScreenRect last_rect;  ///< that was drawn last
+  std::uint64_t uploaded_bytes = 0;
+  std::size_t waiting_bytes = 0;
+  std::size_t gpu_bytes = 0;
+};
+
+/// Keeps colour and depth of the scene without the tool in a framebuffer of its own:
+///
+///     kept    workpiece, path, outlines      drawn again where they changed: by the boxes of the
+///       |                                    triangles that did, projected, as a scissor rectangle
+///     shown   a copy, and the tool over it   copied again where kept changed and where the tool
+///       |                                    was or is
+///     window or picture
+///
+/// Redrawing a rectangle gives the same pixels as redrawing everything. Needs a current OpenGL 3.3
+/// context, from create() to the destructor; leaves blending, depth and scissor test off.
+class SceneRenderer {
+ public:
+  static Result<SceneRenderer> create();
+  SceneRenderer(SceneRenderer&&) noexcept;
+  SceneRenderer& operator=(SceneRenderer&&) noexcept;
+  ~SceneRenderer();
+
+  /// Takes over the values; what is for the card waits there for its turn in draw().
+  void apply(const SceneUpdate& update);
+
+  /// Draws as the scene is now. Error: the size is more than this OpenGL can do.
+  Done draw(const Projection& projection, const DrawOptions& options);
+
+  /// Patches or path wait for the next frame: draw again although nothing new came.
+  bool has_waiting() const;
+
+  /// Copies the picture last drawn to a framebuffer (0: the window's), from its pixel `corner_px`
+  /// (counted from the lower left) on.
+  void show_in(unsigned framebuffer, glm::ivec2 corner_px) const;
+  /// Waits until the card has drawn everything; for measuring.
+  void finish() const;
+  /// Version and renderer: "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (...)".
+  static std::string gl_name();
+  /// The picture last drawn.
+  Picture read() const;
+  /// The point of the scene (not of the tool) at a pixel from the upper left; none on background.
+  std::optional<Vec3> pick(glm::ivec2 px) const;
+
+  /// What "fit" shows: the bounds of the setup, else of the workpiece and the path. Maybe empty.
+  Box fit_box() const;
+  /// For the depth range of the camera; grows in large steps, since each step is a full redraw.
+  /// Never empty.
+  const Box& depth_box() const;
+  const DrawCounters& counters() const;
+  void reset_counters();
+
+ private:
+  class Impl;
+  explicit SceneRenderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Colour of a framebuffer of the current context, rows from the top.
+Picture read_framebuffer(unsigned framebuffer, glm::ivec2 size_px);
+
+}  // namespace kerf

@@ -1,0 +1,29 @@
+// viewer/window/screen_rect.h - rectangles of pixels: what has to be drawn again.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+#include "base/geometry.h"
+#include "viewer/window/orbit_camera.h"
+
+namespace kerf {
+
+/// Pixels [min, max) from the lower left corner, as OpenGL counts them. Default: empty.
+struct ScreenRect {
+  glm::ivec2 min{0, 0};
+  glm::ivec2 max{0, 0};
+
+  static ScreenRect whole(glm::ivec2 size_px) { return {{0, 0}, size_px}; }
+  bool empty() const { return min.x >= max.x || min.y >= max.y; }
+  std::int64_t pixels() const;
+  void extend(const ScreenRect& other);
+  bool intersects(const ScreenRect& other) const;
+  bool operator==(const ScreenRect&) const = default;
+};
+
+/// All pixels that something inside the box can touch, with a border for lines and markers. A box
+/// that reaches the plane of the eye may touch any pixel.
+ScreenRect covered_rect(const Box& box, const Projection& projection);
+
+}  // namespace kerf

@@ -1,0 +1,207 @@
+#include "viewer/window/settings.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include "base/atomic_file.h"
+
+namespace kerf {
+namespace {
+
+constexpr int kMinSize_px = 320;
+constexpr int kMaxSize_px = 16384;
+constexpr float kMinOpacity = 0.05f;
+/// A file of settings is a screenful; more than this is something else.
+constexpr std::uintmax_t kMaxBytes = 64 * 1024;
+
+constexpr std::array<std::string_view, kSceneObjectCount> kObjectNames{
+    "workpiece", "cutter", "holder", "traverses", "feeds",
+    "planned",   "blank",  "frames", "findings"};
+
+/// One name, how it is written, and how it is read: the reader returns what is allowed if the value
+/// is not.
+struct Field {
+  std::string name;
+  std::function<std::string(const ViewSettings&)> write;
+  std::function<std::string(std::string_view, ViewSettings*)> read;
+};
+
+Field switch_field(std::string name, std::function<bool*(ViewSettings*)> member) {
+  return {std::move(name),
+          [member](const ViewSettings& settings) {
+            ViewSettings copy = settings;
+            return std::string(*member(&copy) ? "on" : "off");
+          },
+          [member](std::string_view value, ViewSettings* settings) -> std::string {
+            if (value != "on" && value != "off") return "on or off";
+            *member(settings) = value == "on";
+            return "";
+          }};
+}
+
+Field size_field(std::string name, int ViewSettings::*member) {
+  return {std::move(name),
+          [member](const ViewSettings& settings) { return std::to_string(settings.*member); },
+          [member](std::string_view value, ViewSettings* settings) -> std::string {
+            int number = 0;
+            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
+            if (error != std::errc() || end != value.end() || number < kMinSize_px ||
+                number > kMaxSize_px) {
+              return fmt::format("{} to {} (pixels)", kMinSize_px, kMaxSize_px);
+            }
+            settings->*member = number;
+            return "";
+          }};
+}
+
+Field opacity_field(std::size_t object) {
+  return {fmt::format("opacity.{}", kObjectNames[object]),
+          [object](const ViewSettings& settings) {
+            return fmt::format("{:.2f}", settings.drawing.looks[object].opacity);
+          },
+          [object](std::string_view value, ViewSettings* settings) -> std::string {
+            float number = 0.0f;
+            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
+            if (error != std::errc() || end != value.end() ||
+                !(number >= kMinOpacity && number <= 1.0f)) {
+              return fmt::format("{} to 1", kMinOpacity);
+            }
+            settings->drawing.looks[object].opacity = number;
+            return "";
+          }};
+}
+
+std::vector<Field> all_fields() {
+  std::vector<Field> fields{
+      size_field("width", &ViewSettings::width_px),
+      size_field("height", &ViewSettings::height_px),
+      {"language", [](const ViewSettings& s) { return std::string(code(s.language)); },
+       [](std::string_view value, ViewSettings* s) -> std::string {
+         const std::optional<Language> language = language_of(value);
+         if (!language) return "en or de";
+         s->language = *language;
+         return "";
+       }},
+      switch_field("perspective", [](ViewSettings* s) { return &s->is_perspective; }),
+      switch_field("panel.code", [](ViewSettings* s) { return &s->shows_code; }),
+      switch_field("panel.info", [](ViewSettings* s) { return &s->shows_info; }),
+      switch_field("panel.counters", [](ViewSettings* s) { return &s->shows_counters; }),
+      switch_field("local-drawing", [](ViewSettings* s) { return &s->drawing.is_local; }),
+  };
+  for (std::size_t object = 0; object < kSceneObjectCount; ++object) {
+    fields.push_back(
+        switch_field(fmt::format("show.{}", kObjectNames[object]),
+                     [object](ViewSettings* s) { return &s->drawing.looks[object].is_visible; }));
+    fields.push_back(opacity_field(object));
+  }
+  return fields;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+/// Column of `part` in `line`, from 1.
+int column_of(std::string_view part, std::string_view line) {
+  return static_cast<int>(part.data() - line.data()) + 1;
+}
+
+/// Reads one line; a fault has column, message and hint.
+std::optional<Diagnostic> read_line(std::string_view line, const std::vector<Field>& fields,
+                                    ViewSettings* settings) {
+  const std::string_view content = trimmed(line.substr(0, line.find('#')));
+  if (content.empty()) return std::nullopt;
+  Diagnostic fault;
+  fault.severity = Severity::kWarning;
+  fault.excerpt = line;
+  fault.column = column_of(content, line);
+  const std::size_t equals = content.find('=');
+  if (equals == std::string_view::npos) {
+    fault.message = "no '='; a line reads `name = value`";
+    return fault;
+  }
+  const std::string_view name = trimmed(content.substr(0, equals));
+  const std::string_view value = trimmed(content.substr(equals + 1));
+  for (const Field& field : fields) {
+    if (field.name != name) continue;
+    const std::string allowed = field.read(value, settings);
+    if (allowed.empty()) return std::nullopt;
+    if (!value.empty()) fault.column = column_of(value, line);
+    fault.message = fmt::format("{}: '{}' is not allowed; must be {}", name, value, allowed);
+    return fault;
+  }
+  fault.message = fmt::format("'{}' is no setting of the window", name);
+  return fault;
+}
+
+}  // namespace
+
+std::string settings_path() {
+  constexpr std::string_view kFile = "kerf/view.conf";
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config == '/') {
+    return fmt::format("{}/{}", config, kFile);
+  }
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+    return fmt::format("{}/.config/{}", home, kFile);
+  }
+  return "";
+}
+
+ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
+  ViewSettings settings;
+  settings.language = language_of_environment();
+  std::error_code error;
+  if (path.empty() || !std::filesystem::exists(path, error)) return settings;
+  const auto whole_file_fault = [&](std::string message) {
+    Diagnostic fault;
+    fault.severity = Severity::kWarning;
+    fault.file = path;
+    fault.message = std::move(message);
+    faults->push_back(std::move(fault));
+    return settings;
+  };
+  if (!std::filesystem::is_regular_file(path, error)) return whole_file_fault("not a file");
+  if (std::filesystem::file_size(path, error) > kMaxBytes) {
+    return whole_file_fault(fmt::format("more than {} bytes: no settings of kerf", kMaxBytes));
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return whole_file_fault("cannot be read");
+  const std::vector<Field> fields = all_fields();
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (std::optional<Diagnostic> fault = read_line(line, fields, &settings)) {
+      fault->file = path;
+      fault->line = number;
+      faults->push_back(std::move(*fault));
+    }
+  }
+  return settings;
+}
+
+Done save_settings(const std::string& path, const ViewSettings& settings) {
+  std::string content = "# Remembered by the window of kerf; written when it closes.\n";
+  for (const Field& field : all_fields()) {
+    content += fmt::format("{} = {}\n", field.name, field.write(settings));
+  }
+  std::error_code error;
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
+  if (error) return Error{fmt::format("writing {}: {}", path, error.message())};
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(content.data(), content.size());
+  return file->commit();
+}
+
+}  // namespace kerf

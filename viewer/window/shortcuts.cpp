@@ -1,0 +1,63 @@
+#include "viewer/window/shortcuts.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+namespace kerf {
+namespace {
+
+constexpr std::array kShortcuts{
+    Shortcut{"Space", U' ', 0, Action::kPlayPause, Text::kPlay},
+    Shortcut{"Home", 0, GLFW_KEY_HOME, Action::kStop, Text::kStop},
+    Shortcut{"End", 0, GLFW_KEY_END, Action::kToEnd, Text::kToEnd},
+    Shortcut{"Right", 0, GLFW_KEY_RIGHT, Action::kStepForward, Text::kStepForward},
+    Shortcut{"Left", 0, GLFW_KEY_LEFT, Action::kStepBack, Text::kStepBack},
+    Shortcut{"+", U'+', 0, Action::kFaster, Text::kFaster},
+    Shortcut{"-", U'-', 0, Action::kSlower, Text::kSlower},
+    Shortcut{"n", U'n', 0, Action::kNextFinding, Text::kNextFinding},
+    Shortcut{"N", U'N', 0, Action::kPreviousFinding, Text::kPreviousFinding},
+    Shortcut{"t", U't', 0, Action::kNextTool, Text::kNextTool},
+    Shortcut{"T", U'T', 0, Action::kPreviousTool, Text::kPreviousTool},
+    Shortcut{"b", U'b', 0, Action::kBreakpoint, Text::kBreakpoint},
+    Shortcut{"g", U'g', 0, Action::kGoToLine, Text::kGoToLine},
+    Shortcut{"f", U'f', 0, Action::kFit, Text::kFit},
+    Shortcut{"1", U'1', 0, Action::kFront, Text::kFront},
+    Shortcut{"2", U'2', 0, Action::kBack, Text::kBack},
+    Shortcut{"3", U'3', 0, Action::kLeft, Text::kLeft},
+    Shortcut{"4", U'4', 0, Action::kRight, Text::kRight},
+    Shortcut{"5", U'5', 0, Action::kTop, Text::kTop},
+    Shortcut{"6", U'6', 0, Action::kBottom, Text::kBottom},
+    Shortcut{"7", U'7', 0, Action::kIsometric, Text::kIsometric},
+    Shortcut{"p", U'p', 0, Action::kPerspective, Text::kPerspective},
+    Shortcut{"w", U'w', 0, Action::kWorkpiece, Text::kToggleWorkpiece},
+    Shortcut{"h", U'h', 0, Action::kHolder, Text::kHolder},
+    Shortcut{"c", U'c', 0, Action::kCodePanel, Text::kCodePanel},
+    Shortcut{"i", U'i', 0, Action::kInfoPanel, Text::kInfoPanel},
+    Shortcut{"d", U'd', 0, Action::kCounters, Text::kDrawing},
+    Shortcut{"l", U'l', 0, Action::kLocalDrawing, Text::kLocalDrawing},
+    Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
+    Shortcut{"?", U'?', 0, Action::kHelp, Text::kShortcuts},
+    Shortcut{"Q", U'Q', 0, Action::kClose, Text::kClose},
+};
+
+}  // namespace
+
+std::span<const Shortcut> shortcuts() { return kShortcuts; }
+
+std::optional<Action> action_of_character(char32_t character) {
+  for (const Shortcut& shortcut : kShortcuts) {
+    if (shortcut.character != 0 && shortcut.character == character) return shortcut.action;
+  }
+  return std::nullopt;
+}
+
+std::optional<Action> action_of_key(int key) {
+  for (const Shortcut& shortcut : kShortcuts) {
+    if (shortcut.key != 0 && shortcut.key == key) return shortcut.action;
+  }
+  return std::nullopt;
+}
+
+}  // namespace kerf

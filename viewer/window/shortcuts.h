@@ -1,0 +1,59 @@
+// viewer/window/shortcuts.h - the keys of the window, in one table.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "viewer/window/texts.h"
+
+namespace kerf {
+
+enum class Action {
+  kPlayPause,
+  kStop,
+  kToEnd,
+  kStepForward,
+  kStepBack,
+  kFaster,
+  kSlower,
+  kNextFinding,
+  kPreviousFinding,
+  kNextTool,
+  kPreviousTool,
+  kBreakpoint,
+  kGoToLine,
+  kFit,
+  kFront,
+  kBack,
+  kLeft,
+  kRight,
+  kTop,
+  kBottom,
+  kIsometric,
+  kPerspective,
+  kWorkpiece,
+  kHolder,
+  kCodePanel,
+  kInfoPanel,
+  kCounters,
+  kLocalDrawing,
+  kScreenshot,
+  kHelp,
+  kClose,
+};
+
+/// Printable keys are known by the character that they write, so that they are where the keyboard's
+/// labels say in every layout; others by their code.
+struct Shortcut {
+  const char* label;   ///< As the help shows it.
+  char32_t character;  ///< 0: `key` counts.
+  int key;             ///< GLFW_KEY_..., or 0
+  Action action;
+  Text text;
+};
+
+std::span<const Shortcut> shortcuts();
+std::optional<Action> action_of_character(char32_t character);
+std::optional<Action> action_of_key(int key);
+
+}  // namespace kerf

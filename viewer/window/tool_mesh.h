@@ -1,0 +1,27 @@
+// viewer/window/tool_mesh.h - turns the outline of a tool around its axis.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/mesh_patch.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+struct ToolMesh {
+  struct Part {
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;
+  };
+  std::vector<MeshVertex> vertices;  ///< Tip at the origin, axis along +Z.
+  std::vector<std::uint32_t> indices;
+  Part cutter, shank, holder;
+  Box bounds_mm;
+};
+
+/// Normals are smooth around the axis and, along the outline, where it bends by little.
+ToolMesh revolve(const ToolShape& shape);
+
+}  // namespace kerf

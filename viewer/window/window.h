@@ -1,0 +1,71 @@
+// viewer/window/window.h - the window: picture, panels, player.
+//
+//     SceneMailbox mailbox(Window::wake);                  the owner of the workpiece, on its
+//     CommandQueue commands;                               own thread:
+//     Result<Window> window =                                for each command of commands.take() ..
+//         Window::create({}, &mailbox, &commands);           cut ..
+//     window->run();                                         mailbox.publish(update);
+//
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "viewer/picture.h"
+#include "viewer/scene_mailbox.h"
+#include "viewer/viewer_command.h"
+#include "viewer/window/scene_renderer.h"
+#include "viewer/window/settings.h"
+
+namespace kerf {
+
+struct WindowOptions {
+  std::string settings_file = settings_path();  ///< Empty: nothing is remembered.
+  int width_px = 0;                             ///< 0: as remembered; both
+  int height_px = 0;
+  int max_frames_per_s = 60;
+  bool is_local = true;  ///< false: local drawing is off, whatever is remembered
+};
+
+/// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at
+/// a time. It draws only when something came, moved or is being touched; the rest of the time it
+/// sleeps.
+class Window {
+ public:
+  /// Error: no display (the message names it, and --png as the way without one); an OpenGL below
+  /// 3.3 (what is there, what is needed). Faulty settings are no error: see settings_faults().
+  /// `mailbox` and `commands` must outlive the window.
+  static Result<Window> create(const WindowOptions& options, SceneMailbox* mailbox,
+                               CommandQueue* commands);
+  Window(Window&&) noexcept;
+  Window& operator=(Window&&) noexcept;
+  /// Remembers the settings.
+  ~Window();
+
+  /// Turns until the user closes it; the last command is then a CloseCommand.
+  Done run();
+  /// One turn: waits for news or input, at most `longest_wait_s`; draws if needed. False after the
+  /// window was closed.
+  Result<bool> frame(double longest_wait_s);
+  /// Ends run() as if the user had closed the window. From the window's thread.
+  void close();
+  /// Makes frame() return from its waiting. From any thread, also when there is no window.
+  static void wake();
+
+  /// What is on the screen now, panels included.
+  Picture read() const;
+  /// Without panels.
+  Picture read_scene() const;
+  const DrawCounters& counters() const;
+  const ViewSettings& settings() const;
+  /// What was wrong with the settings file; empty if nothing.
+  const Diagnostics& settings_faults() const;
+
+ private:
+  class Impl;
+  explicit Window(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kerf
