@@ -54,6 +54,13 @@ struct MeshPatch {
   std::vector<MeshVertex> vertices;
   std::vector<std::uint32_t> indices;  ///< three a triangle
   std::uint32_t skirt_begin = 0;       ///< a multiple of three
+  /// One a vertex: number (CutMove::id) of the move that cut there last, kNotCut on what is left of
+  /// the blank's surface. Empty where the model does not keep it.
+  std::vector<std::uint32_t> cut_by;
+  /// One a vertex: distance from the design part's surface, positive where material is left over,
+  /// negative where too much is gone. Empty without a design part.
+  std::vector<float> deviation_mm;
+  static constexpr std::uint32_t kNotCut = 0xffff'ffff;
 
   std::span<const std::uint32_t> surface_indices() const {
     return std::span(indices).first(skirt_begin);
@@ -62,7 +69,8 @@ struct MeshPatch {
     return std::span(indices).subspan(skirt_begin);
   }
   std::size_t bytes() const {
-    return vertices.size() * sizeof(MeshVertex) + indices.size() * sizeof(std::uint32_t);
+    return vertices.size() * sizeof(MeshVertex) + indices.size() * sizeof(std::uint32_t) +
+           cut_by.size() * sizeof(std::uint32_t) + deviation_mm.size() * sizeof(float);
   }
 };
 

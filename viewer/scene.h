@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "base/diagnostic.h"
 #include "base/geometry.h"
 #include "base/mesh_patch.h"
+#include "base/triangle_mesh.h"
 
 namespace kerf {
 
@@ -159,6 +161,56 @@ struct AxisReadout {
   std::optional<double> to_go;  ///< Of the present block; none where it is not known.
 };
 
+/// What the colour of the workpiece's surface says.
+enum class ColorBy {
+  kPlain,        ///< cut or not
+  kHeight,       ///< along z, from the lowest to the highest point of the blank
+  kTool,         ///< that cut there last
+  kRemovalRate,  ///< of the move that cut there last
+  kLineRange,    ///< whether lines first .. last of the program cut there last
+  kDeviation,    ///< MeshPatch::deviation_mm against a tolerance
+};
+
+/// Colours as 0xAABBGGRR, the order of bytes that OpenGL's RGBA8 has.
+struct ColorLegendEntry {
+  std::uint32_t color = 0;
+  std::string text;  ///< "T3 flat 10", "120 mm3/s"
+};
+
+/// For the modes that go by MeshPatch::cut_by (all from kTool to kLineRange): a colour for each
+/// move.
+struct CutColors {
+  ColorBy mode = ColorBy::kTool;
+  std::vector<std::uint32_t> of_move;  ///< by the number of the move; those beyond are `other`
+  std::uint32_t other = 0xff9a9a9a;
+  std::uint32_t not_cut = 0xffb8b0a8;
+  std::vector<ColorLegendEntry> legend;
+};
+
+/// Part of a machine that moves as one: table, saddle, head.
+struct MachineLink {
+  std::string name;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< In the link's own frame.
+  std::uint32_t color = 0xffa0a0a0;
+};
+
+/// The machine around the workpiece. Where its links are: Moment::link_poses.
+struct SceneMachine {
+  std::string name;  ///< "knee mill"
+  std::vector<MachineLink> links;
+};
+
+/// What is known of a point of the surface that was asked for.
+struct PickedPoint {
+  Vec3 point_mm{0.0};
+  std::optional<int> tool;  ///< That cut there last; none: not cut.
+  std::string tool_name;
+  int file = 0;  ///< Into ProgramText::files.
+  int line = 0;  ///< Whose move cut there last; 0: not cut, or not known.
+  double time_s = 0.0;
+  std::optional<double> deviation_mm;
+};
+
 /// Everything that changes from frame to frame, other than the workpiece.
 struct Moment {
   PlayState state = PlayState::kPaused;
@@ -168,6 +220,7 @@ struct Moment {
   int line = 0;                     ///< 0: before the program.
   std::uint64_t past_vertices = 0;  ///< Path vertices that the tool has left behind.
   std::optional<ToolPose> tool_pose;
+  std::vector<glm::mat4> link_poses;  ///< Of SceneMachine::links, from link to workpiece frame.
   int tool = 0;
   std::string tool_name;       ///< "flat 10", "" if no tool.
   double spindle_rpm = 0.0;    ///< Negative: counter-clockwise.
@@ -197,6 +250,9 @@ struct SceneUpdate {
   std::shared_ptr<const FindingList> findings;
   std::shared_ptr<const ProgramText> program;
   std::shared_ptr<const ProgramTimeline> timeline;
+  std::shared_ptr<const SceneMachine> machine;
+  std::shared_ptr<const CutColors> colors;    ///< The answer to a ColorCommand.
+  std::shared_ptr<const PickedPoint> picked;  ///< The answer to a PickCommand.
   std::shared_ptr<const Moment> moment;
 };
 

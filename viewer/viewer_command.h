@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "viewer/scene.h"
 
 namespace kerf {
 
@@ -50,13 +51,23 @@ struct BreakpointCommand {
 struct DetailCommand {
   double pixel_mm = 1.0;
 };
+/// Colours other than ColorBy::kPlain and kHeight are made by the owner of the workpiece.
+struct ColorCommand {
+  ColorBy mode = ColorBy::kPlain;
+  int first_line = 0;  ///< Of the main program, for kLineRange.
+  int last_line = 0;
+};
+/// Who cut this point of the surface last.
+struct PickCommand {
+  Vec3 point_mm{0.0};
+};
 struct CloseCommand {};  ///< The window was closed; the last command that comes.
 
 using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
                  SeekLineCommand, SeekTimeCommand, SeekEndCommand, NextToolCommand,
                  NextFindingCommand, SeekFindingCommand, BreakpointCommand, DetailCommand,
-                 CloseCommand>;
+                 ColorCommand, PickCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;
