@@ -55,7 +55,8 @@ struct MeshPatch {
   std::vector<std::uint32_t> indices;  ///< three a triangle
   std::uint32_t skirt_begin = 0;       ///< a multiple of three
   /// One a vertex: number (CutMove::id) of the move that cut there last, kNotCut on what is left of
-  /// the blank's surface. Empty where the model does not keep it.
+  /// the blank's surface. Where cells of several moves meet, that of the lowest; on a wall that of
+  /// its lower side. Empty where the model does not keep it (StockModel::keep_cut_ids).
   std::vector<std::uint32_t> cut_by;
   /// One a vertex: distance from the design part's surface, positive where material is left over,
   /// negative where too much is gone. Empty without a design part.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/height_grid.h"
 #include "base/mesh_patch.h"
 #include "base/result.h"
 #include "base/triangle_mesh.h"
@@ -84,6 +85,23 @@ class StockModel {
   /// A guess while others that share tiles with it are being changed or dropped.
   virtual std::size_t unique_bytes() const = 0;
 
+  /// From now on remembers for each cell the move that lowered it last, for cut_id_at() and
+  /// MeshPatch::cut_by: off in a new model; on, all cells count as not cut. A snapshot has what
+  /// its model had. To be called while no move is held back, best before anything is cut. Costs
+  /// as much memory as the heights do, and some cutting time; nothing while off. The workpiece and
+  /// its digest() are the same either way. A model that cannot do it ignores the call.
+  ///
+  /// A move is named by its CutMove::id, of which 0xffff'fffe and above count as 0xffff'fffe. Of
+  /// moves that cut equally deep the first is kept; the same for any division of a sequence of
+  /// moves into calls, and for any number of threads. The corner where two moves meet is the
+  /// first one's.
+  virtual void keep_cut_ids(bool) {}
+  virtual bool keeps_cut_ids() const { return false; }
+  /// The move that made the surface at `point_mm`, a point on it as patches of level 0 have it:
+  /// good to a cell. On a wall the move that lowered the lower side. None where nothing was cut
+  /// (or the point is beyond the blank), and where it is not kept.
+  virtual std::optional<std::uint32_t> cut_id_at(const Vec3&) const { return std::nullopt; }
+
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank
   virtual double cell_mm() const = 0;
@@ -104,7 +122,8 @@ class StockModel {
   /// back do not count yet. About a microsecond for each tile that moves came over; nothing is paid
   /// before the first call.
   virtual std::vector<std::uint32_t> take_dirty_tiles() = 0;
-  /// The tiles in which the two differ, ascending; exact. Fast where one is a snapshot of the
+  /// The tiles in which the two differ (in heights, or in cut ids if both keep them), ascending;
+  /// exact. Fast where one is a snapshot of the
   /// other, or both of a third. All tiles if `other` is another model, or of another size.
   virtual std::vector<std::uint32_t> differing_tiles(const StockModel& other) const = 0;
   /// Changes whenever a patch of this tile may have changed: by what was cut in the tile or at its
@@ -116,6 +135,10 @@ class StockModel {
   /// lowest of them: what was cut, however narrow, never disappears. Neighbours of equal level meet
   /// in the same vertices; for others there are skirts (base/mesh_patch.h).
   virtual MeshPatch patch(std::uint32_t tile, int level) const = 0;
+  /// The heights themselves, for a view that casts rays instead of drawing patches; its surface is
+  /// that of the patches of level 0. Shares tiles like a snapshot, and moves held back do not count
+  /// yet. Null from a model that has no heights.
+  virtual std::shared_ptr<const HeightGrid> height_grid() const { return nullptr; }
 
   static constexpr int kPatchLevels = 5;
 };

@@ -76,7 +76,7 @@ void add_within_tolerance(const Relief& relief, double tolerance_mm, int threads
 
 }  // namespace
 
-TriangleMesh mesh_height_grid(const HeightGrid& grid, double tolerance_mm, int threads) {
+TriangleMesh mesh_height_grid(const CellHeights& grid, double tolerance_mm, int threads) {
   assert(threads >= 1);
   const bool all_cells = !(tolerance_mm > 0.0);
   const Relief relief(grid, !all_cells);

@@ -12,7 +12,7 @@ namespace kerf {
 /// floor (max.z is not used). A cell whose height is <= the floor holds no material (a hole through
 /// the workpiece, or outside a round blank). Neighbouring cell centres must differ in single
 /// precision, and 2 (nx + 2) (ny + 2) must stay below 2^32.
-struct HeightGrid {
+struct CellHeights {
   int nx = 0;
   int ny = 0;
   Box bounds_mm;
@@ -48,6 +48,6 @@ inline constexpr float kHoleFilmMm = 0.001f;
 /// Result: closed, every edge in exactly two triangles, normals outward, no triangle without area;
 /// empty if no cell holds material. threads >= 1; same result for any. O(cells) time; memory beside
 /// the result: 2 bits per cell, a float more with a tolerance, 5 bytes more if there are holes.
-TriangleMesh mesh_height_grid(const HeightGrid& grid, double tolerance_mm, int threads = 1);
+TriangleMesh mesh_height_grid(const CellHeights& grid, double tolerance_mm, int threads = 1);
 
 }  // namespace kerf

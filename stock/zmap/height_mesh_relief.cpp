@@ -20,7 +20,7 @@ std::vector<double> lattice_lines(double from_mm, double to_mm, int cells) {
 
 }  // namespace
 
-Relief::Relief(const HeightGrid& grid, bool alternating)
+Relief::Relief(const CellHeights& grid, bool alternating)
     : alternating_(alternating), floor_mm_(static_cast<float>(grid.bounds_mm.min.z)) {
   assert(grid.nx >= 1 && grid.ny >= 1);
   assert(grid.heights_mm.size() == std::size_t(grid.nx) * std::size_t(grid.ny));
@@ -35,7 +35,7 @@ Relief::Relief(const HeightGrid& grid, bool alternating)
   if (has_holes_ && has_material_) close_narrow_holes();
 }
 
-void Relief::take_cells(const HeightGrid& grid, int repeat_x, int repeat_y) {
+void Relief::take_cells(const CellHeights& grid, int repeat_x, int repeat_y) {
   float greatest = floor_mm_;
   for (const float h : grid.heights_mm) {
     const bool solid = h > floor_mm_;

@@ -30,7 +30,7 @@ class Relief {
   /// alternating: the diagonals of the squares between cell centres alternate like a chequerboard
   /// (as bisection makes them); else all go from low x, y to high x, y. With alternating a grid one
   /// cell wide becomes two half cells wide (the same surface), so that there are squares.
-  Relief(const HeightGrid& grid, bool alternating);
+  Relief(const CellHeights& grid, bool alternating);
 
   int nx() const { return nx_; }
   int ny() const { return ny_; }
@@ -74,7 +74,7 @@ class Relief {
     int i;
     int j;
   };
-  void take_cells(const HeightGrid& grid, int repeat_x, int repeat_y);
+  void take_cells(const CellHeights& grid, int repeat_x, int repeat_y);
   void close_narrow_holes();
   void visit_hole_cell(std::size_t start, std::vector<std::size_t>& pending);
   bool find_touching_edge(int ci, int cj, std::size_t& other) const;

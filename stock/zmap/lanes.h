@@ -84,6 +84,12 @@ struct I8 {
 inline I8 operator+(I8 a, I8 b) { return {_mm256_add_epi32(a.v, b.v)}; }
 inline I8 round_to_int(F8 a) { return {_mm256_cvtps_epi32(a.v)}; }
 inline void store(std::int32_t* p, I8 a) { _mm256_store_si256(reinterpret_cast<__m256i*>(p), a.v); }
+/// Writes `value` to the lanes of `m`. (A blend: masked stores are slow on some machines.)
+inline void store_where(MaskF m, std::uint32_t value, std::uint32_t* p) {
+  __m256i* const to = reinterpret_cast<__m256i*>(p);
+  const __m256i all = _mm256_set1_epi32(static_cast<int>(value));
+  _mm256_store_si256(to, _mm256_blendv_epi8(_mm256_load_si256(to), all, _mm256_castps_si256(m.v)));
+}
 
 struct MaskD {
   __m256d lo, hi;
@@ -221,6 +227,10 @@ inline I8 round_to_int(F8 a) {
 }
 inline void store(std::int32_t* p, I8 a) {
   for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+}
+/// Writes `value` to the lanes of `m`.
+inline void store_where(MaskF m, std::uint32_t value, std::uint32_t* p) {
+  for (int i = 0; i < 8; ++i) p[i] = m.v[i] ? value : p[i];
 }
 
 // The same operations for both widths, lane by lane; the compiler makes of them what the machine

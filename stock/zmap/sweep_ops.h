@@ -21,6 +21,15 @@ inline constexpr int kTileCells = kBlockX * kTileBlocksX;
 static_assert(kTileCells == kBlockY * kTileBlocksY);
 inline constexpr int kTileFloats = kTileCells * kTileCells;
 
+/// Where a grid keeps them, the numbers of the moves that lowered the cells of a tile last lie
+/// behind its heights, in the same order. `cells` may be any cell of the tile.
+inline std::uint32_t* cut_ids_of(float* cells) {
+  return reinterpret_cast<std::uint32_t*>(cells + kTileFloats);
+}
+inline const std::uint32_t* cut_ids_of(const float* cells) {
+  return reinterpret_cast<const std::uint32_t*>(cells + kTileFloats);
+}
+
 /// A grid as the kernels see it. Row `band` of tiles is written by one thread only.
 struct GridView {
   float** tiles =
@@ -34,6 +43,7 @@ struct GridView {
   double cell_x = 0, cell_y = 0;            ///< mm
   double per_block_x = 0, per_block_y = 0;  ///< blocks per mm
   float floor = 0;                          ///< nothing is cut below
+  const std::uint32_t* cut_ids = nullptr;   ///< by SweepOp::report; only for kernels that keep them
 };
 
 /// One piece of a convex profile: height over the tip at distance d from the axis, r0 <= d <= r1.
@@ -102,16 +112,22 @@ inline constexpr double kRemovedUnit_mm = 1.0 / (1 << 13);
 
 /// Cuts ops (in order) with one convex tool into the tile rows first_band, first_band + band_step,
 /// ...
-using SweepKernel = void (*)(GridView& grid, const ConvexTool& tool, const SweepOp* ops,
-                             std::size_t count, int first_band, int band_step, SweepTotals* totals);
+using SweepKernel = void(GridView& grid, const ConvexTool& tool, const SweepOp* ops,
+                         std::size_t count, int first_band, int band_step, SweepTotals* totals);
 
+/// All lower the heights to the same bits; those of the "_ids" also write GridView::cut_ids to
+/// every cell that they lower. A tie leaves the earlier move's.
 namespace zmap_scalar {
-void run_sweeps(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
-                int first_band, int band_step, SweepTotals* totals);
+SweepKernel run_sweeps;
+}
+namespace zmap_scalar_ids {
+SweepKernel run_sweeps;
 }
 namespace zmap_avx2 {
-void run_sweeps(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
-                int first_band, int band_step, SweepTotals* totals);
+SweepKernel run_sweeps;
+}
+namespace zmap_avx2_ids {
+SweepKernel run_sweeps;
 }
 
 }  // namespace kerf

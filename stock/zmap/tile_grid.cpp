@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <mutex>
 #include <new>
 
+#include "base/mesh_patch.h"
+
 namespace kerf {
 namespace {
-
-constexpr std::size_t kTileBytes = kTileFloats * sizeof(float);
 
 float* allocate(std::size_t bytes, std::size_t alignment) {
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
@@ -35,12 +36,16 @@ std::uint64_t next_version() {
 /// of them are; so a tile of it that nobody keeps any more serves the next copy that is made.
 class TileArena {
  public:
-  explicit TileArena(std::size_t count) : count_(count), slab_(allocate_slab(count * kTileBytes)) {}
+  TileArena(std::size_t count, std::size_t tile_bytes)
+      : tile_bytes_(tile_bytes),
+        slab_(allocate_slab(count * tile_bytes)),
+        slab_end_(at(slab_, count * tile_bytes)) {}
   ~TileArena() { std::free(slab_); }
   TileArena(const TileArena&) = delete;
   TileArena& operator=(const TileArena&) = delete;
 
-  float* slab() const { return slab_; }
+  /// Of the fresh grid.
+  float* first(std::size_t tile) const { return at(slab_, tile * tile_bytes_); }
   float* take() {
     {
       const std::lock_guard lock(mutex_);
@@ -50,11 +55,10 @@ class TileArena {
         return tile;
       }
     }
-    return allocate(kTileBytes, 64);
+    return allocate(tile_bytes_, 64);
   }
   void give_back(float* tile) {
-    if (std::less<>()(tile, slab_) || !std::less<>()(tile, slab_ + count_ * kTileFloats))
-      return std::free(tile);
+    if (std::less<>()(tile, slab_) || !std::less<>()(tile, slab_end_)) return std::free(tile);
     const std::lock_guard lock(mutex_);
     free_.push_back(tile);
   }
@@ -73,8 +77,11 @@ class TileArena {
     return slab;
   }
 
-  std::size_t count_;
+  static float* at(float* slab, std::size_t bytes) { return slab + bytes / sizeof(float); }
+
+  std::size_t tile_bytes_;
   float* slab_;
+  float* slab_end_;
   std::mutex mutex_;
   std::vector<float*> free_;
 };
@@ -87,11 +94,11 @@ TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny)
       tiles_y_((ny + kTileCells - 1) / kTileCells),
       meetings_(std::make_shared<std::atomic<unsigned>>(0)) {
   const std::size_t count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
-  arena_ = std::make_shared<TileArena>(count);
-  std::fill_n(arena_->slab(), count * kTileFloats, std::numeric_limits<float>::lowest());
+  arena_ = std::make_shared<TileArena>(count, tile_bytes());
+  std::fill_n(arena_->first(0), count * kTileFloats, std::numeric_limits<float>::lowest());
   tiles_.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
-    tiles_.push_back(TileArena::share(arena_, arena_->slab() + i * kTileFloats));
+    tiles_.push_back(TileArena::share(arena_, arena_->first(i)));
   versions_.resize(count);
   const std::vector<float> row(static_cast<std::size_t>(nx), floor_mm());
   for (int j = 0; j < ny; ++j) set_row(j, row.data());
@@ -115,6 +122,22 @@ Box TileGrid::tile_box(std::size_t tile_index) const {
   if (i + kTileCells < nx_) box.max.x = bounds_.min.x + (i + kTileCells) * cell_x_mm();
   if (j + kTileCells < ny_) box.max.y = bounds_.min.y + (j + kTileCells) * cell_y_mm();
   return box;
+}
+
+void TileGrid::keep_cut_ids(bool keep) {
+  if (keep == keeps_cut_ids_) return;
+  keeps_cut_ids_ = keep;
+  begin_change();
+  const auto arena = std::make_shared<TileArena>(tiles_.size(), tile_bytes());
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    float* const cells = arena->first(i);
+    std::copy_n(tiles_[i].get(), kTileFloats, cells);
+    if (keep) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
+    meet_other_grids();
+    tiles_[i] = TileArena::share(arena, cells);
+    versions_[i] = change_;
+  }
+  arena_ = arena;
 }
 
 void TileGrid::copy_row(int j, float* out) const {
@@ -145,7 +168,7 @@ float* TileGrid::make_writable(std::size_t tile_index) {
     return tile.get();
   }
   std::shared_ptr<float> own = TileArena::share(arena_, arena_->take());
-  std::copy_n(tile.get(), kTileFloats, own.get());
+  std::memcpy(own.get(), tile.get(), tile_bytes());
   meet_other_grids();
   tile = std::move(own);
   return tile.get();
@@ -154,7 +177,7 @@ float* TileGrid::make_writable(std::size_t tile_index) {
 std::size_t TileGrid::unique_bytes() const {
   const auto own =
       std::count_if(tiles_.begin(), tiles_.end(), [](const auto& t) { return t.use_count() == 1; });
-  return static_cast<std::size_t>(own) * kTileBytes;
+  return static_cast<std::size_t>(own) * tile_bytes();
 }
 
 }  // namespace kerf

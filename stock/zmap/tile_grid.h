@@ -13,9 +13,10 @@ namespace kerf {
 
 class TileArena;
 
-/// nx x ny heights. Copying the grid is cheap: tiles are shared until one of the copies writes to
-/// them. A tile has a version, a new number with every change: for the copies of one grid, equal
-/// versions of a tile mean equal heights. Cells that pad the last tiles hold a height below any
+/// nx x ny heights, on request with the number of the move that lowered each cell last. Copying the
+/// grid is cheap: tiles are shared until one of the copies writes to them. A tile has a version, a
+/// new number with every change: for the copies of one grid, equal versions of a tile mean equal
+/// heights (and numbers). Cells that pad the last tiles hold a height below any
 /// floor and are never read by the functions here.
 class TileGrid {
  public:
@@ -37,6 +38,19 @@ class TileGrid {
   const float* tile(int tx, int ty) const { return tiles_[index(tx, ty)].get(); }
   /// From the floor to the top of the grid's bounds.
   Box tile_box(std::size_t tile_index) const;
+  /// Whether there is a number for each cell. On: MeshPatch::kNotCut in all of them, in tiles twice
+  /// as large. Copies made before stay as they are.
+  void keep_cut_ids(bool keep);
+  bool keeps_cut_ids() const { return keeps_cut_ids_; }
+  /// Numbers of a tile's cells, in the order of its heights. Only where they are kept.
+  const std::uint32_t* cut_ids(std::size_t tile_index) const {
+    return cut_ids_of(tiles_[tile_index].get());
+  }
+  std::uint32_t cut_id(int i, int j) const {
+    return cut_ids(index(i / kTileCells, j / kTileCells))[offset(i, j)];
+  }
+  std::size_t tile_bytes() const { return (keeps_cut_ids_ ? 2 : 1) * kTileFloats * sizeof(float); }
+
   /// Heights of row j, x = 0..nx-1.
   void copy_row(int j, float* out) const;
   void set_row(int j, const float* in);
@@ -74,7 +88,8 @@ class TileGrid {
   void meet_other_grids() const;
   Box bounds_;
   int nx_, ny_, tiles_x_, tiles_y_;
-  std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid
+  bool keeps_cut_ids_ = false;
+  std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid that keep the same
   std::vector<std::shared_ptr<float>> tiles_;
   std::vector<std::uint64_t> versions_;
   std::uint64_t change_ = 0;

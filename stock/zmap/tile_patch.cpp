@@ -3,6 +3,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <glm/geometric.hpp>
@@ -10,6 +11,7 @@
 #include <optional>
 
 #include "stock/stock_model.h"
+#include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_relief.h"
 
 namespace kerf {
@@ -21,6 +23,8 @@ enum Quadrant : std::size_t { kA, kB, kC, kD };
 /// Squares of fewer cells are not looked at for being level.
 constexpr int kLeastSquare = 8;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+/// Added to the number of a split corner where otherwise the number of a vertex is.
+constexpr std::uint32_t kSplitCorner = std::uint32_t{1} << 31;
 
 /// On which sides the tile has neighbours.
 struct Neighbors {
@@ -29,14 +33,17 @@ struct Neighbors {
 
 class PatchBuilder {
  public:
-  PatchBuilder(const TileRelief& relief, const Neighbors& neighbors, MeshPatch& patch)
-      : r_(relief), neighbors_(neighbors), patch_(patch) {
+  /// `cut_ids` is null where they are not kept.
+  PatchBuilder(const TileRelief& relief, const TileCutIds* cut_ids, const Neighbors& neighbors,
+               MeshPatch& patch)
+      : r_(relief), cut_ids_(cut_ids), neighbors_(neighbors), patch_(patch) {
     top_.fill(kNone);
     bottom_.fill(kNone);
     const std::size_t corners =
         static_cast<std::size_t>(r_.nx() + 1) * static_cast<std::size_t>(r_.ny() + 1);
     patch_.vertices.reserve(corners + corners / 4);
     patch_.indices.reserve(7 * corners);
+    if (cut_ids_) patch_.cut_by.reserve(corners + corners / 4);
   }
 
   void add_surface();
@@ -53,14 +60,46 @@ class PatchBuilder {
     patch_.vertices.push_back({{r_.x(i), r_.y(j), z}, normal});
     return static_cast<std::uint32_t>(patch_.vertices.size() - 1);
   }
-  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const std::uint32_t corners[3] = {a, b, c};
-    patch_.indices.insert(patch_.indices.end(), corners, corners + 3);
+  /// Much cheaper than vector::insert() for so few.
+  template <std::size_t kCount>
+  void append_indices(const std::array<std::uint32_t, kCount>& indices) {
+    const std::size_t size = patch_.indices.size();
+    patch_.indices.resize(size + kCount);
+    std::copy(indices.begin(), indices.end(), patch_.indices.data() + size);
   }
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    append_indices<3>({a, b, c});
+  }
+
+  std::uint32_t cut_by(int cell) const {
+    return cut_ids_ ? cut_ids_->of(cell) : MeshPatch::kNotCut;
+  }
+  void set_cut_by(std::uint32_t vertex, std::uint32_t id);
+  template <class InGroup>
+  std::uint32_t cut_by_at(int corner, const InGroup& in_group) const;
+  void set_cut_by_of_corners();
 
   SplitCorner& split_corner(int i, int j);
   float z_at(int i, int j, Quadrant q);
-  std::uint32_t top_vertex(int i, int j, Quadrant q);
+  std::uint32_t top_vertex(int i, int j, Quadrant q) {
+    const int corner = TileRelief::slot(i, j);
+    std::uint32_t& vertex = top_[static_cast<std::size_t>(corner)];
+    if (vertex < kSplitCorner) return vertex;
+    if (r_.is_split(corner)) [[unlikely]]
+      return split_vertex(i, j, q);
+    return vertex = add_vertex(i, j, r_.corner_z(corner), r_.corner_normal(corner));
+  }
+  [[gnu::noinline]] std::uint32_t split_vertex(int i, int j, Quadrant q);
+  /// Vertices of a cell, counter-clockwise from low x, y.
+  std::array<std::uint32_t, 4> cell_corners(int i, int j) {
+    const std::uint32_t* const row = top_.data() + TileRelief::slot(i, j);
+    const std::array<std::uint32_t, 4> known{row[0], row[1], row[TileRelief::kStride + 1],
+                                             row[TileRelief::kStride]};
+    if ((known[0] | known[1] | known[2] | known[3]) < kSplitCorner) [[likely]]
+      return known;
+    return {top_vertex(i, j, kC), top_vertex(i + 1, j, kD), top_vertex(i + 1, j + 1, kA),
+            top_vertex(i, j + 1, kB)};
+  }
   std::uint32_t bottom_vertex(int i, int j);
 
   bool is_level(int i, int j, int size) const;
@@ -68,7 +107,7 @@ class PatchBuilder {
   void add_fan(int i, int j, int width, int height, std::uint32_t center, bool upward,
                const Corner& corner);
   void add_square(int i, int j, int size);
-  void add_cell(int i, int j);
+  void add_cells(int first_i, int first_j, int last_i, int last_j);
   void add_floor();
 
   struct WallEnd;
@@ -78,21 +117,55 @@ class PatchBuilder {
   void add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1);
 
   const TileRelief& r_;
+  const TileCutIds* cut_ids_;
   Neighbors neighbors_;
   MeshPatch& patch_;
-  std::array<std::uint32_t, TileRelief::kSlots> top_;  ///< vertex; or number of the split corner
+  std::array<std::uint32_t, TileRelief::kSlots> top_;  ///< or kSplitCorner + which
   std::array<std::uint32_t, TileRelief::kSlots> bottom_;
   std::vector<SplitCorner> splits_;
 };
+
+/// Vertices that are passed over count as not cut.
+void PatchBuilder::set_cut_by(std::uint32_t vertex, std::uint32_t id) {
+  if (!cut_ids_) return;
+  if (patch_.cut_by.size() <= vertex) patch_.cut_by.resize(vertex + 1, MeshPatch::kNotCut);
+  patch_.cut_by[vertex] = id;
+}
+
+/// Of the cells about a corner that meet there, the lowest one's: as with walls and levels, and
+/// the same from either side of a border between tiles.
+template <class InGroup>
+std::uint32_t PatchBuilder::cut_by_at(int corner, const InGroup& in_group) const {
+  const std::array<int, 4> cells = TileRelief::cells_about(corner);
+  int lowest = -1;
+  for (std::size_t q = 0; q < 4; ++q) {
+    if (!in_group(q)) continue;
+    if (lowest < 0 || r_.height(cells[q]) < r_.height(lowest)) lowest = cells[q];
+  }
+  return cut_by(lowest);
+}
+
+/// Those that are not split: all at once, so that their vertices are made without a look at it.
+void PatchBuilder::set_cut_by_of_corners() {
+  patch_.cut_by.resize(patch_.vertices.size(), MeshPatch::kNotCut);
+  for (int j = 0; j <= r_.ny(); ++j) {
+    for (int i = 0; i <= r_.nx(); ++i) {
+      const int corner = TileRelief::slot(i, j);
+      const std::uint32_t vertex = top_[static_cast<std::size_t>(corner)];
+      if (vertex < kSplitCorner)
+        patch_.cut_by[vertex] = cut_by_at(corner, [](std::size_t) { return true; });
+    }
+  }
+}
 
 PatchBuilder::SplitCorner& PatchBuilder::split_corner(int i, int j) {
   const int corner = TileRelief::slot(i, j);
   std::uint32_t& number = top_[static_cast<std::size_t>(corner)];
   if (number == kNone) {
-    number = static_cast<std::uint32_t>(splits_.size());
+    number = kSplitCorner + static_cast<std::uint32_t>(splits_.size());
     splits_.push_back({r_.split(corner)});
   }
-  return splits_[number];
+  return splits_[number - kSplitCorner];
 }
 
 float PatchBuilder::z_at(int i, int j, Quadrant q) {
@@ -100,19 +173,15 @@ float PatchBuilder::z_at(int i, int j, Quadrant q) {
   return r_.is_split(corner) ? split_corner(i, j).split.z[q] : r_.corner_z(corner);
 }
 
-std::uint32_t PatchBuilder::top_vertex(int i, int j, Quadrant q) {
-  const int corner = TileRelief::slot(i, j);
-  if (!r_.is_split(corner)) [[likely]] {
-    std::uint32_t& vertex = top_[static_cast<std::size_t>(corner)];
-    if (vertex == kNone) vertex = add_vertex(i, j, r_.corner_z(corner), r_.corner_normal(corner));
-    return vertex;
-  }
+std::uint32_t PatchBuilder::split_vertex(int i, int j, Quadrant q) {
   SplitCorner& at = split_corner(i, j);
   std::uint32_t& vertex = at.vertex[at.split.group[q]];
   if (vertex == kNone) {
     const glm::vec2 slope = at.split.slope[q];
     const glm::vec3 normal = glm::normalize(glm::vec3(-slope.x, -slope.y, 1));
     vertex = add_vertex(i, j, at.split.z[q], pack_normal(normal));
+    const auto in_group = [&](std::size_t r) { return at.split.group[r] == at.split.group[q]; };
+    set_cut_by(vertex, cut_by_at(TileRelief::slot(i, j), in_group));
   }
   return vertex;
 }
@@ -123,13 +192,17 @@ std::uint32_t PatchBuilder::bottom_vertex(int i, int j) {
   return vertex;
 }
 
-/// Cells of the square and around it all have one height, above the floor.
+/// Cells of the square and around it all have one height, above the floor, and were cut by one
+/// move.
 bool PatchBuilder::is_level(int i, int j, int size) const {
   const float z = r_.height(TileRelief::slot(i, j));
   if (!(z > r_.floor())) return false;
+  const std::uint32_t id = cut_by(TileRelief::slot(i, j));
   for (int y = j - 1; y <= j + size; ++y) {
     bool same = true;
     for (int x = i - 1; x <= i + size; ++x) same &= r_.height(TileRelief::slot(x, y)) == z;
+    for (int x = i - 1; x <= i + size && cut_ids_; ++x)
+      same &= cut_by(TileRelief::slot(x, y)) == id;
     if (!same) return false;
   }
   return true;
@@ -157,8 +230,9 @@ void PatchBuilder::add_square(int i, int j, int size) {
   if (whole && size >= kLeastSquare && is_level(i, j, size)) {
     const std::uint32_t up = pack_normal({0, 0, 1});
     const int middle = size / 2;
-    const std::uint32_t center =
-        add_vertex(i + middle, j + middle, r_.height(TileRelief::slot(i, j)), up);
+    const int first = TileRelief::slot(i, j);
+    const std::uint32_t center = add_vertex(i + middle, j + middle, r_.height(first), up);
+    set_cut_by(center, cut_by(first));
     add_fan(i, j, size, size, center, true, [&](int x, int y) { return top_vertex(x, y, kA); });
     return;
   }
@@ -168,21 +242,42 @@ void PatchBuilder::add_square(int i, int j, int size) {
       for (const int x : {i, i + half}) add_square(x, y, half);
     return;
   }
-  for (int y = j; y < std::min(j + size, r_.ny()); ++y)
-    for (int x = i; x < std::min(i + size, r_.nx()); ++x) add_cell(x, y);
+  add_cells(i, j, std::min(i + size, r_.nx()), std::min(j + size, r_.ny()));
 }
 
-void PatchBuilder::add_cell(int i, int j) {
-  const int cell = TileRelief::slot(i, j);
-  if (!r_.solid(cell)) return;
-  const std::uint32_t a = top_vertex(i, j, kC), b = top_vertex(i + 1, j, kD);
-  const std::uint32_t c = top_vertex(i + 1, j + 1, kA), d = top_vertex(i, j + 1, kB);
-  // Of the two diagonals the one whose middle is nearer to the cell's height.
-  const auto z = [&](std::uint32_t v) { return patch_.vertices[v].position_mm.z; };
-  const float twice = 2 * r_.height(cell);
-  const bool rising = std::abs(z(a) + z(c) - twice) <= std::abs(z(b) + z(d) - twice);
-  const std::uint32_t corners[6] = {a, b, rising ? c : d, rising ? a : b, c, d};
-  patch_.indices.insert(patch_.indices.end(), corners, corners + 6);
+/// Cells first_i .. last_i - 1 by first_j .. last_j - 1, two triangles each.
+void PatchBuilder::add_cells(int first_i, int first_j, int last_i, int last_j) {
+  for (int j = first_j; j <= last_j; ++j) {
+    for (int i = first_i; i <= last_i; ++i) {
+      const int corner =
+          TileRelief::slot(i, j);  // where it is not split, all cells are solid or none
+      if (!r_.is_split(corner) && r_.solid(corner)) top_vertex(i, j, kC);
+    }
+  }
+  // Room for all of them at once: cheaper than to look for it with every triangle.
+  const std::size_t size = patch_.indices.size();
+  const std::size_t cells = static_cast<std::size_t>((last_i - first_i) * (last_j - first_j));
+  patch_.indices.resize(size + 6 * cells);
+  std::uint32_t* out = patch_.indices.data() + size;
+  for (int j = first_j; j < last_j; ++j) {
+    for (int i = first_i; i < last_i; ++i) {
+      const int cell = TileRelief::slot(i, j);
+      if (!r_.solid(cell)) continue;
+      const auto [a, b, c, d] = cell_corners(i, j);
+      // Of the two diagonals the one whose middle is nearer to the cell's height.
+      const auto z = [&](std::uint32_t v) { return patch_.vertices[v].position_mm.z; };
+      const float twice = 2 * r_.height(cell);
+      const bool rising = std::abs(z(a) + z(c) - twice) <= std::abs(z(b) + z(d) - twice);
+      out[0] = a;
+      out[1] = b;
+      out[2] = rising ? c : d;
+      out[3] = rising ? a : b;
+      out[4] = c;
+      out[5] = d;
+      out += 6;
+    }
+  }
+  patch_.indices.resize(static_cast<std::size_t>(out - patch_.indices.data()));
 }
 
 void PatchBuilder::add_floor() {
@@ -249,6 +344,8 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
   const bool first_is_higher = first >= second;
   if (first_is_higher ? !owned_if_lower : !owned_if_higher) return;
 
+  // Made by what lowered the lower side; a side of the blank by nothing.
+  const std::uint32_t made_by = cut_by(r_.height(cell) < r_.height(before) ? cell : before);
   const glm::vec2 axis(along_y ? 1 : 0, along_y ? 0 : 1);
   const glm::vec2 outward = first_is_higher ? axis : -axis;
   // A side of the blank is flat to its very end.
@@ -259,8 +356,10 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
     glm::vec2 way = r_.wall_direction(TileRelief::slot(end->i, end->j), bottom, top);
     if (side || !(glm::dot(way, outward) > 0.5f * glm::length(way))) way = outward;
     const std::uint32_t normal = pack_normal(glm::vec3(glm::normalize(way), 0));
-    for (std::size_t n = 0; n < end->count; ++n)
+    for (std::size_t n = 0; n < end->count; ++n) {
       end->vertex[n] = add_vertex(end->i, end->j, end->z[n], normal);
+      set_cut_by(end->vertex[n], made_by);
+    }
   }
   // A zip from the first cell's edge to the second's.
   std::size_t p = 0, q = 0;
@@ -276,26 +375,36 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
 }
 
 void PatchBuilder::add_walls() {
-  for (int j = 0; j < r_.ny(); ++j)
+  // Most rows have no wall, which a look at all their links together tells.
+  for (int j = 0; j < r_.ny(); ++j) {
+    if (r_.all_linked_x(TileRelief::slot(-1, j), r_.nx() + 1)) continue;
     for (int i = 0; i <= r_.nx(); ++i)
       add_wall(TileRelief::slot(i, j), true, i, j, i > 0, i < r_.nx());
-  for (int j = 0; j <= r_.ny(); ++j)
+  }
+  for (int j = 0; j <= r_.ny(); ++j) {
+    if (r_.all_linked_y(TileRelief::slot(0, j - 1), r_.nx())) continue;
     for (int i = 0; i < r_.nx(); ++i)
       add_wall(TileRelief::slot(i, j), false, i, j, j > 0, j < r_.ny());
+  }
 }
 
 void PatchBuilder::add_surface() {
   add_square(0, 0, kTileCells);
   add_walls();
   add_floor();
+  if (cut_ids_) set_cut_by_of_corners();
   patch_.skirt_begin = static_cast<std::uint32_t>(patch_.indices.size());
 }
 
 /// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right.
 void PatchBuilder::add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1) {
   // The top's own normals: where a skirt fills a crack it must not be seen.
-  const std::uint32_t a = add_vertex(i0, j0, r_.floor(), patch_.vertices[from].normal);
-  const std::uint32_t b = add_vertex(i1, j1, r_.floor(), patch_.vertices[to].normal);
+  const auto below = [&](std::uint32_t top, int i, int j) {
+    const std::uint32_t vertex = add_vertex(i, j, r_.floor(), patch_.vertices[top].normal);
+    if (cut_ids_) set_cut_by(vertex, patch_.cut_by[top]);
+    return vertex;
+  };
+  const std::uint32_t a = below(from, i0, j0), b = below(to, i1, j1);
   add_triangle(a, b, to);
   add_triangle(a, to, from);
 }
@@ -328,11 +437,15 @@ MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level) {
   const int tx = static_cast<int>(tile) % grid.tiles_x();
   const int ty = static_cast<int>(tile) / grid.tiles_x();
   const Neighbors neighbors{tx > 0, tx + 1 < grid.tiles_x(), ty > 0, ty + 1 < grid.tiles_y()};
-  PatchBuilder builder(relief, neighbors, patch);
+  std::optional<TileCutIds> cut_ids;
+  if (grid.keeps_cut_ids()) cut_ids.emplace(grid, tile, level);
+  PatchBuilder builder(relief, cut_ids ? &*cut_ids : nullptr, neighbors, patch);
   builder.add_surface();
   builder.add_skirts();
+  if (cut_ids) patch.cut_by.resize(patch.vertices.size(), MeshPatch::kNotCut);
   // A level tile fills a small part of what was reserved, and patches are kept until uploaded.
   if (2 * patch.vertices.size() < patch.vertices.capacity()) patch.vertices.shrink_to_fit();
+  if (2 * patch.cut_by.size() < patch.cut_by.capacity()) patch.cut_by.shrink_to_fit();
   if (2 * patch.indices.size() < patch.indices.capacity()) patch.indices.shrink_to_fit();
   return patch;
 }

@@ -6,7 +6,8 @@
 
 namespace kerf {
 
-/// Level `level` of tile `tile`; `version` is left 0. Corners of the mesh lie at the corners of
+/// Level `level` of tile `tile`, with MeshPatch::cut_by if the grid keeps it; `version` is left 0.
+/// Corners of the mesh lie at the corners of
 /// the cells, at the mean height of those cells about them that belong to one smooth surface;
 /// between cells that do not there is a vertical wall (which they are: tile_relief.h).
 ///
@@ -22,7 +23,8 @@ namespace kerf {
 ///     steps to one side), and where the cells lie in a plane, by rounding.
 ///   - A step between cells that are not linked is a wall in full, at the cells' common edge: no
 ///     farther from the true wall than a cell.
-/// Squares of 8 x 8, 16 x 16 .. cells that are level keep only the corners at their rim.
+/// Squares of 8 x 8, 16 x 16 .. cells that are level (and cut by one move) keep only the corners at
+/// their rim.
 ///
 /// Each wall belongs to the tile of the higher side, so no tile shows a wall above its own surface
 /// whatever the level of its neighbour. Over all tiles at one level each edge is in two triangles,

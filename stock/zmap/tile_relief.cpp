@@ -8,9 +8,6 @@
 namespace kerf {
 namespace {
 
-constexpr int kStride = TileRelief::kStride;
-constexpr int kHalo = TileRelief::kHalo;
-
 /// Lowers low[i - first] to the heights of cells first .. last-1 of row j; `first` is even. Room
 /// for one more is needed.
 void lower_to_row(const TileGrid& grid, int j, int first, int last, float* low) {
@@ -158,7 +155,7 @@ void TileRelief::find_corners(float cell_x, float cell_y) {
 }
 
 TileRelief::Split TileRelief::split(int corner) const {
-  const std::array<int, 4> cells{corner - kStride - 1, corner - kStride, corner, corner - 1};
+  const std::array<int, 4> cells = cells_about(corner);
   // Links along the way round: A-B, B-C, C-D, D-A.
   const std::array<bool, 4> link{linked_x(cells[0]), linked_y(cells[1]), linked_x(cells[3]),
                                  linked_y(cells[0])};

@@ -50,12 +50,19 @@ class TileRelief {
   int nx() const { return nx_; }  ///< cells of the tile
   int ny() const { return ny_; }
   float floor() const { return floor_; }
+  /// By quadrant.
+  static std::array<int, 4> cells_about(int corner) {
+    return {corner - kStride - 1, corner - kStride, corner, corner - 1};
+  }
   static int slot(int i, int j) { return (j + kHalo) * kStride + i + kHalo; }
 
   float height(int cell) const { return height_[index(cell)]; }
   bool solid(int cell) const { return height(cell) > floor_; }
   bool linked_x(int cell) const { return link_x_[index(cell)] > 0.5f; }  ///< with the next in x
   bool linked_y(int cell) const { return link_y_[index(cell)] > 0.5f; }
+  /// `count` cells from `cell` on in x.
+  bool all_linked_x(int cell, int count) const { return all_set(link_x_, cell, count); }
+  bool all_linked_y(int cell, int count) const { return all_set(link_y_, cell, count); }
   float x(int i) const { return x_[index(i)]; }  ///< of corner line i, mm
   float y(int j) const { return y_[index(j)]; }
 
@@ -73,6 +80,12 @@ class TileRelief {
   template <class T>
   using Field = std::array<T, kSlots>;
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  static bool all_set(const Field<float>& links, int first, int count) {
+    const float* const link = links.data() + first;
+    int set = 0;  // without a way out of the loop, so that several are looked at at a time
+    for (int k = 0; k < count; ++k) set += link[k] > 0.5f;
+    return set == count;
+  }
   void load_heights(const TileGrid& grid, int tx, int ty, int level);
   void find_links(float cell_x, float cell_y);
   void find_corners(float cell_x, float cell_y);

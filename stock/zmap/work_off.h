@@ -57,15 +57,32 @@ inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b,
                                           D8::all(c.op.z + f.slope * p) + offsets.track, ignored));
 }
 
+/// Notes which move lowered a cell, in kernels that keep it.
+struct CutIdWriter {
+#if defined(KERF_LANES_CUT_IDS)
+  std::uint32_t id;
+  explicit CutIdWriter(const SweepContext& c) : id(c.grid.cut_ids[c.op.report]) {}
+  void note(F8 old, F8 now, float* cells) const {
+    const MaskF lower = now < old;
+    if (any(lower)) store_where(lower, id, cut_ids_of(cells));
+  }
+#else
+  explicit CutIdWriter(const SweepContext&) {}
+  void note(F8, F8, float*) const {}
+#endif
+};
+
 /// Lowers a block to z (kNowhere where the sweep does not come).
 struct Lowering {
   F8 floor, deepest = F8::all(0), unit = F8::all(static_cast<float>(1 / kRemovedUnit_mm));
   I8 removed = I8::zero();
-  explicit Lowering(const GridView& grid) : floor(F8::all(grid.floor)) {}
+  [[no_unique_address]] CutIdWriter cut_ids;
+  explicit Lowering(const SweepContext& c) : floor(F8::all(c.grid.floor)), cut_ids(c) {}
   void apply(float* cells, F8 z) {
     const F8 old = F8::load(cells);
     const F8 now = min(max(z, floor), old);
     store(cells, now);
+    cut_ids.note(old, now, cells);
     const F8 gone = old - now;
     removed = removed + round_to_int(gone * unit);
     deepest = max(deepest, gone);
@@ -83,7 +100,7 @@ template <class EvalD>
                               const std::int16_t* blocks, int count) {
   const EvalD eval(c.tool, c.op);
   const BlockOffsets<D8> offsets(c.grid, f);
-  Lowering lowering(c.grid);
+  Lowering lowering(c);
   for (int n = 0; n < count; ++n) {
     const Block& b = list.blocks[blocks[n]];
     lowering.apply(b.cells, evaluate_double(c, f, b, eval, offsets));
@@ -97,7 +114,7 @@ template <class EvalD, bool kInterior, class EvalF>
 void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval_in_memory) {
   const EvalF eval = eval_in_memory;  // nobody has its address: its constants stay in registers
   const BlockOffsets<F8> offsets(c.grid, f);
-  Lowering lowering(c.grid);
+  Lowering lowering(c);
   std::int16_t unsettled[WorkList::kCapacity];
   int unsettled_count = 0;
   for (int n = 0; n < list.count; ++n) {
@@ -121,7 +138,7 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
 template <class EvalD>
 void work_off_double(SweepContext& c, WorkList& list, const Frame& f, const EvalD& eval) {
   const BlockOffsets<D8> offsets(c.grid, f);
-  Lowering lowering(c.grid);
+  Lowering lowering(c);
   for (int n = 0; n < list.count; ++n)
     lowering.apply(list.blocks[n].cells, evaluate_double(c, f, list.blocks[n], eval, offsets));
   lowering.add_to(c);

@@ -6,14 +6,17 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
 #include "stock/zmap/height_mesh.h"
+#include "stock/zmap/height_view.h"
 #include "stock/zmap/path_builder.h"
 #include "stock/zmap/state_file.h"
+#include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
 #include "stock/zmap/tile_patch.h"
 #include "stock/zmap/worker_pool.h"
@@ -30,11 +33,22 @@ bool zmap_has_avx2() {
 
 namespace {
 
-SweepKernel pick_kernel(ZMapKernel kernel) {
+struct Kernels {
+  SweepKernel* plain = zmap_scalar::run_sweeps;
+  SweepKernel* with_ids = zmap_scalar_ids::run_sweeps;
+};
+
+Kernels pick_kernels(ZMapKernel kernel) {
 #if defined(__x86_64__)
-  if (kernel != ZMapKernel::kScalar && zmap_has_avx2()) return zmap_avx2::run_sweeps;
+  if (kernel != ZMapKernel::kScalar && zmap_has_avx2())
+    return {zmap_avx2::run_sweeps, zmap_avx2_ids::run_sweeps};
 #endif
-  return zmap_scalar::run_sweeps;
+  return {};
+}
+
+/// As cells keep it: nothing that cuts may look like kNotCut.
+std::uint32_t cut_id_of(std::uint64_t move_id) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(move_id, MeshPatch::kNotCut - 1));
 }
 
 /// The cells of one row that lie within a body's outline, as up to two runs [first, last).
@@ -125,7 +139,7 @@ std::string memory_text(double cells) {
 struct ZMap::Impl {
   TileGrid grid;
   double blank_mm3 = 0;
-  SweepKernel kernel = nullptr;
+  Kernels kernels;
   std::shared_ptr<WorkerPool>
       pool;  ///< shared with snapshots made for reading; they cut with their own
 
@@ -144,11 +158,15 @@ struct ZMap::Impl {
   std::vector<SweepOp> ops;  // kept between calls to save allocations
   std::vector<SweepTotals> totals;
   std::vector<float*> pointers;
+  std::vector<std::uint32_t> cut_ids;  ///< by report; unused where they are not kept
 
   explicit Impl(TileGrid g) : grid(std::move(g)) {}
   void use_cutter(const Cutter& cutter, std::vector<CutReport>& reports);
   void cut_some(std::span<const CutMove> moves, std::vector<CutReport>& reports);
   void run(std::size_t report_count);
+  GridView view();
+  template <class Work>
+  void share_out(std::size_t report_count, const GridView& view, const Work& work);
   CutReport report(std::uint64_t id, const SweepTotals& sum) const {
     return {
         id,
@@ -158,13 +176,10 @@ struct ZMap::Impl {
   void finish(std::vector<CutReport>& reports);
 };
 
-/// Works off `ops`; totals[0 .. report_count) receive the sums.
-void ZMap::Impl::run(std::size_t report_count) {
-  if (ops.empty()) return;
-  // No tile may be written before its first sweep has asked for it: this is how tiles come to be
-  // unshared and to have a new version, without a look at either in the kernels' loops.
+/// No tile may be written before its first sweep has asked for it: this is how tiles come to be
+/// unshared and to have a new version, without a look at either in the kernels' loops.
+GridView ZMap::Impl::view() {
   pointers.assign(grid.tile_count(), nullptr);
-  grid.begin_change();
   GridView view;
   view.tiles = pointers.data();
   view.owner = this;
@@ -184,30 +199,59 @@ void ZMap::Impl::run(std::size_t report_count) {
   view.per_block_x = 1 / (kBlockX * view.cell_x);
   view.per_block_y = 1 / (kBlockY * view.cell_y);
   view.floor = grid.floor_mm();
+  view.cut_ids = cut_ids.data();
+  return view;
+}
 
+/// Has work(view, thread, threads, totals) done by every thread. Bands of tile rows are dealt out;
+/// the sums of a move's bands are integers, so their order does not matter.
+template <class Work>
+void ZMap::Impl::share_out(std::size_t report_count, const GridView& view, const Work& work) {
+  const int threads = pool->threads();
+  if (threads == 1) {
+    GridView mine = view;
+    return work(mine, 0, 1, totals.data());
+  }
+  std::vector<std::vector<SweepTotals>> parts(static_cast<std::size_t>(threads));
+  pool->run([&](int thread) {
+    std::vector<SweepTotals>& part = parts[static_cast<std::size_t>(thread)];
+    part.resize(report_count);
+    GridView mine = view;
+    work(mine, thread, threads, part.data());
+  });
+  for (const std::vector<SweepTotals>& part : parts) {
+    for (std::size_t i = 0; i < report_count; ++i) {
+      totals[i].removed += part[i].removed;
+      totals[i].depth = std::max(totals[i].depth, part[i].depth);
+    }
+  }
+}
+
+/// Works off `ops`; totals[0 .. report_count) receive the sums.
+void ZMap::Impl::run(std::size_t report_count) {
+  if (ops.empty()) return;
+  grid.begin_change();
+  const GridView whole = view();
+  if (grid.keeps_cut_ids() && tools.size() > 1) {
+    // Move by move, or of two that cut equally deep with different parts of the cutter, the
+    // earlier would be found by how they are divided into calls.
+    share_out(report_count, whole, [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
+      for (SweepOp op : ops) {
+        for (const ConvexTool& tool : tools) {
+          op.use_double |= tool.needs_double;
+          kernels.with_ids(mine, tool, &op, 1, thread, threads, sums);
+        }
+      }
+    });
+    return ops.clear();
+  }
+  SweepKernel* const kernel = grid.keeps_cut_ids() ? kernels.with_ids : kernels.plain;
   for (const ConvexTool& tool : tools) {
     if (tool.needs_double)
       for (SweepOp& op : ops) op.use_double = true;
-    const int threads = pool->threads();
-    if (threads == 1) {
-      kernel(view, tool, ops.data(), ops.size(), 0, 1, totals.data());
-      continue;
-    }
-    // Bands of tile rows are dealt out; the sums of a move's bands are integers, so their order
-    // does not matter.
-    std::vector<std::vector<SweepTotals>> parts(static_cast<std::size_t>(threads));
-    pool->run([&](int thread) {
-      std::vector<SweepTotals>& part = parts[static_cast<std::size_t>(thread)];
-      part.resize(report_count);
-      GridView mine = view;
-      kernel(mine, tool, ops.data(), ops.size(), thread, threads, part.data());
+    share_out(report_count, whole, [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
+      kernel(mine, tool, ops.data(), ops.size(), thread, threads, sums);
     });
-    for (const std::vector<SweepTotals>& part : parts) {
-      for (std::size_t i = 0; i < report_count; ++i) {
-        totals[i].removed += part[i].removed;
-        totals[i].depth = std::max(totals[i].depth, part[i].depth);
-      }
-    }
   }
   ops.clear();
 }
@@ -215,6 +259,7 @@ void ZMap::Impl::run(std::size_t report_count) {
 void ZMap::Impl::finish(std::vector<CutReport>& reports) {
   if (!path.holds_back()) return;
   totals.assign(1, pending_totals);
+  cut_ids.assign(1, cut_id_of(pending_id));
   path.set_pending_report(0);
   path.finish(ops);
   run(1);
@@ -264,7 +309,7 @@ Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
   auto impl = std::make_unique<Impl>(TileGrid(box, static_cast<int>(nx), static_cast<int>(ny)));
   fill_blank(impl->grid, options.blank);
   impl->blank_mm3 = volume_of(impl->grid);
-  impl->kernel = pick_kernel(options.kernel);
+  impl->kernels = pick_kernels(options.kernel);
   impl->pool = std::make_shared<WorkerPool>(std::max(1, options.threads));
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
@@ -307,6 +352,11 @@ void ZMap::Impl::cut_some(std::span<const CutMove> moves, std::vector<CutReport>
   }
   for (std::size_t i = 0; i < moves.size(); ++i)
     m.path.add(moves[i], static_cast<std::uint32_t>(i + first), m.ops);
+  if (m.grid.keeps_cut_ids()) {
+    m.cut_ids.clear();
+    if (carried) m.cut_ids.push_back(cut_id_of(m.pending_id));
+    for (const CutMove& move : moves) m.cut_ids.push_back(cut_id_of(move.id));
+  }
   m.run(m.totals.size());
 
   const bool holding = m.path.holds_back();
@@ -335,6 +385,21 @@ std::unique_ptr<StockModel> ZMap::snapshot() const {
   std::vector<CutReport> ignored;
   copy->finish(ignored);
   return std::unique_ptr<StockModel>(new ZMap(std::move(copy)));
+}
+
+std::shared_ptr<const HeightGrid> ZMap::height_grid() const { return height_view(impl_->grid); }
+
+void ZMap::keep_cut_ids(bool keep) {
+  assert(!impl_->path.holds_back());
+  impl_->grid.keep_cut_ids(keep);
+}
+
+bool ZMap::keeps_cut_ids() const { return impl_->grid.keeps_cut_ids(); }
+
+std::optional<std::uint32_t> ZMap::cut_id_at(const Vec3& point_mm) const {
+  if (!keeps_cut_ids()) return std::nullopt;
+  const std::uint32_t id = kerf::cut_id_at(impl_->grid, point_mm);
+  return id == MeshPatch::kNotCut ? std::nullopt : std::optional(id);
 }
 
 std::size_t ZMap::unique_bytes() const { return impl_->grid.unique_bytes(); }
@@ -410,11 +475,12 @@ std::vector<std::uint32_t> ZMap::differing_tiles(const StockModel& other) const 
   const ZMap* const map = dynamic_cast<const ZMap*>(&other);
   const TileGrid* const b = map ? &map->impl_->grid : nullptr;
   const bool alike = b && a.nx() == b->nx() && a.ny() == b->ny() && a.bounds_mm() == b->bounds_mm();
+  // Numbers of moves lie behind the heights.
+  const std::size_t bytes = alike ? std::min(a.tile_bytes(), b->tile_bytes()) : 0;
   std::vector<std::uint32_t> differing;
   for (std::uint32_t i = 0; i < a.tile_count(); ++i) {
     if (alike && a.tile(i) == b->tile(i)) continue;
-    if (!alike || std::memcmp(a.tile(i), b->tile(i), kTileFloats * sizeof(float)) != 0)
-      differing.push_back(i);
+    if (!alike || std::memcmp(a.tile(i), b->tile(i), bytes) != 0) differing.push_back(i);
   }
   return differing;
 }
@@ -438,7 +504,7 @@ Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, Z
   if (!state) return Error{state.error()};
   auto impl = std::make_unique<Impl>(std::move(state->grid));
   impl->blank_mm3 = state->blank_mm3;
-  impl->kernel = pick_kernel(kernel);
+  impl->kernels = pick_kernels(kernel);
   impl->pool = std::make_shared<WorkerPool>(std::max(1, threads));
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }

@@ -47,6 +47,9 @@ class ZMap final : public StockModel {
                                        double tolerance_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
+  void keep_cut_ids(bool keep) override;
+  bool keeps_cut_ids() const override;
+  std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
   std::string name() const override { return "zmap"; }
   Box bounds_mm() const override;
   double cell_mm() const override;
@@ -65,6 +68,7 @@ class ZMap final : public StockModel {
   std::uint64_t patch_version(std::uint32_t tile) const override;
   /// How it is made: stock/zmap/tile_patch.h.
   MeshPatch patch(std::uint32_t tile, int level) const override;
+  std::shared_ptr<const HeightGrid> height_grid() const override;
 
   int nx() const;
   int ny() const;
@@ -74,8 +78,8 @@ class ZMap final : public StockModel {
   std::vector<float> heights_mm() const;
 
   /// Saves and loads the workpiece (kerf-state/1: text head, then tiles; format in
-  /// stock/zmap/state_file.h). Written to a temporary name and renamed. A damaged file is an error
-  /// that says where.
+  /// stock/zmap/state_file.h), without cut ids. Written to a temporary name and renamed. A damaged
+  /// file is an error that says where.
   Done save(const std::string& path) const;
   static Result<std::unique_ptr<ZMap>> load(const std::string& path, int threads = 1,
                                             ZMapKernel kernel = ZMapKernel::kAuto);

@@ -1,0 +1,16 @@
+// stock/zmap/height_view.h - the heights of a Z-map for whoever only looks at them.
+#pragma once
+
+#include <memory>
+
+#include "base/height_grid.h"
+#include "stock/zmap/tile_grid.h"
+
+namespace kerf {
+
+/// The heights as they are now. Shares the tiles of `grid`, as a copy of it would: later changes of
+/// `grid` go to copies of the tiles and are not seen here. Costs some nanoseconds a tile. May be
+/// read and dropped on another thread.
+std::shared_ptr<const HeightGrid> height_view(const TileGrid& grid);
+
+}  // namespace kerf
