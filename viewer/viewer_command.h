@@ -28,6 +28,11 @@ struct SeekLineCommand {
   std::string file;  ///< As in ProgramText; empty: the main program.
   int line = 1;
 };
+/// As fast as it can be cut to the next time that the line comes, showing what is passed.
+struct RunToLineCommand {
+  std::string file;
+  int line = 1;
+};
 struct SeekTimeCommand {
   double time_s = 0.0;
 };
@@ -65,9 +70,9 @@ struct CloseCommand {};  ///< The window was closed; the last command that comes
 
 using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
-                 SeekLineCommand, SeekTimeCommand, SeekEndCommand, NextToolCommand,
-                 NextFindingCommand, SeekFindingCommand, BreakpointCommand, DetailCommand,
-                 ColorCommand, PickCommand, CloseCommand>;
+                 SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
+                 NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
+                 DetailCommand, ColorCommand, PickCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -4,7 +4,8 @@
 //
 // Cuts an N x N map (default 2000) with a raster of bowls, walls, slots and circles. For each level
 // the time and size of all patches, their deviation from the heights (checked first), and what a
-// snapshot and a question for dirty tiles cost.
+// snapshot and a question for dirty tiles cost. Then the same where the map keeps which move cut
+// each cell.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,13 +49,14 @@ CutMove line(const Vec3& from, const Vec3& to) {
   return move;
 }
 
-std::unique_ptr<ZMap> make_part(int cells) {
+std::unique_ptr<ZMap> make_part(int cells, bool keep_cut_ids) {
   const double side = cells * kCell_mm;
   ZMapOptions options;
   options.blank = *parse_blank(fmt::format("box:0,0,-20:{},{},0", side, side));
   options.cell_mm = kCell_mm;
   Result<std::unique_ptr<ZMap>> map = ZMap::create(options);
   if (!map) fail(map.error());
+  (*map)->keep_cut_ids(keep_cut_ids);
   return std::move(*map);
 }
 
@@ -68,6 +70,7 @@ void cut_part(ZMap& map) {
     for (double x = 0.5; x < side; x += 0.5) {
       const Vec3 to(x, y, -2 + std::sin(0.3 * x) * std::cos(0.2 * y));
       moves.push_back(line(at, to));
+      moves.back().id = moves.size();
       at = to;
     }
   }
@@ -183,17 +186,19 @@ int run(int argc, char** argv) {
     else
       fail("--cells (at least 200) and --runs (at least 1) are all there is");
   }
-  const std::unique_ptr<ZMap> map = make_part(cells);
-  cut_part(*map);
-  fmt::print("{} x {} cells, {} tiles of {} x {}\n", map->nx(), map->ny(), map->tile_count(),
-             kTileCells, kTileCells);
-  const std::vector<double> off = deviations_mm(*map);
-  if (off.empty()) fail("no triangles");
-  fmt::print("  off the heights at cell centres: median {:.2g} mm, p99 {:.2g}, worst {:.2g}\n",
-             percentile(off, 0.5), percentile(off, 0.99), percentile(off, 1));
-  if (percentile(off, 0.99) > 0.5 * map->cell_mm()) fail("the patches are off");
-  time_patches(*map, runs);
-  time_sharing(*map, runs);
+  for (const bool keep_cut_ids : {false, true}) {
+    const std::unique_ptr<ZMap> map = make_part(cells, keep_cut_ids);
+    cut_part(*map);
+    fmt::print("{} x {} cells, {} tiles of {} x {}{}\n", map->nx(), map->ny(), map->tile_count(),
+               kTileCells, kTileCells, keep_cut_ids ? ", with cut ids" : "");
+    const std::vector<double> off = deviations_mm(*map);
+    if (off.empty()) fail("no triangles");
+    fmt::print("  off the heights at cell centres: median {:.2g} mm, p99 {:.2g}, worst {:.2g}\n",
+               percentile(off, 0.5), percentile(off, 0.99), percentile(off, 1));
+    if (percentile(off, 0.99) > 0.5 * map->cell_mm()) fail("the patches are off");
+    time_patches(*map, runs);
+    time_sharing(*map, runs);
+  }
   return 0;
 }
 

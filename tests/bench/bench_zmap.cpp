@@ -3,8 +3,8 @@
 //   bench_zmap [--program FILE.ngc|FILE.canon --stock SPEC --tool SHAPE] [--cell MM] [--runs N]
 //
 // Without a program: the generated workloads (workloads.h), run through rs274. For each: cutting
-// with one thread and with all, AVX2 and scalar kernel, CPU seconds and wall seconds as minimum and
-// median of N runs (default 5).
+// with one thread and with all, AVX2 and scalar kernel, with and without a note of which move cut
+// each cell; CPU seconds and wall seconds as minimum and median of N runs (default 5).
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
@@ -172,16 +172,21 @@ void time_job(const Job& job, double cell_mm, int runs) {
     const char* name;
     ZMapKernel kernel;
     int threads;
+    bool cut_ids;
   };
-  for (const Variant& v :
-       {Variant{"avx2", ZMapKernel::kAvx2, 1}, Variant{"avx2", ZMapKernel::kAvx2, all},
-        Variant{"scalar", ZMapKernel::kScalar, 1}}) {
+  for (const Variant& v : {Variant{"avx2", ZMapKernel::kAvx2, 1, false},
+                           {"avx2", ZMapKernel::kAvx2, 1, true},
+                           {"avx2", ZMapKernel::kAvx2, all, false},
+                           {"avx2", ZMapKernel::kAvx2, all, true},
+                           {"scalar", ZMapKernel::kScalar, 1, false},
+                           {"scalar", ZMapKernel::kScalar, 1, true}}) {
     if (v.kernel == ZMapKernel::kAvx2 && !zmap_has_avx2()) continue;
     std::vector<double> cpu, wall;
     std::size_t cells = 0;
     for (int run = 0; run < runs; ++run) {
       const std::unique_ptr<ZMap> map = make_map(job, cell_mm, v.threads, v.kernel);
       cells = map->cell_count();
+      map->keep_cut_ids(v.cut_ids);
       const double cpu0 = cpu_s(), wall0 = wall_s();
       cut(*map, *cutter, moves);
       cpu.push_back(cpu_s() - cpu0);
@@ -196,15 +201,16 @@ void time_job(const Job& job, double cell_mm, int runs) {
         if (error > 1e-4) fail("wrong heights");
         digest = map->digest();
       } else if (map->digest() != digest) {
-        fail("the result depends on the kernel or the threads");
+        fail("the result depends on the kernel, the threads or the ids");
       }
     }
     const double best = *std::min_element(cpu.begin(), cpu.end());
     fmt::print(
-        "  {:<6} {} thread{}  CPU {:.4f} s min, {:.4f} median   wall {:.4f} min, {:.4f} median   "
+        "  {:<26} CPU {:.4f} s min, {:.4f} median   wall {:.4f} min, {:.4f} median   "
         "{:.3g} moves/s CPU\n",
-        v.name, v.threads, v.threads == 1 ? " " : "s", best, median(cpu),
-        *std::min_element(wall.begin(), wall.end()), median(wall),
+        fmt::format("{}, {} thread{}{}", v.name, v.threads, v.threads == 1 ? "" : "s",
+                    v.cut_ids ? ", cut ids" : ""),
+        best, median(cpu), *std::min_element(wall.begin(), wall.end()), median(wall),
         static_cast<double>(moves.size()) / best);
   }
   rusage usage{};

@@ -3,85 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <random>
 
-#include "tests/viewer/test_scene.h"
-#include "viewer/gl_context.h"
+#include "tests/viewer/scene_fixture.h"
 
 namespace kerf {
 namespace {
-
-constexpr glm::ivec2 kSize_px{400, 300};
-
-struct Color {
-  int r, g, b;
-  bool operator==(const Color&) const = default;
-};
-
-Color at(const Picture& picture, glm::ivec2 px) {
-  const auto i = static_cast<std::size_t>(3 * (px.y * picture.width_px + px.x));
-  return {picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]};
-}
-
-int differing_pixels(const Picture& a, const Picture& b) {
-  int count = 0;
-  for (std::size_t i = 0; i + 2 < a.rgb.size(); i += 3) {
-    const bool same =
-        a.rgb[i] == b.rgb[i] && a.rgb[i + 1] == b.rgb[i + 1] && a.rgb[i + 2] == b.rgb[i + 2];
-    count += same ? 0 : 1;
-  }
-  return count;
-}
-
-SceneUpdate moment_update(const Vec3& tip_mm, std::uint64_t past_vertices) {
-  Moment moment;
-  moment.tool_pose = ToolPose{tip_mm};
-  moment.past_vertices = past_vertices;
-  SceneUpdate update;
-  update.moment = std::make_shared<const Moment>(std::move(moment));
-  return update;
-}
-
-class SceneRendererTest : public testing::Test {
- protected:
-  void SetUp() override {
-    unsetenv("DISPLAY");
-    Result<GlContext> context = GlContext::create_offscreen();
-    ASSERT_TRUE(context) << context.error();
-    context_.emplace(std::move(*context));
-    everything_.upload_bytes_per_frame = std::size_t{1} << 30;
-  }
-
-  SceneRenderer renderer() {
-    Result<SceneRenderer> made = SceneRenderer::create();
-    EXPECT_TRUE(made) << made.error();
-    return std::move(*made);
-  }
-
-  SceneUpdate first_update(TestWorkpiece* workpiece) {
-    SceneUpdate update;
-    update.setup = workpiece->setup();
-    update.patches = workpiece->take_patches();
-    update.path = path_chunks(test_path(workpiece->cells_x(), workpiece->cells_y()));
-    update.tool_shape = test_tool();
-    return update;
-  }
-
-  Projection view_of(const SceneRenderer& renderer) {
-    camera_.fit(renderer.fit_box(), kSize_px);
-    return camera_.projection(renderer.depth_box(), kSize_px);
-  }
-
-  void draw(SceneRenderer* renderer, const Projection& projection, const DrawOptions& options) {
-    const Done done = renderer->draw(projection, options);
-    ASSERT_TRUE(done) << done.error();
-  }
-
-  std::optional<GlContext> context_;
-  OrbitCamera camera_;
-  DrawOptions everything_;
-};
 
 /// Cuts at random places with a local and a full renderer side by side. Both must agree in every
 /// pixel of every frame, whatever is transparent and whatever moves besides.
@@ -192,7 +119,7 @@ TEST_F(SceneRendererTest, UploadsStayWithinTheBudget) {
   } while (scene.has_waiting() && frames < 100);
   EXPECT_GE(frames, 8);
   EXPECT_LE(frames, 20);
-  EXPECT_EQ(scene.counters().gpu_bytes, uploaded);
+  EXPECT_EQ(scene.counters().gpu_bytes, uploaded + layers_and_tool_bytes());
   // The end is the same as if all had come at once.
   SceneRenderer at_once = renderer();
   TestWorkpiece same(300, 300);
@@ -248,7 +175,9 @@ TEST_F(SceneRendererTest, EveryObjectCanBeHidden) {
       FindingList{{{Severity::kError, "", 1, 0.0, Vec3(150, 30, 0), "touches"}}});
   Moment moment;
   moment.tool_pose = ToolPose{Vec3(100, 80, 0)};
+  moment.link_poses = {glm::mat4(1.0f)};
   update.moment = std::make_shared<const Moment>(moment);
+  update.machine = box_machine({{{-40, -40, -60}, {0, 0, 20}}});
   std::vector<PathVertex> path{{{0, 0, 5}, PathKind::kFeed},
                                {{50, 0, 5}, PathKind::kFeed},
                                {{50, 50, 5}, PathKind::kTraverse},
@@ -291,7 +220,7 @@ TEST_F(SceneRendererTest, ClearsForgetTheWorkpiece) {
   scene.apply(clears);
   draw(&scene, projection, everything_);
   EXPECT_EQ(differing_pixels(scene.read(), empty.read()), 0);
-  EXPECT_EQ(scene.counters().gpu_bytes, 0u);
+  EXPECT_EQ(scene.counters().gpu_bytes, layers_and_tool_bytes());
 }
 
 TEST_F(SceneRendererTest, PicksAPointOfTheSurface) {

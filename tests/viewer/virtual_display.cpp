@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace kerf {
 namespace {
@@ -42,7 +44,7 @@ std::string find_program(const std::string& name) {
   return "";
 }
 
-Result<VirtualDisplay> VirtualDisplay::start() {
+Result<VirtualDisplay> VirtualDisplay::start(const std::vector<std::string>& options) {
   const std::string program = find_program("Xvfb");
   if (program.empty()) return Error{"Xvfb is not installed (Debian package xvfb)"};
   if (find_program("xdotool").empty()) {
@@ -51,11 +53,18 @@ Result<VirtualDisplay> VirtualDisplay::start() {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) return Error{"no pipe"};
   const std::string fd = std::to_string(ends[1]);
+  std::vector<std::string> words{"Xvfb",         "-displayfd", fd,    "-screen", "0",
+                                 "1600x1000x24", "-nolisten",  "tcp", "-noreset"};
+  words.insert(words.end(), options.begin(), options.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   const pid_t pid = fork();
   if (pid == 0) {
     close(ends[0]);
-    execl(program.c_str(), "Xvfb", "-displayfd", fd.c_str(), "-screen", "0", "1600x1000x24",
-          "-nolisten", "tcp", "-noreset", nullptr);
+    // A test that is killed takes its server with it.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    execv(program.c_str(), arguments.data());
     _exit(127);
   }
   close(ends[1]);
@@ -86,6 +95,13 @@ VirtualDisplay::~VirtualDisplay() {
   if (pid_ <= 0) return;
   kill(pid_, SIGTERM);
   waitpid(pid_, nullptr, 0);
+}
+
+void VirtualDisplay::kill_server() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  pid_ = 0;
 }
 
 bool xdotool(const std::string& arguments) {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 
@@ -13,12 +14,15 @@ namespace kerf {
 class VirtualDisplay {
  public:
   /// Error: which Debian package is missing, or what Xvfb said.
-  static Result<VirtualDisplay> start();
+  /// `options` are those of Xvfb.
+  static Result<VirtualDisplay> start(const std::vector<std::string>& options = {});
   VirtualDisplay(VirtualDisplay&& other) noexcept;
   VirtualDisplay& operator=(VirtualDisplay&& other) noexcept;
   ~VirtualDisplay();
 
   const std::string& name() const { return name_; }  ///< ":7"
+  /// Ends the server at once, as a crash would.
+  void kill_server();
 
  private:
   VirtualDisplay(pid_t pid, std::string name) : pid_(pid), name_(std::move(name)) {}

@@ -20,5 +20,11 @@ extern const char* const path_vert;  ///< Toolpath: colour by kind, past and fut
 extern const char* const path_frag;
 extern const char* const marker_vert;  ///< Outlines, axes, markers of findings.
 extern const char* const marker_frag;
+extern const char* const section_frag;    ///< The cut face of a section.
+extern const char* const glass_frag;      ///< The transparent workpiece over the rest.
+extern const char* const csg_solid_vert;  ///< Image-space CSG: faces lit flat.
+extern const char* const csg_solid_frag;
+extern const char* const csg_inside_frag;  ///< Marks what is left of a layer of the blank.
+extern const char* const csg_layer_frag;   ///< Lays the layers over each other.
 
 }  // namespace kerf::shaders

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "viewer/shaders/shaders.h"
+#include "viewer/window/screen_rect.h"
 
 namespace kerf {
 namespace {
@@ -24,6 +25,8 @@ constexpr Rgba kErrorColor{222, 32, 32, 255};
 constexpr Rgba kWarningColor{245, 158, 24, 255};
 constexpr Rgba kNoteColor{60, 130, 220, 255};
 constexpr float kMarker_px = 11.0f;
+/// As those of the path (path_store.cpp), and a little more: markers win over the path.
+constexpr double kNearer_px = 3.0;
 /// Length of the arrows of a frame that names none, as a share of the largest side of the blank.
 constexpr double kFrameShare = 0.22;
 constexpr double kFrameWithoutBlank_mm = 20.0;
@@ -113,13 +116,17 @@ void MarkerStore::set_findings(std::span<const SceneFinding> findings) {
   findings_.count = load(findings_.array.name(), findings_.vertices.name(), vertices);
 }
 
-void MarkerStore::draw(const Projection& projection, const Opacities& opacities) const {
+void MarkerStore::draw(const Projection& projection, const Opacities& opacities,
+                       bool may_smooth) const {
   program_.use();
   program_.set("clip_from_world", projection.clip_from_world);
+  program_.set("towards_eye", towards_eye(projection, kNearer_px));
   program_.set("size_px", kMarker_px);
   glEnable(GL_PROGRAM_POINT_SIZE);
+  if (may_smooth) glEnable(GL_LINE_SMOOTH);
   draw_batch(blank_, GL_LINES, opacities.blank);
   draw_batch(frames_, GL_LINES, opacities.frames);
+  glDisable(GL_LINE_SMOOTH);
   // Seen through the workpiece: what was found mostly lies on it or in it.
   glDisable(GL_DEPTH_TEST);
   draw_batch(findings_, GL_POINTS, opacities.findings);

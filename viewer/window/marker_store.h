@@ -24,7 +24,7 @@ class MarkerStore {
     float frames = 1.0f;
     float findings = 1.0f;
   };
-  void draw(const Projection& projection, const Opacities& opacities) const;
+  void draw(const Projection& projection, const Opacities& opacities, bool may_smooth) const;
 
  private:
   struct Batch {

@@ -23,6 +23,8 @@ constexpr double kNearestShare = 0.02;
 }  // namespace
 
 OrbitCamera::Axes OrbitCamera::axes() const {
+  if (flat_ == FlatView::kXy) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (flat_ == FlatView::kZx) return {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
   const double cy = std::cos(yaw_rad_), sy = std::sin(yaw_rad_);
   const double cp = std::cos(pitch_rad_), sp = std::sin(pitch_rad_);
   return {{-sy, cy, 0.0}, {-sp * cy, -sp * sy, cp}, {cp * cy, cp * sy, sp}};
@@ -44,6 +46,7 @@ Vec3 OrbitCamera::in_target_plane(glm::vec2 px, glm::ivec2 size_px) const {
 }
 
 void OrbitCamera::orbit(glm::vec2 drag_px, glm::ivec2 size_px) {
+  if (flat_ != FlatView::kNone) return;
   const double rad_per_px = kPi / std::max(1, size_px.y);
   yaw_rad_ = std::remainder(yaw_rad_ - static_cast<double>(drag_px.x) * rad_per_px, 2.0 * kPi);
   pitch_rad_ = std::clamp(pitch_rad_ + static_cast<double>(drag_px.y) * rad_per_px, -kMaxPitch_rad,
@@ -71,11 +74,12 @@ void OrbitCamera::fit(const Box& box, glm::ivec2 size_px) {
   const double aspect = static_cast<double>(std::max(1, size_px.x)) / std::max(1, size_px.y);
   double extent = 2.0 * std::max(reach(a.up), reach(a.right) / aspect);
   // What is nearer than the target appears larger.
-  if (is_perspective_) extent += 2.0 * reach(a.back) * std::tan(kFieldOfView_rad / 2);
+  if (is_perspective()) extent += 2.0 * reach(a.back) * std::tan(kFieldOfView_rad / 2);
   extent_mm_ = std::clamp(kFitMargin * extent, kMinExtent_mm, kMaxExtent_mm);
 }
 
 void OrbitCamera::look_from(StandardView view) {
+  if (flat_ != FlatView::kNone) return;
   constexpr double kQuarter = 0.5 * kPi;
   pitch_rad_ = 0.0;
   switch (view) {
@@ -124,7 +128,7 @@ Projection OrbitCamera::projection(const Box& content, glm::ivec2 size_px) const
   double far_mm = farthest + slack;
   const double aspect = static_cast<double>(std::max(1, size_px.x)) / std::max(1, size_px.y);
   glm::dmat4 clip(0.0);
-  if (is_perspective_) {
+  if (is_perspective()) {
     near_mm = std::max(near_mm, kNearestShare * distance_mm());
     far_mm = std::max(far_mm, 2.0 * near_mm);
     const double tan_y = std::tan(kFieldOfView_rad / 2);
@@ -148,6 +152,13 @@ Projection OrbitCamera::projection(const Box& content, glm::ivec2 size_px) const
   }
   view[3] = glm::dvec4(-glm::dot(a.right, eye), -glm::dot(a.up, eye), -glm::dot(a.back, eye), 1.0);
   return {glm::mat4(clip * view), glm::mat4(view), size_px};
+}
+
+std::optional<glm::vec2> picture_px(const Vec3& point_mm, const Projection& projection) {
+  const glm::vec4 clip = projection.clip_from_world * glm::vec4(glm::vec3(point_mm), 1.0f);
+  if (!(clip.w > 0.0f)) return std::nullopt;
+  const glm::vec2 ndc = glm::vec2(clip) / clip.w;
+  return glm::vec2(0.5f + 0.5f * ndc.x, 0.5f - 0.5f * ndc.y) * glm::vec2(projection.size_px);
 }
 
 }  // namespace kerf

@@ -4,12 +4,20 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "base/geometry.h"
 
 namespace kerf {
 
 enum class StandardView { kFront, kBack, kLeft, kRight, kTop, kBottom, kIsometric };
+
+/// A drawing instead of a space: orthographic, moved and zoomed but never turned.
+enum class FlatView {
+  kNone,
+  kXy,  ///< from above: sheet, drilling
+  kZx,  ///< for turning: Z to the right, X up
+};
 
 /// What the renderer needs of a camera. Equal projections draw equal pictures.
 struct Projection {
@@ -35,7 +43,11 @@ class OrbitCamera {
   void look_from(StandardView view);
 
   void set_perspective(bool is_perspective) { is_perspective_ = is_perspective; }
-  bool is_perspective() const { return is_perspective_; }
+  /// False in a flat view, whatever was set.
+  bool is_perspective() const { return is_perspective_ && flat_ == FlatView::kNone; }
+  /// While flat, orbit() and look_from() have no effect until kNone is set again.
+  void set_flat(FlatView flat) { flat_ = flat; }
+  FlatView flat() const { return flat_; }
 
   /// The depth range covers `content`, which must not be empty.
   Projection projection(const Box& content, glm::ivec2 size_px) const;
@@ -55,6 +67,10 @@ class OrbitCamera {
   double pitch_rad_ = 0.6346148;  // of the eye above the XY plane
   double extent_mm_ = 100.0;      // height of the picture in the target plane
   bool is_perspective_ = true;
+  FlatView flat_ = FlatView::kNone;
 };
+
+/// Where a point is in the picture, pixels from its upper left corner; none behind the eye.
+std::optional<glm::vec2> picture_px(const Vec3& point_mm, const Projection& projection);
 
 }  // namespace kerf

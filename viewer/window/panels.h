@@ -1,61 +1,121 @@
 // viewer/window/panels.h - what stands around the picture. For the sources of viewer/ only.
+//
+//     +---------+----------------------------+---------+
+//     | code    | toolbar                    | info    |
+//     |         +----------------------------+         |
+//     |         | the picture                |         |
+//     +---------+----------------------------+---------+
+//     | player bar                                     |
+//     +------------------------------------------------+
 #pragma once
 
 #include <chrono>
 #include <glm/vec2.hpp>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "viewer/scene.h"
 #include "viewer/viewer_command.h"
 #include "viewer/window/scene_renderer.h"
 #include "viewer/window/settings.h"
 #include "viewer/window/shortcuts.h"
+#include "viewer/window/theme.h"
 
 namespace kerf {
 
-/// The values shown now; never null.
+/// The values shown now; never null but `picked`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
   std::shared_ptr<const ProgramText> program = std::make_shared<ProgramText>();
   std::shared_ptr<const ProgramTimeline> timeline = std::make_shared<ProgramTimeline>();
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
+  std::shared_ptr<const PickedPoint> picked;
   std::chrono::steady_clock::time_point moment_came{};
 
   /// Age of the newest sample now, also when no news come any more.
   double source_age_s() const;
 };
 
+/// How far the program panel is scrolled. Lines count from 0 here.
+struct CodeScroll {
+  std::map<int, double> top_of_file;  ///< first line that is seen, in lines
+  float left_px = 0.0f;
+  bool follows = true;  ///< The running line is kept in sight.
+  int seen_file = -1;   ///< What it followed last.
+  int seen_line = -1;
+  int running_file = 0;  ///< Whose tab was brought to the front last.
+  int menu_line = 0;     ///< 1-based, of the context menu
+};
+
+/// Clicks on the workpiece.
+struct Inspection {
+  std::optional<Vec3> asked_mm;  ///< The last point that was clicked; a PickCommand went out.
+  bool measures = false;
+  std::vector<Vec3> ends_mm;    ///< none, one or both
+  bool comes_to_front = false;  ///< Its tab has to be shown.
+};
+
+/// What the panels remember while the window is open.
+struct PanelState {
+  std::string notice;  ///< Of the window itself, in the status line.
+  bool shows_help = false;
+  bool asks_for_line = false;
+  int asked_line = 1;
+  int first_line = 1;  ///< For ColorBy::kLineRange.
+  int last_line = 1;
+  CodeScroll code;
+  Inspection inspection;
+  double frames_per_s = 0.0;
+  std::optional<Action> action;  ///< Asked for by a button.
+};
+
 /// What the panels read and change.
 struct PanelContext {
   const ShownValues& shown;
   const DrawCounters& counters;
+  const std::vector<ColorLegendEntry>& legend;
+  Box bounds_mm;  ///< Of the workpiece; may be empty.
+  const Fonts& fonts;
+  float scale;  ///< Of everything: 1, 2
   ViewSettings* settings;
+  PanelState* state;
   CommandQueue* commands;
-  std::string* notice;  ///< Of the window itself, in the status line.
-  bool* shows_help;
-  bool* asks_for_line;
-  int* followed_line;  ///< To which the program panel was scrolled last.
-  int* followed_file;
-  int* running_file;  ///< Whose tab was brought to the front last.
-  float scale;        ///< Of the display: 1, 2
-  Action* action;     ///< Set when a button asks for one, else untouched.
-  bool* has_action;
+
+  const char* word(Text which) const { return text(which, settings->language); }
 };
 
 /// Pixels that the panels take from each side of the window.
 struct PanelRoom {
-  float left = 0, right = 0, bottom = 0;
+  float left = 0, right = 0, bottom = 0, top = 0;
 };
 /// Panels go where the picture would become too small.
 PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale);
 
 void draw_player_bar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
+void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_info_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_help(const PanelContext& context, glm::vec2 window_px);
 void draw_line_question(const PanelContext& context, glm::vec2 window_px);
+
+/// Parts of the info panel: objects, colours, section, drawing.
+void draw_view_tab(const PanelContext& context);
+/// The point that was clicked, and what was measured.
+void draw_point_tab(const PanelContext& context);
+/// Marks of clicked and measured points over the picture, whose upper left corner is at
+/// `corner_px`.
+void draw_inspection(const PanelContext& context, const Projection& projection,
+                     glm::vec2 corner_px);
+
+/// Asks the owner of the workpiece for the colours that are set.
+ColorCommand color_command(const ViewSettings& settings, const PanelState& state);
+
+/// The plane that hides part of the workpiece; none if it is off.
+std::optional<SectionPlane> section_plane(const SectionChoice& choice);
 
 /// "1:02:03", "2:03.4"
 std::string clock_text(double seconds);

@@ -1,8 +1,13 @@
 #include "viewer/window/patch_store.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
+
+#include "viewer/window/mesh_buffers.h"
+#include "viewer/window/patch_change.h"
 
 namespace kerf {
 namespace {
@@ -12,19 +17,13 @@ constexpr std::size_t kShortIndexVertices = 65536;
 
 std::size_t bytes_of(const MeshPatch& patch) {
   const std::size_t index_bytes = patch.vertices.size() < kShortIndexVertices ? 2 : 4;
-  return patch.vertices.size() * sizeof(MeshVertex) + patch.indices.size() * index_bytes;
-}
-
-bool same(const MeshVertex& a, const MeshVertex& b) {
-  return a.position_mm == b.position_mm && a.normal == b.normal;
+  return patch.vertices.size() * sizeof(MeshVertex) + patch.indices.size() * index_bytes +
+         patch.cut_by.size() * sizeof(std::uint32_t) + patch.deviation_mm.size() * sizeof(float);
 }
 
 bool same_content(const MeshPatch& a, const MeshPatch& b) {
-  return a.version == b.version && a.level == b.level;
-}
-
-void extend(Box* box, const MeshPatch& patch, std::size_t corner) {
-  box->extend(Vec3(patch.vertices[patch.indices[corner]].position_mm));
+  return a.version == b.version && a.level == b.level && a.cut_by.empty() == b.cut_by.empty() &&
+         a.deviation_mm.empty() == b.deviation_mm.empty();
 }
 
 Box box_of(const MeshPatch& patch) {
@@ -33,63 +32,80 @@ Box box_of(const MeshPatch& patch) {
   return box;
 }
 
-/// Same triangles between other vertices: those with a vertex that moved or turned.
-Box moved_box(const MeshPatch& before, const MeshPatch& after, std::size_t index_count) {
-  Box box;
-  const auto moved = [&](std::size_t corner) {
-    const std::uint32_t v = after.indices[corner];
-    return !same(before.vertices[v], after.vertices[v]);
-  };
-  for (std::size_t t = 0; t + 2 < index_count; t += 3) {
-    if (!moved(t) && !moved(t + 1) && !moved(t + 2)) continue;
-    for (std::size_t corner = t; corner < t + 3; ++corner) {
-      extend(&box, before, corner);
-      extend(&box, after, corner);
-    }
-  }
-  return box;
-}
-
-/// Other triangles: all but those that both lists begin and end with.
-Box exchanged_box(const MeshPatch& before, std::size_t before_end, const MeshPatch& after,
-                  std::size_t after_end) {
-  const auto same_triangle = [&](std::size_t a, std::size_t b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!same(before.vertices[before.indices[a + k]], after.vertices[after.indices[b + k]])) {
-        return false;
-      }
-    }
-    return true;
-  };
-  std::size_t first = 0;
-  while (first < std::min(before_end, after_end) && same_triangle(first, first)) first += 3;
-  while (std::min(before_end, after_end) > first && same_triangle(before_end - 3, after_end - 3)) {
-    before_end -= 3;
-    after_end -= 3;
-  }
-  Box box;
-  for (std::size_t corner = first; corner < before_end; ++corner) extend(&box, before, corner);
-  for (std::size_t corner = first; corner < after_end; ++corner) extend(&box, after, corner);
-  return box;
-}
-
 std::size_t index_count(const MeshPatch& patch, bool with_skirts) {
   return (with_skirts ? patch.indices.size() : patch.skirt_begin) / 3 * 3;
 }
 
-}  // namespace
-
-Box changed_box(const MeshPatch* before, const MeshPatch& after, bool with_skirts) {
-  if (!before) return box_of(after);
-  const std::size_t before_end = index_count(*before, with_skirts);
-  const std::size_t after_end = index_count(after, with_skirts);
-  const bool same_triangles = before->vertices.size() == after.vertices.size() &&
-                              before_end == after_end && before->indices == after.indices;
-  return same_triangles ? moved_box(*before, after, after_end)
-                        : exchanged_box(*before, before_end, after, after_end);
+/// The card takes a triangle's move from its last corner. A wall belongs to the move that cut what
+/// lies below it, so triangles are turned until their lowest corner comes last; of equally low ones
+/// that which was cut last.
+std::vector<std::uint32_t> turned_indices(const MeshPatch& patch) {
+  std::vector<std::uint32_t> turned = patch.indices;
+  const auto is_below = [&patch](std::uint32_t a, std::uint32_t b) {
+    const float za = patch.vertices[a].position_mm.z, zb = patch.vertices[b].position_mm.z;
+    if (za != zb) return za < zb;
+    // Plus one: kNotCut comes before all moves.
+    return patch.cut_by[a] + 1 > patch.cut_by[b] + 1;
+  };
+  for (std::size_t t = 0; t + 2 < turned.size(); t += 3) {
+    const auto corners = turned.begin() + static_cast<std::ptrdiff_t>(t);
+    const auto lowest = std::min_element(corners, corners + 3, is_below);
+    std::rotate(corners, lowest == corners + 2 ? corners : lowest + 1, corners + 3);
+  }
+  return turned;
 }
 
+/// For the vertex array bound now.
+void load_indices(GLuint buffer, const std::vector<std::uint32_t>& indices, bool is_short) {
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer);
+  if (is_short) {
+    const std::vector<std::uint16_t> shorts(indices.begin(), indices.end());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(shorts.size() * 2), shorts.data(),
+                 GL_DYNAMIC_DRAW);
+  } else {
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 4),
+                 indices.data(), GL_DYNAMIC_DRAW);
+  }
+}
+
+/// Values of vertices behind a buffer of their own, as integers or as floats; none: no buffer.
+template <class Value>
+void load_values(GLuint attribute, const std::vector<Value>& values,
+                 std::optional<GlBuffer>* buffer) {
+  if (values.empty()) {
+    glDisableVertexAttribArray(attribute);
+    buffer->reset();
+    return;
+  }
+  if (!*buffer) buffer->emplace();
+  glBindBuffer(GL_ARRAY_BUFFER, (*buffer)->name());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(Value)),
+               values.data(), GL_DYNAMIC_DRAW);
+  glEnableVertexAttribArray(attribute);
+  if constexpr (std::is_integral_v<Value>) {
+    glVertexAttribIPointer(attribute, 1, GL_UNSIGNED_INT, 0, nullptr);
+  } else {
+    glVertexAttribPointer(attribute, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+  }
+}
+
+bool has(const MeshPatch& patch, VertexData data) {
+  switch (data) {
+    case VertexData::kCutBy:
+      return !patch.cut_by.empty();
+    case VertexData::kDeviation:
+      return !patch.deviation_mm.empty();
+    case VertexData::kNone:
+      break;
+  }
+  return true;
+}
+
+}  // namespace
+
 void PatchStore::offer(std::shared_ptr<const MeshPatch> patch) {
+  assert(patch->cut_by.empty() || patch->cut_by.size() == patch->vertices.size());
+  assert(patch->deviation_mm.empty() || patch->deviation_mm.size() == patch->vertices.size());
   const auto known = tiles_.find(patch->tile);
   const bool is_known = known != tiles_.end() && same_content(*known->second.patch, *patch);
   const auto waiting = waiting_.find(patch->tile);
@@ -127,8 +143,12 @@ std::size_t PatchStore::upload(std::size_t budget_bytes, std::vector<Box>* chang
     const std::size_t size = bytes_of(*next->second);
     if (bytes > 0 && bytes + size > budget_bytes) break;
     Tile& tile = tiles_[next->first];
-    const Box changed = changed_box(tile.patch.get(), *next->second, draws_skirts());
-    if (!changed.empty()) changed_mm->push_back(changed);
+    // First what the tile covers on the screen; only if there is anything, which part of it.
+    const ScreenRect covered = covered_rect(box_of(*next->second), projection_);
+    if (!tile.rect.empty() || !covered.empty()) {
+      const Box changed = changed_box(tile.patch.get(), *next->second, draws_skirts());
+      if (!changed.empty()) changed_mm->push_back(changed);
+    }
     load(&tile, std::move(next->second));
     bytes += size;
     waiting_bytes_ -= size;
@@ -144,23 +164,18 @@ void PatchStore::load(Tile* tile, std::shared_ptr<const MeshPatch> patch) {
   glBufferData(GL_ARRAY_BUFFER,
                static_cast<GLsizeiptr>(patch->vertices.size() * sizeof(MeshVertex)),
                patch->vertices.data(), GL_DYNAMIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 4, GL_INT_2_10_10_10_REV, GL_TRUE, sizeof(MeshVertex),
-                        reinterpret_cast<const void*>(offsetof(MeshVertex, normal)));
+  point_to_mesh_vertices();
+  load_values(2, patch->cut_by, &tile->cut_by);
+  load_values(3, patch->deviation_mm, &tile->deviations);
   const bool is_short = patch->vertices.size() < kShortIndexVertices;
   const GLenum index_type = is_short ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-  const bool keeps_indices =
-      tile->patch && tile->index_type == index_type && tile->patch->indices == patch->indices;
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tile->indices.name());
-  if (!keeps_indices && is_short) {
-    const std::vector<std::uint16_t> shorts(patch->indices.begin(), patch->indices.end());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(shorts.size() * 2), shorts.data(),
-                 GL_DYNAMIC_DRAW);
+  const bool keeps_indices = tile->patch && tile->patch->cut_by.empty() && patch->cut_by.empty() &&
+                             tile->index_type == index_type &&
+                             tile->patch->indices == patch->indices;
+  if (!keeps_indices && patch->cut_by.empty()) {
+    load_indices(tile->indices.name(), patch->indices, is_short);
   } else if (!keeps_indices) {
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(patch->indices.size() * 4),
-                 patch->indices.data(), GL_DYNAMIC_DRAW);
+    load_indices(tile->indices.name(), turned_indices(*patch), is_short);
   }
   if (tile->patch && --tiles_by_level_[tile->patch->level] == 0) {
     tiles_by_level_.erase(tile->patch->level);
@@ -181,10 +196,10 @@ void PatchStore::project(const Projection& projection) {
   for (auto& [number, tile] : tiles_) tile.rect = covered_rect(tile.box_mm, projection);
 }
 
-std::size_t PatchStore::draw(const ScreenRect& rect) const {
+std::size_t PatchStore::draw(const ScreenRect& rect, VertexData data, bool having) const {
   std::size_t triangles = 0;
   for (const auto& [number, tile] : tiles_) {
-    if (!tile.rect.intersects(rect)) continue;
+    if (!tile.rect.intersects(rect) || has(*tile.patch, data) != having) continue;
     glBindVertexArray(tile.array.name());
     const std::size_t count = index_count(*tile.patch, draws_skirts());
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), tile.index_type, nullptr);

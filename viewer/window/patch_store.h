@@ -6,11 +6,13 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/mesh_patch.h"
 #include "viewer/gl_objects.h"
 #include "viewer/window/screen_rect.h"
+#include "viewer/window/surface_colors.h"
 
 namespace kerf {
 
@@ -30,8 +32,9 @@ class PatchStore {
 
   /// Where each tile lies on the screen; once per new camera.
   void project(const Projection& projection);
-  /// Draws the tiles that touch the rectangle, with the program in use now. Returns the triangles.
-  std::size_t draw(const ScreenRect& rect) const;
+  /// Draws the tiles that touch the rectangle, with the program in use now: those whose patches
+  /// have the data, or those that do not. Returns the triangles.
+  std::size_t draw(const ScreenRect& rect, VertexData data, bool having) const;
 
   /// Tiles of several levels meet: their skirts are drawn too. When this changes, so may any pixel.
   bool draws_skirts() const { return tiles_by_level_.size() > 1; }
@@ -46,6 +49,8 @@ class PatchStore {
     GlVertexArray array;
     GlBuffer vertices;
     GlBuffer indices;
+    std::optional<GlBuffer> cut_by;
+    std::optional<GlBuffer> deviations;
     std::size_t gpu_bytes = 0;
     GLenum index_type = GL_UNSIGNED_INT;
     Box box_mm;
@@ -63,8 +68,5 @@ class PatchStore {
   Box bounds_mm_;
   Projection projection_;
 };
-
-/// Box of all triangles that only one of the patches has. `before` may be null.
-Box changed_box(const MeshPatch* before, const MeshPatch& after, bool with_skirts);
 
 }  // namespace kerf

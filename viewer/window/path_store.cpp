@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <glm/geometric.hpp>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,11 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kMaxStride = kPathChunkSegments;
+/// A drawn segment is about this long, where the path has more vertices.
+constexpr double kSegment_px = 1.0;
+/// Lines are drawn this many pixels nearer to the eye than they are, so that those that lie in a
+/// surface are seen on it: enough for surfaces that are turned away by up to 70 degrees.
+constexpr double kNearer_px = 2.5;
 
 void point_to_vertices(std::size_t first, std::size_t stride) {
   const auto bytes = static_cast<GLsizei>(stride * sizeof(PathVertex));
@@ -35,7 +41,6 @@ void PathStore::set_chunk_count(std::uint32_t count) {
     const Chunk& last = chunks_.back();
     if (last.values) {
       dropped_mm_.extend(last.box_mm);
-      vertex_count_ -= last.values->vertices.size();
       gpu_bytes_ -= last.values->vertices.size() * sizeof(PathVertex);
     }
     chunks_.pop_back();
@@ -57,14 +62,37 @@ void PathStore::clear() {
   past_vertices_ = 0;
 }
 
-std::size_t PathStore::stride() const {
-  std::size_t stride = 1;
-  while (stride < kMaxStride && vertex_count_ / stride > kDrawnVertices) stride *= 2;
-  return stride;
+void PathStore::choose_strides(std::vector<Box>* changed_mm) {
+  std::vector<std::size_t> strides(chunks_.size(), 1);
+  std::size_t drawn = 0;
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    if (!chunk.values) continue;
+    const std::size_t count = chunk.values->vertices.size();
+    const double segment_mm = chunk.length_mm / static_cast<double>(count);
+    while (strides[c] < kMaxStride &&
+           2.0 * static_cast<double>(strides[c]) * segment_mm <= kSegment_px * chunk.pixel_mm) {
+      strides[c] *= 2;
+    }
+    drawn += count / strides[c] + 1;
+  }
+  std::size_t thinning = 1;
+  while (thinning < kMaxStride && drawn / thinning > kDrawnVertices) thinning *= 2;
+  const bool is_smooth = drawn / thinning <= kSmoothVertices;
+  largest_stride_ = 1;
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    const std::size_t stride = std::min(thinning * strides[c], kMaxStride);
+    largest_stride_ = std::max(largest_stride_, stride);
+    if (stride == chunks_[c].stride && is_smooth == is_smooth_) continue;
+    chunks_[c].stride = stride;
+    if (!chunks_[c].box_mm.empty()) changed_mm->push_back(chunks_[c].box_mm);
+  }
+  is_smooth_ = is_smooth;
 }
 
 std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* changed_mm) {
-  if (!dropped_mm_.empty()) changed_mm->push_back(std::exchange(dropped_mm_, Box{}));
+  const bool has_dropped = !dropped_mm_.empty();
+  if (has_dropped) changed_mm->push_back(std::exchange(dropped_mm_, Box{}));
   std::size_t bytes = 0;
   while (!waiting_.empty()) {
     const std::size_t size = waiting_.front()->vertices.size() * sizeof(PathVertex);
@@ -78,10 +106,7 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
     if (!chunk.box_mm.empty()) changed_mm->push_back(chunk.box_mm);
     bytes += size;
   }
-  if (const std::size_t now = stride(); now != drawn_stride_) {
-    drawn_stride_ = now;
-    for (const Chunk& chunk : chunks_) changed_mm->push_back(chunk.box_mm);
-  }
+  if (bytes > 0 || has_dropped) choose_strides(changed_mm);
   return bytes;
 }
 
@@ -94,12 +119,19 @@ void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
   const std::size_t before = chunk->values ? chunk->values->vertices.size() : 0;
-  vertex_count_ += values->vertices.size() - before;
   gpu_bytes_ += (values->vertices.size() - before) * sizeof(PathVertex);
   chunk->box_mm = {};
-  for (const PathVertex& vertex : values->vertices) chunk->box_mm.extend(Vec3(vertex.position_mm));
-  chunk->rect = covered_rect(chunk->box_mm, projection_);
+  chunk->length_mm = 0.0;
+  const std::vector<PathVertex>& vertices = values->vertices;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    chunk->box_mm.extend(Vec3(vertices[i].position_mm));
+    if (i > 0) {
+      const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
+      chunk->length_mm += static_cast<double>(glm::length(step));
+    }
+  }
   chunk->values = std::move(values);
+  project(chunk);
 }
 
 void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
@@ -108,7 +140,7 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
   past_vertices_ = vertices;
   if (low == high) return;
   // Segments are drawn from one multiple of the stride to the next.
-  const std::uint64_t margin = drawn_stride_;
+  const std::uint64_t margin = largest_stride_;
   const std::uint64_t first = low > margin ? low - margin - 1 : 0;
   const std::uint64_t last = high + margin;
   Box box;
@@ -130,14 +162,32 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
   if (!box.empty()) changed_mm->push_back(box);
 }
 
-void PathStore::project(const Projection& projection) {
-  projection_ = projection;
-  for (Chunk& chunk : chunks_) chunk.rect = covered_rect(chunk.box_mm, projection);
+void PathStore::project(Chunk* chunk) const {
+  chunk->rect = covered_rect(chunk->box_mm, projection_);
+  chunk->pixel_mm = smallest_pixel_mm(chunk->box_mm, projection_);
 }
 
-void PathStore::draw(const ScreenRect& rect, const PathColors& colors) const {
+void PathStore::project(const Projection& projection) {
+  projection_ = projection;
+  for (Chunk& chunk : chunks_) project(&chunk);
+  std::vector<Box> all;  // A new projection changes the whole picture anyway.
+  choose_strides(&all);
+}
+
+void PathStore::draw_strip(const Chunk& chunk, std::size_t first, std::size_t stride,
+                           std::size_t vertices) const {
+  if (vertices < 2) return;
+  point_to_vertices(first, stride);
+  const std::size_t chunk_begin = chunk.values->index * kPathChunkSegments;
+  program_.set("first_vertex", static_cast<int>(chunk_begin + first));
+  program_.set("stride", static_cast<int>(stride));
+  glDrawArrays(GL_LINE_STRIP, 0, static_cast<GLsizei>(vertices));
+}
+
+void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const {
   program_.use();
   program_.set("clip_from_world", projection_.clip_from_world);
+  program_.set("towards_eye", towards_eye(projection_, kNearer_px));
   // Past what an int holds everything is past.
   program_.set("past_vertices",
                static_cast<int>(std::min<std::uint64_t>(past_vertices_, 1u << 30)));
@@ -146,27 +196,17 @@ void PathStore::draw(const ScreenRect& rect, const PathColors& colors) const {
     program_.set((at + "]").c_str(), colors.past[kind]);
     program_.set(("rgba[" + std::to_string(2 * kind + 1) + "]").c_str(), colors.future[kind]);
   }
+  if (may_smooth && is_smooth_) glEnable(GL_LINE_SMOOTH);
   for (const Chunk& chunk : chunks_) {
     if (!chunk.values || !chunk.rect.intersects(rect)) continue;
     const std::size_t count = chunk.values->vertices.size();
-    const std::size_t coarse = (count - 1) / drawn_stride_;  // segments
-    const std::size_t rest_first = coarse * drawn_stride_;
-    const auto first_vertex = static_cast<int>(chunk.values->index * kPathChunkSegments);
+    const std::size_t coarse = (count - 1) / chunk.stride;  // segments
     glBindVertexArray(chunk.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, chunk.vertices.name());
-    if (coarse > 0) {
-      point_to_vertices(0, drawn_stride_);
-      program_.set("first_vertex", first_vertex);
-      program_.set("stride", static_cast<int>(drawn_stride_));
-      glDrawArrays(GL_LINE_STRIP, 0, static_cast<GLsizei>(coarse + 1));
-    }
-    if (rest_first + 1 < count) {
-      point_to_vertices(rest_first, 1);
-      program_.set("first_vertex", first_vertex + static_cast<int>(rest_first));
-      program_.set("stride", 1);
-      glDrawArrays(GL_LINE_STRIP, 0, static_cast<GLsizei>(count - rest_first));
-    }
+    draw_strip(chunk, 0, chunk.stride, coarse + 1);
+    draw_strip(chunk, coarse * chunk.stride, 1, count - coarse * chunk.stride);
   }
+  glDisable(GL_LINE_SMOOTH);
 }
 
 }  // namespace kerf

@@ -21,11 +21,13 @@ struct PathColors {
   bool operator==(const PathColors&) const = default;
 };
 
-/// A path of more than kDrawnVertices vertices is drawn through every 2nd, 4th, ... of them: ten
-/// million lines are more than pixels.
+/// A chunk whose segments are shorter than a pixel on average is drawn through every 2nd, 4th, ...
+/// of its vertices; all chunks are, further, while more than kDrawnVertices remain: ten million
+/// lines are more than there are pixels. Lines are antialiased up to kSmoothVertices.
 class PathStore {
  public:
-  static constexpr std::size_t kDrawnVertices = 1'000'000;
+  static constexpr std::size_t kDrawnVertices = 250'000;
+  static constexpr std::size_t kSmoothVertices = 60'000;
 
   static Result<PathStore> create();
 
@@ -42,7 +44,8 @@ class PathStore {
   void set_past(std::uint64_t vertices, std::vector<Box>* changed_mm);
 
   void project(const Projection& projection);
-  void draw(const ScreenRect& rect, const PathColors& colors) const;
+  /// `may_smooth`: lines may be antialiased. Their faint rims have a depth as well.
+  void draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const;
 
   std::size_t gpu_bytes() const { return gpu_bytes_; }
 
@@ -53,18 +56,25 @@ class PathStore {
     GlBuffer vertices;
     Box box_mm;
     ScreenRect rect;
+    double length_mm = 0.0;
+    double pixel_mm = 0.0;   // edge of a pixel at the point of the box that is nearest to the eye
+    std::size_t stride = 1;  // from one drawn vertex to the next
   };
 
   explicit PathStore(GlProgram program) : program_(std::move(program)) {}
   void load(Chunk* chunk, std::shared_ptr<const PathChunk> values);
-  std::size_t stride() const;
+  void project(Chunk* chunk) const;
+  /// Appends the boxes of chunks that are drawn through other vertices than before.
+  void choose_strides(std::vector<Box>* changed_mm);
+  void draw_strip(const Chunk& chunk, std::size_t first, std::size_t stride,
+                  std::size_t vertices) const;
 
   GlProgram program_;
   std::vector<Chunk> chunks_;
   std::deque<std::shared_ptr<const PathChunk>> waiting_;
   std::uint64_t past_vertices_ = 0;
-  std::size_t vertex_count_ = 0;
-  std::size_t drawn_stride_ = 1;
+  std::size_t largest_stride_ = 1;
+  bool is_smooth_ = true;
   std::size_t gpu_bytes_ = 0;
   Box dropped_mm_;
   Projection projection_;

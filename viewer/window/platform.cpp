@@ -3,8 +3,10 @@
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <mutex>
 #include <string>
@@ -32,6 +34,44 @@ std::string display_name() {
   return "";
 }
 
+/// Set when Xlib finds that the server is gone. It ends the program then unless it is told not to.
+std::atomic<bool> display_is_lost = false;
+
+/// Keeps Xlib from ending the program. Looked up by name, as GLFW has loaded Xlib already: no other
+/// part of the window knows which window system it has. Without XSetIOErrorExitHandler (libX11
+/// before 1.7) it stays as it was.
+void survive_lost_display() {
+  struct _XDisplay;  // as Xlib calls it
+  using ErrorHandler = int (*)(_XDisplay*);
+  using ExitHandler = void (*)(_XDisplay*, void*);
+  const auto set_handler =
+      reinterpret_cast<ErrorHandler (*)(ErrorHandler)>(dlsym(RTLD_DEFAULT, "XSetIOErrorHandler"));
+  const auto set_exit = reinterpret_cast<void (*)(_XDisplay*, ExitHandler, void*)>(
+      dlsym(RTLD_DEFAULT, "XSetIOErrorExitHandler"));
+  const auto get_display =
+      reinterpret_cast<_XDisplay* (*)()>(dlsym(RTLD_DEFAULT, "glfwGetX11Display"));
+  if (set_handler == nullptr || set_exit == nullptr || get_display == nullptr) return;
+  _XDisplay* display = get_display();
+  if (display == nullptr) return;
+  set_handler([](_XDisplay*) {
+    display_is_lost = true;
+    return 0;
+  });
+  set_exit(
+      display, [](_XDisplay*, void*) { display_is_lost = true; }, nullptr);
+}
+
+const char* reset_reason(GLenum status) {
+  switch (status) {
+    case GL_GUILTY_CONTEXT_RESET:
+      return "by what kerf drew";
+    case GL_INNOCENT_CONTEXT_RESET:
+      return "by another program";
+    default:
+      return "for a reason that it does not tell";
+  }
+}
+
 /// Version and renderer of the OpenGL that a window gets without asking for one.
 std::string found_gl() {
   glfwDefaultWindowHints();
@@ -56,7 +96,7 @@ Platform::~Platform() {
     const std::lock_guard lock(wake_mutex);
     can_wake = false;
   }
-  glfwTerminate();
+  if (!display_is_lost) glfwTerminate();
 }
 
 Done Platform::start() {
@@ -72,6 +112,7 @@ Done Platform::start() {
                              complaint(), kWithout)};
   }
   is_started_ = true;
+  survive_lost_display();
   const std::lock_guard lock(wake_mutex);
   can_wake = true;
   return std::monostate{};
@@ -83,6 +124,8 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  // To hear of a reset, which would otherwise freeze the picture without a word.
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the scene has framebuffers of its own
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
@@ -101,6 +144,28 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   }
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
   return window;
+}
+
+bool Platform::is_lost() { return display_is_lost; }
+
+Done Platform::check() const {
+  if (display_is_lost) {
+    return Error{
+        fmt::format("the window is gone: the connection to the display {} broke", display_name())};
+  }
+  if (glfwGetCurrentContext() == nullptr) {
+    return Error{fmt::format("the window is gone: its OpenGL context is lost ({})", complaint())};
+  }
+  static const bool can_tell = epoxy_gl_version() >= 45 ||
+                               epoxy_has_gl_extension("GL_KHR_robustness") ||
+                               epoxy_has_gl_extension("GL_ARB_robustness");
+  if (!can_tell) return std::monostate{};
+  const GLenum status = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness")
+                            ? glGetGraphicsResetStatus()
+                            : glGetGraphicsResetStatusARB();
+  if (status == GL_NO_ERROR) return std::monostate{};
+  return Error{fmt::format("the window is gone: the graphics card was reset {}; start kerf again",
+                           reset_reason(status))};
 }
 
 void Platform::wake() {

@@ -24,6 +24,12 @@ class Platform {
   /// that is needed.
   Result<GLFWwindow*> open_window(int width_px, int height_px, const char* title);
 
+  /// Error: the connection to the display broke, or the graphics card was reset and lost what was
+  /// drawn. Nothing can be drawn any more then.
+  Done check() const;
+  /// The connection to the display broke: GLFW must not be called any more.
+  static bool is_lost();
+
   /// Ends the waiting for events. From any thread, at any time.
   static void wake();
 

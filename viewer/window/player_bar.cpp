@@ -5,159 +5,242 @@
 #include <array>
 #include <cmath>
 
+#include "viewer/window/icons.h"
 #include "viewer/window/panels.h"
 
 namespace kerf {
 namespace {
 
-constexpr float kBarHeight_px = 76.0f;
+constexpr float kBarHeight_px = 84.0f;
+constexpr float kToolbarHeight_px = 36.0f;
 constexpr float kTrackHeight_px = 20.0f;
-constexpr ImU32 kTrack = IM_COL32(60, 66, 76, 255);
-constexpr ImU32 kPastTrack = IM_COL32(70, 120, 185, 255);
-constexpr ImU32 kToolMark = IM_COL32(235, 200, 90, 255);
-constexpr ImU32 kErrorMark = IM_COL32(235, 70, 60, 255);
-constexpr ImU32 kWarningMark = IM_COL32(250, 165, 40, 255);
-constexpr ImU32 kNoteMark = IM_COL32(120, 180, 240, 255);
-constexpr ImU32 kHead = IM_COL32(255, 255, 255, 255);
 
-ImU32 mark_color(Severity severity) {
-  switch (severity) {
-    case Severity::kError:
-      return kErrorMark;
-    case Severity::kWarning:
-      return kWarningMark;
-    case Severity::kNote:
-      break;
-  }
-  return kNoteMark;
-}
-
-const char* words(PlayState state, Language language) {
-  switch (state) {
+const char* words(const PanelContext& context) {
+  switch (context.shown.moment->state) {
     case PlayState::kPaused:
-      return text(Text::kPaused, language);
+      return context.word(Text::kPaused);
     case PlayState::kPlaying:
-      return text(Text::kPlaying, language);
+      return context.word(Text::kPlaying);
     case PlayState::kHurrying:
-      return text(Text::kHurrying, language);
+      return context.word(Text::kHurrying);
     case PlayState::kFollowing:
-      return text(Text::kFollowing, language);
+      return context.word(Text::kFollowing);
     case PlayState::kEnded:
       break;
   }
-  return text(Text::kEnded, language);
+  return context.word(Text::kEnded);
 }
 
 bool is_playing(PlayState state) {
   return state == PlayState::kPlaying || state == PlayState::kHurrying;
 }
 
-/// A button that asks for an action of the shortcut table; its key is in the tooltip.
-void action_button(const PanelContext& context, const char* face, Action action, Text tip) {
-  if (ImGui::Button(face)) {
-    *context.action = action;
-    *context.has_action = true;
+/// What the button does, and the key that does the same.
+void tip(const PanelContext& context, Action action, Text what) {
+  if (!ImGui::IsItemHovered()) return;
+  for (const Shortcut& shortcut : shortcuts()) {
+    if (shortcut.action != action) continue;
+    ImGui::SetTooltip("%s  [%s]", context.word(what), shortcut.label);
   }
-  if (ImGui::IsItemHovered()) {
-    for (const Shortcut& shortcut : shortcuts()) {
-      if (shortcut.action != action) continue;
-      ImGui::SetTooltip("%s  [%s]", text(tip, context.settings->language), shortcut.label);
-    }
-  }
-  ImGui::SameLine();
 }
 
-/// Tools and findings above the track, each by a line at its time.
+struct PlayerButton {
+  Icon icon;
+  Action action;
+  Text text;
+  bool begins_group;
+};
+constexpr std::array kButtons{
+    PlayerButton{Icon::kToStart, Action::kToStart, Text::kToStart, false},
+    PlayerButton{Icon::kStepBack, Action::kStepBack, Text::kStepBack, false},
+    PlayerButton{Icon::kPlay, Action::kPlayPause, Text::kPlay, false},
+    PlayerButton{Icon::kStop, Action::kStop, Text::kStop, false},
+    PlayerButton{Icon::kStepForward, Action::kStepForward, Text::kStepForward, false},
+    PlayerButton{Icon::kToEnd, Action::kToEnd, Text::kToEnd, false},
+    PlayerButton{Icon::kPreviousTool, Action::kPreviousTool, Text::kPreviousTool, true},
+    PlayerButton{Icon::kNextTool, Action::kNextTool, Text::kNextTool, false},
+    PlayerButton{Icon::kPreviousFinding, Action::kPreviousFinding, Text::kPreviousFinding, true},
+    PlayerButton{Icon::kNextFinding, Action::kNextFinding, Text::kNextFinding, false},
+};
+
+void draw_buttons(const PanelContext& context) {
+  const bool playing = is_playing(context.shown.moment->state);
+  for (const PlayerButton& button : kButtons) {
+    const bool is_play = button.action == Action::kPlayPause;
+    if (&button != &kButtons.front()) {
+      ImGui::SameLine(0.0f, (button.begins_group ? 12.0f : 3.0f) * context.scale);
+    }
+    ImGui::PushID(static_cast<int>(button.action));
+    if (icon_button("player", is_play && playing ? Icon::kPause : button.icon)) {
+      context.state->action = button.action;
+    }
+    tip(context, button.action, is_play && playing ? Text::kPause : button.text);
+    ImGui::PopID();
+  }
+}
+
+/// Tools above and findings below, each a line at its time.
 void draw_marks(const PanelContext& context, ImVec2 low, ImVec2 high, double duration_s) {
   ImDrawList* list = ImGui::GetWindowDrawList();
+  const float width = std::max(1.0f, std::round(2.0f * context.scale));
   const auto x_of = [&](double time_s) {
     const double share = std::clamp(time_s / duration_s, 0.0, 1.0);
-    return low.x + static_cast<float>(share) * (high.x - low.x);
+    return std::round(low.x + static_cast<float>(share) * (high.x - low.x - width));
   };
-  const float middle = 0.5f * (low.y + high.y);
+  const float middle = std::round(0.5f * (low.y + high.y));
   for (const ToolMark& mark : context.shown.timeline->tools) {
     const float x = x_of(mark.time_s);
-    list->AddLine({x, low.y}, {x, middle}, kToolMark, 2.0f);
+    list->AddRectFilled({x, low.y}, {x + width, middle}, theme::kToolMark);
   }
   // Findings that fall on the same pixel are drawn once: there may be thousands.
   float last_x = -1.0f;
   for (const SceneFinding& finding : context.shown.findings->findings) {
-    const float x = std::round(x_of(finding.time_s));
+    const float x = x_of(finding.time_s);
     if (x == last_x) continue;
     last_x = x;
-    list->AddLine({x, middle}, {x, high.y}, mark_color(finding.severity), 2.0f);
+    list->AddRectFilled({x, middle}, {x + width, high.y},
+                        ImGui::GetColorU32(theme::of(finding.severity)));
   }
 }
 
+/// The time, and the marks near the mouse.
+void draw_time_tip(const PanelContext& context, double time_s, double near_s) {
+  std::string tip = clock_text(time_s);
+  for (const ToolMark& mark : context.shown.timeline->tools) {
+    if (std::abs(mark.time_s - time_s) > near_s) continue;
+    tip += fmt::format("\nT{} {}", mark.tool, mark.name);
+  }
+  int shown = 0;
+  constexpr int kMostFindings = 4;
+  for (const SceneFinding& finding : context.shown.findings->findings) {
+    if (std::abs(finding.time_s - time_s) > near_s || ++shown > kMostFindings) continue;
+    tip += fmt::format("\n{}: {}", finding.line, finding.text);
+  }
+  ImGui::SetTooltip("%s", tip.c_str());
+}
+
 void draw_time_slider(const PanelContext& context) {
+  constexpr float kNear_px = 4.0f;
   const double duration_s = context.shown.timeline->duration_s;
-  const float height = kTrackHeight_px * context.scale;
+  const float height = std::round(kTrackHeight_px * context.scale);
   const float width = std::max(20.0f, ImGui::GetContentRegionAvail().x);
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const ImVec2 high(low.x + width, low.y + height);
   ImGui::InvisibleButton("time", {width, height});
   ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(low, high, kTrack, 3.0f);
+  const float inset = std::round(3.0f * context.scale);
+  list->AddRectFilled({low.x, low.y + inset}, {high.x, high.y - inset}, theme::kTrack, inset);
   if (!(duration_s > 0.0)) return;  // a machine is watched: there is nothing to seek in
   const double shown = std::clamp(context.shown.moment->time_s / duration_s, 0.0, 1.0);
-  const float head_x = low.x + static_cast<float>(shown) * width;
-  list->AddRectFilled(low, {head_x, high.y}, kPastTrack, 3.0f);
+  const float head_x = std::round(low.x + static_cast<float>(shown) * width);
+  list->AddRectFilled({low.x, low.y + inset}, {head_x, high.y - inset}, theme::kAccent, inset);
   draw_marks(context, low, high, duration_s);
-  list->AddRectFilled({head_x - 2.0f, low.y}, {head_x + 2.0f, high.y}, kHead);
+  const float half = std::round(2.0f * context.scale);
+  list->AddRectFilled({head_x - half, low.y}, {head_x + half, high.y}, theme::kHead, 1.0f);
+  const ImGuiIO& io = ImGui::GetIO();
   const double under_mouse =
-      std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - low.x) / width), 0.0, 1.0) *
-      duration_s;
-  if (ImGui::IsItemActive() && (ImGui::IsItemActivated() || ImGui::GetIO().MouseDelta.x != 0.0f)) {
+      std::clamp(static_cast<double>((io.MousePos.x - low.x) / width), 0.0, 1.0) * duration_s;
+  if (ImGui::IsItemActive() && (ImGui::IsItemActivated() || io.MouseDelta.x != 0.0f)) {
     context.commands->push(SeekTimeCommand{under_mouse});
   }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", clock_text(under_mouse).c_str());
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    draw_time_tip(context, under_mouse, static_cast<double>(kNear_px / width) * duration_s);
+  }
 }
 
 void draw_speed(const PanelContext& context) {
-  auto speed = static_cast<float>(context.shown.moment->speed);
-  ImGui::SetNextItemWidth(150.0f * context.scale);
-  if (ImGui::SliderFloat(text(Text::kSpeed, context.settings->language), &speed,
-                         static_cast<float>(kMinSpeed), static_cast<float>(kMaxSpeed), "%.1f x",
+  const double shown = context.shown.moment->speed;
+  const bool is_max = !std::isfinite(shown);
+  auto speed = static_cast<float>(is_max ? kMaxSpeed : shown);
+  ImGui::SameLine(0.0f, 14.0f * context.scale);
+  ImGui::SetNextItemWidth(130.0f * context.scale);
+  const char* format = is_max ? "-" : speed < 10.0f ? "%.1f x" : "%.0f x";
+  if (ImGui::SliderFloat("##speed", &speed, static_cast<float>(kMinSpeed),
+                         static_cast<float>(kMaxSpeed), format,
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     context.commands->push(SpeedCommand{static_cast<double>(speed)});
   }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s  [-] [+]", context.word(Text::kSpeed));
+  ImGui::SameLine(0.0f, 3.0f * context.scale);
+  if (is_max) {
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::ColorConvertU32ToFloat4(theme::kAccent));
+  }
+  if (ImGui::Button(fmt::format("{}###max", context.word(Text::kFullSpeed)).c_str())) {
+    context.state->action = Action::kFullSpeed;
+  }
+  if (is_max) ImGui::PopStyleColor();
+  tip(context, Action::kFullSpeed, Text::kFullSpeedWhat);
 }
 
-void draw_buttons(const PanelContext& context) {
-  const Moment& moment = *context.shown.moment;
-  if (moment.state != PlayState::kFollowing) {
-    action_button(context, "|<", Action::kStop, Text::kStop);
-    action_button(context, "< F", Action::kPreviousFinding, Text::kPreviousFinding);
-    action_button(context, "< T", Action::kPreviousTool, Text::kPreviousTool);
-    action_button(context, "<", Action::kStepBack, Text::kStepBack);
-    const bool playing = is_playing(moment.state);
-    action_button(context, playing ? " || ##play" : " > ##play", Action::kPlayPause,
-                  playing ? Text::kPause : Text::kPlay);
-    action_button(context, ">##step", Action::kStepForward, Text::kStepForward);
-    action_button(context, "T >", Action::kNextTool, Text::kNextTool);
-    action_button(context, "F >", Action::kNextFinding, Text::kNextFinding);
-    action_button(context, ">|", Action::kToEnd, Text::kToEnd);
-    draw_speed(context);
-    ImGui::SameLine();
+void draw_go_to(const PanelContext& context) {
+  ImGui::SameLine(0.0f, 12.0f * context.scale);
+  const std::string label =
+      fmt::format("{} {}", context.word(Text::kLine), context.shown.moment->line);
+  // Of fixed width: what stands to its right must not move while it plays.
+  if (ImGui::Button(fmt::format("{}###line", label).c_str(), {112.0f * context.scale, 0.0f})) {
+    context.state->action = Action::kGoToLine;
   }
-  action_button(context, "?", Action::kHelp, Text::kShortcuts);
+  tip(context, Action::kGoToLine, Text::kGoToLine);
+}
+
+void draw_times(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  const double duration_s = context.shown.timeline->duration_s;
+  std::string times = clock_text(moment.time_s);
+  if (duration_s > 0.0) {
+    times += fmt::format("   -{}", clock_text(std::max(0.0, duration_s - moment.time_s)));
+  }
+  ImGui::PushFont(context.fonts.mono);
+  const float width = ImGui::CalcTextSize(times.c_str()).x;
+  const float right = ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x - width;
+  if (moment.state != PlayState::kFollowing) ImGui::SameLine();
+  if (ImGui::GetCursorPosX() < right) ImGui::SetCursorPosX(right);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(times.c_str());
+  ImGui::PopFont();
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("%s   -%s", context.word(Text::kElapsed), context.word(Text::kRemaining));
+  }
 }
 
 void draw_status(const PanelContext& context) {
-  const Language language = context.settings->language;
   const Moment& moment = *context.shown.moment;
-  const double duration_s = context.shown.timeline->duration_s;
-  std::string line = fmt::format("{}  {} {}", words(moment.state, language),
-                                 text(Text::kElapsed, language), clock_text(moment.time_s));
-  if (duration_s > 0.0) {
-    line += fmt::format("  {} {}", text(Text::kRemaining, language),
-                        clock_text(std::max(0.0, duration_s - moment.time_s)));
+  const ImVec4& color = is_playing(moment.state) || moment.state == PlayState::kFollowing
+                            ? theme::kGood
+                            : theme::kDim;
+  ImGui::TextColored(color, "%s", words(context));
+  const std::string& notice = context.state->notice.empty() ? moment.notice : context.state->notice;
+  if (!notice.empty()) {
+    ImGui::SameLine(0.0f, 14.0f * context.scale);
+    ImGui::TextColored(theme::kWarning, "%s", notice.c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", notice.c_str());
   }
-  ImGui::TextUnformatted(line.c_str());
-  const std::string& notice = context.notice->empty() ? moment.notice : *context.notice;
-  if (notice.empty()) return;
+  if (!context.settings->shows_counters) return;
+  constexpr double kMegabyte = 1024.0 * 1024.0;
+  const std::string figures = fmt::format(
+      "{:.0f} {}   {} {:.0f} MB   {} {:.1f} MB", context.state->frames_per_s,
+      context.word(Text::kFramesPerSecond), context.word(Text::kGpuMemory),
+      static_cast<double>(context.counters.gpu_bytes) / kMegabyte, context.word(Text::kWaiting),
+      static_cast<double>(context.counters.waiting_bytes) / kMegabyte);
   ImGui::SameLine();
-  ImGui::TextColored({1.0f, 0.85f, 0.4f, 1.0f}, " %s", notice.c_str());
+  const float right = ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x -
+                      ImGui::CalcTextSize(figures.c_str()).x;
+  if (ImGui::GetCursorPosX() < right) ImGui::SetCursorPosX(right);
+  ImGui::TextColored(theme::kDim, "%s", figures.c_str());
+}
+
+/// A button of the toolbar; lit while what it switches is on.
+void tool_button(const PanelContext& context, Text label, Action action, Text what, bool is_lit) {
+  if (is_lit) {
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::ColorConvertU32ToFloat4(theme::kAccent));
+  }
+  if (ImGui::Button(
+          fmt::format("{}###{}", context.word(label), static_cast<int>(action)).c_str())) {
+    context.state->action = action;
+  }
+  if (is_lit) ImGui::PopStyleColor();
+  tip(context, action, what);
+  ImGui::SameLine(0.0f, 3.0f * context.scale);
 }
 
 }  // namespace
@@ -173,20 +256,21 @@ std::string clock_text(double seconds) {
 }
 
 PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale) {
-  constexpr float kCodeWidth_px = 300.0f;
-  constexpr float kInfoWidth_px = 290.0f;
+  constexpr float kCodeWidth_px = 290.0f;
+  constexpr float kInfoWidth_px = 300.0f;
   constexpr float kSmallestPicture_px = 160.0f;
   PanelRoom room;
   if (window_px.y >= scale * (kBarHeight_px + kSmallestPicture_px)) {
-    room.bottom = scale * kBarHeight_px;
+    room.bottom = std::round(scale * kBarHeight_px);
+    room.top = std::round(scale * kToolbarHeight_px);
   }
   float left_over = window_px.x - scale * kSmallestPicture_px;
   if (settings.shows_info && left_over >= scale * kInfoWidth_px) {
-    room.right = scale * kInfoWidth_px;
+    room.right = std::round(scale * kInfoWidth_px);
     left_over -= room.right;
   }
   if (settings.shows_code && left_over >= scale * kCodeWidth_px) {
-    room.left = scale * kCodeWidth_px;
+    room.left = std::round(scale * kCodeWidth_px);
   }
   return room;
 }
@@ -197,10 +281,57 @@ void draw_player_bar(const PanelContext& context, glm::vec2 window_px, const Pan
   ImGui::SetNextWindowSize({window_px.x, room.bottom});
   ImGui::Begin("player", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   draw_time_slider(context);
-  draw_buttons(context);
+  if (context.shown.moment->state != PlayState::kFollowing) {
+    draw_buttons(context);
+    draw_speed(context);
+    draw_go_to(context);
+  }
+  draw_times(context);
   draw_status(context);
+  ImGui::End();
+}
+
+void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {
+  if (room.top <= 0.0f) return;
+  ImGui::SetNextWindowPos({room.left, 0.0f});
+  ImGui::SetNextWindowSize({window_px.x - room.left - room.right, room.top});
+  ImGui::Begin("toolbar", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  // Narrow, so that all of it fits beside both panels at a width of 1280.
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4.0f * context.scale, 3.0f * context.scale});
+  const ViewSettings& settings = *context.settings;
+  constexpr std::array kViews{
+      std::pair{Text::kFit, Action::kFit},     std::pair{Text::kIsometric, Action::kIsometric},
+      std::pair{Text::kTop, Action::kTop},     std::pair{Text::kFront, Action::kFront},
+      std::pair{Text::kRight, Action::kRight}, std::pair{Text::kBack, Action::kBack},
+      std::pair{Text::kLeft, Action::kLeft},   std::pair{Text::kBottom, Action::kBottom}};
+  const bool is_flat = settings.flat != FlatView::kNone;
+  for (const auto& [label, action] : kViews) {
+    ImGui::BeginDisabled(is_flat && action != Action::kFit);
+    tool_button(context, label, action, label, false);
+    ImGui::EndDisabled();
+  }
+  ImGui::SameLine(0.0f, 12.0f * context.scale);
+  constexpr std::array kFlatNames{Text::kFlatOff, Text::kFlatXy, Text::kFlatXz};
+  tool_button(context, kFlatNames[static_cast<std::size_t>(settings.flat)], Action::kFlat,
+              Text::kFlat, is_flat);
+  ImGui::BeginDisabled(is_flat);
+  tool_button(context, Text::kPerspective, Action::kPerspective, Text::kPerspectiveWhat,
+              settings.is_perspective && !is_flat);
+  ImGui::EndDisabled();
+  ImGui::SameLine(0.0f, 12.0f * context.scale);
+  tool_button(context, Text::kSection, Action::kSection, Text::kSection, settings.section.is_on);
+  tool_button(context, Text::kMeasure, Action::kMeasure, Text::kMeasure,
+              context.state->inspection.measures);
+  tool_button(context, Text::kPicture, Action::kScreenshot, Text::kScreenshot, false);
+  if (ImGui::Button(" ? ")) context.state->action = Action::kHelp;
+  tip(context, Action::kHelp, Text::kShortcuts);
+  ImGui::PopStyleVar();
   ImGui::End();
 }
 

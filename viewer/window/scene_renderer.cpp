@@ -11,152 +11,109 @@
 #include <utility>
 
 #include "viewer/gl_objects.h"
-#include "viewer/shaders/shaders.h"
+#include "viewer/window/gl_failure.h"
+#include "viewer/window/gpu_timer.h"
+#include "viewer/window/layer.h"
+#include "viewer/window/machine_store.h"
 #include "viewer/window/marker_store.h"
 #include "viewer/window/patch_store.h"
 #include "viewer/window/path_store.h"
+#include "viewer/window/scene_programs.h"
+#include "viewer/window/surface_colors.h"
 #include "viewer/window/tool_store.h"
 
 namespace kerf {
 namespace {
 
-constexpr glm::vec3 kWorkpieceColor{0.72f, 0.74f, 0.77f};
 constexpr glm::vec3 kTraverseColor{0.80f, 0.22f, 0.16f};
 constexpr glm::vec3 kFeedColor{0.10f, 0.42f, 0.78f};
 constexpr glm::vec3 kPlannedColor{0.45f, 0.45f, 0.48f};
 /// How much of their colour future segments keep; the rest is the background's.
 constexpr float kFutureShare = 0.45f;
 constexpr glm::vec3 kPaper{0.88f, 0.89f, 0.91f};
+constexpr glm::vec3 kDarkRoom{0.13f, 0.14f, 0.16f};
+/// Lines on dark ground are mixed with this much white.
+constexpr float kDarkWhite = 0.35f;
 /// By which depth_box() grows beyond what is needed, relative to its size.
 constexpr double kDepthReserve = 0.25;
 constexpr double kSmallestScene_mm = 10.0;
 
-/// Framebuffer with colour and depth.
-struct Layer {
-  GlFramebuffer framebuffer;
-  GlRenderbuffer color;
-  GlRenderbuffer depth;
-
-  Done allocate(glm::ivec2 size_px) {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-    glBindRenderbuffer(GL_RENDERBUFFER, color.name());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size_px.x, size_px.y);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.name());
-    glBindRenderbuffer(GL_RENDERBUFFER, depth.name());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, size_px.x, size_px.y);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.name());
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      return Error{
-          fmt::format("OpenGL cannot draw a picture of {} x {} pixels", size_px.x, size_px.y)};
-    }
-    return std::monostate{};
-  }
-};
-
-void scissor(const ScreenRect& rect) {
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(rect.min.x, rect.min.y, rect.max.x - rect.min.x, rect.max.y - rect.min.y);
-}
-
-void copy(const Layer& from, const Layer& to, const ScreenRect& rect) {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer.name());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer.name());
-  glDisable(GL_SCISSOR_TEST);
-  glBlitFramebuffer(rect.min.x, rect.min.y, rect.max.x, rect.max.y, rect.min.x, rect.min.y,
-                    rect.max.x, rect.max.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-}
-
-glm::vec4 shade(const glm::vec3& color, const ObjectLook& look, bool is_past) {
+glm::vec4 line_rgba(const glm::vec3& color, const ObjectLook& look, bool is_past, bool is_dark) {
   if (!look.is_visible) return glm::vec4(0.0f);
-  return {is_past ? color : glm::mix(kPaper, color, kFutureShare), look.opacity};
+  const glm::vec3 seen = is_dark ? glm::mix(color, glm::vec3(1.0f), kDarkWhite) : color;
+  const glm::vec3 ground = is_dark ? kDarkRoom : kPaper;
+  return {is_past ? seen : glm::mix(ground, seen, kFutureShare), look.opacity};
 }
 
-/// Times what the card does without waiting for it: the answer comes some frames later.
-class GpuTimer {
- public:
-  GpuTimer() { glGenQueries(1, &query_); }
-  GpuTimer(const GpuTimer&) = delete;
-  GpuTimer& operator=(const GpuTimer&) = delete;
-  ~GpuTimer() { glDeleteQueries(1, &query_); }
-
-  void begin() {
-    if (sink_) return;
-    glBeginQuery(GL_TIME_ELAPSED, query_);
-    is_running_ = true;
+/// The plane in the frame of the workpiece, of unit normal: dot(plane, (p, 1)) >= 0 is kept. None
+/// where there is no direction.
+std::optional<glm::dvec4> kept_side(const std::optional<SectionPlane>& section) {
+  if (!section) return std::nullopt;
+  const double length = glm::length(section->normal);
+  if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(section->offset_mm)) {
+    return std::nullopt;
   }
-  /// `sink` gets the time found; frames of its kind that pass meanwhile count like this one.
-  void end(double* sink) {
-    if (is_running_) {
-      glEndQuery(GL_TIME_ELAPSED);
-      is_running_ = false;
-      sink_ = sink;
-      repeats_ = 1;
-    } else if (sink_ == sink) {
-      ++repeats_;
-    }
-  }
-  void collect() {
-    if (!sink_) return;
-    GLint is_there = GL_FALSE;
-    glGetQueryObjectiv(query_, GL_QUERY_RESULT_AVAILABLE, &is_there);
-    if (is_there != GL_TRUE) return;
-    GLuint64 elapsed_ns = 0;
-    glGetQueryObjectui64v(query_, GL_QUERY_RESULT, &elapsed_ns);
-    *sink_ += static_cast<double>(elapsed_ns) * 1e-6 * repeats_;
-    sink_ = nullptr;
-  }
-
- private:
-  GLuint query_ = 0;
-  bool is_running_ = false;
-  int repeats_ = 0;
-  double* sink_ = nullptr;
-};
+  return glm::dvec4(-section->normal, section->offset_mm) / length;
+}
 
 }  // namespace
 
 class SceneRenderer::Impl {
  public:
-  struct Programs {
-    GlProgram background;
-    GlProgram scene;
-  };
-
-  Impl(Programs programs, PathStore path, MarkerStore markers)
+  Impl(ScenePrograms programs, PathStore path, MarkerStore markers)
       : programs_(std::move(programs)), path_(std::move(path)), markers_(std::move(markers)) {
-    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size_px_);
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px_);
   }
 
   void apply(const SceneUpdate& update);
   Done draw(const Projection& projection, const DrawOptions& options);
-  bool has_waiting() const { return patches_.waiting_bytes() > 0 || path_.has_waiting(); }
+  bool has_waiting() const {
+    return patches_.waiting_bytes() > 0 || path_.has_waiting() || machine_.has_waiting();
+  }
   void show_in(GLuint framebuffer, glm::ivec2 corner_px) const;
-  Picture read() const { return read_framebuffer(shown_.framebuffer.name(), size_px_); }
+  Picture read() const { return read_framebuffer(shown_.framebuffer(), size_px_); }
   std::optional<Vec3> pick(glm::ivec2 px) const;
   Box fit_box() const;
   const Box& depth_box() const { return depth_box_; }
+  std::vector<ColorLegendEntry> legend() const { return colors_.legend(shown_by_, scale_); }
 
   DrawCounters counters;
 
  private:
+  void take_moment(const Moment& moment);
   void grow_depth_box(const Box& box);
   Done resize(glm::ivec2 size_px);
+  Done take_options(const Projection& projection, const DrawOptions& options);
+  std::size_t upload(std::size_t budget_bytes);
   ScreenRect changed_rect(std::span<const Box> changed_mm) const;
   std::size_t draw_kept(const ScreenRect& rect);
-  std::size_t draw_workpiece(const ScreenRect& rect) const;
+  std::size_t draw_workpiece(const ScreenRect& rect);
+  void draw_section_face();
   void draw_lines(const ScreenRect& rect) const;
   void draw_shown(ScreenRect rect);
+  void draw_moving(const ScreenRect& rect, ScenePrograms::Variant variant, bool opaque_parts) const;
+  void draw_seen_through(const ScreenRect& rect);
+  void draw_glass();
+  std::size_t gpu_bytes() const;
   const ObjectLook& look(SceneObject object) const {
     return options_.looks[static_cast<std::size_t>(object)];
   }
+  /// Drawn into a layer of its own, since the tool has to be seen through it.
+  bool is_glass() const {
+    const ObjectLook& workpiece = look(SceneObject::kWorkpiece);
+    return workpiece.is_visible && workpiece.opacity < 1.0f;
+  }
 
-  Programs programs_;
+  ScenePrograms programs_;
   GlVertexArray no_vertices_;
   PatchStore patches_;
+  SurfaceColors colors_;
   PathStore path_;
   MarkerStore markers_;
   ToolStore tool_;
+  MachineStore machine_;
   Layer kept_;
+  Layer glass_;
   Layer shown_;
   GpuTimer timer_;
 
@@ -166,6 +123,8 @@ class SceneRenderer::Impl {
   bool has_content_ = false;
   Projection projection_;
   DrawOptions options_;
+  ColorBy shown_by_ = ColorBy::kPlain;
+  ColorScale scale_;
   GLint max_size_px_ = 1;
   glm::ivec2 size_px_{0};
   bool is_kept_old_ = true;  // all of it
@@ -219,20 +178,35 @@ void SceneRenderer::Impl::apply(const SceneUpdate& update) {
     grow_depth_box(box);
   }
   if (update.tool_shape) tool_.set_shape(*update.tool_shape);
-  if (update.moment) {
-    tool_.set_pose(update.moment->tool_pose);
-    path_.set_past(update.moment->past_vertices, &changed_mm_);
+  if (update.machine) machine_.set_machine(update.machine);
+  if (update.colors) {
+    colors_.set(update.colors);
+    if (update.colors->mode == options_.color_by) is_kept_old_ = true;
   }
+  if (update.moment) take_moment(*update.moment);
+  if (update.machine || update.moment) grow_depth_box(machine_.bounds_mm());
+  if (update.tool_shape || update.moment) grow_depth_box(tool_.bounds_mm());
+}
+
+void SceneRenderer::Impl::take_moment(const Moment& moment) {
+  tool_.set_pose(moment.tool_pose);
+  machine_.set_poses(moment.link_poses);
+  path_.set_past(moment.past_vertices, &changed_mm_);
 }
 
 Done SceneRenderer::Impl::resize(glm::ivec2 size_px) {
-  if (size_px == size_px_) return std::monostate{};
+  const bool needs_glass = is_glass();
+  if (!needs_glass) glass_.release();
+  if (size_px == size_px_ && needs_glass == glass_.is_allocated()) return std::monostate{};
   if (std::max(size_px.x, size_px.y) > max_size_px_) {
     return Error{fmt::format("this OpenGL draws at most {} x {} pixels; the window has {} x {}",
                              max_size_px_, max_size_px_, size_px.x, size_px.y)};
   }
   for (Layer* layer : {&kept_, &shown_}) {
     if (Done done = layer->allocate(size_px); !done) return done;
+  }
+  if (needs_glass) {
+    if (Done done = glass_.allocate(size_px); !done) return done;
   }
   size_px_ = size_px;
   is_kept_old_ = true;
@@ -245,25 +219,46 @@ ScreenRect SceneRenderer::Impl::changed_rect(std::span<const Box> changed_mm) co
   return rect;
 }
 
-Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& options) {
+/// Notes what makes the whole kept scene old.
+Done SceneRenderer::Impl::take_options(const Projection& projection, const DrawOptions& options) {
+  DrawOptions without_budget = options;
+  without_budget.upload_bytes_per_frame = options_.upload_bytes_per_frame;
+  if (without_budget != options_ || !options.is_local) is_kept_old_ = true;
+  options_ = options;
   if (Done done = resize(projection.size_px); !done) return done;
-  timer_.collect();
-  timer_.begin();
-  if (projection != projection_ || options.looks != options_.looks || !options.is_local) {
-    is_kept_old_ = true;
-  }
   if (projection != projection_) {
+    is_kept_old_ = true;
     projection_ = projection;
     patches_.project(projection);
     path_.project(projection);
   }
-  options_ = options;
+  return std::monostate{};
+}
+
+std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
   const bool drew_skirts = patches_.draws_skirts();
-  std::size_t bytes = patches_.upload(options.upload_bytes_per_frame, &changed_mm_);
-  if (bytes < options.upload_bytes_per_frame) {
-    bytes += path_.upload(options.upload_bytes_per_frame - bytes, &changed_mm_);
-  }
+  std::size_t bytes = patches_.upload(budget_bytes, &changed_mm_);
+  if (bytes < budget_bytes) bytes += path_.upload(budget_bytes - bytes, &changed_mm_);
+  if (bytes < budget_bytes) bytes += machine_.upload(budget_bytes - bytes);
   if (patches_.draws_skirts() != drew_skirts) is_kept_old_ = true;
+  return bytes;
+}
+
+Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& options) {
+  if (Done done = take_options(projection, options); !done) return done;
+  timer_.collect();
+  timer_.begin();
+  const std::size_t bytes = upload(options.upload_bytes_per_frame);
+  const Box heights = setup_ && !setup_->bounds_mm.empty() ? setup_->bounds_mm
+                      : patches_.bounds_mm().empty()       ? Box{Vec3(0.0), Vec3(0.0)}
+                                                           : patches_.bounds_mm();
+  const ColorScale scale{heights.min.z, heights.max.z, std::max(options.tolerance_mm, 1e-9)};
+  const ColorBy shown_by = colors_.available(options.color_by);
+  if (shown_by != shown_by_ || (shown_by != ColorBy::kPlain && scale != scale_)) {
+    is_kept_old_ = true;
+  }
+  scale_ = scale;
+  shown_by_ = shown_by;
   const ScreenRect rect = is_kept_old_ ? ScreenRect::whole(size_px_) : changed_rect(changed_mm_);
   DrawCounters::Kind& kind = is_kept_old_   ? counters.full
                              : rect.empty() ? counters.still
@@ -276,111 +271,213 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   if (!rect.empty()) counters.last_rect = rect;
   counters.uploaded_bytes += bytes;
   counters.waiting_bytes = patches_.waiting_bytes();
-  counters.gpu_bytes = patches_.gpu_bytes() + path_.gpu_bytes();
+  counters.gpu_bytes = gpu_bytes();
   changed_mm_.clear();
   is_kept_old_ = false;
-  return std::monostate{};
+  const std::string failure = present_gl_failure(counters.gpu_bytes);
+  if (failure.empty()) return std::monostate{};
+  is_kept_old_ = true;
+  return Error{failure};
+}
+
+std::size_t SceneRenderer::Impl::gpu_bytes() const {
+  return patches_.gpu_bytes() + path_.gpu_bytes() + machine_.gpu_bytes() + tool_.gpu_bytes() +
+         colors_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() + shown_.gpu_bytes();
 }
 
 std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
-  glBindFramebuffer(GL_FRAMEBUFFER, kept_.framebuffer.name());
-  glViewport(0, 0, size_px_.x, size_px_.y);
-  scissor(rect);
+  kept_.bind(rect);
   glDepthMask(GL_TRUE);
   glClearDepth(1.0);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  glClearStencil(0);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glBindVertexArray(no_vertices_.name());
-  programs_.background.use();
+  programs_.background().use();
+  programs_.background().set("darkness", options_.is_dark ? 1.0f : 0.0f);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_LESS);
-  // Lines lie behind a transparent workpiece, so they come first then.
-  const bool is_opaque = look(SceneObject::kWorkpiece).opacity >= 1.0f;
-  if (!is_opaque) draw_lines(rect);
-  const std::size_t triangles = draw_workpiece(rect);
-  if (is_opaque) draw_lines(rect);
+  std::size_t triangles = 0;
+  if (is_glass()) {
+    draw_lines(rect);
+    glass_.bind(rect);
+    glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    triangles = draw_workpiece(rect);
+  } else {
+    triangles = draw_workpiece(rect);
+    draw_lines(rect);
+  }
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_SCISSOR_TEST);
   return triangles;
 }
 
-std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) const {
-  const ObjectLook& workpiece = look(SceneObject::kWorkpiece);
-  if (!workpiece.is_visible) return 0;
-  const bool is_opaque = workpiece.opacity >= 1.0f;
-  programs_.scene.use();
-  programs_.scene.set("clip_from_model", projection_.clip_from_world);
-  programs_.scene.set("view_from_model", projection_.view_from_world);
-  programs_.scene.set("up_view", glm::vec3(projection_.view_from_world[2]));
-  programs_.scene.set("rgba", glm::vec4(kWorkpieceColor, workpiece.opacity));
-  if (!is_opaque) {
-    // What lies behind, the tool too, shines through: no depth is kept.
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glDepthMask(GL_FALSE);
-    glEnable(GL_CULL_FACE);
+std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
+  if (!look(SceneObject::kWorkpiece).is_visible) return 0;
+  const std::optional<glm::dvec4> section = kept_side(options_.section);
+  const auto use = [&](bool is_colored) -> const GlProgram& {
+    const GlProgram& program =
+        programs_.scene({.has_section = section.has_value(), .is_colored = is_colored});
+    program.use();
+    program.set("clip_from_model", projection_.clip_from_world);
+    program.set("view_from_model", projection_.view_from_world);
+    program.set("up_view", glm::vec3(projection_.view_from_world[2]));
+    program.set("rgba", glm::vec4(SurfaceColors::kCut, 1.0f));
+    if (section) program.set("section", glm::vec4(*section));
+    return program;
+  };
+  if (section) {
+    glEnable(GL_CLIP_DISTANCE0);
+    // Where the nearest triangle that is left shows its back, the plane goes through material.
+    glEnable(GL_STENCIL_TEST);
+    glStencilFuncSeparate(GL_FRONT, GL_ALWAYS, 0, 0xff);
+    glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   }
-  const std::size_t triangles = patches_.draw(rect);
-  glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
-  glDepthMask(GL_TRUE);
+  const VertexData data = SurfaceColors::needs(shown_by_);
+  colors_.bind(use(true), shown_by_, scale_);
+  std::size_t triangles = patches_.draw(rect, data, true);
+  if (data != VertexData::kNone) {
+    use(false);
+    triangles += patches_.draw(rect, data, false);
+  }
+  glDisable(GL_CLIP_DISTANCE0);
+  if (section) draw_section_face();
+  glDisable(GL_STENCIL_TEST);
   return triangles;
+}
+
+void SceneRenderer::Impl::draw_section_face() {
+  const glm::dvec4 plane = glm::transpose(glm::inverse(glm::dmat4(projection_.clip_from_world))) *
+                           *kept_side(options_.section);
+  if (plane.z == 0.0) return;  // seen from its edge
+  // On the plane the depth is affine in the picture. Pixels are counted from its middle, for the
+  // shader's 32-bit numbers.
+  const glm::dvec2 half_px = 0.5 * glm::dvec2(size_px_);
+  const glm::dvec3 depth(-0.5 * plane.x / (plane.z * half_px.x),
+                         -0.5 * plane.y / (plane.z * half_px.y), 0.5 - 0.5 * plane.w / plane.z);
+  glStencilFunc(GL_EQUAL, 1, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glDepthFunc(GL_ALWAYS);
+  const GlProgram& program = programs_.section_face();
+  program.use();
+  program.set("depth_plane", glm::vec3(depth));
+  program.set("middle_px", glm::vec2(half_px));
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
 }
 
 void SceneRenderer::Impl::draw_lines(const ScreenRect& rect) const {
   const auto colors = [this](bool is_past) {
-    return std::array{shade(kTraverseColor, look(SceneObject::kTraverses), is_past),
-                      shade(kFeedColor, look(SceneObject::kFeeds), is_past),
-                      shade(kPlannedColor, look(SceneObject::kPlanned), is_past)};
+    const bool is_dark = options_.is_dark;
+    return std::array{line_rgba(kTraverseColor, look(SceneObject::kTraverses), is_past, is_dark),
+                      line_rgba(kFeedColor, look(SceneObject::kFeeds), is_past, is_dark),
+                      line_rgba(kPlannedColor, look(SceneObject::kPlanned), is_past, is_dark)};
   };
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  path_.draw(rect, PathColors{colors(true), colors(false)});
+  // The rims of smooth lines would leave pale borders in what is laid over them.
+  const bool may_smooth = !is_glass();
+  path_.draw(rect, PathColors{colors(true), colors(false)}, may_smooth);
   const auto opacity = [this](SceneObject object) {
     return look(object).is_visible ? look(object).opacity : 0.0f;
   };
-  markers_.draw(projection_, {opacity(SceneObject::kBlank), opacity(SceneObject::kFrames),
-                              opacity(SceneObject::kFindings)});
+  markers_.draw(projection_,
+                {opacity(SceneObject::kBlank), opacity(SceneObject::kFrames),
+                 opacity(SceneObject::kFindings)},
+                may_smooth);
   glDisable(GL_BLEND);
 }
 
 void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
   const ToolLook tool_look{look(SceneObject::kCutter).is_visible,
-                           look(SceneObject::kHolder).is_visible,
-                           look(SceneObject::kCutter).opacity, look(SceneObject::kHolder).opacity};
+                           look(SceneObject::kHolder).is_visible, 1.0f, 1.0f};
   const ScreenRect tool_rect = tool_.rect(projection_, tool_look);
   if (tool_.take_changed() || tool_rect != tool_rect_) {
     rect.extend(tool_rect_);
     rect.extend(tool_rect);
-  } else if (rect.intersects(tool_rect)) {
-    rect.extend(tool_rect);
   }
   tool_rect_ = tool_rect;
+  const ScreenRect machine_rect = machine_.take_changed(projection_);
+  if (look(SceneObject::kMachine).is_visible) rect.extend(machine_rect);
   if (rect.empty()) return;
-  copy(kept_, shown_, rect);
-  if (tool_rect.empty()) return;
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_.framebuffer.name());
-  glViewport(0, 0, size_px_.x, size_px_.y);
-  scissor(tool_rect);
+  counters.shown_pixels += static_cast<std::uint64_t>(rect.pixels());
+  shown_.copy(kept_, rect);
+  shown_.bind(rect);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_LESS);
-  programs_.scene.use();
-  programs_.scene.set("up_view", glm::vec3(projection_.view_from_world[2]));
-  tool_.draw(projection_, programs_.scene, tool_look);
+  draw_moving(rect, {}, true);
+  draw_seen_through(rect);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_SCISSOR_TEST);
 }
 
+/// Tool and machine, as far as they are opaque or as far as they are not.
+void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, ScenePrograms::Variant variant,
+                                      bool opaque_parts) const {
+  const GlProgram& program = programs_.scene(variant);
+  program.use();
+  program.set("up_view", glm::vec3(projection_.view_from_world[2]));
+  if (variant.beside_glass != 0) {
+    bind_texture(0, glass_.depth());
+    program.set("glass_depths", 0);
+    program.set("is_behind", variant.beside_glass < 0 ? 1 : 0);
+  }
+  const ObjectLook& machine = look(SceneObject::kMachine);
+  if (machine.is_visible && (machine.opacity >= 1.0f) == opaque_parts) {
+    machine_.draw(projection_, program, machine.opacity, rect);
+  }
+  if (tool_rect_.intersects(rect)) {
+    const ObjectLook& cutter = look(SceneObject::kCutter);
+    const ObjectLook& holder = look(SceneObject::kHolder);
+    tool_.draw(projection_, program,
+               {cutter.is_visible, holder.is_visible, cutter.opacity, holder.opacity},
+               opaque_parts);
+  }
+}
+
+/// What is seen through, over what is not: first what lies behind the surface of a transparent
+/// workpiece, then that surface, then the rest.
+void SceneRenderer::Impl::draw_seen_through(const ScreenRect& rect) {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_CULL_FACE);
+  if (is_glass()) {
+    draw_moving(rect, {.beside_glass = -1}, false);
+    draw_glass();
+    draw_moving(rect, {.beside_glass = 1}, false);
+  } else {
+    draw_moving(rect, {}, false);
+  }
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void SceneRenderer::Impl::draw_glass() {
+  const GlProgram& program = programs_.glass();
+  program.use();
+  bind_texture(0, glass_.depth());
+  bind_texture(1, glass_.color());
+  program.set("glass_depths", 0);
+  program.set("glass_colors", 1);
+  program.set("opacity", look(SceneObject::kWorkpiece).opacity);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 void SceneRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) const {
   const glm::ivec2 end_px = corner_px + size_px_;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glDisable(GL_SCISSOR_TEST);
   glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, corner_px.x, corner_px.y, end_px.x, end_px.y,
@@ -391,8 +488,13 @@ void SceneRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) cons
 std::optional<Vec3> SceneRenderer::Impl::pick(glm::ivec2 px) const {
   if (px.x < 0 || px.y < 0 || px.x >= size_px_.x || px.y >= size_px_.y) return std::nullopt;
   float depth = 1.0f;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, kept_.framebuffer.name());
-  glReadPixels(px.x, size_px_.y - 1 - px.y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+  for (const Layer* layer : {&kept_, &glass_}) {
+    if (!layer->is_allocated()) continue;
+    float found = 1.0f;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, layer->framebuffer());
+    glReadPixels(px.x, size_px_.y - 1 - px.y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &found);
+    depth = std::min(depth, found);
+  }
   if (depth >= 1.0f) return std::nullopt;
   const glm::dvec2 uv((px.x + 0.5) / size_px_.x, 1.0 - (px.y + 0.5) / size_px_.y);
   const glm::dvec4 ndc(uv * 2.0 - 1.0, 2.0 * static_cast<double>(depth) - 1.0, 1.0);
@@ -411,18 +513,14 @@ Box SceneRenderer::Impl::fit_box() const {
 }
 
 Result<SceneRenderer> SceneRenderer::create() {
-  Result<GlProgram> background = GlProgram::create(shaders::screen_vert, shaders::background_frag);
-  Result<GlProgram> scene = GlProgram::create(shaders::scene_vert, shaders::scene_frag);
-  for (const auto* program : {&background, &scene}) {
-    if (!*program) return Error{program->error()};
-  }
+  Result<ScenePrograms> programs = ScenePrograms::create();
+  if (!programs) return Error{programs.error()};
   Result<PathStore> path = PathStore::create();
   if (!path) return Error{path.error()};
   Result<MarkerStore> markers = MarkerStore::create();
   if (!markers) return Error{markers.error()};
   return SceneRenderer(
-      std::make_unique<Impl>(Impl::Programs{std::move(*background), std::move(*scene)},
-                             std::move(*path), std::move(*markers)));
+      std::make_unique<Impl>(std::move(*programs), std::move(*path), std::move(*markers)));
 }
 
 SceneRenderer::SceneRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -448,6 +546,7 @@ std::string SceneRenderer::gl_name() {
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }
+std::vector<ColorLegendEntry> SceneRenderer::legend() const { return impl_->legend(); }
 const Box& SceneRenderer::depth_box() const { return impl_->depth_box(); }
 const DrawCounters& SceneRenderer::counters() const { return impl_->counters; }
 void SceneRenderer::reset_counters() { impl_->counters = {}; }

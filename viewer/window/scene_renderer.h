@@ -25,8 +25,9 @@ enum class SceneObject {
   kBlank,
   kFrames,
   kFindings,
+  kMachine,
 };
-inline constexpr std::size_t kSceneObjectCount = 9;
+inline constexpr std::size_t kSceneObjectCount = 10;
 
 struct ObjectLook {
   bool is_visible = true;
@@ -34,8 +35,25 @@ struct ObjectLook {
   bool operator==(const ObjectLook&) const = default;
 };
 
+/// Cuts the workpiece open: what lies on the side that `normal` points to, dot(normal, p) >
+/// offset_mm, is not drawn, and the cut is closed with a flat hatched face. Path, outlines, tool
+/// and machine stay whole.
+struct SectionPlane {
+  Vec3 normal{0.0, -1.0, 0.0};  ///< Need not be of unit length, but not 0: offset_mm is for it.
+  double offset_mm = 0.0;
+  bool operator==(const SectionPlane&) const = default;
+};
+
 struct DrawOptions {
   std::array<ObjectLook, kSceneObjectCount> looks{};
+  std::optional<SectionPlane> section;
+  /// Of the workpiece. kTool, kRemovalRate and kLineRange show the CutColors that came last, when
+  /// their mode is this one, and patches with MeshPatch::cut_by; kDeviation those with
+  /// deviation_mm. All else is drawn plainly: what is left of the blank darker, where patches tell.
+  ColorBy color_by = ColorBy::kPlain;
+  /// Deviations up to this are green; from twice this on, the colour is full.
+  double tolerance_mm = 0.05;
+  bool is_dark = false;  ///< The background.
   /// Redraw only what changed while the camera stands still. Off: everything, every time; for
   /// measuring and for doubtful drivers.
   bool is_local = true;
@@ -53,25 +71,28 @@ struct DrawCounters {
     std::uint64_t triangles = 0;  ///< of the workpiece
     double ms = 0.0;
   };
-  Kind full;             ///< everything was drawn
-  Kind local;            ///< a rectangle was drawn
-  Kind still;            ///< nothing but the tool, if that
-  ScreenRect last_rect;  ///< that was drawn last
+  Kind full;                       ///< everything was drawn
+  Kind local;                      ///< a rectangle was drawn
+  Kind still;                      ///< nothing but the tool, if that
+  ScreenRect last_rect;            ///< that was drawn last
+  std::uint64_t shown_pixels = 0;  ///< copied, and tool and machine drawn over them
   std::uint64_t uploaded_bytes = 0;
   std::size_t waiting_bytes = 0;
-  std::size_t gpu_bytes = 0;
+  std::size_t gpu_bytes = 0;  ///< of the scene's meshes, colours and framebuffers, now
 };
 
-/// Keeps colour and depth of the scene without the tool in a framebuffer of its own:
+/// Keeps colour and depth of the scene without tool and machine in a framebuffer of its own:
 ///
 ///     kept    workpiece, path, outlines      drawn again where they changed: by the boxes of the
 ///       |                                    triangles that did, projected, as a scissor rectangle
-///     shown   a copy, and the tool over it   copied again where kept changed and where the tool
-///       |                                    was or is
+///     shown   a copy, and the tool and the   copied again where kept changed and where those were
+///       |     machine over it                or are
 ///     window or picture
 ///
-/// Redrawing a rectangle gives the same pixels as redrawing everything. Needs a current OpenGL 3.3
-/// context, from create() to the destructor; leaves blending, depth and scissor test off.
+/// A transparent workpiece is kept beside, its nearest surface only, and laid over the shown tool:
+/// what is in it or behind it is seen through it, once. Redrawing a rectangle gives the same pixels
+/// as redrawing everything. Needs a current OpenGL 3.3 context, from create() to the destructor;
+/// leaves blending, depth and scissor test off.
 class SceneRenderer {
  public:
   static Result<SceneRenderer> create();
@@ -82,11 +103,15 @@ class SceneRenderer {
   /// Takes over the values; what is for the card waits there for its turn in draw().
   void apply(const SceneUpdate& update);
 
-  /// Draws as the scene is now. Error: the size is more than this OpenGL can do.
+  /// Draws as the scene is now. Error: the size is more than this OpenGL can do, the memory of the
+  /// card is full, or the context is lost (the driver was reset); the message says which.
   Done draw(const Projection& projection, const DrawOptions& options);
 
   /// Patches or path wait for the next frame: draw again although nothing new came.
   bool has_waiting() const;
+
+  /// What the colours of the workpiece last drawn mean; empty if nothing.
+  std::vector<ColorLegendEntry> legend() const;
 
   /// Copies the picture last drawn to a framebuffer (0: the window's), from its pixel `corner_px`
   /// (counted from the lower left) on.

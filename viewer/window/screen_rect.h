@@ -26,4 +26,15 @@ struct ScreenRect {
 /// that reaches the plane of the eye may touch any pixel.
 ScreenRect covered_rect(const Box& box, const Projection& projection);
 
+/// Box around the box moved by `pose`; empty if that is.
+Box placed(const Box& box, const glm::mat4& pose);
+
+/// Edge of a pixel, in mm, where the box is nearest to the eye; 0 if it reaches the plane of the
+/// eye, or is empty.
+double smallest_pixel_mm(const Box& box, const Projection& projection);
+
+/// What is to be taken from the z of clip coordinates so that something lies `nearer_px` pixels
+/// nearer to the eye than it does, at the same place of the picture.
+float towards_eye(const Projection& projection, double nearer_px);
+
 }  // namespace kerf

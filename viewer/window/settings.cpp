@@ -25,7 +25,7 @@ constexpr std::uintmax_t kMaxBytes = 64 * 1024;
 
 constexpr std::array<std::string_view, kSceneObjectCount> kObjectNames{
     "workpiece", "cutter", "holder", "traverses", "feeds",
-    "planned",   "blank",  "frames", "findings"};
+    "planned",   "blank",  "frames", "findings",  "machine"};
 
 /// One name, how it is written, and how it is read: the reader returns what is allowed if the value
 /// is not.
@@ -63,6 +63,42 @@ Field size_field(std::string name, int ViewSettings::*member) {
           }};
 }
 
+/// One of a list of words, stored as its place in the list.
+Field choice_field(std::string name, std::vector<std::string_view> words,
+                   std::function<int(const ViewSettings&)> get,
+                   std::function<void(int, ViewSettings*)> set) {
+  return {std::move(name),
+          [words, get](const ViewSettings& settings) {
+            return std::string(words[static_cast<std::size_t>(get(settings))]);
+          },
+          [words, set](std::string_view value, ViewSettings* settings) -> std::string {
+            for (std::size_t i = 0; i < words.size(); ++i) {
+              if (words[i] != value) continue;
+              set(static_cast<int>(i), settings);
+              return "";
+            }
+            return fmt::format("{}", fmt::join(words, ", "));
+          }};
+}
+
+Field number_field(std::string name, std::function<double*(ViewSettings*)> member, double low,
+                   double high) {
+  return {std::move(name),
+          [member](const ViewSettings& settings) {
+            ViewSettings copy = settings;
+            return fmt::format("{:.6g}", *member(&copy));
+          },
+          [member, low, high](std::string_view value, ViewSettings* settings) -> std::string {
+            double number = 0.0;
+            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
+            if (error != std::errc() || end != value.end() || !(number >= low && number <= high)) {
+              return fmt::format("{} to {}", low, high);
+            }
+            *member(settings) = number;
+            return "";
+          }};
+}
+
 Field opacity_field(std::size_t object) {
   return {fmt::format("opacity.{}", kObjectNames[object]),
           [object](const ViewSettings& settings) {
@@ -78,6 +114,30 @@ Field opacity_field(std::size_t object) {
             settings->drawing.looks[object].opacity = number;
             return "";
           }};
+}
+
+std::vector<Field> choices() {
+  return {
+      choice_field(
+          "flat", {"off", "xy", "zx"},
+          [](const ViewSettings& s) { return static_cast<int>(s.flat); },
+          [](int choice, ViewSettings* s) { s->flat = static_cast<FlatView>(choice); }),
+      choice_field(
+          "color", {"plain", "height", "tool", "removal-rate", "line-range", "deviation"},
+          [](const ViewSettings& s) { return static_cast<int>(s.drawing.color_by); },
+          [](int choice, ViewSettings* s) { s->drawing.color_by = static_cast<ColorBy>(choice); }),
+      choice_field(
+          "section.axis", {"x", "y", "z"}, [](const ViewSettings& s) { return s.section.axis; },
+          [](int choice, ViewSettings* s) { s->section.axis = choice; }),
+      switch_field("section.flipped", [](ViewSettings* s) { return &s->section.is_flipped; }),
+      switch_field("dark", [](ViewSettings* s) { return &s->drawing.is_dark; }),
+      number_field(
+          "tolerance", [](ViewSettings* s) { return &s->drawing.tolerance_mm; }, kMinTolerance_mm,
+          kMaxTolerance_mm),
+      number_field(
+          "text-scale", [](ViewSettings* s) { return &s->text_scale; }, kMinTextScale,
+          kMaxTextScale),
+  };
 }
 
 std::vector<Field> all_fields() {
@@ -97,6 +157,7 @@ std::vector<Field> all_fields() {
       switch_field("panel.counters", [](ViewSettings* s) { return &s->shows_counters; }),
       switch_field("local-drawing", [](ViewSettings* s) { return &s->drawing.is_local; }),
   };
+  for (Field& field : choices()) fields.push_back(std::move(field));
   for (std::size_t object = 0; object < kSceneObjectCount; ++object) {
     fields.push_back(
         switch_field(fmt::format("show.{}", kObjectNames[object]),
@@ -164,11 +225,16 @@ ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
   settings.language = language_of_environment();
   std::error_code error;
   if (path.empty() || !std::filesystem::exists(path, error)) return settings;
+  const std::string hint = fmt::format(
+      "the default is used; when the window closes, the file is kept as {}.damaged and a new one "
+      "is written",
+      path);
   const auto whole_file_fault = [&](std::string message) {
     Diagnostic fault;
     fault.severity = Severity::kWarning;
     fault.file = path;
     fault.message = std::move(message);
+    fault.hint = hint;
     faults->push_back(std::move(fault));
     return settings;
   };
@@ -184,6 +250,7 @@ ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
     if (std::optional<Diagnostic> fault = read_line(line, fields, &settings)) {
       fault->file = path;
       fault->line = number;
+      fault->hint = hint;
       faults->push_back(std::move(*fault));
     }
   }
@@ -202,6 +269,21 @@ Done save_settings(const std::string& path, const ViewSettings& settings) {
   if (!file) return Error{file.error()};
   file->write(content.data(), content.size());
   return file->commit();
+}
+
+Result<std::string> set_aside(const std::string& path) {
+  constexpr int kMostKept = 9;
+  for (int number = 1; number <= kMostKept; ++number) {
+    std::string kept = path + ".damaged";
+    if (number > 1) kept += fmt::format("-{}", number);
+    std::error_code error;
+    if (std::filesystem::exists(std::filesystem::symlink_status(kept, error))) continue;
+    std::filesystem::rename(path, kept, error);
+    if (error) return Error{fmt::format("keeping {} as {}: {}", path, kept, error.message())};
+    return kept;
+  }
+  return Error{fmt::format("keeping {}: {}.damaged to {}.damaged-{} are there already", path, path,
+                           path, kMostKept)};
 }
 
 }  // namespace kerf

@@ -11,6 +11,14 @@
 
 namespace kerf {
 
+/// What the section plane is set to; whether it cuts is not remembered.
+struct SectionChoice {
+  bool is_on = false;
+  int axis = 1;             ///< 0 X, 1 Y, 2 Z
+  bool is_flipped = false;  ///< false: what lies on the negative side of the plane is hidden
+  double offset_mm = 0.0;   ///< along the axis
+};
+
 /// Stored as lines `name = value`:
 ///
 ///     width = 1280
@@ -18,24 +26,38 @@ namespace kerf {
 ///     show.holder = off
 ///     opacity.workpiece = 0.5
 struct ViewSettings {
-  int width_px = 1280;  ///< of the window, 320 to 16384
+  int width_px = 1280;  ///< of the window, on a display of scale 1; 320 to 16384
   int height_px = 800;
   Language language = Language::kEnglish;
   bool is_perspective = true;
   bool shows_code = true;
   bool shows_info = true;
   bool shows_counters = false;
+  FlatView flat = FlatView::kNone;
+  double text_scale = 1.0;  ///< Of all of the panels, times the scale of the display; 0.75 to 3.
+  SectionChoice section;
   DrawOptions drawing;
 };
+
+inline constexpr double kMinTextScale = 0.75;
+inline constexpr double kMaxTextScale = 3.0;
+inline constexpr double kMinTolerance_mm = 1e-4;
+inline constexpr double kMaxTolerance_mm = 100.0;
 
 /// $XDG_CONFIG_HOME/kerf/view.conf, else $HOME/.config/kerf/view.conf; empty if neither is set.
 std::string settings_path();
 
-/// Faulty lines are reported with line and column, and leave the default; the rest counts. A file
+/// Faulty lines are reported with line and column, and leave the default; the rest counts.
+/// Their hint says what becomes of the file. A file
 /// that is not there is no fault.
 ViewSettings load_settings(const std::string& path, Diagnostics* faults);
 
 /// Makes the folder if need be; the file appears whole or not at all.
 Done save_settings(const std::string& path, const ViewSettings& settings);
+
+/// Renames a file with faults, so that save_settings() does not destroy what somebody wrote there:
+/// to PATH.damaged, or PATH.damaged-2 .. -9 where that is taken. The new name. Error: all are
+/// taken, or the folder cannot be written to.
+Result<std::string> set_aside(const std::string& path);
 
 }  // namespace kerf

@@ -17,18 +17,7 @@ constexpr glm::vec3 kHolderColor{0.36f, 0.38f, 0.43f};
 
 void ToolStore::set_shape(const ToolShape& shape) {
   mesh_ = revolve(shape);
-  glBindVertexArray(array_.name());
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh_.vertices.size() * sizeof(MeshVertex)),
-               mesh_.vertices.data(), GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh_.indices.size() * 4),
-               mesh_.indices.data(), GL_STATIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 4, GL_INT_2_10_10_10_REV, GL_TRUE, sizeof(MeshVertex),
-                        reinterpret_cast<const void*>(offsetof(MeshVertex, normal)));
+  buffers_.load(mesh_.vertices.data(), mesh_.vertices.size() * sizeof(MeshVertex), mesh_.indices);
   has_changed_ = true;
 }
 
@@ -57,25 +46,20 @@ ScreenRect ToolStore::rect(const Projection& projection, const ToolLook& look) c
                       {clip_from_tool, projection.view_from_world, projection.size_px});
 }
 
-void ToolStore::draw(const Projection& projection, const GlProgram& program,
-                     const ToolLook& look) const {
+Box ToolStore::bounds_mm() const {
+  return pose_ ? placed(mesh_.bounds_mm, world_from_tool()) : Box{};
+}
+
+void ToolStore::draw(const Projection& projection, const GlProgram& program, const ToolLook& look,
+                     bool opaque_parts) const {
+  if (!pose_) return;
   const glm::mat4 world = world_from_tool();
   program.set("clip_from_model", projection.clip_from_world * world);
   program.set("view_from_model", projection.view_from_world * world);
-  glBindVertexArray(array_.name());
   const auto draw_part = [&](const ToolMesh::Part& part, const glm::vec3& color, float opacity) {
-    if (part.index_count == 0) return;
+    if ((opacity >= 1.0f) != opaque_parts) return;
     program.set("rgba", glm::vec4(color, opacity));
-    const bool is_opaque = opacity >= 1.0f;
-    if (!is_opaque) {
-      glEnable(GL_BLEND);
-      glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-      glEnable(GL_CULL_FACE);
-    }
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::size_t{part.first_index} * 4));
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    buffers_.draw(part.first_index, part.index_count);
   };
   if (look.shows_cutter) draw_part(mesh_.cutter, kCutterColor, look.cutter_opacity);
   if (look.shows_holder) {

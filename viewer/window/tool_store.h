@@ -6,6 +6,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
+#include "viewer/window/mesh_buffers.h"
 #include "viewer/window/screen_rect.h"
 #include "viewer/window/tool_mesh.h"
 
@@ -28,16 +29,19 @@ class ToolStore {
   bool take_changed();
   /// Empty if there is nothing to see.
   ScreenRect rect(const Projection& projection, const ToolLook& look) const;
-  /// With viewer/shaders/scene, in use, of which it sets matrices and colour.
-  void draw(const Projection& projection, const GlProgram& program, const ToolLook& look) const;
+  /// In the workpiece frame; empty if there is no tool.
+  Box bounds_mm() const;
+  /// The parts that are opaque, or those that are not, with viewer/shaders/scene, in use, of which
+  /// it sets matrices and colour.
+  void draw(const Projection& projection, const GlProgram& program, const ToolLook& look,
+            bool opaque_parts) const;
+  std::size_t gpu_bytes() const { return buffers_.gpu_bytes(); }
 
  private:
   glm::mat4 world_from_tool() const;
 
   ToolMesh mesh_;
-  GlVertexArray array_;
-  GlBuffer vertices_;
-  GlBuffer indices_;
+  MeshBuffers buffers_;
   std::optional<ToolPose> pose_;
   bool has_changed_ = false;
 };

@@ -25,7 +25,9 @@ struct WindowOptions {
   int width_px = 0;                             ///< 0: as remembered; both
   int height_px = 0;
   int max_frames_per_s = 60;
-  bool is_local = true;  ///< false: local drawing is off, whatever is remembered
+  bool is_local = true;        ///< false: local drawing is off, whatever is remembered
+  float scale = 0.0f;          ///< Of letters and panels, 1 to 4; 0: that of the display.
+  std::string picture_folder;  ///< Where screenshots go; empty: the current folder.
 };
 
 /// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at
@@ -46,7 +48,8 @@ class Window {
   /// Turns until the user closes it; the last command is then a CloseCommand.
   Done run();
   /// One turn: waits for news or input, at most `longest_wait_s`; draws if needed. False after the
-  /// window was closed.
+  /// window was closed. Error: the display or the graphics card went away while it was open; the
+  /// last command is then a CloseCommand, too, and the window does nothing any more.
   Result<bool> frame(double longest_wait_s);
   /// Ends run() as if the user had closed the window. From the window's thread.
   void close();

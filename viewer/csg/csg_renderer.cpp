@@ -1,0 +1,569 @@
+#include "viewer/csg/csg_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "viewer/csg/csg_schedule.h"
+#include "viewer/csg/csg_store.h"
+#include "viewer/gl_objects.h"
+#include "viewer/shaders/shaders.h"
+
+namespace kerf {
+namespace {
+
+/// Solids end this share of the blank's size above it: enough for the depth buffer to tell both
+/// apart, as little as possible to draw.
+constexpr double kAboveBlank = 0.02;
+/// Walls thinner than this, in steps of the depth buffer and in shares of the slope per pixel, are
+/// none: a cut exactly through the floor opens it.
+constexpr float kFilm_steps = 8.0f;
+constexpr float kFilm_slope = 0.02f;
+/// Batches mark the stencil with their number, so it is cleared only when the numbers run out.
+constexpr GLint kLastMark = 255;
+/// The blank seen from above, in steps along its longer side: finds solids that overlap in space.
+constexpr int kGround_steps = 2048;
+
+/// Of material that the near plane cuts through.
+constexpr glm::vec3 kSection{0.45f, 0.43f, 0.41f};
+
+/// Colour and depth of what is left of one layer of the blank.
+struct Layer {
+  GlFramebuffer framebuffer;
+  GlTexture colors;
+  GlTexture depths;                      // and stencil
+  TileClock clock;                       // of the picture
+  TileClock ground;                      // of the blank seen from above
+  std::vector<std::uint64_t> looked_at;  // by solid: when it was subtracted last
+};
+
+/// Texture-backed, so that layers can be laid over each other.
+Done allocate(glm::ivec2 size_px, Layer* layer) {
+  allocate_texture(layer->colors, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, size_px, GL_NEAREST);
+  allocate_texture(layer->depths, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                   size_px, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, layer->framebuffer.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, layer->colors.name(),
+                         0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D,
+                         layer->depths.name(), 0);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return Error{
+        fmt::format("OpenGL cannot draw a picture of {} x {} pixels", size_px.x, size_px.y)};
+  }
+  return std::monostate{};
+}
+
+/// Occlusion queries, made as they are needed.
+class QueryPool {
+ public:
+  QueryPool() = default;
+  QueryPool(const QueryPool&) = delete;
+  QueryPool& operator=(const QueryPool&) = delete;
+  ~QueryPool() { glDeleteQueries(static_cast<GLsizei>(names_.size()), names_.data()); }
+
+  void begin(std::size_t index) {
+    while (names_.size() <= index) glGenQueries(1, &names_.emplace_back(0));
+    glBeginQuery(GL_ANY_SAMPLES_PASSED, names_[index]);
+  }
+  static void end() { glEndQuery(GL_ANY_SAMPLES_PASSED); }
+  /// Waits for the card.
+  bool has_passed(std::size_t index) const {
+    GLuint any = GL_FALSE;
+    glGetQueryObjectuiv(names_[index], GL_QUERY_RESULT, &any);
+    return any != GL_FALSE;
+  }
+
+ private:
+  std::vector<GLuint> names_;
+};
+
+struct Solid {
+  StoredSolid stored;
+  Box bounds_mm;
+  Vec3 middle_mm{0.0};  // of the tip's way: orders solids from front to back
+  PixelArea area;
+  PixelRect ground;  // seen from above
+};
+
+/// Solids that share no pixel.
+struct Batch {
+  std::vector<StoredSolid> solids;
+  bool is_around_eye = false;  // of the only one then
+};
+
+struct Tool {
+  std::vector<ConvexProfile> pieces;
+  std::uint32_t color = 0;
+};
+
+bool is_eye_in(const Box& box, const Projection& projection) {
+  if (projection.clip_from_world[0][3] == 0.0f && projection.clip_from_world[1][3] == 0.0f &&
+      projection.clip_from_world[2][3] == 0.0f) {
+    return false;  // parallel rays come from outside
+  }
+  const Vec3 eye(glm::inverse(glm::dmat4(projection.view_from_world))[3]);
+  return glm::all(glm::greaterThan(eye, box.min)) && glm::all(glm::lessThan(eye, box.max));
+}
+
+bool overlaps(const Box& a, const Box& b) {
+  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y &&
+         a.min.z < b.max.z && b.min.z < a.max.z;
+}
+
+}  // namespace
+
+class CsgRenderer::Impl {
+ public:
+  struct Programs {
+    GlProgram background;
+    GlProgram solid;
+    GlProgram inside;
+    GlProgram layer;
+  };
+
+  Impl(Programs programs, const CsgOptions& options)
+      : programs_(std::move(programs)), options_(options) {
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px_);
+  }
+
+  Done set_blank(const CsgBlank& blank);
+  Done set_tools(std::span<const CsgTool> tools);
+  void append(std::span<const SweptMove> moves);
+  void clear_moves();
+  Done draw(const Projection& projection);
+  void show_in(GLuint framebuffer, glm::ivec2 corner_px) const;
+  Picture read() const;
+  DepthPicture read_depth() const;
+
+  CsgCounters counters;
+  std::size_t move_count = 0;
+
+ private:
+  Done resize(const Projection& projection);
+  PixelRect ground_of(const Box& box) const;
+  void place(std::size_t first_solid);
+  void use_solid_program() const;
+  void begin_layer(const Layer& layer, int number);
+  PixelRect settle(Layer* layer, std::vector<std::uint32_t> pending);
+  void subtract(const Batch& batch, std::size_t query);
+  std::vector<std::uint32_t> to_look_at_again(const Layer& layer) const;
+  void mark_inside(const Layer& layer);
+  void compose(const PixelRect& rect);
+
+  Programs programs_;
+  CsgOptions options_;
+  GLint max_size_px_ = 1;
+  GlVertexArray no_vertices_;
+  SolidStore store_;
+  BlankStore blank_store_;
+  QueryPool queries_;
+  std::vector<Layer> layers_;
+  Layer shown_;
+
+  std::vector<Tool> tools_;
+  Box blank_mm_;
+  int convexity_ = 0;  // 0: no blank
+  std::optional<SweepBuilder> builder_;
+  std::vector<Solid> solids_;
+  std::vector<std::uint32_t> order_;  // of solids_, about from front to back
+  std::size_t drawn_solids_ = 0;      // that the layers know
+  std::uint64_t time_ = 1;            // counts batches; 0 is before all
+  GLint mark_ = kLastMark;            // of the batch last drawn, in the stencil
+  Projection projection_;
+  glm::ivec2 size_px_{0};
+  bool is_old_ = true;  // the layers, all of them
+};
+
+Done CsgRenderer::Impl::set_blank(const CsgBlank& blank) {
+  if (Done done = check(blank); !done) return done;
+  clear_moves();
+  blank_store_.set(blank);
+  blank_mm_ = {};
+  for (const glm::vec3& p : blank.mesh.positions_mm) blank_mm_.extend(Vec3(p));
+  convexity_ = blank.convexity;
+  const Vec3 size = blank_mm_.size();
+  const double top = blank_mm_.max.z;
+  builder_.emplace(options_.tolerance_mm, top,
+                   top + kAboveBlank * std::max({size.x, size.y, size.z}));
+  return std::monostate{};
+}
+
+Done CsgRenderer::Impl::set_tools(std::span<const CsgTool> tools) {
+  std::vector<Tool> taken;
+  for (const CsgTool& tool : tools) {
+    Result<std::vector<ConvexProfile>> pieces = convex_pieces(tool.shape.cutter);
+    if (!pieces) return Error{fmt::format("tool {}: {}", taken.size(), pieces.error())};
+    for (ConvexProfile& piece : *pieces) piece = simplified(piece, options_.tolerance_mm);
+    taken.push_back({std::move(*pieces), tool.color});
+  }
+  tools_ = std::move(taken);
+  clear_moves();
+  return std::monostate{};
+}
+
+PixelRect CsgRenderer::Impl::ground_of(const Box& box) const {
+  const Vec3 size = blank_mm_.size();
+  const double steps_per_mm = kGround_steps / std::max(size.x, size.y);
+  const auto step = [steps_per_mm](double mm) {
+    return static_cast<int>(
+        std::clamp(std::floor(mm * steps_per_mm), 0.0, static_cast<double>(kGround_steps - 1)));
+  };
+  return {{step(box.min.x - blank_mm_.min.x), step(box.min.y - blank_mm_.min.y)},
+          {step(box.max.x - blank_mm_.min.x) + 1, step(box.max.y - blank_mm_.min.y) + 1}};
+}
+
+void CsgRenderer::Impl::append(std::span<const SweptMove> moves) {
+  assert(builder_);
+  for (const SweptMove& move : moves) {
+    assert(move.tool < tools_.size());
+    for (const ConvexProfile& piece : tools_[move.tool].pieces) {
+      const SolidMesh mesh =
+          builder_->build(piece, move.from_mm, move.to_mm, tools_[move.tool].color);
+      if (mesh.indices.empty() || !overlaps(mesh.bounds_mm, blank_mm_)) continue;
+      counters.triangles += mesh.indices.size() / 3;
+      solids_.push_back({store_.add(mesh), mesh.bounds_mm, 0.5 * (move.from_mm + move.to_mm),
+                         PixelArea{}, ground_of(mesh.bounds_mm)});
+    }
+  }
+  counters.solids = solids_.size();
+  move_count += moves.size();
+}
+
+void CsgRenderer::Impl::clear_moves() {
+  store_.clear();
+  solids_.clear();
+  order_.clear();
+  counters = {};
+  move_count = 0;
+  is_old_ = true;
+}
+
+Done CsgRenderer::Impl::resize(const Projection& projection) {
+  const glm::ivec2 size_px = projection.size_px;
+  const int layers = convexity_ + (is_eye_in(blank_mm_, projection) ? 1 : 0);
+  if (size_px == size_px_ && layers == static_cast<int>(layers_.size())) return std::monostate{};
+  if (std::max(size_px.x, size_px.y) > max_size_px_) {
+    return Error{fmt::format("this OpenGL draws at most {} x {} pixels; the picture has {} x {}",
+                             max_size_px_, max_size_px_, size_px.x, size_px.y)};
+  }
+  layers_.resize(static_cast<std::size_t>(layers));
+  if (Done done = allocate(size_px, &shown_); !done) return done;
+  for (Layer& layer : layers_) {
+    if (Done done = allocate(size_px, &layer); !done) return done;
+  }
+  size_px_ = size_px;
+  is_old_ = true;
+  return std::monostate{};
+}
+
+/// Finds where the solids from this number on are in the picture, and their order.
+void CsgRenderer::Impl::place(std::size_t first_solid) {
+  std::vector<float> distance(solids_.size());
+  for (std::size_t i = first_solid; i < solids_.size(); ++i) {
+    Solid& solid = solids_[i];
+    solid.area = pixels_of(solid.bounds_mm, projection_);
+    distance[i] = -(projection_.view_from_world * glm::vec4(glm::vec3(solid.middle_mm), 1.0f)).z;
+  }
+  order_.resize(solids_.size());
+  const auto added = order_.begin() + static_cast<std::ptrdiff_t>(first_solid);
+  std::iota(added, order_.end(), static_cast<std::uint32_t>(first_solid));
+  std::stable_sort(added, order_.end(), [&distance](std::uint32_t a, std::uint32_t b) {
+    return distance[a] < distance[b];
+  });
+}
+
+void CsgRenderer::Impl::use_solid_program() const {
+  programs_.solid.use();
+  programs_.solid.set("clip_from_world", projection_.clip_from_world);
+  programs_.solid.set("view_from_world", projection_.view_from_world);
+}
+
+/// Fills the layer with its front of the blank: of the fronts that are drawn at a pixel, the one
+/// with the layer's number. Every front gets into one layer, whatever the order of triangles. The
+/// layer after those begins at the near plane, for an eye inside of the blank.
+void CsgRenderer::Impl::begin_layer(const Layer& layer, int number) {
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer.name());
+  glClearDepth(number < convexity_ ? 1.0 : 0.0);
+  glClearStencil(0);
+  glClearColor(kSection.r, kSection.g, kSection.b, 0.0f);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glEnable(GL_STENCIL_TEST);
+  glClearDepth(1.0);
+  glStencilFunc(GL_EQUAL, number, 0xff);
+  glStencilOp(GL_INCR, GL_INCR, GL_INCR);
+  glDepthFunc(GL_ALWAYS);
+  glCullFace(GL_BACK);
+  if (number < convexity_) blank_store_.draw();
+  mark_ = kLastMark;
+}
+
+/// Subtracts the solids, and again what may have to, until the layer stays as it is. Gives the
+/// pixels that changed.
+PixelRect CsgRenderer::Impl::settle(Layer* layer, std::vector<std::uint32_t> pending) {
+  glBindFramebuffer(GL_FRAMEBUFFER, layer->framebuffer.name());
+  glEnable(GL_STENCIL_TEST);
+  store_.bind();
+  PixelRect changed;
+  while (!pending.empty()) {
+    ++counters.sweeps;
+    counters.subtractions += pending.size();
+    std::vector<PixelRect> rects;
+    for (const std::uint32_t solid : pending) rects.push_back(solids_[solid].area.rect);
+    const std::vector<std::uint32_t> batch_of = layer->clock.batches(rects);
+    const std::size_t count = 1 + *std::max_element(batch_of.begin(), batch_of.end());
+    std::vector<Batch> batches(count);
+    for (std::size_t i = 0; i < pending.size(); ++i) {
+      Batch& batch = batches[batch_of[i]];
+      batch.solids.push_back(solids_[pending[i]].stored);
+      batch.is_around_eye = solids_[pending[i]].area.is_around_eye;
+      layer->looked_at[pending[i]] = time_ + batch_of[i];
+    }
+    for (std::size_t batch = 0; batch < count; ++batch) subtract(batches[batch], batch);
+    for (std::size_t i = 0; i < pending.size(); ++i) {
+      if (!queries_.has_passed(batch_of[i])) continue;
+      layer->clock.mark(rects[i], time_ + batch_of[i]);
+      layer->ground.mark(solids_[pending[i]].ground, time_ + batch_of[i]);
+      changed.extend(rects[i]);
+    }
+    counters.batches += count;
+    time_ += count;
+    pending = to_look_at_again(*layer);
+  }
+  return changed;
+}
+
+/// Solids side by side, or a single one that reaches around the eye. Its fronts may be missing
+/// then, so that a front behind the kept depth says that it keeps the pixel. Of the others, fronts
+/// before the depth say that it goes: they are right also where a face is seen so exactly edge on
+/// that it is drawn although it is hidden.
+void CsgRenderer::Impl::subtract(const Batch& batch, std::size_t query) {
+  if (mark_ == kLastMark) {
+    glStencilMask(0xff);
+    glClear(GL_STENCIL_BUFFER_BIT);
+    mark_ = 0;
+  }
+  ++mark_;
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(batch.is_around_eye ? GL_GREATER : GL_LEQUAL);
+  glStencilFunc(GL_ALWAYS, mark_, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  glCullFace(GL_BACK);
+  store_.draw(batch.solids);
+
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  glStencilFunc(batch.is_around_eye ? GL_NOTEQUAL : GL_EQUAL, mark_, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glCullFace(GL_FRONT);
+  queries_.begin(query);
+  store_.draw(batch.solids);
+  QueryPool::end();
+}
+
+/// Solids under which a pixel moved after they were subtracted last. It moved to a point of the
+/// solid that moved it, so they must overlap in space too.
+std::vector<std::uint32_t> CsgRenderer::Impl::to_look_at_again(const Layer& layer) const {
+  std::vector<std::uint32_t> again;
+  for (const std::uint32_t solid : order_) {
+    const std::uint64_t looked_at = layer.looked_at[solid];
+    if (layer.clock.newest(solids_[solid].area.rect) > looked_at &&
+        layer.ground.newest(solids_[solid].ground) > looked_at) {
+      again.push_back(solid);
+    }
+  }
+  return again;
+}
+
+/// Sets alpha to 1 where the kept point is inside the blank: more backs than fronts behind it
+/// (those before it may be behind the eye). Within the scissor rectangle.
+void CsgRenderer::Impl::mark_inside(const Layer& layer) {
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer.name());
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  mark_ = kLastMark;
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glStencilFunc(GL_ALWAYS, 0, 0xff);
+  glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
+  glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(-kFilm_slope, -kFilm_steps);
+  blank_store_.draw();
+  glDisable(GL_POLYGON_OFFSET_FILL);
+
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  glStencilFunc(GL_NOTEQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glDisable(GL_DEPTH_TEST);
+  programs_.inside.use();
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+}
+
+/// Background, and over it what is left of the layers, within the rectangle.
+void CsgRenderer::Impl::compose(const PixelRect& rect) {
+  if (rect.empty()) return;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(rect.min.x, rect.min.y, rect.max.x - rect.min.x, rect.max.y - rect.min.y);
+  for (const Layer& layer : layers_) {
+    use_solid_program();
+    mark_inside(layer);
+  }
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_CULL_FACE);
+  glBindFramebuffer(GL_FRAMEBUFFER, shown_.framebuffer.name());
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glBindVertexArray(no_vertices_.name());
+  glDepthFunc(GL_ALWAYS);
+  glDepthMask(GL_FALSE);
+  programs_.background.use();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  programs_.layer.use();
+  programs_.layer.set("colors", 0);
+  programs_.layer.set("depths", 1);
+  for (const Layer& layer : layers_) {
+    bind_texture(1, layer.depths);
+    bind_texture(0, layer.colors);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glDisable(GL_SCISSOR_TEST);
+}
+
+Done CsgRenderer::Impl::draw(const Projection& projection) {
+  if (Done done = resize(projection); !done) return done;
+  const bool is_full = is_old_ || !options_.is_local || projection != projection_;
+  projection_ = projection;
+  store_.upload();
+  if (is_full) drawn_solids_ = 0;
+  place(drawn_solids_);
+  counters.was_full = is_full;
+  counters.sweeps = counters.batches = counters.subtractions = 0;
+  const std::vector<std::uint32_t> added(
+      order_.begin() + static_cast<std::ptrdiff_t>(drawn_solids_), order_.end());
+
+  glViewport(0, 0, size_px_.x, size_px_.y);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+  glEnable(GL_DEPTH_TEST);
+  // What reaches beyond the clip planes keeps its front and its back.
+  glEnable(GL_DEPTH_CLAMP);
+  PixelRect changed;
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    use_solid_program();
+    glEnable(GL_CULL_FACE);
+    if (is_full) {
+      begin_layer(layer, static_cast<int>(i));
+      layer.clock = TileClock(size_px_);
+      layer.ground = TileClock(glm::ivec2(kGround_steps));
+    }
+    layer.looked_at.resize(solids_.size());
+    changed.extend(settle(&layer, added));
+  }
+  compose(is_full ? PixelRect{{0, 0}, size_px_} : changed);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_CULL_FACE);
+  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+  drawn_solids_ = solids_.size();
+  is_old_ = false;
+  counters.gpu_bytes = store_.gpu_bytes() + blank_store_.gpu_bytes();
+  return std::monostate{};
+}
+
+void CsgRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) const {
+  const glm::ivec2 end_px = corner_px + size_px_;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, corner_px.x, corner_px.y, end_px.x, end_px.y,
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
+Picture CsgRenderer::Impl::read() const {
+  Picture picture{size_px_.x, size_px_.y, {}};
+  const auto rows = static_cast<std::size_t>(size_px_.y);
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(size_px_.x);
+  std::vector<std::uint8_t> upward(rows * row_bytes);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size_px_.x, size_px_.y, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
+  for (std::size_t row = rows; row-- > 0;) {
+    const std::uint8_t* begin = upward.data() + row * row_bytes;
+    picture.rgb.insert(picture.rgb.end(), begin, begin + row_bytes);
+  }
+  return picture;
+}
+
+DepthPicture CsgRenderer::Impl::read_depth() const {
+  DepthPicture picture{size_px_.x, size_px_.y, {}};
+  const auto rows = static_cast<std::size_t>(size_px_.y);
+  const auto columns = static_cast<std::size_t>(size_px_.x);
+  std::vector<float> upward(rows * columns);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
+  glReadPixels(0, 0, size_px_.x, size_px_.y, GL_DEPTH_COMPONENT, GL_FLOAT, upward.data());
+  for (std::size_t row = rows; row-- > 0;) {
+    const float* begin = upward.data() + row * columns;
+    picture.depths.insert(picture.depths.end(), begin, begin + columns);
+  }
+  return picture;
+}
+
+Result<CsgRenderer> CsgRenderer::create(const CsgOptions& options) {
+  if (!(options.tolerance_mm > 0.0) || !std::isfinite(options.tolerance_mm)) {
+    return Error{
+        fmt::format("a tolerance of {} mm is not allowed for the CSG view; must be above 0",
+                    options.tolerance_mm)};
+  }
+  Result<GlProgram> background = GlProgram::create(shaders::screen_vert, shaders::background_frag);
+  Result<GlProgram> solid = GlProgram::create(shaders::csg_solid_vert, shaders::csg_solid_frag);
+  Result<GlProgram> inside = GlProgram::create(shaders::screen_vert, shaders::csg_inside_frag);
+  Result<GlProgram> layer = GlProgram::create(shaders::screen_vert, shaders::csg_layer_frag);
+  for (const auto* program : {&background, &solid, &inside, &layer}) {
+    if (!*program) return Error{program->error()};
+  }
+  return CsgRenderer(
+      std::make_unique<Impl>(Impl::Programs{std::move(*background), std::move(*solid),
+                                            std::move(*inside), std::move(*layer)},
+                             options));
+}
+
+CsgRenderer::CsgRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CsgRenderer::CsgRenderer(CsgRenderer&&) noexcept = default;
+CsgRenderer& CsgRenderer::operator=(CsgRenderer&&) noexcept = default;
+CsgRenderer::~CsgRenderer() = default;
+Done CsgRenderer::set_blank(const CsgBlank& blank) { return impl_->set_blank(blank); }
+Done CsgRenderer::set_tools(std::span<const CsgTool> tools) { return impl_->set_tools(tools); }
+void CsgRenderer::append(std::span<const SweptMove> moves) { impl_->append(moves); }
+void CsgRenderer::clear_moves() { impl_->clear_moves(); }
+Done CsgRenderer::draw(const Projection& projection) { return impl_->draw(projection); }
+void CsgRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px) const {
+  impl_->show_in(framebuffer, corner_px);
+}
+void CsgRenderer::finish() const { glFinish(); }
+Picture CsgRenderer::read() const { return impl_->read(); }
+DepthPicture CsgRenderer::read_depth() const { return impl_->read_depth(); }
+std::size_t CsgRenderer::move_count() const { return impl_->move_count; }
+const CsgCounters& CsgRenderer::counters() const { return impl_->counters; }
+
+}  // namespace kerf

@@ -1,0 +1,78 @@
+// viewer/raycast/surface_tile.h - the surface over one tile of a height grid, ready for rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/height_grid.h"
+
+namespace kerf {
+
+/// The same surface as the workpiece's patches of level 0 show: its corners lie at the corners of
+/// the cells, at the mean height of those of the four cells about it that are linked to each other
+/// (which are: SurfaceSlopes); where not all four are, each group of cells has a height of its own,
+/// and between groups there is a wall. A cell's top is two triangles:
+///
+///      d---c       d---c     Of the two diagonals the one whose middle is nearer to the height
+///      |  /|  or   |\  |     of the cell.
+///      | / |       | \ |
+///      a---b       a---b
+///
+struct SurfaceTile {
+  static constexpr int kCells = HeightGrid::kTileCells;
+  static constexpr int kBlockCells = 8;  ///< of a square that rays skip at once
+  static constexpr int kBlocks = kCells / kBlockCells;
+
+  /// Corners of a cell's top in the order a, b, c, d, where they are not those of its neighbours.
+  struct SplitCell {
+    std::array<float, 4> z;
+    std::array<std::uint32_t, 4> normal;
+  };
+  struct Detail {
+    /// By corner, of those where all four cells hang together; row by row.
+    std::array<float, (kCells + 1) * (kCells + 1)> z;
+    std::array<std::uint32_t, (kCells + 1) * (kCells + 1)> normal;  ///< packed (pack_normal)
+    /// By cell, row by row: bit 0 solid, bit 1 diagonal a-c, above them 1 + index into `splits` or
+    /// 0.
+    std::array<std::uint16_t, kCells * kCells> code;
+    std::vector<SplitCell> splits;
+  };
+
+  /// Greatest height of the surface, of the tile and of each block; kNothing without material.
+  float top = kNothing;
+  std::array<float, kBlocks * kBlocks> block_top;
+  /// None where the tile is level all over, at `top`, or has no material.
+  std::unique_ptr<const Detail> detail;
+
+  static constexpr float kNothing = -1e30f;
+};
+
+/// A cell's top: corner heights and which diagonal.
+struct CellTop {
+  float a, b, c, d;
+  bool is_solid;
+  bool is_rising;  ///< diagonal a-c
+};
+
+inline CellTop cell_top(const SurfaceTile::Detail& detail, int x, int y) {
+  const unsigned code = detail.code[static_cast<std::size_t>(y * SurfaceTile::kCells + x)];
+  const bool is_solid = (code & 1u) != 0, is_rising = (code & 2u) != 0;
+  if (const unsigned split = code >> 2; split != 0) {
+    const std::array<float, 4>& z = detail.splits[split - 1].z;
+    return {z[0], z[1], z[2], z[3], is_solid, is_rising};
+  }
+  const float* const low =
+      detail.z.data() + static_cast<std::size_t>(y * (SurfaceTile::kCells + 1) + x);
+  const float* const high = low + SurfaceTile::kCells + 1;
+  return {low[0], low[1], high[1], high[0], is_solid, is_rising};
+}
+
+/// O(cells), some tens of microseconds; much less for a level tile.
+SurfaceTile make_surface_tile(const HeightGrid& grid, int tx, int ty);
+
+/// Cells beyond a cell up to which its change can change the surface or how it is lit.
+inline constexpr int kSurfaceReach = 4;
+
+}  // namespace kerf

@@ -1,0 +1,30 @@
+// viewer/window/gpu_timer.h - how long the graphics card takes. For the sources of viewer/ only.
+#pragma once
+
+#include <epoxy/gl.h>
+
+namespace kerf {
+
+/// Times what the card does without waiting for it: the answer comes some frames later.
+class GpuTimer {
+ public:
+  GpuTimer();
+  GpuTimer(const GpuTimer&) = delete;
+  GpuTimer& operator=(const GpuTimer&) = delete;
+  ~GpuTimer();
+
+  void begin();
+  /// `sink_ms` gets the time added when it is known; frames of its kind that pass meanwhile count
+  /// like this one.
+  void end(double* sink_ms);
+  /// Takes a time that is known by now.
+  void collect();
+
+ private:
+  GLuint query_ = 0;
+  bool is_running_ = false;
+  int repeats_ = 0;
+  double* sink_ms_ = nullptr;
+};
+
+}  // namespace kerf

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewer/window/panels.h"
+
+namespace kerf {
+namespace {
+
+/// Right-aligned in the rest of the table cell.
+void figure(const std::string& text, const ImVec4& color) {
+  const float free = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+  if (free > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + free);
+  ImGui::TextColored(color, "%s", text.c_str());
+}
+
+void draw_positions(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  if (moment.axes.empty() || !ImGui::BeginTable("positions", 4)) return;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 14.0f * context.scale);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.42f);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 0.92f);
+  ImGui::TableNextColumn();
+  ImGui::TableNextColumn();
+  figure(moment.work_offset.empty()
+             ? std::string(context.word(Text::kWork))
+             : fmt::format("{} {}", context.word(Text::kWork), moment.work_offset),
+         theme::kDim);
+  for (const Text column : {Text::kMachine, Text::kToGo}) {
+    ImGui::TableNextColumn();
+    figure(context.word(column), theme::kDim);
+  }
+  for (const AxisReadout& axis : moment.axes) {
+    const int digits = axis.is_rotary ? 2 : 3;
+    ImGui::PushFont(context.fonts.readout);
+    ImGui::TableNextColumn();
+    ImGui::TextColored(theme::kText, "%c", axis.name);
+    ImGui::TableNextColumn();
+    figure(fmt::format("{:.{}f}", axis.work, digits), theme::kReadout);
+    const float drop = context.fonts.readout->FontSize - context.fonts.mono->FontSize;
+    ImGui::PopFont();
+    ImGui::PushFont(context.fonts.mono);
+    ImGui::TableNextColumn();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.7f * drop);
+    figure(fmt::format("{:.{}f}", axis.machine, digits), theme::kDim);
+    ImGui::TableNextColumn();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.7f * drop);
+    figure(axis.to_go ? fmt::format("{:.{}f}", *axis.to_go, digits) : "-", theme::kDim);
+    ImGui::PopFont();
+  }
+  ImGui::EndTable();
+}
+
+std::string tool_text(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  if (moment.tool == 0 && moment.tool_name.empty()) return context.word(Text::kNoTool);
+  return fmt::format("T{} {}", moment.tool, moment.tool_name);
+}
+
+void draw_machine_values(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  if (!ImGui::BeginTable("values", 2)) return;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 92.0f * context.scale);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+  const auto line = [&](Text label, const std::string& value) {
+    ImGui::TableNextColumn();
+    ImGui::TextColored(theme::kDim, "%s", context.word(label));
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(value.c_str());
+  };
+  line(Text::kTool, tool_text(context));
+  const char* turn = moment.spindle_rpm > 0.0 ? " M3" : moment.spindle_rpm < 0.0 ? " M4" : "";
+  line(Text::kSpindle, fmt::format("{:.0f} /min{}", std::abs(moment.spindle_rpm), turn));
+  line(Text::kFeed, moment.is_traverse ? std::string(context.word(Text::kTraverse))
+                                       : fmt::format("{:.0f} mm/min", moment.feed_mm_per_min));
+  line(Text::kCoolant, moment.coolant.empty() ? "-" : moment.coolant);
+  line(Text::kRemoved, fmt::format("{:.1f} cm³", moment.removed_mm3 / 1000.0));
+  ImGui::EndTable();
+}
+
+void draw_source(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  if (moment.source == SourceFreshness::kNone) return;
+  const bool is_live = moment.source == SourceFreshness::kLive;
+  const bool is_stale = moment.source == SourceFreshness::kStale;
+  const Text word = is_live ? Text::kLive : is_stale ? Text::kStale : Text::kLost;
+  const ImVec4& color = is_live ? theme::kGood : is_stale ? theme::kWarning : theme::kError;
+  ImGui::Separator();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetTextLineHeight();
+  ImGui::GetWindowDrawList()->AddCircleFilled({at.x + 0.35f * height, at.y + 0.55f * height},
+                                              0.30f * height, ImGui::GetColorU32(color));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + height);
+  ImGui::TextColored(color, "%s, %s %s", context.word(word),
+                     age_text(context.shown.source_age_s()).c_str(), context.word(Text::kAgo));
+  ImGui::SameLine();
+  ImGui::TextColored(theme::kDim, "%s", moment.source_name.c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", moment.source_name.c_str());
+}
+
+void draw_findings(const PanelContext& context) {
+  const auto& findings = context.shown.findings->findings;
+  if (findings.empty()) {
+    ImGui::TextColored(theme::kDim, "%s", context.word(Text::kNoFindings));
+    return;
+  }
+  ImGui::BeginChild("finding list", {0.0f, 0.0f});
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(findings.size()));
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const SceneFinding& finding = findings[static_cast<std::size_t>(i)];
+      ImGui::PushID(i);
+      ImGui::PushStyleColor(ImGuiCol_Text, theme::of(finding.severity));
+      const std::string line = finding.line > 0 ? fmt::format("{}", finding.line) : "-";
+      if (ImGui::Selectable(line.c_str(), false)) context.commands->push(SeekFindingCommand{i});
+      ImGui::PopStyleColor();
+      const bool is_hovered = ImGui::IsItemHovered();
+      ImGui::SameLine(58.0f * context.scale);
+      ImGui::TextUnformatted(finding.text.c_str());
+      if (is_hovered) {
+        ImGui::SetTooltip("%s:%d  %s\n%s", finding.file.c_str(), finding.line,
+                          clock_text(finding.time_s).c_str(), finding.text.c_str());
+      }
+      ImGui::PopID();
+    }
+  }
+  ImGui::EndChild();
+}
+
+void draw_tabs(const PanelContext& context) {
+  if (!ImGui::BeginTabBar("tabs")) return;
+  const std::string findings = fmt::format("{} {}###findings", context.word(Text::kFindings),
+                                           context.shown.findings->findings.size());
+  if (ImGui::BeginTabItem(findings.c_str())) {
+    draw_findings(context);
+    ImGui::EndTabItem();
+  }
+  const std::string view = fmt::format("{}###view", context.word(Text::kView));
+  if (ImGui::BeginTabItem(view.c_str())) {
+    ImGui::BeginChild("view tab", {0.0f, 0.0f});
+    draw_view_tab(context);
+    ImGui::EndChild();
+    ImGui::EndTabItem();
+  }
+  bool& to_front = context.state->inspection.comes_to_front;
+  const std::string point = fmt::format("{}###point", context.word(Text::kPoint));
+  if (ImGui::BeginTabItem(point.c_str(), nullptr, to_front ? ImGuiTabItemFlags_SetSelected : 0)) {
+    draw_point_tab(context);
+    ImGui::EndTabItem();
+  }
+  to_front = false;
+  ImGui::EndTabBar();
+}
+
+}  // namespace
+
+double ShownValues::source_age_s() const {
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - moment_came;
+  return moment->source_age_s + std::max(0.0, since.count());
+}
+
+std::string age_text(double seconds) {
+  if (seconds < 10.0) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 120.0) return fmt::format("{:.0f} s", std::floor(seconds));
+  if (seconds < 7200.0) return fmt::format("{:.0f} min", std::floor(seconds / 60.0));
+  return fmt::format("{:.0f} h", std::floor(seconds / 3600.0));
+}
+
+void draw_info_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {
+  if (room.right <= 0.0f) return;
+  ImGui::SetNextWindowPos({window_px.x - room.right, 0.0f});
+  ImGui::SetNextWindowSize({room.right, window_px.y - room.bottom});
+  ImGui::Begin("info", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  draw_positions(context);
+  ImGui::Separator();
+  draw_machine_values(context);
+  draw_source(context);
+  ImGui::Dummy({0.0f, 2.0f * context.scale});
+  draw_tabs(context);
+  ImGui::End();
+}
+
+}  // namespace kerf

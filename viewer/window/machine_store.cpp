@@ -1,0 +1,110 @@
+#include "viewer/window/machine_store.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "viewer/shaded_mesh.h"
+
+namespace kerf {
+namespace {
+
+glm::vec4 rgba_of(std::uint32_t color) {
+  return glm::vec4(color & 0xffu, color >> 8 & 0xffu, color >> 16 & 0xffu, color >> 24) / 255.0f;
+}
+
+}  // namespace
+
+void MachineStore::set_machine(std::shared_ptr<const SceneMachine> machine) {
+  for (const Link& link : links_) dropped_rect_.extend(link.rect);
+  links_.clear();
+  uploaded_ = 0;
+  for (const MachineLink& given : machine->links) {
+    Link link;
+    link.mesh = given.mesh;
+    link.rgba = rgba_of(given.color);
+    if (given.mesh) {
+      for (const glm::vec3& p : given.mesh->positions_mm) link.box_mm.extend(Vec3(p));
+    }
+    links_.push_back(std::move(link));
+  }
+  set_poses(std::exchange(poses_, {}));
+}
+
+void MachineStore::set_poses(std::span<const glm::mat4> link_poses) {
+  poses_.assign(link_poses.begin(), link_poses.end());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const std::optional<glm::mat4> pose =
+        i < poses_.size() ? std::optional(poses_[i]) : std::nullopt;
+    if (pose == links_[i].pose) continue;
+    links_[i].pose = pose;
+    links_[i].has_changed = true;
+  }
+}
+
+std::size_t MachineStore::upload(std::size_t budget_bytes) {
+  std::size_t bytes = 0;
+  for (; has_waiting() && (bytes == 0 || bytes < budget_bytes); ++uploaded_) {
+    Link& link = links_[uploaded_];
+    if (!link.mesh) continue;
+    const ShadedMesh shaded = shade_mesh(*link.mesh, {});
+    link.buffers.load(shaded.vertices.data(), shaded.vertices.size() * sizeof(ShadedVertex),
+                      shaded.indices);
+    link.has_changed = true;
+    bytes += link.buffers.gpu_bytes();
+  }
+  return bytes;
+}
+
+ScreenRect MachineStore::take_changed(const Projection& projection) {
+  ScreenRect changed = std::exchange(dropped_rect_, {});
+  for (std::size_t i = 0; i < uploaded_; ++i) {
+    Link& link = links_[i];
+    if (!std::exchange(link.has_changed, false) && projection == projection_) continue;
+    changed.extend(link.rect);
+    link.rect = {};
+    if (link.pose && !link.box_mm.empty()) {
+      link.rect = covered_rect(link.box_mm, {projection.clip_from_world * *link.pose,
+                                             projection.view_from_world, projection.size_px});
+    }
+    changed.extend(link.rect);
+  }
+  projection_ = projection;
+  return changed;
+}
+
+void MachineStore::draw(const Projection& projection, const GlProgram& program, float opacity,
+                        const ScreenRect& rect) const {
+  std::vector<std::pair<double, std::size_t>> order;  // by height above the plane of the eye
+  for (std::size_t i = 0; i < uploaded_; ++i) {
+    const Link& link = links_[i];
+    if (!link.pose || !link.rect.intersects(rect)) continue;
+    const Vec3 middle = 0.5 * (link.box_mm.min + link.box_mm.max);
+    const glm::vec4 seen = projection.view_from_world * *link.pose * glm::vec4(middle, 1.0f);
+    order.emplace_back(static_cast<double>(seen.z), i);
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [height, i] : order) {
+    const Link& link = links_[i];
+    program.set("clip_from_model", projection.clip_from_world * *link.pose);
+    program.set("view_from_model", projection.view_from_world * *link.pose);
+    program.set("rgba", glm::vec4(glm::vec3(link.rgba), link.rgba.a * opacity));
+    link.buffers.draw_all();
+  }
+}
+
+Box MachineStore::bounds_mm() const {
+  Box box;
+  for (const Link& link : links_) {
+    if (link.pose) box.extend(placed(link.box_mm, *link.pose));
+  }
+  return box;
+}
+
+std::size_t MachineStore::gpu_bytes() const {
+  return std::accumulate(
+      links_.begin(), links_.end(), std::size_t{0},
+      [](std::size_t sum, const Link& l) { return sum + l.buffers.gpu_bytes(); });
+}
+
+}  // namespace kerf

@@ -1,0 +1,61 @@
+// viewer/window/machine_store.h - the machine's links on the graphics card. For the sources of
+// viewer/ only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viewer/gl_objects.h"
+#include "viewer/scene.h"
+#include "viewer/window/mesh_buffers.h"
+#include "viewer/window/screen_rect.h"
+
+namespace kerf {
+
+/// Links are drawn from when they are uploaded and their pose is known.
+class MachineStore {
+ public:
+  void set_machine(std::shared_ptr<const SceneMachine> machine);
+  /// One a link; links beyond have none.
+  void set_poses(std::span<const glm::mat4> link_poses);
+
+  /// Uploads links until `budget_bytes` are used up, but at least one: shading a mesh takes about
+  /// 0.5 us a triangle. Returns the bytes.
+  std::size_t upload(std::size_t budget_bytes);
+  bool has_waiting() const { return uploaded_ < links_.size(); }
+
+  /// Where the links that moved since the last call were and are. A new projection moves all.
+  ScreenRect take_changed(const Projection& projection);
+  /// With viewer/shaders/scene, in use, of which it sets matrices and colour. Only the links that
+  /// touch `rect`; where they are seen through, from back to front.
+  void draw(const Projection& projection, const GlProgram& program, float opacity,
+            const ScreenRect& rect) const;
+
+  /// Of all links that have a pose, in the workpiece frame.
+  Box bounds_mm() const;
+  std::size_t gpu_bytes() const;
+
+ private:
+  struct Link {
+    std::shared_ptr<const TriangleMesh> mesh;
+    glm::vec4 rgba{1.0f};
+    Box box_mm;  // in its own frame
+    std::optional<glm::mat4> pose;
+    MeshBuffers buffers;
+    ScreenRect rect;  // at the last take_changed()
+    bool has_changed = false;
+  };
+
+  std::vector<Link> links_;
+  std::vector<glm::mat4> poses_;
+  std::size_t uploaded_ = 0;  // the first of the links
+  ScreenRect dropped_rect_;   // of links that are no more
+  Projection projection_;     // of the last take_changed()
+};
+
+}  // namespace kerf

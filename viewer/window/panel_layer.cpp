@@ -1,0 +1,33 @@
+#include "viewer/window/panel_layer.h"
+
+#include <fmt/format.h>
+
+#include "viewer/window/scene_renderer.h"
+
+namespace kerf {
+
+Done PanelLayer::resize(glm::ivec2 size_px) {
+  if (size_px == size_px_) return std::monostate{};
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glBindRenderbuffer(GL_RENDERBUFFER, color_.name());
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size_px.x, size_px.y);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.name());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return Error{
+        fmt::format("OpenGL cannot draw a window of {} x {} pixels", size_px.x, size_px.y)};
+  }
+  size_px_ = size_px;
+  return std::monostate{};
+}
+
+void PanelLayer::show() const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glDisable(GL_SCISSOR_TEST);
+  glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, 0, 0, size_px_.x, size_px_.y, GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
+}
+
+Picture PanelLayer::read() const { return read_framebuffer(framebuffer_.name(), size_px_); }
+
+}  // namespace kerf

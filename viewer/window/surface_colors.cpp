@@ -1,0 +1,128 @@
+#include "viewer/window/surface_colors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+/// Every OpenGL 3.3 has textures of at least 1024 x 1024.
+constexpr int kRow = 1024;
+
+using Stops = std::array<glm::vec3, 5>;
+/// Of rising brightness, so that heights are told apart in grey as well.
+constexpr Stops kHeightStops{glm::vec3(0.16f, 0.14f, 0.46f), glm::vec3(0.10f, 0.42f, 0.66f),
+                             glm::vec3(0.12f, 0.66f, 0.58f), glm::vec3(0.62f, 0.82f, 0.30f),
+                             glm::vec3(0.99f, 0.91f, 0.42f)};
+/// Too much gone in red, right in green, left over in blue.
+constexpr Stops kDeviationStops{glm::vec3(0.76f, 0.08f, 0.10f), glm::vec3(0.96f, 0.58f, 0.34f),
+                                glm::vec3(0.46f, 0.74f, 0.46f), glm::vec3(0.48f, 0.70f, 0.94f),
+                                glm::vec3(0.10f, 0.22f, 0.74f)};
+/// Full colour, in tolerances.
+constexpr double kFullDeviation = 2.0;
+
+const Stops& stops_of(ColorBy mode) {
+  return mode == ColorBy::kDeviation ? kDeviationStops : kHeightStops;
+}
+
+glm::vec3 rgb_of(std::uint32_t color) {
+  return glm::vec3(color & 0xffu, color >> 8 & 0xffu, color >> 16 & 0xffu) / 255.0f;
+}
+
+std::uint32_t packed(const glm::vec3& rgb) {
+  const auto byte = [](float v) { return static_cast<std::uint32_t>(std::lround(255.0f * v)); };
+  return 0xff000000u | byte(rgb.z) << 16 | byte(rgb.y) << 8 | byte(rgb.x);
+}
+
+/// Digits after the point that tell the steps of a legend apart.
+int digits_for(double step) {
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(std::max(step, 1e-9)))), 0, 6);
+}
+
+}  // namespace
+
+void SurfaceColors::set(std::shared_ptr<const CutColors> colors) {
+  colors_ = std::move(colors);
+  GLint largest = kRow;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  const std::size_t most = static_cast<std::size_t>(kRow) * static_cast<std::size_t>(largest);
+  std::vector<std::uint32_t> texels = colors_->of_move;
+  texels.resize(std::min(texels.size(), most));
+  move_count_ = static_cast<int>(texels.size());
+  const int rows = std::max(1, (move_count_ + kRow - 1) / kRow);
+  texels.resize(static_cast<std::size_t>(rows) * kRow, colors_->other);
+  allocate_texture(texture_, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, {kRow, rows}, GL_NEAREST);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kRow, rows, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  gpu_bytes_ = texels.size() * sizeof(std::uint32_t);
+}
+
+ColorBy SurfaceColors::available(ColorBy wanted) const {
+  if (wanted == ColorBy::kPlain || needs(wanted) != VertexData::kCutBy) return wanted;
+  return colors_ && colors_->mode == wanted ? wanted : ColorBy::kPlain;
+}
+
+VertexData SurfaceColors::needs(ColorBy mode) {
+  switch (mode) {
+    case ColorBy::kHeight:
+      return VertexData::kNone;
+    case ColorBy::kPlain:
+    case ColorBy::kTool:
+    case ColorBy::kRemovalRate:
+    case ColorBy::kLineRange:
+      return VertexData::kCutBy;
+    case ColorBy::kDeviation:
+      break;
+  }
+  return VertexData::kDeviation;
+}
+
+void SurfaceColors::bind(const GlProgram& program, ColorBy mode, const ColorScale& scale) const {
+  const VertexData data = needs(mode);
+  program.set("source", data == VertexData::kCutBy ? 1 : data == VertexData::kDeviation ? 2 : 0);
+  const double range = std::max(scale.highest_mm - scale.lowest_mm, 1e-6);
+  program.set("heights",
+              glm::vec2(static_cast<float>(scale.lowest_mm), static_cast<float>(1.0 / range)));
+  program.set("tolerance_mm", static_cast<float>(scale.tolerance_mm));
+  const Stops& stops = stops_of(mode);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    program.set(fmt::format("stops[{}]", i).c_str(), stops[i]);
+  }
+  const bool is_plain = mode == ColorBy::kPlain || !colors_;
+  program.set("move_count", is_plain ? 0 : move_count_);
+  program.set("other_rgb", is_plain ? kCut : rgb_of(colors_->other));
+  program.set("not_cut_rgb", is_plain ? kNotCut : rgb_of(colors_->not_cut));
+  bind_texture(0, texture_);
+  program.set("move_colors", 0);
+}
+
+std::vector<ColorLegendEntry> SurfaceColors::legend(ColorBy mode, const ColorScale& scale) const {
+  std::vector<ColorLegendEntry> entries;
+  const VertexData data = needs(mode);
+  if (mode == ColorBy::kPlain) return entries;
+  if (data == VertexData::kCutBy) return colors_ ? colors_->legend : entries;
+  const Stops& stops = stops_of(mode);
+  if (data == VertexData::kDeviation) {
+    const double tolerance = scale.tolerance_mm;
+    const int digits = digits_for(tolerance);
+    const double full = kFullDeviation * tolerance;
+    const std::array<std::string, 5> texts{
+        fmt::format("< {:.{}f} mm", -full, digits), fmt::format("{:.{}f} mm", -tolerance, digits),
+        fmt::format("0 mm"), fmt::format("{:+.{}f} mm", tolerance, digits),
+        fmt::format("> {:+.{}f} mm", full, digits)};
+    for (std::size_t i = 0; i < stops.size(); ++i) entries.push_back({packed(stops[i]), texts[i]});
+    return entries;
+  }
+  const double step = (scale.highest_mm - scale.lowest_mm) / (stops.size() - 1);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const double z = scale.lowest_mm + step * static_cast<double>(i);
+    entries.push_back({packed(stops[i]), fmt::format("{:.{}f} mm", z, digits_for(step))});
+  }
+  return entries;
+}
+
+}  // namespace kerf

@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "viewer/window/panels.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kMegabyte = 1024.0 * 1024.0;
+constexpr std::array kObjects{Text::kWorkpiece, Text::kCutter,      Text::kHolder, Text::kTraverses,
+                              Text::kFeeds,     Text::kPlanned,     Text::kBlank,  Text::kFrames,
+                              Text::kFindings,  Text::kMachineParts};
+static_assert(kObjects.size() == kSceneObjectCount);
+constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
+                                 Text::kColorTool,      Text::kColorRemovalRate,
+                                 Text::kColorLineRange, Text::kColorDeviation};
+
+bool header(const PanelContext& context, Text title, bool is_open) {
+  return ImGui::CollapsingHeader(
+      fmt::format("{}###{}", context.word(title), static_cast<int>(title)).c_str(),
+      is_open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+void draw_objects(const PanelContext& context) {
+  if (!header(context, Text::kObjects, true)) return;
+  if (!ImGui::BeginTable("objects", 2)) return;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.7f);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4.0f * context.scale, 0.0f});
+  for (std::size_t object = 0; object < kSceneObjectCount; ++object) {
+    ObjectLook& look = context.settings->drawing.looks[object];
+    ImGui::PushID(static_cast<int>(object));
+    ImGui::TableNextColumn();
+    ImGui::Checkbox(context.word(kObjects[object]), &look.is_visible);
+    ImGui::TableNextColumn();
+    ImGui::SetNextItemWidth(-1.0f);
+    auto percent = static_cast<int>(look.opacity * 100.0f + 0.5f);
+    if (ImGui::SliderInt("##opacity", &percent, 5, 100, "%d %%", ImGuiSliderFlags_AlwaysClamp)) {
+      look.opacity = 0.01f * static_cast<float>(percent);
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", context.word(Text::kOpacity));
+    ImGui::PopID();
+  }
+  ImGui::PopStyleVar();
+  ImGui::EndTable();
+}
+
+void draw_legend(const PanelContext& context) {
+  const float side = ImGui::GetTextLineHeight();
+  for (const ColorLegendEntry& entry : context.legend) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x + 4.0f, at.y + 2.0f},
+                                              {at.x + 4.0f + 1.4f * side, at.y + side - 1.0f},
+                                              entry.color | 0xff000000u, 2.0f);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2.0f * side);
+    ImGui::TextUnformatted(entry.text.c_str());
+  }
+}
+
+void draw_line_range(const PanelContext& context) {
+  const auto& files = context.shown.program->files;
+  const int most = files.empty() ? 1 : files.front().line_count();
+  PanelState& state = *context.state;
+  bool is_changed = false;
+  const auto field = [&](Text label, int* line) {
+    ImGui::SetNextItemWidth(120.0f * context.scale);
+    if (ImGui::InputInt(context.word(label), line, 1, 100)) {
+      *line = std::clamp(*line, 1, most);
+      is_changed = true;
+    }
+  };
+  field(Text::kFirstLine, &state.first_line);
+  field(Text::kLastLine, &state.last_line);
+  if (is_changed) context.commands->push(color_command(*context.settings, *context.state));
+}
+
+void draw_colors(const PanelContext& context) {
+  if (!header(context, Text::kColors, true)) return;
+  DrawOptions& drawing = context.settings->drawing;
+  ImGui::SetNextItemWidth(-1.0f);
+  const auto mode = static_cast<std::size_t>(drawing.color_by);
+  if (ImGui::BeginCombo("##colors", context.word(kColorModes[mode]))) {
+    for (std::size_t i = 0; i < kColorModes.size(); ++i) {
+      if (!ImGui::Selectable(context.word(kColorModes[i]), i == mode) || i == mode) continue;
+      drawing.color_by = static_cast<ColorBy>(i);
+      context.commands->push(color_command(*context.settings, *context.state));
+    }
+    ImGui::EndCombo();
+  }
+  if (drawing.color_by == ColorBy::kLineRange) draw_line_range(context);
+  if (drawing.color_by == ColorBy::kDeviation) {
+    ImGui::SetNextItemWidth(120.0f * context.scale);
+    double value = drawing.tolerance_mm;
+    const std::string label = fmt::format("{} (mm)", context.word(Text::kTolerance));
+    if (ImGui::InputDouble(label.c_str(), &value, 0.005, 0.05, "%.3f")) {
+      drawing.tolerance_mm = std::clamp(value, kMinTolerance_mm, kMaxTolerance_mm);
+    }
+  }
+  if (drawing.color_by != ColorBy::kPlain && context.legend.empty()) {
+    ImGui::TextColored(theme::kDim, "%s", context.word(Text::kNoColorsYet));
+  }
+  draw_legend(context);
+}
+
+void draw_section(const PanelContext& context) {
+  if (!header(context, Text::kSection, true)) return;
+  SectionChoice& section = context.settings->section;
+  const Box& bounds = context.bounds_mm;
+  ImGui::Checkbox(context.word(Text::kSection), &section.is_on);
+  for (int axis = 0; axis < 3; ++axis) {
+    ImGui::SameLine();
+    const char name[] = {"XYZ"[axis], '\0'};
+    if (ImGui::RadioButton(name, section.axis == axis) && section.axis != axis) {
+      section.axis = axis;
+      if (!bounds.empty()) section.offset_mm = 0.5 * (bounds.min[axis] + bounds.max[axis]);
+    }
+  }
+  if (bounds.empty()) return;
+  const double low = bounds.min[section.axis], high = bounds.max[section.axis];
+  ImGui::SetNextItemWidth(-1.0f);
+  if (ImGui::SliderScalar("##offset", ImGuiDataType_Double, &section.offset_mm, &low, &high,
+                          "%.2f mm", ImGuiSliderFlags_AlwaysClamp)) {
+    section.is_on = true;
+  }
+  ImGui::Checkbox(context.word(Text::kSectionFlip), &section.is_flipped);
+}
+
+void draw_drawing(const PanelContext& context) {
+  if (!header(context, Text::kDrawing, false)) return;
+  ViewSettings* settings = context.settings;
+  ImGui::Checkbox(context.word(Text::kLocalDrawing), &settings->drawing.is_local);
+  ImGui::Checkbox(context.word(Text::kDarkBackground), &settings->drawing.is_dark);
+  const DrawCounters& counters = context.counters;
+  const auto line = [](const std::string& text) {
+    ImGui::TextColored(theme::kDim, "%s", text.c_str());
+  };
+  line(fmt::format("{:.0f} {}", context.state->frames_per_s, context.word(Text::kFramesPerSecond)));
+  const auto kind = [&](Text name, const DrawCounters::Kind& counted) {
+    const auto frames = static_cast<double>(std::max<std::uint64_t>(1, counted.frames));
+    line(fmt::format("{} {}: {:.2f} MP, {:.2f} ms", context.word(name), counted.frames,
+                     static_cast<double>(counted.pixels) / frames * 1e-6, counted.ms / frames));
+  };
+  kind(Text::kFull, counters.full);
+  kind(Text::kLocal, counters.local);
+  kind(Text::kStill, counters.still);
+  line(fmt::format("{} {:.1f} MB", context.word(Text::kGpuMemory),
+                   static_cast<double>(counters.gpu_bytes) / kMegabyte));
+  line(fmt::format("{} {:.1f} MB, {} {:.1f} MB", context.word(Text::kUploaded),
+                   static_cast<double>(counters.uploaded_bytes) / kMegabyte,
+                   context.word(Text::kWaiting),
+                   static_cast<double>(counters.waiting_bytes) / kMegabyte));
+}
+
+void draw_language(const PanelContext& context) {
+  ViewSettings* settings = context.settings;
+  ImGui::Separator();
+  for (int i = 0; i < kLanguageCount; ++i) {
+    const auto candidate = static_cast<Language>(i);
+    if (ImGui::RadioButton(std::string(code(candidate)).c_str(), candidate == settings->language)) {
+      settings->language = candidate;
+    }
+    ImGui::SameLine();
+  }
+  ImGui::SetNextItemWidth(86.0f * context.scale);
+  constexpr std::array kScales{0.85, 1.0, 1.25, 1.5, 2.0};
+  if (ImGui::BeginCombo(context.word(Text::kTextSize),
+                        fmt::format("{:.0f} %", 100.0 * settings->text_scale).c_str())) {
+    for (const double scale : kScales) {
+      if (ImGui::Selectable(fmt::format("{:.0f} %", 100.0 * scale).c_str(),
+                            scale == settings->text_scale)) {
+        settings->text_scale = scale;
+      }
+    }
+    ImGui::EndCombo();
+  }
+}
+
+}  // namespace
+
+void draw_view_tab(const PanelContext& context) {
+  draw_objects(context);
+  draw_colors(context);
+  draw_section(context);
+  draw_drawing(context);
+  draw_language(context);
+}
+
+ColorCommand color_command(const ViewSettings& settings, const PanelState& state) {
+  return {settings.drawing.color_by, state.first_line, state.last_line};
+}
+
+std::optional<SectionPlane> section_plane(const SectionChoice& choice) {
+  if (!choice.is_on) return std::nullopt;
+  SectionPlane plane;
+  const double sign = choice.is_flipped ? 1.0 : -1.0;
+  plane.normal = Vec3(0.0);
+  plane.normal[choice.axis] = sign;
+  plane.offset_mm = sign * choice.offset_mm;
+  return plane;
+}
+
+}  // namespace kerf

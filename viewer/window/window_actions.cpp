@@ -1,0 +1,302 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <limits>
+
+#include "viewer/window/window_impl.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kWheelZoom = 1.15;
+constexpr double kSpeedStep = 2.0;
+/// DetailCommand when the scale has changed by this factor.
+constexpr double kDetailStep = 2.0;
+constexpr float kClearOpacity = 0.35f;
+/// A button that moved less than this while it was down has clicked, not dragged.
+constexpr float kClickSlack_px = 4.0f;
+
+/// A name that is free: the second, and a number if several pictures are taken in it.
+std::string free_picture_path(const std::string& folder) {
+  const std::string stem = fmt::format("{}/kerf-{:%Y%m%d-%H%M%S}", folder.empty() ? "." : folder,
+                                       fmt::localtime(std::time(nullptr)));
+  std::string path = stem + ".png";
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(path, error); ++number) {
+    path = fmt::format("{}-{}.png", stem, number);
+  }
+  return path.starts_with("./") ? path.substr(2) : path;
+}
+
+}  // namespace
+
+void Window::Impl::move_camera() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 unit(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y);
+  const glm::vec2 cursor = (glm::vec2(io.MousePos.x, io.MousePos.y) - area_top_px_) * unit;
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) pressed_in_picture_ = !io.WantCaptureMouse;
+  if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && pressed_in_picture_) {
+    pressed_in_picture_ = false;
+    const float slack = kClickSlack_px * scale_;
+    if (io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] <= slack * slack) click(cursor);
+  }
+  if (io.WantCaptureMouse) return;
+  const glm::vec2 drag = glm::vec2(io.MouseDelta.x, io.MouseDelta.y) * unit;
+  const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
+                    ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
+                    (ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
+                     (io.KeyShift || settings_.flat != FlatView::kNone));
+  if (pans) {
+    camera_.pan(drag, area_px_);
+  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    camera_.orbit(drag, area_px_);
+  }
+  if (io.MouseWheel != 0.0f) {
+    camera_.zoom(std::pow(kWheelZoom, static_cast<double>(io.MouseWheel)), cursor, area_px_);
+  }
+}
+
+void Window::Impl::click(glm::vec2 cursor_px) {
+  const std::optional<Vec3> point = renderer_->pick(glm::ivec2(glm::floor(cursor_px)));
+  Inspection& inspection = state_.inspection;
+  if (inspection.measures) {
+    if (!point) return;
+    if (inspection.ends_mm.size() >= 2) inspection.ends_mm.clear();
+    inspection.ends_mm.push_back(*point);
+    inspection.comes_to_front = true;
+    return;
+  }
+  inspection.asked_mm = point;
+  if (!point) return;
+  inspection.comes_to_front = true;
+  commands_.push(PickCommand{*point});
+}
+
+void Window::Impl::tell_detail() {
+  const double pixel_mm = camera_.pixel_mm(area_px_);
+  if (pixel_mm < told_pixel_mm_ * kDetailStep && pixel_mm > told_pixel_mm_ / kDetailStep) return;
+  told_pixel_mm_ = pixel_mm;
+  commands_.push(DetailCommand{pixel_mm});
+}
+
+void Window::Impl::act(Action action) {
+  touched();
+  act_on_player(action);
+  act_on_view(action);
+  act_on_panels(action);
+}
+
+void Window::Impl::act_on_panels(Action action) {
+  switch (action) {
+    case Action::kWorkpiece:
+      toggle_workpiece();
+      break;
+    case Action::kHolder: {
+      bool& is_visible = look(SceneObject::kHolder).is_visible;
+      is_visible = !is_visible;
+      break;
+    }
+    case Action::kCodePanel:
+      settings_.shows_code = !settings_.shows_code;
+      break;
+    case Action::kInfoPanel:
+      settings_.shows_info = !settings_.shows_info;
+      break;
+    case Action::kCounters:
+      settings_.shows_counters = !settings_.shows_counters;
+      break;
+    case Action::kLocalDrawing:
+      settings_.drawing.is_local = !settings_.drawing.is_local;
+      renderer_->reset_counters();
+      break;
+    case Action::kMeasure: {
+      Inspection& inspection = state_.inspection;
+      inspection.measures = !inspection.measures;
+      inspection.ends_mm.clear();
+      inspection.comes_to_front = inspection.measures;
+      break;
+    }
+    case Action::kScreenshot:
+      save_picture(renderer_->read());
+      break;
+    case Action::kWindowPicture:
+      save_picture(layer_->read());
+      break;
+    case Action::kHelp:
+      state_.shows_help = !state_.shows_help;
+      break;
+    case Action::kGoToLine:
+      state_.asks_for_line = true;
+      break;
+    case Action::kClose:
+      close();
+      break;
+    default:
+      break;
+  }
+}
+
+void Window::Impl::act_on_player(Action action) {
+  const Moment& moment = *shown_.moment;
+  if (moment.state == PlayState::kFollowing) return;  // the machine leads
+  const auto speed = [&](double factor) {
+    const double present = std::isfinite(moment.speed) ? moment.speed : kMaxSpeed;
+    commands_.push(SpeedCommand{std::clamp(present * factor, kMinSpeed, kMaxSpeed)});
+  };
+  switch (action) {
+    case Action::kPlayPause:
+      if (moment.state == PlayState::kPlaying || moment.state == PlayState::kHurrying) {
+        commands_.push(PauseCommand{});
+      } else {
+        state_.code.follows = true;
+        commands_.push(PlayCommand{});
+      }
+      break;
+    case Action::kStop:
+      commands_.push(StopCommand{});
+      break;
+    case Action::kToStart:
+      commands_.push(SeekTimeCommand{0.0});
+      break;
+    case Action::kToEnd:
+      commands_.push(SeekEndCommand{});
+      break;
+    case Action::kStepForward:
+      commands_.push(StepBlockCommand{1});
+      break;
+    case Action::kStepBack:
+      commands_.push(StepBlockCommand{-1});
+      break;
+    case Action::kFaster:
+      speed(kSpeedStep);
+      break;
+    case Action::kSlower:
+      speed(1.0 / kSpeedStep);
+      break;
+    case Action::kFullSpeed:
+      commands_.push(SpeedCommand{
+          std::isfinite(moment.speed) ? std::numeric_limits<double>::infinity() : 1.0});
+      break;
+    case Action::kNextFinding:
+      commands_.push(NextFindingCommand{1});
+      break;
+    case Action::kPreviousFinding:
+      commands_.push(NextFindingCommand{-1});
+      break;
+    case Action::kNextTool:
+      commands_.push(NextToolCommand{1});
+      break;
+    case Action::kPreviousTool:
+      commands_.push(NextToolCommand{-1});
+      break;
+    case Action::kBreakpoint:
+      set_breakpoint();
+      break;
+    default:
+      break;
+  }
+}
+
+void Window::Impl::set_breakpoint() {
+  const Moment& moment = *shown_.moment;
+  const auto& files = shown_.program->files;
+  if (moment.line < 1 || moment.file != 0 || files.empty()) return;
+  const auto& set = moment.breakpoints;
+  const bool is_set = std::binary_search(set.begin(), set.end(), moment.line);
+  commands_.push(BreakpointCommand{files.front().path(), moment.line, !is_set});
+}
+
+void Window::Impl::act_on_view(Action action) {
+  const auto look_from = [this](StandardView view) {
+    camera_.look_from(view);
+    wants_fit_ = true;
+  };
+  switch (action) {
+    case Action::kFit:
+      wants_fit_ = true;
+      break;
+    case Action::kFront:
+      look_from(StandardView::kFront);
+      break;
+    case Action::kBack:
+      look_from(StandardView::kBack);
+      break;
+    case Action::kLeft:
+      look_from(StandardView::kLeft);
+      break;
+    case Action::kRight:
+      look_from(StandardView::kRight);
+      break;
+    case Action::kTop:
+      look_from(StandardView::kTop);
+      break;
+    case Action::kBottom:
+      look_from(StandardView::kBottom);
+      break;
+    case Action::kIsometric:
+      look_from(StandardView::kIsometric);
+      break;
+    case Action::kPerspective:
+      settings_.is_perspective = !settings_.is_perspective;
+      break;
+    case Action::kFlat:
+      settings_.flat = settings_.flat == FlatView::kNone ? FlatView::kXy
+                       : settings_.flat == FlatView::kXy ? FlatView::kZx
+                                                         : FlatView::kNone;
+      wants_fit_ = true;
+      break;
+    case Action::kNextColors: {
+      constexpr int kModes = static_cast<int>(ColorBy::kDeviation) + 1;
+      ColorBy& mode = settings_.drawing.color_by;
+      mode = static_cast<ColorBy>((static_cast<int>(mode) + 1) % kModes);
+      commands_.push(color_command(settings_, state_));
+      break;
+    }
+    case Action::kSection:
+      settings_.section.is_on = !settings_.section.is_on;
+      break;
+    default:
+      break;
+  }
+}
+
+void Window::Impl::toggle_workpiece() {
+  ObjectLook& workpiece = look(SceneObject::kWorkpiece);
+  if (!workpiece.is_visible) {
+    workpiece = {true, 1.0f};
+  } else if (workpiece.opacity >= 1.0f) {
+    workpiece.opacity = kClearOpacity;
+  } else {
+    workpiece.is_visible = false;
+  }
+}
+
+void Window::Impl::save_picture(const Picture& picture) {
+  if (saving_.valid()) saving_.wait();
+  end_saving();
+  saving_path_ = free_picture_path(options_.picture_folder);
+  state_.notice = text(Text::kSaving, settings_.language);
+  // Packing takes longer than a frame may.
+  saving_ = std::async(std::launch::async, [picture, path = saving_path_] {
+    Done done = write_png(path, picture);
+    Platform::wake();
+    return done;
+  });
+}
+
+void Window::Impl::end_saving() {
+  if (!saving_.valid() || saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;
+  }
+  const Done done = saving_.get();
+  state_.notice = done ? fmt::format("{} {}", text(Text::kSaved, settings_.language), saving_path_)
+                       : done.error();
+  touched();
+}
+
+}  // namespace kerf

@@ -1,0 +1,266 @@
+// epoxy first: GLFW would bring the system's GL header otherwise.
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "viewer/window/window_impl.h"
+
+namespace kerf {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// Frames drawn after an input.
+constexpr int kSettlingFrames = 3;
+/// While news alone come, panels are drawn again at most so often: nobody reads figures faster, and
+/// the picture is not held up.
+constexpr Seconds kPanelInterval{0.05};
+/// How often it is looked whether an age that is shown reads differently by now.
+constexpr Seconds kAgeInterval{0.1};
+
+}  // namespace
+
+void FrameCounter::count(Clock::time_point now) {
+  ++frames_;
+  const Seconds passed = now - begin_;
+  if (passed < Seconds(1.0)) return;
+  // After a rest the count starts anew: a frame a minute is no rate.
+  frames_per_s_ = passed < Seconds(2.0) ? frames_ / passed.count() : 0.0;
+  begin_ = now;
+  frames_ = 0;
+}
+
+void Window::Impl::touched() {
+  frames_to_draw_ = kSettlingFrames;
+  panels_are_due_ = true;
+}
+
+double Window::Impl::longest_sleep_s() const {
+  if (is_hidden_) return 1.0;
+  if (frames_to_draw_ > 0 || renderer_->has_waiting()) return 0.0;
+  double longest_s = 1e9;
+  if (panels_are_old_) {
+    longest_s = Seconds(last_panels_ + kPanelInterval - Clock::now()).count();
+  }
+  if (shown_.moment->source != SourceFreshness::kNone) {
+    longest_s = std::min(longest_s, kAgeInterval.count());
+  }
+  return longest_s;
+}
+
+void Window::Impl::wait(double longest_s) {
+  longest_s = std::min(longest_s, longest_sleep_s());
+  if (longest_s > 0.0) {
+    glfwWaitEventsTimeout(longest_s);
+  } else {
+    glfwPollEvents();
+  }
+}
+
+void Window::Impl::find_reasons_to_draw() {
+  end_saving();
+  if (take_news()) {
+    frames_to_draw_ = std::max(frames_to_draw_, 1);
+    panels_are_old_ = true;
+  }
+  if (renderer_->has_waiting()) frames_to_draw_ = std::max(frames_to_draw_, 1);
+  if (shown_.moment->source != SourceFreshness::kNone &&
+      age_text(shown_.source_age_s()) != shown_age_) {
+    panels_are_old_ = true;
+  }
+  if (panels_are_old_ && Clock::now() - last_panels_ >= kPanelInterval) {
+    panels_are_due_ = true;
+    frames_to_draw_ = std::max(frames_to_draw_, 1);
+  }
+}
+
+bool Window::Impl::take_news() {
+  const std::unique_ptr<SceneUpdate> update = mailbox_.take();
+  if (!update) return false;
+  apply(*update);
+  return true;
+}
+
+void Window::Impl::apply(const SceneUpdate& update) {
+  renderer_->apply(update);
+  if (update.clears) shown_.findings = std::make_shared<FindingList>();
+  if (update.setup) take_setup(update.setup);
+  if (update.findings) shown_.findings = update.findings;
+  if (update.program) {
+    shown_.program = update.program;
+    state_.code = CodeScroll{};
+    const auto& files = update.program->files;
+    state_.first_line = 1;
+    state_.last_line = files.empty() ? 1 : files.front().line_count();
+  }
+  if (update.timeline) shown_.timeline = update.timeline;
+  if (update.picked) shown_.picked = update.picked;
+  if (update.moment) {
+    // Another file comes to the front, which takes Dear ImGui more than one frame.
+    if (update.moment->file != shown_.moment->file) touched();
+    shown_.moment = update.moment;
+    shown_.moment_came = Clock::now();
+  }
+}
+
+void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
+  if (!(setup->bounds_mm == shown_.setup->bounds_mm)) wants_fit_ = true;
+  shown_.setup = setup;
+  const std::string& title = setup->title;
+  glfwSetWindowTitle(window_, title.empty() ? "kerf" : fmt::format("kerf - {}", title).c_str());
+  const Box& bounds = setup->bounds_mm;
+  SectionChoice& section = settings_.section;
+  if (!bounds.empty() && !(section.offset_mm > bounds.min[section.axis] &&
+                           section.offset_mm < bounds.max[section.axis])) {
+    section.offset_mm = 0.5 * (bounds.min[section.axis] + bounds.max[section.axis]);
+  }
+}
+
+Result<bool> Window::Impl::frame(double longest_wait_s) {
+  if (was_closed_) return false;
+  wait(longest_wait_s);
+  if (Done done = platform_.check(); !done) {
+    was_closed_ = true;
+    commands_.push(CloseCommand{});
+    return Error{done.error()};
+  }
+  if (glfwWindowShouldClose(window_)) {
+    was_closed_ = true;
+    commands_.push(CloseCommand{});
+    return false;
+  }
+  find_reasons_to_draw();
+  if (is_hidden_ || frames_to_draw_ == 0) return true;
+  const Clock::duration shortest =
+      std::chrono::nanoseconds(1'000'000'000 / std::max(1, options_.max_frames_per_s));
+  if (const auto next = last_frame_ + shortest; next > Clock::now()) {
+    std::this_thread::sleep_until(next);
+    find_reasons_to_draw();
+  }
+  last_frame_ = Clock::now();
+  frame_counter_.count(last_frame_);
+  --frames_to_draw_;
+  if (Done done = draw(); !done) return Error{done.error()};
+  return true;
+}
+
+void Window::Impl::set_scale() {
+  const float scale = display_scale_ * static_cast<float>(settings_.text_scale);
+  if (scale == scale_) return;
+  scale_ = scale;
+  fonts_ = load_fonts(scale_);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+  set_style(scale_);
+  touched();
+}
+
+void Window::Impl::lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 window_px) {
+  // Screen coordinates are not pixels everywhere.
+  const glm::vec2 px_per_unit = glm::vec2(window_px) / glm::max(display, glm::vec2(1.0f));
+  const glm::ivec2 low(glm::vec2(room.left, room.bottom) * px_per_unit);
+  const glm::ivec2 high = window_px - glm::ivec2(glm::vec2(room.right, room.top) * px_per_unit);
+  area_px_ = glm::max(high - low, glm::ivec2(1));
+  area_corner_px_ = low;
+  area_top_px_ = {room.left, room.top};
+}
+
+/// Tooltips, questions and marks lie over the picture: it cannot be changed without them.
+bool Window::Impl::panels_cover_picture() const {
+  const ImDrawData* data = ImGui::GetDrawData();
+  if (data == nullptr) return false;
+  const glm::vec2 end = area_top_px_ + glm::vec2(area_px_);
+  for (int i = 0; i < data->CmdListsCount; ++i) {
+    for (const ImDrawCmd& command : data->CmdLists[i]->CmdBuffer) {
+      const ImVec4& clip = command.ClipRect;
+      if (command.ElemCount > 0 && clip.x < end.x && clip.z > area_top_px_.x && clip.y < end.y &&
+          clip.w > area_top_px_.y) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+Done Window::Impl::draw() {
+  glm::ivec2 window_px(0);
+  glfwGetFramebufferSize(window_, &window_px.x, &window_px.y);
+  if (window_px.x < 1 || window_px.y < 1) return std::monostate{};
+  if (Done done = layer_->resize(window_px); !done) return done;
+  const bool draws_panels = panels_are_due_;
+  if (draws_panels) {
+    set_scale();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    feed_mouse();
+    ImGui::NewFrame();
+    const glm::vec2 display(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y);
+    const PanelRoom room = panel_room(display, settings_, scale_);
+    lay_out(room, display, window_px);
+    move_camera();
+    draw_panels(room, display);
+    ImGui::Render();
+  }
+  camera_.set_perspective(settings_.is_perspective);
+  camera_.set_flat(settings_.flat);
+  if (wants_fit_ && !renderer_->fit_box().empty()) {
+    camera_.fit(renderer_->fit_box(), area_px_);
+    wants_fit_ = false;
+    if (draws_panels) touched();  // marks over the picture go with the camera
+  }
+  tell_detail();
+  settings_.drawing.section = section_plane(settings_.section);
+  projection_ = camera_.projection(renderer_->depth_box(), area_px_);
+  if (Done done = renderer_->draw(projection_, settings_.drawing); !done) return done;
+  renderer_->show_in(layer_->framebuffer(), area_corner_px_);
+  if (draws_panels || panels_cover_picture()) {
+    glViewport(0, 0, window_px.x, window_px.y);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  }
+  layer_->show();
+  glfwSwapBuffers(window_);
+  return platform_.check();
+}
+
+void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
+  panels_are_due_ = frames_to_draw_ > 0;  // settling
+  panels_are_old_ = false;
+  last_panels_ = Clock::now();
+  shown_age_ = age_text(shown_.source_age_s());
+  state_.frames_per_s = frame_counter_.frames_per_s();
+  state_.action.reset();
+  legend_ = renderer_->legend();
+  const PanelContext context{.shown = shown_,
+                             .counters = renderer_->counters(),
+                             .legend = legend_,
+                             .bounds_mm = renderer_->fit_box(),
+                             .fonts = fonts_,
+                             .scale = scale_,
+                             .settings = &settings_,
+                             .state = &state_,
+                             .commands = &commands_};
+  draw_inspection(context, projection_, area_top_px_);
+  draw_code_panel(context, display, room);
+  draw_info_panel(context, display, room);
+  draw_toolbar(context, display, room);
+  draw_player_bar(context, display, room);
+  if (state_.shows_help) draw_help(context, display);
+  if (state_.asks_for_line) draw_line_question(context, display);
+  if (state_.action) act(*state_.action);
+  // Dear ImGui has seen these keys go down now.
+  fresh_keys_.clear();
+  for (const auto& [key, scancode] : late_releases_) {
+    ImGui_ImplGlfw_KeyCallback(window_, key, scancode, GLFW_RELEASE, 0);
+  }
+  late_releases_.clear();
+}
+
+}  // namespace kerf

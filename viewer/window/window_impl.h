@@ -1,0 +1,155 @@
+// viewer/window/window_impl.h - the inside of the window. For its own sources only:
+//
+//     window.cpp          opening and closing, events
+//     window_frame.cpp    one turn: waiting, news, drawing
+//     window_actions.cpp  what keys, buttons and clicks do
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <deque>
+#include <future>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewer/window/panel_layer.h"
+#include "viewer/window/panels.h"
+#include "viewer/window/platform.h"
+#include "viewer/window/window.h"
+
+namespace kerf {
+
+/// Of the second that has just passed.
+class FrameCounter {
+ public:
+  using Clock = std::chrono::steady_clock;
+  void count(Clock::time_point now);
+  double frames_per_s() const { return frames_per_s_; }
+
+ private:
+  Clock::time_point begin_{};
+  int frames_ = 0;
+  double frames_per_s_ = 0.0;
+};
+
+class Window::Impl {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQueue* commands);
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+
+  Done open();
+  Result<bool> frame(double longest_wait_s);
+  void close();
+  Picture read() const { return layer_->read(); }
+  Picture read_scene() const { return renderer_->read(); }
+  const DrawCounters& counters() const { return renderer_->counters(); }
+  const ViewSettings& settings() const { return settings_; }
+  const Diagnostics& settings_faults() const { return settings_faults_; }
+
+ private:
+  // window.cpp
+  void start_panels();
+  void install_callbacks();
+  void on_key(int key, int scancode, int action, int mods);
+  void on_character(unsigned character);
+  void on_mouse_move(glm::vec2 at);
+  void on_mouse_button(int button, bool is_down);
+  void feed_mouse();
+  void remember_settings();
+
+  // window_frame.cpp
+  /// An input came: everything is drawn again, several times, since Dear ImGui settles sizes and
+  /// hovering over some frames.
+  void touched();
+  void wait(double longest_s);
+  double longest_sleep_s() const;
+  void find_reasons_to_draw();
+  bool take_news();
+  void apply(const SceneUpdate& update);
+  void take_setup(const std::shared_ptr<const SceneSetup>& setup);
+  Done draw();
+  void set_scale();
+  void lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 window_px);
+  void draw_panels(const PanelRoom& room, glm::vec2 display);
+  bool panels_cover_picture() const;
+
+  // window_actions.cpp
+  void move_camera();
+  void click(glm::vec2 cursor_px);
+  void tell_detail();
+  void act(Action action);
+  void act_on_player(Action action);
+  void act_on_view(Action action);
+  void act_on_panels(Action action);
+  void set_breakpoint();
+  void toggle_workpiece();
+  void save_picture(const Picture& picture);
+  void end_saving();
+  ObjectLook& look(SceneObject object) {
+    return settings_.drawing.looks[static_cast<std::size_t>(object)];
+  }
+
+  WindowOptions options_;
+  SceneMailbox& mailbox_;
+  CommandQueue& commands_;
+  ViewSettings settings_;
+  Diagnostics settings_faults_;
+
+  Platform platform_;
+  GLFWwindow* window_ = nullptr;
+  bool has_panels_ = false;
+  std::optional<SceneRenderer> renderer_;
+  std::optional<PanelLayer> layer_;
+  ShownValues shown_;
+  PanelState state_;
+  Fonts fonts_;
+  std::vector<ColorLegendEntry> legend_;
+  OrbitCamera camera_;
+  Projection projection_;
+  glm::ivec2 area_px_{1, 1};         // of the picture between the panels
+  glm::ivec2 area_corner_px_{0, 0};  // lower left
+  glm::vec2 area_top_px_{0.0f};      // upper left, from the upper left of the window
+  float display_scale_ = 1.0f;
+  float scale_ = 0.0f;  // of the panels
+  bool wants_fit_ = true;
+  bool pressed_in_picture_ = false;
+  double told_pixel_mm_ = 0.0;
+
+  int frames_to_draw_ = 1;
+  bool panels_are_due_ = true;  // in the next frame
+  bool panels_are_old_ = true;  // news came that they do not show yet
+  Clock::time_point last_panels_{};
+  Clock::time_point last_frame_{};
+  std::string shown_age_;
+  FrameCounter frame_counter_;
+  bool is_hidden_ = false;  // minimized
+  bool was_closed_ = false;
+
+  /// A click and the way to the next place may both happen within one slow frame: of what the mouse
+  /// did, Dear ImGui gets at most one press or release a frame, with the place where it was.
+  struct MouseEvent {
+    glm::vec2 at;
+    int button;  ///< -1: moved
+    bool is_down;
+  };
+  std::deque<MouseEvent> mouse_events_;
+  glm::vec2 mouse_at_{0.0f};
+  std::array<bool, 3> mouse_is_down_{};  // left, right, middle
+
+  // Keys that went down since Dear ImGui looked last, and which of them are up again: it would
+  // miss those that do both between two frames.
+  std::set<int> fresh_keys_;
+  std::vector<std::pair<int, int>> late_releases_;  // key, scancode
+
+  std::string saving_path_;
+  std::future<Done> saving_;
+};
+
+}  // namespace kerf
