@@ -37,6 +37,7 @@ class LineWindow {
   };
   Split split(std::span<const Motion> motions);
 
+  const LineRange& range() const { return range_; }
   bool begun() const { return begun_; }  ///< a motion within has come
   bool over() const { return over_; }    ///< one after the end has come
 

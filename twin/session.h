@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -12,28 +11,14 @@
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
-#include "stock/blank.h"
-#include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
-#include "twin/blank_choice.h"
 #include "twin/cut_stage.h"
 #include "twin/line_window.h"
 #include "twin/outcome.h"
+#include "twin/program_front.h"
 #include "twin/report.h"
-#include "twin/session_parts.h"
-#include "twin/tools.h"
 
 namespace kerf {
-
-struct SessionOptions {
-  ProgramOptions program;
-  std::vector<ToolShapeArgument> tools;  ///< of --tool
-  std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
-  StockSettings stock;
-  double margin_mm = 5;  ///< around a guessed blank
-  TimelineOptions timeline;
-  LineRange lines;  ///< cut silently up to there, reported from there, stopped there
-};
 
 /// What a session tells while it runs, for windows and tests. Every call comes from the thread in
 /// Session::run(), in program order; the workpiece may be looked at during the call only (after a
@@ -80,40 +65,28 @@ class Session {
   /// After run(). The caller may add to it what it measures itself.
   Report& report() { return report_; }
   const Report& report() const { return report_; }
-  const ZMap* stock() const {
-    return stock_.get();
-  }  ///< null if the run ended before there was one
+  /// Null if the run ended before there was one.
+  const ZMap* stock() const { return front_.stock.stock.get(); }
 
  private:
-  explicit Session(SessionOptions options);
-  bool open_program(Diagnostics& diagnostics);
-  bool read_tools(Diagnostics& diagnostics);
-  bool choose_known_blank(Diagnostics& diagnostics, Outcome& outcome);
-  bool create_stock(const Blank& blank, const std::string& origin, Diagnostics& diagnostics,
-                    Outcome& outcome);
+  Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
 
   bool guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
-  bool gather(std::span<const Motion> motions, BlankGuess& guess, ToolBook& book);
+  bool gather(std::span<const Motion> motions, BlankSurvey& survey);
   ProgramSummary interpret(Program& program, const MotionSink& sink, std::stop_token stop);
   bool cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
   bool stream(CutStage& stage, std::stop_token stop);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
-  void close_window();
   Outcome conclude(bool stopped);
-  void add_program_finding(FindingId id, Severity severity, std::string text);
-  void drop_remarks_beyond_window();
   void complete_report(const CutStage& stage);
   void complete_timing();
 
   SessionOptions options_;
-  std::unique_ptr<Program> program_;
+  ProgramFront front_;
   std::unique_ptr<Program>
       second_pass_;  ///< a guessed blank and a long file: interpreted once more
   std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
-  ToolSources tool_sources_;
-  std::unique_ptr<ZMap> stock_;
   LineWindow window_;
-  StockReport stock_facts_;   ///< description and origin
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass

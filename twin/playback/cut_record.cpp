@@ -1,6 +1,7 @@
 #include "twin/playback/cut_record.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace kerf {
 
@@ -43,6 +44,19 @@ void CutRecord::note_cut(std::size_t motion, int tool, const Cutter& cutter) {
 void CutRecord::note_cost(std::size_t motion, double cost_s) {
   if (!costs_.empty() && motion < costs_.back().motion + kCostStep) return;
   costs_.push_back({motion, cost_s});
+}
+
+void CutRecord::note_removed(std::size_t motion, double removed_mm3) {
+  std::atomic_ref(removed_mm3_[motion])
+      .store(static_cast<float>(removed_mm3), std::memory_order_relaxed);
+}
+
+std::vector<float> CutRecord::removed_mm3() const {
+  std::vector<float> copy(removed_mm3_.size());
+  for (std::size_t i = 0; i < copy.size(); ++i) {
+    copy[i] = std::atomic_ref(removed_mm3_[i]).load(std::memory_order_relaxed);
+  }
+  return copy;
 }
 
 }  // namespace kerf

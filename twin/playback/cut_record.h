@@ -11,10 +11,10 @@
 
 namespace kerf {
 
-/// Written by RecordingStock as the program is cut for the first time; a byte a motion.
+/// Written by RecordingStock as the program is cut for the first time; five bytes a motion.
 class CutRecord {
  public:
-  explicit CutRecord(std::size_t motions) : flags_(motions, 0) {}
+  explicit CutRecord(std::size_t motions) : flags_(motions, 0), removed_mm3_(motions, 0) {}
 
   /// The motion cuts: it was given to the model.
   bool cuts(std::size_t motion) const { return (flags_[motion] & kCuts) != 0; }
@@ -35,10 +35,14 @@ class CutRecord {
   /// Seconds of cutting until a motion, as measured; from samples, between them evenly.
   double cost_s(std::size_t motion) const;
 
+  /// Removed by each motion, 0 where that is not known yet. Any thread, also while it is written.
+  std::vector<float> removed_mm3() const;
+
   void note_cut(std::size_t motion, int tool, const Cutter& cutter);
   void note_finish(std::size_t motion) { flags_[motion] |= kFinishes; }
   void note_break(std::size_t motion) { flags_[motion] |= kBreaks; }
   void note_cost(std::size_t motion, double cost_s);
+  void note_removed(std::size_t motion, double removed_mm3);
 
  private:
   static constexpr std::uint8_t kCuts = 1, kFinishes = 2, kBreaks = 4, kMounts = 8;
@@ -53,8 +57,9 @@ class CutRecord {
   };
 
   std::vector<std::uint8_t> flags_;
-  std::vector<Mount> mounts_;  ///< in order
-  std::vector<Cost> costs_;    ///< in order, not closer than kCostStep motions
+  mutable std::vector<float> removed_mm3_;  ///< each an atomic
+  std::vector<Mount> mounts_;               ///< in order
+  std::vector<Cost> costs_;                 ///< in order, not closer than kCostStep motions
   static constexpr std::size_t kCostStep = 1024;
 };
 

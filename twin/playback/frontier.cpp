@@ -13,13 +13,15 @@ constexpr double kCellsAtOnce = 1e6;
 }  // namespace
 
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
-                   const TimelineOptions& options, KeyframeStore& store)
+                   const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope)
     : track_(track),
       record_(track.size()),
       stock_(std::move(blank), track, record_, store),
       book_(std::move(tools), false),
-      stage_(stock_, book_, log_, options) {
+      stage_(stock_, book_, log_, options),
+      scope_(scope) {
   stage_.set_frame(track.frame());
+  if (scope_.from > 0) stage_.hold_reports();
 }
 
 void Frontier::advance(std::size_t end) {
@@ -29,12 +31,13 @@ void Frontier::advance(std::size_t end) {
   double cells = 0;
   for (; reached_ < end && reached_ - first < kMotionsAtOnce && cells < kCellsAtOnce; ++reached_) {
     stock_.expect(first, reached_ + 1);
+    if (reached_ == scope_.from && scope_.from > 0) stage_.release_reports();
     stage_.take_timed(track_.motion(reached_), track_.step(reached_));
     if (cutter) cells += cells_under(track_.cut_move(reached_), *cutter, stock_.cell_mm());
   }
   stage_.take({});  // hands over what it has collected
   if (reached_ < track_.size() || complete_) return;
-  stage_.finish();
+  stage_.finish(scope_.whole);
   complete_ = true;
 }
 

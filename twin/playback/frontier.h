@@ -15,13 +15,19 @@
 
 namespace kerf {
 
+/// How much of a program is reported on; as in PlayerProgram.
+struct ReportScope {
+  std::size_t from = 0;
+  bool whole = true;
+};
+
 /// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
 /// of the report. Everything before reached() can afterwards be cut again from the record and the
 /// keyframes. One thread.
 class Frontier {
  public:
   Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
-           const TimelineOptions& options, KeyframeStore& store);
+           const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {});
 
   /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
   void advance(std::size_t end);
@@ -40,6 +46,7 @@ class Frontier {
   ToolBook book_;
   FindingLog log_;
   CutStage stage_;
+  ReportScope scope_;
   std::size_t reached_ = 0;
   bool complete_ = false;
 };

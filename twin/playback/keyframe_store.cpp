@@ -17,7 +17,8 @@ constexpr double kEndShare = 0.125;
 /// Memory of the tiles that `stock` does not share with the keyframe before it.
 std::size_t bytes_beside(const StockModel& stock, const StockModel& before) {
   const std::size_t tiles = stock.tile_count();
-  const std::size_t tile_bytes = (stock.cell_count() + tiles - 1) / tiles * sizeof(float);
+  const std::size_t tile_bytes =
+      (stock.cell_count() + tiles - 1) / tiles * sizeof(float) * (stock.keeps_cut_ids() ? 2 : 1);
   return stock.differing_tiles(before).size() * tile_bytes;
 }
 

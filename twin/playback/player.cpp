@@ -46,7 +46,13 @@ struct Player::Impl {
     while (take_commands(next, taken)) {
       for (const PlayerCommand& command : taken) engine.command(command);
       next = engine.work();
-      if (engine.state_due()) publish();
+      const Clock::time_point due = engine.state_due_at();
+      if (due <= Clock::now()) {
+        publish();
+      } else {
+        // Not even the last news may wait for a command.
+        next = std::min(next, due);
+      }
     }
   }
 
@@ -109,6 +115,8 @@ bool Player::wait(Ticket ticket, std::chrono::milliseconds timeout) const {
 }
 
 using Kind = PlayerCommand::Kind;
+
+std::vector<float> Player::removed_mm3() const { return impl_->engine.removed_mm3(); }
 
 Player::Ticket Player::play(double speed) {
   return impl_->send({.kind = Kind::kPlay, .number = speed});

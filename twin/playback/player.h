@@ -29,6 +29,11 @@ struct PlayerProgram {
   /// Limits for the checks (over-feed, axis limits). The programmed path is cut:
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
+  /// Motions before this one are cut, but not reported on (--from-line).
+  std::size_t report_from = 0;
+  bool whole = true;  ///< false: it goes on behind the track's end, unread
+  /// Findings that are known from reading the program; listed with those of cutting it.
+  std::vector<Finding> remarks;
 };
 
 struct PlayerOptions {
@@ -78,7 +83,8 @@ struct PlayerState {
   std::shared_ptr<const StockModel> stock;
   std::uint64_t stock_number = 0;  ///< equal numbers: the same workpiece
 
-  /// Of the part of the program that has been checked so far, in order of time.
+  /// Of the part of the program that has been checked so far, in order of time; those without one
+  /// (the remarks) at the end.
   std::shared_ptr<const std::vector<Finding>> findings;
   std::size_t motions_checked = 0;
   std::size_t keyframes = 0;
@@ -111,6 +117,9 @@ class Player {
   /// The newest state; never null. Any thread, never waits for cutting.
   std::shared_ptr<const PlayerState> state() const;
   const ProgramTrack& track() const { return *track_; }
+  /// Removed by each motion, as far as the program has been cut; 0 beyond. Any thread, a
+  /// nanosecond a motion.
+  std::vector<float> removed_mm3() const;
 
   /// `speed` > 0: program seconds a second; infinity: as fast as it can be cut, to the end.
   Ticket play(double speed = 1);
@@ -128,7 +137,7 @@ class Player {
   /// `count` tool changes or findings on (or back, < 0) from the place.
   Ticket seek_tool_change(int count);
   Ticket seek_finding(int count);
-  /// Finding number `index` of PlayerState::findings.
+  /// Finding number `index` of PlayerState::findings: its time, else its line.
   Ticket seek_finding_number(std::size_t index);
   Ticket seek_start() { return seek_motion(0); }
   Ticket seek_end() { return seek_motion(track_->size()); }

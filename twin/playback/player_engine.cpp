@@ -21,8 +21,10 @@ constexpr std::size_t kRunStep = 1024;
 /// Times of findings that differ by less are the same place.
 constexpr double kSameTime_s = 1e-9;
 
-std::vector<Finding> by_time(const std::vector<Finding>& kept) {
+std::vector<Finding> by_time(const std::vector<Finding>& kept,
+                             const std::vector<Finding>& remarks) {
   std::vector<Finding> sorted = kept;
+  sorted.insert(sorted.end(), remarks.begin(), remarks.end());
   const auto time_of = [](const Finding& f) {
     return f.time_s.value_or(std::numeric_limits<double>::infinity());
   };
@@ -36,12 +38,13 @@ std::vector<Finding> by_time(const std::vector<Finding>& kept) {
 PlayerEngine::PlayerEngine(PlayerProgram program, const PlayerOptions& options)
     : track_(std::move(program.track)),
       options_(options),
+      remarks_(std::move(program.remarks)),
       store_(options.keyframe_bytes),
       frontier_(*track_, std::move(program.blank), std::move(program.tools), program.timeline,
-                store_),
+                store_, {program.report_from, program.whole}),
       cursor_(*track_, frontier_.record(), store_),
       place_(track_->place_before(0)),
-      findings_(std::make_shared<const std::vector<Finding>>()) {}
+      findings_(std::make_shared<const std::vector<Finding>>(by_time({}, remarks_))) {}
 
 void PlayerEngine::command(const PlayerCommand& c) {
   ticket_ = c.ticket;
@@ -69,10 +72,7 @@ void PlayerEngine::command(const PlayerCommand& c) {
     case Kind::kSeekFinding:
       return find_finding(c.count);
     case Kind::kSeekFindingNumber:
-      if (c.motion >= findings_->size() || !(*findings_)[c.motion].time_s) {
-        return refuse(fmt::format("finding {} has no place in the program", c.motion + 1));
-      }
-      return go_to(track_->place_at(*(*findings_)[c.motion].time_s));
+      return seek_finding_number(c.motion);
     case Kind::kRunToMotion:
       return run_to(std::min(c.motion, track_->size()));
     case Kind::kSetBreakpoints:
@@ -178,6 +178,28 @@ void PlayerEngine::find_finding(int count) {
   go_to(destination());
   finding_count_ = count;
   finding_from_s_ = from_s;
+}
+
+/// Its time, else the first motion of its line or behind it: what the interpreter said of a block
+/// has no time.
+void PlayerEngine::seek_finding_number(std::size_t index) {
+  const Finding* const finding = index < findings_->size() ? &(*findings_)[index] : nullptr;
+  if (finding && finding->time_s) return go_to(track_->place_at(*finding->time_s));
+  const std::optional<SourceRef> line = finding ? line_of(*finding) : std::nullopt;
+  if (!line) return refuse(fmt::format("finding {} has no place in the program", index + 1));
+  const std::optional<SourceRef> moving = track_->line_with_motions(*line);
+  const std::optional<std::size_t> motion = moving ? track_->first_of_line(*moving) : std::nullopt;
+  go_to(track_->place_before(motion.value_or(track_->size())));
+}
+
+/// Nothing: it is of the program as a whole, or of a file in which nothing moves.
+std::optional<SourceRef> PlayerEngine::line_of(const Finding& finding) const {
+  if (finding.source.line == 0) return std::nullopt;
+  if (finding.file.empty()) return finding.source;
+  const std::vector<std::string>& files = track_->files();
+  const auto file = std::find(files.begin(), files.end(), finding.file);
+  if (file == files.end()) return std::nullopt;
+  return SourceRef{static_cast<std::uint32_t>(file - files.begin()), finding.source.line};
 }
 
 /// False: not known before more of the program has been checked.
@@ -307,12 +329,12 @@ PlayerEngine::Clock::time_point PlayerEngine::work() {
   return mode_ == PlayerMode::kPlaying ? now + options_.publish_period : Clock::time_point::max();
 }
 
-bool PlayerEngine::state_due() const {
-  if (urgent_) return mode_ != PlayerMode::kSeeking || Clock::now() - shown_ >= kProgressPeriod;
+PlayerEngine::Clock::time_point PlayerEngine::state_due_at() const {
+  const bool seeks = mode_ == PlayerMode::kSeeking;
+  if (urgent_ && !seeks) return Clock::time_point::min();
+  if (!changed_ && !seeks) return Clock::time_point::max();
   const bool moves = mode_ == PlayerMode::kPlaying || mode_ == PlayerMode::kRunning;
-  if (!changed_ && mode_ != PlayerMode::kSeeking) return false;
-  const Clock::duration age = Clock::now() - shown_;
-  return age >= (moves ? Clock::duration(options_.publish_period) : kProgressPeriod);
+  return shown_ + (moves ? Clock::duration(options_.publish_period) : kProgressPeriod);
 }
 
 /// A copy of the list whenever it has grown; at the end once more, with the last depths.
@@ -321,7 +343,7 @@ void PlayerEngine::refresh_findings() {
   if (kept.size() == findings_seen_ && findings_whole_ == frontier_.complete()) return;
   findings_seen_ = kept.size();
   findings_whole_ = frontier_.complete();
-  findings_ = std::make_shared<const std::vector<Finding>>(by_time(kept));
+  findings_ = std::make_shared<const std::vector<Finding>>(by_time(kept, remarks_));
 }
 
 double PlayerEngine::seek_progress() const {

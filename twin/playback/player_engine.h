@@ -57,8 +57,10 @@ class PlayerEngine {
   /// A slice. Returns when the next one is wanted: at once (a time that is over), later, or (max())
   /// not before a command.
   Clock::time_point work();
-  /// There is something new to show, and the last state is old enough.
-  bool state_due() const;
+  /// When the next state should be shown; max(): there is nothing new to show.
+  /// Any thread.
+  std::vector<float> removed_mm3() const { return frontier_.record().removed_mm3(); }
+  Clock::time_point state_due_at() const;
   std::shared_ptr<const PlayerState> take_state();
 
  private:
@@ -71,6 +73,8 @@ class PlayerEngine {
   void seek_line(const PlayerCommand& command);
   void seek_tool_change(int count);
   void find_finding(int count);
+  void seek_finding_number(std::size_t index);
+  std::optional<SourceRef> line_of(const Finding& finding) const;
   void find_breakpoint();
   const TrackPlace& destination() const { return mode_ == PlayerMode::kSeeking ? goal_ : place_; }
 
@@ -86,6 +90,7 @@ class PlayerEngine {
 
   std::shared_ptr<const ProgramTrack> track_;
   PlayerOptions options_;
+  std::vector<Finding> remarks_;
   KeyframeStore store_;
   Frontier frontier_;
   StockCursor cursor_;

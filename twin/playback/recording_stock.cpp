@@ -102,15 +102,23 @@ void RecordingStock::cut_part(const Cutter& cutter, std::span<const CutMove> mov
                               std::vector<CutReport>& reports) {
   if (moves.empty()) return;
   const auto start = std::chrono::steady_clock::now();
+  const std::size_t before = reports.size();
   stock_->cut(cutter, moves, reports);
+  note_removed(std::span(reports).subspan(before));
   cost_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record_.note_cost(previous_motion_ + 1, cost_s_);
 }
 
 void RecordingStock::finish_here(std::vector<CutReport>& reports) {
+  const std::size_t before = reports.size();
   stock_->finish(reports);
+  note_removed(std::span(reports).subspan(before));
   if (previous_) record_.note_finish(previous_motion_);
   previous_.reset();
+}
+
+void RecordingStock::note_removed(std::span<const CutReport> reports) {
+  for (const CutReport& report : reports) record_.note_removed(report.id, report.removed_mm3);
 }
 
 void RecordingStock::finish(std::vector<CutReport>& reports) { finish_here(reports); }
@@ -123,13 +131,15 @@ void RecordingStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
                          std::vector<CutReport>& reports) {
   if (cutter.spec() != previous_cutter_) previous_.reset();  // the model finishes by itself
   previous_cutter_ = cutter.spec();
+  numbered_.assign(moves.begin(), moves.end());
   std::size_t done = 0;
   for (std::size_t n = 0; n < moves.size(); ++n) {
     const std::size_t motion = motion_of(moves[n]);
+    numbered_[n].id = motion;
     bool breaks = !previous_ || breaks_between(*previous_, moves[n]);
     const bool seam = !breaks && (run_moves_ > kLongestRun || run_cells_ > kLongestRunCells);
     if (seam || (breaks && (n - done >= kMovesAPart || done == 0))) {
-      cut_part(cutter, moves.subspan(done, n - done), reports);
+      cut_part(cutter, std::span(numbered_).subspan(done, n - done), reports);
       done = n;
       if (seam) finish_here(reports);
       breaks = true;
@@ -146,7 +156,7 @@ void RecordingStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
     previous_ = moves[n];
     previous_motion_ = motion;
   }
-  cut_part(cutter, moves.subspan(done), reports);
+  cut_part(cutter, std::span(numbered_).subspan(done), reports);
 }
 
 }  // namespace kerf

@@ -26,8 +26,10 @@ inline constexpr double kLongestRunCells = 5e7;
 /// Cells that a move comes over, roughly: to cut in slices of a bounded length.
 double cells_under(const CutMove& move, const Cutter& cutter, double cell_mm);
 
-/// Stands between CutStage and the model proper. CutStage alone knows which motions cut, with which
-/// cutter, and when it has the model finished; here it is written down, motion by motion.
+/// Stands between CutStage and the model proper. The model's moves have the numbers of their
+/// motions (CutMove::id), so that what it says of them can be placed. CutStage alone knows which
+/// motions cut, with which cutter, and when it has the model finished; here it is written down,
+/// motion by motion.
 ///
 /// Keyframes are made only where a copy (which has nothing held back) goes on cutting as its
 /// original does: where the path begins anew, behind level circles, and in corners so sharp that no
@@ -73,12 +75,19 @@ class RecordingStock final : public StockModel {
   MeshPatch patch(std::uint32_t tile, int level) const override {
     return stock_->patch(tile, level);
   }
+  void keep_cut_ids(bool wanted) override { stock_->keep_cut_ids(wanted); }
+  bool keeps_cut_ids() const override { return stock_->keeps_cut_ids(); }
+  std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override {
+    return stock_->cut_id_at(point_mm);
+  }
+  std::shared_ptr<const HeightGrid> height_grid() const override { return stock_->height_grid(); }
 
  private:
   std::size_t motion_of(const CutMove& move);
   void cut_part(const Cutter& cutter, std::span<const CutMove> moves,
                 std::vector<CutReport>& reports);
   void finish_here(std::vector<CutReport>& reports);
+  void note_removed(std::span<const CutReport> reports);
   void offer_keyframe(std::size_t motion);
 
   std::unique_ptr<StockModel> stock_;
@@ -86,6 +95,7 @@ class RecordingStock final : public StockModel {
   CutRecord& record_;
   KeyframeStore& store_;
   double cell_mm_;
+  std::vector<CutMove> numbered_;  ///< those to be cut, with the numbers of their motions
   double cost_s_ = 0;
   std::size_t next_motion_ = 0;  ///< the next move given belongs to this one or a later one
   std::size_t expected_end_ = 0;

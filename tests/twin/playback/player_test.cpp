@@ -65,17 +65,19 @@ TEST(Player, StartsAtTheBeginning) {
 }
 
 TEST(Player, SeeksToAndFroShowADryRun) {
-  const std::vector<Motion> motions = test::varied_program(51, 2500);
+  const std::vector<Motion> motions = test::varied_program(51, 1500);
   PlayerOptions options;
   options.keyframe_bytes = 10'000'000;
   const auto player = open(motions, options);
   std::mt19937 random(52);
-  for (int n = 0; n < 120; ++n) {
-    const std::size_t motion = random() % (motions.size() + 1);
+  const std::vector<std::size_t> places = test::random_places(random, motions.size(), 120);
+  const auto expected = test::digests_after(motions, places);
+  for (const std::size_t motion : places) {
     const auto state = after(*player, player->seek_motion(motion));
     ASSERT_EQ(state->place.motion, motion);
-    ASSERT_EQ(state->stock->digest(), test::digest_after(motions, motion)) << motion;
+    ASSERT_EQ(state->stock->digest(), expected.at(motion)) << motion;
   }
+  ASSERT_EQ(test::digest_after(motions, places[0]), expected.at(places[0]));
 }
 
 TEST(Player, SaysWhatRunsThere) {
@@ -253,7 +255,7 @@ TEST(Player, RefusesASpeedOfNothing) {
 }
 
 TEST(Player, ChecksAheadWhileItStands) {
-  const std::vector<Motion> motions = test::varied_program(61, 1500);
+  const std::vector<Motion> motions = test::varied_program(61, 600);
   std::atomic<int> told = 0;
   PlayerOptions options;
   options.on_state = [&] { ++told; };
@@ -266,6 +268,16 @@ TEST(Player, ChecksAheadWhileItStands) {
   EXPECT_EQ(state->findings->size(), expected.size());
   EXPECT_EQ(state->place.motion, 0U);
   EXPECT_GT(told, 0);
+}
+
+/// A program so short that it is checked before the first state is old: nobody sends a command
+/// then, and yet the findings must come.
+TEST(Player, TheLastNewsComesByItself) {
+  const MotionList program = slots();
+  const auto player = open(program.list());
+  const auto state = until(
+      *player, [&](const PlayerState& s) { return s.motions_checked == program.list().size(); });
+  EXPECT_EQ(state->findings->size(), 2U);
 }
 
 /// A long program with big cutting: a seek to its end takes far longer than kInterrupt_ms, yet the

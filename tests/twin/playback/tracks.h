@@ -1,6 +1,8 @@
 // tests/twin/playback/tracks.h - programs as tracks, and shops to play them in.
 #pragma once
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <random>
 #include <span>
@@ -39,7 +41,8 @@ inline ToolSources two_tools() {
 }
 
 /// Smooth runs, sharp corners, plunges, level circles, arcs in other planes, helices, rapids above
-/// and through the block, spindle stops, tool changes, jumps of the tip, an unknown tool.
+/// and (some: their checks take most of the time) through the block, spindle stops, tool changes,
+/// jumps of the tip, an unknown tool.
 inline std::vector<Motion> varied_program(unsigned seed, int moves) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(-3, 43), depth(-6, 1), small(-0.4, 0.4);
@@ -76,7 +79,9 @@ inline std::vector<Motion> varied_program(unsigned seed, int moves) {
       at += Vec3{2, 0, 0};
       program.arc(at, center, {0, 1, 0}, kPi);
     } else if (kind < 37) {
-      at = {place(random), place(random), random() % 2 == 0 ? 5.0 : depth(random)};
+      const bool through = random() % 16 == 0;
+      if (!through) program.traverse({at.x, at.y, 5});
+      at = {place(random), place(random), through ? depth(random) : 5.0};
       program.traverse(at);
     } else if (kind == 37) {
       program.spindle(random() % 2 == 0);
@@ -102,6 +107,42 @@ inline std::string digest_after(std::span<const Motion> motions, std::size_t cou
   stage.finish();
   if (findings) *findings = log.kept();
   return stock->digest();
+}
+
+/// The same for many numbers of motions, in one run: copies of its workpiece on the way.
+inline std::map<std::size_t, std::string> digests_after(std::span<const Motion> motions,
+                                                        std::vector<std::size_t> counts) {
+  class Steps final : public StepSink {
+   public:
+    void step(const Motion&, const TimedStep& timed, std::span<const PathPiece>) override {
+      list.push_back(timed);
+    }
+    std::vector<TimedStep> list;
+  } steps;
+  Timeline timeline(TimelineOptions{}, steps);
+  for (const Motion& m : motions) timeline.push(m);
+  timeline.finish();
+  const std::unique_ptr<ZMap> stock = block_40();
+  ToolBook book(two_tools(), false);
+  FindingLog log;
+  CutStage stage(*stock, book, log, TimelineOptions{});
+  std::sort(counts.begin(), counts.end());
+  std::map<std::size_t, std::string> digests;
+  std::size_t done = 0;
+  for (const std::size_t count : counts) {
+    for (; done < count; ++done) stage.take_timed(motions[done], steps.list[done]);
+    stage.take({});  // hands over what it has collected
+    digests[count] = stock->snapshot()->digest();
+  }
+  return digests;
+}
+
+/// `count` places in a program of `size` motions; its end is one of them.
+inline std::vector<std::size_t> random_places(std::mt19937& random, std::size_t size, int count) {
+  std::vector<std::size_t> places{size};
+  while (static_cast<int>(places.size()) < count) places.push_back(random() % (size + 1));
+  std::shuffle(places.begin(), places.end(), random);
+  return places;
 }
 
 }  // namespace kerf::test

@@ -1,0 +1,182 @@
+#include "twin/playback/load_program.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "interp_bridge/parameter_file.h"
+#include "twin/playback/mounted_tools.h"
+
+namespace kerf {
+namespace {
+
+TimelineOptions without_path(TimelineOptions options) {
+  options.planner.with_path = false;
+  return options;
+}
+
+std::vector<std::string> absolute(const std::vector<std::string>& files) {
+  std::vector<std::string> out;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::absolute(file, error);
+    out.push_back(file == "-" || error ? file : path.lexically_normal().string());
+  }
+  return out;
+}
+
+ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>& table) {
+  ProgramTool out;
+  out.number = tool.number;
+  out.origin = tool.origin;
+  out.trouble = tool.trouble;
+  out.guessed = tool.guessed;
+  if (tool.cutter) out.shape = tool.cutter->spec();
+  const auto row = std::find_if(table.begin(), table.end(), [&](const ToolTableRow& entry) {
+    return entry.tool == tool.number;
+  });
+  if (row != table.end()) out.remark = row->remark;
+  return out;
+}
+
+/// The tools of a program, each once.
+class ToolList {
+ public:
+  explicit ToolList(const ToolSources& sources) : mounted_(sources), table_(sources.table) {}
+
+  void add(const Motion& m) {
+    const ResolvedTool* const tool = mounted_.at(m);
+    if (!tool || tool == last_) return;
+    last_ = tool;
+    const bool known = std::any_of(tools_.begin(), tools_.end(), [&](const ProgramTool& listed) {
+      return listed.number == tool->number;
+    });
+    if (!known) tools_.push_back(described(*tool, table_));
+  }
+
+  std::vector<ProgramTool> take() { return std::move(tools_); }
+
+ private:
+  MountedTools mounted_;
+  std::vector<ToolTableRow> table_;
+  std::vector<ProgramTool> tools_;
+  const ResolvedTool* last_ = nullptr;
+};
+
+/// One reading of a program.
+class Loading {
+ public:
+  Loading(const SessionOptions& options, const ProgramFront& front, const LoadControl& control)
+      : control_(control),
+        program_(*front.program),
+        window_(options.lines),
+        timeline_(without_path(options.timeline), builder_),
+        tools_(front.tools) {
+    if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
+  }
+
+  ProgramSummary read(Diagnostics& said) {
+    const MotionSink sink = [this](std::span<const Motion> motions) { return take(motions); };
+    ProgramSummary summary = program_.run(sink, control_.stop, said);
+    timeline_.finish();
+    return summary;
+  }
+
+  const std::optional<BlankSurvey>& survey() const { return survey_; }
+  const LineWindow& window() const { return window_; }
+  std::size_t report_from() const { return window_.begun() ? before_window_ : motions_; }
+  std::string time_model() const { return timeline_.time_model(); }
+  std::vector<ProgramTool> tools() { return tools_.take(); }
+  std::shared_ptr<const ProgramTrack> build(const std::vector<std::string>& files) {
+    return builder_.build(files, program_.workpiece_frame());
+  }
+
+ private:
+  /// False: no more motions are wanted.
+  bool take(std::span<const Motion> motions) {
+    if (survey_) survey_->add(motions);
+    if (!window_.over()) {
+      const LineWindow::Split split = window_.split(motions);
+      for (const Motion& m : motions.first(split.before + split.within)) {
+        tools_.add(m);
+        timeline_.push(m);
+      }
+      before_window_ += split.before;
+      motions_ += split.before + split.within;
+    }
+    if (control_.on_progress) control_.on_progress({program_.progress(), motions_});
+    return survey_ || !window_.over();
+  }
+
+  const LoadControl& control_;
+  Program& program_;
+  LineWindow window_;
+  ProgramTrackBuilder builder_;
+  Timeline timeline_;
+  ToolList tools_;
+  std::optional<BlankSurvey> survey_;
+  std::size_t motions_ = 0;
+  std::size_t before_window_ = 0;
+};
+
+/// Faults of the file are those of the interpreter, which reads it too: they are told once.
+std::vector<NamedOffset> read_work_offsets(const InterpreterSetup& machine) {
+  constexpr std::array<const char*, 9> kNames = {"G54", "G55",   "G56",   "G57",  "G58",
+                                                 "G59", "G59.1", "G59.2", "G59.3"};
+  std::vector<NamedOffset> offsets;
+  if (machine.parameter_path.empty()) return offsets;
+  Diagnostics faults;
+  const Result<ParameterFile> file = read_parameter_file(machine.parameter_path, faults);
+  if (!file) return offsets;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    offsets.push_back(
+        {kNames[i], file->frame(static_cast<int>(i) + 1, machine.inch_machine ? 25.4 : 1.0)});
+  }
+  return offsets;
+}
+
+}  // namespace
+
+std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
+                                            const LoadControl& control, Diagnostics& diagnostics,
+                                            Outcome& outcome) {
+  std::optional<ProgramFront> front = open_front(options, diagnostics, outcome);
+  if (!front) return nullptr;
+  auto loaded = std::make_unique<LoadedProgram>();
+  Loading loading(options, *front, control);
+  Diagnostics said;
+  loaded->summary = loading.read(said);
+  const bool stopped = control.stop.stop_requested() && loaded->summary.stopped_early;
+  FindingLog remarks;
+  if (loading.survey()) {
+    front->stock = loading.survey()->make(options.stock, diagnostics, outcome);
+    if (!front->stock.stock) return nullptr;
+    if (std::optional<Finding> warning = loading.survey()->warning()) {
+      remarks.add(std::move(*warning));
+    }
+  }
+  const ProgramEnd end =
+      conclude_program(loaded->summary, std::move(said), loading.window(), stopped, remarks);
+  loaded->outcome = outcome = end.outcome;
+  loaded->partial_reason = end.partial_reason;
+  loaded->time_model = loading.time_model();
+  loaded->files = absolute(loaded->summary.files);
+  loaded->tools = loading.tools();
+  loaded->work_offsets = read_work_offsets(options.program.machine);
+  PlayerProgram& player = loaded->player;
+  player.report_from = loading.report_from();
+  player.whole = !stopped;
+  player.track = loading.build(loaded->summary.files);
+  loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
+  player.blank = std::move(front->stock.stock);
+  loaded->cuts = std::make_shared<const CutQuery>(player.track, front->tools);
+  player.tools = std::move(front->tools);
+  player.timeline = options.timeline;
+  player.remarks = remarks.kept();
+  return loaded;
+}
+
+}  // namespace kerf

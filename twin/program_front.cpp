@@ -1,0 +1,128 @@
+#include "twin/program_front.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+void add_program_finding(FindingId id, Severity severity, std::string text, FindingLog& log) {
+  Finding finding;
+  finding.id = id;
+  finding.severity = severity;
+  finding.text = std::move(text);
+  log.add(std::move(finding));
+}
+
+void add_what_is_not_simulated(const ProgramSummary& summary, FindingLog& log) {
+  if (summary.has_rotary_motion) {
+    add_program_finding(
+        FindingId::kRotaryIgnored, Severity::kWarning,
+        "the program moves A, B or C; the Z-map has no rotary axes and cuts as if they stood", log);
+  }
+  for (const ProgramNote& note : summary.notes) {
+    Finding finding;
+    finding.id = FindingId::kNotSimulated;
+    finding.severity = Severity::kNote;
+    finding.source = note.source;
+    finding.text = fmt::format("{} is passed over{}", note.text,
+                               note.count > 1 ? fmt::format(" ({} times)", note.count) : "");
+    log.add(std::move(finding));
+  }
+}
+
+bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
+                        Diagnostics& diagnostics, Outcome& outcome) {
+  CommentBlank found;
+  if (options.blank) {
+    found = {options.blank, "--stock"};
+  } else if (!find_comment_blank(*front.program, options.program.path, found, diagnostics)) {
+    return false;
+  }
+  if (!found.blank) return true;
+  front.stock = make_stock(*found.blank, options.stock, found.origin, diagnostics, outcome);
+  return front.stock.stock != nullptr;
+}
+
+}  // namespace
+
+std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostics& diagnostics,
+                                       Outcome& outcome) {
+  ProgramFront front;
+  outcome = Outcome::kFailed;
+  front.program = Program::open(options.program, diagnostics);
+  if (!front.program) return std::nullopt;
+  if (!gather_tool_sources(options.tools, front.program.get(), options.program, front.tools,
+                           diagnostics)) {
+    return std::nullopt;
+  }
+  if (!choose_known_blank(options, front, diagnostics, outcome)) return std::nullopt;
+  outcome = Outcome::kFinished;
+  return front;
+}
+
+void BlankSurvey::add(std::span<const Motion> motions) {
+  for (const Motion& m : motions) {
+    if (is_feed(m) && m.tool != tool_) {
+      tool_ = m.tool;
+      const ResolvedTool& mounted = book_.mount(tool_, m.source.line);
+      radius_mm_ = mounted.cutter ? mounted.cutter->radius_mm() : 0;
+    }
+    guess_.add(m, radius_mm_);
+  }
+}
+
+StockSetup BlankSurvey::make(const StockSettings& settings, Diagnostics& diagnostics,
+                             Outcome& outcome) const {
+  return make_stock(guess_.blank(), settings, "guessed", diagnostics, outcome);
+}
+
+std::optional<Finding> BlankSurvey::warning() const {
+  if (!guess_.has_moves()) return std::nullopt;
+  Finding finding;
+  finding.id = FindingId::kStockGuessed;
+  finding.severity = Severity::kWarning;
+  finding.text = fmt::format(
+      "no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
+      "--stock SPEC says better)",
+      describe(guess_.blank()), margin_mm_);
+  return finding;
+}
+
+ProgramEnd conclude_program(const ProgramSummary& summary, Diagnostics said,
+                            const LineWindow& window, bool stopped, FindingLog& log) {
+  if (!window.begun() && !stopped) {
+    add_program_finding(
+        FindingId::kLineNotReached, Severity::kWarning,
+        fmt::format(
+            "--from-line: the program runs no move of line {} or beyond; nothing is reported",
+            window.range().from),
+        log);
+  }
+  add_what_is_not_simulated(summary, log);
+  if (stopped) {
+    // What the interpreter says when it is stopped is of no use to anybody.
+    const std::string reason = "interrupted before the end of the program";
+    add_program_finding(FindingId::kInterrupted, Severity::kNote, reason, log);
+    return {Outcome::kInterrupted, reason};
+  }
+  if (window.over()) {
+    // The interpreter is ahead of the cutter: what it says of lines that were not to be run is of
+    // no interest.
+    const auto until = static_cast<int>(window.range().until);
+    std::erase_if(said, [until](const Diagnostic& d) { return d.line <= 0 || d.line > until; });
+  }
+  const bool open_ended = !summary.has_program_end && !summary.stopped_early;
+  const bool end_remarked = add_interpreter_findings(said, open_ended, log);
+  if (has_error(said)) return {Outcome::kFailed, "the interpreter stopped at an error"};
+  if (!summary.has_program_end && !end_remarked && !window.over()) {
+    add_program_finding(FindingId::kNoProgramEnd, Severity::kWarning,
+                        "the program ends without M2, M30 or a closing %", log);
+  }
+  return {summary.lost_splines > 0 ? Outcome::kLossy : Outcome::kFinished, {}};
+}
+
+}  // namespace kerf

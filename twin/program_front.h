@@ -1,0 +1,83 @@
+// twin/program_front.h - the way from what the user asked for to motions and a blank; the same for
+// a dry run and for a program that is to be played.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/program.h"
+#include "stock/blank.h"
+#include "stock/cutter/shape_spec.h"
+#include "twin/blank_choice.h"
+#include "twin/finding.h"
+#include "twin/line_window.h"
+#include "twin/outcome.h"
+#include "twin/session_parts.h"
+#include "twin/timeline.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+struct SessionOptions {
+  ProgramOptions program;
+  std::vector<ToolShapeArgument> tools;  ///< of --tool
+  std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
+  StockSettings stock;
+  double margin_mm = 5;  ///< around a guessed blank
+  TimelineOptions timeline;
+  LineRange lines;  ///< cut silently up to there, reported from there, stopped there
+};
+
+/// A program that can be interpreted, and what is known before it is.
+struct ProgramFront {
+  std::unique_ptr<Program> program;
+  ToolSources tools;
+  /// Without a stock: nobody gave a blank and no comment describes one. Then it is guessed from the
+  /// motions (BlankSurvey).
+  StockSetup stock;
+};
+
+/// Checks everything that can be checked before the program is interpreted: files, comments, tool
+/// table, blank, cell size, memory. Nothing on error, with diagnostics, and `outcome` says of which
+/// kind.
+std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostics& diagnostics,
+                                       Outcome& outcome);
+
+/// Guesses the blank from all motions of a program, those beyond --until-line included: where a
+/// program works does not depend on how much of it is run. One thread.
+class BlankSurvey {
+ public:
+  BlankSurvey(double margin_mm, ToolSources tools)
+      : margin_mm_(margin_mm), guess_(margin_mm), book_(std::move(tools), true) {}
+
+  void add(std::span<const Motion> motions);
+  /// As make_stock().
+  StockSetup make(const StockSettings& settings, Diagnostics& diagnostics, Outcome& outcome) const;
+  /// Says what was assumed. Nothing where nothing moves: nothing will be cut.
+  std::optional<Finding> warning() const;
+
+ private:
+  double margin_mm_;
+  BlankGuess guess_;
+  ToolBook book_;
+  int tool_ = -1;
+  double radius_mm_ = 0;  ///< of that tool
+};
+
+/// How the reading of a program ended.
+struct ProgramEnd {
+  Outcome outcome = Outcome::kFinished;
+  std::string partial_reason;  ///< empty: everything was read
+};
+
+/// Adds the findings about the program as a whole: what it does and kerf does not, what the
+/// interpreter said (`said`; not of lines beyond the window), a missing end. `stopped`: from
+/// outside, before its end.
+ProgramEnd conclude_program(const ProgramSummary& summary, Diagnostics said,
+                            const LineWindow& window, bool stopped, FindingLog& log);
+
+}  // namespace kerf
