@@ -64,6 +64,41 @@ const char* name_of(ToolLengthFrom from) {
   return kNames[static_cast<std::size_t>(from)];
 }
 
+std::string vector_text(const Vec3& v) { return fmt::format("\"{},{},{}\"", v.x, v.y, v.z); }
+
+std::string link_text(const LinkSpec& link) {
+  const ChainLink& chain = link.chain;
+  std::string text = fmt::format("name: {}", quoted(chain.name));
+  if (!chain.parent.empty()) text += fmt::format(", parent: {}", quoted(chain.parent));
+  if (chain.joint != JointKind::kFixed) {
+    text += chain.by_joint ? fmt::format(", axis: J{}", chain.input)
+                           : fmt::format(", axis: {}", kAllAxes[chain.input]);
+    text += fmt::format(", moves: {}, direction: {}",
+                        chain.joint == JointKind::kRotary ? "turn" : "slide",
+                        vector_text(chain.direction));
+  }
+  text += fmt::format(", origin: {}", vector_text(chain.origin_mm));
+  if (!link.bodies_spec.empty()) text += fmt::format(", mesh: {}", quoted(link.bodies_spec));
+  if (!link.stl_path.empty()) {
+    text += fmt::format(", stl: {}, stl_units: {}, stl_offset: {}", quoted(link.stl_path),
+                        link.mm_per_unit == 1.0 ? "mm" : "inch", vector_text(link.mesh_offset_mm));
+  }
+  // The file has red first, the viewer has it in the lowest byte.
+  const std::uint32_t c = link.color;
+  return text + fmt::format(", color: \"#{:02x}{:02x}{:02x}{:02x}\"", c & 0xffU, (c >> 8U) & 0xffU,
+                            (c >> 16U) & 0xffU, c >> 24U);
+}
+
+void print_links(Printer& printer, const LinkedMachine& machine) {
+  printer.text("workpiece_on", machine.workpiece_on);
+  printer.text("tool_on", machine.tool_on);
+  printer.open("links");
+  for (const LinkSpec& link : machine.links) {
+    printer.line(fmt::format("- {{{}}}", link_text(link)));
+  }
+  printer.close();
+}
+
 void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.open("machine");
   printer.text("ini", machine.ini);
@@ -80,6 +115,8 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.put("tool_length", name_of(machine.tool_length));
   if (machine.tool) printer.put("tool", *machine.tool);
   if (machine.max_mm_per_min) printer.put("max_speed_mm_per_min", *machine.max_mm_per_min);
+  if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
+  if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.close();
 }
 

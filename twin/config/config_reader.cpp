@@ -51,6 +51,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   }
   machine.number("tool", out.tool);
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
+  read_drawn_machine(machine, out.drawn);
 }
 
 /// Why the Z-map cannot use it; empty: it can.

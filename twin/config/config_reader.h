@@ -66,6 +66,9 @@ std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
 /// The groups machine, tools, stock and follow.
 void read_workshop(const GroupReader& root, LiveConfig& config);
 
+/// machine.model, machine.links and what belongs to them.
+void read_drawn_machine(const GroupReader& machine, MachineChoice& out);
+
 /// The group source, after machine.
 void read_source(const GroupReader& source, LiveConfig& config);
 

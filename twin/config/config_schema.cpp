@@ -17,6 +17,8 @@ std::string form_of(const KeySpec& spec) {
   switch (spec.type) {
     case KeyType::kGroup:
       return "";
+    case KeyType::kGroups:
+      return " [{..}, ..]";
     case KeyType::kText:
       return " TEXT";
     case KeyType::kFile:

@@ -172,6 +172,10 @@ class KeyChecker {
       check_list(node, spec);
       return;
     }
+    if (spec.type == KeyType::kGroups) {
+      check_groups(node, spec);
+      return;
+    }
     if (node.kind != NodeKind::kScalar) {
       wrong(node, spec);
       return;
@@ -189,6 +193,21 @@ class KeyChecker {
       faults_.at_value(*element,
                        fmt::format("{} is not allowed; must be a text", to_string(element->kind)));
       node.faulty = true;
+    }
+  }
+
+  void check_groups(ConfigNode& node, const KeySpec& spec) {
+    if (node.kind != NodeKind::kList) {
+      wrong(node, spec);
+      return;
+    }
+    for (const auto& element : node.children) {
+      if (element->kind == NodeKind::kMap) {
+        check_group(*element, spec.path);
+      } else {
+        faults_.at_value(
+            *element, fmt::format("{} is not allowed; must be a group of keys", shown(*element)));
+      }
     }
   }
 
@@ -221,6 +240,7 @@ class KeyChecker {
         break;
       case KeyType::kGroup:
       case KeyType::kTexts:
+      case KeyType::kGroups:
         break;  // check_value() has seen to these
     }
   }
@@ -277,7 +297,10 @@ void ConfigFaults::at_value(ConfigNode& node, const std::string& message, std::s
 }
 
 void ConfigFaults::at_key(ConfigNode& node, const std::string& message, std::string hint) {
-  add(node, node.key_line, node.key_column, message, std::move(hint));
+  // An element of a list has no key.
+  const bool has_key = node.key_line > 0 || node.from_set;
+  add(node, has_key ? node.key_line : node.line, has_key ? node.key_column : node.column, message,
+      std::move(hint));
 }
 
 std::uint8_t source_type_of(const ConfigNode& root) {

@@ -17,8 +17,9 @@ enum class KeyType : std::uint8_t {
   kNumber,
   kWhole,  ///< a whole number, also as 0x1F
   kYesNo,
-  kWord,   ///< one of KeySpec::words
-  kTexts,  ///< a list of texts
+  kWord,    ///< one of KeySpec::words
+  kTexts,   ///< a list of texts
+  kGroups,  ///< a list of groups; the keys below it are those of each
 };
 
 /// Kinds of source, as bits: which of them a key is for.

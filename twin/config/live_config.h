@@ -20,6 +20,7 @@
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
 #include "twin/live/path_follower.h"
+#include "twin/machine_model/machine_choice.h"
 
 namespace kerf {
 
@@ -34,6 +35,7 @@ struct ConfigMachine {
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;
   std::optional<int> tool;               ///< in the spindle, where the source does not say
   std::optional<double> max_mm_per_min;  ///< positions that need more are a gap
+  MachineChoice drawn;                   ///< `model` and `links`
 };
 
 /// `stock:`
