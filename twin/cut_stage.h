@@ -60,6 +60,8 @@ class CutStage : private StepSink {
   void take_timed(const Motion& motion, const TimedStep& timed);
   /// All that was taken is in the workpiece.
   void complete() { flush_whole(); }
+  /// All that was taken has been given to the model, which may hold some back.
+  void hand_over() { flush(); }
   /// What is taken from here on is cut, but not reported on ..
   void hold_reports();
   /// .. until here: tool uses and totals begin with the motion that is taken next; the clock goes
@@ -70,6 +72,10 @@ class CutStage : private StepSink {
 
   const Timeline& timeline() const { return timeline_; }
   const std::vector<ToolUse>& tools() const { return uses_; }
+  /// In the spindle, as far as it has been needed; null: none that is known. Until the next call.
+  const Cutter* cutter() const {
+    return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
+  }
 
  private:
   /// What is needed when a move's report comes back.

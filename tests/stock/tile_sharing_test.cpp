@@ -252,7 +252,7 @@ TEST(ZMapSnapshot, CostsOnlyWhatChangesAndGivesItBack) {
 
 /// For ThreadSanitizer as much as for its own checks: the origin cuts on while another thread
 /// reads, meshes and drops snapshots.
-TEST(ZMapSnapshot, MayBeReadOnAnotherThreadWhileItsOriginCuts) {
+void read_while_the_origin_cuts(bool keep_cut_ids) {
   struct Frame {
     std::unique_ptr<StockModel> snapshot;
     std::string digest;
@@ -286,6 +286,7 @@ TEST(ZMapSnapshot, MayBeReadOnAnotherThreadWhileItsOriginCuts) {
     }
   });
   const auto map = make_map("box:0,0,-10:40,30,0", 0.2, 2);
+  map->keep_cut_ids(keep_cut_ids);
   std::mt19937 random(3);
   const Box reach{Vec3(0, 0, -9), Vec3(40, 30, 1)};
   for (int round = 0; round < 40; ++round) {
@@ -305,6 +306,14 @@ TEST(ZMapSnapshot, MayBeReadOnAnotherThreadWhileItsOriginCuts) {
   reader.join();
   EXPECT_EQ(checked, 40);
   EXPECT_GT(triangles, 100000u);
+}
+
+TEST(ZMapSnapshot, MayBeReadOnAnotherThreadWhileItsOriginCuts) {
+  read_while_the_origin_cuts(false);
+}
+
+TEST(ZMapSnapshot, MayBeReadOnAnotherThreadWhileItsOriginCutsAndKeepsCutIds) {
+  read_while_the_origin_cuts(true);
 }
 
 }  // namespace

@@ -63,6 +63,9 @@ namespace {
   dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
   if (!call.folder.empty() && chdir(call.folder.c_str()) != 0) _exit(126);
+  // No window comes up on the desktop of whoever runs the tests.
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
   for (const auto& [name, value] : call.environment) setenv(name.c_str(), value.c_str(), 1);
   if (call.file_size_limit >= 0) {
     const rlimit limit{static_cast<rlim_t>(call.file_size_limit),

@@ -116,7 +116,40 @@ void add_run_options(CLI::App& run, RunArguments& a) {
   run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
       ->type_name("N");
   add_output_options(run, a.outputs, a.mesh_tolerance);
+  run.add_flag("--view", a.view, "then show it in a window, at its end");
   run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
+}
+
+void add_view_options(CLI::App& view, ViewArguments& a) {
+  view.add_option("PROGRAM", a.run.source.program,
+                  "NC file, saved canonical listing (.canon), a log, or a saved workpiece")
+      ->required();
+  view.add_option("-c,--config", a.config, "configuration: machine (its model), tools, stock")
+      ->type_name("FILE");
+  view.add_option("--set", a.sets, "any key of the configuration, repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  add_program_options(view, a.run.source);
+  add_work_options(view, a.run.work);
+  view.add_option("--until-line", a.run.until_line, "nothing beyond line N")->type_name("N");
+  view.add_option("--at-line", a.at_line, "begin at line N")->type_name("N");
+  view.add_option("--speed", a.speed, "play at once: program seconds a second, 0.1 to 1000, or max")
+      ->type_name("X|max");
+  view.add_option("--keyframes", a.keyframes,
+                  "memory for jumping to and fro in the program (default 256)")
+      ->type_name("MB");
+  view.add_flag("--full-redraw", a.no_local,
+                "draw the whole picture every time, not only what has changed");
+  view.add_option("--png", a.png, "no window: a picture, at the end or at --at-line")
+      ->type_name("FILE");
+  view.add_option("--frames", a.frames, "no window: the pictures of a film, frame_000000.png ..")
+      ->type_name("DIR");
+  view.add_option("--fps", a.fps, "frames a second of the film (default 25)")->type_name("N");
+  view.add_option("--size", a.size, "of pictures (default 1280x720)")->type_name("WxH");
+  view.add_option("--view", a.view,
+                  "of pictures: iso | top | bottom | front | back | left | right (default iso)")
+      ->type_name("NAME");
+  view.add_flag("--quiet", a.run.quiet, "no warnings, no progress bar");
 }
 
 void add_canon_options(CLI::App& canon, CanonArguments& a) {
@@ -140,6 +173,8 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
   add_program_options(live, a.source);
   add_work_options(live, a.work);
   if (command == LiveCommand::kShadow) add_shadow_options(live, a);
+  live.add_flag("--no-view", a.no_view,
+                "no window (there is one where there is a display, but for --speed max)");
   live.add_option("--for", a.for_s, "end after so long")->type_name("SECONDS");
   live.add_option("--gap", a.gap,
                   "the way between two positions with a gap between them: mark | cut | ignore "

@@ -5,7 +5,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <utility>
 
@@ -15,7 +17,11 @@
 #include "twin/app/good_neighbour.h"
 #include "twin/app/live_console.h"
 #include "twin/app/stop_signals.h"
+#include "twin/app/window_host.h"
 #include "twin/config/make_source.h"
+#include "twin/view/drawn_machine.h"
+#include "twin/view/live_view.h"
+#include "twin/view/player_scene.h"
 
 namespace kerf {
 namespace {
@@ -133,8 +139,67 @@ void close_sources(Recorder* recorder, const PositionSource* log, const std::str
   }
 }
 
-int watch(LiveRequest& request, std::unique_ptr<PositionSource> source,
-          const std::stop_source& stop) {
+/// The path, text and times of the program beside the machine. What is wrong with it, the session
+/// says.
+std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::stop_token stop) {
+  SessionOptions options;
+  options.program = *request.options.program;
+  options.tools = request.options.tools;
+  options.blank = request.options.blank;
+  options.stock = request.options.stock;
+  options.timeline = request.options.cutting.timeline;
+  LoadControl control;
+  control.stop = std::move(stop);
+  Diagnostics ignored;
+  Outcome outcome = Outcome::kFailed;
+  const std::unique_ptr<LoadedProgram> loaded = load_program(options, control, ignored, outcome);
+  if (!loaded) return nullptr;
+  const ViewedProgram shown = viewed_program(*loaded, {});
+  auto program = std::make_unique<LiveProgram>();
+  program->track = loaded->player.track;
+  program->files = shown.files;
+  program->tools = shown.tools;
+  return program;
+}
+
+/// A window for what a session shows. Declared before the session, so that it ends after it.
+struct LiveWindow {
+  SceneMailbox mailbox{Window::wake};
+  CommandQueue commands;
+};
+
+LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
+                             std::stop_source stop) {
+  LiveViewOptions options;
+  const std::string& program =
+      request.options.program ? request.options.program->path : std::string();
+  options.source_name = session.source_name();
+  options.title = fmt::format(
+      "kerf - {}",
+      program.empty() ? options.source_name : std::filesystem::path(program).filename().string());
+  options.blank_mm = session.stock()->bounds_mm();
+  options.blank_outline = box_outline(options.blank_mm);
+  options.tools = session.tool_sources();
+  WorkRoom room;
+  room.frame = request.options.cutting.frame.work;
+  room.blank_mm = options.blank_mm;
+  Diagnostics diagnostics;
+  options.machine = drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
+  print(diagnostics, request.quiet);
+  options.log = request.options.log();
+  options.speed = options.log ? request.options.speed : 1.0;
+  options.on_close = [stop]() mutable { stop.request_stop(); };
+  if (options.log) options.on_speed = [&session](double speed) { session.set_speed(speed); };
+  if (!program.empty() && program != "-") {
+    options.load_program = [&request](std::stop_token token) {
+      return load_live_program(request, std::move(token));
+    };
+  }
+  return options;
+}
+
+int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::stop_source& stop,
+          LiveWindow* window) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   PositionSource* const raw_source = source.get();
@@ -167,7 +232,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source,
   LiveConsole console(request.quiet, events.file);
   std::optional<HalObserver> pins;
   if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
-  session->set_observer(pins ? static_cast<LiveObserver*>(&*pins) : &console);
+  LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
+  std::optional<LiveView> view;
+  if (window) {
+    view.emplace(view_options(request, *session, stop), *observer, window->mailbox,
+                 window->commands);
+    observer = &*view;
+  }
+  session->set_observer(observer);
   outcome = session->run(stop.get_token(), diagnostics);
   close_sources(recorder.get(), raw_source, request.record, diagnostics);
   if (console.events_error() != 0) {
@@ -186,7 +258,29 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source,
   }
   std::fflush(stdout);
   print(diagnostics, request.quiet);
+  // What it came to may be looked at until the window is closed.
+  if (view && !stop.stop_requested()) view->end(session->stock());
   return exit_code(outcome, session->report(), diagnostics);
+}
+
+/// With a window, if one is wanted and there is a display; a machine is watched without one, too.
+int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source,
+                    std::stop_source& stop) {
+  if (!request.window || !has_display()) return watch(request, std::move(source), stop, nullptr);
+  LiveWindow window;
+  const Result<int> code = work_beside_window({}, window.mailbox, window.commands, stop, [&] {
+    return watch(request, std::move(source), stop, &window);
+  });
+  if (code) return *code;
+  if (stop.stop_requested()) {
+    print({fault(code.error())}, false);
+    return kExitFailure;
+  }
+  Diagnostic d = fault(fmt::format("{}; going on without a window", code.error()));
+  d.severity = Severity::kWarning;
+  d.hint = "--no-view does not try one";
+  print({d}, request.quiet);
+  return watch(request, std::move(source), stop, nullptr);
 }
 
 }  // namespace
@@ -216,7 +310,7 @@ int live_command(const LiveArguments& arguments, LiveCommand command) {
   print(diagnostics, request.quiet);
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
   if (!source) return none_named ? kExitUsage : kExitFailure;
-  return watch(request, std::move(source), stop);
+  return watch_in_window(request, std::move(source), stop);
 }
 
 }  // namespace kerf

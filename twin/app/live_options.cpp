@@ -148,6 +148,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   complete(source.program, request.config.follow.program);
   complete(source.ini, machine.ini);
   complete(source.tool_table, machine.tool_table);
+  request.ini = source.ini;
   ProgramRequest program = understand_program(source, reader);
   WorkRequest work = understand_work(a.work, reader);
   LiveOptions& options = request.options;
@@ -185,6 +186,8 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.events = a.events;
   request.outputs = a.outputs;
   request.quiet = a.quiet;
+  // A log that is run as fast as it goes is there for its report.
+  request.window = !a.no_view && !std::isinf(request.options.speed);
   check_output_arguments(request.outputs, diagnostics);
   return request;
 }

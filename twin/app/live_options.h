@@ -34,6 +34,7 @@ struct LiveArguments {
   std::string mesh_tolerance;
   OutputPaths outputs;
   bool quiet = false;
+  bool no_view = false;
 };
 
 /// The same, understood.
@@ -43,6 +44,7 @@ struct LiveRequest {
   bool inch_machine = false;
   std::string joint_letters;   ///< of the INI
   std::string parameter_path;  ///< of the INI
+  std::string ini;             ///< empty: none
   OutputPaths outputs;
   std::string record;
   std::string events;
@@ -50,6 +52,7 @@ struct LiveRequest {
   double cpu_limit_percent = 0;  ///< 0: none
   double memory_limit_mb = 0;    ///< 0: none
   bool quiet = false;
+  bool window = false;  ///< wanted; there may be no display
 };
 
 enum class LiveCommand { kShadow, kReplay };

@@ -19,6 +19,7 @@
 #include "twin/app/live_command.h"
 #include "twin/app/machine_command.h"
 #include "twin/app/run_command.h"
+#include "twin/app/view_command.h"
 #include "twin/suggest.h"
 
 namespace kerf {
@@ -37,6 +38,7 @@ constexpr const char* kExamples =
     "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --png part.png\n"
     "  kerf shadow -c mill.yaml --program part.ngc\n"
     "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
+    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf canon part.ngc\n"
     "  kerf models\n"
     "  kerf tools\n";
@@ -44,6 +46,11 @@ constexpr const char* kExamples =
 constexpr const char* kRunExample =
     "Example:\n"
     "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n";
+
+constexpr const char* kViewExample =
+    "Examples:\n"
+    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  kerf view part.ngc --frames film --fps 25 --speed 10\n";
 
 constexpr const char* kCanonExample =
     "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
@@ -139,6 +146,9 @@ struct Commands {
     CLI::App* const run = add(app, "run", "cut a program and report", kRunExample,
                               [this] { return run_command(run_arguments); });
     add_run_options(*run, run_arguments);
+    CLI::App* const view = add(app, "view", "a program, a log or a saved workpiece in a window",
+                               kViewExample, [this] { return view_command(view_arguments); });
+    add_view_options(*view, view_arguments);
     CLI::App* const shadow =
         add(app, "shadow", "follow a machine that runs", kShadowExample,
             [this] { return live_command(shadow_arguments, LiveCommand::kShadow); });
@@ -169,6 +179,7 @@ struct Commands {
   std::vector<CLI::App*> all;
   std::vector<std::pair<CLI::App*, std::function<int()>>> calls;
   RunArguments run_arguments;
+  ViewArguments view_arguments;
   LiveArguments shadow_arguments;
   LiveArguments replay_arguments;
   CanonArguments canon_arguments;

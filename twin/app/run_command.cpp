@@ -12,6 +12,8 @@
 #include "twin/app/exit_code.h"
 #include "twin/app/progress_bar.h"
 #include "twin/app/stop_signals.h"
+#include "twin/app/view_command.h"
+#include "twin/app/window_host.h"
 
 namespace kerf {
 namespace {
@@ -64,6 +66,12 @@ int run_command(const RunArguments& arguments) {
     return kExitUsage;
   }
   check_output_places(request.outputs, diagnostics);
+  if (request.view && !has_display()) {
+    Diagnostic d;
+    d.message = "--view: no window: neither DISPLAY nor WAYLAND_DISPLAY is set";
+    d.hint = "pictures need no display: --png FILE";
+    diagnostics.push_back(std::move(d));
+  }
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
   // Before the session is opened: filling a large blank takes its time, too.
@@ -90,7 +98,12 @@ int run_command(const RunArguments& arguments) {
   }
   std::fflush(stdout);
   print(diagnostics);
-  return exit_code(outcome, session->report(), diagnostics);
+  const int code = exit_code(outcome, session->report(), diagnostics);
+  if (!request.view || stop.stop_requested() || !session->stock()) return code;
+  session.reset();
+  opened = nullptr;
+  const int shown = show_program(request, stop);
+  return shown == kExitGood ? code : shown;
 }
 
 }  // namespace kerf

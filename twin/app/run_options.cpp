@@ -42,6 +42,10 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
                                             request.mesh_tolerance_mm);
   request.outputs = a.outputs;
   request.quiet = a.quiet;
+  request.view = a.view;
+  if (a.view && a.source.program == "-") {
+    reader.fault("--view", "the program comes from standard input, which cannot be read again");
+  }
   check_output_arguments(request.outputs, diagnostics);
   return request;
 }

@@ -19,6 +19,7 @@ struct RunArguments {
   std::string from_line;
   std::string until_line;
   OutputPaths outputs;
+  bool view = false;
   bool quiet = false;
 };
 
@@ -27,6 +28,7 @@ struct RunRequest {
   SessionOptions session;
   OutputPaths outputs;
   double mesh_tolerance_mm = 0.01;
+  bool view = false;  ///< in a window, when it is done
   bool quiet = false;
 };
 

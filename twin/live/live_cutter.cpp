@@ -99,6 +99,9 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
   }
   if (!pose->length_known) note_length(frame_.tool_of(sample), t_s);
   if (!options_.frame.workpiece_frame) note_limits(pose->machine_mm, t_s);
+  place_.machine_mm = pose->machine_mm;
+  place_.abc_deg = pose->abc_deg;
+  place_.spindle_rpm = sample.spindle_rpm;
   Sighting now;
   now.tip_mm = pose->tip_mm;
   now.t_s = t_s;

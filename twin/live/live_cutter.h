@@ -2,6 +2,7 @@
 // path, without one along the straight line from sample to sample.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -51,6 +52,9 @@ struct LiveCutOptions {
 struct LivePlace {
   bool known = false;  ///< X, Y and Z were in the last sample
   Vec3 tip_mm{0};      ///< workpiece frame
+  Vec3 machine_mm{0};  ///< X Y Z as the machine has them
+  std::array<double, 3> abc_deg{};
+  double spindle_rpm = 0;  ///< signed; NaN: not known
   int tool = -1;
   bool followed = false;     ///< there is a program, and the tip is on its path
   bool off_path = false;     ///< it should be, and is not
@@ -73,6 +77,9 @@ class LiveCutter {
   void take(const AxisSample& sample, double t_s, bool lost);
   /// The workpiece is up to date with the samples, and the program ahead has been looked at.
   void look();
+  /// The workpiece's snapshots are up to date with the samples. When it is called makes no
+  /// difference to the workpiece in the end, as that of look() does.
+  void hand_over() { stage_.hand_over(); }
   void finish();
 
   const LiveFacts& facts() const { return facts_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "twin/blank_choice.h"
@@ -64,6 +65,7 @@ const char* to_string(LiveState state) {
 LiveSession::LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source)
     : options_(std::move(options)), source_(std::move(source)), start_(Clock::now()) {
   ages_ms_.reserve(kAges);
+  speed_ = options_.speed;
 }
 
 LiveSession::~LiveSession() = default;
@@ -87,7 +89,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     program_ = Program::open(program, diagnostics);
     if (!program_) return false;
   }
-  ToolSources tools;
+  ToolSources& tools = tool_sources_;
   if (!gather_tool_sources(options_.tools, program_.get(), program, tools, diagnostics)) {
     return false;
   }
@@ -159,21 +161,32 @@ bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics
   return true;
 }
 
-/// A log's sample waits for its time.
+/// A log's sample waits for its time, which the speed may change meanwhile.
 void LiveSession::pace(const AxisSample& sample, const std::stop_token& stop) {
-  if (!std::isfinite(options_.speed)) return;
   const std::int64_t stamp = stamp_of(sample);
   if (stamp == AxisSample::kNoTime) return;
-  if (!pace_first_ns_) {
-    pace_first_ns_ = stamp;
-    pace_start_ = Clock::now();
+  while (!stop.stop_requested()) {
+    const double speed = speed_;
+    const auto now = Clock::now();
+    if (!paced_from_ns_ || speed != paced_speed_) {
+      // From where the log has come to, not from where it should be: what was late stays late.
+      paced_from_ns_ = paced_ns_.value_or(stamp);
+      paced_since_ = now;
+      paced_speed_ = speed;
+    }
+    paced_ns_ = std::max(paced_ns_.value_or(stamp), *paced_from_ns_);
+    if (!std::isfinite(speed)) break;
+    if (speed > 0) {
+      const double due_s = seconds(stamp - *paced_from_ns_) / speed;
+      const auto due = paced_since_ + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double>(due_s));
+      if (now >= due) break;
+      std::this_thread::sleep_until(std::min(due, now + kPatience));
+    } else {
+      std::this_thread::sleep_for(kPatience);
+    }
   }
-  const double due_s = seconds(stamp - *pace_first_ns_) / options_.speed;
-  const auto due = pace_start_ + std::chrono::duration_cast<Clock::duration>(
-                                     std::chrono::duration<double>(due_s));
-  while (!stop.stop_requested() && Clock::now() < due) {
-    std::this_thread::sleep_until(std::min(due, Clock::now() + kPatience));
-  }
+  paced_ns_ = stamp;
 }
 
 void LiveSession::read_source(std::stop_token stop) {
@@ -300,14 +313,27 @@ void LiveSession::tell(bool ended) {
   if (!observer_ || (!news && now - told_at_ < kStatusPeriod)) return;
   told_at_ = now;
   told_state_ = state;
+  const LiveStatus status = status_now(state, age_s);
+  const std::vector<std::string> files =
+      cutter_->program() ? cutter_->program()->files() : std::vector<std::string>{};
+  for (; told_findings_ < findings.size(); ++told_findings_) {
+    observer_->on_finding(findings[told_findings_], files);
+  }
+  for (const AheadWarning& warning : warnings) observer_->on_warning(warning, files);
+  observer_->on_status(status);
+}
+
+LiveStatus LiveSession::status_now(LiveState state, double age_s) {
   LiveStatus status;
   status.state = state;
   status.age_s = age_s;
   status.t_s = t_s_;
   status.place = cutter_->place();
-  const std::vector<std::string> files =
-      cutter_->program() ? cutter_->program()->files() : std::vector<std::string>{};
-  if (status.place.source.file < files.size()) status.file = files[status.place.source.file];
+  status.work = cutter_->work();
+  if (const ProgramAhead* program = cutter_->program()) {
+    const std::vector<std::string>& files = program->files();
+    if (status.place.source.file < files.size()) status.file = files[status.place.source.file];
+  }
   const double total_s = program_total_s_;
   if (total_s >= 0) status.remaining_s = std::max(0.0, total_s - status.place.program_s);
   for (const AheadWarning& warning : ahead_) {
@@ -324,11 +350,30 @@ void LiveSession::tell(bool ended) {
   status.samples = cutter_->facts().samples;
   if (status.place.off_path) status.off_path_mm = status.place.distance_mm;
   for (const ToolUse& use : cutter_->stage().tools()) status.removed_mm3 += use.removed_mm3;
-  for (; told_findings_ < findings.size(); ++told_findings_) {
-    observer_->on_finding(findings[told_findings_], files);
-  }
-  for (const AheadWarning& warning : warnings) observer_->on_warning(warning, files);
-  observer_->on_status(status);
+  return status;
+}
+
+void LiveSession::extend_trail() {
+  const LivePlace& place = cutter_->place();
+  if (!shows_frames_ || !place.known) return;
+  const bool far =
+      !trail_end_ || glm::distance(*trail_end_, place.tip_mm) > LiveObserver::kTrail_mm;
+  if (!far) return;
+  trail_.push_back(place.tip_mm);
+  trail_end_ = place.tip_mm;
+}
+
+void LiveSession::show_frame() {
+  if (!shows_frames_ || cutter_->facts().samples == frame_samples_) return;
+  const auto now = Clock::now();
+  if (now - frame_at_ < kFramePeriod) return;
+  frame_at_ = now;
+  frame_samples_ = cutter_->facts().samples;
+  cutter_->hand_over();
+  const double age_s = seconds(now - newest_.arrival);
+  observer_->on_frame(*stock_, cutter_->stage().cutter(), status_now(state_now(age_s), age_s),
+                      trail_);
+  trail_.clear();
 }
 
 Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
@@ -345,15 +390,21 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   const double cpu_before = thread_cpu_s();
   std::vector<ArrivedSample> batch;
   double look_at_s = 0;
-  while (queue_.pop_all(batch, std::chrono::milliseconds(20))) {
+  shows_frames_ = observer_ && observer_->wants_frames();
+  // The newest sample of a batch that came too soon after a frame is shown when the wait is over.
+  const auto patience = shows_frames_ ? kFramePeriod : std::chrono::milliseconds(20);
+  while (queue_.pop_all(batch, patience)) {
     for (const ArrivedSample& arrived : batch) {
       take(arrived);
+      extend_trail();
       if (t_s_ < look_at_s) continue;
       cutter_->look();
       look_at_s = t_s_ + kLook_s;
       tell(false);
+      show_frame();
     }
     tell(false);
+    show_frame();
     if (rest_) std::this_thread::sleep_for(rest_());
     const double run_s = options_.log() ? t_s_ : seconds(Clock::now() - start_);
     if (options_.for_s > 0 && run_s >= options_.for_s) break;
@@ -363,6 +414,10 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   queue_.close();
   reader.join();
   if (measure.joinable()) measure.join();
+  // What was recorded is cut. (A log was read ahead: what lies beyond the time asked for is not.)
+  while (!options_.log() && queue_.pop_all(batch, std::chrono::milliseconds(0))) {
+    for (const ArrivedSample& arrived : batch) take(arrived);
+  }
   last_state_ = state_now(first_ ? seconds(Clock::now() - newest_.arrival) : 0);
   cutter_->look();
   cutter_->finish();

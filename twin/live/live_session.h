@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -23,6 +24,7 @@
 #include "twin/outcome.h"
 #include "twin/report.h"
 #include "twin/session_parts.h"
+#include "twin/tools.h"
 
 namespace kerf {
 
@@ -68,6 +70,7 @@ struct LiveStatus {
   SourceStatus source;
   std::uint64_t dropped = 0;  ///< samples that came faster than they could be cut
   std::uint64_t samples = 0;
+  WorkpieceFrame work;     ///< where the workpiece lies in the machine
   double off_path_mm = 0;  ///< while the tip is off the path
   double removed_mm3 = 0;
 };
@@ -80,6 +83,18 @@ class LiveObserver {
   virtual void on_status(const LiveStatus& status) = 0;
   virtual void on_finding(const Finding& finding, const std::vector<std::string>& files) = 0;
   virtual void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) = 0;
+  /// Asked once, before the first sample: on_frame() is wanted.
+  virtual bool wants_frames() const { return false; }
+  /// After samples were taken, as soon as kFramePeriod has passed since the last call: for windows.
+  /// `stock` during the call only; its snapshot() has all samples. `cutter`: in the spindle, null
+  /// as long as none that is known was needed.
+  /// `trail`: where the tip has been since the last call, points farther apart than kTrail_mm.
+  virtual void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
+                        std::span<const Vec3> trail) {
+    static_cast<void>(stock), static_cast<void>(cutter), static_cast<void>(status);
+    static_cast<void>(trail);
+  }
+  static constexpr double kTrail_mm = 0.05;
 };
 
 /// Takes every sample, in the thread that reads the source. For recorders.
@@ -90,6 +105,7 @@ using SampleTap = std::function<void(const AxisSample&)>;
 class LiveSession {
  public:
   static constexpr std::chrono::milliseconds kStatusPeriod{100};
+  static constexpr std::chrono::milliseconds kFramePeriod{15};
 
   /// Checks all that can be checked beforehand. Null on error, with diagnostics; `outcome` says of
   /// which kind.
@@ -103,12 +119,18 @@ class LiveSession {
   /// Asked between batches how long to sleep, to leave the computer to others.
   void set_rest(std::function<std::chrono::microseconds()> rest) { rest_ = std::move(rest); }
 
+  /// Of a log, while it runs: program seconds a second, 0 stands still, infinity goes as fast as it
+  /// can. Any thread. A machine has its own speed.
+  void set_speed(double speed) { speed_ = speed; }
+
   /// Call once.
   Outcome run(std::stop_token stop, Diagnostics& diagnostics);
 
   /// After run().
   Report& report() { return report_; }
   const ZMap* stock() const { return stock_.get(); }
+  const ToolSources& tool_sources() const { return tool_sources_; }
+  std::string source_name() const { return source_->describe(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -122,6 +144,9 @@ class LiveSession {
   double time_of(const ArrivedSample& arrived);
   void note_clocks(const ArrivedSample& arrived, double t_s);
   void tell(bool ended);
+  void extend_trail();
+  void show_frame();
+  LiveStatus status_now(LiveState state, double age_s);
   LiveState state_now(double age_s) const;
   void conclude(bool stopped);
   Outcome outcome(bool stopped) const;
@@ -131,9 +156,11 @@ class LiveSession {
   std::unique_ptr<Program> program_;
   std::unique_ptr<ZMap> stock_;
   StockReport stock_facts_;
+  ToolSources tool_sources_;
   std::unique_ptr<LiveCutter> cutter_;
   LiveObserver* observer_ = nullptr;
   SampleTap tap_;
+  std::atomic<double> speed_{0};
   std::function<std::chrono::microseconds()> rest_;
   Report report_;
 
@@ -152,6 +179,11 @@ class LiveSession {
   LiveState told_state_ = LiveState::kWaiting;
   LiveState last_state_ = LiveState::kWaiting;  ///< when it was stopped
   Clock::time_point told_at_;
+  bool shows_frames_ = false;
+  Clock::time_point frame_at_;
+  std::uint64_t frame_samples_ = 0;  ///< those that the last frame had
+  std::vector<Vec3> trail_;          ///< since the last frame
+  std::optional<Vec3> trail_end_;
   std::size_t told_findings_ = 0;
   std::vector<AheadWarning> ahead_;  ///< warnings whose time has not come
   LiveReport live_;
@@ -159,8 +191,10 @@ class LiveSession {
   std::size_t next_age_ = 0;
   std::int64_t host_offset_ns_ = 0;
   // of the source's thread
-  std::optional<std::int64_t> pace_first_ns_;
-  Clock::time_point pace_start_;
+  std::optional<std::int64_t> paced_from_ns_;  ///< stamp of the log when the speed last changed
+  std::optional<std::int64_t> paced_ns_;       ///< of the last sample
+  Clock::time_point paced_since_;
+  double paced_speed_ = 0;
   Clock::time_point start_;
 };
 

@@ -1,0 +1,101 @@
+#include "twin/view/patch_feeder.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "tests/twin/playback/tracks.h"
+
+namespace kerf {
+namespace {
+
+using Clock = PatchFeeder::Clock;
+
+std::set<std::uint32_t> tiles_of(const std::vector<std::shared_ptr<const MeshPatch>>& patches) {
+  std::set<std::uint32_t> tiles;
+  for (const auto& patch : patches) EXPECT_TRUE(tiles.insert(patch->tile).second);
+  return tiles;
+}
+
+void cut_line(StockModel& stock, const Vec3& from, const Vec3& to) {
+  const ToolShapeArgument ball = parse_tool_argument("1=ball:6").value();
+  CutMove move;
+  move.from_mm = from;
+  move.to_mm = to;
+  std::vector<CutReport> reports;
+  stock.cut(ball.cutter, std::span(&move, 1), reports);
+  stock.finish(reports);
+}
+
+TEST(PatchFeeder, FirstAllThenWhatWasCut) {
+  const auto stock = test::block_40();
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  feeder.set_detail(0.05);
+  EXPECT_EQ(tiles_of(feeder.make_until(Clock::time_point::max())).size(), stock->tile_count());
+  EXPECT_FALSE(feeder.behind());
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
+
+  cut_line(*stock, {10, 10, -2}, {12, 10, -2});
+  feeder.follow(stock->snapshot());
+  const auto tiles = tiles_of(feeder.make_until(Clock::time_point::max()));
+  EXPECT_GE(tiles.size(), 1u);
+  for (const std::uint32_t tile : tiles) {
+    // Those that were cut, and their neighbours.
+    const Box box = stock->tile_box(tile);
+    EXPECT_LT(box.min.x, 15 + box.size().x) << "far from the cut";
+    EXPECT_LT(box.min.y, 13 + box.size().y);
+  }
+}
+
+TEST(PatchFeeder, JumpsToAndFroGiveTheSamePatches) {
+  const auto stock = test::block_40();
+  const std::shared_ptr<const StockModel> blank = stock->snapshot();
+  PatchFeeder feeder;
+  feeder.follow(blank);
+  const auto first = feeder.make_until(Clock::time_point::max());
+  std::map<std::uint32_t, std::size_t> triangles;
+  for (const auto& patch : first) triangles[patch->tile] = patch->indices.size();
+  const std::size_t all = feeder.triangles();
+  cut_line(*stock, {5, 5, -3}, {35, 30, -3});
+  feeder.follow(stock->snapshot());
+  EXPECT_FALSE(feeder.make_until(Clock::time_point::max()).empty());
+  EXPECT_NE(feeder.triangles(), all);
+  feeder.follow(blank);
+  for (const auto& patch : feeder.make_until(Clock::time_point::max())) {
+    EXPECT_EQ(patch->indices.size(), triangles[patch->tile]);
+  }
+  EXPECT_EQ(feeder.triangles(), all);
+}
+
+TEST(PatchFeeder, WorksInSlicesAndForgetsNoTile) {
+  const auto stock = test::block_40();
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  std::set<std::uint32_t> seen;
+  int slices = 0;
+  while (feeder.behind() && slices < 10000) {
+    const auto made = feeder.make_until(Clock::now());
+    EXPECT_LE(made.size(), 1u);
+    for (const auto& patch : made) seen.insert(patch->tile);
+    ++slices;
+  }
+  EXPECT_EQ(seen.size(), stock->tile_count());
+}
+
+TEST(PatchFeeder, FromAfarCellsAreJoined) {
+  const auto stock = test::block_40(0.1);
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  feeder.set_detail(0.1);
+  feeder.make_until(Clock::time_point::max());
+  feeder.set_detail(0.9);
+  EXPECT_TRUE(feeder.behind());
+  for (const auto& patch : feeder.make_until(Clock::time_point::max())) {
+    EXPECT_EQ(patch->level, 3) << "0.9 mm a pixel: 0.45 mm is fine enough, 0.8 mm is not";
+  }
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,28 @@
+// twin/view/cut_colors.h - colours of the workpiece by the moves of a program.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "twin/playback/program_track.h"
+#include "viewer/scene.h"
+#include "viewer/viewer_command.h"
+
+namespace kerf {
+
+/// Ten colours that are told apart well, also by those who see red and green alike.
+std::uint32_t color_of_number(std::size_t number);
+
+/// A tool of the program, for marks and legends.
+struct NamedTool {
+  int number = 0;
+  std::string name;
+};
+
+/// For kTool, kRemovalRate and kLineRange; null for the others. `removed_mm3`: by motion, as far as
+/// the program has been cut; what lies beyond counts as unknown.
+std::shared_ptr<const CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
+                                            const std::vector<NamedTool>& tools,
+                                            const std::vector<float>& removed_mm3);
+
+}  // namespace kerf

@@ -1,0 +1,60 @@
+#include "twin/view/drawn_machine.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace kerf {
+
+WorkRoom work_room(const ProgramTrack& track, const Box& blank_mm, double tool_length_mm) {
+  WorkRoom room;
+  room.frame = track.frame();
+  room.blank_mm = blank_mm;
+  room.tool_length_mm = tool_length_mm;
+  for (std::size_t i = 0; i < track.size(); ++i) room.reach_mm.extend(track.to_mm(i));
+  return room;
+}
+
+std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
+                                                  const std::string& ini, const WorkRoom& room,
+                                                  Diagnostics& diagnostics) {
+  if (ini.empty() && !choice.kind && !choice.links) return nullptr;
+  std::optional<MachineSetup> setup;
+  MachineFacts facts;
+  if (!ini.empty()) {
+    Diagnostics said;  // by whoever read it for the program
+    MachineSetup read;
+    if (read_machine_setup(ini, read, said)) {
+      facts = machine_facts(read);
+      setup = std::move(read);
+    }
+  }
+  std::optional<MachineModel> model =
+      make_machine(choice, facts,
+                   machine_room(setup ? &*setup : nullptr, room.frame, room.blank_mm, room.reach_mm,
+                                room.tool_length_mm),
+                   diagnostics);
+  return model ? std::make_shared<const MachineModel>(std::move(*model)) : nullptr;
+}
+
+double drawn_height_mm(const ToolShape& shape) {
+  float top = 0;
+  for (const auto* outline : {&shape.cutter, &shape.shank, &shape.holder}) {
+    for (const ProfilePoint& point : *outline) top = std::max(top, point.height_mm);
+  }
+  return static_cast<double>(top);
+}
+
+std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,
+                                   const std::array<double, 3>& abc_deg, double tool_length_mm) {
+  AxisValues axes{};
+  for (int i = 0; i < 3; ++i) {
+    axes[static_cast<std::size_t>(i)] = tip_mm[i];
+    axes[static_cast<std::size_t>(i) + 3] = abc_deg[static_cast<std::size_t>(i)];
+  }
+  std::vector<glm::mat4> poses;
+  link_poses(machine, position_of_axes(machine, axes, tool_length_mm), poses);
+  return poses;
+}
+
+}  // namespace kerf

@@ -1,0 +1,334 @@
+#include "twin/view/live_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "twin/view/drawn_machine.h"
+#include "twin/view/moment_values.h"
+#include "twin/view/program_text.h"
+#include "twin/view/tool_shape.h"
+
+namespace kerf {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPatchSlice{8};
+/// Commands of the user are looked at so often.
+constexpr milliseconds kPatience{15};
+
+double seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+SourceFreshness freshness_of(LiveState state) {
+  switch (state) {
+    case LiveState::kLive:
+      return SourceFreshness::kLive;
+    case LiveState::kWaiting:
+    case LiveState::kStale:
+      return SourceFreshness::kStale;
+    case LiveState::kLost:
+      return SourceFreshness::kLost;
+    case LiveState::kEnded:
+      return SourceFreshness::kNone;
+  }
+  return SourceFreshness::kNone;
+}
+
+std::string notice_of(const LiveStatus& status) {
+  if (!status.place.missing_axes.empty() && !status.place.known) {
+    return fmt::format("no position of {}", status.place.missing_axes);
+  }
+  if (status.collision_in_s >= 0) {
+    return fmt::format("collision in {:.1f} s, line {}", status.collision_in_s,
+                       status.collision_line);
+  }
+  if (status.off_path_mm > 0) return fmt::format("off the path by {:.2f} mm", status.off_path_mm);
+  if (!status.source.trouble.empty() && status.source.state != SourceState::kReading) {
+    return status.source.trouble;
+  }
+  return status.state == LiveState::kEnded ? "the log is at its end" : std::string();
+}
+
+}  // namespace
+
+LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& mailbox,
+                   CommandQueue& commands)
+    : options_(std::move(options)),
+      next_(next),
+      mailbox_(mailbox),
+      commands_(commands),
+      book_(options_.tools, true) {
+  publish_start();
+  thread_ = std::jthread([this](std::stop_token stop) { run(std::move(stop)); });
+  if (options_.load_program) {
+    loader_ = std::jthread([this](std::stop_token stop) {
+      std::unique_ptr<LiveProgram> program = options_.load_program(std::move(stop));
+      const std::lock_guard lock(mutex_);
+      news_.program = std::move(program);
+      arrived_.notify_one();
+    });
+  }
+}
+
+LiveView::~LiveView() {
+  loader_.request_stop();
+  if (loader_.joinable()) loader_.join();
+  thread_.request_stop();
+  arrived_.notify_one();
+}
+
+void LiveView::on_status(const LiveStatus& status) {
+  next_.on_status(status);
+  const std::lock_guard lock(mutex_);
+  news_.status = status;
+  news_.status_at = Clock::now();
+  arrived_.notify_one();
+}
+
+void LiveView::on_finding(const Finding& finding, const std::vector<std::string>& files) {
+  next_.on_finding(finding, files);
+  findings_.push_back(finding_list({finding}, files)->findings.front());
+  const std::lock_guard lock(mutex_);
+  news_.findings = findings_;
+  news_.has_findings = true;
+  arrived_.notify_one();
+}
+
+void LiveView::on_warning(const AheadWarning& warning, const std::vector<std::string>& files) {
+  next_.on_warning(warning, files);
+  SceneFinding shown = finding_list({warning.finding}, files)->findings.front();
+  shown.text = "ahead: " + shown.text;
+  findings_.push_back(std::move(shown));
+  const std::lock_guard lock(mutex_);
+  news_.findings = findings_;
+  news_.has_findings = true;
+  arrived_.notify_one();
+}
+
+/// The shape by the cutter in use, or, as long as none was needed, by what is known of the tool.
+void LiveView::note_tool(int tool, const Cutter* cutter, News& news) {
+  if (!cutter && tool >= 0) {
+    const ResolvedTool& resolved = book_.mount(tool, 0);
+    if (resolved.cutter) cutter = &*resolved.cutter;
+  }
+  const std::string spec = cutter ? cutter->spec() : std::string();
+  if (spec == shown_spec_) return;
+  shown_spec_ = spec;
+  news.tool_shape = cutter ? tool_shape_of(*cutter) : std::make_shared<const ToolShape>();
+  news.tool_length_mm = drawn_height_mm(*news.tool_shape);
+  news.tool_name = cutter ? tool_name_of(*cutter) : std::string();
+}
+
+void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
+                        std::span<const Vec3> trail) {
+  // So that tiles that were only passed over count as unchanged.
+  stock.take_dirty_tiles();
+  std::shared_ptr<const StockModel> snapshot = stock.snapshot();
+  const std::lock_guard lock(mutex_);
+  news_.stock = std::move(snapshot);
+  news_.status = status;
+  news_.status_at = Clock::now();
+  news_.trail.insert(news_.trail.end(), trail.begin(), trail.end());
+  note_tool(status.place.tool, cutter, news_);
+  arrived_.notify_one();
+}
+
+void LiveView::end(const StockModel* stock) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stock) news_.stock = stock->snapshot();
+    arrived_.notify_one();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveView::publish_start() {
+  SceneUpdate update;
+  update.clears = true;
+  auto setup = std::make_shared<SceneSetup>();
+  setup->title = options_.title;
+  setup->bounds_mm = options_.blank_mm;
+  setup->blank_outline = options_.blank_outline;
+  setup->frames = scene_frames(shown_work_, options_.work_offset);
+  update.setup = std::move(setup);
+  if (options_.machine) {
+    update.machine = std::make_shared<const SceneMachine>(scene_machine(*options_.machine));
+  }
+  mailbox_.publish(std::move(update));
+}
+
+void LiveView::run(std::stop_token stop) {
+  while (!stop.stop_requested() && !closed_) {
+    News news;
+    {
+      std::unique_lock lock(mutex_);
+      const bool busy = feeder_.behind() || (program_path_ && !program_path_->complete());
+      if (!busy) arrived_.wait_for(lock, kPatience);
+      news = std::exchange(news_, {});
+    }
+    for (const ViewerCommand& command : commands_.take()) {
+      if (!obey(command)) closed_ = true;
+    }
+    take_news(news);
+    update_.patches = feeder_.make_until(Clock::now() + kPatchSlice);
+    if (program_path_ && !program_path_->complete()) {
+      auto chunks = program_path_->next_chunks();
+      update_.path.insert(update_.path.end(), chunks.begin(), chunks.end());
+    }
+    const bool news_to_show = update_.setup || update_.moment || !update_.patches.empty() ||
+                              !update_.path.empty() || update_.findings || update_.tool_shape ||
+                              update_.colors || update_.picked || update_.program;
+    if (news_to_show) mailbox_.publish(std::exchange(update_, {}));
+  }
+}
+
+bool LiveView::obey(const ViewerCommand& command) {
+  bool goes_on = true;
+  const auto set_speed = [&] {
+    if (options_.on_speed) options_.on_speed(log_paused_ ? 0.0 : options_.speed);
+    update_.moment = moment_now();
+  };
+  std::visit(
+      [&](const auto& c) {
+        using Command = std::decay_t<decltype(c)>;
+        if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.pixel_mm);
+        if constexpr (std::is_same_v<Command, ColorCommand>) {
+          if (program_) update_.colors = cut_colors(c, *program_->track, program_->tools, {});
+        }
+        if constexpr (std::is_same_v<Command, PickCommand>) {
+          auto picked = std::make_shared<PickedPoint>();
+          picked->point_mm = c.point_mm;
+          update_.picked = std::move(picked);
+        }
+        if constexpr (std::is_same_v<Command, CloseCommand>) {
+          goes_on = false;
+          if (options_.on_close) options_.on_close();
+        }
+        // A machine leads; a log can be held and hurried.
+        if (!options_.log) return;
+        if constexpr (std::is_same_v<Command, PlayCommand>) {
+          log_paused_ = false;
+          set_speed();
+        }
+        if constexpr (std::is_same_v<Command, PauseCommand>) {
+          log_paused_ = true;
+          set_speed();
+        }
+        if constexpr (std::is_same_v<Command, SpeedCommand>) {
+          options_.speed = c.factor > kMaxSpeed ? std::numeric_limits<double>::infinity()
+                                                : std::max(c.factor, kMinSpeed);
+          set_speed();
+        }
+      },
+      command);
+  return goes_on;
+}
+
+void LiveView::take_news(News& news) {
+  if (news.stock) feeder_.follow(std::move(news.stock));
+  if (news.tool_shape) {
+    update_.tool_shape = std::move(news.tool_shape);
+    tool_name_ = std::move(news.tool_name);
+    tool_length_mm_ = news.tool_length_mm;
+  }
+  if (news.has_findings) {
+    auto list = std::make_shared<FindingList>();
+    list->findings = std::move(news.findings);
+    update_.findings = std::move(list);
+  }
+  if (news.program) {
+    program_ = std::move(news.program);
+    show_program(*program_);
+  }
+  extend_path(news.trail);
+  if (!news.status) return;
+  status_ = std::move(news.status);
+  status_at_ = news.status_at;
+  if (status_->work.g5x_mm != shown_work_.g5x_mm || status_->work.g92_mm != shown_work_.g92_mm ||
+      status_->work.rotation_deg != shown_work_.rotation_deg) {
+    shown_work_ = status_->work;
+    auto setup = std::make_shared<SceneSetup>();
+    setup->title = options_.title;
+    setup->bounds_mm = options_.blank_mm;
+    setup->blank_outline = options_.blank_outline;
+    setup->frames = scene_frames(shown_work_, options_.work_offset);
+    update_.setup = std::move(setup);
+  }
+  update_.moment = moment_now();
+}
+
+void LiveView::show_program(LiveProgram& program) {
+  update_.program = read_program_text(program.files);
+  program_path_ = std::make_unique<TrackPath>(program.track);
+  update_.path_chunk_count = 0;
+  update_.path.clear();
+  trail_chunk_.reset();
+  auto timeline = std::make_shared<ProgramTimeline>();
+  timeline->duration_s = program.track->duration_s();
+  update_.timeline = std::move(timeline);
+}
+
+/// Where the machine has been, as long as there is no program whose path says where it goes.
+void LiveView::extend_path(const std::vector<Vec3>& trail) {
+  if (program_ || trail.empty()) return;
+  if (!trail_chunk_) trail_chunk_ = std::make_shared<PathChunk>();
+  for (const Vec3& point : trail) {
+    if (trail_vertices_ >= TrackPath::kMaxVertices) return;
+    const PathVertex vertex{glm::vec3(point), PathKind::kFeed};
+    trail_chunk_->vertices.push_back(vertex);
+    ++trail_vertices_;
+    if (trail_chunk_->vertices.size() <= kPathChunkSegments) continue;
+    auto next = std::make_shared<PathChunk>();
+    next->index = trail_chunk_->index + 1;
+    next->vertices.push_back(vertex);
+    update_.path.push_back(std::exchange(trail_chunk_, std::move(next)));
+  }
+  update_.path.push_back(std::make_shared<const PathChunk>(*trail_chunk_));
+}
+
+std::shared_ptr<const Moment> LiveView::moment_now() {
+  auto moment = std::make_shared<Moment>();
+  moment->state = options_.log ? PlayState::kPlaying : PlayState::kFollowing;
+  if (options_.log && log_paused_) moment->state = PlayState::kPaused;
+  moment->speed = options_.speed;
+  moment->source_name = options_.source_name;
+  moment->work_offset = options_.work_offset;
+  if (!status_) return moment;
+  const LiveStatus& status = *status_;
+  const LivePlace& place = status.place;
+  if (status.state == LiveState::kEnded) moment->state = PlayState::kEnded;
+  moment->source = freshness_of(status.state);
+  moment->source_age_s = status.age_s + seconds(Clock::now() - status_at_);
+  moment->time_s = program_ && place.followed ? place.program_s : status.t_s;
+  moment->line = static_cast<int>(place.source.line);
+  moment->file = static_cast<int>(place.source.file);
+  moment->past_vertices =
+      program_path_ ? program_path_->past_vertices(program_->track->place_at(place.program_s))
+                    : trail_vertices_;
+  moment->tool = std::max(0, place.tool);
+  moment->tool_name = tool_name_;
+  if (!std::isnan(place.spindle_rpm)) moment->spindle_rpm = place.spindle_rpm;
+  moment->removed_mm3 = status.removed_mm3;
+  moment->notice = notice_of(status);
+  if (!place.known) return moment;
+  moment->tool_pose = ToolPose{place.tip_mm, Vec3(0, 0, 1)};
+  if (options_.machine) {
+    moment->link_poses =
+        drawn_poses(*options_.machine, place.tip_mm, place.abc_deg, tool_length_mm_);
+  }
+  has_rotary_ = has_rotary_ || place.abc_deg != std::array<double, 3>{};
+  moment->axes =
+      axis_readouts(place.machine_mm, place.tip_mm, has_rotary_ ? &place.abc_deg : nullptr);
+  return moment;
+}
+
+}  // namespace kerf

@@ -1,0 +1,52 @@
+// twin/view/patch_feeder.h - which tiles of the workpiece have to be drawn anew.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "stock/stock_model.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+/// Compares a workpiece with what was handed out before and makes the patches of the tiles that
+/// look different now. Works in slices, so that a jump across the program, which changes every
+/// tile, does not keep the moment from being shown. One thread.
+class PatchFeeder {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// From now on this workpiece is shown; a snapshot, or null for none. Of another blank than the
+  /// one before: all is made anew.
+  void follow(std::shared_ptr<const StockModel> stock);
+  /// What a pixel shows, mm: finer cells than two a pixel are joined (StockModel::patch levels).
+  /// Until it is told: as if the blank filled a picture of usual size.
+  void set_detail(double pixel_mm);
+
+  /// Patches made until `deadline`, at least one if there is one to be made. Tiles that were cut
+  /// come before those that are made at another level only.
+  std::vector<std::shared_ptr<const MeshPatch>> make_until(Clock::time_point deadline);
+  /// Some tiles are not yet as they should be.
+  bool behind() const { return behind_; }
+  std::size_t triangles() const { return triangles_; }
+
+ private:
+  struct Shown {
+    std::uint64_t version = 0;
+    std::uint32_t triangles = 0;
+    std::int8_t level = -1;  ///< -1: never
+  };
+  int wanted_level() const;
+
+  std::shared_ptr<const StockModel> stock_;
+  std::vector<Shown> shown_;
+  double pixel_mm_ = 0;
+  std::size_t next_ = 0;  ///< where looking for tiles goes on
+  std::size_t triangles_ = 0;
+  bool behind_ = false;
+};
+
+}  // namespace kerf

@@ -1,0 +1,216 @@
+#include "twin/view/player_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "twin/view/drawn_machine.h"
+#include "twin/view/moment_values.h"
+#include "twin/view/program_text.h"
+#include "twin/view/tool_shape.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::chrono::milliseconds kRemovedPeriod{500};
+
+PlayState play_state(const PlayerState& state, std::size_t motions) {
+  switch (state.mode) {
+    case PlayerMode::kPlaying:
+      return PlayState::kPlaying;
+    case PlayerMode::kRunning:
+    case PlayerMode::kSeeking:
+      return PlayState::kHurrying;
+    case PlayerMode::kPaused:
+      break;
+  }
+  return motions > 0 && state.place.motion >= motions ? PlayState::kEnded : PlayState::kPaused;
+}
+
+std::string notice_of(const PlayerState& state) {
+  if (!state.message.empty()) return state.message;
+  if (state.stop == PlayerStop::kBreakpoint) return "breakpoint";
+  if (state.behind) return "slower than asked: cutting takes its time";
+  return {};
+}
+
+}  // namespace
+
+ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
+  ViewedProgram shown;
+  shown.title = std::move(title);
+  shown.files = loaded.files;
+  if (loaded.player.blank) shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
+  shown.cuts = loaded.cuts;
+  const WorkpieceFrame& used = loaded.player.track->frame();
+  for (const NamedOffset& offset : loaded.work_offsets) {
+    if (offset.frame.g5x_mm == used.g5x_mm && offset.frame.g92_mm == used.g92_mm &&
+        offset.frame.rotation_deg == used.rotation_deg && shown.work_offset.empty()) {
+      shown.work_offset = offset.name;
+    }
+  }
+  for (const ProgramTool& tool : loaded.tools) {
+    std::string name = tool.remark;
+    if (name.empty()) name = tool.shape.substr(0, tool.shape.find(":flute="));
+    std::replace(name.begin(), name.end(), ':', ' ');
+    shown.tools.push_back({tool.number, std::move(name)});
+  }
+  return shown;
+}
+
+PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
+    : track_(std::move(track)), shown_(std::move(shown)), path_(track_) {}
+
+SceneUpdate PlayerScene::start(const PlayerState& state) const {
+  SceneUpdate update;
+  update.clears = true;
+  auto setup = std::make_shared<SceneSetup>();
+  setup->title = shown_.title;
+  if (state.stock) setup->bounds_mm = state.stock->bounds_mm();
+  setup->blank_outline = shown_.blank_outline;
+  setup->frames = scene_frames(track_->frame(), shown_.work_offset);
+  update.setup = std::move(setup);
+  update.program = read_program_text(shown_.files);
+  auto timeline = std::make_shared<ProgramTimeline>();
+  timeline->duration_s = track_->duration_s();
+  for (const std::uint32_t motion : track_->tool_changes()) {
+    ToolMark mark;
+    mark.time_s = track_->start_s(motion);
+    mark.tool = track_->tool(motion);
+    const auto known = std::find_if(shown_.tools.begin(), shown_.tools.end(),
+                                    [&](const NamedTool& t) { return t.number == mark.tool; });
+    if (known != shown_.tools.end()) mark.name = known->name;
+    timeline->tools.push_back(std::move(mark));
+  }
+  update.timeline = std::move(timeline);
+  if (shown_.machine) {
+    update.machine = std::make_shared<const SceneMachine>(scene_machine(*shown_.machine));
+  }
+  return update;
+}
+
+std::optional<SourceRef> PlayerScene::source_of(const std::string& file, int line) const {
+  if (line < 1) return std::nullopt;
+  const auto& files = shown_.files;
+  const auto found = file.empty() ? files.begin() : std::find(files.begin(), files.end(), file);
+  if (found == files.end()) return std::nullopt;
+  return SourceRef{static_cast<std::uint32_t>(found - files.begin()),
+                   static_cast<std::uint32_t>(line)};
+}
+
+void PlayerScene::set_controls(double speed, std::vector<SourceRef> breakpoints) {
+  speed_ = speed;
+  breakpoints_ = std::move(breakpoints);
+  moment_stale_ = true;
+}
+
+void PlayerScene::set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3) {
+  waiting_.colors = cut_colors(command, *track_, shown_.tools, removed_mm3);
+}
+
+void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
+  auto picked = std::make_shared<PickedPoint>();
+  picked->point_mm = point_mm;
+  const double tolerance_mm = state.stock ? state.stock->cell_mm() : 0.0;
+  const auto motion =
+      shown_.cuts ? shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place) : std::nullopt;
+  if (motion) {
+    const SourceRef source = track_->source(*motion);
+    picked->tool = track_->tool(*motion);
+    picked->file = static_cast<int>(source.file);
+    picked->line = static_cast<int>(source.line);
+    picked->time_s = track_->start_s(*motion);
+    if (const Cutter* cutter = shown_.cuts->cutter_at(*motion)) {
+      picked->tool_name = tool_name_of(*cutter);
+    }
+  }
+  waiting_.picked = std::move(picked);
+}
+
+bool PlayerScene::is_empty(const SceneUpdate& update) {
+  return !update.moment && update.patches.empty() && update.path.empty() && !update.findings &&
+         !update.tool_shape && !update.colors && !update.picked;
+}
+
+SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
+                                Clock::time_point deadline) {
+  SceneUpdate update = std::exchange(waiting_, {});
+  if (state != state_ || moment_stale_) {
+    if (!state_ || state->stock_number != shown_stock_) {
+      shown_stock_ = state->stock_number;
+      feeder_.follow(state->stock);
+    }
+    if (state->findings != shown_findings_) {
+      shown_findings_ = state->findings;
+      if (state->findings) update.findings = finding_list(*state->findings, shown_.files);
+    }
+    if (state->cutter != shown_cutter_) {
+      shown_cutter_ = state->cutter;
+      update.tool_shape =
+          state->cutter ? tool_shape_of(*state->cutter) : std::make_shared<const ToolShape>();
+      tool_length_mm_ = drawn_height_mm(*update.tool_shape);
+    }
+    state_ = state;
+    update.moment = moment_of(*state);
+    moment_stale_ = false;
+  }
+  update.patches = feeder_.make_until(deadline);
+  if (!path_.complete()) {
+    update.path = path_.next_chunks();
+    moment_stale_ = true;  // vertices that are past are counted as far as there are any
+  }
+  return update;
+}
+
+/// Summing over all cells takes milliseconds: not for every frame of one that plays.
+double PlayerScene::removed_mm3(const PlayerState& state) {
+  const auto now = Clock::now();
+  const bool due = state.mode == PlayerMode::kPaused || now - removed_at_ > kRemovedPeriod;
+  if (state.stock && due && state.stock_number != removed_stock_) {
+    removed_mm3_ = state.stock->blank_mm3() - state.stock->remaining_mm3();
+    removed_stock_ = state.stock_number;
+    removed_at_ = now;
+  }
+  return removed_mm3_;
+}
+
+std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
+  auto moment = std::make_shared<Moment>();
+  const Motion& motion = state.motion;
+  moment->state = play_state(state, track_->size());
+  moment->speed = speed_;
+  moment->time_s = state.elapsed_s;
+  moment->file = static_cast<int>(motion.source.file);
+  moment->line = track_->empty() ? 0 : static_cast<int>(motion.source.line);
+  moment->past_vertices = path_.past_vertices(state.place);
+  moment->tool_pose = ToolPose{state.tip_mm, Vec3(0, 0, 1)};
+  moment->tool = motion.tool;
+  if (state.cutter) moment->tool_name = tool_name_of(*state.cutter);
+  if (motion.spindle != SpindleState::kStopped) {
+    const bool clockwise = motion.spindle == SpindleState::kClockwise;
+    moment->spindle_rpm = clockwise ? motion.spindle_rpm : -motion.spindle_rpm;
+  }
+  moment->is_traverse = motion.kind == MotionKind::kTraverse;
+  moment->feed_mm_per_min =
+      motion.feed_mm_per_min * (motion.feed_per_rev ? motion.spindle_rpm : 1.0);
+  moment->coolant = coolant_text(motion.mist, motion.flood);
+  moment->work_offset = shown_.work_offset;
+  if (shown_.machine) {
+    moment->link_poses = drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+  }
+  has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
+  moment->axes =
+      axis_readouts(machine_position(track_->frame(), state.tip_mm, motion.tool_offset_mm),
+                    state.tip_mm, has_rotary_ ? &state.abc_deg : nullptr);
+  for (std::size_t i = 0; i < 3; ++i) {
+    moment->axes[i].to_go = motion.to_mm[static_cast<int>(i)] - state.tip_mm[static_cast<int>(i)];
+  }
+  for (const SourceRef& breakpoint : breakpoints_) {
+    if (breakpoint.file == 0) moment->breakpoints.push_back(static_cast<int>(breakpoint.line));
+  }
+  std::sort(moment->breakpoints.begin(), moment->breakpoints.end());
+  moment->removed_mm3 = removed_mm3(state);
+  moment->notice = notice_of(state);
+  return moment;
+}
+
+}  // namespace kerf

@@ -1,0 +1,88 @@
+// twin/view/player_scene.h - what a player has, as values of the viewer.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/machine_model/machine_model.h"
+#include "twin/playback/cut_query.h"
+#include "twin/playback/load_program.h"
+#include "twin/playback/player.h"
+#include "twin/view/cut_colors.h"
+#include "twin/view/patch_feeder.h"
+#include "twin/view/track_path.h"
+#include "viewer/scene.h"
+#include "viewer/viewer_command.h"
+
+namespace kerf {
+
+/// What is shown besides what is played.
+struct ViewedProgram {
+  std::string title;
+  std::vector<std::string> files;  ///< paths, in the order of SourceRef::file
+  std::vector<LineSegment> blank_outline;
+  std::string work_offset;  ///< "G54"; empty: not known
+  std::vector<NamedTool> tools;
+  std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
+  std::shared_ptr<const CutQuery> cuts;         ///< who cut a point; null: not told
+};
+
+/// With `title` in the title bar.
+ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title);
+
+/// Follows the states of one player and says what has changed for the picture. One thread.
+class PlayerScene {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown);
+
+  /// What stays: setup, text, timeline. Clears what was shown before.
+  SceneUpdate start(const PlayerState& state) const;
+
+  /// Of a file and line as the window names them; nothing if there is no such file.
+  std::optional<SourceRef> source_of(const std::string& file, int line) const;
+
+  void set_detail(double pixel_mm) { feeder_.set_detail(pixel_mm); }
+  /// What the player does not know: speed asked for, breakpoints of the user.
+  void set_controls(double speed, std::vector<SourceRef> breakpoints);
+  void set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3);
+  /// Which motion made this point of the surface; the answer is in the next update.
+  void pick(const Vec3& point_mm, const PlayerState& state);
+
+  /// What is new in `state`; patches made until `deadline` at most, the rest with the next call.
+  /// Empty (is_empty()) if there is nothing.
+  SceneUpdate update(const std::shared_ptr<const PlayerState>& state, Clock::time_point deadline);
+  static bool is_empty(const SceneUpdate& update);
+  /// There is more to come without a new state.
+  bool behind() const { return feeder_.behind() || !path_.complete(); }
+
+ private:
+  std::shared_ptr<const Moment> moment_of(const PlayerState& state);
+  double removed_mm3(const PlayerState& state);
+
+  std::shared_ptr<const ProgramTrack> track_;
+  ViewedProgram shown_;
+  PatchFeeder feeder_;
+  TrackPath path_;
+  double speed_ = 1;
+  std::vector<SourceRef> breakpoints_;
+  bool has_rotary_ = false;
+  bool moment_stale_ = true;
+  SceneUpdate waiting_;  ///< answers, for the next update
+  std::shared_ptr<const PlayerState> state_;
+  std::uint64_t shown_stock_ = 0;
+  double tool_length_mm_ = 0;
+  double removed_mm3_ = 0;
+  std::uint64_t removed_stock_ = 0;
+  Clock::time_point removed_at_{};
+  /// Kept, so that a new one cannot have the address of one that was shown.
+  std::shared_ptr<const std::vector<Finding>> shown_findings_;
+  std::shared_ptr<const Cutter> shown_cutter_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,113 @@
+#include "twin/view/player_view.h"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace kerf {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// How often the player's state is looked at while things move, and while they do not.
+constexpr milliseconds kQuick{4};
+constexpr milliseconds kSlow{100};
+/// Time for patches between two looks at the commands.
+constexpr milliseconds kPatchSlice{8};
+constexpr std::chrono::seconds kQuickAfterCommand{1};
+
+}  // namespace
+
+PlayerView::PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgram shown,
+                       SceneMailbox& mailbox, CommandQueue& commands)
+    : track_(program.track),
+      mailbox_(mailbox),
+      commands_(commands),
+      player_(std::move(program), std::move(options)),
+      scene_(track_, std::move(shown)) {}
+
+void PlayerView::run(std::stop_token stop, std::optional<double> speed) {
+  mailbox_.publish(scene_.start(*player_.state()));
+  if (speed) {
+    speed_ = *speed;
+    player_.play(speed_);
+    scene_.set_controls(speed_, breakpoints_);
+  }
+  quick_until_ = Clock::now() + kQuickAfterCommand;
+  while (!stop.stop_requested()) {
+    for (const ViewerCommand& command : commands_.wait_for(restless() ? kQuick : kSlow)) {
+      quick_until_ = Clock::now() + kQuickAfterCommand;
+      if (!obey(command)) return;
+    }
+    show();
+  }
+}
+
+bool PlayerView::restless() const {
+  if (!state_ || state_->mode != PlayerMode::kPaused) return true;
+  return scene_.behind() || Clock::now() < quick_until_;
+}
+
+bool PlayerView::obey(const ViewerCommand& command) {
+  bool goes_on = true;
+  std::visit(
+      [&](const auto& c) {
+        using Command = std::decay_t<decltype(c)>;
+        if constexpr (std::is_same_v<Command, PlayCommand>) player_.play(speed_);
+        if constexpr (std::is_same_v<Command, PauseCommand>) player_.pause();
+        if constexpr (std::is_same_v<Command, StopCommand>) player_.stop();
+        if constexpr (std::is_same_v<Command, SpeedCommand>) {
+          // Beyond the greatest: as fast as it can be cut.
+          speed_ = c.factor > kMaxSpeed ? std::numeric_limits<double>::infinity()
+                                        : std::max(c.factor, kMinSpeed);
+          scene_.set_controls(speed_, breakpoints_);
+          if (player_.state()->mode == PlayerMode::kPlaying) player_.play(speed_);
+        }
+        if constexpr (std::is_same_v<Command, StepBlockCommand>) player_.step_block(c.blocks);
+        if constexpr (std::is_same_v<Command, SeekLineCommand>) seek_line(c.file, c.line);
+        if constexpr (std::is_same_v<Command, RunToLineCommand>) run_to_line(c.file, c.line);
+        if constexpr (std::is_same_v<Command, SeekTimeCommand>) player_.seek_time(c.time_s);
+        if constexpr (std::is_same_v<Command, SeekEndCommand>) player_.seek_end();
+        if constexpr (std::is_same_v<Command, NextToolCommand>) player_.seek_tool_change(c.step);
+        if constexpr (std::is_same_v<Command, NextFindingCommand>) player_.seek_finding(c.step);
+        if constexpr (std::is_same_v<Command, SeekFindingCommand>) {
+          if (c.index >= 0) player_.seek_finding_number(static_cast<std::size_t>(c.index));
+        }
+        if constexpr (std::is_same_v<Command, BreakpointCommand>) set_breakpoint(c);
+        if constexpr (std::is_same_v<Command, DetailCommand>) scene_.set_detail(c.pixel_mm);
+        if constexpr (std::is_same_v<Command, ColorCommand>)
+          scene_.set_colors(c, player_.removed_mm3());
+        if constexpr (std::is_same_v<Command, PickCommand>)
+          scene_.pick(c.point_mm, *player_.state());
+        if constexpr (std::is_same_v<Command, CloseCommand>) goes_on = false;
+      },
+      command);
+  return goes_on;
+}
+
+void PlayerView::seek_line(const std::string& file, int line) {
+  if (const auto source = scene_.source_of(file, line)) player_.seek_line(*source);
+}
+
+void PlayerView::run_to_line(const std::string& file, int line) {
+  if (const auto source = scene_.source_of(file, line)) player_.run_to_line(*source);
+}
+
+void PlayerView::set_breakpoint(const BreakpointCommand& command) {
+  const auto source = scene_.source_of(command.file, command.line);
+  if (!source) return;
+  std::erase(breakpoints_, *source);
+  if (command.set) breakpoints_.push_back(*source);
+  player_.set_breakpoints(breakpoints_);
+  scene_.set_controls(speed_, breakpoints_);
+}
+
+void PlayerView::show() {
+  state_ = player_.state();
+  SceneUpdate update = scene_.update(state_, Clock::now() + kPatchSlice);
+  if (!PlayerScene::is_empty(update)) mailbox_.publish(std::move(update));
+}
+
+}  // namespace kerf

@@ -1,0 +1,53 @@
+// twin/view/player_view.h - a program in the window: commands of the user in, scene values out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "twin/playback/player.h"
+#include "twin/view/player_scene.h"
+#include "viewer/scene_mailbox.h"
+#include "viewer/viewer_command.h"
+
+namespace kerf {
+
+/// Stands between Player, which cuts in its own thread, and the window, which draws in the main
+/// one: in a third thread it makes what the window needs of what the player has. None waits for
+/// another: the newest state counts, and what was not drawn of older ones is skipped.
+class PlayerView {
+ public:
+  /// `mailbox` and `commands` must outlive it.
+  PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgram shown,
+             SceneMailbox& mailbox, CommandQueue& commands);
+
+  /// Until the window is closed (CloseCommand) or `stop` is asked for. Starts playing at once if
+  /// `speed` is given.
+  void run(std::stop_token stop, std::optional<double> speed = std::nullopt);
+
+  Player& player() { return player_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool obey(const ViewerCommand& command);
+  void seek_line(const std::string& file, int line);
+  void run_to_line(const std::string& file, int line);
+  void set_breakpoint(const BreakpointCommand& command);
+  void show();
+  bool restless() const;
+
+  std::shared_ptr<const ProgramTrack> track_;
+  SceneMailbox& mailbox_;
+  CommandQueue& commands_;
+  Player player_;
+  PlayerScene scene_;
+  double speed_ = 1;
+  std::vector<SourceRef> breakpoints_;
+  std::shared_ptr<const PlayerState> state_;
+  Clock::time_point quick_until_;  ///< after a command its answer is looked for often
+};
+
+}  // namespace kerf

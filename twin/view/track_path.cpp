@@ -1,0 +1,99 @@
+#include "twin/view/track_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::size_t kChunksAtOnce = 16;
+constexpr double kSagitta_mm = 0.02;
+constexpr double kGreatestStep_rad = 2 * kPi / 8;
+constexpr double kSmallestStep_rad = 2 * kPi / 360;
+
+bool moves(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::kTraverse:
+    case MotionKind::kFeed:
+    case MotionKind::kArc:
+    case MotionKind::kThread:
+    case MotionKind::kProbe:
+      return true;
+    case MotionKind::kDwell:
+    case MotionKind::kToolChange:
+    case MotionKind::kStop:
+    case MotionKind::kProgramEnd:
+      return false;
+  }
+  return false;
+}
+
+int chords_of(const ArcGeometry& arc, const Vec3& from_mm) {
+  const Vec3 out = from_mm - arc.center_mm;
+  const double radius_mm = glm::length(out - arc.axis * glm::dot(out, arc.axis));
+  const double step =
+      2 * std::acos(std::clamp(1 - kSagitta_mm / std::max(radius_mm, 1e-9), -1.0, 1.0));
+  const double allowed = std::clamp(step, kSmallestStep_rad, kGreatestStep_rad);
+  return std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep_rad) / allowed)));
+}
+
+}  // namespace
+
+TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track) : track_(std::move(track)) {
+  first_vertex_.reserve(track_->size());
+}
+
+std::vector<std::shared_ptr<const PathChunk>> TrackPath::next_chunks() {
+  while (!complete() && made_.size() < kChunksAtOnce) add(next_motion_++);
+  // An unfinished last one is sent again with the next ones.
+  auto chunks = std::exchange(made_, {});
+  if (complete() && open_ && open_->vertices.size() > 1) chunks.push_back(std::move(open_));
+  return chunks;
+}
+
+std::uint64_t TrackPath::past_vertices(const TrackPlace& place) const {
+  if (place.motion >= first_vertex_.size()) return vertices_;
+  const std::uint64_t begin = first_vertex_[place.motion];
+  const std::uint64_t end = place.motion + 1 < first_vertex_.size()
+                                ? first_vertex_[place.motion + 1]
+                                : std::max<std::uint64_t>(vertices_, begin);
+  return begin +
+         static_cast<std::uint64_t>(std::floor(place.fraction * static_cast<double>(end - begin)));
+}
+
+void TrackPath::add(std::size_t motion) {
+  const MotionKind kind = track_->kind(motion);
+  if (!moves(kind)) {
+    first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+    return;
+  }
+  const Vec3 from_mm = track_->from_mm(motion);
+  if (vertices_ == 0) push(from_mm, PathKind::kTraverse);
+  first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : PathKind::kFeed;
+  if (kind == MotionKind::kArc) {
+    const Motion arc = track_->motion(motion);
+    const int chords = chords_of(arc.arc, arc.from_mm);
+    for (int i = 1; i < chords; ++i) {
+      push(point_at(arc, static_cast<double>(i) / chords), shown);
+    }
+  }
+  push(track_->to_mm(motion), shown);
+}
+
+void TrackPath::push(const Vec3& at, PathKind kind) {
+  const PathVertex vertex{glm::vec3(at), kind};
+  if (!open_) open_ = std::make_shared<PathChunk>();
+  open_->vertices.push_back(vertex);
+  ++vertices_;
+  if (open_->vertices.size() <= kPathChunkSegments) return;
+  auto next = std::make_shared<PathChunk>();
+  next->index = open_->index + 1;
+  next->vertices.push_back(vertex);
+  made_.push_back(std::exchange(open_, std::move(next)));
+}
+
+}  // namespace kerf
