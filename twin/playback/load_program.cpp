@@ -9,14 +9,10 @@
 
 #include "interp_bridge/parameter_file.h"
 #include "twin/playback/mounted_tools.h"
+#include "twin/playback/planned_steps.h"
 
 namespace kerf {
 namespace {
-
-TimelineOptions without_path(TimelineOptions options) {
-  options.planner.with_path = false;
-  return options;
-}
 
 std::vector<std::string> absolute(const std::vector<std::string>& files) {
   std::vector<std::string> out;
@@ -73,7 +69,7 @@ class Loading {
       : control_(control),
         program_(*front.program),
         window_(options.lines),
-        timeline_(without_path(options.timeline), builder_),
+        timeline_(options.timeline, planned_),
         tools_(front.tools) {
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
   }
@@ -87,7 +83,9 @@ class Loading {
 
   const std::optional<BlankSurvey>& survey() const { return survey_; }
   const LineWindow& window() const { return window_; }
-  std::size_t report_from() const { return window_.begun() ? before_window_ : motions_; }
+  std::size_t report_from() const {
+    return planned_.first_of(window_.begun() ? before_window_ : motions_);
+  }
   std::string time_model() const { return timeline_.time_model(); }
   std::vector<ProgramTool> tools() { return tools_.take(); }
   std::shared_ptr<const ProgramTrack> build(const std::vector<std::string>& files) {
@@ -115,6 +113,7 @@ class Loading {
   Program& program_;
   LineWindow window_;
   ProgramTrackBuilder builder_;
+  PlannedSteps planned_{builder_};
   Timeline timeline_;
   ToolList tools_;
   std::optional<BlankSurvey> survey_;

@@ -70,7 +70,8 @@ struct LoadControl {
   std::function<void(const LoadProgress&)> on_progress;
 };
 
-/// Reads a program as Session does: the same files, tools, blank, lines (those before --from-line
+/// Reads a program as Session does (with PlannerOptions::with_path the track is of the path that
+/// the machine runs, piece by piece): the same files, tools, blank, lines (those before --from-line
 /// are cut and not reported on: PlayerProgram::report_from), findings about the program as a whole.
 /// It is read once, whether or not the blank has to be guessed. Blocks until it is read, so it
 /// wants a thread of its own beside a window. Nothing on errors that leave nothing to play; they

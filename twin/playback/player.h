@@ -26,7 +26,7 @@ struct PlayerProgram {
   std::shared_ptr<const ProgramTrack> track;
   std::unique_ptr<StockModel> blank;  ///< uncut
   ToolSources tools;
-  /// Limits for the checks (over-feed, axis limits). The programmed path is cut:
+  /// Limits for the checks (over-feed, axis limits). What is cut is the track;
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
   /// Motions before this one are cut, but not reported on (--from-line).

@@ -41,6 +41,7 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   shown.files = loaded.files;
   if (loaded.player.blank) shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
   shown.cuts = loaded.cuts;
+  shown.planned = loaded.player.timeline.planner.with_path;
   const WorkpieceFrame& used = loaded.player.track->frame();
   for (const NamedOffset& offset : loaded.work_offsets) {
     if (offset.frame.g5x_mm == used.g5x_mm && offset.frame.g92_mm == used.g92_mm &&
@@ -58,7 +59,7 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
 }
 
 PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
-    : track_(std::move(track)), shown_(std::move(shown)), path_(track_) {}
+    : track_(std::move(track)), shown_(std::move(shown)), path_(track_, shown_.planned) {}
 
 SceneUpdate PlayerScene::start(const PlayerState& state) const {
   SceneUpdate update;

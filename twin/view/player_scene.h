@@ -26,6 +26,7 @@ struct ViewedProgram {
   std::vector<std::string> files;  ///< paths, in the order of SourceRef::file
   std::vector<LineSegment> blank_outline;
   std::string work_offset;  ///< "G54"; empty: not known
+  bool planned = false;     ///< the track is of the path that the machine runs
   std::vector<NamedTool> tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
   std::shared_ptr<const CutQuery> cuts;         ///< who cut a point; null: not told

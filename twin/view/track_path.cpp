@@ -42,7 +42,8 @@ int chords_of(const ArcGeometry& arc, const Vec3& from_mm) {
 
 }  // namespace
 
-TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track) : track_(std::move(track)) {
+TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned)
+    : track_(std::move(track)), feed_kind_(planned ? PathKind::kPlanned : PathKind::kFeed) {
   first_vertex_.reserve(track_->size());
 }
 
@@ -73,7 +74,7 @@ void TrackPath::add(std::size_t motion) {
   const Vec3 from_mm = track_->from_mm(motion);
   if (vertices_ == 0) push(from_mm, PathKind::kTraverse);
   first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
-  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : PathKind::kFeed;
+  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : feed_kind_;
   if (kind == MotionKind::kArc) {
     const Motion arc = track_->motion(motion);
     const int chords = chords_of(arc.arc, arc.from_mm);

@@ -18,7 +18,8 @@ class TrackPath {
  public:
   static constexpr std::size_t kMaxVertices = 100'000'000;
 
-  explicit TrackPath(std::shared_ptr<const ProgramTrack> track);
+  /// `planned`: the track is of the path that the machine runs; its feeds are drawn as that.
+  explicit TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned = false);
 
   /// The chunks of the next motions, about 16 chunks in all; empty at the end.
   std::vector<std::shared_ptr<const PathChunk>> next_chunks();
@@ -32,6 +33,7 @@ class TrackPath {
   void push(const Vec3& at, PathKind kind);
 
   std::shared_ptr<const ProgramTrack> track_;
+  PathKind feed_kind_;
   std::size_t next_motion_ = 0;
   std::uint64_t vertices_ = 0;
   std::vector<std::uint32_t> first_vertex_;  ///< by motion: those before it are past

@@ -159,6 +159,43 @@ TEST_F(LoadProgram, PartsOfAProgramAsADryRunTakesThem) {
   }
 }
 
+/// Rows of short moves that turn: their corners are rounded under G64.
+std::string corners() {
+  std::vector<std::pair<int, std::string>> commands = {
+      {1, "SELECT_TOOL(1)"},
+      {1, "CHANGE_TOOL(1)"},
+      {1, "START_SPINDLE_CLOCKWISE(0)"},
+      {1, "SET_FEED_RATE(2400.0000)"},
+      {1, "SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS, 0.500000)"}};
+  commands.emplace_back(2, to("STRAIGHT_TRAVERSE", 4, 4, 5));
+  commands.emplace_back(3, to("STRAIGHT_FEED", 4, 4, -2));
+  for (int i = 0; i < 8; ++i) {
+    const double x = 4 + 4 * i;
+    commands.emplace_back(4 + i, to("STRAIGHT_FEED", x, i % 2 == 0 ? 34 : 4, -2));
+    commands.emplace_back(20 + i, to("STRAIGHT_FEED", x + 4, i % 2 == 0 ? 34 : 4, -2));
+  }
+  commands.emplace_back(40, to("STRAIGHT_TRAVERSE", 36, 4, 5));
+  commands.emplace_back(41, "PROGRAM_END()");
+  return listing(commands);
+}
+
+TEST_F(LoadProgram, ThePlannedPathIsCutAsADryRunCutsIt) {
+  write(corners());
+  give_blank();
+  const auto programmed = load();
+  ASSERT_TRUE(programmed);
+  options_.timeline.planner.with_path = true;
+  const auto planned = load();
+  ASSERT_TRUE(planned);
+  EXPECT_GT(planned->player.track->size(), programmed->player.track->size() + 10);
+  EXPECT_NEAR(planned->player.track->duration_s(), programmed->player.track->duration_s(), 1e-6);
+  expect_as_session();
+  for (const LineRange lines : {LineRange{6, 0}, LineRange{22, 25}}) {
+    options_.lines = lines;
+    expect_as_session();
+  }
+}
+
 TEST_F(LoadProgram, SaysWhereItsWindowBegins) {
   write(slots());
   give_blank();
