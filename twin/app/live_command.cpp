@@ -259,7 +259,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   std::fflush(stdout);
   print(diagnostics, request.quiet);
   // What it came to may be looked at until the window is closed.
-  if (view && !stop.stop_requested()) view->end(session->stock());
+  if (view && !stop.stop_requested()) view->end(session->stock(), stop.get_token());
   return exit_code(outcome, session->report(), diagnostics);
 }
 

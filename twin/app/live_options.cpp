@@ -187,7 +187,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.outputs = a.outputs;
   request.quiet = a.quiet;
   // A log that is run as fast as it goes is there for its report.
-  request.window = !a.no_view && !std::isinf(request.options.speed);
+  request.window = !a.no_view && request.config.view.window && !std::isinf(request.options.speed);
   check_output_arguments(request.outputs, diagnostics);
   return request;
 }

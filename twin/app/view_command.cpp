@@ -36,9 +36,6 @@ constexpr OptionRange kSpeed{0.1, 1000, false, "program seconds a second"};
 constexpr OptionRange kFps{0.1, 1000, false, "frames a second"};
 constexpr OptionRange kLine{1, 4e9, false, "lines"};
 constexpr OptionRange kKeyframes{1, 1e6, false, "MB"};
-/// Seeks in a program of a million lines within a fraction of a tenth of a second, on a PC with 2
-/// GB.
-constexpr double kUsualKeyframes_mb = 256;
 constexpr int kMostPixels = 16384;
 constexpr std::chrono::milliseconds kPatience{200};
 
@@ -116,6 +113,12 @@ void read_pictures(const ViewArguments& a, OptionReader& reader, ViewRequest& re
   if (request.wants_window() && !(a.size.empty() && a.view.empty())) {
     reader.fault(a.size.empty() ? "--view" : "--size", "is for --png and --frames");
   }
+  if (!request.wants_window() && a.no_local) {
+    reader.fault("--full-redraw", "is for the window; files get the whole picture every time");
+  }
+  if (!a.png.empty() && !a.speed.empty()) {
+    reader.fault("--speed", "is for the window and for --frames; a picture stands still");
+  }
   request.frame.draw.is_local = false;
   if (a.view.empty()) return;
   std::string names;
@@ -162,7 +165,8 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   request.at_line =
       static_cast<std::uint32_t>(reader.whole_number("--at-line", a.at_line, kLine, 0));
   const double keyframes_mb =
-      reader.number("--keyframes", a.keyframes, kKeyframes, kUsualKeyframes_mb);
+      reader.number("--keyframes", a.keyframes, kKeyframes,
+                    config ? config->view.keyframes_mb : ConfigView{}.keyframes_mb);
   request.player.keyframe_bytes = static_cast<std::size_t>(keyframes_mb * 1048576.0);
   request.local = !a.no_local;
   read_pictures(a, reader, request);
@@ -219,6 +223,15 @@ std::unique_ptr<LoadedProgram> load(const ViewRequest& request, Kind kind,
   return loaded;
 }
 
+/// The block that the interpreter refused, if there is one, and why the program is not whole.
+void print_faults(const LoadedProgram& loaded) {
+  for (const Finding& remark : loaded.player.remarks) {
+    if (remark.severity != Severity::kError) continue;
+    fmt::print(stderr, "{}", to_string(diagnostic_of(remark, loaded.player.track->files())));
+  }
+  if (!loaded.partial_reason.empty()) fmt::print(stderr, "kerf: {}\n", loaded.partial_reason);
+}
+
 int exit_code(Outcome outcome, const Diagnostics& diagnostics) {
   if (outcome == Outcome::kUsageError) return kExitUsage;
   return has_error(diagnostics) || outcome == Outcome::kFailed ? kExitFailure : kExitGood;
@@ -261,10 +274,11 @@ class Work {
     std::unique_ptr<LoadedProgram> loaded = load(request_, kind_, control, diagnostics, outcome);
     print(diagnostics, request_.run.quiet);
     if (!loaded || stop_.stop_requested()) return exit_code(outcome, diagnostics);
-    if (!loaded->partial_reason.empty()) fmt::print(stderr, "kerf: {}\n", loaded->partial_reason);
+    print_faults(*loaded);
     ViewedProgram shown = viewed(request_, *loaded);
     PlayerOptions options = request_.player;
     PlayerView view(std::move(loaded->player), options, std::move(shown), mailbox_, commands_);
+    for (ViewerCommand& command : waiting_) commands_.push(std::move(command));
     if (request_.at_line > 0) view.player().seek_line({0, request_.at_line});
     if (request_.at_end) view.player().seek_end();
     view.run(stop_.get_token(), request_.speed);
@@ -278,8 +292,14 @@ class Work {
     const auto now = Clock::now();
     if (progress.motions > 0 && now - announced_ < std::chrono::milliseconds(100)) return;
     announced_ = now;
-    for (const ViewerCommand& command : commands_.take()) {
+    for (ViewerCommand& command : commands_.take()) {
       if (std::holds_alternative<CloseCommand>(command)) stop_.request_stop();
+      // Said once, when the window opens or is looked at in another way; the rest is about a
+      // program that is not there yet.
+      const bool lasts = std::holds_alternative<ColorCommand>(command) ||
+                         std::holds_alternative<DetailCommand>(command) ||
+                         std::holds_alternative<SpeedCommand>(command);
+      if (lasts) waiting_.push_back(std::move(command));
     }
     auto moment = std::make_shared<Moment>();
     moment->notice = progress.fraction >= 0 ? fmt::format("{:.0f} %", 100 * progress.fraction)
@@ -296,6 +316,7 @@ class Work {
   CommandQueue& commands_;
   std::stop_source& stop_;
   Clock::time_point announced_{};
+  std::vector<ViewerCommand> waiting_;
 };
 
 int in_window(const ViewRequest& request, Kind kind, std::stop_source& stop) {
@@ -334,6 +355,8 @@ int into_files(const ViewRequest& request, Kind kind, const std::stop_source& st
   std::unique_ptr<LoadedProgram> loaded = load(request, kind, control, diagnostics, outcome);
   print(diagnostics, request.run.quiet);
   if (!loaded) return exit_code(outcome, diagnostics);
+  print_faults(*loaded);
+  const bool whole = loaded->partial_reason.empty();
   ViewedProgram shown = viewed(request, *loaded);
   const std::shared_ptr<const ProgramTrack> track = loaded->player.track;
   PlayerOptions options = request.player;
@@ -346,6 +369,10 @@ int into_files(const ViewRequest& request, Kind kind, const std::stop_source& st
     return kExitFailure;
   }
   if (!go_to_place(player, request, stop.get_token())) return kExitFailure;
+  if (const std::string& refused = player.state()->message; !refused.empty()) {
+    print({fault(fmt::format("--at-line {}: {}", request.at_line, refused))}, false);
+    return kExitUsage;
+  }
   if (!request.png.empty()) {
     const Result<Picture> picture = renderer->draw(player.state());
     done = picture ? write_png(request.png, *picture) : Done(Error{picture.error()});
@@ -363,11 +390,26 @@ int into_files(const ViewRequest& request, Kind kind, const std::stop_source& st
     }
   }
   if (!done) print({fault(done.error())}, false);
-  return done && !stop.stop_requested() ? kExitGood : kExitFailure;
+  return done && whole && !stop.stop_requested() ? kExitGood : kExitFailure;
 }
 
 int view_log(const ViewArguments& arguments) {
+  Diagnostics diagnostics;
+  OptionReader reader(diagnostics);
+  const auto refuse = [&](const char* option, bool given) {
+    if (given) reader.fault(option, "is for programs, not for logs");
+  };
+  refuse("--at-line", !arguments.at_line.empty());
+  refuse("--until-line", !arguments.run.until_line.empty());
+  refuse("--keyframes", !arguments.keyframes.empty());
+  refuse("--full-redraw", arguments.no_local);
+  if (has_error(diagnostics)) {
+    print(diagnostics, false);
+    return kExitUsage;
+  }
   LiveArguments live;
+  live.config = arguments.config;
+  live.sets = arguments.sets;
   live.log = arguments.run.source.program;
   live.source = arguments.run.source;
   live.source.program.clear();

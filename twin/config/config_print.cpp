@@ -141,6 +141,10 @@ void print_work(Printer& printer, const LiveConfig& config) {
   printer.put("off_path_mm", config.follow.options.tolerance_mm);
   printer.put("look_ahead_s", config.follow.look_ahead_s);
   printer.close();
+  printer.open("view");
+  printer.put("window", config.view.window ? "yes" : "no");
+  printer.put("keyframes_mb", config.view.keyframes_mb);
+  printer.close();
 }
 
 std::string register_text(const ModbusRegister& one) {

@@ -163,6 +163,9 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_tools(root.group("tools"), config.tools);
   read_stock(root.group("stock"), config.stock);
   read_follow(root.group("follow"), config.follow);
+  const GroupReader view = root.group("view");
+  view.number("window", config.view.window);
+  view.number("keyframes_mb", config.view.keyframes_mb);
 }
 
 }  // namespace kerf

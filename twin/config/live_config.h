@@ -54,6 +54,11 @@ struct ConfigFollow {
   double look_ahead_s = 10;            ///< LiveCutOptions::guard_s; 0: not
 };
 
+struct ConfigView {
+  bool window = true;  ///< of shadow and replay
+  double keyframes_mb = 256;
+};
+
 /// What all kinds of source have in common.
 struct ConfigSourceCommon {
   double stale_after_s = 0.5;  ///< also LiveCutOptions::gap_s: what is a gap between two samples
@@ -78,6 +83,7 @@ struct LiveConfig {
   std::vector<ToolShapeArgument> tools;
   ConfigStock stock;
   ConfigFollow follow;
+  ConfigView view;
   ConfigSourceCommon common;
   /// Empty: the file has no `source:`. Joints that count degrees (HalSettings and LogSettings) are
   /// filled in by make_source(), from machine.joints.
