@@ -91,6 +91,9 @@ struct SceneSetup {
   Box bounds_mm;      ///< Room that "fit" shows: the blank, mostly. Parts outside are drawn too.
   std::vector<LineSegment> blank_outline;
   std::vector<SceneFrame> frames;
+  /// The workpiece is compared with a design part: it is coloured by MeshPatch::deviation_mm at
+  /// once, against this tolerance.
+  std::optional<double> tolerance_mm;
 };
 
 struct SceneFinding {

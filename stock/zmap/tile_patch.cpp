@@ -351,11 +351,14 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
   // A side of the blank is flat to its very end.
   const bool side = along_y ? (i == 0 && !neighbors_.left) || (i == r_.nx() && !neighbors_.right)
                             : (j == 0 && !neighbors_.low) || (j == r_.ny() && !neighbors_.high);
+  std::array<glm::vec2, 2> facing{outward, outward};
+  if (!side) {
+    const WallCourse course = r_.wall_course(i, j, along_y);
+    facing = {course.facing(false, outward), course.facing(true, outward)};
+  }
   for (WallEnd* end : {&low, &high}) {
-    const auto [bottom, top] = std::minmax(end->z[0], end->z[end->count - 1]);
-    glm::vec2 way = r_.wall_direction(TileRelief::slot(end->i, end->j), bottom, top);
-    if (side || !(glm::dot(way, outward) > 0.5f * glm::length(way))) way = outward;
-    const std::uint32_t normal = pack_normal(glm::vec3(glm::normalize(way), 0));
+    const bool is_higher = along_y ? end->j > j : end->i > i;
+    const std::uint32_t normal = pack_normal(glm::vec3(facing[is_higher], 0));
     for (std::size_t n = 0; n < end->count; ++n) {
       end->vertex[n] = add_vertex(end->i, end->j, end->z[n], normal);
       set_cut_by(end->vertex[n], made_by);

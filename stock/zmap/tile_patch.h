@@ -23,6 +23,8 @@ namespace kerf {
 ///     steps to one side), and where the cells lie in a plane, by rounding.
 ///   - A step between cells that are not linked is a wall in full, at the cells' common edge: no
 ///     farther from the true wall than a cell.
+/// Normals of walls are level and follow the course of the wall, not the edges of its cells
+/// (WallCourse), so round walls look round.
 /// Squares of 8 x 8, 16 x 16 .. cells that are level (and cut by one move) keep only the corners at
 /// their rim.
 ///
@@ -31,7 +33,8 @@ namespace kerf {
 /// once in each direction; in four where two pieces of material touch at one corner only.
 MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level);
 
-/// A number for the versions of the tile and of its eight neighbours.
+/// A number for the versions of the tile and of its eight neighbours, on which alone its patches
+/// depend.
 std::uint64_t tile_patch_version(const TileGrid& grid, std::uint32_t tile);
 
 }  // namespace kerf

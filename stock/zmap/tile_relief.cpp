@@ -34,7 +34,7 @@ std::uint32_t packed(float x, float y, float z) {
 }  // namespace
 
 TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
-    : floor_(grid.floor_mm()) {
+    : wall_reach_(wall_reach(level)), floor_(grid.floor_mm()) {
   const int tx = static_cast<int>(tile) % grid.tiles_x();
   const int ty = static_cast<int>(tile) / grid.tiles_x();
   const int span = 1 << level;
@@ -43,6 +43,10 @@ TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
   };
   nx_ = cells(grid.nx(), tx);
   ny_ = cells(grid.ny(), ty);
+  const int per_tile = kTileCells / span;
+  grid_begin_ = {-tx * per_tile, -ty * per_tile};
+  grid_end_ =
+      grid_begin_ + glm::ivec2((grid.nx() + span - 1) / span, (grid.ny() + span - 1) / span);
   // From the cell's number in the grid, so that neighbours agree to the bit.
   const auto line = [span](int t, int i, int total, double origin, double edge) {
     return static_cast<float>(origin + std::min(t * kTileCells + i * span, total) * edge);
@@ -60,25 +64,26 @@ TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
 void TileRelief::load_heights(const TileGrid& grid, int tx, int ty, int level) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   const int span = 1 << level;
-  const int left = tx * kTileCells - kHalo * span, bottom = ty * kTileCells - kHalo * span;
+  const int halo = wall_reach_;
+  const int left = tx * kTileCells - halo * span, bottom = ty * kTileCells - halo * span;
   const int first = std::max(0, left);
-  const int last = std::min(grid.nx(), left + (nx_ + 2 * kHalo) * span);
+  const int last = std::min(grid.nx(), left + (nx_ + 2 * halo) * span);
   std::array<float, 2 * kTileCells + kTileCells + 2> low;
   height_.fill(floor_);
-  for (int row = 0; row < ny_ + 2 * kHalo; ++row) {
+  for (int row = 0; row < ny_ + 2 * halo; ++row) {
     const int from = std::max(0, bottom + row * span);
     const int to = std::min(grid.ny(), bottom + (row + 1) * span);
     if (from >= to) continue;
     low.fill(kNone);
     for (int j = from; j < to; ++j) lower_to_row(grid, j, first, last, low.data() + (first - left));
     low[index(last - left)] = kNone;  // the other half of a pair of cells
-    int width = (nx_ + 2 * kHalo) * span;
+    int width = (nx_ + 2 * halo) * span;
     for (int l = 0; l < level; ++l) {
       width /= 2;
       for (int i = 0; i < width; ++i)
         low[index(i)] = std::min(low[index(2 * i)], low[index(2 * i + 1)]);
     }
-    float* const out = height_.data() + row * kStride;
+    float* const out = height_.data() + slot(-halo, row - halo);
     for (int i = 0; i < width; ++i)
       out[i] = low[index(i)] == kNone ? floor_ : std::max(low[index(i)], floor_);
   }
@@ -86,21 +91,22 @@ void TileRelief::load_heights(const TileGrid& grid, int tx, int ty, int level) {
 
 void TileRelief::find_links(float cell_x, float cell_y) {
   const float floor = floor_;
-  const int rows = ny_ + 2 * kHalo;
-  const auto steps = [&](int next, int count, Field<float>& step) {
+  // Of rows that corners depend on.
+  const int begin = slot(-kHalo, -kCornerReach), end = slot(-kHalo, ny_ + kCornerReach);
+  const auto steps = [&](int next, int last, Field<float>& step) {
     const float* const h = height_.data();
-    for (int k = 0; k < count; ++k)
+    for (int k = begin; k < last; ++k)
       step[index(k)] = ((h[k] > floor) & (h[k + next] > floor)) ? h[k + next] - h[k] : 0.0f;
   };
-  steps(1, rows * kStride - 1, step_x_);
-  steps(kStride, (rows - 1) * kStride, step_y_);
-  const auto links = [&](int next, int begin, int end, float cell, const Field<float>& step,
+  steps(1, end - 1, step_x_);
+  steps(kStride, end - kStride, step_y_);
+  const auto links = [&](int next, int first, int last, float cell, const Field<float>& step,
                          Field<float>& link) {
     const float* const h = height_.data();
     const float* const d = step.data();
     float* const out = link.data();
     const float smooth = kSmoothSlope * cell, steepest = kSteepestSlope * cell;
-    for (int k = begin; k < end; ++k) {
+    for (int k = first; k < last; ++k) {
       const float size = std::abs(d[k]);
       const float before = d[k] * d[k - next], after = d[k] * d[k + next];
       const float goes_on = before > after ? before : after;
@@ -110,13 +116,14 @@ void TileRelief::find_links(float cell_x, float cell_y) {
       out[k] = (alike & is_smooth) ? 1.0f : 0.0f;
     }
   };
-  links(1, 1, rows * kStride - 2, cell_x, step_x_, link_x_);
-  links(kStride, kStride, (rows - 2) * kStride, cell_y, step_y_, link_y_);
+  links(1, begin + 1, end - 2, cell_x, step_x_, link_x_);
+  links(kStride, begin + kStride, end - 2 * kStride, cell_y, step_y_, link_y_);
 }
 
 void TileRelief::find_corners(float cell_x, float cell_y) {
-  // Links are good from one cell within the halo's edge on, slopes from two, corners from three.
-  const int begin = 2 * kStride + 2, end = (ny_ + 2 * kHalo - 2) * kStride - 2;
+  // Of four cells about the tile, links are good from the second on, slopes from the third,
+  // corners from the fourth.
+  const int begin = slot(-2, -2), end = slot(nx_ + 2, ny_ + 1);
   const auto slopes = [&](int next, float cell, const Field<float>& step, const Field<float>& link,
                           Field<float>& slope) {
     const float* const d = step.data();
@@ -185,21 +192,20 @@ TileRelief::Split TileRelief::split(int corner) const {
   return out;
 }
 
-glm::vec2 TileRelief::wall_direction(int corner, float low, float high) const {
-  // Against the middle of the wall, so that cells which are left out do not tilt the result.
-  const float middle = 0.5f * (low + high);
-  const bool between_solids = low > floor_;
-  glm::vec2 downhill(0);
-  for (int j = -2; j < 2; ++j) {
-    for (int i = -2; i < 2; ++i) {
-      const int cell = corner + j * kStride + i;
-      if (between_solids && !solid(cell)) continue;
-      const float z = std::clamp(height(cell), low, high);
-      const glm::vec2 arm(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f);
-      downhill -= (z - middle) / (arm.x * arm.x + arm.y * arm.y) * arm;
-    }
+WallCourse TileRelief::wall_course(int i, int j, bool across_x) const {
+  const float middle =
+      0.5f * (height(slot(i, j)) + height(across_x ? slot(i - 1, j) : slot(i, j - 1)));
+  const auto height_of = [this](int x, int y) { return height(slot(x, y)); };
+  const int reach = wall_reach_;
+  if (std::max(grid_begin_.x, grid_begin_.y) <= -reach && nx_ + reach <= grid_end_.x &&
+      ny_ + reach <= grid_end_.y) [[likely]] {
+    const auto everywhere = [](int, int) { return true; };
+    return WallCourse(i, j, across_x, middle, reach, height_of, everywhere);
   }
-  return downhill;
+  const auto in_grid = [this](int x, int y) {
+    return x >= grid_begin_.x && y >= grid_begin_.y && x < grid_end_.x && y < grid_end_.y;
+  };
+  return WallCourse(i, j, across_x, middle, reach, height_of, in_grid);
 }
 
 }  // namespace kerf

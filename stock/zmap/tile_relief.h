@@ -2,10 +2,13 @@
 // of cells, which of them belong to one smooth surface, and where that surface has its corners.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 
+#include "base/wall_course.h"
+#include "stock/stock_model.h"
 #include "stock/zmap/tile_grid.h"
 
 namespace kerf {
@@ -30,7 +33,8 @@ class TileRelief {
   static constexpr float kSmoothSlope = 0.25f;   ///< about 14 degrees
   static constexpr float kSteepestSlope = 6.0f;  ///< about 80 degrees
   static constexpr float kMostSteepening = 2.5f;
-  static constexpr int kHalo = 4;  ///< cells beyond the tile; a corner depends on three
+  /// Cells beyond the tile. A corner depends on three, the course of a wall on wall_reach().
+  static constexpr int kHalo = WallCourse::kMaxReach;
   static constexpr int kStride = kTileCells + 2 * kHalo;
   static constexpr int kSlots = kStride * kStride;
 
@@ -71,12 +75,19 @@ class TileRelief {
   float corner_z(int corner) const { return corner_z_[index(corner)]; }
   std::uint32_t corner_normal(int corner) const { return corner_normal_[index(corner)]; }
   Split split(int corner) const;
-  /// Direction in which a wall faces that stands at this corner between heights `low` and `high`:
-  /// downhill of the heights around, cut off at these two. So a round wall looks round. Not of
-  /// unit length.
-  glm::vec2 wall_direction(int corner, float low, float high) const;
+  /// Course of the wall between a cell and the one before it in x, or in y. With it a round or
+  /// oblique wall looks as it is, not as its cells are.
+  WallCourse wall_course(int i, int j, bool across_x) const;
+  /// Cells beyond the tile that are looked at. Less at coarse levels, so that the next tiles are
+  /// enough.
+  static int wall_reach(int level) {
+    return std::clamp(kTileCells / 2 >> level, kCornerReach, WallCourse::kMaxReach);
+  }
 
  private:
+  static constexpr int kCornerReach = 4;
+  static_assert(kCornerReach << (StockModel::kPatchLevels - 1) <= kTileCells);
+
   template <class T>
   using Field = std::array<T, kSlots>;
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -91,6 +102,8 @@ class TileRelief {
   void find_corners(float cell_x, float cell_y);
 
   int nx_ = 0, ny_ = 0;
+  int wall_reach_;
+  glm::ivec2 grid_begin_, grid_end_;  ///< of the grid, as cells are counted here
   float floor_ = 0;
   std::array<float, kTileCells + 1> x_, y_;
   alignas(64) Field<float> height_;

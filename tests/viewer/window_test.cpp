@@ -454,6 +454,39 @@ TEST_F(WindowTest, AgeOfALostSourceGrowsOnTheScreen) {
   EXPECT_TRUE(turn_until_changed(lost, kInfo));  // no news came
 }
 
+TEST_F(WindowTest, PlayerKeysAreToldThatTheMachineLeads) {
+  open();
+  Moment moment = test_moment();
+  moment.state = PlayState::kFollowing;
+  publish(moment);
+  settle();
+  commands_.take();
+  constexpr PixelBox kStatus{0, 745, kWidth, kHeight};
+  ASSERT_EQ(count_pixels(window_->read(), kStatus, kWarningText), 0);
+  key("space");
+  settle();
+  EXPECT_GT(count_pixels(window_->read(), kStatus, kWarningText), 50);
+  for (const ViewerCommand& command : commands_.take()) {
+    EXPECT_FALSE(std::holds_alternative<PlayCommand>(command));
+  }
+  publish(test_moment());  // it leads no longer
+  settle();
+  EXPECT_EQ(count_pixels(window_->read(), kStatus, kWarningText), 0);
+}
+
+/// At scale 2 the buttons beside both panels need several rows: the last one opens the help.
+TEST_F(WindowTest, AllButtonsAreAtHandOnAFineDisplay) {
+  WindowOptions options;
+  options.scale = 2.0f;
+  options.width_px = 1600;
+  options.height_px = 1000;
+  open(options);
+  const Picture before = window_->read();
+  click(731, 196);  // the last, in the fourth row
+  settle();
+  EXPECT_GT(mean_difference(before, window_->read(), {580, 240, 1000, 830}), 10.0);
+}
+
 TEST_F(WindowTest, EverythingIsLargerOnAFineDisplay) {
   WindowOptions options;
   options.scale = 2.0f;

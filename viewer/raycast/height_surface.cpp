@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/wall_course.h"
 #include "viewer/raycast/parallel.h"
 
 namespace kerf {
@@ -350,41 +351,18 @@ glm::vec3 HeightSurface::normal(const Ray& world_ray, const SurfaceHit& hit) con
 }
 
 /// Of the wall by which a ray came into cell (i, j) across x (or y), in direction `step`, at
-/// `along` 0 .. 1 of the edge: between the directions of the wall at the edge's two ends. There it
-/// faces downhill of the heights around, cut off at its own top and bottom, so that a round wall
-/// looks round.
+/// `along` 0 .. 1 of the edge: between the directions of the wall at the edge's two ends.
 glm::vec3 HeightSurface::wall_normal(int i, int j, bool across_x, int step, double along) const {
   const glm::vec2 outward = across_x ? glm::vec2(-step, 0) : glm::vec2(0, -step);
   const int other_i = across_x ? i - step : i, other_j = across_x ? j : j - step;
   if (!grid_->contains(other_i, other_j)) return {outward, 0};
-  const CellTop high = cell(i, j), low = cell(other_i, other_j);
-  const float floor = grid_->floor_mm();
-  const auto direction_at = [&](bool at_end) {
-    const int line_x = across_x ? i + (step < 0) : i + at_end;
-    const int line_y = across_x ? j + at_end : j + (step < 0);
-    const auto corner = [&](const CellTop& top, int cell_i, int cell_j) {
-      if (!top.is_solid) return floor;
-      if (line_y == cell_j) return line_x == cell_i ? top.a : top.b;
-      return line_x == cell_i ? top.d : top.c;
-    };
-    const float one = corner(high, i, j), two = corner(low, other_i, other_j);
-    const float bottom = std::min(one, two), ceiling = std::max(one, two);
-    const float middle = 0.5f * (bottom + ceiling);
-    glm::vec2 downhill(0);
-    for (int y = -2; y < 2; ++y) {
-      for (int x = -2; x < 2; ++x) {
-        const bool is_inside = grid_->contains(line_x + x, line_y + y);
-        const float height = is_inside ? grid_->height(line_x + x, line_y + y) : floor;
-        if (bottom > floor && !(height > floor)) continue;
-        const glm::vec2 arm(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        downhill -= (std::clamp(height, bottom, ceiling) - middle) / glm::dot(arm, arm) * arm;
-      }
-    }
-    const float length = glm::length(downhill);
-    return glm::dot(downhill, outward) > 0.5f * length ? downhill / length : outward;
-  };
-  const glm::vec2 way =
-      glm::mix(direction_at(false), direction_at(true), static_cast<float>(along));
+  const float middle = 0.5f * (grid_->height(i, j) + grid_->height(other_i, other_j));
+  const WallCourse course(
+      std::max(i, other_i), std::max(j, other_j), across_x, middle, WallCourse::kMaxReach,
+      [this](int x, int y) { return grid_->height(x, y); },
+      [this](int x, int y) { return grid_->contains(x, y); });
+  const glm::vec2 way = glm::mix(course.facing(false, outward), course.facing(true, outward),
+                                 static_cast<float>(along));
   return {glm::normalize(way), 0};
 }
 

@@ -43,7 +43,7 @@ class HeightSurface {
   /// inside the material meets it at its beginning.
   bool trace(const Ray& ray, SurfaceHit* hit) const;
   /// Unit normal, out of the material, as the patches have it there: on tops between the normals of
-  /// the corners, on walls level and across the wall. O(1).
+  /// the corners, on walls level and across the wall's course (WallCourse). O(1).
   glm::vec3 normal(const Ray& ray, const SurfaceHit& hit) const;
 
   const HeightGrid* grid() const { return grid_.get(); }

@@ -12,7 +12,8 @@ namespace kerf {
 namespace {
 
 constexpr int kCells = SurfaceTile::kCells;
-constexpr int kHalo = kSurfaceReach;
+constexpr int kHalo = 4;  // a corner depends on three cells beyond it
+static_assert(kHalo <= kSurfaceReach);
 constexpr int kStride = kCells + 2 * kHalo;
 constexpr int kSlots = kStride * kStride;
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/height_grid.h"
+#include "base/wall_course.h"
 
 namespace kerf {
 
@@ -73,6 +74,6 @@ inline CellTop cell_top(const SurfaceTile::Detail& detail, int x, int y) {
 SurfaceTile make_surface_tile(const HeightGrid& grid, int tx, int ty);
 
 /// Cells beyond a cell up to which its change can change the surface or how it is lit.
-inline constexpr int kSurfaceReach = 4;
+inline constexpr int kSurfaceReach = WallCourse::kMaxReach;
 
 }  // namespace kerf

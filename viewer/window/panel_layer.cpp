@@ -20,12 +20,12 @@ Done PanelLayer::resize(glm::ivec2 size_px) {
   return std::monostate{};
 }
 
-void PanelLayer::show() const {
+void PanelLayer::show(const ScreenRect& rect) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glDisable(GL_SCISSOR_TEST);
-  glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, 0, 0, size_px_.x, size_px_.y, GL_COLOR_BUFFER_BIT,
-                    GL_NEAREST);
+  glBlitFramebuffer(rect.min.x, rect.min.y, rect.max.x, rect.max.y, rect.min.x, rect.min.y,
+                    rect.max.x, rect.max.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 Picture PanelLayer::read() const { return read_framebuffer(framebuffer_.name(), size_px_); }

@@ -6,6 +6,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/picture.h"
+#include "viewer/window/screen_rect.h"
 
 namespace kerf {
 
@@ -16,10 +17,11 @@ class PanelLayer {
  public:
   /// Its content is undefined after a change of size. Error: more than this OpenGL can do.
   Done resize(glm::ivec2 size_px);
+  glm::ivec2 size_px() const { return size_px_; }
   /// To be drawn into.
   GLuint framebuffer() const { return framebuffer_.name(); }
-  /// Copies it to the window.
-  void show() const;
+  /// Copies a rectangle of it to the back buffer of the window.
+  void show(const ScreenRect& rect) const;
   /// What is shown.
   Picture read() const;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <glm/common.hpp>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -34,6 +36,25 @@ Box box_of(const MeshPatch& patch) {
 
 std::size_t index_count(const MeshPatch& patch, bool with_skirts) {
   return (with_skirts ? patch.indices.size() : patch.skirt_begin) / 3 * 3;
+}
+
+/// Triangles that follow each other in a patch lie near each other: of a tile that a rectangle
+/// cuts, only those runs of this many indices are drawn whose boxes it meets.
+constexpr std::size_t kRunIndices = 3 * 512;
+
+std::vector<Box> run_boxes_of(const MeshPatch& patch) {
+  std::vector<Box> boxes;
+  for (std::size_t begin = 0; begin < patch.indices.size(); begin += kRunIndices) {
+    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+    const std::size_t end = std::min(begin + kRunIndices, patch.indices.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::vec3& at = patch.vertices[patch.indices[i]].position_mm;
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+    boxes.push_back({Vec3(low), Vec3(high)});
+  }
+  return boxes;
 }
 
 /// The card takes a triangle's move from its last corner. A wall belongs to the move that cut what
@@ -186,6 +207,7 @@ void PatchStore::load(Tile* tile, std::shared_ptr<const MeshPatch> patch) {
   gpu_bytes_ += tile->gpu_bytes;
   tile->index_type = index_type;
   tile->box_mm = box_of(*patch);
+  tile->run_boxes_mm = run_boxes_of(*patch);
   tile->rect = covered_rect(tile->box_mm, projection_);
   tile->patch = std::move(patch);
   bounds_mm_.extend(tile->box_mm);
@@ -201,10 +223,33 @@ std::size_t PatchStore::draw(const ScreenRect& rect, VertexData data, bool havin
   for (const auto& [number, tile] : tiles_) {
     if (!tile.rect.intersects(rect) || has(*tile.patch, data) != having) continue;
     glBindVertexArray(tile.array.name());
-    const std::size_t count = index_count(*tile.patch, draws_skirts());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), tile.index_type, nullptr);
-    triangles += count / 3;
+    triangles += draw_runs(tile, rect);
   }
+  return triangles;
+}
+
+std::size_t PatchStore::draw_runs(const Tile& tile, const ScreenRect& rect) const {
+  const std::size_t end = index_count(*tile.patch, draws_skirts());
+  const std::size_t index_bytes = tile.index_type == GL_UNSIGNED_SHORT ? 2 : 4;
+  const bool is_whole = tile.rect.common(rect) == tile.rect;
+  std::size_t triangles = 0;
+  std::size_t begin = 0, seen_end = 0;
+  const auto draw_seen = [&] {
+    if (seen_end <= begin) return;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(seen_end - begin), tile.index_type,
+                   reinterpret_cast<const void*>(begin * index_bytes));
+    triangles += (seen_end - begin) / 3;
+  };
+  for (std::size_t run = 0; run * kRunIndices < end; ++run) {
+    const std::size_t run_begin = run * kRunIndices;
+    if (!is_whole && !covered_rect(tile.run_boxes_mm[run], projection_).intersects(rect)) continue;
+    if (run_begin != seen_end) {
+      draw_seen();
+      begin = run_begin;
+    }
+    seen_end = std::min(run_begin + kRunIndices, end);
+  }
+  draw_seen();
   return triangles;
 }
 

@@ -54,10 +54,13 @@ class PatchStore {
     std::size_t gpu_bytes = 0;
     GLenum index_type = GL_UNSIGNED_INT;
     Box box_mm;
+    std::vector<Box> run_boxes_mm;  // of kRunIndices indices each
     ScreenRect rect;
   };
 
   void load(Tile* tile, std::shared_ptr<const MeshPatch> patch);
+  /// Returns the triangles drawn.
+  std::size_t draw_runs(const Tile& tile, const ScreenRect& rect) const;
 
   std::map<std::uint32_t, Tile> tiles_;
   std::map<std::uint32_t, std::shared_ptr<const MeshPatch>> waiting_;

@@ -27,6 +27,30 @@ void point_to_vertices(std::size_t first, std::size_t stride) {
                          reinterpret_cast<const void*>(offset + offsetof(PathVertex, kind)));
 }
 
+/// Where the two differ. The path of a machine grows at its end: all before that is the same.
+Box change_between(const PathChunk* before, const PathChunk& after) {
+  const auto same = [](const PathVertex& a, const PathVertex& b) {
+    return a.position_mm == b.position_mm && a.kind == b.kind;
+  };
+  Box box;
+  if (before == nullptr) {
+    for (const PathVertex& vertex : after.vertices) box.extend(Vec3(vertex.position_mm));
+    return box;
+  }
+  const auto [old_end, new_end] = std::mismatch(before->vertices.begin(), before->vertices.end(),
+                                                after.vertices.begin(), after.vertices.end(), same);
+  // The segment that ends at the first vertex that differs begins at the one before.
+  for (auto v = old_end == before->vertices.begin() ? old_end : old_end - 1;
+       old_end != before->vertices.end() && v != before->vertices.end(); ++v) {
+    box.extend(Vec3(v->position_mm));
+  }
+  for (auto v = new_end == after.vertices.begin() ? new_end : new_end - 1;
+       new_end != after.vertices.end() && v != after.vertices.end(); ++v) {
+    box.extend(Vec3(v->position_mm));
+  }
+  return box;
+}
+
 }  // namespace
 
 Result<PathStore> PathStore::create() {
@@ -101,9 +125,9 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
     waiting_.pop_front();
     if (values->index >= chunks_.size()) chunks_.resize(values->index + 1);
     Chunk& chunk = chunks_[values->index];
-    if (!chunk.box_mm.empty()) changed_mm->push_back(chunk.box_mm);
+    const Box changed = change_between(chunk.values.get(), *values);
+    if (!changed.empty()) changed_mm->push_back(changed);
     load(&chunk, std::move(values));
-    if (!chunk.box_mm.empty()) changed_mm->push_back(chunk.box_mm);
     bytes += size;
   }
   if (bytes > 0 || has_dropped) choose_strides(changed_mm);

@@ -2,9 +2,12 @@
 // the sources of viewer/ only.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
+#include "viewer/window/screen_rect.h"
 
 struct GLFWwindow;
 
@@ -24,8 +27,14 @@ class Platform {
   /// that is needed.
   Result<GLFWwindow*> open_window(int width_px, int height_px, const char* title);
 
-  /// Error: the connection to the display broke, or the graphics card was reset and lost what was
-  /// drawn. Nothing can be drawn any more then.
+  /// show() of a few rectangles is worth it: this OpenGL is a software renderer, for which sending
+  /// a whole window is a good part of a frame, and it can send less.
+  bool can_show_parts() const { return parts_ != nullptr; }
+  /// Brings the rectangles of the back buffer to the screen; all of it unless can_show_parts().
+  void show(GLFWwindow* window, const std::vector<ScreenRect>& rects) const;
+
+  /// Error: the connection to the display broke. Nothing can be drawn any more then. (A reset of
+  /// the graphics card shows when something is drawn: see gl_failure.h.)
   Done check() const;
   /// The connection to the display broke: GLFW must not be called any more.
   static bool is_lost();
@@ -34,7 +43,13 @@ class Platform {
   static void wake();
 
  private:
+  /// Of Xlib and GLX, which no other part of the window knows.
+  struct Parts;
+
+  void find_parts(GLFWwindow* window);
+
   bool is_started_ = false;
+  std::shared_ptr<const Parts> parts_;  // null: only the whole window can be shown
 };
 
 }  // namespace kerf

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "viewer/window/icons.h"
 #include "viewer/window/panels.h"
@@ -188,7 +189,9 @@ void draw_times(const PanelContext& context) {
   const double duration_s = context.shown.timeline->duration_s;
   std::string times = clock_text(moment.time_s);
   if (duration_s > 0.0) {
-    times += fmt::format("   -{}", clock_text(std::max(0.0, duration_s - moment.time_s)));
+    const std::string nothing = clock_text(0.0);
+    const std::string left = clock_text(std::max(0.0, duration_s - moment.time_s));
+    times += fmt::format("   {}{}", left == nothing ? "" : "-", left);
   }
   ImGui::PushFont(context.fonts.mono);
   const float width = ImGui::CalcTextSize(times.c_str()).x;
@@ -229,18 +232,81 @@ void draw_status(const PanelContext& context) {
   ImGui::TextColored(theme::kDim, "%s", figures.c_str());
 }
 
-/// A button of the toolbar; lit while what it switches is on.
-void tool_button(const PanelContext& context, Text label, Action action, Text what, bool is_lit) {
-  if (is_lit) {
+struct ToolButton {
+  Text label;
+  Action action;
+  Text what;
+  bool is_lit = false;
+  bool is_disabled = false;
+  bool begins_group = false;
+};
+
+constexpr glm::vec2 kToolPadding_px{4.0f, 3.0f};
+constexpr float kToolGap_px = 3.0f;
+constexpr float kGroupGap_px = 15.0f;
+
+std::vector<ToolButton> tool_buttons(const ViewSettings& settings, bool measures) {
+  std::vector<ToolButton> buttons;
+  const bool is_flat = settings.flat != FlatView::kNone;
+  constexpr std::array kViews{
+      std::pair{Text::kFit, Action::kFit},     std::pair{Text::kIsometric, Action::kIsometric},
+      std::pair{Text::kTop, Action::kTop},     std::pair{Text::kFront, Action::kFront},
+      std::pair{Text::kRight, Action::kRight}, std::pair{Text::kBack, Action::kBack},
+      std::pair{Text::kLeft, Action::kLeft},   std::pair{Text::kBottom, Action::kBottom}};
+  for (const auto& [label, action] : kViews) {
+    buttons.push_back({label, action, label, false, is_flat && action != Action::kFit});
+  }
+  constexpr std::array kFlatNames{Text::kFlatOff, Text::kFlatXy, Text::kFlatXz};
+  buttons.push_back({kFlatNames[static_cast<std::size_t>(settings.flat)], Action::kFlat,
+                     Text::kFlat, is_flat, false, true});
+  buttons.push_back({Text::kPerspective, Action::kPerspective, Text::kPerspectiveWhat,
+                     settings.is_perspective && !is_flat, is_flat});
+  buttons.push_back(
+      {Text::kSection, Action::kSection, Text::kSection, settings.section.is_on, false, true});
+  buttons.push_back({Text::kMeasure, Action::kMeasure, Text::kMeasure, measures});
+  buttons.push_back({Text::kPicture, Action::kScreenshot, Text::kScreenshot});
+  buttons.push_back({Text::kQuestionMark, Action::kHelp, Text::kShortcuts});
+  return buttons;
+}
+
+/// Where the buttons stand, in rows of `width` pixels; from the upper left.
+std::vector<ImVec2> tool_places(const std::vector<ToolButton>& buttons, Language language,
+                                float width, float scale) {
+  const float row_height =
+      std::round(ImGui::GetFontSize() + 2.0f * (kToolPadding_px.y + kToolGap_px) * scale);
+  std::vector<ImVec2> places;
+  ImVec2 next(0.0f, 0.0f);
+  for (const ToolButton& button : buttons) {
+    const float button_width = ImGui::CalcTextSize(text(button.label, language)).x +
+                               2.0f * std::round(kToolPadding_px.x * scale);
+    if (button.begins_group && next.x > 0.0f) next.x += (kGroupGap_px - kToolGap_px) * scale;
+    if (next.x > 0.0f && next.x + button_width > width) next = {0.0f, next.y + row_height};
+    places.push_back(next);
+    next.x += std::round(button_width + kToolGap_px * scale);
+  }
+  return places;
+}
+
+float toolbar_room(const ViewSettings& settings, float width, float scale) {
+  const float inside = width - 2.0f * ImGui::GetStyle().WindowPadding.x;
+  const std::vector<ImVec2> places =
+      tool_places(tool_buttons(settings, false), settings.language, inside, scale);
+  return std::round(kToolbarHeight_px * scale + places.back().y);
+}
+
+void draw_tool_button(const PanelContext& context, const ToolButton& button) {
+  ImGui::BeginDisabled(button.is_disabled);
+  if (button.is_lit) {
     ImGui::PushStyleColor(ImGuiCol_Button, ImGui::ColorConvertU32ToFloat4(theme::kAccent));
   }
   if (ImGui::Button(
-          fmt::format("{}###{}", context.word(label), static_cast<int>(action)).c_str())) {
-    context.state->action = action;
+          fmt::format("{}###{}", context.word(button.label), static_cast<int>(button.action))
+              .c_str())) {
+    context.state->action = button.action;
   }
-  if (is_lit) ImGui::PopStyleColor();
-  tip(context, action, what);
-  ImGui::SameLine(0.0f, 3.0f * context.scale);
+  if (button.is_lit) ImGui::PopStyleColor();
+  tip(context, button.action, button.what);
+  ImGui::EndDisabled();
 }
 
 }  // namespace
@@ -262,7 +328,6 @@ PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float sc
   PanelRoom room;
   if (window_px.y >= scale * (kBarHeight_px + kSmallestPicture_px)) {
     room.bottom = std::round(scale * kBarHeight_px);
-    room.top = std::round(scale * kToolbarHeight_px);
   }
   float left_over = window_px.x - scale * kSmallestPicture_px;
   if (settings.shows_info && left_over >= scale * kInfoWidth_px) {
@@ -271,6 +336,13 @@ PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float sc
   }
   if (settings.shows_code && left_over >= scale * kCodeWidth_px) {
     room.left = std::round(scale * kCodeWidth_px);
+  }
+  if (room.bottom > 0.0f) {
+    room.top = toolbar_room(settings, window_px.x - room.left - room.right, scale);
+    // A picture that finds no room below several rows is worth more than all of the buttons.
+    if (window_px.y - room.bottom - room.top < scale * kSmallestPicture_px) {
+      room.top = std::round(scale * kToolbarHeight_px);
+    }
   }
   return room;
 }
@@ -302,35 +374,18 @@ void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelR
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
-  // Narrow, so that all of it fits beside both panels at a width of 1280.
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4.0f * context.scale, 3.0f * context.scale});
-  const ViewSettings& settings = *context.settings;
-  constexpr std::array kViews{
-      std::pair{Text::kFit, Action::kFit},     std::pair{Text::kIsometric, Action::kIsometric},
-      std::pair{Text::kTop, Action::kTop},     std::pair{Text::kFront, Action::kFront},
-      std::pair{Text::kRight, Action::kRight}, std::pair{Text::kBack, Action::kBack},
-      std::pair{Text::kLeft, Action::kLeft},   std::pair{Text::kBottom, Action::kBottom}};
-  const bool is_flat = settings.flat != FlatView::kNone;
-  for (const auto& [label, action] : kViews) {
-    ImGui::BeginDisabled(is_flat && action != Action::kFit);
-    tool_button(context, label, action, label, false);
-    ImGui::EndDisabled();
+  // Narrow, so that one row of it fits beside both panels at a width of 1280.
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {std::round(kToolPadding_px.x * context.scale),
+                                                   std::round(kToolPadding_px.y * context.scale)});
+  const std::vector<ToolButton> buttons =
+      tool_buttons(*context.settings, context.state->inspection.measures);
+  const ImVec2 corner = ImGui::GetCursorPos();
+  const std::vector<ImVec2> places = tool_places(buttons, context.settings->language,
+                                                 ImGui::GetContentRegionAvail().x, context.scale);
+  for (std::size_t i = 0; i < buttons.size(); ++i) {
+    ImGui::SetCursorPos({corner.x + places[i].x, corner.y + places[i].y});
+    draw_tool_button(context, buttons[i]);
   }
-  ImGui::SameLine(0.0f, 12.0f * context.scale);
-  constexpr std::array kFlatNames{Text::kFlatOff, Text::kFlatXy, Text::kFlatXz};
-  tool_button(context, kFlatNames[static_cast<std::size_t>(settings.flat)], Action::kFlat,
-              Text::kFlat, is_flat);
-  ImGui::BeginDisabled(is_flat);
-  tool_button(context, Text::kPerspective, Action::kPerspective, Text::kPerspectiveWhat,
-              settings.is_perspective && !is_flat);
-  ImGui::EndDisabled();
-  ImGui::SameLine(0.0f, 12.0f * context.scale);
-  tool_button(context, Text::kSection, Action::kSection, Text::kSection, settings.section.is_on);
-  tool_button(context, Text::kMeasure, Action::kMeasure, Text::kMeasure,
-              context.state->inspection.measures);
-  tool_button(context, Text::kPicture, Action::kScreenshot, Text::kScreenshot, false);
-  if (ImGui::Button(" ? ")) context.state->action = Action::kHelp;
-  tip(context, Action::kHelp, Text::kShortcuts);
   ImGui::PopStyleVar();
   ImGui::End();
 }

@@ -70,7 +70,8 @@ class SceneRenderer::Impl {
   bool has_waiting() const {
     return patches_.waiting_bytes() > 0 || path_.has_waiting() || machine_.has_waiting();
   }
-  void show_in(GLuint framebuffer, glm::ivec2 corner_px) const;
+  ScreenRect take_changed() { return std::exchange(changed_, {}); }
+  void show_in(GLuint framebuffer, glm::ivec2 corner_px, const ScreenRect& rect) const;
   Picture read() const { return read_framebuffer(shown_.framebuffer(), size_px_); }
   std::optional<Vec3> pick(glm::ivec2 px) const;
   Box fit_box() const;
@@ -130,6 +131,7 @@ class SceneRenderer::Impl {
   bool is_kept_old_ = true;  // all of it
   std::vector<Box> changed_mm_;
   ScreenRect tool_rect_;  // where the tool is in shown_
+  ScreenRect changed_;    // of shown_, since take_changed()
 };
 
 void SceneRenderer::Impl::grow_depth_box(const Box& box) {
@@ -407,6 +409,7 @@ void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
   const ScreenRect machine_rect = machine_.take_changed(projection_);
   if (look(SceneObject::kMachine).is_visible) rect.extend(machine_rect);
   if (rect.empty()) return;
+  changed_.extend(rect);
   counters.shown_pixels += static_cast<std::uint64_t>(rect.pixels());
   shown_.copy(kept_, rect);
   shown_.bind(rect);
@@ -475,13 +478,14 @@ void SceneRenderer::Impl::draw_glass() {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void SceneRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) const {
-  const glm::ivec2 end_px = corner_px + size_px_;
+void SceneRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px,
+                                  const ScreenRect& rect) const {
+  const ScreenRect to = rect.moved(corner_px);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glDisable(GL_SCISSOR_TEST);
-  glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, corner_px.x, corner_px.y, end_px.x, end_px.y,
-                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(rect.min.x, rect.min.y, rect.max.x, rect.max.y, to.min.x, to.min.y, to.max.x,
+                    to.max.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
@@ -532,8 +536,10 @@ Done SceneRenderer::draw(const Projection& projection, const DrawOptions& option
   return impl_->draw(projection, options);
 }
 bool SceneRenderer::has_waiting() const { return impl_->has_waiting(); }
-void SceneRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px) const {
-  impl_->show_in(framebuffer, corner_px);
+ScreenRect SceneRenderer::take_changed() { return impl_->take_changed(); }
+void SceneRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px,
+                            const ScreenRect& rect) const {
+  impl_->show_in(framebuffer, corner_px, rect);
 }
 void SceneRenderer::finish() const { glFinish(); }
 std::string SceneRenderer::gl_name() {

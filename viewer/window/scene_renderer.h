@@ -113,9 +113,11 @@ class SceneRenderer {
   /// What the colours of the workpiece last drawn mean; empty if nothing.
   std::vector<ColorLegendEntry> legend() const;
 
-  /// Copies the picture last drawn to a framebuffer (0: the window's), from its pixel `corner_px`
-  /// (counted from the lower left) on.
-  void show_in(unsigned framebuffer, glm::ivec2 corner_px) const;
+  /// The pixels that draw() may have changed since the last call.
+  ScreenRect take_changed();
+  /// Copies a rectangle of the picture last drawn to a framebuffer, in which the lower left corner
+  /// of the picture is at the pixel `corner_px` (counted from the lower left).
+  void show_in(unsigned framebuffer, glm::ivec2 corner_px, const ScreenRect& rect) const;
   /// Waits until the card has drawn everything; for measuring.
   void finish() const;
   /// Version and renderer: "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (...)".

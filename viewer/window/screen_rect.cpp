@@ -54,6 +54,23 @@ bool ScreenRect::intersects(const ScreenRect& other) const {
          min.y < other.max.y && other.min.y < max.y;
 }
 
+ScreenRect ScreenRect::common(const ScreenRect& other) const {
+  return {{std::max(min.x, other.min.x), std::max(min.y, other.min.y)},
+          {std::min(max.x, other.max.x), std::min(max.y, other.max.y)}};
+}
+
+void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects) {
+  if (rect.empty()) return;
+  const auto overlaps = [&rect](const ScreenRect& other) { return rect.intersects(other); };
+  // What has grown may overlap others.
+  for (auto found = std::find_if(rects->begin(), rects->end(), overlaps); found != rects->end();
+       found = std::find_if(rects->begin(), rects->end(), overlaps)) {
+    rect.extend(*found);
+    rects->erase(found);
+  }
+  rects->push_back(rect);
+}
+
 ScreenRect covered_rect(const Box& box, const Projection& projection) {
   if (box.empty()) return {};
   glm::vec2 low(kFarthest_px);

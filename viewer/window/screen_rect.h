@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <vector>
 
 #include "base/geometry.h"
 #include "viewer/window/orbit_camera.h"
@@ -19,8 +20,15 @@ struct ScreenRect {
   std::int64_t pixels() const;
   void extend(const ScreenRect& other);
   bool intersects(const ScreenRect& other) const;
+  /// What lies in both; maybe empty.
+  ScreenRect common(const ScreenRect& other) const;
+  ScreenRect moved(glm::ivec2 by_px) const { return {min + by_px, max + by_px}; }
   bool operator==(const ScreenRect&) const = default;
 };
+
+/// Adds a rectangle to some that do not overlap, so that they still do not: those that it overlaps
+/// grow together with it.
+void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects);
 
 /// All pixels that something inside the box can touch, with a border for lines and markers. A box
 /// that reaches the plane of the eye may touch any pixel.

@@ -9,7 +9,7 @@
 namespace kerf {
 
 enum class Action {
-  kPlayPause,
+  kPlayPause,  // from here to kGoToLine: the player's
   kStop,
   kToStart,
   kToEnd,
@@ -60,6 +60,8 @@ struct Shortcut {
 };
 
 std::span<const Shortcut> shortcuts();
+/// It changes what is played, not how it is looked at.
+constexpr bool is_for_player(Action action) { return action <= Action::kGoToLine; }
 std::optional<Action> action_of_character(char32_t character);
 std::optional<Action> action_of_key(int key);
 

@@ -38,6 +38,7 @@ enum class Text {
   kPlaying,
   kHurrying,
   kFollowing,
+  kMachineLeads,
   kEnded,
   // panels
   kMachine,
@@ -127,6 +128,7 @@ enum class Text {
   kFlatXz,
   kFlat,
   kPicture,
+  kQuestionMark,
   // help
   kShortcuts,
   kCodePanel,

@@ -143,11 +143,11 @@ void Window::Impl::install_callbacks() {
     ImGui_ImplGlfw_WindowFocusCallback(window, focused);
   });
   glfwSetFramebufferSizeCallback(window_,
-                                 [](GLFWwindow* window, int, int) { self(window)->touched(); });
-  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { self(window)->touched(); });
+                                 [](GLFWwindow* window, int, int) { self(window)->uncovered(); });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { self(window)->uncovered(); });
   glfwSetWindowIconifyCallback(window_, [](GLFWwindow* window, int is_hidden) {
     self(window)->is_hidden_ = is_hidden == GLFW_TRUE;
-    self(window)->touched();
+    self(window)->uncovered();
   });
   glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* window, float scale, float) {
     Impl& impl = *self(window);

@@ -122,10 +122,10 @@ void Window::Impl::act_on_panels(Action action) {
       break;
     }
     case Action::kScreenshot:
-      save_picture(renderer_->read());
+      if (has_drawn()) save_picture(renderer_->read());
       break;
     case Action::kWindowPicture:
-      save_picture(layer_->read());
+      if (has_drawn()) save_picture(layer_->read());
       break;
     case Action::kHelp:
       state_.shows_help = !state_.shows_help;
@@ -143,7 +143,10 @@ void Window::Impl::act_on_panels(Action action) {
 
 void Window::Impl::act_on_player(Action action) {
   const Moment& moment = *shown_.moment;
-  if (moment.state == PlayState::kFollowing) return;  // the machine leads
+  if (moment.state == PlayState::kFollowing) {
+    if (is_for_player(action)) state_.notice = text(Text::kMachineLeads, settings_.language);
+    return;
+  }
   const auto speed = [&](double factor) {
     const double present = std::isfinite(moment.speed) ? moment.speed : kMaxSpeed;
     commands_.push(SpeedCommand{std::clamp(present * factor, kMinSpeed, kMaxSpeed)});

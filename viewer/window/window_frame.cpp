@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "viewer/window/window_impl.h"
 
@@ -41,6 +42,11 @@ void FrameCounter::count(Clock::time_point now) {
 void Window::Impl::touched() {
   frames_to_draw_ = kSettlingFrames;
   panels_are_due_ = true;
+}
+
+void Window::Impl::uncovered() {
+  is_window_old_ = true;
+  touched();
 }
 
 double Window::Impl::longest_sleep_s() const {
@@ -106,6 +112,10 @@ void Window::Impl::apply(const SceneUpdate& update) {
   if (update.moment) {
     // Another file comes to the front, which takes Dear ImGui more than one frame.
     if (update.moment->file != shown_.moment->file) touched();
+    if (update.moment->state != PlayState::kFollowing &&
+        state_.notice == text(Text::kMachineLeads, settings_.language)) {
+      state_.notice.clear();
+    }
     shown_.moment = update.moment;
     shown_.moment_came = Clock::now();
   }
@@ -114,6 +124,11 @@ void Window::Impl::apply(const SceneUpdate& update) {
 void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
   if (!(setup->bounds_mm == shown_.setup->bounds_mm)) wants_fit_ = true;
   shown_.setup = setup;
+  if (setup->tolerance_mm) {
+    settings_.drawing.color_by = ColorBy::kDeviation;
+    settings_.drawing.tolerance_mm =
+        std::clamp(*setup->tolerance_mm, kMinTolerance_mm, kMaxTolerance_mm);
+  }
   const std::string& title = setup->title;
   glfwSetWindowTitle(window_, title.empty() ? "kerf" : fmt::format("kerf - {}", title).c_str());
   const Box& bounds = setup->bounds_mm;
@@ -127,11 +142,7 @@ void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
 Result<bool> Window::Impl::frame(double longest_wait_s) {
   if (was_closed_) return false;
   wait(longest_wait_s);
-  if (Done done = platform_.check(); !done) {
-    was_closed_ = true;
-    commands_.push(CloseCommand{});
-    return Error{done.error()};
-  }
+  if (Done done = platform_.check(); !done) return give_up(done.error());
   if (glfwWindowShouldClose(window_)) {
     was_closed_ = true;
     commands_.push(CloseCommand{});
@@ -148,8 +159,14 @@ Result<bool> Window::Impl::frame(double longest_wait_s) {
   last_frame_ = Clock::now();
   frame_counter_.count(last_frame_);
   --frames_to_draw_;
-  if (Done done = draw(); !done) return Error{done.error()};
+  if (Done done = draw(); !done) return give_up(done.error());
   return true;
+}
+
+Error Window::Impl::give_up(const std::string& reason) {
+  was_closed_ = true;
+  commands_.push(CloseCommand{});
+  return Error{reason};
 }
 
 void Window::Impl::set_scale() {
@@ -160,6 +177,7 @@ void Window::Impl::set_scale() {
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
   set_style(scale_);
+  is_window_old_ = true;
   touched();
 }
 
@@ -168,33 +186,20 @@ void Window::Impl::lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 
   const glm::vec2 px_per_unit = glm::vec2(window_px) / glm::max(display, glm::vec2(1.0f));
   const glm::ivec2 low(glm::vec2(room.left, room.bottom) * px_per_unit);
   const glm::ivec2 high = window_px - glm::ivec2(glm::vec2(room.right, room.top) * px_per_unit);
-  area_px_ = glm::max(high - low, glm::ivec2(1));
+  const glm::ivec2 size = glm::max(high - low, glm::ivec2(1));
+  if (size != area_px_ || low != area_corner_px_) is_window_old_ = true;
+  area_px_ = size;
   area_corner_px_ = low;
   area_top_px_ = {room.left, room.top};
-}
-
-/// Tooltips, questions and marks lie over the picture: it cannot be changed without them.
-bool Window::Impl::panels_cover_picture() const {
-  const ImDrawData* data = ImGui::GetDrawData();
-  if (data == nullptr) return false;
-  const glm::vec2 end = area_top_px_ + glm::vec2(area_px_);
-  for (int i = 0; i < data->CmdListsCount; ++i) {
-    for (const ImDrawCmd& command : data->CmdLists[i]->CmdBuffer) {
-      const ImVec4& clip = command.ClipRect;
-      if (command.ElemCount > 0 && clip.x < end.x && clip.z > area_top_px_.x && clip.y < end.y &&
-          clip.w > area_top_px_.y) {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 Done Window::Impl::draw() {
   glm::ivec2 window_px(0);
   glfwGetFramebufferSize(window_, &window_px.x, &window_px.y);
   if (window_px.x < 1 || window_px.y < 1) return std::monostate{};
+  if (window_px != layer_->size_px()) is_window_old_ = true;
   if (Done done = layer_->resize(window_px); !done) return done;
+  std::vector<ScreenRect> changed;
   const bool draws_panels = panels_are_due_;
   if (draws_panels) {
     set_scale();
@@ -208,6 +213,7 @@ Done Window::Impl::draw() {
     move_camera();
     draw_panels(room, display);
     ImGui::Render();
+    panel_change_.find(*ImGui::GetDrawData(), window_px, &changed);
   }
   camera_.set_perspective(settings_.is_perspective);
   camera_.set_flat(settings_.flat);
@@ -220,14 +226,30 @@ Done Window::Impl::draw() {
   settings_.drawing.section = section_plane(settings_.section);
   projection_ = camera_.projection(renderer_->depth_box(), area_px_);
   if (Done done = renderer_->draw(projection_, settings_.drawing); !done) return done;
-  renderer_->show_in(layer_->framebuffer(), area_corner_px_);
-  if (draws_panels || panels_cover_picture()) {
-    glViewport(0, 0, window_px.x, window_px.y);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  add_apart(renderer_->take_changed().moved(area_corner_px_), &changed);
+  // Where a unit of Dear ImGui is not a pixel, its rectangles are no pixels either.
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  if (std::exchange(is_window_old_, false) || scale.x != 1.0f || scale.y != 1.0f) {
+    changed = {ScreenRect::whole(window_px)};
   }
-  layer_->show();
-  glfwSwapBuffers(window_);
+  show(std::move(changed));
   return platform_.check();
+}
+
+/// Brings the rectangles up to date and to the screen. Tooltips, questions and marks lie over the
+/// picture: it cannot be changed without them.
+void Window::Impl::show(std::vector<ScreenRect> changed) {
+  if (changed.empty()) return;
+  const ScreenRect area = ScreenRect::whole(area_px_);
+  for (const ScreenRect& rect : changed) {
+    const ScreenRect seen = rect.moved(-area_corner_px_).common(area);
+    if (!seen.empty()) renderer_->show_in(layer_->framebuffer(), area_corner_px_, seen);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, layer_->framebuffer());
+  draw_panels_in(changed, layer_->size_px(), ImGui::GetDrawData());
+  if (!platform_.can_show_parts()) changed = {ScreenRect::whole(layer_->size_px())};
+  for (const ScreenRect& rect : changed) layer_->show(rect);
+  platform_.show(window_, changed);
 }
 
 void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "viewer/window/panel_change.h"
 #include "viewer/window/panel_layer.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/platform.h"
@@ -68,6 +69,8 @@ class Window::Impl {
   /// An input came: everything is drawn again, several times, since Dear ImGui settles sizes and
   /// hovering over some frames.
   void touched();
+  /// The window has lost its pixels.
+  void uncovered();
   void wait(double longest_s);
   double longest_sleep_s() const;
   void find_reasons_to_draw();
@@ -75,10 +78,12 @@ class Window::Impl {
   void apply(const SceneUpdate& update);
   void take_setup(const std::shared_ptr<const SceneSetup>& setup);
   Done draw();
+  /// Nothing can be shown any more.
+  Error give_up(const std::string& reason);
   void set_scale();
   void lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 window_px);
   void draw_panels(const PanelRoom& room, glm::vec2 display);
-  bool panels_cover_picture() const;
+  void show(std::vector<ScreenRect> changed);
 
   // window_actions.cpp
   void move_camera();
@@ -90,6 +95,8 @@ class Window::Impl {
   void act_on_panels(Action action);
   void set_breakpoint();
   void toggle_workpiece();
+  /// A key may come before the first frame.
+  bool has_drawn() const { return last_frame_ != Clock::time_point{}; }
   void save_picture(const Picture& picture);
   void end_saving();
   ObjectLook& look(SceneObject object) {
@@ -107,6 +114,8 @@ class Window::Impl {
   bool has_panels_ = false;
   std::optional<SceneRenderer> renderer_;
   std::optional<PanelLayer> layer_;
+  PanelChange panel_change_;
+  bool is_window_old_ = true;  // all of its pixels
   ShownValues shown_;
   PanelState state_;
   Fonts fonts_;

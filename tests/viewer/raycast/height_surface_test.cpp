@@ -224,6 +224,43 @@ class Triangles {
   std::vector<Triangle> triangles_;
 };
 
+TEST(HeightSurface, WallsFaceAsTheTrianglesDo) {
+  const std::unique_ptr<ZMap> part = test::make_map("box:0,0,-8:24,18,0", 0.11);
+  const Vec3 center(11.3, 9.2, -5);
+  std::vector<CutMove> moves;
+  const auto cut_to = [&](const Vec3& from, const Vec3& to) {
+    CutMove& move = moves.emplace_back();
+    move.from_mm = from;
+    move.to_mm = to;
+  };
+  constexpr int kSides = 180;
+  for (int n = 0; n < kSides; ++n) {
+    const auto at = [&](int side) {
+      const double turn = 2 * 3.14159265358979 * side / kSides;
+      return center + 4.7 * Vec3(std::cos(turn), std::sin(turn), 0);
+    };
+    cut_to(at(n), at(n + 1));
+  }
+  cut_to(Vec3(2, 3, -4), Vec3(21, 6, -3));
+  test::cut(*part, *parse_shape("flat:4"), moves);
+  test::finish(*part);
+  const Triangles triangles(*part);
+  const HeightSurface surface = surface_of(part->height_grid());
+  std::mt19937 random(11);
+  int walls = 0, turned = 0;
+  for (int n = 0; n < 1500; ++n) {
+    const Vec3 from = random_point(random, {Vec3(5, 4, 1), Vec3(18, 15, 4)});
+    const Ray ray{from, random_point(random, {Vec3(3, 2, -5), Vec3(20, 17, -2)}) - from, 0.0};
+    SurfaceHit hit;
+    const std::optional<Triangles::Met> wanted = triangles.first(ray);
+    if (!wanted || std::abs(wanted->normal.z) > 1e-3 || !surface.trace(ray, &hit)) continue;
+    ++walls;
+    turned += glm::dot(wanted->normal, Vec3(surface.normal(ray, hit))) < 0.9999;
+  }
+  EXPECT_GT(walls, 300);
+  EXPECT_LE(turned, 1);  // a ray through an edge, by rounding
+}
+
 class AgainstPatches : public testing::TestWithParam<int> {};
 
 TEST_P(AgainstPatches, MeetsWhatTheTrianglesShow) {
