@@ -138,6 +138,12 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
   view.add_option("--keyframes", a.keyframes,
                   "memory for jumping to and fro in the program (default 256)")
       ->type_name("MB");
+  view.add_option("--compare", a.compare,
+                  "part as designed (STL, mm, workpiece frame): colours say what is left over and "
+                  "what is gone too far")
+      ->type_name("FILE");
+  view.add_option("--tolerance", a.tolerance, "deviations up to this are green (default 0.05)")
+      ->type_name("MM");
   view.add_flag("--full-redraw", a.no_local,
                 "draw the whole picture every time, not only what has changed");
   view.add_option("--png", a.png, "no window: a picture, at the end or at --at-line")
@@ -148,6 +154,10 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
   view.add_option("--size", a.size, "of pictures (default 1280x720)")->type_name("WxH");
   view.add_option("--view", a.view,
                   "of pictures: iso | top | bottom | front | back | left | right (default iso)")
+      ->type_name("NAME");
+  view.add_option("--draw", a.draw,
+                  "pictures by mesh (all that the window shows) | raycast (without OpenGL) | csg "
+                  "(blank minus moves, no cells); the last two: workpiece and tool (default mesh)")
       ->type_name("NAME");
   view.add_flag("--quiet", a.run.quiet, "no warnings, no progress bar");
 }

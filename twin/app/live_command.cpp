@@ -179,6 +179,7 @@ LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
       program.empty() ? options.source_name : std::filesystem::path(program).filename().string());
   options.blank_mm = session.stock()->bounds_mm();
   options.blank_outline = box_outline(options.blank_mm);
+  options.stock = session.stock()->snapshot();
   options.tools = session.tool_sources();
   WorkRoom room;
   room.frame = request.options.cutting.frame.work;

@@ -15,7 +15,9 @@
 #include "base/atomic_file.h"
 #include "base/mesh_file.h"
 #include "twin/session_parts.h"
+#include "twin/view/frame_tool.h"
 #include "viewer/picture.h"
+#include "viewer/raycast/height_picture.h"
 
 namespace kerf {
 namespace {
@@ -50,13 +52,21 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+/// By OpenGL; by rays where there is none, which is said.
 Done write_picture(const std::string& path, const TriangleMesh& mesh, const ZMap& stock,
-                   const std::string& name) {
+                   const std::string& name, Diagnostics& diagnostics) {
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
   options.caption = fmt::format("{}  {} {:.3g} mm", file_name(name), stock.name(), stock.cell_mm());
-  const Result<Picture> picture = draw_part(mesh, options);
+  Result<Picture> picture = draw_part(mesh, options);
+  if (picture) return write_png(path, *picture);
+  const std::string reason = picture.error();
+  picture = draw_heights(stock.height_grid(), options, ray_threads());
   if (!picture) return Error{fmt::format("drawing {}: {}", path, picture.error())};
+  Diagnostic note;
+  note.severity = Severity::kNote;
+  note.message = fmt::format("{}: drawn by rays on the CPU, not by OpenGL: {}", path, reason);
+  diagnostics.push_back(std::move(note));
   return write_png(path, *picture);
 }
 
@@ -105,7 +115,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const ZMa
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
     report.timing.mesh_s = elapsed_s();
     if (!paths.png.empty()) {
-      note_failure(write_picture(paths.png, mesh, *stock, name), diagnostics);
+      note_failure(write_picture(paths.png, mesh, *stock, name, diagnostics), diagnostics);
     }
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);

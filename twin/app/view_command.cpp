@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -22,12 +23,14 @@
 #include "twin/app/progress_bar.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/window_host.h"
+#include "twin/compare/design_part.h"
 #include "twin/playback/load_program.h"
 #include "twin/suggest.h"
 #include "twin/view/drawn_machine.h"
 #include "twin/view/frame_writer.h"
 #include "twin/view/player_view.h"
 #include "twin/view/tool_shape.h"
+#include "viewer/window/settings.h"
 
 namespace kerf {
 namespace {
@@ -35,6 +38,7 @@ namespace {
 constexpr OptionRange kSpeed{0.1, 1000, false, "program seconds a second"};
 constexpr OptionRange kFps{0.1, 1000, false, "frames a second"};
 constexpr OptionRange kLine{1, 4e9, false, "lines"};
+constexpr OptionRange kTolerance{kMinTolerance_mm, kMaxTolerance_mm, false, "mm"};
 constexpr OptionRange kKeyframes{1, 1e6, false, "MB"};
 constexpr int kMostPixels = 16384;
 constexpr std::chrono::milliseconds kPatience{200};
@@ -51,6 +55,13 @@ constexpr std::array<NamedView, 7> kViews{{{"iso", StandardView::kIsometric},
                                            {"left", StandardView::kLeft},
                                            {"right", StandardView::kRight}}};
 
+struct NamedRoad {
+  const char* name;
+  DrawRoad road;
+};
+constexpr std::array<NamedRoad, 3> kRoads{
+    {{"mesh", DrawRoad::kMesh}, {"raycast", DrawRoad::kRaycast}, {"csg", DrawRoad::kCsg}}};
+
 /// The arguments, understood.
 struct ViewRequest {
   RunRequest run;
@@ -62,6 +73,9 @@ struct ViewRequest {
   FrameOptions frame;
   MachineChoice machine;
   std::string ini;
+  std::string compare;  ///< file of the design part
+  std::shared_ptr<const DesignPart> design;
+  double tolerance_mm = 0.05;
   bool local = true;
   bool at_end = false;
   bool wants_window() const { return png.empty() && film.folder.empty(); }
@@ -132,6 +146,39 @@ void read_pictures(const ViewArguments& a, OptionReader& reader, ViewRequest& re
   reader.fault("--view", fmt::format("'{}' is not allowed; must be {}", a.view, names));
 }
 
+void read_comparison(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
+  request.compare = a.compare;
+  request.tolerance_mm =
+      reader.number("--tolerance", a.tolerance, kTolerance, request.tolerance_mm);
+  if (a.compare.empty() && !a.tolerance.empty()) {
+    reader.fault("--tolerance", "there is no --compare DESIGN.stl");
+  }
+  if (a.compare.empty()) return;
+  request.frame.draw.color_by = ColorBy::kDeviation;
+  request.frame.draw.tolerance_mm = request.tolerance_mm;
+}
+
+void read_road(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
+  if (a.draw.empty()) return;
+  const auto named = std::find_if(kRoads.begin(), kRoads.end(),
+                                  [&](const NamedRoad& road) { return a.draw == road.name; });
+  if (named == kRoads.end()) {
+    reader.fault("--draw",
+                 fmt::format("'{}' is not allowed; must be mesh | raycast | csg", a.draw));
+    return;
+  }
+  request.frame.road = named->road;
+  if (named->road == DrawRoad::kMesh) return;
+  if (request.wants_window()) {
+    reader.fault("--draw", fmt::format("{} is for --png and --frames; the window draws by mesh",
+                                       named->name));
+  }
+  if (!a.compare.empty()) {
+    reader.fault("--draw",
+                 fmt::format("{} shows no deviations; --compare is for mesh alone", named->name));
+  }
+}
+
 /// The command line goes before the configuration.
 void complete(const LiveConfig& config, const ViewArguments& a, SessionOptions& session) {
   if (session.tools.empty()) session.tools = config.tools;
@@ -170,6 +217,8 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   request.player.keyframe_bytes = static_cast<std::size_t>(keyframes_mb * 1048576.0);
   request.local = !a.no_local;
   read_pictures(a, reader, request);
+  read_comparison(a, reader, request);
+  read_road(a, reader, request);
   request.film.speed = request.speed.value_or(1);
   if (!std::isfinite(request.film.speed)) {
     reader.fault("--speed", "max has no frames a second; --frames wants a number");
@@ -237,9 +286,44 @@ int exit_code(Outcome outcome, const Diagnostics& diagnostics) {
   return has_error(diagnostics) || outcome == Outcome::kFailed ? kExitFailure : kExitGood;
 }
 
+/// Where the comparison will not say what its user expects.
+Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stock) {
+  Diagnostics doubts;
+  const auto doubt = [&](std::string message, std::string hint) {
+    Diagnostic d = fault(std::move(message), std::move(hint));
+    d.severity = Severity::kWarning;
+    d.file = request.compare;
+    doubts.push_back(std::move(d));
+  };
+  const Box part = request.design->box_mm(), blank = stock.bounds_mm();
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart = apart || part.min[axis] > blank.max[axis] || part.max[axis] < blank.min[axis];
+  }
+  if (apart) {
+    doubt(fmt::format("lies beside the blank: X {:g} to {:g}, Y {:g} to {:g}, Z {:g} to {:g} mm; "
+                      "the blank is X {:g} to {:g}, Y {:g} to {:g}, Z {:g} to {:g}",
+                      part.min.x, part.max.x, part.min.y, part.max.y, part.min.z, part.max.z,
+                      blank.min.x, blank.max.x, blank.min.y, blank.max.y, blank.min.z, blank.max.z),
+          "the design part is taken as mm, in the coordinates that the program writes");
+  }
+  if (stock.cell_mm() > request.tolerance_mm) {
+    doubt(fmt::format("cells of {:g} mm are coarser than the tolerance of {:g} mm: walls may seem "
+                      "off by up to a cell",
+                      stock.cell_mm(), request.tolerance_mm),
+          fmt::format("--cell {:g} or --tolerance {:g}", request.tolerance_mm, stock.cell_mm()));
+  }
+  return doubts;
+}
+
 /// With the machine around it. What is wrong with that one is said; the program is shown without.
 ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
   ViewedProgram shown = viewed_program(loaded, title_of(request.run.session.program.path));
+  if (request.design && loaded.player.blank) {
+    shown.design = request.design;
+    shown.tolerance_mm = request.tolerance_mm;
+    print(comparison_doubts(request, *loaded.player.blank), request.run.quiet);
+  }
   const bool wanted = !request.ini.empty() || request.machine.kind || request.machine.links;
   if (!wanted || !loaded.player.blank) return shown;
   double longest_mm = 0;
@@ -431,13 +515,19 @@ int show_program(const RunRequest& run, std::stop_source& stop) {
 
 int view_command(const ViewArguments& arguments) {
   Diagnostics diagnostics;
-  const ViewRequest request = understand_view(arguments, diagnostics);
+  ViewRequest request = understand_view(arguments, diagnostics);
   if (has_error(diagnostics)) {
     print(diagnostics, false);
     return kExitUsage;
   }
   const Kind kind = kind_of(request.run.session.program.path);
   if (kind == Kind::kLog) {
+    if (!request.compare.empty()) {
+      print({fault("--compare is for programs and saved workpieces",
+                   "kerf replay LOG --state FILE saves what a log leaves")},
+            false);
+      return kExitUsage;
+    }
     if (request.wants_window()) return view_log(arguments);
     print({fault("--png and --frames are for programs and saved workpieces",
                  "kerf replay LOG --png FILE draws what a log leaves")},
@@ -447,6 +537,7 @@ int view_command(const ViewArguments& arguments) {
   OutputPaths places;
   places.png = request.png;
   check_output_places(places, diagnostics);
+  if (!request.compare.empty()) request.design = DesignPart::read(request.compare, diagnostics);
   print(diagnostics, request.run.quiet);
   if (has_error(diagnostics)) return kExitFailure;
   std::stop_source stop;

@@ -24,6 +24,8 @@ struct ViewArguments {
   std::string size;
   std::string view;
   std::string draw;
+  std::string compare;
+  std::string tolerance;
   bool no_local = false;
 };
 

@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <optional>
 #include <system_error>
 #include <utility>
 
-#include "viewer/gl_context.h"
+#include "twin/view/frame_road.h"
 #include "viewer/png_image.h"
 
 namespace kerf {
@@ -20,21 +18,7 @@ constexpr std::chrono::milliseconds kPatience{200};
 
 }  // namespace
 
-struct FrameRenderer::Impl {
-  Impl(GlContext made_context, SceneRenderer made_renderer, PlayerScene made_scene,
-       FrameOptions made_options)
-      : context(std::move(made_context)),
-        renderer(std::move(made_renderer)),
-        scene(std::move(made_scene)),
-        options(std::move(made_options)) {}
-  GlContext context;  // before what lives in it
-  SceneRenderer renderer;
-  PlayerScene scene;
-  FrameOptions options;
-  OrbitCamera camera;
-};
-
-FrameRenderer::FrameRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FrameRenderer::FrameRenderer(std::unique_ptr<FrameRoad> road) : road_(std::move(road)) {}
 FrameRenderer::FrameRenderer(FrameRenderer&&) noexcept = default;
 FrameRenderer& FrameRenderer::operator=(FrameRenderer&&) noexcept = default;
 FrameRenderer::~FrameRenderer() = default;
@@ -42,44 +26,31 @@ FrameRenderer::~FrameRenderer() = default;
 Result<FrameRenderer> FrameRenderer::create(const FrameOptions& options, const PlayerState& state,
                                             std::shared_ptr<const ProgramTrack> track,
                                             ViewedProgram shown) {
-  Result<GlContext> context = GlContext::create_offscreen();
-  if (!context) return Error{context.error()};
-  Result<SceneRenderer> renderer = SceneRenderer::create();
-  if (!renderer) return Error{renderer.error()};
-  auto impl = std::make_unique<Impl>(std::move(context.value()), std::move(renderer.value()),
-                                     PlayerScene(std::move(track), std::move(shown)), options);
-  impl->options.draw.upload_bytes_per_frame = std::numeric_limits<std::size_t>::max();
-  impl->renderer.apply(impl->scene.start(state));
-  impl->camera.set_perspective(options.perspective);
-  impl->camera.look_from(options.view);
-  impl->camera.fit(impl->renderer.fit_box(), options.size_px);
-  impl->scene.set_detail(impl->camera.pixel_mm(options.size_px));
-  return FrameRenderer(std::move(impl));
+  RoadStart start{options, state, std::move(track), std::move(shown)};
+  auto road = options.road == DrawRoad::kMesh      ? make_mesh_road(std::move(start))
+              : options.road == DrawRoad::kRaycast ? make_raycast_road(std::move(start))
+                                                   : make_csg_road(std::move(start));
+  if (!road) return Error{road.error()};
+  return FrameRenderer(std::move(road.value()));
 }
 
+Done FrameRenderer::can_reach(const TrackPlace& place) { return road_->can_reach(place); }
+
 Result<Picture> FrameRenderer::draw(const std::shared_ptr<const PlayerState>& state) {
-  do {
-    impl_->renderer.apply(impl_->scene.update(state, PlayerScene::Clock::time_point::max()));
-  } while (impl_->scene.behind());
-  // The path that was made last moved the place along it.
-  impl_->renderer.apply(impl_->scene.update(state, PlayerScene::Clock::time_point::max()));
-  do {
-    const Projection projection =
-        impl_->camera.projection(impl_->renderer.depth_box(), impl_->options.size_px);
-    if (const Done done = impl_->renderer.draw(projection, impl_->options.draw); !done) {
-      return Error{done.error()};
-    }
-  } while (impl_->renderer.has_waiting());
-  return impl_->renderer.read();
+  return road_->draw(state);
 }
 
 Result<std::size_t> write_film(Player& player, FrameRenderer& renderer, const FilmOptions& options,
                                std::stop_token stop, const std::function<void(double)>& on_frame) {
+  const ProgramTrack& track = player.track();
+  if (const Done can = renderer.can_reach(track.place_before(track.size())); !can) {
+    return Error{can.error()};
+  }
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (error) return Error{fmt::format("{}: {}", options.folder, error.message())};
   const double begin_s = player.state()->elapsed_s;
-  const double end_s = player.track().duration_s();
+  const double end_s = track.duration_s();
   const double step_s = options.speed / options.fps;
   const auto frames = static_cast<std::size_t>(std::ceil((end_s - begin_s) / step_s)) + 1;
   std::size_t written = 0;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <stop_token>
 #include <string>
 
@@ -15,18 +16,32 @@
 
 namespace kerf {
 
+/// How a picture is made. All three look from the same place at the same workpiece.
+enum class DrawRoad {
+  kMesh,     ///< The window's renderer: all that the window shows. On the CPU where there is no
+             ///< graphics card.
+  kRaycast,  ///< Rays on the CPU, without OpenGL: workpiece and tool alone.
+  kCsg,      ///< The blank minus all moves, worked out in the picture (OpenGL): workpiece and tool
+             ///< alone. Does not look at the workpiece's cells, so walls are smooth at any cell
+             ///< size. At most 20 000 moves; the blank must be a box.
+};
+
 struct FrameOptions {
   glm::ivec2 size_px{1280, 720};
   StandardView view = StandardView::kIsometric;
   bool perspective = true;
-  DrawOptions draw;
+  DrawRoad road = DrawRoad::kMesh;
+  DrawOptions draw;  ///< of kMesh
 };
 
-/// Draws what the window would show of a player's states, by the same renderer, on the CPU where
-/// there is no graphics card. One thread, which must not have another OpenGL context.
+class FrameRoad;
+
+/// Draws what the window would show of a player's states. One thread, which must not have another
+/// OpenGL context.
 class FrameRenderer {
  public:
-  /// Error: no OpenGL, with each road that was tried.
+  /// `state`: at the start of the program. Error: no OpenGL, with each road that was tried; a blank
+  /// that the road cannot draw.
   static Result<FrameRenderer> create(const FrameOptions& options, const PlayerState& state,
                                       std::shared_ptr<const ProgramTrack> track,
                                       ViewedProgram shown);
@@ -34,13 +49,15 @@ class FrameRenderer {
   FrameRenderer& operator=(FrameRenderer&&) noexcept;
   ~FrameRenderer();
 
-  /// All patches and the whole path are there in the picture.
+  /// Error: draw() will refuse this place: too many moves up to there.
+  Done can_reach(const TrackPlace& place);
+  /// All patches and the whole path are there in the picture. Cheaper for a place that lies behind
+  /// the one drawn before than for one before it. Error: as can_reach(); OpenGL failed.
   Result<Picture> draw(const std::shared_ptr<const PlayerState>& state);
 
  private:
-  struct Impl;
-  explicit FrameRenderer(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit FrameRenderer(std::unique_ptr<FrameRoad> road);
+  std::unique_ptr<FrameRoad> road_;
 };
 
 /// Frames of a film.

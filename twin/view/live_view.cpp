@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -44,6 +45,9 @@ SourceFreshness freshness_of(LiveState state) {
 }
 
 std::string notice_of(const LiveStatus& status) {
+  if (status.state == LiveState::kWaiting) {
+    return status.source.trouble.empty() ? "waiting for positions" : status.source.trouble;
+  }
   if (!status.place.missing_axes.empty() && !status.place.known) {
     return fmt::format("no position of {}", status.place.missing_axes);
   }
@@ -68,6 +72,7 @@ LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& ma
       commands_(commands),
       book_(options_.tools, true) {
   publish_start();
+  news_.stock = options_.stock;
   thread_ = std::jthread([this](std::stop_token stop) { run(std::move(stop)); });
   if (options_.load_program) {
     loader_ = std::jthread([this](std::stop_token stop) {
@@ -96,10 +101,9 @@ void LiveView::on_status(const LiveStatus& status) {
 
 void LiveView::on_finding(const Finding& finding, const std::vector<std::string>& files) {
   next_.on_finding(finding, files);
-  findings_.push_back(finding_list({finding}, files)->findings.front());
+  SceneFinding shown = finding_list({finding}, files)->findings.front();
   const std::lock_guard lock(mutex_);
-  news_.findings = findings_;
-  news_.has_findings = true;
+  news_.findings.push_back(std::move(shown));
   arrived_.notify_one();
 }
 
@@ -107,10 +111,8 @@ void LiveView::on_warning(const AheadWarning& warning, const std::vector<std::st
   next_.on_warning(warning, files);
   SceneFinding shown = finding_list({warning.finding}, files)->findings.front();
   shown.text = "ahead: " + shown.text;
-  findings_.push_back(std::move(shown));
   const std::lock_guard lock(mutex_);
-  news_.findings = findings_;
-  news_.has_findings = true;
+  news_.findings.push_back(std::move(shown));
   arrived_.notify_one();
 }
 
@@ -142,7 +144,8 @@ void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatu
   arrived_.notify_one();
 }
 
-void LiveView::end(const StockModel* stock) {
+void LiveView::end(const StockModel* stock, const std::stop_token& stop) {
+  const std::stop_callback ends(stop, [this] { thread_.request_stop(); });
   {
     const std::lock_guard lock(mutex_);
     if (stock) news_.stock = stock->snapshot();
@@ -163,6 +166,7 @@ void LiveView::publish_start() {
   if (options_.machine) {
     update.machine = std::make_shared<const SceneMachine>(scene_machine(*options_.machine));
   }
+  update.moment = moment_now();
   mailbox_.publish(std::move(update));
 }
 
@@ -240,9 +244,11 @@ void LiveView::take_news(News& news) {
     tool_name_ = std::move(news.tool_name);
     tool_length_mm_ = news.tool_length_mm;
   }
-  if (news.has_findings) {
+  if (!news.findings.empty()) {
+    findings_.insert(findings_.end(), std::make_move_iterator(news.findings.begin()),
+                     std::make_move_iterator(news.findings.end()));
     auto list = std::make_shared<FindingList>();
-    list->findings = std::move(news.findings);
+    list->findings = findings_;
     update_.findings = std::move(list);
   }
   if (news.program) {
@@ -302,7 +308,11 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->speed = options_.speed;
   moment->source_name = options_.source_name;
   moment->work_offset = options_.work_offset;
-  if (!status_) return moment;
+  if (!status_) {
+    if (!options_.log) moment->source = SourceFreshness::kStale;
+    moment->notice = "waiting for positions";
+    return moment;
+  }
   const LiveStatus& status = *status_;
   const LivePlace& place = status.place;
   if (status.state == LiveState::kEnded) moment->state = PlayState::kEnded;

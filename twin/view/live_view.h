@@ -35,6 +35,7 @@ struct LiveViewOptions {
   std::string work_offset;
   Box blank_mm;
   std::vector<LineSegment> blank_outline;
+  std::shared_ptr<const StockModel> stock;  ///< until the first frame; null: nothing is shown
   ToolSources tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
   bool log = false;                             ///< may be paused
@@ -66,8 +67,8 @@ class LiveView final : public LiveObserver {
   void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
                 std::span<const Vec3> trail) override;
 
-  /// Shows the workpiece as it was left, until the window is closed.
-  void end(const StockModel* stock);
+  /// Shows the workpiece as it was left, until the window is closed or `stop` is asked for.
+  void end(const StockModel* stock, const std::stop_token& stop);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -80,8 +81,7 @@ class LiveView final : public LiveObserver {
     std::optional<LiveStatus> status;
     Clock::time_point status_at;
     std::vector<Vec3> trail;
-    bool has_findings = false;
-    std::vector<SceneFinding> findings;  ///< all of them, if there are new ones
+    std::vector<SceneFinding> findings;  ///< those that are new
     std::unique_ptr<LiveProgram> program;
   };
 
@@ -105,9 +105,9 @@ class LiveView final : public LiveObserver {
   // of the session's thread
   ToolBook book_;
   std::string shown_spec_;
-  std::vector<SceneFinding> findings_;
   // of the view's thread
   PatchFeeder feeder_;
+  std::vector<SceneFinding> findings_;
   std::unique_ptr<LiveProgram> program_;
   std::unique_ptr<TrackPath> program_path_;
   std::shared_ptr<PathChunk> trail_chunk_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "twin/compare/patch_deviation.h"
+
 namespace kerf {
 namespace {
 
@@ -36,11 +38,23 @@ void PatchFeeder::set_detail(double pixel_mm) {
   behind_ = stock_ != nullptr;
 }
 
+void PatchFeeder::compare_with(std::shared_ptr<const DesignPart> design, double tolerance_mm) {
+  design_ = std::move(design);
+  tolerance_mm_ = tolerance_mm;
+}
+
 int PatchFeeder::wanted_level() const {
+  if (design_) return 0;
   const double joined = pixel_mm_ / (stock_->cell_mm() * kCellsPerPixel);
   if (!(joined >= 1)) return 0;
   const int level = 1 + static_cast<int>(std::floor(std::log2(joined)));
   return std::min(level, StockModel::kPatchLevels - 1);
+}
+
+std::shared_ptr<const MeshPatch> PatchFeeder::patch(std::uint32_t tile, int level) const {
+  auto patch = std::make_shared<MeshPatch>(stock_->patch(tile, level));
+  if (design_) add_deviation(*design_, {stock_->cell_mm(), tolerance_mm_}, patch.get());
+  return patch;
 }
 
 std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::time_point deadline) {
@@ -48,13 +62,12 @@ std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::tim
   if (!behind_) return made;
   const auto level = static_cast<std::int8_t>(wanted_level());
   const auto make = [&](std::size_t tile) {
-    auto patch =
-        std::make_shared<const MeshPatch>(stock_->patch(static_cast<std::uint32_t>(tile), level));
+    auto made_patch = patch(static_cast<std::uint32_t>(tile), level);
     Shown& shown = shown_[tile];
-    const auto triangles = static_cast<std::uint32_t>(patch->indices.size() / 3);
+    const auto triangles = static_cast<std::uint32_t>(made_patch->indices.size() / 3);
     triangles_ = triangles_ - shown.triangles + triangles;
-    shown = {patch->version, triangles, level};
-    made.push_back(std::move(patch));
+    shown = {made_patch->version, triangles, level};
+    made.push_back(std::move(made_patch));
   };
   const auto late = [&] { return !made.empty() && Clock::now() >= deadline; };
   // From where the last slice ended, so that a workpiece that changes faster than it can be drawn

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "twin/compare/design_part.h"
 #include "viewer/scene.h"
 
 namespace kerf {
@@ -26,6 +27,11 @@ class PatchFeeder {
   /// Until it is told: as if the blank filled a picture of usual size.
   void set_detail(double pixel_mm);
 
+  /// Before the first patch is made: all get their deviation from `design`, coloured by
+  /// `tolerance_mm`. They are made of every cell then, whatever a pixel shows: joined cells lie as
+  /// low as their lowest, which is no deviation of the workpiece.
+  void compare_with(std::shared_ptr<const DesignPart> design, double tolerance_mm);
+
   /// Patches made until `deadline`, at least one if there is one to be made. Tiles that were cut
   /// come before those that are made at another level only.
   std::vector<std::shared_ptr<const MeshPatch>> make_until(Clock::time_point deadline);
@@ -40,8 +46,11 @@ class PatchFeeder {
     std::int8_t level = -1;  ///< -1: never
   };
   int wanted_level() const;
+  std::shared_ptr<const MeshPatch> patch(std::uint32_t tile, int level) const;
 
   std::shared_ptr<const StockModel> stock_;
+  std::shared_ptr<const DesignPart> design_;
+  double tolerance_mm_ = 0;
   std::vector<Shown> shown_;
   double pixel_mm_ = 0;
   std::size_t next_ = 0;  ///< where looking for tiles goes on

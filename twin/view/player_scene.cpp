@@ -59,7 +59,9 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
 }
 
 PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
-    : track_(std::move(track)), shown_(std::move(shown)), path_(track_, shown_.planned) {}
+    : track_(std::move(track)), shown_(std::move(shown)), path_(track_, shown_.planned) {
+  feeder_.compare_with(shown_.design, shown_.tolerance_mm);
+}
 
 SceneUpdate PlayerScene::start(const PlayerState& state) const {
   SceneUpdate update;
@@ -68,6 +70,7 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   setup->title = shown_.title;
   if (state.stock) setup->bounds_mm = state.stock->bounds_mm();
   setup->blank_outline = shown_.blank_outline;
+  if (shown_.design) setup->tolerance_mm = shown_.tolerance_mm;
   setup->frames = scene_frames(track_->frame(), shown_.work_offset);
   update.setup = std::move(setup);
   update.program = read_program_text(shown_.files);
@@ -111,6 +114,7 @@ void PlayerScene::set_colors(const ColorCommand& command, const std::vector<floa
 void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
   auto picked = std::make_shared<PickedPoint>();
   picked->point_mm = point_mm;
+  if (shown_.design) picked->deviation_mm = shown_.design->distance_mm(point_mm);
   const double tolerance_mm = state.stock ? state.stock->cell_mm() : 0.0;
   const auto motion =
       shown_.cuts ? shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place) : std::nullopt;

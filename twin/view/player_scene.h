@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/compare/design_part.h"
 #include "twin/machine_model/machine_model.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/load_program.h"
@@ -30,6 +31,8 @@ struct ViewedProgram {
   std::vector<NamedTool> tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
   std::shared_ptr<const CutQuery> cuts;         ///< who cut a point; null: not told
+  std::shared_ptr<const DesignPart> design;     ///< the surface is compared with; null: with none
+  double tolerance_mm = 0.05;                   ///< of that comparison
 };
 
 /// With `title` in the title bar.

@@ -1,0 +1,294 @@
+#include "twin/view/live_view.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <thread>
+
+#include "tests/twin/playback/tracks.h"
+
+namespace kerf {
+namespace {
+
+/// What is behind the view: a console, mostly.
+struct Behind : LiveObserver {
+  void on_status(const LiveStatus&) override { ++statuses; }
+  void on_finding(const Finding&, const std::vector<std::string>&) override { ++findings; }
+  void on_warning(const AheadWarning&, const std::vector<std::string>&) override { ++warnings; }
+  int statuses = 0, findings = 0, warnings = 0;
+};
+
+/// The test is the session, and a window without a screen.
+class LiveViewTest : public testing::Test {
+ protected:
+  LiveViewOptions options() {
+    LiveViewOptions options;
+    options.title = "kerf - bench";
+    options.source_name = "a script";
+    options.blank_mm = stock_->bounds_mm();
+    options.tools = test::two_tools();
+    options.on_close = [this] { closed_ = true; };
+    options.on_speed = [this](double speed) { speed_ = speed; };
+    return options;
+  }
+  void open(LiveViewOptions options) {
+    view_ = std::make_unique<LiveView>(std::move(options), behind_, mailbox_, commands_);
+  }
+
+  static LiveStatus at(const Vec3& tip_mm, double t_s = 0) {
+    LiveStatus status;
+    status.state = LiveState::kLive;
+    status.t_s = t_s;
+    status.place.known = true;
+    status.place.tip_mm = tip_mm;
+    status.place.machine_mm = tip_mm + Vec3(100, 0, 0);
+    status.place.tool = 1;
+    return status;
+  }
+  void frame(const LiveStatus& status, const std::vector<Vec3>& trail = {}) {
+    view_->on_frame(*stock_, nullptr, status, trail);
+  }
+  static Finding finding(const std::string& text, std::uint32_t line) {
+    Finding found;
+    found.severity = Severity::kError;
+    found.source.line = line;
+    found.text = text;
+    return found;
+  }
+
+  /// Takes news until `wanted` holds of what is known by then.
+  template <class Wanted>
+  bool until(Wanted wanted) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < end) {
+      if (auto update = mailbox_.take()) {
+        for (const auto& patch : update->patches) versions_[patch->tile] = patch->version;
+        for (const auto& chunk : update->path) path_[chunk->index] = chunk;
+        merge(&known_, std::move(*update));
+      }
+      if (wanted()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+  template <class Wanted>
+  bool moment(Wanted wanted) {
+    return until([&] { return known_.moment && wanted(*known_.moment); });
+  }
+  /// All tiles are as they are in the stock.
+  bool is_shown() {
+    if (versions_.size() != stock_->tile_count()) return false;
+    for (const auto& [tile, version] : versions_) {
+      if (version != stock_->patch_version(tile)) return false;
+    }
+    return true;
+  }
+
+  std::unique_ptr<ZMap> stock_ = test::block_40(0.2);
+  Behind behind_;
+  SceneMailbox mailbox_;
+  CommandQueue commands_;
+  SceneUpdate known_;
+  std::map<std::uint32_t, std::uint64_t> versions_;
+  std::map<std::uint32_t, std::shared_ptr<const PathChunk>> path_;
+  std::atomic<bool> closed_{false};
+  std::atomic<double> speed_{-1};
+  std::unique_ptr<LiveView> view_;
+};
+
+TEST_F(LiveViewTest, ShowsTheWorkpieceToolAndPlace) {
+  open(options());
+  ASSERT_TRUE(view_->wants_frames());
+  frame(at({5, 20, 3}, 1.5));
+  ASSERT_TRUE(until([&] { return known_.setup && known_.tool_shape && is_shown(); }));
+  EXPECT_EQ(known_.setup->title, "kerf - bench");
+  ASSERT_TRUE(moment([](const Moment& m) { return m.tool_pose.has_value(); }));
+  const Moment& m = *known_.moment;
+  EXPECT_EQ(m.state, PlayState::kFollowing);
+  EXPECT_EQ(m.tool_pose->tip_mm, Vec3(5, 20, 3));
+  EXPECT_EQ(m.time_s, 1.5);
+  EXPECT_EQ(m.tool, 1);
+  EXPECT_EQ(m.tool_name, "ball 6");
+  EXPECT_EQ(m.source_name, "a script");
+  ASSERT_EQ(m.axes.size(), 3u);
+  EXPECT_EQ(m.axes[0].machine, 105);
+  EXPECT_EQ(m.axes[0].work, 5);
+
+  const Cutter cutter = parse_tool_argument("1=ball:6").value().cutter;
+  CutMove move;
+  move.from_mm = {5, 20, -2};
+  move.to_mm = {35, 20, -2};
+  std::vector<CutReport> reports(1);
+  stock_->cut(cutter, {&move, 1}, reports);
+  stock_->finish(reports);
+  frame(at({35, 20, -2}, 2));
+  EXPECT_TRUE(until([&] { return is_shown(); })) << "what was cut";
+}
+
+TEST_F(LiveViewTest, TheWayGrowsAcrossChunks) {
+  open(options());
+  const std::size_t points = 2 * kPathChunkSegments + 100;
+  std::size_t sent = 0;
+  while (sent < points) {
+    std::vector<Vec3> trail;
+    for (int i = 0; i < 700 && sent < points; ++i) trail.emplace_back(0.1 * ++sent, 20, 3);
+    frame(at({1, 20, 3}), trail);
+  }
+  ASSERT_TRUE(moment([&](const Moment& m) { return m.past_vertices == points; }));
+  ASSERT_EQ(path_.size(), 3u);
+  EXPECT_EQ(path_[0]->vertices.size(), kPathChunkSegments + 1);
+  EXPECT_EQ(path_[1]->vertices.front().position_mm, path_[0]->vertices.back().position_mm);
+  EXPECT_FLOAT_EQ(path_[2]->vertices.back().position_mm.x, 0.1F * static_cast<float>(points));
+}
+
+TEST_F(LiveViewTest, StatesReachTheMomentInWords) {
+  open(options());
+  const std::pair<LiveState, SourceFreshness> kStates[] = {
+      {LiveState::kWaiting, SourceFreshness::kStale},
+      {LiveState::kLive, SourceFreshness::kLive},
+      {LiveState::kStale, SourceFreshness::kStale},
+      {LiveState::kLost, SourceFreshness::kLost}};
+  for (const auto& [state, shown] : kStates) {
+    LiveStatus status = at({1, 2, 3});
+    status.state = state;
+    status.age_s = 0.75;
+    view_->on_status(status);
+    ASSERT_TRUE(
+        moment([&](const Moment& m) { return m.source == shown && m.source_age_s >= 0.75; }));
+    known_.moment.reset();
+  }
+  EXPECT_EQ(behind_.statuses, 4) << "all are passed on";
+  LiveStatus status = at({1, 2, 3});
+  status.off_path_mm = 0.75;
+  view_->on_status(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.notice == "off the path by 0.75 mm"; }));
+  status.collision_in_s = 2.5;
+  status.collision_line = 7;
+  view_->on_status(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.notice == "collision in 2.5 s, line 7"; }));
+  status = LiveStatus{};
+  view_->on_status(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.notice == "waiting for positions"; }));
+  status.state = LiveState::kLive;
+  status.place.missing_axes = "YZ";
+  view_->on_status(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.notice == "no position of YZ"; }));
+  EXPECT_FALSE(known_.moment->tool_pose) << "it is not known where";
+}
+
+TEST_F(LiveViewTest, FindingsAddUp) {
+  open(options());
+  view_->on_finding(finding("too fast", 3), {"/nc/part.ngc"});
+  AheadWarning warning;
+  warning.finding = finding("hits the vise", 9);
+  view_->on_warning(warning, {"/nc/part.ngc"});
+  ASSERT_TRUE(until([&] { return known_.findings && known_.findings->findings.size() == 2; }));
+  view_->on_finding(finding("too deep", 12), {"/nc/part.ngc"});
+  ASSERT_TRUE(until([&] { return known_.findings->findings.size() == 3; }));
+  const std::vector<SceneFinding>& shown = known_.findings->findings;
+  EXPECT_NE(shown[0].text.find("too fast"), std::string::npos) << shown[0].text;
+  EXPECT_EQ(shown[1].text.rfind("ahead: ", 0), 0u) << shown[1].text;
+  EXPECT_EQ(shown[1].line, 9);
+  EXPECT_EQ(shown[2].line, 12);
+  EXPECT_EQ(behind_.findings, 2);
+  EXPECT_EQ(behind_.warnings, 1);
+}
+
+TEST_F(LiveViewTest, TheProgramsPathTakesThePlaceOfTheTrail) {
+  std::atomic<bool> may_load{false};
+  LiveViewOptions wanted = options();
+  wanted.load_program = [&](const std::stop_token&) {
+    while (!may_load) std::this_thread::yield();
+    MotionList program;
+    program.at({-5, 10, 5}).tool(1).spindle(true);
+    program.feed({-5, 10, -2}).feed({45, 10, -2}).traverse({45, 10, 5});
+    auto loaded = std::make_unique<LiveProgram>();
+    loaded->track = test::track_of(program.list());
+    loaded->files = {"/nc/part.ngc"};
+    return loaded;
+  };
+  open(std::move(wanted));
+  frame(at({1, 2, 3}), {{1, 2, 3}, {2, 2, 3}, {3, 2, 3}});
+  ASSERT_TRUE(moment([](const Moment& m) { return m.past_vertices == 3; }));
+  may_load = true;
+  ASSERT_TRUE(until([&] { return known_.timeline && known_.program && path_.size() == 1; }));
+  EXPECT_GT(known_.timeline->duration_s, 0);
+  ASSERT_TRUE(until([&] { return path_[0]->vertices.size() == 4; }));
+  LiveStatus status = at({20, 10, -2});
+  status.place.followed = true;
+  status.place.program_s = known_.timeline->duration_s + 1;
+  status.place.source.line = 4;
+  frame(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.line == 4; }));
+  EXPECT_EQ(known_.moment->past_vertices, 4u);
+  EXPECT_EQ(known_.moment->time_s, known_.timeline->duration_s + 1);
+}
+
+TEST_F(LiveViewTest, ALogIsHeldAndHurried) {
+  LiveViewOptions wanted = options();
+  wanted.log = true;
+  wanted.speed = 2;
+  open(std::move(wanted));
+  frame(at({1, 2, 3}));
+  ASSERT_TRUE(moment([](const Moment& m) { return m.state == PlayState::kPlaying; }));
+  EXPECT_EQ(known_.moment->speed, 2);
+  commands_.push(PauseCommand{});
+  ASSERT_TRUE(moment([](const Moment& m) { return m.state == PlayState::kPaused; }));
+  EXPECT_EQ(speed_, 0);
+  commands_.push(SpeedCommand{8});
+  ASSERT_TRUE(moment([](const Moment& m) { return m.speed == 8; }));
+  EXPECT_EQ(speed_, 0) << "it stays held";
+  commands_.push(PlayCommand{});
+  ASSERT_TRUE(moment([](const Moment& m) { return m.state == PlayState::kPlaying; }));
+  EXPECT_EQ(speed_, 8);
+  commands_.push(SpeedCommand{2000});
+  ASSERT_TRUE(moment([](const Moment& m) { return std::isinf(m.speed); }));
+  EXPECT_TRUE(std::isinf(speed_));
+}
+
+TEST_F(LiveViewTest, AMachineIsNotHeld) {
+  open(options());
+  commands_.push(PauseCommand{});
+  commands_.push(PickCommand{Vec3(1, 2, 0)});
+  ASSERT_TRUE(until([&] { return static_cast<bool>(known_.picked); }));
+  EXPECT_EQ(known_.picked->point_mm, Vec3(1, 2, 0));
+  EXPECT_EQ(speed_, -1);
+}
+
+TEST_F(LiveViewTest, StaysAtTheEndUntilItIsClosedOrStopped) {
+  open(options());
+  frame(at({1, 2, 3}));
+  std::stop_source never;
+  std::thread closes([&] {
+    EXPECT_TRUE(until([&] { return is_shown(); }));
+    commands_.push(CloseCommand{});
+  });
+  view_->end(stock_.get(), never.get_token());
+  closes.join();
+  EXPECT_TRUE(closed_);
+
+  closed_ = false;
+  open(options());
+  std::stop_source stop;
+  std::thread stops([&] { stop.request_stop(); });
+  view_->end(stock_.get(), stop.get_token());
+  stops.join();
+  EXPECT_FALSE(closed_);
+}
+
+TEST_F(LiveViewTest, EndsWhileItsProgramIsStillRead) {
+  LiveViewOptions wanted = options();
+  wanted.load_program = [](const std::stop_token& stop) -> std::unique_ptr<LiveProgram> {
+    while (!stop.stop_requested()) std::this_thread::yield();
+    return nullptr;
+  };
+  open(std::move(wanted));
+  frame(at({1, 2, 3}));
+  view_.reset();
+  EXPECT_FALSE(closed_);
+}
+
+}  // namespace
+}  // namespace kerf

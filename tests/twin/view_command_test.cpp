@@ -1,0 +1,462 @@
+// kerf view, run --view, replay and shadow with their window on a virtual display, and the pictures
+// that need none.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/machine_io/simulator/machine_process.h"
+#include "tests/twin/window_process.h"
+
+namespace kerf {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A slot, an arc, a slot back; another tool, a hole. About four seconds.
+constexpr const char* kProgram =
+    "G21 G90 G94 G17 G64 P0.01\n"
+    "T1 M6 S8000 M3\n"
+    "G0 X0 Y0 Z2\n"
+    "G1 Z-2 F1200\n"
+    "G1 X20 F3000\n"
+    "G2 X20 Y20 I0 J10\n"
+    "G1 X0\n"
+    "G0 Z5\n"
+    "T2 M6 S3000 M3\n"
+    "G0 X10 Y10\n"
+    "G1 Z-4 F600\n"
+    "G0 Z5\n"
+    "M5\n"
+    "M2\n";
+
+const std::vector<std::string> kWork = {"--stock", "box:-10,-10,-6:40,30,0", "--tool", "1=flat:6",
+                                        "--tool",  "2=drill:5:118",          "--cell", "0.1"};
+
+KerfCall call_of(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
+  KerfCall call;
+  call.arguments = std::move(arguments);
+  call.arguments.insert(call.arguments.end(), more.begin(), more.end());
+  return call;
+}
+
+/// Of `kerf view`, without a window.
+class ViewFiles : public ::testing::Test {
+ protected:
+  KerfResult view(std::vector<std::string> arguments, bool with_work = true) {
+    arguments.insert(arguments.begin(), "view");
+    return run_kerf(call_of(std::move(arguments), with_work ? kWork : std::vector<std::string>()));
+  }
+  /// A small picture; of an empty size if there is none.
+  Picture picture(std::vector<std::string> arguments, int expected_exit = 0,
+                  bool with_work = true) {
+    const std::string path = folder_.file("picture.png");
+    std::remove(path.c_str());
+    for (const char* word : {"--png", path.c_str(), "--size", "320x240"}) {
+      arguments.emplace_back(word);
+    }
+    last_ = view(std::move(arguments), with_work);
+    EXPECT_EQ(last_.exit_code, expected_exit) << last_.err;
+    return read_png_file(path);
+  }
+  std::string err_of(std::vector<std::string> arguments, int expected_exit) {
+    const KerfResult result = view(std::move(arguments), false);
+    EXPECT_EQ(result.exit_code, expected_exit) << result.err;
+    return result.err;
+  }
+
+  TestFolder folder_;
+  std::string program_ = folder_.write("part.ngc", kProgram);
+  KerfResult last_;
+};
+
+TEST_F(ViewFiles, WithoutADisplayItSaysSoAndNamesTheWayWithoutOne) {
+  EXPECT_EQ(err_of({program_}, 4),
+            "kerf: error: no window: there is no display (DISPLAY is not set); pictures need no "
+            "display: --png FILE\n");
+  const KerfResult run = run_kerf(call_of({"run", program_, "--view"}, kWork));
+  EXPECT_EQ(run.exit_code, 4);
+  EXPECT_NE(run.err.find("--view: no window"), std::string::npos) << run.err;
+}
+
+TEST_F(ViewFiles, FaultsOfTheCommandLineComeAtOnce) {
+  EXPECT_EQ(
+      err_of({program_, "--speed", "0"}, 2),
+      "kerf: error: --speed: 0 is not allowed; must be at least 0.1 and at most 1000 (program "
+      "seconds a second)\n");
+  EXPECT_EQ(err_of({program_, "--png", "x.png", "--size", "10"}, 2),
+            "kerf: error: --size: '10' is not allowed; must be WIDTHxHEIGHT, each from 1 to 16384 "
+            "(pixels), as 1280x720\n");
+  EXPECT_EQ(err_of({program_, "--png", "x.png", "--view", "up"}, 2),
+            "kerf: error: --view: 'up' is not allowed; must be iso | top | bottom | front | back | "
+            "left | right\n");
+  EXPECT_EQ(err_of({program_, "--size", "10x10"}, 2),
+            "kerf: error: --size: is for --png and --frames\n");
+  EXPECT_EQ(err_of({program_, "--fps", "5"}, 2), "kerf: error: --fps: there is no --frames DIR\n");
+  EXPECT_EQ(err_of({program_, "--png", "a.png", "--frames", "film"}, 2),
+            "kerf: error: --png: there is --frames already: one of the two\n");
+  EXPECT_EQ(err_of({program_, "--png", "a.png", "--speed", "2"}, 2),
+            "kerf: error: --speed: is for the window and for --frames; a picture stands still\n");
+  EXPECT_EQ(err_of({program_, "--frames", "film", "--speed", "max"}, 2),
+            "kerf: error: --speed: max has no frames a second; --frames wants a number\n");
+  EXPECT_EQ(err_of({program_, "--png", "a.png", "--full-redraw"}, 2),
+            "kerf: error: --full-redraw: is for the window; files get the whole picture every "
+            "time\n");
+  EXPECT_EQ(err_of({program_, "--at-line", "0"}, 2),
+            "kerf: error: --at-line: 0 is not allowed; must be at least 1 and at most 4e+09 "
+            "(lines)\n");
+  EXPECT_NE(err_of({program_, "--set", "machine.model=boat"}, 2).find("'boat' is not allowed"),
+            std::string::npos);
+  EXPECT_EQ(listing(folder_.path()), "part.ngc");
+}
+
+TEST_F(ViewFiles, WhatCannotBeReadIsNamed) {
+  const std::string missing = folder_.file("none.ngc");
+  EXPECT_EQ(err_of({missing, "--png", folder_.file("x.png")}, 4),
+            missing + ": error: cannot be read: No such file or directory\n");
+  EXPECT_EQ(listing(folder_.path()), "part.ngc");
+}
+
+TEST_F(ViewFiles, ABrokenProgramIsShownUpToWhereItBreaks) {
+  std::string text = kProgram;
+  text.replace(text.find("J10"), 3, "J99");
+  const std::string broken = folder_.write("broken.ngc", text);
+  const Picture found = picture({broken}, 4);
+  EXPECT_NE(last_.err.find(broken + ":6: error: interpreter-error: Radius to end of arc"),
+            std::string::npos)
+      << last_.err;
+  const Picture until = picture({program_, "--until-line", "5"});
+  ASSERT_EQ(until.width_px, 320);
+  EXPECT_LT(different_pixels(found, until), 100U) << "the same slot";
+  EXPECT_GT(different_pixels(found, picture({program_})), 300U);
+}
+
+TEST_F(ViewFiles, APictureIsOfTheEndOrOfALine) {
+  const Picture end = picture({program_});
+  ASSERT_EQ(end.width_px, 320);
+  ASSERT_EQ(end.height_px, 240);
+  const Picture at_line = picture({program_, "--at-line", "5"});
+  EXPECT_GT(different_pixels(end, at_line), 300U);
+  EXPECT_EQ(different_pixels(end, picture({program_})), 0U) << "the same again";
+  EXPECT_GT(different_pixels(end, picture({program_, "--view", "top"})), 3000U);
+  EXPECT_EQ(picture({program_, "--at-line", "99"}, 2).width_px, 0);
+  EXPECT_NE(last_.err.find("kerf: error: --at-line 99: "), std::string::npos) << last_.err;
+}
+
+TEST_F(ViewFiles, AFolderThatIsMissingOrFullLeavesNoHalfFile) {
+  const KerfResult result = view({program_, "--png", folder_.file("none/part.png")});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.err.find("none/part.png: folder "), std::string::npos) << result.err;
+  KerfCall call = call_of({"view", program_, "--png", folder_.file("part.png")}, kWork);
+  call.file_size_limit = 4096;
+  const KerfResult full = run_kerf(call);
+  EXPECT_EQ(full.exit_code, 4);
+  EXPECT_NE(full.err.find("File too large"), std::string::npos) << full.err;
+  EXPECT_EQ(listing(folder_.path()), "part.ngc");
+}
+
+TEST_F(ViewFiles, AFilmEndsWithThePictureOfTheEnd) {
+  const std::string film = folder_.file("film");
+  const KerfResult result =
+      view({program_, "--frames", film, "--fps", "2", "--speed", "0.5", "--size", "320x240"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const KerfResult run = run_kerf(call_of({"run", program_, "--json", "-"}, kWork));
+  const double duration_s = Json::parse(run.out)["motion"]["duration_s"];
+  // A quarter of a second of the program a frame, and the end.
+  const int frames = static_cast<int>(std::ceil(duration_s / 0.25)) + 1;
+  std::istringstream names(listing(film));
+  std::string name, last;
+  int count = 0;
+  for (; names >> name; last = name) EXPECT_EQ(name, fmt::format("frame_{:06}.png", count++));
+  EXPECT_EQ(count, frames);
+  EXPECT_NE(result.out.find(fmt::format("{} frames in {}", frames, film)), std::string::npos)
+      << result.out;
+  const Picture end = read_png_file(film + "/" + last);
+  ASSERT_EQ(end.width_px, 320);
+  EXPECT_LT(different_pixels(end, picture({program_})), 100U);
+  EXPECT_GT(different_pixels(end, read_png_file(film + "/frame_000000.png")), 500U);
+}
+
+TEST_F(ViewFiles, ASavedWorkpiece) {
+  const std::string state = folder_.file("part.state");
+  ASSERT_EQ(run_kerf(call_of({"run", program_, "--state", state, "--quiet"}, kWork)).exit_code, 0);
+  const Picture saved = picture({state}, 0, false);
+  ASSERT_EQ(saved.width_px, 320);
+  // Without tool and path.
+  const Picture blank = picture({program_, "--at-line", "1"});
+  EXPECT_GT(different_pixels(saved, blank), 500U);
+  EXPECT_EQ(picture({state, "--at-line", "5"}, 2, false).width_px, 0);
+  EXPECT_NE(last_.err.find("kerf: error: --at-line 5: "), std::string::npos) << last_.err;
+}
+
+TEST_F(ViewFiles, TheMachineOfAConfigurationIsAroundThePart) {
+  const Picture bare = picture({program_});
+  const std::string config = std::string(KERF_CONFIGS) + "/machine_model.yaml";
+  const Picture mill = picture({program_, "-c", config});
+  EXPECT_GT(different_pixels(bare, mill), 3000U);
+  const Picture gantry = picture({program_, "-c", config, "--set", "machine.model=gantry"});
+  EXPECT_GT(different_pixels(mill, gantry), 3000U);
+  EXPECT_LT(
+      different_pixels(bare, picture({program_, "-c", config, "--set", "machine.model=none"})),
+      100U);
+}
+
+TEST_F(ViewFiles, ALinkThatCannotBeReadIsNamedAndTheProgramShown) {
+  folder_.write("broken.stl", "solid nothing\nfacet whatever\n");
+  const std::string config = folder_.write("machine.yaml",
+                                           "machine:\n"
+                                           "  links:\n"
+                                           "    - {name: table, stl: broken.stl}\n"
+                                           "    - {name: head, stl: none.stl}\n"
+                                           "  workpiece_on: table\n"
+                                           "  tool_on: head\n");
+  const Picture found = picture({program_, "-c", config}, 0);
+  EXPECT_NE(last_.err.find("broken.stl"), std::string::npos) << last_.err;
+  EXPECT_NE(last_.err.find("none.stl"), std::string::npos) << last_.err;
+  EXPECT_EQ(different_pixels(found, picture({program_})), 0U);
+}
+
+TEST_F(ViewFiles, ALogWantsAWindowOrReplay) {
+  const std::string log = folder_.write("run.csv", "t_s,x_mm,y_mm,z_mm\n0,1,2,3\n1,2,3,4\n");
+  EXPECT_NE(err_of({log, "--png", "a.png"}, 2).find("kerf replay LOG --png FILE"),
+            std::string::npos);
+  EXPECT_EQ(err_of({log, "--at-line", "3"}, 2),
+            "kerf: error: --at-line: is for programs, not for logs\n");
+}
+
+/// With a window.
+class ViewWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_trouble().empty()) GTEST_SKIP() << display_trouble();
+  }
+  void open(std::vector<std::string> arguments) {
+    kerf_ = std::make_unique<WindowedKerf>(call_of(std::move(arguments), kWork));
+    ASSERT_TRUE(kerf_->opens()) << (kerf_->has_ended() ? kerf_->finish().err : "");
+  }
+  void expect_end(int exit_code) {
+    const KerfResult result = kerf_->finish();
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    result_ = result;
+  }
+  /// It draws the program, and nothing moves.
+  Picture settled() {
+    Picture before;
+    EXPECT_TRUE(kerf_->shows([&](const Picture& now) {
+      const bool same = before.width_px > 0 && different_pixels(before, now) == 0;
+      before = now;
+      return same;
+    }));
+    return before;
+  }
+  bool changes_from(const Picture& before, std::size_t pixels = 300) {
+    return kerf_->shows(
+        [&](const Picture& now) { return different_pixels(before, now) >= pixels; });
+  }
+
+  /// A log of a machine that goes there and back along X for a minute, as kerf records it.
+  std::string write_log() {
+    std::string text = "t_s,x_mm,y_mm,z_mm,tool\n";
+    for (int i = 0; i <= 6000; ++i) {
+      const double t_s = 0.01 * i;
+      text += fmt::format("{:.2f},{:.4f},10,-1,1\n", t_s, 15 + 15 * std::sin(t_s));
+    }
+    return folder_.write("run.csv", text);
+  }
+  std::vector<Json> statuses() const {
+    std::vector<Json> out;
+    std::istringstream text(read_file(folder_.file("events")));
+    for (std::string line; std::getline(text, line);) {
+      Json event = Json::parse(line, nullptr, false);
+      if (!event.is_discarded() && event["event"] == "status") out.push_back(std::move(event));
+    }
+    return out;
+  }
+  double last_t_s() const {
+    const std::vector<Json> all = statuses();
+    return all.empty() ? -1 : all.back()["t_s"].get<double>();
+  }
+  /// Ten more have been told; whether time went on from the first to the last of them.
+  bool time_goes_on() {
+    const std::size_t seen = statuses().size();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (statuses().size() < seen + 10 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    const std::vector<Json> all = statuses();
+    EXPECT_GE(all.size(), seen + 10);
+    return all.size() > seen && all.back()["t_s"] > all[seen]["t_s"];
+  }
+
+  TestFolder folder_;
+  std::string program_ = folder_.write("part.ngc", kProgram);
+  std::unique_ptr<WindowedKerf> kerf_;
+  KerfResult result_;
+};
+
+TEST_F(ViewWindow, PlaysStepsAndCloses) {
+  open({"view", program_});
+  const Picture start = settled();
+  kerf_->key("space");
+  ASSERT_TRUE(changes_from(start)) << "it plays";
+  kerf_->key("End");
+  ASSERT_TRUE(changes_from(start));
+  const Picture end = settled();
+  kerf_->key("Home");
+  ASSERT_TRUE(changes_from(end));
+  EXPECT_LT(different_pixels(settled(), start), 30U) << "uncut again";
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_EQ(result_.err, "");
+}
+
+TEST_F(ViewWindow, ShowsAtOnceTheLineAskedFor) {
+  open({"view", program_, "--at-line", "9"});
+  const Picture at_line = settled();
+  kerf_->key("Home");
+  EXPECT_TRUE(changes_from(at_line));
+  kerf_->key("Q");
+  expect_end(0);
+}
+
+TEST_F(ViewWindow, ColoursOfLastTimeAreThereAgain) {
+  open({"view", program_, "--at-line", "14"});
+  const Picture plain = settled();
+  kerf_->key("v");
+  kerf_->key("v");
+  ASSERT_TRUE(changes_from(plain)) << "by tool";
+  const Picture by_tool = settled();
+  kerf_->key("Q");
+  // Closing writes the settings.
+  ASSERT_TRUE(kerf_->waits_for_end());
+  const std::string settings = read_file(kerf_->home() + "/kerf/view.conf");
+  expect_end(0);
+  kerf_ = std::make_unique<WindowedKerf>(call_of({"view", program_, "--at-line", "14"}, kWork),
+                                         settings);
+  ASSERT_TRUE(kerf_->opens());
+  EXPECT_TRUE(
+      kerf_->shows([&](const Picture& now) { return different_pixels(now, by_tool) < 30; }));
+  kerf_->key("Q");
+  expect_end(0);
+}
+
+TEST_F(ViewWindow, AnInterruptEndsIt) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    open({"view", program_, "--speed", "0.1"});
+    kerf_->send(signal);
+    expect_end(0);
+  }
+}
+
+TEST_F(ViewWindow, AProgramThatIsGoneOrChangedIsStillShown) {
+  open({"view", program_});
+  const Picture start = settled();
+  folder_.write("part.ngc", "G0 X1\n(changed)\n");
+  kerf_->key("End");
+  ASSERT_TRUE(changes_from(start));
+  std::remove(program_.c_str());
+  kerf_->key("Home");
+  EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return different_pixels(now, start) < 30; }));
+  kerf_->key("Q");
+  expect_end(0);
+}
+
+TEST_F(ViewWindow, AProgramThatCannotBeReadEndsIt) {
+  kerf_ = std::make_unique<WindowedKerf>(call_of({"view", folder_.file("none.ngc")}));
+  expect_end(4);
+  EXPECT_NE(result_.err.find("none.ngc: error: cannot be read"), std::string::npos);
+}
+
+TEST_F(ViewWindow, ABrokenProgramIsShownUpToWhereItBreaks) {
+  std::string text = kProgram;
+  text.replace(text.find("J10"), 3, "J99");
+  open({"view", folder_.write("broken.ngc", text)});
+  const Picture start = settled();
+  kerf_->key("End");
+  EXPECT_TRUE(changes_from(start, 100));
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_NE(result_.err.find("broken.ngc:6: error: interpreter-error: "), std::string::npos)
+      << result_.err;
+}
+
+TEST_F(ViewWindow, RunShowsTheResult) {
+  open({"run", program_, "--view", "--json", folder_.file("part.json")});
+  const Picture end = settled();
+  EXPECT_GT(Json::parse(read_file(folder_.file("part.json")))["stock"]["removed_mm3"], 100);
+  kerf_->key("Home");
+  EXPECT_TRUE(changes_from(end));
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_NE(result_.out.find("removed"), std::string::npos) << result_.out;
+}
+
+TEST_F(ViewWindow, ALogIsHeldAndGoesOn) {
+  open({"replay", write_log(), "--events", folder_.file("events")});
+  EXPECT_TRUE(time_goes_on());
+  kerf_->key("space");
+  const Picture held = settled();
+  EXPECT_FALSE(time_goes_on());
+  kerf_->key("space");
+  EXPECT_TRUE(changes_from(held));
+  EXPECT_TRUE(time_goes_on());
+  kerf_->key("Q");
+  // A log that is not run to its end is a partial result.
+  expect_end(4);
+}
+
+TEST_F(ViewWindow, ALogAtItsEndStaysUntilItIsClosedOrInterrupted) {
+  for (const bool closes : {true, false}) {
+    open({"view", write_log(), "--speed", "1000"});
+    settled();
+    if (closes) {
+      kerf_->key("Q");
+    } else {
+      kerf_->send(SIGINT);
+    }
+    expect_end(0);
+    EXPECT_NE(result_.out.find("6001 samples"), std::string::npos) << result_.out;
+  }
+}
+
+TEST_F(ViewWindow, ALogIsInterrupted) {
+  open({"replay", write_log()});
+  kerf_->send(SIGINT);
+  expect_end(4);
+}
+
+TEST_F(ViewWindow, AMachineIsFollowed) {
+  MachineProcess machine({program_, "--modbus-tcp", "127.0.0.1:0", "--frame", "workpiece", "--hold",
+                          "--start-delay", "1"});
+  const std::string listening = machine.wait_line("listening");
+  ASSERT_NE(listening, "") << machine.err();
+  const std::string config = folder_.write(
+      "machine.yaml",
+      fmt::format("source:\n"
+                  "  type: modbus\n"
+                  "  tcp: 127.0.0.1:{}\n"
+                  "  poll_hz: 200\n"
+                  "  frame: workpiece\n"
+                  "  coordinates: axes\n"
+                  "  map:\n"
+                  "    X: {{register: 0, type: int32, word_order: cdab, scale: 0.001}}\n"
+                  "    Y: {{register: 2, type: int32, word_order: cdab, scale: 0.001}}\n"
+                  "    Z: {{register: 4, type: int32, word_order: cdab, scale: 0.001}}\n"
+                  "    tool: {{register: 12, type: uint16}}\n",
+                  listening.substr(listening.rfind(':') + 1)));
+  open({"shadow", "-c", config, "--program", program_, "--json", folder_.file("live.json")});
+  ASSERT_NE(machine.wait_line("finished"), "");
+  settled();
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_GT(Json::parse(read_file(folder_.file("live.json")))["stock"]["removed_mm3"], 100);
+}
+
+}  // namespace
+}  // namespace kerf

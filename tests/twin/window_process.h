@@ -1,0 +1,50 @@
+// tests/twin/window_process.h - kerf with a window on a virtual display, and hands to use it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tests/twin/kerf_process.h"
+#include "tests/viewer/png_reader.h"
+#include "viewer/picture.h"
+
+namespace kerf {
+
+/// The display that all tests of a program share. Empty: there is one, and DISPLAY names it; else
+/// which Debian package is missing.
+const std::string& display_trouble();
+
+/// Pixels that differ by more than 8 of 255 in a channel; all of them if the sizes differ.
+std::size_t different_pixels(const Picture& a, const Picture& b);
+
+/// A kerf that opens a window, in a folder of its own: where it keeps its settings and where its
+/// screenshots go.
+class WindowedKerf {
+ public:
+  /// `settings` is what its settings file says.
+  explicit WindowedKerf(KerfCall call, const std::string& settings = {});
+
+  /// The window is on the screen and draws: it takes a picture of itself when asked to.
+  bool opens();
+  /// As xdotool names them: "space", "Q".
+  void key(const std::string& name) const;
+  /// What the window shows, its panels included; by its own screenshot key.
+  Picture screenshot();
+  /// Takes pictures until one satisfies; false after a minute.
+  bool shows(const std::function<bool(const Picture&)>& wanted);
+  void send(int signal) const { kerf_.send(signal); }
+  /// Where it keeps its settings; its screenshots go there, too.
+  const std::string& home() const { return home_.path(); }
+  /// It does nothing any more.
+  bool has_ended() const { return !kerf_.catches_interrupts(); }
+  /// Waits half a minute for its end.
+  bool waits_for_end() const;
+  /// Waits, and kills it if it goes on.
+  KerfResult finish();
+
+ private:
+  TestFolder home_;
+  RunningKerf kerf_;
+};
+
+}  // namespace kerf

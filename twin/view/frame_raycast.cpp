@@ -1,0 +1,92 @@
+// Pictures by rays on the CPU.
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "twin/motion_geometry.h"
+#include "twin/view/drawn_machine.h"
+#include "twin/view/frame_road.h"
+#include "twin/view/frame_tool.h"
+#include "twin/view/tool_shape.h"
+#include "viewer/raycast/ray_caster.h"
+
+namespace kerf {
+namespace {
+
+constexpr int kMostThreads = 8;
+
+class RaycastRoad final : public FrameRoad {
+ public:
+  explicit RaycastRoad(const RoadStart& start) : projection_(frame_projection(start)) {}
+
+  Result<Picture> draw(const std::shared_ptr<const PlayerState>& state) override {
+    if (stock_ != state->stock) {
+      stock_ = state->stock;
+      caster_.set_workpiece(stock_ ? stock_->height_grid() : nullptr);
+    }
+    tool_.show(*state, caster_);
+    caster_.draw(projection_);
+    return caster_.picture();
+  }
+
+ private:
+  Projection projection_;
+  RayCaster caster_{ray_threads()};
+  FrameTool tool_;
+  std::shared_ptr<const StockModel> stock_;
+};
+
+/// Where the tip goes, and as much around and above it as the largest tool takes.
+Box room_of_tools(const RoadStart& start) {
+  Box tips;
+  tips.extend(start.state.tip_mm);
+  double radius_mm = 0, height_mm = 0;
+  const Cutter* last = nullptr;
+  for (std::size_t i = 0; i < start.track->size(); ++i) {
+    tips.extend(bounds_of(start.track->motion(i)));
+    const Cutter* const cutter = start.shown.cuts ? start.shown.cuts->cutter_at(i) : nullptr;
+    if (!cutter || cutter == last) continue;
+    last = cutter;
+    radius_mm = std::max(radius_mm, cutter->radius_mm());
+    height_mm = std::max(height_mm, drawn_height_mm(*tool_shape_of(*cutter)));
+  }
+  tips.extend(tips.min - Vec3(radius_mm, radius_mm, 0));
+  tips.extend(tips.max + Vec3(radius_mm, radius_mm, height_mm));
+  return tips;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameRoad>> make_raycast_road(RoadStart start) {
+  if (start.state.stock && !start.state.stock->height_grid()) {
+    return Error{"--draw raycast: a " + start.state.stock->name() +
+                 " workpiece has no heights to cast rays at; --draw mesh draws it"};
+  }
+  return std::unique_ptr<FrameRoad>(std::make_unique<RaycastRoad>(start));
+}
+
+int ray_threads() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostThreads);
+}
+
+void FrameTool::show(const PlayerState& state, RayCaster& caster) {
+  if (state.cutter != shown_) {
+    shown_ = state.cutter;
+    caster.set_tool_shape(shown_ ? tool_shape_of(*shown_) : nullptr);
+  }
+  caster.set_tool_pose(ToolPose{state.tip_mm, Vec3(0, 0, 1)});
+}
+
+Projection frame_projection(const RoadStart& start) {
+  const Box room = room_of_tools(start);
+  const Box shown = start.state.stock ? start.state.stock->bounds_mm() : room;
+  Box depth_box = shown;
+  depth_box.extend(room);
+  OrbitCamera camera;
+  camera.set_perspective(start.options.perspective);
+  camera.look_from(start.options.view);
+  camera.fit(shown, start.options.size_px);
+  return camera.projection(depth_box, start.options.size_px);
+}
+
+}  // namespace kerf
