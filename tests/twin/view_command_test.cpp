@@ -7,12 +7,14 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
 #include "tests/machine_io/simulator/machine_process.h"
 #include "tests/twin/window_process.h"
+#include "tests/viewer/virtual_display.h"
 
 namespace kerf {
 namespace {
@@ -429,6 +431,19 @@ TEST_F(ViewWindow, ALogIsInterrupted) {
   open({"replay", write_log()});
   kerf_->send(SIGINT);
   expect_end(4);
+}
+
+/// What is watched matters more than the window.
+TEST_F(ViewWindow, ALogGoesOnWhenTheDisplayIsGone) {
+  const std::string shared_display = std::getenv("DISPLAY");
+  Result<VirtualDisplay> display = VirtualDisplay::start();
+  ASSERT_TRUE(display) << display.error();
+  open({"replay", write_log(), "--speed", "8"});
+  display->kill_server();
+  setenv("DISPLAY", shared_display.c_str(), 1);
+  expect_end(0);
+  EXPECT_NE(result_.err.find("going on without a window"), std::string::npos) << result_.err;
+  EXPECT_NE(result_.out.find("6001 samples"), std::string::npos) << result_.out;
 }
 
 TEST_F(ViewWindow, AMachineIsFollowed) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -166,10 +167,12 @@ std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::
 struct LiveWindow {
   SceneMailbox mailbox{Window::wake};
   CommandQueue commands;
+  /// The display is gone: the user has not closed the window.
+  std::atomic<bool> lost{false};
 };
 
 LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
-                             std::stop_source stop) {
+                             std::stop_source stop, const LiveWindow& window) {
   LiveViewOptions options;
   const std::string& program =
       request.options.program ? request.options.program->path : std::string();
@@ -189,7 +192,9 @@ LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
   print(diagnostics, request.quiet);
   options.log = request.options.log();
   options.speed = options.log ? request.options.speed : 1.0;
-  options.on_close = [stop]() mutable { stop.request_stop(); };
+  options.on_close = [stop, &window]() mutable {
+    if (!window.lost) stop.request_stop();
+  };
   if (options.log) options.on_speed = [&session](double speed) { session.set_speed(speed); };
   if (!program.empty() && program != "-") {
     options.load_program = [&request](std::stop_token token) {
@@ -236,7 +241,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<LiveView> view;
   if (window) {
-    view.emplace(view_options(request, *session, stop), *observer, window->mailbox,
+    view.emplace(view_options(request, *session, stop, *window), *observer, window->mailbox,
                  window->commands);
     observer = &*view;
   }
@@ -269,18 +274,21 @@ int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source
                     std::stop_source& stop) {
   if (!request.window || !has_display()) return watch(request, std::move(source), stop, nullptr);
   LiveWindow window;
-  const Result<int> code = work_beside_window({}, window.mailbox, window.commands, stop, [&] {
-    return watch(request, std::move(source), stop, &window);
-  });
+  const auto go_on = [&](const std::string& reason) {
+    Diagnostic d = fault(fmt::format("{}; going on without a window", reason));
+    d.severity = Severity::kWarning;
+    d.hint = "--no-view does not try one";
+    print({d}, request.quiet);
+  };
+  const Result<int> code = work_beside_window(
+      {}, window.mailbox, window.commands, stop,
+      [&] { return watch(request, std::move(source), stop, &window); },
+      [&](const std::string& reason) {
+        window.lost = true;
+        go_on(reason);
+      });
   if (code) return *code;
-  if (stop.stop_requested()) {
-    print({fault(code.error())}, false);
-    return kExitFailure;
-  }
-  Diagnostic d = fault(fmt::format("{}; going on without a window", code.error()));
-  d.severity = Severity::kWarning;
-  d.hint = "--no-view does not try one";
-  print({d}, request.quiet);
+  go_on(code.error());
   return watch(request, std::move(source), stop, nullptr);
 }
 

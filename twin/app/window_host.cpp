@@ -26,7 +26,8 @@ bool has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
 
 Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailbox,
                                CommandQueue& commands, std::stop_source& stop,
-                               const std::function<int()>& work) {
+                               const std::function<int()>& work,
+                               const std::function<void(const std::string&)>& on_loss) {
   Result<Window> window = Window::create(options, &mailbox, &commands);
   if (!window) return Error{window.error()};
   for (const Diagnostic& fault : window->settings_faults()) {
@@ -48,11 +49,15 @@ Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailb
   }
   // The work hears of it by the CloseCommand already, if it listens.
   if (trouble) {
+    if (on_loss) {
+      on_loss(*trouble);
+    } else {
+      stop.request_stop();
+    }
     commands.push(CloseCommand{});
-    stop.request_stop();
   }
   worker.join();
-  if (trouble) return Error{*trouble};
+  if (trouble && !on_loss) return Error{*trouble};
   return code;
 }
 

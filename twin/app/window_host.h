@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <stop_token>
+#include <string>
 
 #include "base/result.h"
 #include "viewer/scene_mailbox.h"
@@ -16,10 +17,12 @@ bool has_display();
 
 /// Opens a window and runs `work` in a thread until both are over: the window is closed when the
 /// work is done, and the work is asked to stop when the user closes the window. Returns what `work`
-/// returned. Error: there can be no window (the work has not been started then), or OpenGL has
-/// failed since (the work was stopped).
+/// returned. Error: there can be no window (the work has not been started then), or the display or
+/// OpenGL has failed since. The work was stopped then, unless there is `on_loss`: that gets the
+/// reason, the work gets a CloseCommand, and goes on without a window.
 Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailbox,
                                CommandQueue& commands, std::stop_source& stop,
-                               const std::function<int()>& work);
+                               const std::function<int()>& work,
+                               const std::function<void(const std::string&)>& on_loss = {});
 
 }  // namespace kerf
