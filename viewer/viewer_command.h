@@ -51,8 +51,9 @@ struct BreakpointCommand {
   int line = 1;
   bool set = true;
 };
-/// The camera came nearer or went away: how much of the workpiece a pixel shows. Sent when it
-/// changes by a factor of two; patches much finer than this need not be made.
+/// The camera came nearer or went away: how much of the workpiece a pixel shows (two pixels, where
+/// the processor draws). Sent when it changes by a factor of two; patches much finer than this need
+/// not be made.
 struct DetailCommand {
   double pixel_mm = 1.0;
 };

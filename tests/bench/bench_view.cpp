@@ -118,6 +118,9 @@ class Screen {
     return true;
   }
 
+  /// As the window asks for it.
+  double detail_mm() const { return camera_.pixel_mm(kSize) * SceneRenderer::detail_px(); }
+
   /// The picture as it has become, and as it is drawn anew.
   void check() {
     while (turn()) {
@@ -194,6 +197,8 @@ bool play(const Arguments& arguments) {
   PlayerView view(std::move(loaded->player), {}, std::move(shown), mailbox, commands);
   Screen screen(mailbox, arguments.local);
   std::jthread thread([&](const std::stop_token& stop) { view.run(stop); });
+  screen.settle([&] { return screen.moment() != nullptr; });
+  commands.push(DetailCommand{screen.detail_mm()});
   screen.settle([&] { return screen.moment() != nullptr; });
   screen.reset();
   commands.push(SpeedCommand{arguments.speed});
@@ -336,6 +341,7 @@ void follow(const Arguments& arguments, double rate_hz) {
     // The first picture of a whole blank is not what is measured.
     if (!warm && ms_since(begin) > 2e3) {
       warm = true;
+      commands.push(DetailCommand{screen.detail_mm()});
       age_ms.clear();
     }
     std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(

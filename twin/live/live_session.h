@@ -105,7 +105,7 @@ using SampleTap = std::function<void(const AxisSample&)>;
 class LiveSession {
  public:
   static constexpr std::chrono::milliseconds kStatusPeriod{100};
-  static constexpr std::chrono::milliseconds kFramePeriod{15};
+  static constexpr std::chrono::milliseconds kFramePeriod{8};
 
   /// Checks all that can be checked beforehand. Null on error, with diagnostics; `outcome` says of
   /// which kind.

@@ -11,6 +11,8 @@
 #include <mutex>
 #include <string>
 
+#include "viewer/window/scene_renderer.h"
+
 namespace kerf {
 namespace {
 
@@ -32,12 +34,6 @@ std::string display_name() {
     if (value != nullptr && *value != '\0') return fmt::format("{}={}", variable, value);
   }
   return "";
-}
-
-/// Draws with the processor.
-bool is_software(const std::string& renderer) {
-  return renderer.find("llvmpipe") != std::string::npos ||
-         renderer.find("softpipe") != std::string::npos;
 }
 
 /// Set when Xlib finds that the server is gone. It ends the program then unless it is told not to.
@@ -95,8 +91,7 @@ struct Platform::Parts {
 };
 
 void Platform::find_parts(GLFWwindow* window) {
-  const GLubyte* renderer = glGetString(GL_RENDERER);
-  if (renderer == nullptr || !is_software(reinterpret_cast<const char*>(renderer))) return;
+  if (SceneRenderer::detail_px() == 1.0) return;  // a graphics card
   if (glfwExtensionSupported("GLX_MESA_copy_sub_buffer") != GLFW_TRUE) return;
   const auto copy = reinterpret_cast<Parts::Copy>(glfwGetProcAddress("glXCopySubBufferMESA"));
   const auto get_display =

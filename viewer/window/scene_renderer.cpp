@@ -549,6 +549,12 @@ std::string SceneRenderer::gl_name() {
   };
   return fmt::format("OpenGL {}, {}", string_of(GL_VERSION), string_of(GL_RENDERER));
 }
+double SceneRenderer::detail_px() {
+  const std::string name = gl_name();
+  const bool is_software =
+      name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
+  return is_software ? 2.0 : 1.0;
+}
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }

@@ -122,6 +122,9 @@ class SceneRenderer {
   void finish() const;
   /// Version and renderer: "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (...)".
   static std::string gl_name();
+  /// Pixels that the smallest detail of the workpiece need have: 1, or 2 where the processor draws,
+  /// which has a quarter of the triangles to draw then.
+  static double detail_px();
   /// The picture last drawn.
   Picture read() const;
   /// The point of the scene (not of the tool) at a pixel from the upper left; none on background.

@@ -84,6 +84,7 @@ Done Window::Impl::open() {
   Result<SceneRenderer> renderer = SceneRenderer::create();
   if (!renderer) return Error{renderer.error()};
   renderer_ = std::move(*renderer);
+  detail_px_ = SceneRenderer::detail_px();
   layer_.emplace();
   start_panels();
   install_callbacks();

@@ -78,7 +78,7 @@ void Window::Impl::click(glm::vec2 cursor_px) {
 }
 
 void Window::Impl::tell_detail() {
-  const double pixel_mm = camera_.pixel_mm(area_px_);
+  const double pixel_mm = camera_.pixel_mm(area_px_) * detail_px_;
   if (pixel_mm < told_pixel_mm_ * kDetailStep && pixel_mm > told_pixel_mm_ / kDetailStep) return;
   told_pixel_mm_ = pixel_mm;
   commands_.push(DetailCommand{pixel_mm});

@@ -129,6 +129,7 @@ class Window::Impl {
   float scale_ = 0.0f;  // of the panels
   bool wants_fit_ = true;
   bool pressed_in_picture_ = false;
+  double detail_px_ = 1.0;
   double told_pixel_mm_ = 0.0;
 
   int frames_to_draw_ = 1;
