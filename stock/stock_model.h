@@ -33,6 +33,16 @@ struct CutMove {
   Vec3 to_mm{0};
   std::optional<CutArc> arc;
   std::uint64_t id = 0;  ///< the caller's; comes back in CutReport
+  /// Unit vector along the spindle, from the tip upward, at either end. Where they differ the
+  /// spindle turns evenly along the great circle between them while the tip moves (by less than
+  /// half a turn; not together with `arc`). Only models for tilted tools take any but (0, 0, 1).
+  Vec3 axis_from{0, 0, 1};
+  Vec3 axis_to{0, 0, 1};
+
+  bool is_vertical() const {
+    constexpr Vec3 kUp{0, 0, 1};
+    return axis_from == kUp && axis_to == kUp;
+  }
 };
 
 /// What one move did to the workpiece.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/worker_pool.h"
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
 #include "stock/zmap/height_mesh.h"
@@ -19,7 +20,6 @@
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
 #include "stock/zmap/tile_patch.h"
-#include "stock/zmap/worker_pool.h"
 
 namespace kerf {
 

@@ -39,7 +39,7 @@ constexpr std::array kLibraryRules{
     LibraryRule{"yaml-cpp/", "twin/config/"},
     LibraryRule{"CLI/", "twin/app/", "twin/machine/"},
     LibraryRule{"nlohmann/", "twin/"},
-    LibraryRule{"xxhash.h", "stock/zmap/"},
+    LibraryRule{"xxhash.h", "stock/"},
     LibraryRule{"canon.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_base.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_return.hh", "interp_bridge/kerf_interp/"},

@@ -1,4 +1,4 @@
-// stock/zmap/worker_pool.h - a few threads that do the same call with different numbers.
+// base/worker_pool.h - a few threads that do the same call with different numbers.
 #pragma once
 
 #include <condition_variable>

@@ -1,4 +1,4 @@
-#include "stock/zmap/worker_pool.h"
+#include "base/worker_pool.h"
 
 namespace kerf {
 
