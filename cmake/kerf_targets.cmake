@@ -24,7 +24,7 @@ add_library(kerf_driver_leaks INTERFACE)
 if(KERF_SANITIZE MATCHES "address")
   add_library(kerf_driver_leaks_object STATIC ${CMAKE_CURRENT_LIST_DIR}/driver_leaks.cpp)
   target_link_libraries(kerf_driver_leaks INTERFACE kerf_driver_leaks_object)
-  target_link_options(kerf_driver_leaks INTERFACE LINKER:-u,__lsan_default_suppressions)
+  target_link_options(kerf_driver_leaks INTERFACE LINKER:-u,__lsan_is_turned_off)
 endif()
 
 # kerf_add_library(name SOURCES ... LINK ...): a static library with the project's options.
