@@ -112,6 +112,15 @@ class StockModel {
   /// (or the point is beyond the blank), and where it is not kept.
   virtual std::optional<std::uint32_t> cut_id_at(const Vec3&) const { return std::nullopt; }
 
+  /// Error if the model cannot hold what this cutter leaves; the message says what and why. cut()
+  /// and first_contact() must not be given such a cutter.
+  virtual Done accepts(const Cutter&) const { return Done{std::monostate{}}; }
+  /// Whether moves may have other spindle directions than straight up.
+  virtual bool takes_tilted_tools() const { return false; }
+  /// Writes the workpiece into a file from which it can be loaded again. Written to a temporary
+  /// name and renamed. Error: also from a model that has no such file.
+  virtual Done save(const std::string& path) const;
+
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank
   virtual double cell_mm() const = 0;

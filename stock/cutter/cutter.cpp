@@ -64,9 +64,9 @@ std::string arc_fault(const ProfilePiece& arc) {
   return "";
 }
 
-/// What is wrong with a piece by itself and with its join to (r, z), the end of the one before; or
-/// "".
-std::string piece_fault(const ProfilePiece& piece, double r, double z) {
+/// What is wrong with the ends of a piece and with its join to (r, z), the end of the one before;
+/// or "".
+std::string ends_fault(const ProfilePiece& piece, double r, double z) {
   for (const double value : {piece.r0, piece.z0, piece.r1, piece.z1}) {
     if (!within(value, kMaxCoordinate_mm)) {
       return fmt::format("{} is not allowed; coordinates are at most {} mm", value,
@@ -76,14 +76,51 @@ std::string piece_fault(const ProfilePiece& piece, double r, double z) {
   if (std::hypot(piece.r0 - r, piece.z0 - z) > kJoinTolerance_mm) {
     return fmt::format("starts at R{} Z{}, but must start at R{} Z{}", piece.r0, piece.z0, r, z);
   }
+  if (std::hypot(piece.r1 - piece.r0, piece.z1 - piece.z0) <= kJoinTolerance_mm) {
+    return "has no length";
+  }
+  return "";
+}
+
+/// What is wrong with a piece of the lower side; or "".
+std::string piece_fault(const ProfilePiece& piece, double r, double z) {
+  std::string fault = ends_fault(piece, r, z);
+  if (!fault.empty()) return fault;
   if (piece.r1 < piece.r0 - kJoinTolerance_mm) {
     return fmt::format("the radius falls from {} to {} mm; it must not fall from the tip upward",
                        piece.r0, piece.r1);
   }
-  if (std::hypot(piece.r1 - piece.r0, piece.z1 - piece.z0) <= kJoinTolerance_mm) {
-    return "has no length";
-  }
   return piece.kind == Kind::kArc ? arc_fault(piece) : "";
+}
+
+/// As the lower side sees it: from the neck outward, upside down.
+ProfilePiece turned_over(const ProfilePiece& piece) {
+  ProfilePiece turned = piece;
+  turned.r0 = piece.r1;
+  turned.z0 = -piece.z1;
+  turned.r1 = piece.r0;
+  turned.z1 = -piece.z0;
+  turned.center_z = -piece.center_z;
+  return turned;
+}
+
+/// What is wrong with a piece of the upper side; or "".
+std::string upper_piece_fault(const ProfilePiece& piece, double r, double z) {
+  std::string fault = ends_fault(piece, r, z);
+  if (!fault.empty()) return fault;
+  if (piece.r1 > piece.r0 + kJoinTolerance_mm) {
+    return fmt::format("the radius rises from {} to {} mm; above the head it must not rise again",
+                       piece.r0, piece.r1);
+  }
+  if (piece.z1 < piece.z0 - kJoinTolerance_mm) {
+    return fmt::format("the height falls from {} to {} mm; the upper side must not fall", piece.z0,
+                       piece.z1);
+  }
+  if (piece.kind != Kind::kArc) return "";
+  const bool passes_side = piece.convex ? piece.r1 < piece.center_r - kJoinTolerance_mm
+                                        : piece.r0 > piece.center_r + kJoinTolerance_mm;
+  if (passes_side) return "the arc turns back downward; split or shorten it";
+  return arc_fault(turned_over(piece));
 }
 
 }  // namespace
@@ -114,6 +151,41 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
   cutter.spec_ = std::move(spec);
   cutter.pieces_ = std::move(pieces);
   return cutter;
+}
+
+Done Cutter::set_upper_profile(std::vector<ProfilePiece> pieces) {
+  if (pieces.empty()) return Error{"upper profile: has no pieces; at least one is needed"};
+  double r = radius_mm();
+  double z = pieces_.back().z1;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    ProfilePiece& piece = pieces[i];
+    const std::string fault = upper_piece_fault(piece, r, z);
+    if (!fault.empty()) return Error{fmt::format("upper profile piece {}: {}", i + 1, fault)};
+    piece.r0 = r;
+    piece.z0 = z;
+    piece.r1 = std::min(piece.r1, r);
+    piece.z1 = std::max(piece.z1, z);
+    r = piece.r1;
+    z = piece.z1;
+  }
+  if (r <= kJoinTolerance_mm || r >= radius_mm() - kJoinTolerance_mm) {
+    return Error{fmt::format(
+        "upper profile: the neck has radius {}; must be above 0 and below the head's, {} (mm)", r,
+        radius_mm())};
+  }
+  upper_pieces_ = std::move(pieces);
+  neck_radius_mm_ = r;
+  return std::monostate{};
+}
+
+double Cutter::upper_height_mm(double r) const {
+  r = std::max(std::abs(r), neck_radius_mm_.value_or(0));
+  double height = -std::numeric_limits<double>::infinity();
+  for (const ProfilePiece& piece : upper_pieces_) {
+    if (r < piece.r1 || r > piece.r0) continue;
+    height = std::max(height, -piece_height_mm(turned_over(piece), r));
+  }
+  return height;
 }
 
 double Cutter::height_mm(double r) const {

@@ -21,13 +21,13 @@
 
 namespace kerf {
 
-/// One piece of a profile, radius not decreasing from start to end. All mm; r is the distance from
-/// the spindle axis, z the height above the tip.
+/// One piece of a profile, radius not decreasing from start to end (not increasing on the upper
+/// side of a head). All mm; r is the distance from the spindle axis, z the height above the tip.
 struct ProfilePiece {
   enum class Kind { kLine, kArc };
   Kind kind = Kind::kLine;
-  double r0 = 0, z0 = 0;  ///< inner end
-  double r1 = 0, z1 = 0;  ///< outer end
+  double r0 = 0, z0 = 0;  ///< start: inner end (outer end on the upper side)
+  double r1 = 0, z1 = 0;  ///< end
   /// kArc: circle through both ends. The cutter is on the upper side; `convex` arcs bulge outward
   /// (ball, bull-nose: the centre is above the arc), others are hollow (corner-rounding cutter: the
   /// centre is below).
@@ -63,7 +63,20 @@ class Cutter {
   /// T-slot): a Z-map cannot hold what it cuts. neck_radius_mm() is the radius of the part above.
   bool undercuts() const { return neck_radius_mm_.has_value(); }
   std::optional<double> neck_radius_mm() const { return neck_radius_mm_; }
-  void set_neck_radius_mm(double r) { neck_radius_mm_ = r; }
+  /// Upper side of a head that is wider than its neck: from the end of profile() inward and upward
+  /// to the neck. Empty unless undercuts().
+  ///
+  ///        |   | <- neck          profile() goes from the tip outward to the widest point w,
+  ///      __|   |__                upper_profile() from there to n, the foot of the neck; the neck
+  ///     |    n    | upper side    goes on upward with the radius it has there.
+  ///     |_________w
+  std::span<const ProfilePiece> upper_profile() const { return upper_pieces_; }
+  /// Highest point of the head at distance r from the axis: the foot of the neck where the neck is,
+  /// -infinity beyond radius_mm(). For cutters that undercut. O(pieces).
+  double upper_height_mm(double r) const;
+  /// Checks the pieces: a connected chain that starts at the end of profile(), radius not rising,
+  /// height not falling, last radius above 0 and below radius_mm(). The message names the piece.
+  Done set_upper_profile(std::vector<ProfilePiece> pieces);
 
   std::optional<double> flute_length_mm() const { return flute_length_mm_; }
   void set_flute_length_mm(double length) { flute_length_mm_ = length; }
@@ -77,6 +90,7 @@ class Cutter {
   Cutter() = default;
   std::string spec_;
   std::vector<ProfilePiece> pieces_;
+  std::vector<ProfilePiece> upper_pieces_;
   std::optional<double> neck_radius_mm_;
   std::optional<double> flute_length_mm_;
   std::optional<double> shank_diameter_mm_;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "stock/cutter/scan.h"
 
@@ -21,7 +22,7 @@ constexpr double kMaxArcRadius_mm = 10000;
 /// How far an arc may miss its ends or its level: files are written with three or four decimals.
 constexpr double kFitTolerance_mm = 1e-3;
 
-constexpr std::array<std::string_view, 6> kKeywords = {"line",  "arc",   "start",
+constexpr std::array<std::string_view, 7> kKeywords = {"line",  "arc",   "start", "upper",
                                                        "flute", "shank", "holder"};
 
 using Words = std::vector<std::string_view>;
@@ -34,11 +35,12 @@ class Reader {
     if (keyword == "line") return read_piece(words, 3, "line R Z");
     if (keyword == "arc") return read_piece(words, 5, "arc R Z RADIUS cw|ccw");
     if (keyword == "start") return read_start(words);
+    if (keyword == "upper") return read_upper(words);
     if (keyword == "flute") return read_option(words, file_.flute);
     if (keyword == "shank") return read_option(words, file_.shank);
     if (keyword == "holder") return read_option(words, file_.holder);
     return Error{
-        fmt::format("unknown keyword '{}'{} Allowed: line, arc, start, flute, shank, holder",
+        fmt::format("unknown keyword '{}'{} Allowed: line, arc, start, upper, flute, shank, holder",
                     shown(words[0]), did_you_mean(words[0], kKeywords))};
   }
   ProfileFile take() { return std::move(file_); }
@@ -56,6 +58,14 @@ class Reader {
     return std::monostate{};
   }
 
+  Done read_upper(const Words& words) {
+    if (words.size() != 1) return Error{"'upper' takes no value"};
+    if (!has_pieces()) return Error{"upper must come after the lower side of the outline"};
+    if (upper_) return Error{"'upper' is given twice"};
+    upper_ = true;
+    return std::monostate{};
+  }
+
   Done read_option(const Words& words, std::optional<std::string>& option) {
     if (words.size() != 2) {
       return Error{fmt::format("'{}' takes one value", to_lower(words[0]))};
@@ -69,14 +79,19 @@ class Reader {
     if (words.size() != count) {
       return Error{fmt::format("wrong number of values; the form is '{}'", form)};
     }
-    if (file_.pieces.size() >= kMaxProfilePieces) {
+    std::vector<ProfilePiece>& pieces = upper_ ? file_.upper_pieces : file_.pieces;
+    if (pieces.size() >= kMaxProfilePieces) {
       return Error{fmt::format("more than {} pieces", kMaxProfilePieces)};
     }
     const Result<double> r = parse_within("R", words[1], 0, kMaxRadius_mm, "mm");
     if (!r) return Error{r.error()};
     const Result<double> z = parse_within("Z", words[2], 0, kMaxHeight_mm, "mm");
     if (!z) return Error{z.error()};
-    if (*r < r_) {
+    if (upper_ && *r > r_) {
+      return Error{fmt::format("the radius rises from {} to {}; the upper side must run inward",
+                               number_text(r_), number_text(*r))};
+    }
+    if (!upper_ && *r < r_) {
       return Error{fmt::format("the radius falls from {} to {}; the outline must run outward",
                                number_text(r_), number_text(*r))};
     }
@@ -87,10 +102,11 @@ class Reader {
     piece.r1 = *r;
     piece.z1 = *z;
     if (count == 5) {
-      const Done arc = make_arc(words, piece);
+      Done arc = make_arc(words, piece);
+      if (arc) arc = upper_ ? level_with_start(piece) : level_with_end(piece);
       if (!arc) return arc;
     }
-    file_.pieces.push_back(piece);
+    pieces.push_back(piece);
     r_ = *r;
     z_ = *z;
     return std::monostate{};
@@ -120,7 +136,7 @@ class Reader {
         (piece.convex ? 1 : -1) / (2 * half_chord);
     piece.center_r = (piece.r0 + piece.r1) / 2 - dz * offset;
     piece.center_z = (piece.z0 + piece.z1) / 2 + dr * offset;
-    return level_with_end(piece);
+    return std::monostate{};
   }
 
   /// An arc that ends upright has its centre level with that end. Written with a few decimals it
@@ -141,7 +157,23 @@ class Reader {
     return std::monostate{};
   }
 
+  /// The same on the upper side, where an arc may start upright.
+  static Done level_with_start(ProfilePiece& arc) {
+    const auto turn_over = [](ProfilePiece& piece) {
+      std::swap(piece.r0, piece.r1);
+      std::swap(piece.z0, piece.z1);
+      piece.z0 = -piece.z0;
+      piece.z1 = -piece.z1;
+      piece.center_z = -piece.center_z;
+    };
+    turn_over(arc);
+    const Done done = level_with_end(arc);
+    turn_over(arc);
+    return done;
+  }
+
   ProfileFile file_;
+  bool upper_ = false;
   double r_ = 0;
   double z_ = 0;
 };

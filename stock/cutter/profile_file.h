@@ -8,6 +8,9 @@
 //     shank  10x25                  optional: shank diameter, or diameter x length
 //     holder 32x20+40x25            optional: sections upward, diameter x length
 //
+//     upper                         optional: what follows is the upper side of a head, from its
+//     line 3 4                      widest point in to the neck: the radius never rises
+//
 // The outline starts on the axis at R0 Z0 and runs outward: the radius never falls. `ccw` and `cw`
 // are as seen with R to the right and Z up: a ball nose is `arc 5 5 5 ccw`, a hollow is cw. Of the
 // two arcs the shorter one is meant. A first line `start 0 Z` begins the outline higher, for a
@@ -27,6 +30,7 @@ namespace kerf {
 
 struct ProfileFile {
   std::vector<ProfilePiece> pieces;
+  std::vector<ProfilePiece> upper_pieces;           ///< Cutter::upper_profile()
   std::optional<std::string> flute, shank, holder;  ///< as written
 };
 

@@ -28,6 +28,7 @@ constexpr double kMinAngle_deg = 1;
 constexpr double kMaxIncludedAngle_deg = 179;
 constexpr double kFlatDrillAngle_deg = 180;
 constexpr double kMaxHalfAngle_deg = 80;
+constexpr double kMaxDovetailAngle_deg = 89;
 constexpr std::size_t kMaxHolderSections = 32;
 /// Height of a tapered cutter's cone where the flute length is not given.
 constexpr double kTaperHeightPerTip = 3;
@@ -42,7 +43,7 @@ struct Form {
   std::array<std::string_view, 3> parameters;
 };
 
-constexpr std::array<Form, 9> kForms = {{
+constexpr std::array<Form, 10> kForms = {{
     {"flat", "flat:D", 1, 0, {"diameter D"}},
     {"ball", "ball:D", 1, 0, {"diameter D"}},
     {"bull", "bull:D:R", 2, 0, {"diameter D", "corner radius R"}},
@@ -51,11 +52,16 @@ constexpr std::array<Form, 9> kForms = {{
     {"drill", "drill:D:ANGLE", 2, 0, {"diameter D", "point angle ANGLE"}},
     {"lollipop", "lollipop:D:SHAFT", 2, 0, {"diameter D", "shaft diameter SHAFT"}},
     {"tslot", "tslot:D:T:SHAFT", 3, 0, {"diameter D", "thickness T", "shaft diameter SHAFT"}},
+    {"dovetail",
+     "dovetail:D:ANGLE:SHAFT",
+     3,
+     0,
+     {"diameter D", "side angle ANGLE", "shaft diameter SHAFT"}},
     {"profile", "profile:FILE", 1, 0, {"file name FILE"}},
 }};
 
-constexpr std::array<std::string_view, 9> kShapeNames = {
-    "flat", "ball", "bull", "vee", "taper", "drill", "lollipop", "tslot", "profile"};
+constexpr std::array<std::string_view, 10> kShapeNames = {
+    "flat", "ball", "bull", "vee", "taper", "drill", "lollipop", "tslot", "dovetail", "profile"};
 constexpr std::array<std::string_view, 3> kOptionNames = {"flute", "shank", "holder"};
 
 constexpr std::string_view kHelp =
@@ -68,6 +74,8 @@ constexpr std::string_view kHelp =
     "drill:D:ANGLE        point angle ANGLE\n"
     "lollipop:D:SHAFT     ball of diameter D on a shaft\n"
     "tslot:D:T:SHAFT      disc of thickness T on a shaft\n"
+    "dovetail:D:ANGLE:SHAFT  cone widest at its bottom, on a shaft: ANGLE of its side to the "
+    "bottom\n"
     "profile:FILE         outline from a file\n"
     "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]   (mm, degrees)\n";
 
@@ -107,8 +115,8 @@ struct Options {
 /// What a form makes before the options are added.
 struct Body {
   std::vector<ProfilePiece> pieces;
+  std::vector<ProfilePiece> upper_pieces;  ///< of a head with a neck
   std::string spec;
-  std::optional<double> neck_radius_mm;
   std::optional<double> flute_mm;  ///< where the flutes end unless flute= says so
   std::optional<double> shank_mm;  ///< diameter above it unless shank= says so
 };
@@ -357,8 +365,12 @@ Result<Body> make_lollipop(const Values& values) {
   const double radius = *d / 2;
   const double neck = *shaft / 2;
   add_bull(body, radius, radius);
-  body.neck_radius_mm = neck;
   body.flute_mm = radius + std::sqrt((radius - neck) * (radius + neck));
+  ProfilePiece upper = line_piece(radius, radius, neck, *body.flute_mm);
+  upper.kind = ProfilePiece::Kind::kArc;
+  upper.center_z = radius;
+  upper.radius = radius;
+  body.upper_pieces.push_back(upper);
   body.shank_mm = *shaft;
   return body;
 }
@@ -374,8 +386,31 @@ Result<Body> make_tslot(const Values& values) {
   body.spec =
       fmt::format("tslot:{}:{}:{}", number_text(*d), number_text(*thickness), number_text(*shaft));
   add_bull(body, *d / 2, 0);
-  body.neck_radius_mm = *shaft / 2;
+  body.upper_pieces.push_back(line_piece(*d / 2, 0, *d / 2, *thickness));
+  body.upper_pieces.push_back(line_piece(*d / 2, *thickness, *shaft / 2, *thickness));
   body.flute_mm = *thickness;
+  body.shank_mm = *shaft;
+  return body;
+}
+
+Result<Body> make_dovetail(const Values& values) {
+  const Result<double> d = values.diameter(0);
+  if (!d) return Error{d.error()};
+  const Result<double> angle = values.angle(1, kMaxDovetailAngle_deg);
+  if (!angle) return Error{angle.error()};
+  const Result<double> shaft = values.below(2, *d, kMinDiameter_mm);
+  if (!shaft) return Error{shaft.error()};
+  Body body;
+  body.spec =
+      fmt::format("dovetail:{}:{}:{}", number_text(*d), number_text(*angle), number_text(*shaft));
+  const double height = (*d - *shaft) / 2 * std::tan(radians(*angle));
+  if (height < kMinLength_mm || height > kMaxLength_mm) {
+    return Error{fmt::format("the head is {:.4g} mm high; must be from {} to {} (mm)", height,
+                             kMinLength_mm, kMaxLength_mm)};
+  }
+  add_bull(body, *d / 2, 0);
+  body.upper_pieces.push_back(line_piece(*d / 2, 0, *shaft / 2, height));
+  body.flute_mm = height;
   body.shank_mm = *shaft;
   return body;
 }
@@ -388,6 +423,7 @@ Result<Body> make_body(const Form& form, std::span<const std::string_view> texts
   if (form.name == "taper") return make_taper(values, options);
   if (form.name == "lollipop") return make_lollipop(values);
   if (form.name == "tslot") return make_tslot(values);
+  if (form.name == "dovetail") return make_dovetail(values);
   return make_round(form.name, values);
 }
 
@@ -397,7 +433,10 @@ Result<Body> make_body(const Form& form, std::span<const std::string_view> texts
 /// below a holder counts as none: the holder then begins at the end of the flutes, the cautious
 /// reading.
 Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
-  const double top = body.flute_mm.value_or(body.pieces.empty() ? 0 : body.pieces.back().z1);
+  const double profile_top = body.upper_pieces.empty()
+                                 ? (body.pieces.empty() ? 0 : body.pieces.back().z1)
+                                 : body.upper_pieces.back().z1;
+  const double top = body.flute_mm.value_or(profile_top);
   const std::optional<double> flute = options.flute_mm ? options.flute_mm : body.flute_mm;
   if (flute && *flute < top - kLengthTolerance_mm) {
     return Error{fmt::format("flute={} is shorter than the cutting end, {:.4g} mm",
@@ -411,7 +450,10 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
   }
   Result<Cutter> cutter = Cutter::from_profile(std::move(spec), std::move(body.pieces));
   if (!cutter) return cutter;
-  if (body.neck_radius_mm) cutter->set_neck_radius_mm(*body.neck_radius_mm);
+  if (!body.upper_pieces.empty()) {
+    const Done upper = cutter->set_upper_profile(std::move(body.upper_pieces));
+    if (!upper) return Error{upper.error()};
+  }
   if (flute) cutter->set_flute_length_mm(*flute);
   if (options.shank) {
     cutter->set_shank_diameter_mm(options.shank->diameter_mm);
@@ -448,6 +490,7 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
   }
   Body body;
   body.pieces = std::move(file->pieces);
+  body.upper_pieces = std::move(file->upper_pieces);
   Result<Cutter> cutter =
       assemble(std::move(body), merged, fmt::format("profile:{}{}", path, options_text(options)));
   if (!cutter) return Error{fmt::format("{}: {}", shown(path), cutter.error())};
@@ -510,7 +553,7 @@ Result<Cutter> parse_shape(std::string_view spec) {
   if (name.empty()) {
     return Error{
         "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
-        "lollipop, tslot, profile)"};
+        "lollipop, tslot, dovetail, profile)"};
   }
   for (const Form& form : kForms) {
     if (form.name != name) continue;
@@ -522,7 +565,7 @@ Result<Cutter> parse_shape(std::string_view spec) {
   }
   return Error{
       fmt::format("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
-                  "lollipop, tslot, profile",
+                  "lollipop, tslot, dovetail, profile",
                   shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 

@@ -17,8 +17,10 @@ namespace kerf {
 ///     vee:D:ANGLE[:TIP]  included angle ANGLE, largest diameter D, flat tip of diameter TIP
 ///     taper:D:ANGLE[:R]  tip diameter D; ANGLE of one side to the axis; R rounds the tip (below)
 ///     drill:D:ANGLE      point angle (included); 180 is a flat drill
-///     lollipop:D:SHAFT   sphere on a shaft: its lower hemisphere and a neck (Cutter::undercuts)
+///     lollipop:D:SHAFT   sphere on a shaft: a head with a neck (Cutter::undercuts)
 ///     tslot:D:T:SHAFT    disc of thickness T on a shaft: flat, with a neck
+///     dovetail:D:ANGLE:SHAFT  cone that widens downward: D at its flat bottom, SHAFT at its top;
+///                        ANGLE between its side and its bottom
 ///     profile:FILE       outline from a file (profile_file.h)
 /// Each may add, in any order, divided by colons:
 ///     flute=L            the cutting part ends L above the tip, at least as high as the shape
@@ -29,8 +31,9 @@ namespace kerf {
 ///
 /// taper: the circle of radius R has its centre at radius D/2 - R and meets the cone tangentially;
 /// R = D/2 is a tapered ball nose. The cone ends at the flute length, or three tip diameters above
-/// the tip. lollipop, tslot: the flutes are as high as the shape and the shank has diameter SHAFT
-/// unless the options say otherwise. profile: options in the file count unless the text has them.
+/// the tip. lollipop, tslot, dovetail: the flutes are as high as the shape and the shank has
+/// diameter SHAFT unless the options say otherwise. profile: options in the file count unless the
+/// text has them.
 ///
 /// Ranges: diameters 0.001 to 1000 mm, lengths to 2000 mm. spec() of the result is the canonical
 /// text: shortest numbers, options in the order above; it parses to the same cutter. The error

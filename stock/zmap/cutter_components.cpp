@@ -1,5 +1,7 @@
 #include "stock/zmap/cutter_components.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -54,9 +56,9 @@ void append_hollow_arc(const ProfilePiece& arc, std::vector<ToolPiece>& out) {
 }
 
 /// The profile as lines and bulging arcs, without its vertical parts.
-std::vector<ToolPiece> simple_pieces(const Cutter& cutter) {
+std::vector<ToolPiece> simple_pieces(std::span<const ProfilePiece> profile) {
   std::vector<ToolPiece> out;
-  for (const ProfilePiece& piece : cutter.profile()) {
+  for (const ProfilePiece& piece : profile) {
     if (piece.r1 - piece.r0 < 1e-9) continue;
     if (piece.kind == ProfilePiece::Kind::kLine) {
       out.push_back(line_piece(piece.r0, piece.z0, piece.r1, piece.z1));
@@ -100,11 +102,11 @@ ConvexTool make_tool(const std::vector<ToolPiece>& chain) {
 
 }  // namespace
 
-std::vector<ConvexTool> convex_components(const Cutter& cutter) {
+std::vector<ConvexTool> convex_components(std::span<const ProfilePiece> profile) {
   std::vector<ConvexTool> tools;
   std::vector<ToolPiece> chain;
   double end_z = 0;
-  for (const ToolPiece& piece : simple_pieces(cutter)) {
+  for (const ToolPiece& piece : simple_pieces(profile)) {
     const bool connected =
         !chain.empty() && std::abs(piece.z0 - end_z) < 1e-9 &&
         slope_at(piece, piece.r0) >= slope_at(chain.back(), piece.r0) - kSlopeSlack &&
@@ -123,6 +125,20 @@ std::vector<ConvexTool> convex_components(const Cutter& cutter) {
   }
   tools.push_back(make_tool(chain));
   return tools;
+}
+
+Done check_bottom(const Cutter& cutter, const std::string& model) {
+  for (const ProfilePiece& piece : cutter.profile()) {
+    const bool bulges_down =
+        piece.kind == ProfilePiece::Kind::kArc && piece.convex && piece.r0 < piece.center_r - 1e-9;
+    if (piece.z1 < piece.z0 - 1e-9 || bulges_down) {
+      return Error{
+          fmt::format("{} has a hollow bottom (its profile falls from radius {:.6g} outward); {} "
+                      "cannot cut with it",
+                      cutter.spec(), piece.r0, model)};
+    }
+  }
+  return std::monostate{};
 }
 
 double surface_height(const ConvexTool& tool, double d) {

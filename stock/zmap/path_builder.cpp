@@ -99,17 +99,28 @@ void small_sin_cos(double a, double& s, double& c) {
 
 }  // namespace
 
+bool is_circle_in_xy(const CutMove& move) { return move.arc && flat_circle(move).has_value(); }
+
 std::vector<Vec3> arc_chord_points(const CutMove& move, double tolerance_mm) {
+  const CutArc& arc = *move.arc;
+  const auto from_axis = [&](const Vec3& point) {
+    const Vec3 from = point - arc.center_mm;
+    return glm::length(from - glm::dot(from, arc.axis) * arc.axis);
+  };
+  const double r = std::max({from_axis(move.from_mm), from_axis(move.to_mm), 1e-9});
+  const double sweep = std::abs(arc.sweep_rad);
+  const double widest = 2 * std::sqrt(2 * tolerance_mm / r);  // sagitta of a chord: r * step^2 / 8
+  const int n = std::max(1, static_cast<int>(std::ceil(sweep / std::min(widest, 0.5))));
+  return arc_points(move, n);
+}
+
+std::vector<Vec3> arc_points(const CutMove& move, int n) {
   const CutArc& arc = *move.arc;
   const Vec3 axis = arc.axis;
   const Vec3 from = move.from_mm - arc.center_mm, to = move.to_mm - arc.center_mm;
   const double rise0 = glm::dot(from, axis), rise1 = glm::dot(to, axis);
   const Vec3 a = from - rise0 * axis;
   const double r0 = glm::length(a), r1 = glm::length(to - rise1 * axis);
-  const double r = std::max({r0, r1, 1e-9});
-  const double sweep = std::abs(arc.sweep_rad);
-  const double widest = 2 * std::sqrt(2 * tolerance_mm / r);  // sagitta of a chord: r * step^2 / 8
-  const int n = std::max(1, static_cast<int>(std::ceil(sweep / std::min(widest, 0.5))));
   double sin_step, cos_step;
   small_sin_cos(arc.sweep_rad / n, sin_step, cos_step);
   const Vec3 u = r0 > 0 ? a / r0 : Vec3(1, 0, 0);

@@ -53,6 +53,12 @@ class PathBuilder {
   std::optional<Vec3> standing_;  ///< the tool's own shape is already cut here
 };
 
+/// Whether an arc is cut as a level circle or helix, not as chords.
+bool is_circle_in_xy(const CutMove& move);
+
+/// `count` points of an arc after its start at even angles, ending exactly at move.to_mm.
+std::vector<Vec3> arc_points(const CutMove& move, int count);
+
 /// Points of an arc after its start, ending exactly at move.to_mm, so that chords stay within
 /// `tolerance_mm`.
 std::vector<Vec3> arc_chord_points(const CutMove& move, double tolerance_mm);

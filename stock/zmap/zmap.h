@@ -38,6 +38,7 @@ class ZMap final : public StockModel {
   /// above one point, or none that depends on one height only. cut() must not be given such a
   /// cutter.
   static Done can_cut(const Cutter& cutter);
+  Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }
   ~ZMap() override;
 
   void cut(const Cutter& cutter, std::span<const CutMove> moves,
@@ -80,7 +81,7 @@ class ZMap final : public StockModel {
   /// Saves and loads the workpiece (kerf-state/1: text head, then tiles; format in
   /// stock/zmap/state_file.h), without cut ids. Written to a temporary name and renamed. A damaged
   /// file is an error that says where.
-  Done save(const std::string& path) const;
+  Done save(const std::string& path) const override;
   static Result<std::unique_ptr<ZMap>> load(const std::string& path, int threads = 1,
                                             ZMapKernel kernel = ZMapKernel::kAuto);
 

@@ -133,19 +133,25 @@ TEST(Shape, NecksOfUndercuttingCutters) {
   EXPECT_EQ(tslot->neck_radius_mm(), 4);
   EXPECT_EQ(tslot->flute_length_mm(), 3);
   EXPECT_EQ(tslot->shank_diameter_mm(), 8);
+  const Result<Cutter> dovetail = parse_shape("dovetail:20:45:8");
+  ASSERT_TRUE(dovetail) << dovetail.error();
+  EXPECT_EQ(dovetail->spec(), "dovetail:20:45:8");
+  EXPECT_EQ(dovetail->neck_radius_mm(), 4);
+  EXPECT_NEAR(*dovetail->flute_length_mm(), 6, 1e-12);
+  EXPECT_EQ(dovetail->shank_diameter_mm(), 8);
   EXPECT_EQ(parse_shape("tslot:20:3:8:flute=3:shank=12")->shank_diameter_mm(), 12);
 }
 
 TEST(Shape, UnknownNames) {
   EXPECT_EQ(error_of("flatt:3"),
             "flatt:3: unknown shape 'flatt'; did you mean 'flat'? Shapes: flat, ball, bull, vee, "
-            "taper, drill, lollipop, tslot, profile");
+            "taper, drill, lollipop, tslot, dovetail, profile");
   EXPECT_EQ(error_of("endmill:3"),
             "endmill:3: unknown shape 'endmill'. Shapes: flat, ball, bull, vee, taper, drill, "
-            "lollipop, tslot, profile");
+            "lollipop, tslot, dovetail, profile");
   EXPECT_EQ(error_of("  "),
             "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
-            "lollipop, tslot, profile)");
+            "lollipop, tslot, dovetail, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
             "shank=D[xL], holder=DxL[+DxL..]");
@@ -318,6 +324,68 @@ TEST(ProfileFile, HollowBottom) {
   EXPECT_EQ(cutter->height_mm(5), 0);
 }
 
+TEST(Shape, UpperSidesOfHeads) {
+  const Result<Cutter> lollipop = parse_shape("lollipop:10:6");
+  EXPECT_NEAR(lollipop->upper_height_mm(4), 5 + 3, 1e-12);
+  EXPECT_NEAR(lollipop->upper_height_mm(0), 9, 1e-12);  // the foot of the neck
+  EXPECT_EQ(lollipop->upper_height_mm(5.1), -std::numeric_limits<double>::infinity());
+  const Result<Cutter> tslot = parse_shape("tslot:20:3:8");
+  EXPECT_EQ(tslot->upper_height_mm(10), 3);
+  EXPECT_EQ(tslot->upper_height_mm(5), 3);
+  const Result<Cutter> dovetail = parse_shape("dovetail:20:45:8");
+  EXPECT_NEAR(dovetail->upper_height_mm(7), 3, 1e-12);
+  EXPECT_EQ(dovetail->height_mm(7), 0);
+  EXPECT_TRUE(parse_shape("flat:6")->upper_profile().empty());
+}
+
+TEST(Shape, DovetailErrors) {
+  EXPECT_EQ(parse_shape("dovetail:20:45").error(),
+            "dovetail:20:45: shaft diameter SHAFT is missing; the form is dovetail:D:ANGLE:SHAFT");
+  EXPECT_EQ(parse_shape("dovetail:20:90:8").error(),
+            "dovetail:20:90:8: side angle ANGLE: 90 is not allowed; must be from 1 to 89 "
+            "(degrees)");
+  EXPECT_EQ(parse_shape("dovetail:20:45:20").error(),
+            "dovetail:20:45:20: shaft diameter SHAFT: 20 is not allowed; must be less than "
+            "diameter D, 20 (mm)");
+}
+
+TEST(ProfileFile, UpperSideOfAHead) {
+  const TemporaryFolder folder;
+  // A back-chamfer, and a lollipop written with few decimals.
+  const std::string chamfer =
+      folder.write("chamfer.txt", "line 4 0\nline 4 2\nupper\nline 2 4\nflute 10\n");
+  const Result<Cutter> cutter = parse_shape("profile:" + chamfer);
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->neck_radius_mm(), 2);
+  EXPECT_EQ(cutter->upper_height_mm(3), 3);
+  EXPECT_EQ(cutter->flute_length_mm(), 10);
+  const std::string ball =
+      folder.write("ball.txt", "arc 5 5 5 ccw\nupper\narc 3.333 8.727 5 ccw\n");
+  const Result<Cutter> lollipop = parse_shape("profile:" + ball);
+  ASSERT_TRUE(lollipop) << lollipop.error();
+  EXPECT_NEAR(lollipop->upper_height_mm(4), 8, 2e-3);
+
+  const auto error = [](const char* text) {
+    const Result<ProfileFile> file = parse_profile_text(text, "a.txt");
+    return file ? std::string("no error") : file.error();
+  };
+  EXPECT_EQ(error("upper"), "a.txt:1: upper must come after the lower side of the outline");
+  EXPECT_EQ(error("line 3 0\nupper 1"), "a.txt:2: 'upper' takes no value");
+  EXPECT_EQ(error("line 3 0\nupper\nupper"), "a.txt:3: 'upper' is given twice");
+  EXPECT_EQ(error("line 3 0\nupper\nline 4 1"),
+            "a.txt:3: the radius rises from 3 to 4; the upper side must run inward");
+  const std::string wide = folder.write("wide.txt", "line 4 0\nupper\nline 4 2\n");
+  EXPECT_NE(error_of("profile:" + wide)
+                .find("upper profile: the neck has radius 4; must be above 0 and below the "
+                      "head's, 4 (mm)"),
+            std::string::npos);
+  const std::string down = folder.write("down.txt", "line 4 3\nupper\nline 2 1\n");
+  EXPECT_NE(error_of("profile:" + down)
+                .find("upper profile piece 1: the height falls from 3 to 1 mm; the upper side "
+                      "must not fall"),
+            std::string::npos);
+}
+
 TEST(ProfileFile, ErrorsNameFileAndLine) {
   const auto error = [](const char* text) {
     const Result<ProfileFile> file = parse_profile_text(text, "a.txt");
@@ -327,10 +395,10 @@ TEST(ProfileFile, ErrorsNameFileAndLine) {
   EXPECT_EQ(error("flute 3\n"), "a.txt: no outline found; at least one 'line R Z' is needed");
   EXPECT_EQ(error("\nlin 3 0"),
             "a.txt:2: unknown keyword 'lin'; did you mean 'line'? Allowed: line, arc, start, "
-            "flute, shank, holder");
+            "upper, flute, shank, holder");
   EXPECT_EQ(error("spline 3 0"),
             "a.txt:1: unknown keyword 'spline'; did you mean 'line'? Allowed: line, arc, start, "
-            "flute, shank, holder");
+            "upper, flute, shank, holder");
   EXPECT_EQ(error("line 3"), "a.txt:1: wrong number of values; the form is 'line R Z'");
   EXPECT_EQ(error("line 3 0\narc 5 2 2"),
             "a.txt:2: wrong number of values; the form is 'arc R Z RADIUS cw|ccw'");

@@ -1,0 +1,113 @@
+// stock/octree/brick_cut.h - takes away from one brick what one sweep covers.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stock/octree/brick.h"
+#include "stock/octree/brick_tree.h"
+#include "stock/octree/sweep_kernel.h"
+
+namespace kerf::octree {
+
+/// A solid node becomes empty exactly if F < 0 there. An edge that then joins solid and empty has
+/// its crossing where F is 0; one that had a crossing before keeps the one that leaves less.
+/// Nothing else depends on how space is divided: a node or crossing comes out in the same bits from
+/// each brick that holds it.
+///
+/// Buffers only; one for each thread.
+class BrickCutter {
+ public:
+  BrickCutter(const Lattice& lattice, const SweepKernel& kernel, bool additive);
+
+  /// To be called before apply(): the brick's place in the whole.
+  void set_place(int bx, int by, int bz);
+  /// False if nothing has changed. Else sets what was removed: volume in kNodeVolume, and of each
+  /// column (j * kBrick + i) the height in kEdgeParts.
+  bool apply(const Sweep& sweep, OpenBrick& brick);
+  std::int64_t removed() const { return removed_; }
+  const std::int32_t* removed_heights() const { return heights_; }
+
+  /// Is there material deeper than the sweep's shrink_mm in it? Changes nothing.
+  bool touches(const Sweep& sweep, const OpenBrick& brick);
+  /// All nodes of a brick lie within this of its middle.
+  double half_diagonal_mm() const { return half_diagonal_; }
+
+ private:
+  enum Side : std::uint8_t { kOutside, kInside, kMixed };
+  struct Crossing {
+    int edge;  ///< axis * kBrickNodes + node
+    int axis;
+    bool solid_is_lower;
+    double sign;   ///< which way along the axis the edge goes from its solid end
+    Vec3 from_mm;  ///< the solid end
+    double start;  ///< mm from the solid node: the crossing lies between here
+    double reach;  ///< and here, where there is surely no material
+  };
+  struct Root {
+    double low, high;     ///< bracket, as Crossing::start
+    double f_low, slope;  ///< at `low`
+    double tried;
+    Vec3 normal;  ///< of the sweep, at `low`
+  };
+  bool passes_above(const Sweep& sweep, const OpenBrick& brick) const;
+  void sort_blocks(const Sweep& sweep);
+  bool find_nodes(const Sweep& sweep, const OpenBrick& brick);
+  void find_edges(const OpenBrick& brick);
+  void push_point(double x, double y, double z) {
+    px_[points_] = x;
+    py_[points_] = y;
+    pz_[points_++] = z;
+  }
+  /// `way` mm from the solid end.
+  void push_point(const Crossing& crossing, double way) {
+    Vec3 at = crossing.from_mm;
+    at[crossing.axis] += crossing.sign * way;
+    push_point(at.x, at.y, at.z);
+  }
+  unsigned edges(const std::uint16_t* columns, int axis, int i, int j) const;
+  void push_edges(const OpenBrick& brick, int axis, int i, int j, unsigned kept, unsigned fresh);
+  bool may_be_inside(const Crossing& crossing, const int solid[3]) const;
+  void keep_deeper(const Sweep& sweep);
+  void solve(const Sweep& sweep);
+  bool next_place(const Crossing& crossing, Root& root, double f, const Vec3& gradient,
+                  int step) const;
+  void write(const Sweep& sweep, OpenBrick& brick);
+  void account(OpenBrick& brick);
+
+  const Lattice& lattice_;
+  SweepKernel kernel_;
+  bool additive_;
+  double half_diagonal_, block_half_diagonal_, place_slack_;
+  int first_[3] = {0, 0, 0};
+  double x_[kSide], y_[kSide], z_[kSide];
+  bool at_end_ = false;  ///< some nodes are outside of the blank
+  std::uint16_t may_clear_[kSide * kSide];
+  Side blocks_[8];
+  /// F in a block is nowhere less than at + slope . p; no such bound is known if at is -infinity.
+  struct LowerPlane {
+    double at;
+    Vec3 slope;
+    double under(double x, double y, double z) const {
+      return at + slope.x * x + slope.y * y + slope.z * z;
+    }
+  };
+  LowerPlane planes_[8];
+  std::uint16_t columns_[kSide * kSide];  ///< after the sweep
+  std::int64_t removed_ = 0;
+  std::int32_t heights_[kBrick * kBrick];
+  std::uint8_t changed_[kBrick * kBrick];  ///< nodes of a column whose crossings have changed
+  /// As many points as a brick has edges or nodes.
+  static constexpr std::size_t kPoints = 3 * kBrickNodes + kLanes;
+  alignas(64) double px_[kPoints] = {}, py_[kPoints] = {}, pz_[kPoints] = {};
+  alignas(64) double f_[kPoints], gx_[kPoints], gy_[kPoints], gz_[kPoints];
+  std::uint16_t nodes_[kPoints];
+  int points_ = 0;
+  /// F at the solid nodes of mixed blocks, or a bound below it, [column * 16 + k].
+  double node_f_[kSide * kSide * 16];
+  std::vector<Crossing> kept_, open_;
+  std::vector<Root> roots_;
+  std::vector<int> active_;
+};
+
+}  // namespace kerf::octree

@@ -1,0 +1,366 @@
+#include "stock/octree/octree.h"
+
+#include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "base/worker_pool.h"
+#include "stock/octree/blank_bricks.h"
+#include "stock/octree/brick_tree.h"
+#include "stock/octree/dual_contour_mesh.h"
+#include "stock/octree/dual_contour_patch.h"
+#include "stock/octree/hermite_gather.h"
+#include "stock/octree/tool_bodies.h"
+#include "stock/octree/tree_cut.h"
+
+namespace kerf {
+namespace {
+
+using namespace octree;  // NOLINT: the parts of this very model
+
+/// Moves are worked off in portions of about so many; each brick is opened once a portion.
+constexpr std::size_t kMovesAtOnce = 512, kSweepsAtOnce = 2048;
+/// Memory of a brick with surface, with room for slanting ones: where the surface is flat and along
+/// the axes it is a head of 200 and 64 crossings of 6 bytes (10 with ids).
+constexpr double kBrickBytes = 900;
+/// A part has so many times the surface of its blank's box.
+constexpr double kPartSurface = 2;
+constexpr int kContactSteps = 24;
+
+double needed_bytes(const Lattice& lattice) {
+  const double nx = lattice.cells[0], ny = lattice.cells[1], nz = lattice.cells[2];
+  const double surface = 2 * (nx * ny + ny * nz + nz * nx) / (kBrick * kBrick);
+  const double tiles = nx * ny * nz / std::pow(kTileNodes, 3);
+  return kPartSurface * surface * kBrickBytes + tiles * sizeof(TileRef);
+}
+
+std::string size_text(double bytes) {
+  const double mb = bytes / 1e6;
+  return mb < 1000 ? fmt::format("{:.0f} MB", std::ceil(mb)) : fmt::format("{:.1f} GB", mb / 1000);
+}
+
+/// The smallest cell, rounded up to two digits, that keeps within the limit.
+double fitting_cell(const Box& box, double cell, double limit) {
+  while (needed_bytes(Lattice::over(box, cell)) > limit) {
+    const double digit = std::pow(10.0, std::floor(std::log10(cell)) - 1);
+    cell = (std::floor(cell / digit + 1e-9) + 1) * digit;
+  }
+  return cell;
+}
+
+/// A box's bytes are counted before it is made: the numbers of nodes alone must fit in an int.
+bool countable(const Box& box, double cell) {
+  for (int a = 0; a < 3; ++a)
+    if (box.size()[a] / cell > 1e6) return false;
+  return true;
+}
+
+Done check(const OctreeOptions& options, const Box& box) {
+  const double cell = options.cell_mm;
+  if (box.empty() || options.blank.bodies.empty()) return Error{"the blank is empty"};
+  if (!std::isfinite(cell) || cell <= 0)
+    return Error{fmt::format("cell size {} mm is not allowed; must be above 0", cell)};
+  const Vec3 size = box.size();
+  if (cell > std::min({size.x, size.y, size.z})) {
+    return Error{fmt::format(
+        "cell size {} mm exceeds the blank, which is {} x {} x {} mm; 0.05 to 0.5 suits most parts",
+        cell, size.x, size.y, size.z)};
+  }
+  if (!countable(box, cell)) {
+    return Error{
+        fmt::format("cell size {} mm is not allowed; the blank must not have more than a "
+                    "million cells along an edge: at least {:.2g} mm",
+                    cell, std::max({size.x, size.y, size.z}) / 1e6)};
+  }
+  const double needed = needed_bytes(Lattice::over(box, cell));
+  const double limit = static_cast<double>(options.memory_limit_bytes);
+  if (needed > limit) {
+    const double fits = fitting_cell(box, cell, limit);
+    return Error{fmt::format(
+        "cell size {} mm would need about {} of memory; {} are allowed, for which {:.2g} mm fits",
+        cell, size_text(needed), size_text(limit), fits)};
+  }
+  return std::monostate{};
+}
+
+}  // namespace
+
+struct Octree::Impl {
+  BrickTree tree;
+  bool additive = false;
+  double blank_mm3 = 0;
+  std::int64_t removed = 0;  ///< in kNodeVolume; added counts as removed air
+  SweepKernel kernel = pick_kernel(KernelChoice::kAuto);
+  std::shared_ptr<WorkerPool> pool;
+  std::optional<BrickTree> seen;  ///< as take_dirty_tiles() saw it last
+
+  std::string cutter_spec;
+  std::vector<ToolBody> bodies;
+
+  explicit Impl(BrickTree t) : tree(std::move(t)) {}
+
+  double mm3(std::int64_t volume) const {
+    return static_cast<double>(volume) / kNodeVolume * tree.lattice().node_mm3();
+  }
+  double height_mm(std::int32_t height) const {
+    return static_cast<double>(height) / kEdgeParts * tree.lattice().cell_mm.z;
+  }
+  double cell() const {
+    const Vec3& c = tree.lattice().cell_mm;
+    return std::max({c.x, c.y, c.z});
+  }
+  /// Where sweeps can find nodes: one layer lies outside of the blank.
+  Box reach() const {
+    Box box = tree.lattice().bounds_mm;
+    box.min -= tree.lattice().cell_mm;
+    box.max += tree.lattice().cell_mm;
+    return box;
+  }
+  SweepTarget target(double shrink_mm) const { return {reach(), chord_mm(cell()), shrink_mm}; }
+  bool touches(const std::vector<ToolBody>& tool, const CutMove& move, double shrink_mm) const {
+    std::vector<Sweep> sweeps;
+    append_sweeps(tool, move, 0, target(shrink_mm), sweeps);
+    return touches_tree(tree, sweeps, kernel);
+  }
+  DualField field() const {
+    return {tree.lattice().origin_mm, tree.lattice().cell_mm,
+            [this](const std::array<int, 3>& first, const std::array<int, 3>& nodes,
+                   HermiteGrid* grid) { octree::gather(tree, additive, first, nodes, grid); }};
+  }
+};
+
+Octree::Octree(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Octree::~Octree() = default;
+
+Result<std::unique_ptr<Octree>> Octree::create(const OctreeOptions& options) {
+  const Box box = options.blank.bounds_mm();
+  const Done checked = check(options, box);
+  if (!checked) return Error{checked.error()};
+  const auto pool = std::make_shared<WorkerPool>(std::max(1, options.threads));
+  const Lattice lattice = Lattice::over(box, options.cell_mm);
+  auto impl = std::make_unique<Impl>(options.additive ? solid_tree(lattice)
+                                                      : blank_tree(lattice, options.blank, *pool));
+  impl->pool = pool;
+  impl->additive = options.additive;
+  const std::vector<BlankBody>& bodies = options.blank.bodies;
+  if (!options.additive)
+    impl->blank_mm3 = bodies.size() == 1 && bodies[0].kind == BlankBody::Kind::kBox
+                          ? box.volume_mm3()
+                          : impl->mm3(volume_of(impl->tree));
+  return std::unique_ptr<Octree>(new Octree(std::move(impl)));
+}
+
+Done Octree::can_cut(const Cutter& cutter) {
+  const Result<std::vector<ToolBody>> bodies = tool_bodies(cutter);
+  if (!bodies) return Error{bodies.error()};
+  return std::monostate{};
+}
+
+void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
+                 std::vector<CutReport>& reports) {
+  Impl& m = *impl_;
+  if (m.cutter_spec != cutter.spec() || m.bodies.empty()) {
+    Result<std::vector<ToolBody>> bodies = tool_bodies(cutter);
+    assert(bodies);
+    m.bodies = std::move(*bodies);
+    m.cutter_spec = cutter.spec();
+  }
+  const double sign = m.additive ? -1 : 1;
+  std::vector<Sweep> sweeps;
+  std::vector<MoveTotals> totals;
+  for (std::size_t first = 0; first < moves.size();) {
+    sweeps.clear();
+    std::size_t last = first;
+    for (; last < moves.size() && last - first < kMovesAtOnce && sweeps.size() < kSweepsAtOnce;
+         ++last)
+      append_sweeps(m.bodies, moves[last], static_cast<std::uint32_t>(last - first), m.target(0),
+                    sweeps);
+    totals.assign(last - first, MoveTotals{});
+    cut_tree(m.tree, sweeps, m.kernel, m.additive, *m.pool, totals);
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+      m.removed += totals[i].volume;
+      reports.push_back(
+          {moves[first + i].id, sign * m.mm3(totals[i].volume), m.height_mm(totals[i].height)});
+    }
+    first = last;
+  }
+}
+
+std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove& move,
+                                             double tolerance_mm) const {
+  const Impl& m = *impl_;
+  if (m.additive) return std::nullopt;
+  const Result<std::vector<ToolBody>> tool = tool_bodies(cutter);
+  assert(tool);
+  if (!m.touches(*tool, move, tolerance_mm)) return std::nullopt;
+  double clear = 0, meets = 1;
+  if (m.touches(*tool, first_part(move, 0), tolerance_mm)) meets = 0;
+  for (int step = 0; step < kContactSteps && meets > clear; ++step) {
+    const double middle = 0.5 * (clear + meets);
+    (m.touches(*tool, first_part(move, middle), tolerance_mm) ? meets : clear) = middle;
+  }
+  // What the move would remove, on a copy.
+  BrickTree copy = m.tree;
+  WorkerPool alone(1);
+  std::vector<Sweep> sweeps;
+  append_sweeps(*tool, move, 0, m.target(tolerance_mm), sweeps);
+  std::vector<MoveTotals> totals(1);
+  cut_tree(copy, sweeps, m.kernel, false, alone, totals);
+  return Contact{first_part(move, meets).to_mm, m.height_mm(totals[0].height) + tolerance_mm};
+}
+
+std::unique_ptr<StockModel> Octree::snapshot() const {
+  auto copy = std::make_unique<Impl>(impl_->tree);
+  copy->additive = impl_->additive;
+  copy->blank_mm3 = impl_->blank_mm3;
+  copy->removed = impl_->removed;
+  copy->pool = std::make_shared<WorkerPool>(1);
+  return std::unique_ptr<StockModel>(new Octree(std::move(copy)));
+}
+
+std::size_t Octree::unique_bytes() const { return impl_->tree.unique_bytes(); }
+void Octree::keep_cut_ids(bool keep) { impl_->tree.keep_ids(keep); }
+bool Octree::keeps_cut_ids() const { return impl_->tree.keeps_ids(); }
+
+std::optional<std::uint32_t> Octree::cut_id_at(const Vec3& point_mm) const {
+  if (!keeps_cut_ids()) return std::nullopt;
+  const Lattice& lattice = impl_->tree.lattice();
+  const Vec3 at = (point_mm - lattice.origin_mm) / lattice.cell_mm;
+  std::array<int, 3> first{};
+  for (int a = 0; a < 3; ++a) {
+    if (!(at[a] > -1 && at[a] < lattice.cells[static_cast<std::size_t>(a)] + 2))
+      return std::nullopt;
+    first[static_cast<std::size_t>(a)] = static_cast<int>(std::floor(at[a])) - 1;
+  }
+  // The nearest crossing of the cell and its neighbours.
+  constexpr std::array<int, 3> kNodes{4, 4, 4};
+  const HermiteGrid grid = gather(first, kNodes);
+  double nearest = std::numeric_limits<double>::infinity();
+  std::uint32_t id = MeshPatch::kNotCut;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<std::int32_t>& edges = grid.edges[static_cast<std::size_t>(axis)];
+    for (std::size_t n = 0; n < edges.size(); ++n) {
+      if (edges[n] < 0) continue;
+      const HermiteCrossing& c = grid.crossings[static_cast<std::size_t>(edges[n])];
+      Vec3 place(static_cast<double>(n % 4), static_cast<double>(n / 4 % 4),
+                 static_cast<double>(n / 16));
+      place[axis] += static_cast<double>(c.t);
+      const double distance = glm::length(grid.origin_mm + place * grid.cell_mm - point_mm);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      id = c.cut_by;
+    }
+  }
+  return id == MeshPatch::kNotCut ? std::nullopt : std::optional(id);
+}
+
+Box Octree::bounds_mm() const { return impl_->tree.lattice().bounds_mm; }
+double Octree::cell_mm() const { return impl_->cell(); }
+std::size_t Octree::cell_count() const {
+  const std::array<int, 3>& n = impl_->tree.lattice().cells;
+  return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
+         static_cast<std::size_t>(n[2]);
+}
+double Octree::blank_mm3() const { return impl_->blank_mm3; }
+double Octree::remaining_mm3() const {
+  const double changed = impl_->mm3(impl_->removed);
+  return impl_->additive ? changed : impl_->blank_mm3 - changed;
+}
+std::string Octree::digest() const { return impl_->tree.digest(); }
+
+TriangleMesh Octree::mesh(double tolerance_mm) const {
+  std::vector<std::array<int, 3>> tiles;
+  for (std::uint32_t n = 0; n < tile_count(); ++n)
+    if (impl_->tree.tile(n).get()) tiles.push_back(impl_->tree.lattice().tile_at(n));
+  return mesh_dual_field(impl_->field(), {kTileNodes, tiles}, tolerance_mm, impl_->pool->threads());
+}
+
+std::size_t Octree::tile_count() const { return impl_->tree.tile_count(); }
+
+Box Octree::tile_box(std::uint32_t tile) const {
+  const Lattice& lattice = impl_->tree.lattice();
+  const std::array<int, 3> at = lattice.tile_at(tile);
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const int first = at[static_cast<std::size_t>(a)] * kTileNodes;
+    box.min[a] = std::max(lattice.bounds_mm.min[a], lattice.place_mm(a, first));
+    box.max[a] = std::min(lattice.bounds_mm.max[a], lattice.place_mm(a, first + kTileNodes));
+    box.max[a] = std::max(box.min[a], box.max[a]);
+  }
+  return box;
+}
+
+std::vector<std::uint32_t> Octree::take_dirty_tiles() {
+  std::vector<std::uint32_t> dirty;
+  if (impl_->seen) {
+    dirty = impl_->tree.differing(*impl_->seen);
+  } else {
+    for (std::uint32_t n = 0; n < tile_count(); ++n) dirty.push_back(n);
+  }
+  impl_->seen = impl_->tree;
+  return dirty;
+}
+
+std::vector<std::uint32_t> Octree::differing_tiles(const StockModel& other) const {
+  const Octree* const octree = dynamic_cast<const Octree*>(&other);
+  if (octree && octree->impl_->additive == impl_->additive)
+    return impl_->tree.differing(octree->impl_->tree);
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t n = 0; n < tile_count(); ++n) all.push_back(n);
+  return all;
+}
+
+std::uint64_t Octree::patch_version(std::uint32_t tile) const {
+  const Lattice& lattice = impl_->tree.lattice();
+  const std::array<int, 3> at = lattice.tile_at(tile);
+  std::uint64_t versions[27] = {};
+  for (int n = 0; n < 27; ++n) {
+    const std::array<int, 3> other{at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+    bool within = true;
+    for (std::size_t a = 0; a < 3; ++a) within &= other[a] >= 0 && other[a] < lattice.tiles[a];
+    if (!within) continue;
+    versions[n] = impl_->tree.version(static_cast<std::uint32_t>(
+        (other[2] * lattice.tiles[1] + other[1]) * lattice.tiles[0] + other[0]));
+  }
+  return XXH3_64bits(versions, sizeof versions);
+}
+
+MeshPatch Octree::patch(std::uint32_t tile, int level) const {
+  thread_local DualContour contour;  // its buffers serve every patch that a thread makes
+  MeshPatch patch;
+  if (impl_->tree.tile(tile).get()) {
+    const CellBox box = DualTiles{kTileNodes, {}}.box(impl_->tree.lattice().tile_at(tile));
+    patch = make_dual_patch(impl_->field(), box, level, keeps_cut_ids(), &contour);
+  }
+  patch.tile = tile;
+  patch.level = level;
+  patch.version = patch_version(tile);
+  return patch;
+}
+
+HermiteGrid Octree::gather(const std::array<int, 3>& first_node,
+                           const std::array<int, 3>& nodes) const {
+  HermiteGrid grid;
+  gather(first_node, nodes, &grid);
+  return grid;
+}
+
+void Octree::gather(const std::array<int, 3>& first_node, const std::array<int, 3>& nodes,
+                    HermiteGrid* grid) const {
+  octree::gather(impl_->tree, impl_->additive, first_node, nodes, grid);
+}
+
+std::array<int, 3> Octree::node_counts() const {
+  const std::array<int, 3>& n = impl_->tree.lattice().cells;
+  return {n[0] + 2, n[1] + 2, n[2] + 2};
+}
+
+std::size_t Octree::brick_count() const { return impl_->tree.brick_count(); }
+
+}  // namespace kerf

@@ -1,0 +1,108 @@
+// stock/octree/octree.h - the workpiece as a sparse field of solid nodes and exact crossings.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stock/blank.h"
+#include "stock/octree/hermite_grid.h"
+#include "stock/stock_model.h"
+
+namespace kerf {
+
+struct OctreeOptions {
+  Blank blank;            ///< bodies, workpiece frame; where material is added: the space for it
+  double cell_mm = 0.1;   ///< greatest edge of a cell: the true edges divide the blank evenly
+  int threads = 1;        ///< cutting threads, >= 1
+  bool additive = false;  ///< begin with nothing; moves add material, within the blank's box
+  std::size_t memory_limit_bytes = std::size_t{4} << 30;
+};
+
+/// Workpiece of any shape, for tools under any angle: undercuts, tilted spindles, moves that turn.
+///
+/// Nodes at half cells are solid or not; an edge between a solid and an empty one holds where the
+/// surface crosses it (to 1/65536 of the edge) and the surface's normal there (0.005 degrees): what
+/// a signed distance field, negative inside, is at its zero, where cutting is max(stock, -tool).
+/// Only bricks of 8 x 8 x 8 nodes that the surface passes are stored; around them the space is
+/// divided in fours (bricks, tiles) and tools are tested against the larger parts first, so a move
+/// costs by the surface it touches. Straight moves and level arcs are cut by the exact swept
+/// volume, at any fixed spindle direction; other arcs as chords, turning moves with the tool's true
+/// pose at every moment, both to min(cell / 50, 2 um) (stock/octree/sweep.h).
+///
+/// Not held: what is thinner than a cell. Of several crossings of one edge the odd ones count: a
+/// slot or rib between two nodes may vanish, also where a later move makes it part of a wider cut:
+/// on such an edge the later move's surface counts, up to cell^2 / 8r too high beside a cutter of
+/// radius r, and more beside its sharp edges. (The same moves once more take that away; within one
+/// move it is seen to.) The surface stays closed nevertheless.
+///
+/// Sources: S. Frisken et al., "Adaptively sampled distance fields", SIGGRAPH 2000 (the field);
+/// T. Ju et al., "Dual contouring of Hermite data", SIGGRAPH 2002 (what is kept of it).
+class Octree final : public StockModel {
+ public:
+  /// Error if cell_mm is not finite or <= 0 or exceeds the blank, or if the workpiece would need
+  /// more memory than the limit: then with what it would need and the cell that would fit. The
+  /// need is an estimate, for a part with twice the surface of the blank's box.
+  static Result<std::unique_ptr<Octree>> create(const OctreeOptions& options);
+  /// Error if the cutter has a hollow bottom.
+  static Done can_cut(const Cutter& cutter);
+  Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }
+  bool takes_tilted_tools() const override { return true; }
+  ~Octree() override;
+
+  /// Arcs with a tilted spindle are taken; arcs during which it turns are not (CutMove). Reports of
+  /// an additive model count what is added as negative.
+  void cut(const Cutter& cutter, std::span<const CutMove> moves,
+           std::vector<CutReport>& reports) override;
+  void finish(std::vector<CutReport>&) override {}  ///< no move is held back
+  /// To a cell / 4000 along the path, but a corner of material may be missed by less than a cell.
+  /// depth_mm is the greatest height of material in the sweep above any one point. Never in an
+  /// additive model: its tool always touches what it adds.
+  std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
+                                       double tolerance_mm) const override;
+  std::unique_ptr<StockModel> snapshot() const override;
+  std::size_t unique_bytes() const override;
+  void keep_cut_ids(bool keep) override;
+  bool keeps_cut_ids() const override;
+  std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
+  std::string name() const override { return "octree"; }
+  Box bounds_mm() const override;
+  double cell_mm() const override;
+  std::size_t cell_count() const override;
+  /// Of a blank that is one box exact; otherwise, and for all that is removed, summed over nodes:
+  /// off by O(cell^2), for flat and smooth surfaces alike.
+  double blank_mm3() const override;
+  double remaining_mm3() const override;
+  std::string digest() const override;
+  TriangleMesh mesh(double tolerance_mm) const override;
+
+  /// Tiles of kTileNodes cells along each axis; x fastest, then y.
+  std::size_t tile_count() const override;
+  Box tile_box(std::uint32_t tile) const override;
+  std::vector<std::uint32_t> take_dirty_tiles() override;
+  std::vector<std::uint32_t> differing_tiles(const StockModel& other) const override;
+  std::uint64_t patch_version(std::uint32_t tile) const override;
+  MeshPatch patch(std::uint32_t tile, int level) const override;
+
+  /// A box of nodes for meshing. Nodes beyond the model are empty.
+  HermiteGrid gather(const std::array<int, 3>& first_node, const std::array<int, 3>& nodes) const;
+  /// The same into `grid`, whose memory is used again.
+  void gather(const std::array<int, 3>& first_node, const std::array<int, 3>& nodes,
+              HermiteGrid* grid) const;
+  /// Nodes along each axis; all others are empty.
+  std::array<int, 3> node_counts() const;
+  /// Bricks that are stored: for benchmarks.
+  std::size_t brick_count() const;
+
+ private:
+  struct Impl;
+  explicit Octree(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kerf

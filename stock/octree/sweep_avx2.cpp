@@ -1,0 +1,7 @@
+#include "stock/octree/sweep_lanes.h"
+
+namespace kerf::octree {
+
+SweepKernel avx2_kernel() { return {&lanes_distance, &lanes_gradient}; }
+
+}  // namespace kerf::octree

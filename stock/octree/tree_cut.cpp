@@ -1,0 +1,341 @@
+#include "stock/octree/tree_cut.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "stock/octree/brick_cut.h"
+
+namespace kerf::octree {
+namespace {
+
+/// See brick_cut.cpp: rounding must not decide.
+constexpr double kSlack_mm = 1e-6;
+
+/// A sweep that reaches a tile.
+struct TileSweep {
+  const Sweep* sweep;
+  std::uint64_t whole;  ///< bricks that lie inside of it
+  std::uint64_t some;   ///< bricks that it may cut
+};
+
+std::uint64_t bit(int brick) { return std::uint64_t{1} << brick; }
+
+/// Tiles that a box reaches: first and last along each axis.
+struct TileRange {
+  int low[3], high[3];
+};
+
+TileRange tiles_of(const Lattice& lattice, const Box& box) {
+  TileRange range{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = lattice.cell_mm[axis] * kTileNodes;
+    const int last = lattice.tiles[static_cast<std::size_t>(axis)] - 1;
+    // A tile holds a layer of nodes of the next one, and so do its bricks.
+    const double low = (box.min[axis] - lattice.origin_mm[axis] - lattice.cell_mm[axis]) / edge;
+    const double high = (box.max[axis] - lattice.origin_mm[axis] + lattice.cell_mm[axis]) / edge;
+    range.low[axis] = std::clamp(static_cast<int>(std::floor(low)), 0, last);
+    range.high[axis] = std::clamp(static_cast<int>(std::floor(high)), 0, last);
+  }
+  return range;
+}
+
+/// Finds for one column of tiles which sweeps reach which bricks. Buffers; one for each thread.
+class ColumnPlan {
+ public:
+  ColumnPlan(const BrickTree& tree, const SweepKernel& kernel) : tree_(tree), kernel_(kernel) {
+    const Lattice& lattice = tree.lattice();
+    lists_.resize(static_cast<std::size_t>(lattice.tiles[2]));
+    const std::size_t room =
+        std::max(static_cast<std::size_t>(lattice.tiles[2]), std::size_t{kBricksInTile}) + kLanes;
+    for (std::vector<double>* v : {&x_, &y_, &z_, &f_}) v->assign(room, 0.0);
+    tile_half_diagonal_ = glm::length(lattice.cell_mm) * kTileNodes / 2;
+    brick_half_diagonal_ = glm::length(lattice.cell_mm) * kBrick / 2;
+  }
+
+  /// Before the first add().
+  void begin(int column) {
+    column_ = column;
+    const int tiles_x = tree_.lattice().tiles[0];
+    tile_x_ = column % tiles_x;
+    tile_y_ = column / tiles_x;
+    for (std::vector<TileSweep>& list : lists_) list.clear();
+    gone_.assign(lists_.size(), false);
+    any_ = false;
+  }
+
+  void add(const Sweep& sweep) {
+    const TileRange range = tiles_of(tree_.lattice(), sweep.box_mm);
+    int points = 0;
+    levels_.clear();
+    for (int level = range.low[2]; level <= range.high[2]; ++level) {
+      const TileRef& tile = tree_.tile(column_, level);
+      if (tile.is_empty() || gone_[static_cast<std::size_t>(level)]) continue;
+      levels_.push_back(level);
+      set_point(points++, middle(0, tile_x_, kTileNodes), middle(1, tile_y_, kTileNodes),
+                middle(2, level, kTileNodes));
+    }
+    if (points == 0) return;
+    kernel_.distance(sweep, points, x_.data(), y_.data(), z_.data(), f_.data());
+    reached_.clear();
+    const double clear = tile_half_diagonal_ + kSlack_mm;
+    for (std::size_t n = 0; n < levels_.size(); ++n) {
+      if (f_[n] > clear) continue;
+      const std::size_t level = static_cast<std::size_t>(levels_[n]);
+      any_ = true;
+      if (f_[n] < -clear) {
+        lists_[level].push_back({&sweep, ~std::uint64_t{0}, 0});
+        gone_[level] = true;
+      } else {
+        reached_.push_back(levels_[n]);
+      }
+    }
+    for (const int level : reached_) add_bricks(sweep, level);
+  }
+
+  bool any() const { return any_; }
+  const std::vector<TileSweep>& at(int level) const {
+    return lists_[static_cast<std::size_t>(level)];
+  }
+  int brick_x(int brick) const { return tile_x_ * kTileBricks + brick % kTileBricks; }
+  int brick_y(int brick) const { return tile_y_ * kTileBricks + brick / kTileBricks % kTileBricks; }
+
+ private:
+  double middle(int axis, int number, int nodes) const {
+    return tree_.lattice().origin_mm[axis] + (number + 0.5) * nodes * tree_.lattice().cell_mm[axis];
+  }
+  void set_point(int n, double x, double y, double z) {
+    x_[static_cast<std::size_t>(n)] = x;
+    y_[static_cast<std::size_t>(n)] = y;
+    z_[static_cast<std::size_t>(n)] = z;
+  }
+
+  void add_bricks(const Sweep& sweep, int level) {
+    const TileRef& tile = tree_.tile(column_, level);
+    int bricks[kBricksInTile], points = 0;
+    for (int b = 0; b < kBricksInTile; ++b) {
+      if (tile.get() && tile->bricks[b].is_empty()) continue;
+      bricks[points] = b;
+      const int bz = level * kTileBricks + b / (kTileBricks * kTileBricks);
+      set_point(points++, middle(0, brick_x(b), kBrick), middle(1, brick_y(b), kBrick),
+                middle(2, bz, kBrick));
+    }
+    kernel_.distance(sweep, points, x_.data(), y_.data(), z_.data(), f_.data());
+    TileSweep reach{&sweep, 0, 0};
+    const double clear = brick_half_diagonal_ + kSlack_mm;
+    for (int n = 0; n < points; ++n) {
+      const double f = f_[static_cast<std::size_t>(n)];
+      if (f < -clear)
+        reach.whole |= bit(bricks[n]);
+      else if (f <= clear)
+        reach.some |= bit(bricks[n]);
+    }
+    if ((reach.whole | reach.some) != 0) lists_[static_cast<std::size_t>(level)].push_back(reach);
+  }
+
+  const BrickTree& tree_;
+  const SweepKernel& kernel_;
+  int column_ = 0, tile_x_ = 0, tile_y_ = 0;
+  bool any_ = false;
+  double tile_half_diagonal_, brick_half_diagonal_;
+  std::vector<std::vector<TileSweep>> lists_;
+  std::vector<bool> gone_;
+  std::vector<int> levels_, reached_;
+  std::vector<double> x_, y_, z_, f_;
+};
+
+/// Cuts one column of tiles after the other. One for each thread.
+class ColumnCutter {
+ public:
+  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, bool additive, std::uint64_t version,
+               std::size_t reports)
+      : tree_(tree),
+        additive_(additive),
+        version_(version),
+        plan_(tree, kernel),
+        cutter_(tree.lattice(), kernel, additive),
+        totals_(reports),
+        heights_(reports * kBrick * kBrick, 0),
+        is_touched_(reports, false) {}
+
+  void cut(int column, std::span<const Sweep> sweeps, std::span<const std::uint32_t> mine) {
+    plan_.begin(column);
+    for (const std::uint32_t s : mine) plan_.add(sweeps[s]);
+    if (!plan_.any()) return;
+    const int levels = tree_.lattice().tiles[2];
+    changed_.assign(static_cast<std::size_t>(levels), false);
+    for (int stack = 0; stack < kTileBricks * kTileBricks; ++stack) {
+      for (int level = 0; level < levels; ++level) {
+        if (plan_.at(level).empty()) continue;
+        for (int layer = 0; layer < kTileBricks; ++layer)
+          cut_brick(column, level, layer * kTileBricks * kTileBricks + stack);
+      }
+      collect_heights();
+    }
+    for (int level = 0; level < levels; ++level)
+      if (changed_[static_cast<std::size_t>(level)]) tree_.settle_tile(column, level);
+  }
+
+  const std::vector<MoveTotals>& totals() const { return totals_; }
+
+ private:
+  BrickRef state(int column, int level, int brick) const {
+    const TileRef& tile = tree_.tile(column, level);
+    if (tile.get()) return tile->bricks[brick];
+    return tile.is_solid() ? BrickRef::solid() : BrickRef();
+  }
+
+  void cut_brick(int column, int level, int number) {
+    const std::vector<TileSweep>& sweeps = plan_.at(level);
+    const auto reaches = [&](const TileSweep& t) {
+      return ((t.whole | t.some) & bit(number)) != 0;
+    };
+    std::size_t n = 0;
+    while (n < sweeps.size() && !reaches(sweeps[n])) ++n;
+    if (n == sweeps.size()) return;
+    const BrickRef brick = state(column, level, number);
+    if (brick.is_empty()) return;
+    open_.open(brick);
+    cutter_.set_place(plan_.brick_x(number), plan_.brick_y(number),
+                      level * kTileBricks + number / (kTileBricks * kTileBricks));
+    bool changed = false;
+    is_gone_ = false;
+    while (n < sweeps.size() && !is_gone_) {
+      std::size_t end = n;
+      while (end < sweeps.size() && sweeps[end].sweep->report == sweeps[n].sweep->report) ++end;
+      const std::span<const TileSweep> move(sweeps.data() + n, end - n);
+      n = end;
+      if (!cut_move(move, number)) continue;
+      changed = true;
+      // A piece of the move may have entered and left an edge between two solid nodes, which leaves
+      // no crossing, before another piece cleared one of them. Now that there is a crossing, it is
+      // seen that it lies within the former.
+      if (move.size() > 1 && !is_gone_) cut_move(move, number);
+    }
+    if (!changed) return;
+    tree_.own_tile(column, level, version_).bricks[number] =
+        is_gone_ ? BrickRef() : open_.close(tree_.keeps_ids());
+    changed_[static_cast<std::size_t>(level)] = true;
+  }
+
+  /// All pieces of one move, from the open brick. True if it has changed; is_gone_ if it is empty.
+  bool cut_move(std::span<const TileSweep> move, int number) {
+    bool changed = false;
+    for (const TileSweep& t : move) {
+      // Nodes outside of the blank have to be told apart where material is added.
+      if ((t.whole & bit(number)) != 0 && !additive_) {
+        add(t.sweep->report, open_.volume, open_.height_of);
+        return is_gone_ = true;
+      }
+      if (((t.whole | t.some) & bit(number)) == 0 || !cutter_.apply(*t.sweep, open_)) continue;
+      changed = true;
+      add(t.sweep->report, cutter_.removed(), cutter_.removed_heights());
+      if (open_.top_node < 0) return is_gone_ = true;
+    }
+    return changed;
+  }
+
+  void add(std::uint32_t report, std::int64_t volume, const std::int32_t* heights) {
+    totals_[report].volume += volume;
+    std::int32_t* sums = heights_.data() + std::size_t{report} * kBrick * kBrick;
+    for (int c = 0; c < kBrick * kBrick; ++c) sums[c] += heights[c];
+    if (is_touched_[report]) return;
+    is_touched_[report] = true;
+    touched_.push_back(report);
+  }
+
+  /// After a stack of bricks from the floor to the top.
+  void collect_heights() {
+    for (const std::uint32_t report : touched_) {
+      std::int32_t* sums = heights_.data() + std::size_t{report} * kBrick * kBrick;
+      totals_[report].height =
+          std::max(totals_[report].height, *std::max_element(sums, sums + kBrick * kBrick));
+      std::fill_n(sums, kBrick * kBrick, 0);
+      is_touched_[report] = false;
+    }
+    touched_.clear();
+  }
+
+  BrickTree& tree_;
+  bool additive_;
+  std::uint64_t version_;
+  ColumnPlan plan_;
+  BrickCutter cutter_;
+  OpenBrick open_;
+  bool is_gone_ = false;
+  std::vector<MoveTotals> totals_;
+  std::vector<std::int32_t> heights_;  ///< of the stack at work, by report
+  std::vector<bool> is_touched_;
+  std::vector<std::uint32_t> touched_;
+  std::vector<bool> changed_;
+};
+
+/// Numbers of the sweeps that reach each column.
+std::vector<std::vector<std::uint32_t>> by_column(const Lattice& lattice,
+                                                  std::span<const Sweep> sweeps) {
+  std::vector<std::vector<std::uint32_t>> lists(static_cast<std::size_t>(lattice.column_count()));
+  for (std::size_t s = 0; s < sweeps.size(); ++s) {
+    const TileRange range = tiles_of(lattice, sweeps[s].box_mm);
+    for (int ty = range.low[1]; ty <= range.high[1]; ++ty)
+      for (int tx = range.low[0]; tx <= range.high[0]; ++tx)
+        lists[static_cast<std::size_t>(ty * lattice.tiles[0] + tx)].push_back(
+            static_cast<std::uint32_t>(s));
+  }
+  return lists;
+}
+
+}  // namespace
+
+void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel,
+              bool additive, WorkerPool& pool, std::span<MoveTotals> totals) {
+  if (sweeps.empty()) return;
+  const auto lists = by_column(tree.lattice(), sweeps);
+  std::vector<int> columns;
+  for (std::size_t c = 0; c < lists.size(); ++c)
+    if (!lists[c].empty()) columns.push_back(static_cast<int>(c));
+  const std::uint64_t version = next_version();
+  std::atomic<std::size_t> next{0};
+  std::vector<std::vector<MoveTotals>> parts(static_cast<std::size_t>(pool.threads()));
+  pool.run([&](int thread) {
+    ColumnCutter cutter(tree, kernel, additive, version, totals.size());
+    for (std::size_t n = next++; n < columns.size(); n = next++)
+      cutter.cut(columns[n], sweeps, lists[static_cast<std::size_t>(columns[n])]);
+    parts[static_cast<std::size_t>(thread)] = cutter.totals();
+  });
+  for (const std::vector<MoveTotals>& part : parts) {
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+      totals[i].volume += part[i].volume;
+      totals[i].height = std::max(totals[i].height, part[i].height);
+    }
+  }
+}
+
+bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel) {
+  const auto lists = by_column(tree.lattice(), sweeps);
+  ColumnPlan plan(tree, kernel);
+  BrickCutter cutter(tree.lattice(), kernel, false);
+  OpenBrick open;
+  for (int column = 0; column < tree.lattice().column_count(); ++column) {
+    const auto& mine = lists[static_cast<std::size_t>(column)];
+    if (mine.empty()) continue;
+    plan.begin(column);
+    for (const std::uint32_t s : mine) plan.add(sweeps[s]);
+    for (int level = 0; level < tree.lattice().tiles[2]; ++level) {
+      for (const TileSweep& t : plan.at(level)) {
+        for (std::uint64_t bits = t.whole | t.some; bits != 0; bits &= bits - 1) {
+          const int number = std::countr_zero(bits);
+          const int bz = level * kTileBricks + number / (kTileBricks * kTileBricks);
+          const BrickRef& brick = tree.brick(plan.brick_x(number), plan.brick_y(number), bz);
+          if (brick.is_empty()) continue;
+          open.open(brick);
+          cutter.set_place(plan.brick_x(number), plan.brick_y(number), bz);
+          if (cutter.touches(*t.sweep, open)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace kerf::octree

@@ -1,0 +1,31 @@
+// stock/octree/tree_cut.h - sweeps against the whole tree.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/worker_pool.h"
+#include "stock/octree/brick_tree.h"
+#include "stock/octree/sweep_kernel.h"
+
+namespace kerf::octree {
+
+/// What one move has removed.
+struct MoveTotals {
+  std::int64_t volume = 0;  ///< in kNodeVolume
+  std::int32_t height = 0;  ///< greatest of any column of nodes, in kEdgeParts an edge
+};
+
+/// Takes the sweeps away, in order, and adds to totals[sweep.report]. Columns of tiles are dealt
+/// out to the pool's threads; each brick sees its sweeps in order, so the result and the sums do
+/// not depend on threads. From column to tile to brick to block, F in the middle tells what a sweep
+/// misses or takes as a whole (F changes by at most 1 mm a mm), so a feature thinner than these is
+/// not missed; what is empty is never looked at. `additive`: nodes outside of the blank stay.
+void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel,
+              bool additive, WorkerPool& pool, std::span<MoveTotals> totals);
+
+/// Would any of the sweeps take something? Stops at the first that would.
+bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel);
+
+}  // namespace kerf::octree

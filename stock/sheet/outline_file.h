@@ -1,0 +1,46 @@
+// stock/sheet/outline_file.h - outlines from and to drawings.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+#include "stock/sheet/outline.h"
+
+namespace kerf {
+
+enum class OutlineFormat { kDxf, kSvg };
+
+/// Closed contours of a file of at most kMaxOutlineBytes. Arcs and curves become chords that are
+/// off by `tolerance_mm` at most. The result has passed check_outline(). Error: with the file's
+/// name, and the line where there is one.
+Result<SheetOutline> read_outline_file(const std::string& path, OutlineFormat format,
+                                       double tolerance_mm);
+
+/// The same from text; `name` for messages.
+///
+/// DXF (ASCII, any version): LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE with bulges, of the section
+/// ENTITIES. $INSUNITS of 1 are inches, 4, 0 or none mm; others are refused. Loose lines and arcs
+/// are joined where ends are within kJoin_mm of each other; a chain that does not close is an
+/// error. Other entities are an error, but for those that draw no edge (TEXT, MTEXT, POINT,
+/// DIMENSION, HATCH).
+///
+/// SVG: path (M L H V C S Q T A Z, both cases), rect (square corners), circle, ellipse, polygon.
+/// One user unit is 1 mm, or what width="..mm|cm|in" and viewBox of the svg element say. y points
+/// down there: it is turned round, so that the picture's lower edge is y = 0 if there is a height,
+/// and y is negative otherwise. transform is an error, and so is a path that is not closed.
+Result<SheetOutline> parse_dxf_outline(std::string_view text, const std::string& name,
+                                       double tolerance_mm);
+Result<SheetOutline> parse_svg_outline(std::string_view text, const std::string& name,
+                                       double tolerance_mm);
+
+/// Files for other programs: closed polylines, mm. DXF is R12 (POLYLINE on the layer "0"). SVG is
+/// one path, filled even-odd, y turned round, moved to have its lower left corner at 0, 0. Appear
+/// whole or not at all. Error: what could not be written and why.
+Done write_outline_dxf(const SheetOutline& outline, const std::string& path);
+Done write_outline_svg(const SheetOutline& outline, const std::string& path);
+
+inline constexpr std::size_t kMaxOutlineBytes = std::size_t{64} << 20;
+inline constexpr double kJoin_mm = 0.01;
+
+}  // namespace kerf

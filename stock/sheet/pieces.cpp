@@ -1,0 +1,223 @@
+#include "stock/sheet/pieces.h"
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+
+namespace kerf::sheet {
+namespace {
+
+double box_area(const Rect& box) { return box.width_mm() * box.height_mm(); }
+
+/// Reaches one of the sides of the outer box.
+bool reaches_out(const Rect& inner, const Rect& outer) {
+  return inner.min_x <= outer.min_x || inner.min_y <= outer.min_y || inner.max_x >= outer.max_x ||
+         inner.max_y >= outer.max_y;
+}
+
+}  // namespace
+
+/// Several groups of nodes that grow until they meet or are complete.
+class PieceLabels::Search {
+ public:
+  Search(const SheetGrid& grid, std::span<const Suspect> suspects) : grid_(grid) {
+    for (const Suspect& suspect : suspects) {
+      const auto group = static_cast<std::uint32_t>(groups_.size());
+      if (!group_of_.emplace(key(suspect.node), group).second) continue;
+      groups_.push_back({group, {suspect.node}, 0});
+    }
+    open_ = groups_.size();
+  }
+
+  /// The complete groups: all but one of them, if the last one was not walked to its end.
+  std::vector<std::vector<Node>> run() {
+    std::vector<std::vector<Node>> complete;
+    std::vector<std::uint32_t> growing(groups_.size());
+    std::iota(growing.begin(), growing.end(), 0u);
+    while (open_ > 1) {
+      for (std::size_t i = 0; i < growing.size() && open_ > 1; ++i) {
+        Group& group = groups_[growing[i]];
+        if (group.parent != growing[i]) continue;
+        if (group.next == group.nodes.size()) {
+          group.done = true;
+          --open_;
+          complete.push_back(group.nodes);
+        } else {
+          expand(growing[i]);
+        }
+      }
+      std::erase_if(growing,
+                    [this](std::uint32_t g) { return groups_[g].parent != g || groups_[g].done; });
+    }
+    return complete;
+  }
+
+ private:
+  struct Group {
+    std::uint32_t parent;
+    std::vector<Node> nodes;  // from `next` on not expanded yet
+    std::size_t next;
+    bool done = false;
+  };
+  static std::uint64_t key(const Node& node) {
+    return static_cast<std::uint64_t>(node.tile) << 32 | node.ring;
+  }
+  std::uint32_t root(std::uint32_t g) const {
+    while (groups_[g].parent != g) g = groups_[g].parent;
+    return g;
+  }
+
+  void expand(std::uint32_t g) {
+    const Node node = groups_[g].nodes[groups_[g].next++];
+    neighbours_.clear();
+    append_neighbours(grid_, node.tile, node.ring, grid_.tile(node.tile).runs, neighbours_);
+    for (const Node& other : neighbours_) {
+      const auto [at, is_new] = group_of_.emplace(key(other), g);
+      if (is_new) {
+        groups_[root(g)].nodes.push_back(other);
+      } else {
+        join(root(g), root(at->second));
+      }
+    }
+  }
+
+  /// What is expanded comes first, so that one index divides the nodes.
+  void join(std::uint32_t a, std::uint32_t b) {
+    if (a == b) return;
+    if (groups_[a].nodes.size() < groups_[b].nodes.size()) std::swap(a, b);
+    Group &to = groups_[a], &from = groups_[b];
+    to.nodes.insert(to.nodes.end(), from.nodes.begin() + static_cast<std::ptrdiff_t>(from.next),
+                    from.nodes.end());
+    to.nodes.insert(to.nodes.begin() + static_cast<std::ptrdiff_t>(to.next), from.nodes.begin(),
+                    from.nodes.begin() + static_cast<std::ptrdiff_t>(from.next));
+    to.next += from.next;
+    from.parent = a;
+    from.nodes.clear();
+    --open_;
+  }
+
+  const SheetGrid& grid_;
+  std::vector<Group> groups_;
+  std::unordered_map<std::uint64_t, std::uint32_t> group_of_;
+  std::vector<Node> neighbours_;
+  std::size_t open_ = 0;
+};
+
+PieceLabels::PieceLabels(SheetGrid& grid) {
+  std::vector<std::vector<std::uint32_t>> pieces(grid.tile_count());
+  for (std::size_t t = 0; t < pieces.size(); ++t)
+    pieces[t].assign(grid.tile(t).rings.size(), kNoPiece);
+  std::vector<Node> stack, neighbours;
+  for (std::uint32_t t = 0; t < pieces.size(); ++t) {
+    for (std::uint32_t ring = 0; ring < pieces[t].size(); ++ring) {
+      if (pieces[t][ring] != kNoPiece || !grid.tile(t).rings[ring]->is_outer()) continue;
+      const auto piece = static_cast<std::uint32_t>(records_.size());
+      PieceRecord& record = records_.emplace_back();
+      record.number = piece;
+      pieces[t][ring] = piece;
+      stack.push_back({t, ring});
+      while (!stack.empty()) {
+        const Node node = stack.back();
+        stack.pop_back();
+        record.box.extend(grid.tile(node.tile).rings[node.ring]->box);
+        neighbours.clear();
+        append_neighbours(grid, node.tile, node.ring, grid.tile(node.tile).runs, neighbours);
+        for (const Node& other : neighbours) {
+          if (pieces[other.tile][other.ring] != kNoPiece) continue;
+          pieces[other.tile][other.ring] = piece;
+          stack.push_back(other);
+        }
+      }
+    }
+  }
+  for (std::size_t t = 0; t < pieces.size(); ++t) grid.set_pieces(t, std::move(pieces[t]));
+}
+
+void PieceLabels::append_neighbours(const SheetGrid& grid, std::size_t tile, std::uint32_t ring,
+                                    std::span<const BorderRun> runs, std::vector<Node>& found) {
+  for (const BorderRun& run : runs) {
+    if (run.ring != ring) continue;
+    const std::int64_t next = grid.neighbour(tile, run.side);
+    if (next < 0) continue;
+    const auto opposite = static_cast<BorderSide>((run.side + 2) % 4);
+    for (const BorderRun& other : grid.tile(static_cast<std::size_t>(next)).runs) {
+      if (other.side == opposite && bridges(run, other))
+        found.push_back({static_cast<std::uint32_t>(next), other.ring});
+    }
+  }
+}
+
+void PieceLabels::update(SheetGrid& grid, std::span<const TileChange> changes,
+                         std::uint64_t move_id) {
+  suspects_.clear();
+  std::vector<Node> neighbours;
+  for (const TileChange& change : changes) {
+    const Tile& before = *change.before;
+    const Tile& after = grid.tile(change.tile);
+    for (std::uint32_t ring = change.first_new; ring < after.rings.size(); ++ring) {
+      if (after.rings[ring]->is_outer())
+        suspects_.push_back({after.pieces[ring], {change.tile, ring}});
+    }
+    for (const std::uint32_t ring : change.gone) {
+      if (!before.rings[ring]->is_outer()) continue;
+      neighbours.clear();
+      append_neighbours(grid, change.tile, ring, before.runs, neighbours);
+      for (const Node& node : neighbours) suspects_.push_back({before.pieces[ring], node});
+    }
+  }
+  std::sort(suspects_.begin(), suspects_.end());
+  suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
+  for (std::size_t begin = 0; begin < suspects_.size();) {
+    std::size_t end = begin + 1;
+    while (end < suspects_.size() && suspects_[end].piece == suspects_[begin].piece) ++end;
+    check(grid, suspects_[begin].piece, std::span(suspects_).subspan(begin, end - begin), move_id);
+    begin = end;
+  }
+}
+
+void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Suspect> suspects,
+                        std::uint64_t move_id) {
+  if (suspects.size() < 2) return;
+  bool reaches = false;
+  const std::size_t first = records_.size();
+  for (const std::vector<Node>& nodes : Search(grid, suspects).run()) {
+    const auto fresh = static_cast<std::uint32_t>(records_.size());
+    records_.push_back({fresh, move_id, relabel(grid, nodes, fresh)});
+    reaches |= reaches_out(records_.back().box, records_[piece].box);
+  }
+  if (!reaches) return;
+  // What has the largest box goes on as the piece that it was: a frame round a part cut out of it,
+  // as well as the larger half of a sheet that is cut in two.
+  PieceRecord& rest = records_[piece];
+  rest.box = box_of_piece(grid, piece);
+  PieceRecord* largest = &rest;
+  for (std::size_t i = first; i < records_.size(); ++i) {
+    if (box_area(records_[i].box) > box_area(largest->box)) largest = &records_[i];
+  }
+  std::swap(rest.freed_by, largest->freed_by);
+  std::swap(rest.number, largest->number);
+}
+
+Rect PieceLabels::relabel(SheetGrid& grid, std::span<const Node> nodes, std::uint32_t piece) {
+  Rect box;
+  for (const Node& node : nodes) {
+    box.extend(grid.tile(node.tile).rings[node.ring]->box);
+    std::vector<std::uint32_t> pieces = grid.tile(node.tile).pieces;
+    pieces[node.ring] = piece;
+    grid.set_pieces(node.tile, std::move(pieces));
+  }
+  return box;
+}
+
+Rect PieceLabels::box_of_piece(const SheetGrid& grid, std::uint32_t piece) {
+  Rect box;
+  for (std::size_t t = 0; t < grid.tile_count(); ++t) {
+    const Tile& tile = grid.tile(t);
+    for (std::size_t ring = 0; ring < tile.rings.size(); ++ring) {
+      if (tile.pieces[ring] == piece) box.extend(tile.rings[ring]->box);
+    }
+  }
+  return box;
+}
+
+}  // namespace kerf::sheet

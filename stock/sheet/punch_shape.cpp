@@ -1,0 +1,138 @@
+#include "stock/sheet/punch_shape.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "stock/cutter/scan.h"
+#include "stock/sheet/outline_curves.h"
+#include "stock/sheet/outline_file.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kMinSize_mm = 0.1;
+constexpr double kMaxSize_mm = 1000;
+constexpr double kMinCorners = 3, kMaxCorners = 100;
+constexpr std::array<std::string_view, 7> kKinds = {"round",   "square", "rectangle", "obround",
+                                                    "polygon", "dxf",    "svg"};
+
+using Fields = std::vector<std::string_view>;
+
+Result<double> size_of(std::string_view name, std::string_view text) {
+  return parse_within(name, trim(text), kMinSize_mm, kMaxSize_mm, "mm");
+}
+
+Done check_count(const Fields& fields, std::size_t count, std::string_view form) {
+  if (fields.size() == count) return std::monostate{};
+  return Error{fmt::format("{} {} after '{}'; the form is {}", fields.size() - 1,
+                           fields.size() == 2 ? "value" : "values", to_lower(trim(fields[0])),
+                           form)};
+}
+
+SheetOutline rectangle(double a, double b) {
+  return rectangle_outline({-a / 2, -b / 2}, {a / 2, b / 2});
+}
+
+Result<SheetOutline> parse_round(const Fields& fields, double tolerance_mm) {
+  const Done count = check_count(fields, 2, "round:D");
+  if (!count) return Error{count.error()};
+  const Result<double> d = size_of("diameter D", fields[1]);
+  if (!d) return Error{d.error()};
+  SheetOutline shape;
+  sheet::append_arc({0, 0}, *d / 2, 0, 2 * kPi, tolerance_mm, shape.rings.emplace_back());
+  return shape;
+}
+
+Result<SheetOutline> parse_square(const Fields& fields) {
+  const Done count = check_count(fields, 2, "square:A");
+  if (!count) return Error{count.error()};
+  const Result<double> a = size_of("edge A", fields[1]);
+  if (!a) return Error{a.error()};
+  return rectangle(*a, *a);
+}
+
+Result<SheetOutline> parse_two_edges(const Fields& fields, bool round, double tolerance_mm) {
+  const Done count = check_count(fields, 3, round ? "obround:A:B" : "rectangle:A:B");
+  if (!count) return Error{count.error()};
+  const Result<double> a = size_of("length A", fields[1]);
+  if (!a) return Error{a.error()};
+  const Result<double> b = size_of("length B", fields[2]);
+  if (!b) return Error{b.error()};
+  if (!round) return rectangle(*a, *b);
+  const double radius = std::min(*a, *b) / 2, reach = std::max(*a, *b) / 2 - radius;
+  const double turned = *a < *b ? kPi / 2 : 0;
+  const Vec2 end = reach * Vec2(*a < *b ? 0 : 1, *a < *b ? 1 : 0);
+  SheetOutline shape;
+  std::vector<Vec2>& ring = shape.rings.emplace_back();
+  for (const double side : {0.0, kPi}) {
+    const Vec2 center = side == 0 ? end : -end;
+    const double from = turned + side - kPi / 2;
+    ring.push_back(center + radius * Vec2(std::cos(from), std::sin(from)));
+    sheet::append_arc(center, radius, from, kPi, tolerance_mm, ring);
+  }
+  return shape;
+}
+
+Result<SheetOutline> parse_polygon(const Fields& fields) {
+  const Done count = check_count(fields, 3, "polygon:N:D");
+  if (!count) return Error{count.error()};
+  const Result<double> n =
+      parse_within("corners N", trim(fields[1]), kMinCorners, kMaxCorners, "whole number");
+  if (!n) return Error{n.error()};
+  if (*n != std::floor(*n)) {
+    return Error{fmt::format("corners N: {} is not a whole number", shown(trim(fields[1])))};
+  }
+  const Result<double> d = size_of("diameter D", fields[2]);
+  if (!d) return Error{d.error()};
+  SheetOutline shape;
+  std::vector<Vec2>& ring = shape.rings.emplace_back();
+  for (int i = 0; i < static_cast<int>(*n); ++i) {
+    const double angle = 2 * kPi * i / *n;
+    ring.push_back(*d / 2 * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return shape;
+}
+
+Result<SheetOutline> parse_fields(std::string_view spec, double tolerance_mm) {
+  const Fields fields = split(spec, ':');
+  const std::string kind = to_lower(trim(fields[0]));
+  if (kind == "round") return parse_round(fields, tolerance_mm);
+  if (kind == "square") return parse_square(fields);
+  if (kind == "rectangle") return parse_two_edges(fields, false, tolerance_mm);
+  if (kind == "obround") return parse_two_edges(fields, true, tolerance_mm);
+  if (kind == "polygon") return parse_polygon(fields);
+  if (kind == "dxf" || kind == "svg") {
+    // A file name may hold colons.
+    const std::string file(trim(spec.substr(std::min(spec.size(), spec.find(':') + 1))));
+    if (fields.size() < 2 || file.empty())
+      return Error{fmt::format("the file name is missing; the form is {}:FILE", kind)};
+    return read_outline_file(file, kind == "dxf" ? OutlineFormat::kDxf : OutlineFormat::kSvg,
+                             tolerance_mm);
+  }
+  return Error{fmt::format("unknown shape '{}'{} Forms:\n{}", shown(kind),
+                           did_you_mean(kind, kKinds), punch_shape_help())};
+}
+
+}  // namespace
+
+Result<SheetOutline> parse_punch_shape(std::string_view spec, double tolerance_mm) {
+  spec = trim(spec);
+  if (spec.empty()) return Error{fmt::format("no shape is given; forms:\n{}", punch_shape_help())};
+  Result<SheetOutline> shape = parse_fields(spec, tolerance_mm);
+  if (!shape) return Error{fmt::format("{}: {}", shown(spec), shape.error())};
+  return shape;
+}
+
+std::string_view punch_shape_help() {
+  return "round:D          diameter D\n"
+         "square:A         edge A\n"
+         "rectangle:A:B    edges A along x, B along y\n"
+         "obround:A:B      A x B over all, round at the ends of the longer one\n"
+         "polygon:N:D      N corners, D across them\n"
+         "dxf:FILE         closed contours of a drawing\n"
+         "svg:FILE         closed contours of a picture\n";
+}
+
+}  // namespace kerf

@@ -1,0 +1,196 @@
+#include "stock/zmap/height_sweeper.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "stock/zmap/cutter_components.h"
+
+namespace kerf {
+namespace {
+
+/// Moves whose sweeps are worked off together: as many as keep the list of sweeps within the
+/// second-level cache.
+constexpr std::size_t kMovesAtOnce = 1024;
+
+}  // namespace
+
+SweepKernels pick_kernels(ZMapKernel kernel) {
+#if defined(__x86_64__)
+  if (kernel != ZMapKernel::kScalar && zmap_has_avx2())
+    return {zmap_avx2::run_sweeps, zmap_avx2_ids::run_sweeps};
+#endif
+  return {zmap_scalar::run_sweeps, zmap_scalar_ids::run_sweeps};
+}
+
+std::uint32_t cut_id_of(std::uint64_t move_id) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(move_id, MeshPatch::kNotCut - 1));
+}
+
+CutReport HeightSweeper::report(std::uint64_t id, const SweepTotals& sum) const {
+  return {id,
+          static_cast<double>(sum.removed) * kRemovedUnit_mm * grid.cell_x_mm() * grid.cell_y_mm(),
+          static_cast<double>(sum.depth)};
+}
+
+GridView HeightSweeper::view_without_tiles() const {
+  GridView view;
+  view.nx = grid.nx();
+  view.ny = grid.ny();
+  view.tiles_x = grid.tiles_x();
+  view.tiles_y = grid.tiles_y();
+  view.x0 = grid.bounds_mm().min.x;
+  view.y0 = grid.bounds_mm().min.y;
+  view.cell_x = grid.cell_x_mm();
+  view.cell_y = grid.cell_y_mm();
+  view.per_block_x = 1 / (kBlockX * view.cell_x);
+  view.per_block_y = 1 / (kBlockY * view.cell_y);
+  view.floor = grid.floor_mm();
+  return view;
+}
+
+/// A sweep over a tile of others goes to a tile that is empty: it lowers nothing and counts
+/// nothing.
+GridView HeightSweeper::view(OtherTiles* others) {
+  others_ = others != nullptr && others->any() ? others : nullptr;
+  dumps_.clear();
+  if (others_ != nullptr) {
+    dumps_.resize(static_cast<std::size_t>(pool->threads()));
+    for (Dump& dump : dumps_) std::fill(dump.cells, std::end(dump.cells), grid.floor_mm());
+  }
+  pointers_.assign(grid.tile_count(), nullptr);
+  GridView view = view_without_tiles();
+  view.tiles = pointers_.data();
+  view.owner = this;
+  view.make_writable = [](void* owner, int tile) {
+    HeightSweeper& self = *static_cast<HeightSweeper*>(owner);
+    const std::size_t index = static_cast<std::size_t>(tile);
+    if (self.others_ == nullptr || !self.others_->holds(index))
+      return self.pointers_[index] = self.grid.make_writable(index);
+    const std::size_t band = index / static_cast<std::size_t>(self.grid.tiles_x());
+    return self.pointers_[index] = self.dumps_[band % self.dumps_.size()].cells;
+  };
+  view.cut_ids = cut_ids_.data();
+  return view;
+}
+
+/// Has work(view, thread, threads, totals) done by every thread. Bands of tile rows are dealt out;
+/// the sums of a move's bands are integers, so their order does not matter.
+template <class Work>
+void HeightSweeper::share_out(std::size_t report_count, const GridView& view, const Work& work) {
+  const int threads = pool->threads();
+  if (threads == 1) {
+    GridView mine = view;
+    return work(mine, 0, 1, totals_.data());
+  }
+  std::vector<std::vector<SweepTotals>> parts(static_cast<std::size_t>(threads));
+  pool->run([&](int thread) {
+    std::vector<SweepTotals>& part = parts[static_cast<std::size_t>(thread)];
+    part.resize(report_count);
+    GridView mine = view;
+    work(mine, thread, threads, part.data());
+  });
+  for (const std::vector<SweepTotals>& part : parts) {
+    for (std::size_t i = 0; i < report_count; ++i) {
+      totals_[i].removed += part[i].removed;
+      totals_[i].depth = std::max(totals_[i].depth, part[i].depth);
+    }
+  }
+}
+
+/// Works off `ops_`; totals_[0 .. report_count) receive the sums.
+void HeightSweeper::run(OtherTiles* others, std::size_t report_count) {
+  if (ops_.empty()) return;
+  grid.begin_change();
+  sweep_own_tiles(others, report_count);
+  if (others_ != nullptr) others_->cut({ops_, tools_, cut_ids_.data()}, totals_);
+  ops_.clear();
+}
+
+void HeightSweeper::sweep_own_tiles(OtherTiles* others, std::size_t report_count) {
+  const GridView whole = view(others);
+  if (grid.keeps_cut_ids() && tools_.size() > 1) {
+    // Move by move, or of two that cut equally deep with different parts of the cutter, the
+    // earlier would be found by how they are divided into calls.
+    return share_out(report_count, whole,
+                     [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
+                       for (SweepOp op : ops_) {
+                         for (const ConvexTool& tool : tools_) {
+                           op.use_double |= tool.needs_double;
+                           kernels.with_ids(mine, tool, &op, 1, thread, threads, sums);
+                         }
+                       }
+                     });
+  }
+  SweepKernel* const kernel = grid.keeps_cut_ids() ? kernels.with_ids : kernels.plain;
+  for (const ConvexTool& tool : tools_) {
+    if (tool.needs_double)
+      for (SweepOp& op : ops_) op.use_double = true;
+    share_out(report_count, whole, [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
+      kernel(mine, tool, ops_.data(), ops_.size(), thread, threads, sums);
+    });
+  }
+}
+
+void HeightSweeper::finish(OtherTiles* others, std::vector<CutReport>& reports) {
+  if (!path_.holds_back()) return;
+  totals_.assign(1, pending_totals_);
+  cut_ids_.assign(1, cut_id_of(pending_id_));
+  path_.set_pending_report(0);
+  path_.finish(ops_);
+  run(others, 1);
+  reports.push_back(report(pending_id_, totals_[0]));
+}
+
+void HeightSweeper::end_path(OtherTiles* others, std::vector<CutReport>& reports) {
+  finish(others, reports);
+  path_.restart();
+}
+
+void HeightSweeper::use_cutter(const Cutter& cutter, OtherTiles* others,
+                               std::vector<CutReport>& reports) {
+  if (cutter.spec() == cutter_spec_ && !tools_.empty()) return;
+  end_path(others, reports);
+  cutter_spec_ = cutter.spec();
+  tools_ = convex_components(cutter.profile());
+}
+
+void HeightSweeper::cut(const Cutter& cutter, std::span<const CutMove> moves, OtherTiles* others,
+                        std::vector<CutReport>& reports) {
+  use_cutter(cutter, others, reports);
+  for (std::size_t first = 0; first < moves.size(); first += kMovesAtOnce) {
+    cut_some(moves.subspan(first, std::min(kMovesAtOnce, moves.size() - first)), others, reports);
+  }
+}
+
+void HeightSweeper::cut_some(std::span<const CutMove> moves, OtherTiles* others,
+                             std::vector<CutReport>& reports) {
+  // totals_[0] is the move held back before, if any; the others follow in order.
+  const bool carried = path_.holds_back();
+  const std::size_t first = carried ? 1 : 0;
+  totals_.assign(moves.size() + first, SweepTotals{});
+  if (carried) {
+    totals_[0] = pending_totals_;
+    path_.set_pending_report(0);
+  }
+  for (std::size_t i = 0; i < moves.size(); ++i)
+    path_.add(moves[i], static_cast<std::uint32_t>(i + first), ops_);
+  if (grid.keeps_cut_ids()) {
+    cut_ids_.clear();
+    if (carried) cut_ids_.push_back(cut_id_of(pending_id_));
+    for (const CutMove& move : moves) cut_ids_.push_back(cut_id_of(move.id));
+  }
+  run(others, totals_.size());
+
+  const bool holding = path_.holds_back();
+  if (carried) reports.push_back(report(pending_id_, totals_[0]));
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    if (holding && i + 1 == moves.size()) break;
+    reports.push_back(report(moves[i].id, totals_[i + first]));
+  }
+  if (holding) {
+    pending_id_ = moves.back().id;
+    pending_totals_ = totals_.back();
+  }
+}
+
+}  // namespace kerf

@@ -1,0 +1,102 @@
+// stock/zmap/height_sweeper.h - moves cut into the heights of a grid: what models with heights
+// share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/worker_pool.h"
+#include "stock/stock_model.h"
+#include "stock/zmap/path_builder.h"
+#include "stock/zmap/sweep_ops.h"
+#include "stock/zmap/tile_grid.h"
+#include "stock/zmap/zmap.h"
+
+namespace kerf {
+
+struct SweepKernels {
+  SweepKernel* plain = nullptr;
+  SweepKernel* with_ids = nullptr;
+};
+SweepKernels pick_kernels(ZMapKernel kernel);
+
+/// As cells keep it: nothing that cuts may look like kNotCut.
+std::uint32_t cut_id_of(std::uint64_t move_id);
+
+/// Sweeps of several moves of one cutter that are worked off together.
+struct SweepBatch {
+  std::span<const SweepOp> ops;       ///< in order; those of one move (SweepOp::report) in a row
+  std::span<const ConvexTool> tools;  ///< the cutter is their union
+  const std::uint32_t* cut_ids = nullptr;  ///< by report; only where the grid keeps them
+};
+
+/// Tiles of the grid that somebody else cuts, because heights are not all that they hold.
+class OtherTiles {
+ public:
+  virtual ~OtherTiles() = default;
+  virtual bool any() const = 0;
+  virtual bool holds(std::size_t tile) const = 0;
+  /// Lowers them, after the others have been. Adds what was removed to totals[report].
+  virtual void cut(const SweepBatch& batch, std::span<SweepTotals> totals) = 0;
+};
+
+/// Lowers the heights of a grid by moves of cutters without undercut: StockModel::cut() and
+/// finish() of a Z-map. Holds back the last segment of a path. Copyable: a copy cuts on by itself,
+/// with the same worker pool.
+class HeightSweeper {
+ public:
+  HeightSweeper(TileGrid heights, ZMapKernel kernel, int threads)
+      : grid(std::move(heights)),
+        kernels(pick_kernels(kernel)),
+        pool(std::make_shared<WorkerPool>(threads < 1 ? 1 : threads)) {}
+
+  /// `others` may be null. The cutter must be one of convex_components() without undercut.
+  void cut(const Cutter& cutter, std::span<const CutMove> moves, OtherTiles* others,
+           std::vector<CutReport>& reports);
+  void finish(OtherTiles* others, std::vector<CutReport>& reports);
+  bool holds_back() const { return path_.holds_back(); }
+  /// Finishes, and lets the next move begin with the tool's own shape.
+  void end_path(OtherTiles* others, std::vector<CutReport>& reports);
+
+  CutReport report(std::uint64_t id, const SweepTotals& sum) const;
+  /// The grid as kernels see it, without tiles: no tile may be written before its first sweep has
+  /// asked for it. This is how tiles come to be unshared and to have a new version, without a look
+  /// at either in the kernels' loops.
+  GridView view_without_tiles() const;
+
+  TileGrid grid;
+  SweepKernels kernels;
+  std::shared_ptr<WorkerPool> pool;
+
+ private:
+  void use_cutter(const Cutter& cutter, OtherTiles* others, std::vector<CutReport>& reports);
+  void cut_some(std::span<const CutMove> moves, OtherTiles* others,
+                std::vector<CutReport>& reports);
+  void run(OtherTiles* others, std::size_t report_count);
+  void sweep_own_tiles(OtherTiles* others, std::size_t report_count);
+  GridView view(OtherTiles* others);
+  template <class Work>
+  void share_out(std::size_t report_count, const GridView& view, const Work& work);
+
+  PathBuilder path_;
+  std::string cutter_spec_;
+  std::vector<ConvexTool> tools_;
+  std::uint64_t pending_id_ = 0;  ///< move whose last segment is held back
+  SweepTotals pending_totals_;
+
+  std::vector<SweepOp> ops_;  // kept between calls to save allocations
+  std::vector<SweepTotals> totals_;
+  std::vector<float*> pointers_;
+  std::vector<std::uint32_t> cut_ids_;  ///< by report; unused where they are not kept
+  /// Takes sweeps over tiles of others.
+  struct alignas(64) Dump {
+    float cells[2 * kTileFloats];
+  };
+  std::vector<Dump> dumps_;       ///< by thread
+  OtherTiles* others_ = nullptr;  ///< during run()
+};
+
+}  // namespace kerf

@@ -1,0 +1,259 @@
+#include "stock/zmap/mmap/mmap.h"
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "stock/zmap/blank_grid.h"
+#include "stock/zmap/contact.h"
+#include "stock/zmap/cutter_components.h"
+#include "stock/zmap/height_mesh.h"
+#include "stock/zmap/height_sweeper.h"
+#include "stock/zmap/height_view.h"
+#include "stock/zmap/mmap/column_patch.h"
+#include "stock/zmap/mmap/column_sweeper.h"
+#include "stock/zmap/mmap/head_contact.h"
+#include "stock/zmap/mmap/mmap_mesh.h"
+#include "stock/zmap/tile_cut_ids.h"
+#include "stock/zmap/tile_patch.h"
+
+namespace kerf {
+
+struct MMap::Impl {
+  HeightSweeper sweeper;
+  GapGrid gaps;
+  double blank_mm3 = 0;
+  HeadedTool tool;  ///< of the last cutter with a head
+  std::string tool_spec;
+
+  /// What take_dirty_tiles() last saw of each tile; empty before its first call.
+  struct SeenTile {
+    std::uint64_t version, hash;
+  };
+  std::vector<SeenTile> seen;
+
+  Impl(TileGrid heights, double blank_volume_mm3, ZMapKernel kernel, int threads)
+      : sweeper(std::move(heights), kernel, threads),
+        gaps(sweeper.grid.tile_count()),
+        blank_mm3(blank_volume_mm3) {}
+  TileGrid& grid() { return sweeper.grid; }
+  void finish(std::vector<CutReport>& reports) {
+    ColumnSweeper columns(sweeper, gaps);
+    sweeper.finish(&columns, reports);
+  }
+  void cut_headed(const Cutter& cutter, std::span<const CutMove> moves,
+                  std::vector<CutReport>& reports);
+  std::uint64_t hash_of_tile(std::uint32_t tile) const;
+};
+
+void MMap::Impl::cut_headed(const Cutter& cutter, std::span<const CutMove> moves,
+                            std::vector<CutReport>& reports) {
+  ColumnSweeper columns(sweeper, gaps);
+  sweeper.end_path(&columns, reports);
+  if (cutter.spec() != tool_spec) {
+    tool = headed_tool(cutter);
+    tool_spec = cutter.spec();
+  }
+  std::vector<SweepTotals> totals(moves.size());
+  columns.cut_headed(tool, moves, totals);
+  for (std::size_t i = 0; i < moves.size(); ++i)
+    reports.push_back(sweeper.report(moves[i].id, totals[i]));
+}
+
+std::uint64_t MMap::Impl::hash_of_tile(std::uint32_t tile) const {
+  const std::uint64_t heights = XXH3_64bits(sweeper.grid.tile(tile), kTileFloats * sizeof(float));
+  const GapTile* const hollow = gaps.tile(tile);
+  return hollow != nullptr ? heights ^ hollow->hash() : heights;
+}
+
+MMap::MMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MMap::~MMap() = default;
+
+Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
+  Result<TileGrid> grid =
+      make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, "an M-map");
+  if (!grid) return Error{grid.error()};
+  const double blank_mm3 = volume_of(*grid);
+  return std::unique_ptr<MMap>(new MMap(
+      std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads)));
+}
+
+Done MMap::can_cut(const Cutter& cutter) { return check_bottom(cutter, "an M-map"); }
+
+void MMap::cut(const Cutter& cutter, std::span<const CutMove> moves,
+               std::vector<CutReport>& reports) {
+  for ([[maybe_unused]] const CutMove& move : moves) assert(move.is_vertical());
+  if (cutter.undercuts()) return impl_->cut_headed(cutter, moves, reports);
+  ColumnSweeper columns(impl_->sweeper, impl_->gaps);
+  impl_->sweeper.cut(cutter, moves, &columns, reports);
+}
+
+void MMap::finish(std::vector<CutReport>& reports) { impl_->finish(reports); }
+
+std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& move,
+                                           double tolerance_mm) const {
+  assert(move.is_vertical());
+  // What goes on upward without end touches the topmost material first.
+  const HeadedTool tool = headed_tool(cutter);
+  return earlier_contact(move, find_first_contact(impl_->grid(), tool.rays, move, tolerance_mm),
+                         find_head_contact(impl_->grid(), impl_->gaps, tool, move, tolerance_mm));
+}
+
+std::unique_ptr<StockModel> MMap::snapshot() const {
+  auto copy = std::make_unique<Impl>(*impl_);
+  copy->sweeper.pool = std::make_shared<WorkerPool>(1);
+  copy->seen.clear();
+  std::vector<CutReport> ignored;
+  copy->finish(ignored);
+  return std::unique_ptr<StockModel>(new MMap(std::move(copy)));
+}
+
+std::size_t MMap::unique_bytes() const {
+  return impl_->grid().unique_bytes() + impl_->gaps.unique_bytes();
+}
+
+void MMap::keep_cut_ids(bool keep) {
+  assert(!impl_->sweeper.holds_back());
+  impl_->grid().keep_cut_ids(keep);
+}
+
+bool MMap::keeps_cut_ids() const { return impl_->grid().keeps_cut_ids(); }
+
+std::optional<std::uint32_t> MMap::cut_id_at(const Vec3& point_mm) const {
+  if (!keeps_cut_ids()) return std::nullopt;
+  if (const std::optional<std::uint32_t> id = gap_id_at(impl_->grid(), impl_->gaps, point_mm))
+    return id;
+  const std::uint32_t id = kerf::cut_id_at(impl_->grid(), point_mm);
+  return id == MeshPatch::kNotCut ? std::nullopt : std::optional(id);
+}
+
+Box MMap::bounds_mm() const { return impl_->grid().bounds_mm(); }
+double MMap::cell_mm() const {
+  return std::max(impl_->grid().cell_x_mm(), impl_->grid().cell_y_mm());
+}
+std::size_t MMap::cell_count() const {
+  return static_cast<std::size_t>(nx()) * static_cast<std::size_t>(ny());
+}
+double MMap::blank_mm3() const { return impl_->blank_mm3; }
+
+double MMap::remaining_mm3() const {
+  const TileGrid& grid = impl_->grid();
+  double hollow_mm = 0;
+  for (std::size_t i = 0; i < grid.tile_count(); ++i) {
+    const GapTile* const tile = impl_->gaps.tile(i);
+    if (tile == nullptr) continue;
+    double sum = 0;
+    for (std::size_t cell = 0; cell < kTileFloats; ++cell) {
+      tile->each(cell, [&](const Gap& gap) {
+        sum += static_cast<double>(gap.high) - static_cast<double>(gap.low);
+      });
+    }
+    hollow_mm += sum;
+  }
+  return volume_of(grid) - hollow_mm * grid.cell_x_mm() * grid.cell_y_mm();
+}
+
+std::string MMap::digest() const {
+  const GridHash heights = hash_of(impl_->grid());
+  if (!impl_->gaps.any()) return heights.text();
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  XXH3_128bits_update(&state, &heights, sizeof heights);
+  for (std::uint64_t i = 0; i < tile_count(); ++i) {
+    const GapTile* const tile = impl_->gaps.tile(i);
+    if (tile == nullptr) continue;
+    const std::uint64_t hashes[2] = {i, tile->hash()};
+    XXH3_128bits_update(&state, hashes, sizeof hashes);
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state);
+  return GridHash{hash.high64, hash.low64}.text();
+}
+
+int MMap::nx() const { return impl_->grid().nx(); }
+int MMap::ny() const { return impl_->grid().ny(); }
+float MMap::height_mm(int i, int j) const { return impl_->grid().height(i, j); }
+bool MMap::has_gaps() const { return impl_->gaps.any(); }
+
+std::vector<Gap> MMap::gaps(int i, int j) const {
+  std::vector<Gap> out;
+  const std::size_t tile =
+      static_cast<std::size_t>(j / kTileCells * impl_->grid().tiles_x() + i / kTileCells);
+  if (const GapTile* const hollow = impl_->gaps.tile(tile))
+    hollow->read(TileGrid::offset(i, j), out);
+  return out;
+}
+
+TriangleMesh MMap::mesh(double tolerance_mm) const {
+  const TileGrid& grid = impl_->grid();
+  if (has_gaps()) return mesh_columns(grid, impl_->gaps);
+  std::vector<float> heights(cell_count());
+  for (int j = 0; j < ny(); ++j)
+    grid.copy_row(j, heights.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx()));
+  return mesh_height_grid({nx(), ny(), bounds_mm(), heights}, tolerance_mm,
+                          impl_->sweeper.pool->threads());
+}
+
+std::size_t MMap::tile_count() const { return impl_->grid().tile_count(); }
+Box MMap::tile_box(std::uint32_t tile) const { return impl_->grid().tile_box(tile); }
+
+std::vector<std::uint32_t> MMap::take_dirty_tiles() {
+  TileGrid& grid = impl_->grid();
+  std::vector<Impl::SeenTile>& seen = impl_->seen;
+  const bool first = seen.empty();
+  seen.resize(grid.tile_count());
+  std::vector<std::uint32_t> dirty;
+  for (std::uint32_t i = 0; i < seen.size(); ++i) {
+    if (!first && seen[i].version == grid.version(i)) continue;
+    const std::uint64_t hash = impl_->hash_of_tile(i);
+    if (!first && seen[i].hash == hash) {
+      grid.restore_version(i, seen[i].version);
+      continue;
+    }
+    seen[i] = {grid.version(i), hash};
+    dirty.push_back(i);
+  }
+  return dirty;
+}
+
+std::vector<std::uint32_t> MMap::differing_tiles(const StockModel& other) const {
+  const TileGrid& a = impl_->grid();
+  const MMap* const map = dynamic_cast<const MMap*>(&other);
+  const TileGrid* const b = map ? &map->impl_->grid() : nullptr;
+  const bool alike = b && a.nx() == b->nx() && a.ny() == b->ny() && a.bounds_mm() == b->bounds_mm();
+  // Numbers of moves lie behind the heights.
+  const std::size_t bytes = alike ? std::min(a.tile_bytes(), b->tile_bytes()) : 0;
+  const auto same = [&](std::uint32_t i) {
+    if (a.tile(i) != b->tile(i) && std::memcmp(a.tile(i), b->tile(i), bytes) != 0) return false;
+    const GapTile* const ours = impl_->gaps.tile(i);
+    const GapTile* const theirs = map->impl_->gaps.tile(i);
+    if (ours == theirs) return true;
+    return ours && theirs && ours->equals(*theirs, a.keeps_cut_ids() && b->keeps_cut_ids());
+  };
+  std::vector<std::uint32_t> differing;
+  for (std::uint32_t i = 0; i < a.tile_count(); ++i)
+    if (!alike || !same(i)) differing.push_back(i);
+  return differing;
+}
+
+std::uint64_t MMap::patch_version(std::uint32_t tile) const {
+  return tile_patch_version(impl_->grid(), tile);
+}
+
+MeshPatch MMap::patch(std::uint32_t tile, int level) const {
+  MeshPatch patch = gaps_near(impl_->grid(), impl_->gaps, tile)
+                        ? make_column_patch(impl_->grid(), impl_->gaps, tile, level)
+                        : make_tile_patch(impl_->grid(), tile, level);
+  patch.version = patch_version(tile);
+  return patch;
+}
+
+std::shared_ptr<const HeightGrid> MMap::height_grid() const {
+  return has_gaps() ? nullptr : height_view(impl_->grid());
+}
+
+}  // namespace kerf
