@@ -36,10 +36,11 @@ std::string tool_row(const ToolTableRow& row, double unit_mm, bool lengths) {
 }
 
 /// The INI of a machine that has none: subroutines may also stand where kerf was started, as on the
-/// text road.
-std::string makeshift_ini(const std::string& folder, bool random_toolchanger) {
-  return fmt::format("[RS274NGC]\nSUBROUTINE_PATH = {}\n[EMCIO]\nRANDOM_TOOLCHANGER = {}\n", folder,
-                     random_toolchanger ? 1 : 0);
+/// text road. A QtPlasmaC machine has three spindles: torch, scribe and spotting.
+std::string makeshift_ini(const std::string& folder, bool random_toolchanger, bool qtplasmac) {
+  return fmt::format(
+      "[RS274NGC]\nSUBROUTINE_PATH = {}\n[EMCIO]\nRANDOM_TOOLCHANGER = {}\n[TRAJ]\nSPINDLES = {}\n",
+      folder, random_toolchanger ? 1 : 0, qtplasmac ? 3 : 1);
 }
 
 /// Size and time of a file's contents, to see whether they changed while they were read.
@@ -70,11 +71,12 @@ class Contents {
 class BridgeProgram final : public Program {
  public:
   BridgeProgram(const ProgramOptions& options, std::string kerf_interp,
-                std::vector<ToolTableRow> tools, TextSurvey survey)
+                std::vector<ToolTableRow> tools, TextSurvey survey, TorchRun torch)
       : options_(options),
         kerf_interp_(std::move(kerf_interp)),
         tools_(std::move(tools)),
-        survey_(std::move(survey)) {}
+        survey_(std::move(survey)),
+        torch_(std::move(torch)) {}
 
   const std::vector<ProgramComment>& comments() const override { return survey_.comments; }
   ProgramSummary run(const MotionSink& sink, std::stop_token stop,
@@ -108,6 +110,7 @@ class BridgeProgram final : public Program {
   std::string kerf_interp_;
   std::vector<ToolTableRow> tools_;
   TextSurvey survey_;
+  TorchRun torch_;
   std::atomic<double> progress_{0};
 };
 
@@ -121,6 +124,9 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
   for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine.tool_lengths);
   if (!tool_file.flush()) return cannot_write(tool_path);
+  const std::string torch_path = home + "/torch";
+  std::ofstream torch_file(torch_path);
+  if (!(torch_file << torch_run_text(torch_) << std::flush)) return cannot_write(torch_path);
   // The interpreter rewrites its parameters; a path that cannot exist is not written.
   std::string parameters = home + "/none/parameters";
   if (!machine.parameter_path.empty()) {
@@ -135,6 +141,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
                                   "--units",        machine.inch_machine ? "inch" : "mm",
                                   "--axes",         std::to_string(machine.axis_mask),
                                   "--tools",        tool_path,
+                                  "--torch",        torch_path,
                                   "--parameters",   parameters,
                                   "--block-delete", options_.block_delete ? "on" : "off"};
   if (machine.start != std::array<double, 9>{}) {
@@ -170,7 +177,8 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
     child.ini = home + "/kerf.ini";
     const std::string text =
         options_.machine.ini_path.empty()
-            ? makeshift_ini(fs::current_path().string(), options_.machine.random_toolchanger)
+            ? makeshift_ini(fs::current_path().string(), options_.machine.random_toolchanger,
+                            torch_.qtplasmac)
             : options_.machine.ini_text;
     std::ofstream ini(child.ini);
     if (!(ini << text << std::flush)) {
@@ -327,6 +335,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.diameters_known = !options_.tool_table_path.empty();
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
+  feeding.torch = torch_;
+  feeding.materials = &materials_;
   if (options_.machine.start_known) feeding.start = options_.machine.start;
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
@@ -355,9 +365,10 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
 }  // namespace
 
 std::unique_ptr<Program> make_bridge_program(const ProgramOptions& options, std::string kerf_interp,
-                                             std::vector<ToolTableRow> tools, TextSurvey survey) {
+                                             std::vector<ToolTableRow> tools, TextSurvey survey,
+                                             TorchRun torch) {
   return std::make_unique<BridgeProgram>(options, std::move(kerf_interp), std::move(tools),
-                                         std::move(survey));
+                                         std::move(survey), std::move(torch));
 }
 
 }  // namespace kerf

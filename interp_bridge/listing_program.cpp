@@ -18,8 +18,12 @@ namespace {
 
 class ListingProgram final : public Program {
  public:
-  ListingProgram(const ProgramOptions& options, std::vector<int> tool_by_index, TextSurvey survey)
-      : options_(options), tool_by_index_(std::move(tool_by_index)), survey_(std::move(survey)) {}
+  ListingProgram(const ProgramOptions& options, std::vector<int> tool_by_index, TextSurvey survey,
+                 TorchRun torch)
+      : options_(options),
+        tool_by_index_(std::move(tool_by_index)),
+        survey_(std::move(survey)),
+        torch_(std::move(torch)) {}
 
   const std::vector<ProgramComment>& comments() const override { return survey_.comments; }
   ProgramSummary run(const MotionSink& sink, std::stop_token stop,
@@ -40,6 +44,7 @@ class ListingProgram final : public Program {
   ProgramOptions options_;
   std::vector<int> tool_by_index_;
   TextSurvey survey_;
+  TorchRun torch_;
   std::atomic<std::uint64_t> bytes_read_{0};
 };
 
@@ -98,6 +103,8 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
       is_stdin() ? command_limit(options_, 0) : options_.max_commands.value_or(0);
   reading.feeder.max_commands = limit;
   reading.feeder.frame = &frame_;
+  reading.feeder.torch = torch_;
+  reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);
   if (!is_stdin()) close(fd);
@@ -128,8 +135,10 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
 }  // namespace
 
 std::unique_ptr<Program> make_listing_program(const ProgramOptions& options,
-                                              std::vector<int> tool_by_index, TextSurvey survey) {
-  return std::make_unique<ListingProgram>(options, std::move(tool_by_index), std::move(survey));
+                                              std::vector<int> tool_by_index, TextSurvey survey,
+                                              TorchRun torch) {
+  return std::make_unique<ListingProgram>(options, std::move(tool_by_index), std::move(survey),
+                                          std::move(torch));
 }
 
 }  // namespace kerf

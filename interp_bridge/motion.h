@@ -52,7 +52,47 @@ struct WorkpieceFrame {
   Vec3 g92_mm{0};
   double rotation_deg = 0;
   std::array<double, 3> offset_abc_deg{};  ///< added to A, B, C
+  bool operator==(const WorkpieceFrame&) const = default;
 };
+
+/// What a step tells a torch, a laser or a jet. Which of it means "the beam is on" differs between
+/// machines: BeamTrigger (beam_trigger.h). M62, M63 and M67 take effect with the next step that
+/// moves, M64, M65 and M68 at once, as in LinuxCNC. 32 bytes.
+struct TorchState {
+  static constexpr unsigned kOutputs = 64;   ///< EMCMOT_MAX_DIO: M62 P0 to P63
+  static constexpr unsigned kAnalogs = 4;    ///< E0 to E3; programs use no others
+  static constexpr unsigned kThcOff = 2;     ///< QtPlasmaC: output that holds the torch's height
+  static constexpr unsigned kTorchOff = 3;   ///< QtPlasmaC: output that puts the torch out
+  static constexpr unsigned kReduction = 3;  ///< QtPlasmaC: analog output, percent of the feed
+
+  std::uint64_t outputs = 0;             ///< bit n: digital output n is set
+  std::array<float, kAnalogs> analog{};  ///< M67 E Q, M68 E Q
+  std::uint8_t spindles_on = 0;          ///< bit n: M3 $n or M4 $n; QtPlasmaC: see TorchTool
+  bool adaptive_feed = false;            ///< M52 P1: without it velocity_percent() has no effect
+  /// QtPlasmaC's hole sensing has added this step: 4 mm more of the hole, with the torch out.
+  bool overburn = false;
+  std::uint16_t material = 0;  ///< index into Program::materials(); [0] is the default
+
+  constexpr bool output(unsigned n) const { return n < kOutputs && (outputs >> n & 1) != 0; }
+  constexpr bool thc_enabled() const { return !output(kThcOff); }
+  constexpr bool torch_enabled() const { return !output(kTorchOff); }
+  /// Of the programmed feed, as QtPlasmaC has it: what is outside 10 to 100 counts as 100.
+  double velocity_percent() const {
+    const double percent = double{analog[kReduction]};
+    return percent >= 10 && percent < 100 ? percent : 100;
+  }
+  bool operator==(const TorchState&) const = default;
+};
+
+/// The tools of a QtPlasmaC machine, by the spindle that M3 $n names.
+enum class TorchTool : std::uint8_t { kNone, kPlasma, kScribe, kSpotting };
+
+/// The first that is on: M3 $0, $1, $2. A torch that output 3 puts out is not on.
+constexpr TorchTool torch_tool(const TorchState& torch) {
+  if ((torch.spindles_on & 1) != 0 && torch.torch_enabled()) return TorchTool::kPlasma;
+  if ((torch.spindles_on & 2) != 0) return TorchTool::kScribe;
+  return (torch.spindles_on & 4) != 0 ? TorchTool::kSpotting : TorchTool::kNone;
+}
 
 /// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
 /// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
@@ -88,6 +128,7 @@ struct Motion {
   float blend_tolerance_mm = 0;
   /// G64 Q (without Q: P): straight feeds may be merged into one within this; 0 = they are not.
   float merge_tolerance_mm = 0;
+  TorchState torch;
 };
 
 }  // namespace kerf

@@ -8,13 +8,20 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kBatchMotions = 4096;
-/// A rigid tap gives two motions; no command but a spline gives more.
-constexpr std::size_t kMotionsPerCommand = 2;
+/// A circle with overburn behind another gives three motions; no command but a spline gives more.
+constexpr std::size_t kMotionsPerCommand = 3;
 constexpr std::chrono::milliseconds kOldBatch{40};
 constexpr std::size_t kMaxForeignLines = 100;
 constexpr std::size_t kMaxForeignBytes = 500;
 constexpr std::size_t kMaxUnknownNames = 100;
 constexpr std::size_t kExcerptBytes = 200;
+constexpr int kMaxMaterialRemarks = 20;
+
+std::string values_of(const TorchMaterial& material) {
+  return fmt::format("{:g} mm/min, kerf {:g} mm, cut at {:g} mm, pierced at {:g} mm for {:g} s",
+                     material.feed_mm_per_min, material.kerf_width_mm, material.cut_height_mm,
+                     material.pierce_height_mm, material.pierce_delay_s);
+}
 
 }  // namespace
 
@@ -24,8 +31,12 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
       sink_(sink),
       summary_(summary),
       diagnostics_(diagnostics),
-      fold_(options_.tool_by_index) {
+      fold_(options_.tool_by_index),
+      materials_(options_.torch.materials) {
   if (options_.start) fold_.stand_at(*options_.start);
+  const TorchRun& torch = options_.torch;
+  fold_.set_filter({torch.qtplasmac && !torch.text.is_filtered, torch.inch_machine});
+  material_changed();
   batch_.reserve(kBatchMotions + kMotionsPerCommand);
 }
 
@@ -38,6 +49,7 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
     ++summary_.canonical_commands[std::string(command.spelling)];
   }
   if (!command.text.empty()) remark_on_text(command);
+  if (!options_.torch.text.changes.empty()) follow_modes();
   const bool first = batch_.empty();
   const FoldRemark said = fold_.fold(command, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
@@ -106,6 +118,7 @@ void MotionFeeder::remark(FoldRemark said) {
 }
 
 void MotionFeeder::remark_on_text(const CanonicalCommand& command) {
+  if (options_.torch.qtplasmac && command.name == CanonicalName::kComment) edit_material(command);
   if (command.name == CanonicalName::kCanonError) {
     diagnostics_.push_back(
         at_source(Severity::kError, std::string(command.text.substr(0, kExcerptBytes))));
@@ -134,8 +147,72 @@ void MotionFeeder::add_foreign(std::string_view line) {
   }
 }
 
+/// The filter reads the program's own file, once and in the order of its lines.
+void MotionFeeder::follow_modes() {
+  if (source_.file == 0) fold_.set_filter_modes(options_.torch.text.modes_at(source_.line));
+}
+
+void MotionFeeder::material_changed() {
+  fold_.set_material(static_cast<std::uint16_t>(materials_.current_index()),
+                     materials_.current().kerf_width_mm);
+}
+
+void MotionFeeder::edit_material(const CanonicalCommand& comment) {
+  const MaterialTable::Edit done = materials_.edit(comment.text, fold_.unit_mm());
+  if (done == MaterialTable::Edit::kNone) return;
+  material_changed();
+  if (done == MaterialTable::Edit::kDone || ++material_remarks_ > kMaxMaterialRemarks) return;
+  const bool malformed = done == MaterialTable::Edit::kMalformed;
+  Diagnostic remark = at_source(
+      malformed ? Severity::kWarning : Severity::kNote,
+      malformed ? fmt::format("the material comment is not understood{}{}",
+                              materials_.complaint().empty() ? "" : ": ", materials_.complaint())
+                : fmt::format("the material comment has no {}; what it does not say is the default "
+                              "material's ({})",
+                              materials_.complaint(), values_of(materials_.rows()[0])));
+  remark.hint = "as in (o=0, na=Steel 3mm, ph=3.0, pd=0.1, ch=1.5, fr=3000, kw=1.2)";
+  diagnostics_.push_back(std::move(remark));
+}
+
+bool MotionFeeder::take_material_change(double number, SourceRef source) {
+  if (!options_.torch.qtplasmac) return false;
+  source_ = source;
+  // -1 is the default; what is no whole number is cut off, as the machine's own M190 does.
+  constexpr double kLargest = 2e9;
+  const int wanted = number >= 0 && number <= kLargest ? static_cast<int>(number) : -1;
+  const bool known = materials_.select(wanted);
+  material_changed();
+  if (known || ++material_remarks_ > kMaxMaterialRemarks) return true;
+  Diagnostic unknown = at_source(
+      Severity::kWarning,
+      fmt::format("M190 P{}: there is no material {}; the default's values are taken ({})", wanted,
+                  wanted, values_of(materials_.rows()[0])));
+  unknown.hint = "QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI";
+  diagnostics_.push_back(std::move(unknown));
+  return true;
+}
+
+void MotionFeeder::remark_on_defaults() {
+  const TorchRun& torch = options_.torch;
+  if (!torch.qtplasmac || torch.materials_known || materials_.rows().size() > 1) return;
+  // An interpreter that knows no pins has ended there.
+  if (source_.file == 0 && source_.line <= torch.text.hal_line) return;
+  Diagnostic note;
+  note.severity = Severity::kNote;
+  if (!summary_.files.empty()) note.file = summary_.files[0];
+  note.line = static_cast<int>(torch.text.hal_line);
+  note.message = fmt::format("no file tells of the material; QtPlasmaC's own default is taken ({})",
+                             values_of(materials_.rows()[0]));
+  note.hint = "QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI";
+  diagnostics_.push_back(std::move(note));
+}
+
 bool MotionFeeder::hand_over() {
   if (batch_.empty() || sink_done_) return !sink_done_;
+  if (options_.materials != nullptr && materials_told_ != materials_.rows().size()) {
+    *options_.materials = materials_.rows();
+    materials_told_ = materials_.rows().size();
+  }
   if (options_.frame != nullptr && !frame_told_ && fold_.workpiece_frame_fixed()) {
     *options_.frame = fold_.workpiece_frame();
     frame_told_ = true;
@@ -162,6 +239,7 @@ void MotionFeeder::finish() {
   summary_.has_program_end = fold_.has_program_end();
   summary_.has_rotary_motion = fold_.has_rotary_motion();
   summary_.lost_splines = splines_lost_;
+  remark_on_defaults();
   if (splines_lost_ > 1) {
     Diagnostic more;
     more.severity = Severity::kWarning;

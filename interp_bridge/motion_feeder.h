@@ -14,6 +14,7 @@
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/motion_fold.h"
 #include "interp_bridge/program.h"
+#include "interp_bridge/torch_setup.h"
 
 namespace kerf {
 
@@ -26,6 +27,11 @@ struct MotionFeederOptions {
   std::optional<std::array<double, 9>> start;
   /// Written once, before the first motion that moves is handed over. May be null.
   WorkpieceFrame* frame = nullptr;
+  /// What is known of a torch machine. Without `torch.qtplasmac` its materials do not count.
+  TorchRun torch;
+  /// What TorchState::material indexes: written before motions with a new index are handed over.
+  /// May be null.
+  std::vector<TorchMaterial>* materials = nullptr;
 };
 
 /// Counts, folds, collects the diagnostics that commands give rise to. One thread.
@@ -42,6 +48,9 @@ class MotionFeeder {
   /// A command that is none of ours: counted. True if it is the first of its name.
   bool take_unknown(std::string_view name);
   void add_foreign(std::string_view line);
+  /// M190 P: true if it is QtPlasmaC's, and the material is another now.
+  bool take_material_change(double number, SourceRef source);
+  bool is_qtplasmac() const { return options_.torch.qtplasmac; }
 
   /// Hands over what has waited for longer than a screen would forgive (about 40 ms). False as
   /// above.
@@ -61,6 +70,10 @@ class MotionFeeder {
   bool took(bool batch_was_empty);
   void remark(FoldRemark remark);
   void remark_on_text(const CanonicalCommand& command);
+  void edit_material(const CanonicalCommand& comment);
+  void material_changed();
+  void follow_modes();
+  void remark_on_defaults();
   bool hand_over();
 
   MotionFeederOptions options_;
@@ -68,6 +81,9 @@ class MotionFeeder {
   ProgramSummary& summary_;
   Diagnostics& diagnostics_;
   MotionFold fold_;
+  MaterialTable materials_;
+  std::size_t materials_told_ = 0;
+  int material_remarks_ = 0;
   std::vector<Motion> batch_;
   std::chrono::steady_clock::time_point batch_since_;
   std::array<std::uint64_t, kCanonicalNameCount> counts_{};

@@ -176,6 +176,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.path_mode = path_mode_;
   motion.blend_tolerance_mm = blend_tolerance_mm_;
   motion.merge_tolerance_mm = merge_tolerance_mm_;
+  motion.torch = torch_;
   return motion;
 }
 
@@ -232,6 +233,10 @@ bool MotionFold::secondary_axes_moved(const CanonicalCommand& command, std::size
 FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& command,
                                      SourceRef source, std::vector<Motion>& out) {
   if (!work_fixed_) fix_workpiece_frame();
+  end_hole();
+  take_synchronised_outputs();
+  if (kind == MotionKind::kFeed && only_pierces(source, out)) return FoldRemark::kNone;
+  overburn_from_mm_.reset();
   Motion& motion = append(kind, source, out);
   move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]));
   if (kind != MotionKind::kTraverse) set_feed(motion);
@@ -245,6 +250,9 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
     position_known_ = false;
     return FoldRemark::kArcPlaneUnknown;
   }
+  take_synchronised_outputs();
+  if (only_pierces(source, out)) return FoldRemark::kNone;
+  return_from_overburn(source, out);
   const PlaneAxes axes = axes_of(plane_);
   const auto number = [&](std::size_t i) {
     return without_sign_of_zero(command.number(i) * unit_mm_);
@@ -272,6 +280,11 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   const double resolution_mm = kPrintResolution * unit_mm_;
   const bool straight = turns == 0 || (glm::length(start) < resolution_mm / 2 &&
                                        glm::length(end) < resolution_mm / 2);
+  const double sweep_rad =
+      straight || !start_known ? 0.0 : arc_sweep_rad(start, end, turns, resolution_mm, as_printed);
+  const bool full_circle = std::abs(sweep_rad) > 2 * kPi - kFullTurnFuzz_rad &&
+                           glm::length(end - start) <= 3 * resolution_mm;
+  begin_arc(straight ? 0.0 : 2 * glm::length(start), full_circle);
   Motion& motion = append(straight ? MotionKind::kFeed : MotionKind::kArc, source, out);
   move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]));
   set_feed(motion);
@@ -279,15 +292,16 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   const bool secondary = secondary_axes_moved(command, 9);
   motion.arc.center_mm = work_from_program(center_mm);
   motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
-  if (start_known) {
-    motion.arc.sweep_rad = arc_sweep_rad(start, end, turns, resolution_mm, as_printed);
-  }
+  motion.arc.sweep_rad = sweep_rad;
+  if (full_circle && hole_active_ && modes_.overburn) append_overburn(Motion(motion), out);
   return secondary ? FoldRemark::kSecondaryAxes : FoldRemark::kNone;
 }
 
 void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef source,
                                 std::vector<Motion>& out) {
   if (!work_fixed_) fix_workpiece_frame();
+  take_synchronised_outputs();
+  overburn_from_mm_.reset();
   const Vec3 bottom_mm = work_from_program(scaled(command, 0));
   const bool top_known = position_known_;
   const Vec3 top_mm = position_mm_;
@@ -367,6 +381,7 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
                    ? 0
                    : static_cast<std::size_t>(std::distance(spindles_.begin(), turning));
     update_rpm();
+    note_spindles();
     return true;
   };
   switch (command.name) {
@@ -486,7 +501,11 @@ FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
       position_known_ = false;
       return FoldRemark::kSplineLost;
     default:
-      if (!fold_frame(command) && !fold_spindle(command) && !fold_feed(command)) {
+      if (command.name == CanonicalName::kSetMotionControlMode && source.line != 0) {
+        path_mode_said_ = true;
+      }
+      if (!fold_frame(command) && !fold_spindle(command) && !fold_feed(command) &&
+          !fold_torch(command)) {
         fold_event(command, source, out);
       }
       return FoldRemark::kNone;

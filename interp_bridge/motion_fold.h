@@ -11,6 +11,7 @@
 
 #include "base/geometry.h"
 #include "interp_bridge/canonical.h"
+#include "interp_bridge/filter_modes.h"
 #include "interp_bridge/motion.h"
 
 namespace kerf {
@@ -22,6 +23,23 @@ enum class FoldRemark : std::uint8_t {
                 ///< known
   kArcPlaneUnknown,  ///< an arc in a plane of U, V, W; its end is not known
   kSecondaryAxes,    ///< U, V or W moved; the motion is that of the other axes
+};
+
+/// What QtPlasmaC's filter does to a program before LinuxCNC sees it, as far as the motions show
+/// it:
+///  - full circles (with FilterModes::arcs, arcs too) of small diameter run at a part of their
+///  feed,
+///    by M67 E3, up to the next step that is none
+///  - such a full circle is run on for 4 mm with the torch out (M62 P3), up to the next M5
+///  - of a program in pierce-only mode the pierces are left: a feed of no length where M3 $0 is
+///  - a program without a G64 gets G64 P0.1 (mm; 0.004 in on inch machines)
+/// Not while cutter compensation is on. The filter reads text and these are made of commands, so
+/// that circles of computed numbers count too (the filter calls them errors). Not done: the filter
+/// takes Z words out of the program (unless it has #<keep-z-motion>=1), moves Z up first, and turns
+/// lines that it holds for illegal into comments.
+struct FilterSetup {
+  bool on = false;
+  bool inch_machine = false;
 };
 
 /// A NURBS of G5, G5.1 or G5.2 in the XY plane, as LinuxCNC hands it over: program coordinates and
@@ -70,7 +88,20 @@ class MotionFold {
   /// machine frame, mm and degrees), so that the first motion has a start.
   void stand_at(const std::array<double, 9>& machine_position) { stands_at_ = machine_position; }
 
-  /// Appends the steps of `command` (0, 1, or 2 for a rigid tap) to `out`.
+  /// Before the first command: QtPlasmaC's filter has its share.
+  void set_filter(FilterSetup setup) { filter_ = setup; }
+  /// For the commands that follow. No effect without the filter.
+  void set_filter_modes(const FilterModes& modes) { modes_ = modes; }
+  /// For the steps that follow: TorchState::material, and its kerf.
+  void set_material(std::uint16_t index, double kerf_width_mm) {
+    torch_.material = index;
+    material_kerf_mm_ = kerf_width_mm;
+  }
+  /// mm in one unit of the program: 1 or 25.4.
+  double unit_mm() const { return unit_mm_; }
+
+  /// Appends the steps of `command` (0, 1, 2 for a rigid tap, 3 for a circle with overburn) to
+  /// `out`.
   FoldRemark fold(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
 
   /// Appends the spline as straight feeds within kSplineChord_mm of it. kSplineLost if order and
@@ -123,6 +154,17 @@ class MotionFold {
   bool fold_feed(const CanonicalCommand& command);
   bool fold_event(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void change_tool_length(const CanonicalCommand& command);
+  // motion_fold_torch.cpp
+  bool fold_torch(const CanonicalCommand& command);
+  void take_synchronised_outputs();
+  void use_filters_path_mode();
+  void note_spindles();
+  double hole_limit_mm() const;
+  void end_hole();
+  void begin_arc(double diameter_mm, bool full_circle);
+  void return_from_overburn(SourceRef source, std::vector<Motion>& out);
+  void append_overburn(const Motion& hole, std::vector<Motion>& out);
+  bool only_pierces(SourceRef source, std::vector<Motion>& out);
 
   std::vector<int> tool_by_index_;
   Frame frame_;
@@ -163,6 +205,22 @@ class MotionFold {
   double pitch_mm_ = 0;
   bool has_rotary_motion_ = false;
   bool has_program_end_ = false;
+
+  TorchState torch_;
+  /// M62, M63, M67 that wait for the next step that moves.
+  bool outputs_wait_ = false;
+  std::uint64_t waiting_outputs_ = 0;
+  std::uint64_t waiting_mask_ = 0;
+  std::array<std::optional<float>, TorchState::kAnalogs> waiting_analog_;
+  FilterSetup filter_;
+  FilterModes modes_;
+  double material_kerf_mm_ = 0;
+  bool path_mode_said_ = false;  ///< by the program
+  bool compensation_ = false;    ///< G41, G42
+  bool hole_active_ = false;     ///< the filter's M67 E3 is in force
+  bool torch_off_by_filter_ = false;
+  bool pierced_ = false;                  ///< since M3, in pierce-only mode
+  std::optional<Vec3> overburn_from_mm_;  ///< end of the circle, while the tip stands beyond it
 };
 
 /// Angle from `start` to `end` about the origin as LinuxCNC reads an arc: `turns` > 0

@@ -31,11 +31,12 @@ constexpr double kSilenceAgain_s = 2.0;
 class NcProgram final : public Program {
  public:
   NcProgram(const ProgramOptions& options, std::string rs274, std::vector<ToolTableRow> tools,
-            TextSurvey survey)
+            TextSurvey survey, TorchRun torch)
       : options_(options),
         rs274_(std::move(rs274)),
         tools_(std::move(tools)),
-        survey_(std::move(survey)) {}
+        survey_(std::move(survey)),
+        torch_(std::move(torch)) {}
 
   const std::vector<ProgramComment>& comments() const override { return survey_.comments; }
   ProgramSummary run(const MotionSink& sink, std::stop_token stop,
@@ -72,6 +73,7 @@ class NcProgram final : public Program {
   std::string rs274_;
   std::vector<ToolTableRow> tools_;
   TextSurvey survey_;
+  TorchRun torch_;
   std::atomic<double> progress_{0};
 };
 
@@ -130,6 +132,7 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.tool_by_index = session.table.tool_by_index;
   reading.feeder.diameters_known = !options_.tool_table_path.empty();
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
+  reading.feeder.torch = torch_;
   return reading;
 }
 
@@ -245,6 +248,7 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.files = files_ = session->prepared.files;
   CanonicalReaderOptions reading = reader_options(*session);
   reading.feeder.frame = &frame_;
+  reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   ChildListener listener(session->process, reader, reader.feeder(), options_.max_silent_s);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
@@ -262,9 +266,10 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
 }  // namespace
 
 std::unique_ptr<Program> make_nc_program(const ProgramOptions& options, std::string rs274,
-                                         std::vector<ToolTableRow> tools, TextSurvey survey) {
-  return std::make_unique<NcProgram>(options, std::move(rs274), std::move(tools),
-                                     std::move(survey));
+                                         std::vector<ToolTableRow> tools, TextSurvey survey,
+                                         TorchRun torch) {
+  return std::make_unique<NcProgram>(options, std::move(rs274), std::move(tools), std::move(survey),
+                                     std::move(torch));
 }
 
 }  // namespace kerf

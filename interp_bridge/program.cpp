@@ -113,36 +113,38 @@ std::string find_kerf_interp(const std::string& given) {
   return find_executable("kerf-interp");
 }
 
-}  // namespace
-
-std::uint64_t command_limit(const ProgramOptions& options, std::size_t lines) {
-  constexpr std::uint64_t kLeast = 50'000'000;
-  constexpr std::uint64_t kOfALine = 4;
-  return options.max_commands.value_or(std::max(kLeast, kOfALine * lines));
+/// False: a file that is named cannot be read, which has been reported.
+bool read_torch(const ProgramOptions& options, TorchRun& torch, Diagnostics& diagnostics) {
+  TorchSources sources;
+  sources.materials_path = options.torch.materials_path;
+  sources.ini_path = options.machine.ini_path;
+  sources.hal_values = options.torch.hal_values;
+  sources.inch_machine = options.machine.inch_machine;
+  torch.qtplasmac = torch.text.is_qtplasmac || options.torch.qtplasmac == QtPlasmacChoice::kOn;
+  if (options.torch.qtplasmac == QtPlasmacChoice::kOff) {
+    torch.qtplasmac = false;
+    torch.materials.assign(1, TorchMaterial{});
+    torch.hal_values = std::move(sources.hal_values);
+    return true;
+  }
+  return read_torch_sources(sources, torch, diagnostics);
 }
 
-std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
-  std::vector<ToolTableRow> tools;
-  if (!read_tools(options, tools, diagnostics)) return nullptr;
-  std::vector<int> tool_by_index;
-  if (!tools.empty()) {
-    tool_by_index.push_back(0);
+std::unique_ptr<Program> open_kind(const ProgramOptions& options, bool from_stdin,
+                                   std::vector<ToolTableRow> tools, TextSurvey survey,
+                                   TorchRun torch, Diagnostics& diagnostics) {
+  if (from_stdin || survey.listing) {
+    std::vector<int> tool_by_index;
+    if (!tools.empty()) tool_by_index.push_back(0);
     for (const ToolTableRow& row : tools) tool_by_index.push_back(row.tool);
-  }
-  if (options.path == "-") return make_listing_program(options, std::move(tool_by_index), {});
-  TextSurvey survey;
-  if (!is_regular_file(options.path, diagnostics) ||
-      !survey_file(options.path, survey, diagnostics)) {
-    return nullptr;
-  }
-  if (survey.listing) {
-    return make_listing_program(options, std::move(tool_by_index), std::move(survey));
+    return make_listing_program(options, std::move(tool_by_index), std::move(survey),
+                                std::move(torch));
   }
   if (options.interpreter != InterpreterChoice::kText) {
     std::string kerf_interp = find_kerf_interp(options.kerf_interp_path);
     if (!kerf_interp.empty()) {
       return make_bridge_program(options, std::move(kerf_interp), std::move(tools),
-                                 std::move(survey));
+                                 std::move(survey), std::move(torch));
     }
     if (options.interpreter == InterpreterChoice::kBridge) {
       report(diagnostics, {},
@@ -161,7 +163,38 @@ std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostic
         "sudo apt install linuxcnc-uspace");
     return nullptr;
   }
-  return make_nc_program(options, std::move(rs274), std::move(tools), std::move(survey));
+  return make_nc_program(options, std::move(rs274), std::move(tools), std::move(survey),
+                         std::move(torch));
+}
+
+}  // namespace
+
+std::uint64_t command_limit(const ProgramOptions& options, std::size_t lines) {
+  constexpr std::uint64_t kLeast = 50'000'000;
+  constexpr std::uint64_t kOfALine = 4;
+  return options.max_commands.value_or(std::max(kLeast, kOfALine * lines));
+}
+
+std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostics& diagnostics) {
+  std::vector<ToolTableRow> tools;
+  TextSurvey survey;
+  if (!read_tools(options, tools, diagnostics)) return nullptr;
+  const bool from_stdin = options.path == "-";
+  if (!from_stdin && (!is_regular_file(options.path, diagnostics) ||
+                      !survey_file(options.path, survey, diagnostics))) {
+    return nullptr;
+  }
+  TorchRun torch;
+  torch.text = std::move(survey.torch);
+  if (!read_torch(options, torch, diagnostics)) return nullptr;
+  const bool is_qtplasmac = torch.qtplasmac;
+  const std::vector<TorchMaterial> materials = torch.materials;
+  auto program = open_kind(options, from_stdin, std::move(tools), std::move(survey),
+                           std::move(torch), diagnostics);
+  if (program == nullptr) return nullptr;
+  program->is_qtplasmac_ = is_qtplasmac;
+  program->materials_ = materials;
+  return program;
 }
 
 }  // namespace kerf

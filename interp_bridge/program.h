@@ -18,6 +18,7 @@
 #include "base/diagnostic.h"
 #include "base/result.h"
 #include "interp_bridge/motion.h"
+#include "interp_bridge/torch_materials.h"
 
 namespace kerf {
 
@@ -53,6 +54,23 @@ struct InterpreterSetup {
   std::string startup_code;    ///< run before the program
 };
 
+/// Whether a program is read as a QtPlasmaC machine would: its materials, what its filter makes of
+/// the text (FilterSetup in motion_fold.h), its pins. kAuto: if the INI is of such a machine, or
+/// the program asks for its pins (#<_hal[plasmac.cut-feed-rate]>), has a material comment (o=0, ..)
+/// or one of the filter's parameters (#<holes>=4).
+enum class QtPlasmacChoice : std::uint8_t { kAuto, kOn, kOff };
+
+/// What is known of a torch's machine beyond its INI.
+struct TorchOptions {
+  QtPlasmacChoice qtplasmac = QtPlasmacChoice::kAuto;
+  /// QtPlasmaC's *_material.cfg, in the machine's unit. Empty: that beside InterpreterSetup's INI,
+  /// if it is there.
+  std::string materials_path;
+  /// Values of HAL pins that the program reads by #<_hal[name]>, names in lower case, in the
+  /// machine's unit. They come before all others. kerf-interp only.
+  std::map<std::string, double> hal_values;
+};
+
 /// What to interpret and how.
 struct ProgramOptions {
   /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
@@ -64,6 +82,7 @@ struct ProgramOptions {
   bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
   InterpreterChoice interpreter = InterpreterChoice::kAuto;
   InterpreterSetup machine;
+  TorchOptions torch;
   std::string rs274_path = "rs274";  ///< looked up in PATH
   /// Empty: beside this executable, in ../lib/kerf beside it, else looked up in PATH.
   std::string kerf_interp_path;
@@ -133,12 +152,23 @@ class Program {
   /// Known from the first batch that has a motion on. From the thread that runs.
   const WorkpieceFrame& workpiece_frame() const { return frame_; }
 
+  /// What TorchState::material indexes, [0] the default material: within the sink, all that the
+  /// motions name. From the thread that runs. Of a program that is none of QtPlasmaC's: one row,
+  /// which says nothing.
+  const std::vector<TorchMaterial>& materials() const { return materials_; }
+  /// It is read as a QtPlasmaC machine would.
+  bool is_qtplasmac() const { return is_qtplasmac_; }
+
   /// Share of the source already interpreted, for a progress bar; any thread.
   virtual double progress() const = 0;  ///< 0..1, or < 0 if not known
 
  protected:
   std::vector<std::string> files_;
   WorkpieceFrame frame_;
+  std::vector<TorchMaterial> materials_{TorchMaterial{}};
+
+ private:
+  bool is_qtplasmac_ = false;
 };
 
 /// A row of a LinuxCNC tool table, lengths in mm (the caller says what unit the table is in; mm by

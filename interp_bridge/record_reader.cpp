@@ -16,6 +16,10 @@ constexpr std::size_t kMaxFiles = 100'000;
 constexpr std::size_t kMaxCallers = 100;
 constexpr std::size_t kMaxNotes = 100;
 
+/// QtPlasmaC changes the material by M190, and says by an input that it has been changed.
+constexpr double kMaterialCode = 190;
+constexpr double kMaterialInput = 3;
+
 double number_at(const char* payload, std::size_t index) {
   double value = 0;
   std::memcpy(&value, payload + 8 * index, sizeof value);
@@ -148,11 +152,20 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       return take_spline(head, payload);
     case records::kUserM:
       if (head.count != 3) return refuse("a user M-code whose numbers do not fit");
+      if (number_at(payload, 0) == kMaterialCode &&
+          feeder_.take_material_change(number_at(payload, 1), {file_, head.line})) {
+        place_ = {file_, head.line};
+        return true;
+      }
       note(head, fmt::format("M{:g} P{:g} Q{:g}", number_at(payload, 0), number_at(payload, 1),
                              number_at(payload, 2)));
       return true;
     case records::kWait:
       if (head.count != 4) return refuse("an M66 whose numbers do not fit");
+      if (feeder_.is_qtplasmac() && number_at(payload, 0) == kMaterialInput &&
+          number_at(payload, 1) == records::kDigitalInput) {
+        return true;  // the wait for M190, which is done
+      }
       note(head, fmt::format("M66 of {} input {:g}",
                              number_at(payload, 1) == records::kDigitalInput ? "digital" : "analog",
                              number_at(payload, 0)));

@@ -76,6 +76,14 @@ std::string hint_for(const std::string& message) {
   if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
     return "rs274 knows the axes X Y Z A B C only";
   }
+  if (has("#<_hal[") && has("not defined")) {
+    return "a dry run has no HAL; of its pins kerf-interp (--interp bridge) knows those of "
+           "QtPlasmaC, "
+           "rs274 none";
+  }
+  if (has("Unknown m code used: M190")) {
+    return "kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material";
+  }
   if (has("not found in the tool table")) return "give the machine's table with --tool-table";
   return {};
 }

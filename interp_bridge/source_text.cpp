@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "interp_bridge/canonical.h"
 
@@ -140,6 +141,12 @@ void TextSurveyor::add(std::string_view text) {
   if (survey_.blank) survey_.blank = is_blank_text(text);
   if (nonblank_lines_ < kLinesToTellListing && !survey_.listing) decide_kind(text);
   add_lines(text);
+  if (!survey_.listing) torch_.add(text);
+}
+
+TextSurvey TextSurveyor::take() {
+  survey_.torch = torch_.take();
+  return std::move(survey_);
 }
 
 void TextSurveyor::decide_kind(std::string_view text) {

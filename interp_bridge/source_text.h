@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interp_bridge/program.h"
+#include "interp_bridge/torch_setup.h"
 
 namespace kerf {
 
@@ -49,6 +50,7 @@ struct TextSurvey {
   std::size_t nul_line = 0;  ///< first line with a NUL byte, 0 = none
   bool listing = false;      ///< canonical text rather than NC code
   std::vector<ProgramComment> comments;
+  TorchText torch;  ///< NC code only
 };
 
 /// Surveys text that comes in pieces of whole lines. Comments: (..) and ;.. of NC code,
@@ -61,7 +63,7 @@ class TextSurveyor {
   explicit TextSurveyor(bool listing = false) { survey_.listing = listing; }
   void add(std::string_view text);
   const TextSurvey& survey() const { return survey_; }
-  TextSurvey take() { return std::move(survey_); }
+  TextSurvey take();
 
  private:
   void decide_kind(std::string_view text);
@@ -70,6 +72,7 @@ class TextSurveyor {
   void add_comments(std::string_view line, std::uint32_t number, bool only_hints);
 
   TextSurvey survey_;
+  TorchTextScanner torch_;
   std::size_t nonblank_lines_ = 0;
   std::size_t later_comments_ = 0;
 };

@@ -99,6 +99,35 @@ void append_spindle_and_coolant(const Motion& m, std::string& out) {
   out += ']';
 }
 
+/// What is not as at the start of every program.
+void append_torch(const TorchState& torch, std::string& out) {
+  if (torch.spindles_on > 1)
+    fmt::format_to(std::back_inserter(out), ",\"spindles\":{}", torch.spindles_on);
+  if (torch.outputs != 0) {
+    const char* comma = ",\"outputs\":[";
+    for (unsigned n = 0; n < TorchState::kOutputs; ++n) {
+      if (!torch.output(n)) continue;
+      fmt::format_to(std::back_inserter(out), "{}{}", comma, n);
+      comma = ",";
+    }
+    out += ']';
+  }
+  if (torch.analog != std::array<float, TorchState::kAnalogs>{}) {
+    const char* comma = ",\"analog\":[";
+    for (const float value : torch.analog) {
+      out += comma;
+      append_number(double{value}, out);
+      comma = ",";
+    }
+    out += ']';
+  }
+  if (torch.adaptive_feed) out += ",\"adaptive_feed\":true";
+  if (torch.overburn) out += ",\"overburn\":true";
+  if (torch.material != 0) {
+    fmt::format_to(std::back_inserter(out), ",\"material\":{}", torch.material);
+  }
+}
+
 }  // namespace
 
 const char* to_string(MotionKind kind) {
@@ -145,6 +174,7 @@ void MotionJson::append(const Motion& m, const TimedStep& step, std::string& out
   }
   fmt::format_to(std::back_inserter(out), ",\"tool\":{}", m.tool);
   append_spindle_and_coolant(m, out);
+  append_torch(m.torch, out);
   append_field("t", step.start_s, out);
   append_field("duration", step.duration_s, out);
   out += "}\n";

@@ -356,9 +356,11 @@ void CLEAR_AUX_OUTPUT_BIT(int index) {
   record(CanonicalName::kClearAuxOutputBit, {static_cast<double>(index)});
 }
 void SET_MOTION_OUTPUT_VALUE(int index, double value) {
+  world().set_analog_output(index, value);
   record(CanonicalName::kSetMotionOutputValue, {static_cast<double>(index), value});
 }
 void SET_AUX_OUTPUT_VALUE(int index, double value) {
+  world().set_analog_output(index, value);
   record(CanonicalName::kSetAuxOutputValue, {static_cast<double>(index), value});
 }
 int WAIT(int index, int input_type, int wait_type, double timeout) {
@@ -368,7 +370,10 @@ int WAIT(int index, int input_type, int wait_type, double timeout) {
        static_cast<double>(wait_type), timeout});
   return 0;
 }
-void COMMENT(const char* text) { record_text(CanonicalName::kComment, text); }
+void COMMENT(const char* text) {
+  record_text(CanonicalName::kComment, text);
+  if (world().qtplasmac && text != nullptr) world().materials.edit(text, world().unit_mm());
+}
 void MESSAGE(char* text) { record_text(CanonicalName::kMessage, text); }
 void LOG(char* text) { record_text(CanonicalName::kLog, text); }
 void LOGOPEN(char* text) { record_text(CanonicalName::kLogOpen, text); }

@@ -1,6 +1,5 @@
 // What the interpreter asks, and the three functions through which it would reach the tool table
-// that all LinuxCNCs of an account share, and HAL: ours are found first, so that neither is
-// touched.
+// that all LinuxCNCs of an account share: ours are found first, so that it is not touched.
 #include <canon.hh>
 #include <cstdio>
 
@@ -121,15 +120,3 @@ int tooldata_get(CANON_TOOL_TABLE* tool, int index) {
   return 0;  // IDX_OK
 }
 int tooldata_find_index_for_tool(int number) { return world().row_of_tool(number); }
-
-// ---- HAL
-// ----------------------------------------------------------------------------------------------------
-
-/// `#<_hal[...]>` would join the shared memory of a running LinuxCNC; here there is no HAL, and
-/// such a parameter is not known.
-extern "C" {
-int hal_init(const char* name);
-int hal_ready(int component);
-int hal_init(const char*) { return -1; }
-int hal_ready(int) { return -1; }
-}

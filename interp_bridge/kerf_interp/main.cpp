@@ -51,6 +51,12 @@ constexpr std::chrono::milliseconds kSignOfLife{200};
 /// M100 to M199: a machine would start a program of that name, which is its own affair.
 void user_m(int number, double p, double q) {
   recording().records->numbers(records::kUserM, recording().line_now(), {100.0 + number, p, q});
+  World& world = recording().world;
+  constexpr int kMaterialChange = 90;
+  if (world.qtplasmac && number == kMaterialChange) {
+    constexpr double kLargest = 2e9;
+    world.materials.select(p >= 0 && p <= kLargest ? static_cast<int>(p) : -1);
+  }
 }
 
 class Runner {

@@ -26,7 +26,8 @@ constexpr const char* kUsage =
     "  --block-delete on|off   lines that begin with / are skipped (on)\n"
     "  --random-toolchanger    M6 swaps tools\n"
     "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
-    "  --startup BLOCK         run first\n";
+    "  --startup BLOCK         run first\n"
+    "  --torch FILE            QtPlasmaC's materials and the values of pins (README.md)\n";
 
 /// With the endings that the interpreter puts behind it (".new", ".bak") less than its 256.
 constexpr std::size_t kLongestParameterName = 240;
@@ -48,6 +49,39 @@ bool read_tools(const std::string& path, World& world) {
     if (!row) return fault(path + ":" + std::to_string(number) + ": not a row of tool data");
     world.add_tool(tool);
   }
+  return file.eof() || fault(path + ": " + std::strerror(errno));
+}
+
+/// Behind "material": number, then in mm and s what kerf writes for it.
+bool read_material(std::istringstream& row, TorchMaterial& material) {
+  row >> material.number >> material.pierce_height_mm >> material.pierce_delay_s >>
+      material.cut_height_mm >> material.feed_mm_per_min >> material.kerf_width_mm >>
+      material.puddle_jump_height_mm >> material.puddle_jump_delay_s >> material.cut_amps >>
+      material.cut_volts >> material.pause_at_end_s >> material.gas_pressure >> material.cut_mode;
+  return !row.fail();
+}
+
+bool read_torch(const std::string& path, World& world) {
+  std::ifstream file(path);
+  std::string line;
+  std::vector<TorchMaterial> materials;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::istringstream row(line);
+    std::string word;
+    std::string name;
+    row >> word;
+    if (word == "qtplasmac") {
+      row >> world.qtplasmac;
+    } else if (word == "convert") {
+      row >> world.convert_material;
+    } else if (word == "hal") {
+      row >> name >> world.hal_values[name];
+    } else if (word != "material" || !read_material(row, materials.emplace_back())) {
+      row.setstate(std::ios::failbit);
+    }
+    if (!row) return fault(path + ":" + std::to_string(number) + ": not a row of torch data");
+  }
+  world.materials = MaterialTable(std::move(materials));
   return file.eof() || fault(path + ": " + std::strerror(errno));
 }
 
@@ -81,7 +115,8 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     kBlockDelete,
     kRandom,
     kStart,
-    kStartup
+    kStartup,
+    kTorch
   };
   static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
                                     {"units", required_argument, nullptr, kUnits},
@@ -92,6 +127,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"random-toolchanger", no_argument, nullptr, kRandom},
                                     {"start", required_argument, nullptr, kStart},
                                     {"startup", required_argument, nullptr, kStartup},
+                                    {"torch", required_argument, nullptr, kTorch},
                                     {nullptr, 0, nullptr, 0}};
   long number = 0;
   for (int code; (code = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -134,6 +170,9 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kStartup:
         options.startup = value;
+        break;
+      case kTorch:
+        if (!read_torch(value, world)) return false;
         break;
       default:
         std::fputs(kUsage, stderr);

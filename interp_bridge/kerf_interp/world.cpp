@@ -20,6 +20,27 @@ World::World() : rows_(1, empty_tool()) {
   speed_override.fill(true);
 }
 
+/// The user's own values come first, then those of the material in force.
+bool World::hal_value(const std::string& name, double& value) const {
+  bool is_length = false;
+  const auto given = hal_values.find(name);
+  if (given != hal_values.end()) {
+    value = given->second;
+  } else if (qtplasmac && material_pin(materials.current(), name, value, is_length)) {
+    if (is_length) value *= units_per_mm;
+  } else if (qtplasmac && name == "qtplasmac.material_change_number") {
+    value = materials.current().number;
+  } else if (name == "motion.switchkins-type") {
+    value = analog_outputs.back();
+  } else {
+    return false;
+  }
+  const bool converted = name == "plasmac.cut-feed-rate" || name == "plasmac.kerf-width" ||
+                         name == "qtplasmac.kerf_width-f";
+  if (convert_material && converted) value /= units_per_mm * unit_mm();
+  return true;
+}
+
 Pose World::scaled(const Pose& program_units) const {
   Pose out = program_units;
   for (std::size_t i = 0; i < out.size(); ++i) {

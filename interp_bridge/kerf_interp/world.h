@@ -4,8 +4,11 @@
 
 #include <array>
 #include <canon.hh>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "interp_bridge/torch_materials.h"
 
 namespace kerf::interp {
 
@@ -26,6 +29,14 @@ class World {
   bool block_delete = true;
   bool random_toolchanger = false;
   std::string parameter_file;
+  /// Pins that `#<_hal[..]>` reads, in machine units.
+  std::map<std::string, double> hal_values;
+  bool qtplasmac = false;  ///< `materials` are those of M190 and of its comments
+  /// QtPlasmaC's filter writes a conversion of units behind the feed and the kerf of a material.
+  bool convert_material = false;
+  MaterialTable materials;
+  /// The value of a pin; false: there is none of that name.
+  bool hal_value(const std::string& name, double& value) const;
 
   // ---- What the program has set
   // -------------------------------------------------------------------
@@ -45,6 +56,14 @@ class World {
   std::array<CANON_DIRECTION, kSpindles> spindle_direction{};
   std::array<bool, kSpindles> speed_override{};
   bool optional_stop = true;
+  /// Analog outputs, M67 and M68. Switchable kinematics hang on the last (motion.switchkins-type),
+  /// as in LinuxCNC's sample configurations: their M428, M429 and M430 look whether it went there.
+  static constexpr std::size_t kAnalogOutputs = 4;
+  std::array<double, kAnalogOutputs> analog_outputs{};
+  void set_analog_output(int index, double value) {
+    const auto output = static_cast<std::size_t>(index);
+    if (index >= 0 && output < kAnalogOutputs) analog_outputs[output] = value;
+  }
 
   double unit_mm() const { return units == CANON_UNITS_INCHES ? 25.4 : 1.0; }
 

@@ -1,0 +1,128 @@
+// What a program's text says to QtPlasmaC.
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "interp_bridge/torch_setup.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::size_t kMaxChanges = 100'000;
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// True if `text` begins with `word`, which is in lower case.
+bool begins(std::string_view text, std::string_view word) {
+  return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(),
+                                                  [](char a, char b) { return a == lower(b); });
+}
+
+/// As the filter compares it: from `at` to the comment, in lower case, without blanks.
+std::string bare(std::string_view text) {
+  constexpr std::size_t kLongest = 200;
+  std::string out;
+  for (const char c : text.substr(0, kLongest)) {
+    if (c == '(' || c == ';' || c == '\n') break;
+    if (!is_blank(c)) out += lower(c);
+  }
+  return out;
+}
+
+/// Nothing but blanks and an N word stand before `at` in its line.
+bool begins_line(std::string_view text, std::size_t at) {
+  bool number = false;
+  while (at > 0 && text[at - 1] != '\n') {
+    const char c = text[--at];
+    if (is_blank(c) || (c >= '0' && c <= '9') || c == '.') continue;
+    if (lower(c) != 'n' || number) return false;
+    number = true;
+  }
+  return true;
+}
+
+std::uint32_t lines_before(std::string_view text, std::size_t from, std::size_t at) {
+  const auto part = text.substr(from, at - from);
+  return static_cast<std::uint32_t>(std::count(part.begin(), part.end(), '\n'));
+}
+
+}  // namespace
+
+FilterModes TorchText::modes_at(std::uint32_t line) const {
+  const auto after = std::upper_bound(
+      changes.begin(), changes.end(), line,
+      [](std::uint32_t wanted, const Change& change) { return wanted < change.line; });
+  return after == changes.begin() ? FilterModes{} : std::prev(after)->modes;
+}
+
+void TorchTextScanner::add(std::string_view text) {
+  if (text.find(";qtplasmac filtered") != text.npos) found_.is_filtered = true;
+  if (text.find(";conversational block") != text.npos) conversational_ = true;
+  for (std::size_t at = text.find("(o="); at != text.npos && !found_.is_qtplasmac;
+       at = text.find("(o=", at + 1)) {
+    found_.is_qtplasmac = begins_line(text, at);
+  }
+  const std::uint32_t lines_of_earlier = lines_;
+  std::size_t counted_to = 0;
+  std::uint32_t number = 1;
+  for (std::size_t at = text.find("#<"); at != text.npos; at = text.find("#<", at + 1)) {
+    const std::string_view name = text.substr(at + 2, 20);
+    const bool pin = begins(name, "_hal[");
+    if (!pin && !begins_line(text, at)) continue;
+    number += lines_before(text, counted_to, at);
+    counted_to = at;
+    if (pin) {
+      if (found_.hal_line == 0) found_.hal_line = lines_of_earlier + number;
+      const std::string_view owner = name.substr(5);
+      found_.is_qtplasmac |= begins(owner, "plasmac.") || begins(owner, "qtplasmac.");
+    } else {
+      set_mode(text.substr(at), lines_of_earlier + number);
+    }
+  }
+  lines_ += lines_before(text, 0, text.size());
+}
+
+void TorchTextScanner::set_mode(std::string_view line, std::uint32_t number) {
+  const std::string code = bare(line);
+  const std::size_t close = code.find(">=");
+  if (close == code.npos) return;
+  const std::string_view name = std::string_view(code).substr(2, close - 2);
+  constexpr std::array<std::string_view, 7> kNames = {
+      "holes", "h_diameter", "m_diameter", "i_diameter", "h_velocity", "oclength", "pierce-only"};
+  const auto known = std::find(kNames.begin(), kNames.end(), name);
+  if (known == kNames.end()) return;
+  found_.is_qtplasmac = true;
+  double value = 0;
+  // The filter reads plain numbers only.
+  if (!read_material_number(std::string_view(code).substr(close + 2), value) || value < 0) return;
+  switch (known - kNames.begin()) {
+    case 0:
+      modes_.holes = value >= 1 && value <= 4;
+      modes_.arcs = value == 3 || value == 4;
+      modes_.overburn = value == 2 || value == 4;
+      break;
+    case 4:
+      modes_.velocity_percent = static_cast<float>(value);
+      break;
+    case 5:
+      modes_.overburn_length = static_cast<float>(value);
+      break;
+    case 6:
+      modes_.pierce_only |= value == 1;  // for the rest of the program
+      break;
+    default:
+      modes_.largest_diameter = static_cast<float>(value);
+      break;
+  }
+  if (found_.changes.size() >= kMaxChanges) return;
+  found_.changes.push_back({number, modes_});
+}
+
+TorchText TorchTextScanner::take() {
+  if (found_.is_filtered || conversational_) found_.changes.clear();
+  return std::move(found_);
+}
+
+}  // namespace kerf
