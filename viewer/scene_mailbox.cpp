@@ -24,6 +24,11 @@ void SceneMailbox::publish(SceneUpdate update) {
   if (wake_) wake_();
 }
 
+bool SceneMailbox::is_full() {
+  const std::lock_guard lock(slot_mutex_);
+  return slot_ != nullptr;
+}
+
 std::unique_ptr<SceneUpdate> SceneMailbox::take() {
   const std::lock_guard lock(slot_mutex_);
   return std::move(slot_);

@@ -22,6 +22,11 @@ class SceneMailbox {
   /// window.
   void publish(SceneUpdate update);
 
+  /// What was published last has not been taken yet: the window is busy drawing what it took
+  /// before. Who has more to tell may wait until it is free, instead of making what the next
+  /// news replace. Any thread.
+  bool is_full();
+
   /// What came since the last take(), or null. The window's thread.
   std::unique_ptr<SceneUpdate> take();
 

@@ -168,9 +168,9 @@ std::vector<std::string> dry_run(const ProgramTrack& track, const SessionOptions
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   const StockSetup setup =
-      make_stock(*options.blank, options.stock, "--stock", diagnostics, outcome);
+      make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
-  ToolBook book(tools, false);
+  ToolBook book(tools, ZMap::can_cut);
   FindingLog log;
   CutStage stage(*setup.stock, book, log, {});
   std::vector<std::string> digests;

@@ -2,24 +2,31 @@
 // all threads that the window has, by the software renderer and without a window.
 //
 //   bench_view [--program FILE] [--stock SPEC] [--tool N=SHAPE] [--cells N] [--speed X]
-//              [--seconds N] [--full-redraw on|off]
+//              [--seconds N] [--full-redraw on|off] [--follow on|off]
 //
-// Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. First plays it at
-// `speed` times its own time, drawing 1280x800 pixels at most 60 times a second: frames a second,
-// how long drawing took (p50, p99, longest), patches, memory. Afterwards the picture is compared
-// with one that is drawn anew: a wrong one ends the run. Then follows a machine that goes round and
-// round at 100 and 500 positions a second: time from a position's arrival to the end of the first
-// draw that shows it or a later one. Ends with 1 if playing missed kFramesPerS or kMostStall_ms.
+// Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. First goes through
+// it in steps of a sixtieth of a second at `speed` times its own time and draws each: processor
+// time a frame of the threads that share the work, which depends little on what else the machine
+// does. Then plays it at that speed, drawing 1280x800 pixels at most 60 times a second: frames a
+// second, how long drawing took (p50, p99, longest), patches, memory, processor time. Afterwards
+// the picture is compared with one that is drawn anew: a wrong one ends the run. Then follows a
+// machine that goes round and round at 100 and 500 positions a second: time from a position's
+// arrival to the end of the first draw that shows it or a later one. Ends with 1 if playing missed
+// kFramesPerS or kMostStall_ms.
 #include <fmt/format.h>
+#include <sys/prctl.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -58,6 +65,7 @@ struct Arguments {
   double speed = 50;
   double seconds = 20;
   bool local = true;
+  bool follow = true;
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -81,6 +89,36 @@ std::string spread(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
   return fmt::format("p50 {:.1f} ms, p99 {:.1f} ms, max {:.1f} ms", ms[ms.size() / 2],
                      ms[ms.size() * 99 / 100], ms.back());
+}
+
+/// New threads take over the name of the one that starts them.
+void name_thread(const char* name) { prctl(PR_SET_NAME, name); }
+
+/// Processor time that the threads of this program have had, by their names, in ms. The software
+/// renderer's are called llvmpipe-0, -1, ... and count together.
+std::map<std::string, double> processor_ms() {
+  std::map<std::string, double> by_name;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream name_file(thread.path() / "comm"), time_file(thread.path() / "schedstat");
+    std::string name;
+    double ns = 0;
+    if (!(name_file >> name) || !(time_file >> ns)) continue;
+    by_name[name.substr(0, name.find('-'))] += ns / 1e6;
+  }
+  return by_name;
+}
+
+/// What was used since `before`, for each of `frames`.
+std::string processor_use(const std::map<std::string, double>& before, double frames) {
+  std::string text;
+  double sum_ms = 0;
+  for (const auto& [name, ms] : processor_ms()) {
+    const auto known = before.find(name);
+    const double used_ms = (ms - (known == before.end() ? 0 : known->second)) / frames;
+    sum_ms += used_ms;
+    if (used_ms >= 0.01) text += fmt::format(", {} {:.2f} ms", name, used_ms);
+  }
+  return fmt::format("{:.2f} ms{}", sum_ms, text);
 }
 
 double p99(std::vector<double> ms) {
@@ -108,14 +146,20 @@ class Screen {
   bool turn() {
     const std::unique_ptr<SceneUpdate> update = mailbox_.take();
     if (!update && !renderer_.has_waiting()) return false;
-    if (update) {
-      patches_ += update->patches.size();
-      if (update->moment) moment_ = update->moment;
-      renderer_.apply(*update);
-      if (update->setup) camera_.fit(renderer_.fit_box(), kSize);
-    }
+    if (update) apply(*update);
     draw(options_);
     return true;
+  }
+
+  /// One frame of all that comes until `complete` and a while after.
+  void collect(const std::function<bool()>& complete) {
+    for (int quiet = 0; quiet < 4;) {
+      const std::unique_ptr<SceneUpdate> update = mailbox_.take();
+      if (update) apply(*update);
+      quiet = update || !complete() ? 0 : quiet + 1;
+      std::this_thread::sleep_for(std::chrono::milliseconds(4));
+    }
+    draw(options_);
   }
 
   /// As the window asks for it.
@@ -142,6 +186,13 @@ class Screen {
   const Moment* moment() const { return moment_.get(); }
 
  private:
+  void apply(const SceneUpdate& update) {
+    patches_ += update.patches.size();
+    if (update.moment) moment_ = update.moment;
+    renderer_.apply(update);
+    if (update.setup) camera_.fit(renderer_.fit_box(), kSize);
+  }
+
   void draw(const DrawOptions& options) {
     const Done done = renderer_.draw(camera_.projection(renderer_.depth_box(), kSize), options);
     if (!done) fail(done.error());
@@ -174,58 +225,116 @@ double cell_mm_of(const Arguments& arguments) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   const StockSetup setup =
-      make_stock(*options.blank, options.stock, "--stock", diagnostics, outcome);
+      make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
   const Vec3 size = setup.stock->bounds_mm().size();
   return std::max(size.x, size.y) / arguments.cells;
 }
 
+/// The program before its start, in the window, with all the threads that it has there.
+class Stage {
+ public:
+  explicit Stage(const Arguments& arguments) {
+    SessionOptions options = session_of(arguments);
+    options.stock.cell_mm = cell_mm_of(arguments);
+    Diagnostics diagnostics;
+    Outcome outcome = Outcome::kFailed;
+    std::unique_ptr<LoadedProgram> loaded = load_program(options, {}, diagnostics, outcome);
+    for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+    if (!loaded || loaded->player.track->empty()) fail("nothing to play");
+    loaded->player.blank->keep_cut_ids(true);
+    duration_s_ = loaded->player.track->duration_s();
+    ViewedProgram shown = viewed_program(*loaded, "bench");
+    name_thread("player");
+    view_.emplace(std::move(loaded->player), PlayerOptions{}, std::move(shown), mailbox_,
+                  commands_);
+    name_thread("window");
+    screen_.emplace(mailbox_, arguments.local);
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      name_thread("patches");
+      view_->run(stop);
+    });
+    screen_->settle([this] { return moment() != nullptr; });
+    send(DetailCommand{screen_->detail_mm()});
+    screen_->settle([this] { return moment() != nullptr; });
+    screen_->reset();
+  }
+  ~Stage() {
+    if (thread_.joinable()) close();
+  }
+
+  void send(ViewerCommand command) { commands_.push(std::move(command)); }
+  void close() {
+    send(CloseCommand{});
+    thread_.join();
+  }
+  Screen& screen() { return *screen_; }
+  /// As the window's thread sleeps.
+  void wait_for_news(std::chrono::duration<double> longest) {
+    std::unique_lock lock(news_mutex_);
+    news_come_.wait_for(lock, longest, [this] { return mailbox_.is_full(); });
+  }
+  const Moment* moment() const { return screen_->moment(); }
+  bool is_behind() { return view_->player().state()->behind; }
+  double duration_s() const { return duration_s_; }
+
+ private:
+  std::mutex news_mutex_;
+  std::condition_variable news_come_;
+  SceneMailbox mailbox_{[this] {
+    { const std::lock_guard lock(news_mutex_); }
+    news_come_.notify_one();
+  }};
+  CommandQueue commands_;
+  double duration_s_ = 0;
+  std::optional<PlayerView> view_;
+  std::optional<Screen> screen_;
+  std::jthread thread_;
+};
+
+void print_work(const DrawCounters& counters, const std::string& used) {
+  const double locals = static_cast<double>(std::max<std::uint64_t>(1, counters.local.frames));
+  fmt::print(
+      "  a local frame: {:.0f} pixels of {}, {:.0f} triangles, {:.0f} KB uploaded\n"
+      "  processor time a frame: {}\n",
+      static_cast<double>(counters.local.pixels) / locals, kSize.x * kSize.y,
+      static_cast<double>(counters.local.triangles) / locals,
+      static_cast<double>(counters.uploaded_bytes) / 1e3 / locals, used);
+}
+
 /// True if it was as good as asked for.
 bool play(const Arguments& arguments) {
-  SessionOptions options = session_of(arguments);
-  options.stock.cell_mm = cell_mm_of(arguments);
-  Diagnostics diagnostics;
-  Outcome outcome = Outcome::kFailed;
-  std::unique_ptr<LoadedProgram> loaded = load_program(options, {}, diagnostics, outcome);
-  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
-  if (!loaded || loaded->player.track->empty()) fail("nothing to play");
-  loaded->player.blank->keep_cut_ids(true);
-  const double duration_s = loaded->player.track->duration_s();
-  SceneMailbox mailbox;
-  CommandQueue commands;
-  ViewedProgram shown = viewed_program(*loaded, "bench");
-  PlayerView view(std::move(loaded->player), {}, std::move(shown), mailbox, commands);
-  Screen screen(mailbox, arguments.local);
-  std::jthread thread([&](const std::stop_token& stop) { view.run(stop); });
-  screen.settle([&] { return screen.moment() != nullptr; });
-  commands.push(DetailCommand{screen.detail_mm()});
-  screen.settle([&] { return screen.moment() != nullptr; });
-  screen.reset();
-  commands.push(SpeedCommand{arguments.speed});
-  commands.push(PlayCommand{});
+  Stage stage(arguments);
+  Screen& screen = stage.screen();
+  const std::map<std::string, double> processor_before = processor_ms();
+  stage.send(SpeedCommand{arguments.speed});
+  stage.send(PlayCommand{});
   std::vector<double> frame_ms;
   const Clock::time_point begin = Clock::now();
   double seconds = 0;
   std::size_t behind = 0;
-  for (std::uint64_t tick = 0; seconds < arguments.seconds; ++tick) {
+  for (std::uint64_t tick = 0; seconds < arguments.seconds;) {
     std::this_thread::sleep_until(
         begin + std::chrono::duration_cast<Clock::duration>(
                     std::chrono::duration<double>(static_cast<double>(tick) / kFramesPerS)));
+    stage.wait_for_news(std::chrono::duration<double>(1 / kFramesPerS));
     const Clock::time_point start = Clock::now();
     if (screen.turn()) frame_ms.push_back(ms_since(start));
     // A frame that took longer than its time delays those after it; they are not made up for.
     seconds = ms_since(begin) / 1e3;
-    tick = std::max(tick, static_cast<std::uint64_t>(seconds * kFramesPerS));
-    if (screen.moment()->state == PlayState::kEnded) break;
-    if (view.player().state()->behind) ++behind;
+    tick = std::max(tick + 1, static_cast<std::uint64_t>(seconds * kFramesPerS));
+    if (stage.moment()->state == PlayState::kEnded) break;
+    if (stage.is_behind()) ++behind;
   }
-  const double played_s = screen.moment()->time_s;
+  const double played_s = stage.moment()->time_s;
   const DrawCounters counters = screen.counters();
-  commands.push(PauseCommand{});
-  screen.settle([&] { return screen.moment()->state != PlayState::kPlaying; });
+  const std::string used =
+      processor_use(processor_before, std::max(1.0, static_cast<double>(frame_ms.size())));
+  const double patches_per_s = static_cast<double>(screen.patches()) / seconds;
+  stage.send(PauseCommand{});
+  screen.settle([&] { return stage.moment()->state != PlayState::kPlaying; });
   screen.check();
-  commands.push(CloseCommand{});
-  thread.join();
+  stage.close();
   const double frames_per_s = static_cast<double>(frame_ms.size()) / seconds;
   fmt::print("play {}x, {} cells a side, {}: {:.1f} frames/s, frame {}\n", arguments.speed,
              arguments.cells, arguments.local ? "local" : "full redraw", frames_per_s,
@@ -233,14 +342,39 @@ bool play(const Arguments& arguments) {
   fmt::print(
       "  {:.0f} s of {:.0f} s of the program in {:.1f} s ({:.1f}x); {:.0f} patches/s; frames: {} "
       "full, {} local, {} still; behind in {} frames; peak {:.0f} MB; load average {}\n",
-      played_s, duration_s, seconds, played_s / seconds,
-      static_cast<double>(screen.patches()) / seconds, counters.full.frames, counters.local.frames,
-      counters.still.frames, behind, peak_rss_mb(), load_average());
-  const double locals = static_cast<double>(std::max<std::uint64_t>(1, counters.local.frames));
-  fmt::print("  a local frame: {:.0f} pixels of {}, {:.0f} triangles\n",
-             static_cast<double>(counters.local.pixels) / locals, kSize.x * kSize.y,
-             static_cast<double>(counters.local.triangles) / locals);
+      played_s, stage.duration_s(), seconds, played_s / seconds, patches_per_s,
+      counters.full.frames, counters.local.frames, counters.still.frames, behind, peak_rss_mb(),
+      load_average());
+  print_work(counters, used);
   return frames_per_s >= kFramesPerS * kFrameSlack && p99(frame_ms) <= kMostStall_ms;
+}
+
+/// The same frames, however much else the machine has to do: each is waited for until all that has
+/// changed by then is there to be drawn. What they cost says whether kFramesPerS can be reached.
+void play_in_steps(const Arguments& arguments) {
+  Stage stage(arguments);
+  Screen& screen = stage.screen();
+  // Checks that run ahead are done first, as they have nothing to do with drawing.
+  stage.send(SeekEndCommand{});
+  screen.settle([&] { return stage.moment()->state == PlayState::kEnded; });
+  stage.send(SeekTimeCommand{0});
+  screen.settle([&] { return stage.moment()->time_s == 0; });
+  screen.reset();
+  const std::map<std::string, double> processor_before = processor_ms();
+  const double step_s = arguments.speed / kFramesPerS;
+  std::size_t frames = 0;
+  for (double at_s = step_s; at_s < stage.duration_s(); at_s += step_s, ++frames) {
+    stage.send(SeekTimeCommand{at_s});
+    screen.collect([&] { return std::abs(stage.moment()->time_s - at_s) < 1e-6; });
+  }
+  const std::string used = processor_use(processor_before, static_cast<double>(frames));
+  const DrawCounters counters = screen.counters();
+  const std::size_t patches = screen.patches();
+  screen.check();
+  stage.close();
+  fmt::print("play in {} steps of 1/{:g} s at {}x: {:.1f} patches a frame\n", frames, kFramesPerS,
+             arguments.speed, static_cast<double>(patches) / static_cast<double>(frames));
+  print_work(counters, used);
 }
 
 /// A machine that goes round in the blank, a position every period.
@@ -366,8 +500,11 @@ int run(const Arguments& arguments) {
   const Result<GlContext> context = GlContext::create_offscreen();
   if (!context) fail(context.error());
   fmt::print("{}\n", SceneRenderer::gl_name());
+  play_in_steps(arguments);
   const bool good = play(arguments);
-  for (const double rate_hz : {100.0, 500.0}) follow(arguments, rate_hz);
+  for (const double rate_hz : {100.0, 500.0}) {
+    if (arguments.follow) follow(arguments, rate_hz);
+  }
   fmt::print("60 frames/s, p99 within {:g} ms while playing: {}\n", kMostStall_ms,
              good ? "good" : "BAD");
   return good ? 0 : 1;
@@ -393,6 +530,8 @@ Arguments understand(int argc, char** argv) {
       arguments.seconds = std::max(1.0, std::atof(value));
     } else if (name == "--full-redraw") {
       arguments.local = std::string_view(value) != "on";
+    } else if (name == "--follow") {
+      arguments.follow = std::string_view(value) != "off";
     } else {
       fail(fmt::format("{} is not known", name));
     }

@@ -202,6 +202,36 @@ TEST_F(SceneRendererTest, EveryObjectCanBeHidden) {
   }
 }
 
+TEST_F(SceneRendererTest, OfALongPathThatPassesPartByPartTheSamePixelsAsAnew) {
+  TestWorkpiece workpiece(200, 170);
+  SceneRenderer scene = renderer();
+  SceneUpdate first = first_update(&workpiece);
+  std::vector<PathVertex> path;
+  for (int i = 0; i < 6000; ++i) {
+    const auto along = static_cast<float>(i % 100), row = static_cast<float>(i / 100);
+    path.push_back({{i / 100 % 2 == 0 ? along : 99 - along, 1.2f * row, 5}, PathKind::kFeed});
+  }
+  first.path = path_chunks(path);
+  scene.apply(first);
+  const Projection projection = view_of(scene);
+  draw(&scene, projection, everything_);
+  DrawOptions anew = everything_;
+  anew.is_local = false;
+  for (const std::uint64_t past : {30u, 70u, 1000u, 4090u, 4100u, 5990u, 500u}) {
+    Moment moment;
+    moment.past_vertices = past;
+    SceneUpdate update;
+    update.moment = std::make_shared<const Moment>(moment);
+    scene.apply(update);
+    draw(&scene, projection, everything_);
+    const Picture kept = scene.read();
+    draw(&scene, projection, anew);
+    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << past;
+    draw(&scene, projection, everything_);
+  }
+  EXPECT_GE(scene.counters().local.frames, 7u);
+}
+
 TEST_F(SceneRendererTest, ClearsForgetTheWorkpiece) {
   TestWorkpiece workpiece(64, 64);
   SceneRenderer scene = renderer();

@@ -98,6 +98,34 @@ TEST_F(WindowFaultTest, ALostDisplayEndsItCleanly) {
       testing::ExitedWithCode(0), "the window is gone: the connection to the display .* broke");
 }
 
+/// Another program destroys it, without asking: as if its user had closed it.
+TEST_F(WindowFaultTest, ADestroyedWindowIsAClosedOne) {
+  const TemporaryFolder folder;
+  settings_file_ = folder.path() + "/kerf/view.conf";
+  open();
+  key("p");
+  settle();
+  static_cast<void>(commands_.take());
+  ASSERT_TRUE(xdotool("search --onlyvisible --name kerf windowclose >/dev/null"));
+  bool is_open = true;
+  for (int i = 0; i < 1000 && is_open; ++i) {
+    const Result<bool> frame = window_->frame(0.01);
+    ASSERT_TRUE(frame) << frame.error();
+    is_open = *frame;
+  }
+  EXPECT_FALSE(is_open);
+  const auto commands = commands_.take();
+  ASSERT_FALSE(commands.empty());
+  EXPECT_TRUE(std::holds_alternative<CloseCommand>(commands.back()));
+  const ViewSettings before = window_->settings();
+  window_.reset();
+  Diagnostics faults;
+  const ViewSettings settings = load_settings(settings_file_, &faults);
+  EXPECT_TRUE(faults.empty());
+  EXPECT_FALSE(settings.is_perspective);
+  EXPECT_EQ(settings.width_px, before.width_px) << "it has no size to remember any more";
+}
+
 TEST_F(WindowFaultTest, SettingsAreRemembered) {
   const TemporaryFolder folder;
   settings_file_ = folder.path() + "/kerf/view.conf";

@@ -38,19 +38,15 @@ void by_tool(const ProgramTrack& track, const std::vector<NamedTool>& tools, Cut
   }
   for (const NamedTool& tool : tools) {
     const auto place = places.find(tool.number);
-    colors.legend.push_back(
-        {color_of_number(place->second), fmt::format("T{} {}", tool.number, tool.name)});
+    colors.legend.push_back({color_of_number(place->second), legend_text(tool)});
   }
 }
 
 void by_lines(const ColorCommand& wanted, const ProgramTrack& track, CutColors& colors) {
   for (std::size_t i = 0; i < track.size(); ++i) {
-    const SourceRef source = track.source(i);
-    const auto line = static_cast<std::int64_t>(source.line);
-    const bool chosen = source.file == 0 && line >= wanted.first_line && line <= wanted.last_line;
-    colors.of_move[i] = chosen ? kChosen : kNotChosen;
+    colors.of_move[i] = color_of_line(wanted, track.source(i));
   }
-  colors.legend = {{kChosen, fmt::format("{} - {}", wanted.first_line, wanted.last_line)}};
+  colors.legend = {line_range_entry(wanted)};
 }
 
 /// Classes by equal numbers of moves, bounds rounded to two digits for reading.
@@ -85,6 +81,20 @@ void by_rate(const ProgramTrack& track, const std::vector<float>& removed_mm3, C
 }  // namespace
 
 std::uint32_t color_of_number(std::size_t number) { return kNumbered[number % kNumbered.size()]; }
+
+std::string legend_text(const NamedTool& tool) {
+  return fmt::format("T{} {}", tool.number, tool.name);
+}
+
+std::uint32_t color_of_line(const ColorCommand& wanted, const SourceRef& source) {
+  const auto line = static_cast<std::int64_t>(source.line);
+  const bool chosen = source.file == 0 && line >= wanted.first_line && line <= wanted.last_line;
+  return chosen ? kChosen : kNotChosen;
+}
+
+ColorLegendEntry line_range_entry(const ColorCommand& wanted) {
+  return {kChosen, fmt::format("{} - {}", wanted.first_line, wanted.last_line)};
+}
 
 std::shared_ptr<const CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
                                             const std::vector<NamedTool>& tools,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "twin/playback/program_track.h"
@@ -18,6 +19,12 @@ struct NamedTool {
   int number = 0;
   std::string name;
 };
+
+/// "T3 ball 6".
+std::string legend_text(const NamedTool& tool);
+/// For ColorBy::kLineRange: of cuts by this line, and what the colour of the lines asked for means.
+std::uint32_t color_of_line(const ColorCommand& wanted, const SourceRef& source);
+ColorLegendEntry line_range_entry(const ColorCommand& wanted);
 
 /// For kTool, kRemovalRate and kLineRange; null for the others. `removed_mm3`: by motion, as far as
 /// the program has been cut; what lies beyond counts as unknown.

@@ -3,7 +3,9 @@
 
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "twin/view/frame_lines.h"
 #include "twin/view/frame_moves.h"
 #include "twin/view/frame_road.h"
 #include "twin/view/frame_tool.h"
@@ -32,9 +34,10 @@ std::size_t low_cells(const HeightGrid& grid) {
 }
 
 /// The tool over what lies behind it; depths of both are of one projection.
-void lay_over(const RayCaster& tool, const DepthPicture& behind, Picture* picture) {
-  for (std::size_t pixel = 0; pixel < behind.depths.size(); ++pixel) {
-    if (tool.depths()[pixel] >= behind.depths[pixel]) continue;
+void lay_over(const RayCaster& tool, Picture* picture, std::vector<float>* depths) {
+  for (std::size_t pixel = 0; pixel < depths->size(); ++pixel) {
+    if (tool.depths()[pixel] >= (*depths)[pixel]) continue;
+    (*depths)[pixel] = tool.depths()[pixel];
     for (std::size_t k = 3 * pixel; k < 3 * pixel + 3; ++k) {
       picture->rgb[k] = tool.picture().rgb[k];
     }
@@ -47,7 +50,8 @@ class CsgRoad final : public FrameRoad {
       : context_(std::move(context)),
         renderer_(std::move(renderer)),
         moves_(std::move(moves)),
-        projection_(frame_projection(start)) {}
+        projection_(frame_projection(start)),
+        lines_(start, projection_) {}
 
   Done can_reach(const TrackPlace& place) override {
     if (std::tie(place.motion, place.fraction) <= std::tie(reach_.motion, reach_.fraction)) {
@@ -71,7 +75,9 @@ class CsgRoad final : public FrameRoad {
     Picture picture = renderer_.read();
     tool_.show(*state, caster_);
     caster_.draw(projection_);
-    lay_over(caster_, renderer_.read_depth(), &picture);
+    std::vector<float> depths = renderer_.read_depth().depths;
+    lay_over(caster_, &picture, &depths);
+    lines_.draw(state->place, &picture, &depths);
     return picture;
   }
 
@@ -91,6 +97,7 @@ class CsgRoad final : public FrameRoad {
   CsgRenderer renderer_;
   FrameMoves moves_;
   Projection projection_;
+  FrameLines lines_;
   RayCaster caster_{ray_threads()};  // of the tool alone
   FrameTool tool_;
   TrackPlace place_;  ///< the moves up to here are subtracted

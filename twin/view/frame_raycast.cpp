@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "twin/motion_geometry.h"
 #include "twin/view/drawn_machine.h"
+#include "twin/view/frame_lines.h"
 #include "twin/view/frame_road.h"
 #include "twin/view/frame_tool.h"
 #include "twin/view/tool_shape.h"
@@ -17,7 +19,8 @@ constexpr int kMostThreads = 8;
 
 class RaycastRoad final : public FrameRoad {
  public:
-  explicit RaycastRoad(const RoadStart& start) : projection_(frame_projection(start)) {}
+  explicit RaycastRoad(const RoadStart& start)
+      : projection_(frame_projection(start)), lines_(start, projection_) {}
 
   Result<Picture> draw(const std::shared_ptr<const PlayerState>& state) override {
     if (stock_ != state->stock) {
@@ -26,11 +29,15 @@ class RaycastRoad final : public FrameRoad {
     }
     tool_.show(*state, caster_);
     caster_.draw(projection_);
-    return caster_.picture();
+    Picture picture = caster_.picture();
+    std::vector<float> depths(caster_.depths().begin(), caster_.depths().end());
+    lines_.draw(state->place, &picture, &depths);
+    return picture;
   }
 
  private:
   Projection projection_;
+  FrameLines lines_;
   RayCaster caster_{ray_threads()};
   FrameTool tool_;
   std::shared_ptr<const StockModel> stock_;

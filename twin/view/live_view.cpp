@@ -70,7 +70,7 @@ LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& ma
       next_(next),
       mailbox_(mailbox),
       commands_(commands),
-      book_(options_.tools, true) {
+      book_(options_.tools, nullptr) {
   publish_start();
   news_.stock = options_.stock;
   thread_ = std::jthread([this](std::stop_token stop) { run(std::move(stop)); });
@@ -130,8 +130,20 @@ void LiveView::note_tool(int tool, const Cutter* cutter, News& news) {
   news.tool_name = cutter ? tool_name_of(*cutter) : std::string();
 }
 
+/// Labels, with the names of their tools.
+void LiveView::note_labels(std::span<const CutLabel> labels, News& news) {
+  if (labels.size() <= noted_labels_) return;
+  for (const CutLabel& label : labels.subspan(noted_labels_)) {
+    news.labels.push_back(label);
+    if (!noted_tools_.insert(label.tool).second) continue;
+    const ResolvedTool& tool = book_.mount(label.tool, 0);
+    news.tools.push_back({label.tool, tool.cutter ? tool_name_of(*tool.cutter) : std::string()});
+  }
+  noted_labels_ = labels.size();
+}
+
 void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
-                        std::span<const Vec3> trail) {
+                        std::span<const Vec3> trail, std::span<const CutLabel> labels) {
   // So that tiles that were only passed over count as unchanged.
   stock.take_dirty_tiles();
   std::shared_ptr<const StockModel> snapshot = stock.snapshot();
@@ -141,14 +153,17 @@ void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatu
   news_.status_at = Clock::now();
   news_.trail.insert(news_.trail.end(), trail.begin(), trail.end());
   note_tool(status.place.tool, cutter, news_);
+  note_labels(labels, news_);
   arrived_.notify_one();
 }
 
-void LiveView::end(const StockModel* stock, const std::stop_token& stop) {
+void LiveView::end(const StockModel* stock, std::span<const CutLabel> labels,
+                   const std::stop_token& stop) {
   const std::stop_callback ends(stop, [this] { thread_.request_stop(); });
   {
     const std::lock_guard lock(mutex_);
     if (stock) news_.stock = stock->snapshot();
+    note_labels(labels, news_);
     arrived_.notify_one();
   }
   if (thread_.joinable()) thread_.join();
@@ -183,6 +198,7 @@ void LiveView::run(std::stop_token stop) {
       if (!obey(command)) closed_ = true;
     }
     take_news(news);
+    if (auto colors = colors_.take(Clock::now())) update_.colors = std::move(colors);
     update_.patches = feeder_.make_until(Clock::now() + kPatchSlice);
     if (program_path_ && !program_path_->complete()) {
       auto chunks = program_path_->next_chunks();
@@ -205,14 +221,8 @@ bool LiveView::obey(const ViewerCommand& command) {
       [&](const auto& c) {
         using Command = std::decay_t<decltype(c)>;
         if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.pixel_mm);
-        if constexpr (std::is_same_v<Command, ColorCommand>) {
-          if (program_) update_.colors = cut_colors(c, *program_->track, program_->tools, {});
-        }
-        if constexpr (std::is_same_v<Command, PickCommand>) {
-          auto picked = std::make_shared<PickedPoint>();
-          picked->point_mm = c.point_mm;
-          update_.picked = std::move(picked);
-        }
+        if constexpr (std::is_same_v<Command, ColorCommand>) colors_.choose(c);
+        if constexpr (std::is_same_v<Command, PickCommand>) update_.picked = who_cut(c.point_mm);
         if constexpr (std::is_same_v<Command, CloseCommand>) {
           goes_on = false;
           if (options_.on_close) options_.on_close();
@@ -237,8 +247,32 @@ bool LiveView::obey(const ViewerCommand& command) {
   return goes_on;
 }
 
+/// The time is that of the line's first motion in the program, if there is one.
+std::shared_ptr<const PickedPoint> LiveView::who_cut(const Vec3& point_mm) const {
+  auto picked = std::make_shared<PickedPoint>();
+  picked->point_mm = point_mm;
+  const std::optional<std::uint32_t> id = stock_ ? stock_->cut_id_at(point_mm) : std::nullopt;
+  const CutLabel* const label = id ? colors_.label(*id) : nullptr;
+  if (!label) return picked;
+  picked->tool = label->tool;
+  picked->tool_name = colors_.name_of(label->tool);
+  picked->file = static_cast<int>(label->source.file);
+  picked->line = static_cast<int>(label->source.line);
+  const ProgramTrack* const track = program_ ? program_->track.get() : nullptr;
+  for (std::size_t i = 0; track && label->source.line > 0 && i < track->size(); ++i) {
+    if (track->source(i) != label->source) continue;
+    picked->time_s = track->start_s(i);
+    break;
+  }
+  return picked;
+}
+
 void LiveView::take_news(News& news) {
-  if (news.stock) feeder_.follow(std::move(news.stock));
+  if (news.stock) {
+    stock_ = std::move(news.stock);
+    feeder_.follow(stock_);
+  }
+  colors_.add(news.labels, news.tools);
   if (news.tool_shape) {
     update_.tool_shape = std::move(news.tool_shape);
     tool_name_ = std::move(news.tool_name);
@@ -273,6 +307,7 @@ void LiveView::take_news(News& news) {
 }
 
 void LiveView::show_program(LiveProgram& program) {
+  colors_.set_program_tools(program.tools);
   update_.program = read_program_text(program.files);
   program_path_ = std::make_unique<TrackPath>(program.track);
   update_.path_chunk_count = 0;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -15,6 +17,7 @@
 #include "twin/machine_model/machine_model.h"
 #include "twin/playback/program_track.h"
 #include "twin/view/cut_colors.h"
+#include "twin/view/live_colors.h"
 #include "twin/view/patch_feeder.h"
 #include "twin/view/track_path.h"
 #include "viewer/scene_mailbox.h"
@@ -65,10 +68,10 @@ class LiveView final : public LiveObserver {
   void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override;
   bool wants_frames() const override { return true; }
   void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
-                std::span<const Vec3> trail) override;
+                std::span<const Vec3> trail, std::span<const CutLabel> labels) override;
 
   /// Shows the workpiece as it was left, until the window is closed or `stop` is asked for.
-  void end(const StockModel* stock, const std::stop_token& stop);
+  void end(const StockModel* stock, std::span<const CutLabel> labels, const std::stop_token& stop);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -82,6 +85,8 @@ class LiveView final : public LiveObserver {
     Clock::time_point status_at;
     std::vector<Vec3> trail;
     std::vector<SceneFinding> findings;  ///< those that are new
+    std::vector<CutLabel> labels;        ///< those that are new
+    std::vector<NamedTool> tools;        ///< that are new among the labels
     std::unique_ptr<LiveProgram> program;
   };
 
@@ -93,6 +98,8 @@ class LiveView final : public LiveObserver {
   void extend_path(const std::vector<Vec3>& trail);
   std::shared_ptr<const Moment> moment_now();
   void note_tool(int tool, const Cutter* cutter, News& news);
+  void note_labels(std::span<const CutLabel> labels, News& news);
+  std::shared_ptr<const PickedPoint> who_cut(const Vec3& point_mm) const;
 
   LiveViewOptions options_;
   LiveObserver& next_;
@@ -105,8 +112,12 @@ class LiveView final : public LiveObserver {
   // of the session's thread
   ToolBook book_;
   std::string shown_spec_;
+  std::size_t noted_labels_ = 0;
+  std::set<int> noted_tools_;
   // of the view's thread
   PatchFeeder feeder_;
+  std::shared_ptr<const StockModel> stock_;  ///< the newest; null: none yet
+  LiveColors colors_;
   std::vector<SceneFinding> findings_;
   std::unique_ptr<LiveProgram> program_;
   std::unique_ptr<TrackPath> program_path_;

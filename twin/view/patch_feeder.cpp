@@ -1,7 +1,10 @@
 #include "twin/view/patch_feeder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <map>
 #include <utility>
 
 #include "twin/compare/patch_deviation.h"
@@ -20,17 +23,70 @@ void PatchFeeder::follow(std::shared_ptr<const StockModel> stock) {
   const bool same_blank = stock_ && stock && shown_.size() == tiles &&
                           stock_->bounds_mm() == stock->bounds_mm() &&
                           stock_->cell_mm() == stock->cell_mm();
-  if (!same_blank) {
+  if (same_blank) {
+    for (const std::uint32_t tile : stock->differing_tiles(*stock_)) {
+      for (const std::uint32_t near : neighbors_[tile]) shown_[near].is_old = true;
+    }
+  } else {
     shown_.assign(tiles, {});
     triangles_ = 0;
     next_ = 0;
-    if (stock && pixel_mm_ == 0) {
-      const Vec3 size = stock->bounds_mm().size();
-      pixel_mm_ = std::max({size.x, size.y, size.z}) / kUsualPixels;
-    }
+    if (stock) start_anew(*stock);
   }
   stock_ = std::move(stock);
   behind_ = stock_ != nullptr;
+}
+
+void PatchFeeder::start_anew(const StockModel& stock) {
+  find_neighbors(stock);
+  if (pixel_mm_ > 0) return;
+  const Vec3 size = stock.bounds_mm().size();
+  pixel_mm_ = std::max({size.x, size.y, size.z}) / kUsualPixels;
+}
+
+/// However the tiles lie: the middles of two that touch are no farther apart than the longest of
+/// all their edges.
+void PatchFeeder::find_neighbors(const StockModel& stock) {
+  const auto tiles = static_cast<std::uint32_t>(stock.tile_count());
+  Vec3 longest(0.0);
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) {
+    longest = glm::max(longest, stock.tile_box(tile).size());
+  }
+  using Place = std::array<int, 3>;
+  const auto place_of = [&](std::uint32_t tile) {
+    const Box box = stock.tile_box(tile);
+    const Vec3 at = 0.5 * (box.min + box.max) - stock.bounds_mm().min;
+    Place place{};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (longest[axis] > 0) {
+        place[static_cast<std::size_t>(axis)] =
+            static_cast<int>(std::floor(at[axis] / longest[axis]));
+      }
+    }
+    return place;
+  };
+  std::map<Place, std::vector<std::uint32_t>> by_place;
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) by_place[place_of(tile)].push_back(tile);
+  neighbors_.assign(tiles, {});
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) {
+    const Place at = place_of(tile);
+    for (int near = 0; near < 27; ++near) {
+      const auto found =
+          by_place.find({at[0] + near % 3 - 1, at[1] + near / 3 % 3 - 1, at[2] + near / 9 - 1});
+      if (found == by_place.end()) continue;
+      neighbors_[tile].insert(neighbors_[tile].end(), found->second.begin(), found->second.end());
+    }
+  }
+}
+
+/// Back to what was shown before: not old any more.
+bool PatchFeeder::is_old(std::size_t tile) {
+  Shown& shown = shown_[tile];
+  if (shown.is_old && shown.level >= 0 &&
+      shown.version == stock_->patch_version(static_cast<std::uint32_t>(tile))) {
+    shown.is_old = false;
+  }
+  return shown.is_old;
 }
 
 void PatchFeeder::set_detail(double pixel_mm) {
@@ -66,7 +122,7 @@ std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::tim
     Shown& shown = shown_[tile];
     const auto triangles = static_cast<std::uint32_t>(made_patch->indices.size() / 3);
     triangles_ = triangles_ - shown.triangles + triangles;
-    shown = {made_patch->version, triangles, level};
+    shown = {made_patch->version, triangles, level, false};
     made.push_back(std::move(made_patch));
   };
   const auto late = [&] { return !made.empty() && Clock::now() >= deadline; };
@@ -76,10 +132,7 @@ std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::tim
   for (const bool cut_ones : {true, false}) {
     for (std::size_t i = 0; i < tiles; ++i) {
       const std::size_t tile = (next_ + i) % tiles;
-      const Shown& shown = shown_[tile];
-      const bool cut = shown.level < 0 ||
-                       shown.version != stock_->patch_version(static_cast<std::uint32_t>(tile));
-      if (cut_ones ? !cut : shown.level == level) continue;
+      if (cut_ones ? !is_old(tile) : shown_[tile].level == level) continue;
       make(tile);
       if (late()) {
         next_ = (tile + 1) % tiles;

@@ -14,8 +14,10 @@
 namespace kerf {
 
 /// Compares a workpiece with what was handed out before and makes the patches of the tiles that
-/// look different now. Works in slices, so that a jump across the program, which changes every
-/// tile, does not keep the moment from being shown. One thread.
+/// look different now: those in which something differs, and the ones about them, whose patches
+/// look over their borders. A tool that passes over cut cells changes nothing. Works in slices, so
+/// that a jump across the program, which changes every tile, does not keep the moment from being
+/// shown. One thread.
 class PatchFeeder {
  public:
   using Clock = std::chrono::steady_clock;
@@ -44,7 +46,11 @@ class PatchFeeder {
     std::uint64_t version = 0;
     std::uint32_t triangles = 0;
     std::int8_t level = -1;  ///< -1: never
+    bool is_old = true;      ///< it or one about it was cut since
   };
+  void start_anew(const StockModel& stock);
+  void find_neighbors(const StockModel& stock);
+  bool is_old(std::size_t tile);
   int wanted_level() const;
   std::shared_ptr<const MeshPatch> patch(std::uint32_t tile, int level) const;
 
@@ -52,6 +58,7 @@ class PatchFeeder {
   std::shared_ptr<const DesignPart> design_;
   double tolerance_mm_ = 0;
   std::vector<Shown> shown_;
+  std::vector<std::vector<std::uint32_t>> neighbors_;  ///< of each tile, itself among them
   double pixel_mm_ = 0;
   std::size_t next_ = 0;  ///< where looking for tiles goes on
   std::size_t triangles_ = 0;

@@ -42,6 +42,10 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   if (loaded.player.blank) shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
   shown.cuts = loaded.cuts;
   shown.planned = loaded.player.timeline.planner.with_path;
+  if (loaded.player.blank) {
+    shown.moves = MotionMoves::of(*loaded.player.blank, loaded.player.timeline.kinematics,
+                                  loaded.player.track->frame());
+  }
   const WorkpieceFrame& used = loaded.player.track->frame();
   for (const NamedOffset& offset : loaded.work_offsets) {
     if (offset.frame.g5x_mm == used.g5x_mm && offset.frame.g92_mm == used.g92_mm &&
@@ -59,7 +63,9 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
 }
 
 PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
-    : track_(std::move(track)), shown_(std::move(shown)), path_(track_, shown_.planned) {
+    : track_(std::move(track)),
+      shown_(std::move(shown)),
+      path_(track_, shown_.planned, shown_.moves) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
 }
 
@@ -139,7 +145,7 @@ bool PlayerScene::is_empty(const SceneUpdate& update) {
 SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
                                 Clock::time_point deadline) {
   SceneUpdate update = std::exchange(waiting_, {});
-  if (state != state_ || moment_stale_) {
+  if (state != state_ || moment_stale_ || is_removed_due(*state)) {
     if (!state_ || state->stock_number != shown_stock_) {
       shown_stock_ = state->stock_number;
       feeder_.follow(state->stock);
@@ -166,16 +172,29 @@ SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
   return update;
 }
 
-/// Summing over all cells takes milliseconds: not for every frame of one that plays.
+/// Summing over all cells takes milliseconds: not for every frame of one that plays, nor for every
+/// one of many steps.
+bool PlayerScene::is_removed_due(const PlayerState& state) const {
+  return state.stock && state.stock_number != removed_stock_ &&
+         Clock::now() - removed_at_ > kRemovedPeriod;
+}
+
 double PlayerScene::removed_mm3(const PlayerState& state) {
-  const auto now = Clock::now();
-  const bool due = state.mode == PlayerMode::kPaused || now - removed_at_ > kRemovedPeriod;
-  if (state.stock && due && state.stock_number != removed_stock_) {
+  if (is_removed_due(state)) {
     removed_mm3_ = state.stock->blank_mm3() - state.stock->remaining_mm3();
     removed_stock_ = state.stock_number;
-    removed_at_ = now;
+    removed_at_ = Clock::now();
   }
   return removed_mm3_;
+}
+
+ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
+  const ToolPath* const path = shown_.moves.path();
+  if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
+  const bool over = state.place.motion >= track_->size();  // the motion is the last one
+  const double fraction = over ? 1 : state.place.fraction;
+  return {path->pose_at(state.motion, fraction).origin_mm,
+          path->spindle_at(state.motion, fraction)};
 }
 
 std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
@@ -187,7 +206,7 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   moment->file = static_cast<int>(motion.source.file);
   moment->line = track_->empty() ? 0 : static_cast<int>(motion.source.line);
   moment->past_vertices = path_.past_vertices(state.place);
-  moment->tool_pose = ToolPose{state.tip_mm, Vec3(0, 0, 1)};
+  moment->tool_pose = tool_pose(state);
   moment->tool = motion.tool;
   if (state.cutter) moment->tool_name = tool_name_of(*state.cutter);
   if (motion.spindle != SpindleState::kStopped) {

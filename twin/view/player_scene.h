@@ -28,6 +28,7 @@ struct ViewedProgram {
   std::vector<LineSegment> blank_outline;
   std::string work_offset;  ///< "G54"; empty: not known
   bool planned = false;     ///< the track is of the path that the machine runs
+  MotionMoves moves;        ///< where tool and tip are in the workpiece
   std::vector<NamedTool> tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
   std::shared_ptr<const CutQuery> cuts;         ///< who cut a point; null: not told
@@ -66,7 +67,9 @@ class PlayerScene {
   bool behind() const { return feeder_.behind() || !path_.complete(); }
 
  private:
+  ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
+  bool is_removed_due(const PlayerState& state) const;
   double removed_mm3(const PlayerState& state);
 
   std::shared_ptr<const ProgramTrack> track_;

@@ -12,11 +12,18 @@ namespace {
 using std::chrono::milliseconds;
 
 /// How often the player's state is looked at while things move, and while they do not.
-constexpr milliseconds kQuick{4};
+constexpr milliseconds kQuick{2};
 constexpr milliseconds kSlow{100};
 /// Time for patches between two looks at the commands.
 constexpr milliseconds kPatchSlice{8};
+/// Twice as often as a window draws: there is a new state whenever it is free for the next one.
+constexpr milliseconds kStatePeriod{8};
 constexpr std::chrono::seconds kQuickAfterCommand{1};
+
+PlayerOptions with_frequent_states(PlayerOptions options) {
+  options.publish_period = std::min(options.publish_period, kStatePeriod);
+  return options;
+}
 
 }  // namespace
 
@@ -25,7 +32,7 @@ PlayerView::PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgr
     : track_(program.track),
       mailbox_(mailbox),
       commands_(commands),
-      player_(std::move(program), std::move(options)),
+      player_(std::move(program), with_frequent_states(std::move(options))),
       scene_(track_, std::move(shown)) {}
 
 void PlayerView::run(std::stop_token stop, std::optional<double> speed) {
@@ -104,7 +111,10 @@ void PlayerView::set_breakpoint(const BreakpointCommand& command) {
   scene_.set_controls(speed_, breakpoints_);
 }
 
+/// While the window is busy with one picture, one more is made for it, not several: of what moves,
+/// the states between would not be seen.
 void PlayerView::show() {
+  if (mailbox_.is_full()) return;
   state_ = player_.state();
   SceneUpdate update = scene_.update(state_, Clock::now() + kPatchSlice);
   if (!PlayerScene::is_empty(update)) mailbox_.publish(std::move(update));

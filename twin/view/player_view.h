@@ -17,7 +17,8 @@ namespace kerf {
 
 /// Stands between Player, which cuts in its own thread, and the window, which draws in the main
 /// one: in a third thread it makes what the window needs of what the player has. None waits for
-/// another: the newest state counts, and what was not drawn of older ones is skipped.
+/// another: the newest state counts, and what was not drawn of older ones is skipped. The next
+/// picture is made while the window draws the one before, and not before it has taken that.
 class PlayerView {
  public:
   /// `mailbox` and `commands` must outlive it.

@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t kChunksAtOnce = 16;
 constexpr double kSagitta_mm = 0.02;
+/// Of a tool whose tip alone is looked at.
+constexpr double kTipReach_mm = 1;
 constexpr double kGreatestStep_rad = 2 * kPi / 8;
 constexpr double kSmallestStep_rad = 2 * kPi / 360;
 
@@ -42,8 +44,10 @@ int chords_of(const ArcGeometry& arc, const Vec3& from_mm) {
 
 }  // namespace
 
-TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned)
-    : track_(std::move(track)), feed_kind_(planned ? PathKind::kPlanned : PathKind::kFeed) {
+TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned, MotionMoves moves)
+    : track_(std::move(track)),
+      feed_kind_(planned ? PathKind::kPlanned : PathKind::kFeed),
+      moves_(std::move(moves)) {
   first_vertex_.reserve(track_->size());
 }
 
@@ -71,10 +75,11 @@ void TrackPath::add(std::size_t motion) {
     first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
     return;
   }
+  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : feed_kind_;
+  if (moves_.path() != nullptr && add_tilted(motion, shown)) return;
   const Vec3 from_mm = track_->from_mm(motion);
   if (vertices_ == 0) push(from_mm, PathKind::kTraverse);
   first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
-  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : feed_kind_;
   if (kind == MotionKind::kArc) {
     const Motion arc = track_->motion(motion);
     const int chords = chords_of(arc.arc, arc.from_mm);
@@ -83,6 +88,18 @@ void TrackPath::add(std::size_t motion) {
     }
   }
   push(track_->to_mm(motion), shown);
+}
+
+/// False: the motion is one of an upright tool.
+bool TrackPath::add_tilted(std::size_t motion, PathKind kind) {
+  const Motion tilted = track_->motion(motion);
+  if (moves_.is_upright(tilted)) return false;
+  divided_.clear();
+  moves_.path()->moves_of(tilted, kTipReach_mm, motion, divided_);
+  if (vertices_ == 0 && !divided_.empty()) push(divided_.front().from_mm, PathKind::kTraverse);
+  first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+  for (const CutMove& move : divided_) push(move.to_mm, kind);
+  return true;
 }
 
 void TrackPath::push(const Vec3& at, PathKind kind) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "twin/motion_moves.h"
 #include "twin/playback/program_track.h"
 #include "viewer/scene.h"
 
@@ -19,7 +20,9 @@ class TrackPath {
   static constexpr std::size_t kMaxVertices = 100'000'000;
 
   /// `planned`: the track is of the path that the machine runs; its feeds are drawn as that.
-  explicit TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned = false);
+  /// `moves`: where the tip goes in the workpiece.
+  explicit TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned = false,
+                     MotionMoves moves = {});
 
   /// The chunks of the next motions, about 16 chunks in all; empty at the end.
   std::vector<std::shared_ptr<const PathChunk>> next_chunks();
@@ -30,10 +33,13 @@ class TrackPath {
 
  private:
   void add(std::size_t motion);
+  bool add_tilted(std::size_t motion, PathKind kind);
   void push(const Vec3& at, PathKind kind);
 
   std::shared_ptr<const ProgramTrack> track_;
   PathKind feed_kind_;
+  MotionMoves moves_;
+  std::vector<CutMove> divided_;
   std::size_t next_motion_ = 0;
   std::uint64_t vertices_ = 0;
   std::vector<std::uint32_t> first_vertex_;  ///< by motion: those before it are past

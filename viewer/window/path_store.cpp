@@ -145,11 +145,16 @@ void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
   const std::size_t before = chunk->values ? chunk->values->vertices.size() : 0;
   gpu_bytes_ += (values->vertices.size() - before) * sizeof(PathVertex);
   chunk->box_mm = {};
+  chunk->run_boxes_mm.clear();
   chunk->length_mm = 0.0;
   const std::vector<PathVertex>& vertices = values->vertices;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     chunk->box_mm.extend(Vec3(vertices[i].position_mm));
     if (i > 0) {
+      if ((i - 1) % kRunSegments == 0) {
+        chunk->run_boxes_mm.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
+      }
+      chunk->run_boxes_mm.back().extend(Vec3(vertices[i].position_mm));
       const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
       chunk->length_mm += static_cast<double>(glm::length(step));
     }
@@ -188,6 +193,10 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
 
 void PathStore::project(Chunk* chunk) const {
   chunk->rect = covered_rect(chunk->box_mm, projection_);
+  chunk->run_rects.clear();
+  for (const Box& box : chunk->run_boxes_mm) {
+    chunk->run_rects.push_back(covered_rect(box, projection_));
+  }
   chunk->pixel_mm = smallest_pixel_mm(chunk->box_mm, projection_);
 }
 
@@ -198,14 +207,36 @@ void PathStore::project(const Projection& projection) {
   choose_strides(&all);
 }
 
-void PathStore::draw_strip(const Chunk& chunk, std::size_t first, std::size_t stride,
-                           std::size_t vertices) const {
-  if (vertices < 2) return;
+/// `segments` of `stride` vertices each, the first one from vertex `first` on: those that come near
+/// the rectangle, as strips.
+void PathStore::draw_segments(const Chunk& chunk, const ScreenRect& rect, std::size_t first,
+                              std::size_t segments, std::size_t stride) const {
+  const auto is_seen = [&](std::size_t begin, std::size_t end) {  // vertices
+    for (std::size_t run = begin / kRunSegments; run * kRunSegments < end; ++run) {
+      if (chunk.run_rects[run].intersects(rect)) return true;
+    }
+    return false;
+  };
+  std::vector<GLint> firsts;
+  std::vector<GLsizei> counts;
+  const std::size_t at_once = std::max<std::size_t>(1, kRunSegments / stride);
+  std::size_t strip_end = 0;
+  for (std::size_t begin = 0; begin < segments; begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, segments);
+    if (!is_seen(first + begin * stride, first + end * stride)) continue;
+    if (counts.empty() || strip_end != begin) {
+      firsts.push_back(static_cast<GLint>(begin));
+      counts.push_back(1);
+    }
+    counts.back() += static_cast<GLsizei>(end - begin);
+    strip_end = end;
+  }
+  if (counts.empty()) return;
   point_to_vertices(first, stride);
-  const std::size_t chunk_begin = chunk.values->index * kPathChunkSegments;
-  program_.set("first_vertex", static_cast<int>(chunk_begin + first));
+  program_.set("first_vertex", static_cast<int>(chunk.values->index * kPathChunkSegments + first));
   program_.set("stride", static_cast<int>(stride));
-  glDrawArrays(GL_LINE_STRIP, 0, static_cast<GLsizei>(vertices));
+  glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
+                    static_cast<GLsizei>(counts.size()));
 }
 
 void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const {
@@ -227,8 +258,8 @@ void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_
     const std::size_t coarse = (count - 1) / chunk.stride;  // segments
     glBindVertexArray(chunk.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, chunk.vertices.name());
-    draw_strip(chunk, 0, chunk.stride, coarse + 1);
-    draw_strip(chunk, coarse * chunk.stride, 1, count - coarse * chunk.stride);
+    draw_segments(chunk, rect, 0, coarse, chunk.stride);
+    draw_segments(chunk, rect, coarse * chunk.stride, count - 1 - coarse * chunk.stride, 1);
   }
   glDisable(GL_LINE_SMOOTH);
 }

@@ -23,11 +23,13 @@ struct PathColors {
 
 /// A chunk whose segments are shorter than a pixel on average is drawn through every 2nd, 4th, ...
 /// of its vertices; all chunks are, further, while more than kDrawnVertices remain: ten million
-/// lines are more than there are pixels. Lines are antialiased up to kSmoothVertices.
+/// lines are more than there are pixels. Lines are antialiased up to kSmoothVertices. Of a chunk
+/// only what comes near the rectangle is drawn, in runs of kRunSegments.
 class PathStore {
  public:
   static constexpr std::size_t kDrawnVertices = 250'000;
   static constexpr std::size_t kSmoothVertices = 60'000;
+  static constexpr std::size_t kRunSegments = 32;
 
   static Result<PathStore> create();
 
@@ -55,7 +57,9 @@ class PathStore {
     GlVertexArray array;
     GlBuffer vertices;
     Box box_mm;
+    std::vector<Box> run_boxes_mm;
     ScreenRect rect;
+    std::vector<ScreenRect> run_rects;
     double length_mm = 0.0;
     double pixel_mm = 0.0;   // edge of a pixel at the point of the box that is nearest to the eye
     std::size_t stride = 1;  // from one drawn vertex to the next
@@ -66,8 +70,8 @@ class PathStore {
   void project(Chunk* chunk) const;
   /// Appends the boxes of chunks that are drawn through other vertices than before.
   void choose_strides(std::vector<Box>* changed_mm);
-  void draw_strip(const Chunk& chunk, std::size_t first, std::size_t stride,
-                  std::size_t vertices) const;
+  void draw_segments(const Chunk& chunk, const ScreenRect& rect, std::size_t first,
+                     std::size_t segments, std::size_t stride) const;
 
   GlProgram program_;
   std::vector<Chunk> chunks_;

@@ -63,6 +63,38 @@ void survive_lost_display() {
       display, [](_XDisplay*, void*) { display_is_lost = true; }, nullptr);
 }
 
+/// What Xlib tells of a request that failed, as Xlib lays it out.
+struct XError {
+  int type;
+  struct _XDisplay* display;
+  unsigned long resource;
+  unsigned long serial;
+  unsigned char code, request, minor;
+};
+constexpr unsigned char kBadWindow = 3, kBadDrawable = 9;
+
+std::atomic<unsigned long> window_id = 0;  // 0: none, or not X11
+std::atomic<bool> window_is_gone = false;
+
+/// Xlib ends the program at the first request that fails, such as drawing into a window that
+/// another program has destroyed. To be called when the window is there: GLFW sets Xlib's own way
+/// of failing again while it makes one.
+void survive_destroyed_window(GLFWwindow* window) {
+  using ErrorHandler = int (*)(struct _XDisplay*, const XError*);
+  const auto set_handler =
+      reinterpret_cast<ErrorHandler (*)(ErrorHandler)>(dlsym(RTLD_DEFAULT, "XSetErrorHandler"));
+  const auto get_id =
+      reinterpret_cast<unsigned long (*)(GLFWwindow*)>(dlsym(RTLD_DEFAULT, "glfwGetX11Window"));
+  if (set_handler == nullptr || get_id == nullptr) return;
+  window_id = get_id(window);
+  if (window_id == 0) return;
+  set_handler([](struct _XDisplay*, const XError* error) {
+    const bool is_ours = error->code == kBadWindow || error->code == kBadDrawable;
+    if (is_ours && error->resource == window_id) window_is_gone = true;
+    return 0;
+  });
+}
+
 /// Version and renderer of the OpenGL that a window gets without asking for one.
 std::string found_gl() {
   glfwDefaultWindowHints();
@@ -137,6 +169,7 @@ Done Platform::start() {
                              complaint(), kWithout)};
   }
   is_started_ = true;
+  window_is_gone = false;
   survive_lost_display();
   const std::lock_guard lock(wake_mutex);
   can_wake = true;
@@ -169,10 +202,18 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   }
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
   find_parts(window);
+  survive_destroyed_window(window);
   return window;
 }
 
 bool Platform::is_lost() { return display_is_lost; }
+
+bool Platform::is_gone(GLFWwindow* window) {
+  if (window_id == 0 || display_is_lost || window_is_gone) return window_is_gone;
+  int width = 0, height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  return window_is_gone;
+}
 
 Done Platform::check() const {
   if (display_is_lost) {

@@ -38,6 +38,9 @@ class Platform {
   Done check() const;
   /// The connection to the display broke: GLFW must not be called any more.
   static bool is_lost();
+  /// Another program has destroyed the window, as `xdotool windowclose` does: it has no size and
+  /// cannot be drawn into. Asks the X server, about 50 us.
+  static bool is_gone(GLFWwindow* window);
 
   /// Ends the waiting for events. From any thread, at any time.
   static void wake();

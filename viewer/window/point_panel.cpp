@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "viewer/window/panels.h"
 
@@ -41,7 +42,10 @@ void draw_answer(const PanelContext& context, const PickedPoint& picked) {
   }
   const auto& files = context.shown.program->files;
   const auto file = static_cast<std::size_t>(std::max(0, picked.file));
-  if (picked.line > 0 && file < files.size()) {
+  // A machine may say its line where nobody has given the program.
+  if (picked.line > 0 && file >= files.size()) {
+    row(context.word(Text::kLine), std::to_string(picked.line));
+  } else if (picked.line > 0) {
     ImGui::TableNextColumn();
     ImGui::TextColored(theme::kDim, "%s", context.word(Text::kLine));
     ImGui::TableNextColumn();

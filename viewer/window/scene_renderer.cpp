@@ -265,6 +265,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   DrawCounters::Kind& kind = is_kept_old_   ? counters.full
                              : rect.empty() ? counters.still
                                             : counters.local;
+  glCullFace(GL_BACK);  // others that draw in this context may have chosen otherwise
   if (!rect.empty()) kind.triangles += draw_kept(rect);
   draw_shown(rect);
   timer_.end(&kind.ms);
@@ -341,6 +342,8 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
     glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
     glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   }
+  // What is closed shows no backs. Cut open it does.
+  if (!section) glEnable(GL_CULL_FACE);
   const VertexData data = SurfaceColors::needs(shown_by_);
   colors_.bind(use(true), shown_by_, scale_);
   std::size_t triangles = patches_.draw(rect, data, true);
@@ -348,6 +351,7 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
     use(false);
     triangles += patches_.draw(rect, data, false);
   }
+  glDisable(GL_CULL_FACE);
   glDisable(GL_CLIP_DISTANCE0);
   if (section) draw_section_face();
   glDisable(GL_STENCIL_TEST);

@@ -10,6 +10,7 @@ namespace kerf {
 namespace {
 
 constexpr double kMegabyte = 1024.0 * 1024.0;
+constexpr int kMostLine = 99'999'999;
 constexpr std::array kObjects{Text::kWorkpiece, Text::kCutter,      Text::kHolder, Text::kTraverses,
                               Text::kFeeds,     Text::kPlanned,     Text::kBlank,  Text::kFrames,
                               Text::kFindings,  Text::kMachineParts};
@@ -62,7 +63,8 @@ void draw_legend(const PanelContext& context) {
 
 void draw_line_range(const PanelContext& context) {
   const auto& files = context.shown.program->files;
-  const int most = files.empty() ? 1 : files.front().line_count();
+  // A machine may say its line where nobody has given the program.
+  const int most = files.empty() ? kMostLine : files.front().line_count();
   PanelState& state = *context.state;
   bool is_changed = false;
   const auto field = [&](Text label, int* line) {

@@ -60,7 +60,7 @@ void Window::Impl::remember_settings() {
   if (options_.settings_file.empty()) return;
   if (!settings_faults_.empty() && !set_aside(options_.settings_file)) return;
   int width = 0, height = 0;
-  glfwGetWindowSize(window_, &width, &height);
+  if (!Platform::is_gone(window_)) glfwGetWindowSize(window_, &width, &height);
   // A window that was shrunk to nothing is not worth remembering.
   if (width >= kLeastSize_px && height >= kLeastSize_px) {
     const auto unscaled = [this](int px) {

@@ -143,11 +143,7 @@ Result<bool> Window::Impl::frame(double longest_wait_s) {
   if (was_closed_) return false;
   wait(longest_wait_s);
   if (Done done = platform_.check(); !done) return give_up(done.error());
-  if (glfwWindowShouldClose(window_)) {
-    was_closed_ = true;
-    commands_.push(CloseCommand{});
-    return false;
-  }
+  if (glfwWindowShouldClose(window_) || Platform::is_gone(window_)) return end();
   find_reasons_to_draw();
   if (is_hidden_ || frames_to_draw_ == 0) return true;
   const Clock::duration shortest =
@@ -159,8 +155,18 @@ Result<bool> Window::Impl::frame(double longest_wait_s) {
   last_frame_ = Clock::now();
   frame_counter_.count(last_frame_);
   --frames_to_draw_;
-  if (Done done = draw(); !done) return give_up(done.error());
+  if (Done done = draw(); !done) {
+    // What failed may be that it was destroyed meanwhile.
+    if (!Platform::is_lost() && Platform::is_gone(window_)) return end();
+    return give_up(done.error());
+  }
   return true;
+}
+
+bool Window::Impl::end() {
+  was_closed_ = true;
+  commands_.push(CloseCommand{});
+  return false;
 }
 
 Error Window::Impl::give_up(const std::string& reason) {
@@ -196,7 +202,7 @@ void Window::Impl::lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 
 Done Window::Impl::draw() {
   glm::ivec2 window_px(0);
   glfwGetFramebufferSize(window_, &window_px.x, &window_px.y);
-  if (window_px.x < 1 || window_px.y < 1) return std::monostate{};
+  if (window_px.x < 1 || window_px.y < 1 || Platform::is_gone(window_)) return std::monostate{};
   if (window_px != layer_->size_px()) is_window_old_ = true;
   if (Done done = layer_->resize(window_px); !done) return done;
   std::vector<ScreenRect> changed;

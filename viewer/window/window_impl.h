@@ -78,6 +78,8 @@ class Window::Impl {
   void apply(const SceneUpdate& update);
   void take_setup(const std::shared_ptr<const SceneSetup>& setup);
   Done draw();
+  /// It is closed, by its user or by another program; what frame() returns then.
+  bool end();
   /// Nothing can be shown any more.
   Error give_up(const std::string& reason);
   void set_scale();

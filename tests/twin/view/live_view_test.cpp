@@ -48,7 +48,7 @@ class LiveViewTest : public testing::Test {
     return status;
   }
   void frame(const LiveStatus& status, const std::vector<Vec3>& trail = {}) {
-    view_->on_frame(*stock_, nullptr, status, trail);
+    view_->on_frame(*stock_, nullptr, status, trail, labels_.all());
   }
   static Finding finding(const std::string& text, std::uint32_t line) {
     Finding found;
@@ -87,6 +87,7 @@ class LiveViewTest : public testing::Test {
   }
 
   std::unique_ptr<ZMap> stock_ = test::block_40(0.2);
+  CutLabels labels_;
   Behind behind_;
   SceneMailbox mailbox_;
   CommandQueue commands_;
@@ -257,6 +258,83 @@ TEST_F(LiveViewTest, AMachineIsNotHeld) {
   EXPECT_EQ(speed_, -1);
 }
 
+TEST_F(LiveViewTest, TellsWhichToolAndLineCutWhere) {
+  stock_->keep_cut_ids(true);
+  LiveViewOptions wanted = options();
+  std::atomic<bool> may_load{false};
+  wanted.load_program = [&](const std::stop_token&) {
+    while (!may_load) std::this_thread::yield();
+    MotionList program;
+    program.at({-5, 10, 5}).tool(1).spindle(true);
+    program.feed({5, 10, -2}).feed({35, 10, -2});  // lines 2 and 3
+    auto loaded = std::make_unique<LiveProgram>();
+    loaded->track = test::track_of(program.list());
+    loaded->files = {"/nc/part.ngc"};
+    loaded->tools = {{1, "the ball"}};
+    return loaded;
+  };
+  // What the window wants from the beginning is there when there is something to be coloured.
+  commands_.push(ColorCommand{ColorBy::kTool});
+  open(std::move(wanted));
+  CutMove move;
+  move.from_mm = {5, 10, -2};
+  move.to_mm = {35, 10, -2};
+  move.id = labels_.number_of({1, {0, 3}});
+  std::vector<CutReport> reports;
+  stock_->cut(parse_tool_argument("1=ball:6").value().cutter, {&move, 1}, reports);
+  stock_->finish(reports);
+  frame(at({35, 10, -2}));
+  ASSERT_TRUE(until([&] {
+    return known_.colors && known_.colors->legend.size() == 1 && is_shown();
+  })) << "without the program";
+  EXPECT_EQ(known_.colors->mode, ColorBy::kTool);
+  EXPECT_EQ(known_.colors->legend[0].text, "T1 ball 6");
+  const auto pick = [&](const Vec3& point_mm) {
+    known_.picked.reset();
+    commands_.push(PickCommand{point_mm});
+    EXPECT_TRUE(until([&] { return static_cast<bool>(known_.picked); }));
+    return *known_.picked;
+  };
+  const PickedPoint groove = pick({20, 10, -2});
+  ASSERT_TRUE(groove.tool);
+  EXPECT_EQ(*groove.tool, 1);
+  EXPECT_EQ(groove.tool_name, "ball 6");
+  EXPECT_EQ(groove.line, 3);
+  EXPECT_EQ(groove.time_s, 0) << "nobody knows the program";
+  EXPECT_FALSE(pick({20, 30, 0}).tool) << "not cut";
+
+  may_load = true;
+  ASSERT_TRUE(until([&] { return known_.colors->legend[0].text == "T1 the ball"; }));
+  const PickedPoint timed = pick({20, 10, -2});
+  EXPECT_EQ(timed.line, 3);
+  EXPECT_GT(timed.time_s, 0) << "when the program's line begins";
+}
+
+TEST_F(LiveViewTest, TheLastCutsAreKnownAtTheEnd) {
+  stock_->keep_cut_ids(true);
+  open(options());
+  frame(at({1, 2, 3}));
+  CutMove move;
+  move.from_mm = {5, 10, -2};
+  move.to_mm = {35, 10, -2};
+  move.id = labels_.number_of({2, {0, 77}});
+  std::vector<CutReport> reports;
+  stock_->cut(parse_tool_argument("1=ball:6").value().cutter, {&move, 1}, reports);
+  stock_->finish(reports);
+  std::stop_source never;
+  std::thread asks([&] {
+    EXPECT_TRUE(until([&] { return is_shown(); }));
+    commands_.push(PickCommand{Vec3(20, 10, -2)});
+    EXPECT_TRUE(until([&] { return static_cast<bool>(known_.picked); }));
+    commands_.push(CloseCommand{});
+  });
+  view_->end(stock_.get(), labels_.all(), never.get_token());
+  asks.join();
+  ASSERT_TRUE(known_.picked);
+  EXPECT_EQ(known_.picked->tool, 2);
+  EXPECT_EQ(known_.picked->line, 77);
+}
+
 TEST_F(LiveViewTest, StaysAtTheEndUntilItIsClosedOrStopped) {
   open(options());
   frame(at({1, 2, 3}));
@@ -265,7 +343,7 @@ TEST_F(LiveViewTest, StaysAtTheEndUntilItIsClosedOrStopped) {
     EXPECT_TRUE(until([&] { return is_shown(); }));
     commands_.push(CloseCommand{});
   });
-  view_->end(stock_.get(), never.get_token());
+  view_->end(stock_.get(), {}, never.get_token());
   closes.join();
   EXPECT_TRUE(closed_);
 
@@ -273,7 +351,7 @@ TEST_F(LiveViewTest, StaysAtTheEndUntilItIsClosedOrStopped) {
   open(options());
   std::stop_source stop;
   std::thread stops([&] { stop.request_stop(); });
-  view_->end(stock_.get(), stop.get_token());
+  view_->end(stock_.get(), {}, stop.get_token());
   stops.join();
   EXPECT_FALSE(closed_);
 }

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "tests/twin/playback/tracks.h"
 
@@ -67,6 +69,53 @@ TEST(PatchFeeder, JumpsToAndFroGiveTheSamePatches) {
     EXPECT_EQ(patch->indices.size(), triangles[patch->tile]);
   }
   EXPECT_EQ(feeder.triangles(), all);
+}
+
+TEST(PatchFeeder, APassWithoutCuttingChangesNothing) {
+  const auto stock = test::block_40();
+  PatchFeeder feeder;
+  cut_line(*stock, {5, 20, -2}, {35, 20, -2});
+  feeder.follow(stock->snapshot());
+  feeder.make_until(Clock::time_point::max());
+  cut_line(*stock, {35, 20, -1}, {5, 20, -1});
+  feeder.follow(stock->snapshot());
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
+  EXPECT_FALSE(feeder.behind());
+}
+
+TEST(PatchFeeder, WhatWasHandedOutLastIsTheWorkpieceAsItIs) {
+  const auto stock = test::block_40(0.1);
+  PatchFeeder feeder;
+  std::vector<std::shared_ptr<const StockModel>> states{stock->snapshot()};
+  for (const double x : {3.0, 6.4, 12.8, 13.0, 30.0}) {
+    cut_line(*stock, {x, 2 * x / 3, -1}, {x + 0.4 * x, 6, -2});
+    states.push_back(stock->snapshot());
+  }
+  std::map<std::uint32_t, std::shared_ptr<const MeshPatch>> shown;
+  const auto expect_current = [&](const StockModel& state) {
+    ASSERT_EQ(shown.size(), state.tile_count());
+    for (const auto& [tile, patch] : shown) {
+      const MeshPatch wanted = state.patch(tile, patch->level);
+      EXPECT_EQ(patch->indices, wanted.indices) << "tile " << tile;
+      ASSERT_EQ(patch->vertices.size(), wanted.vertices.size()) << "tile " << tile;
+      EXPECT_EQ(0, std::memcmp(patch->vertices.data(), wanted.vertices.data(),
+                               wanted.vertices.size() * sizeof(MeshVertex)))
+          << "tile " << tile;
+    }
+  };
+  for (const double pixel_mm : {0.1, 0.9}) {
+    feeder.set_detail(pixel_mm);
+    // Forward, and jumps to and fro; of some states only a part is made before the next comes.
+    for (const std::size_t at : {0u, 1u, 2u, 5u, 1u, 3u, 4u, 0u, 5u}) {
+      feeder.follow(states[at]);
+      const bool in_part = at == 3 || at == 4;
+      do {
+        const auto until = in_part ? Clock::time_point::min() : Clock::time_point::max();
+        for (auto& patch : feeder.make_until(until)) shown[patch->tile] = patch;
+      } while (!in_part && feeder.behind());
+      if (!in_part) expect_current(*states[at]);
+    }
+  }
 }
 
 TEST(PatchFeeder, WorksInSlicesAndForgetsNoTile) {

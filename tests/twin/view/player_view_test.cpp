@@ -167,5 +167,16 @@ TEST_F(PlayerViewTest, EndsWhenItIsStopped) {
   thread_.join();
 }
 
+TEST(SceneMailbox, IsFullUntilItsNewsAreTaken) {
+  SceneMailbox mailbox;
+  EXPECT_FALSE(mailbox.is_full());
+  mailbox.publish(SceneUpdate{});
+  mailbox.publish(SceneUpdate{});
+  EXPECT_TRUE(mailbox.is_full());
+  EXPECT_TRUE(mailbox.take());
+  EXPECT_FALSE(mailbox.is_full());
+  EXPECT_FALSE(mailbox.take());
+}
+
 }  // namespace
 }  // namespace kerf

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 
+#include "stock/zmap/zmap.h"
 #include "tests/twin/playback/tracks.h"
 #include "twin/view/frame_moves.h"
 #include "twin/view/frame_writer.h"
@@ -35,6 +36,9 @@ constexpr double kMostEdgeOn = 0.05;
 /// Of those, pixels that do not lie between the depths beside them, either: slivers of walls and
 /// ridges that one road shows and the other does not. At most 0.04 %.
 constexpr double kMostSliver = 0.001;
+
+/// Of the pixels of lines: ends of those that a surface hides, which lies part of a cell elsewhere.
+constexpr double kMostLinesAlone = 0.03;
 
 ToolSources four_tools() {
   ToolSources sources;
@@ -95,7 +99,7 @@ std::unique_ptr<ZMap> block() {
 
 std::unique_ptr<ZMap> cut_by(std::span<const Motion> program) {
   std::unique_ptr<ZMap> stock = block();
-  ToolBook book(four_tools(), false);
+  ToolBook book(four_tools(), ZMap::can_cut);
   FindingLog log;
   CutStage stage(*stock, book, log, TimelineOptions{});
   stage.take(program);
@@ -277,6 +281,20 @@ class FrameRoads : public testing::Test {
     options.road = road;
     return FrameRenderer::create(options, *start_, track_, shown_);
   }
+  /// With path, outline and frames, or workpiece and tool alone.
+  Picture draw(DrawRoad road, bool with_lines, const std::shared_ptr<const PlayerState>& state) {
+    FrameOptions options;
+    options.size_px = kSize_px;
+    options.road = road;
+    for (const SceneObject line :
+         {SceneObject::kTraverses, SceneObject::kFeeds, SceneObject::kPlanned, SceneObject::kBlank,
+          SceneObject::kFrames}) {
+      options.draw.looks[static_cast<std::size_t>(line)].is_visible = with_lines;
+    }
+    Result<FrameRenderer> frames = FrameRenderer::create(options, *start_, track_, shown_);
+    EXPECT_TRUE(frames) << frames.error();
+    return frames->draw(state).value();
+  }
   std::shared_ptr<const PlayerState> at_time(double time_s) {
     const Player::Ticket ticket = player_->seek_time(time_s);
     while (!player_->wait(ticket, std::chrono::milliseconds(100))) {
@@ -326,21 +344,65 @@ TEST_F(FrameRoads, CsgForwardInPartsAndBackDrawsWhatItDrawsAtOnce) {
   EXPECT_GT(share_different(in_parts, back), 0.005);
 }
 
-TEST_F(FrameRoads, RaycastDrawsTheMeshsWorkpieceAndTool) {
+TEST_F(FrameRoads, RaycastDrawsTheMeshsWorkpieceToolAndLines) {
   open(random_program(3, 12));
   const auto state = at_time(0.6 * track_->duration_s());
-  const Picture by_rays = renderer(DrawRoad::kRaycast).value().draw(state).value();
-  FrameOptions options;
-  options.size_px = kSize_px;
-  for (const SceneObject path :
-       {SceneObject::kTraverses, SceneObject::kFeeds, SceneObject::kPlanned, SceneObject::kBlank,
-        SceneObject::kFrames}) {
-    options.draw.looks[static_cast<std::size_t>(path)].is_visible = false;
+  for (const bool with_lines : {false, true}) {
+    const Picture by_rays = draw(DrawRoad::kRaycast, with_lines, state);
+    // Patches are made for what a pixel of this size can show, rays go by every cell.
+    EXPECT_LT(share_different(draw(DrawRoad::kMesh, with_lines, state), by_rays), 0.04);
   }
-  const Picture by_mesh =
-      FrameRenderer::create(options, *start_, track_, shown_).value().draw(state).value();
-  // Patches are made for what a pixel of this size can show, rays go by every cell.
-  EXPECT_LT(share_different(by_mesh, by_rays), 0.04);
+}
+
+/// Where a picture has lines: 1, rows from the top.
+std::vector<char> line_mask(const Picture& with_lines, const Picture& without) {
+  constexpr int kLeast = 30;
+  std::vector<char> mask(with_lines.rgb.size() / 3, 0);
+  for (std::size_t i = 0; i < with_lines.rgb.size(); ++i) {
+    if (std::abs(with_lines.rgb[i] - without.rgb[i]) > kLeast) mask[i / 3] = 1;
+  }
+  return mask;
+}
+
+/// Of the pixels of `a`, those that have none of `b` in the 3 x 3 around.
+double share_alone(const std::vector<char>& a, const std::vector<char>& b) {
+  std::size_t all = 0, alone = 0;
+  for (int y = 1; y + 1 < kSize_px.y; ++y) {
+    for (int x = 1; x + 1 < kSize_px.x; ++x) {
+      if (a[static_cast<std::size_t>(y * kSize_px.x + x)] == 0) continue;
+      ++all;
+      bool has_near = false;
+      for (int near_y = y - 1; near_y <= y + 1; ++near_y) {
+        for (int near_x = x - 1; near_x <= x + 1; ++near_x) {
+          has_near = has_near || b[static_cast<std::size_t>(near_y * kSize_px.x + near_x)] != 0;
+        }
+      }
+      if (!has_near) ++alone;
+    }
+  }
+  EXPECT_GT(all, 500u);
+  return static_cast<double>(alone) / static_cast<double>(std::max<std::size_t>(1, all));
+}
+
+TEST_F(FrameRoads, LinesAreInTheSamePlaces) {
+  open(random_program(6, 8));
+  shown_.blank_outline = box_outline(kBlock);
+  shown_.work_offset = "G54";
+  for (const double share : {0.55, 1.0}) {
+    const auto state = at_time(share * track_->duration_s());
+    const auto lines_of = [&](DrawRoad road) {
+      return line_mask(draw(road, true, state), draw(road, false, state));
+    };
+    const std::vector<char> by_mesh = lines_of(DrawRoad::kMesh);
+    for (const DrawRoad road : {DrawRoad::kRaycast, DrawRoad::kCsg}) {
+      const std::vector<char> lines = lines_of(road);
+      const double missing = share_alone(by_mesh, lines), more = share_alone(lines, by_mesh);
+      std::cout << "at " << share << ", road " << static_cast<int>(road) << ": missing "
+                << 100 * missing << " %, more " << 100 * more << " %\n";
+      EXPECT_LT(missing, kMostLinesAlone);
+      EXPECT_LT(more, kMostLinesAlone);
+    }
+  }
 }
 
 TEST_F(FrameRoads, CsgRefusesBlanksThatAreNoBox) {
