@@ -25,5 +25,4 @@ int dlclose(void*) { return 0; }
 
 int __lsan_is_turned_off();
 int __lsan_is_turned_off() { return dl_iterate_phdr(is_driver, nullptr); }
-
 }

@@ -118,6 +118,24 @@ void BlankGuess::add(const Motion& m, double tool_radius_mm) {
   has_sideways_ = true;
 }
 
+void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double tool_radius_mm) {
+  Box way;
+  for (const CutMove& move : moves) {
+    way.extend(move.from_mm);
+    way.extend(move.to_mm);
+  }
+  if (way.empty()) return;
+  all_mm_.extend(way);
+  if (!is_feed(m)) return;
+  lowest_feed_mm_ = has_feed_ ? std::min(lowest_feed_mm_, way.min.z) : way.min.z;
+  highest_sideways_mm_ = has_sideways_ ? std::max(highest_sideways_mm_, way.max.z) : way.max.z;
+  has_feed_ = has_sideways_ = true;
+  sideways_above_zero_mm_ += way.max.z > 0 ? glm::length(way.size()) : 0;
+  way.min -= Vec3(tool_radius_mm, tool_radius_mm, 0);
+  way.max += Vec3(tool_radius_mm, tool_radius_mm, 0);
+  feeds_mm_.extend(way);
+}
+
 Blank BlankGuess::blank() const {
   Box box = has_feed_ ? feeds_mm_ : all_mm_;
   if (box.empty()) box.extend(Vec3(0));

@@ -10,6 +10,7 @@
 #include "interp_bridge/program.h"
 #include "stock/blank.h"
 #include "stock/cutter/tool_hints.h"
+#include "stock/stock_model.h"
 
 namespace kerf {
 
@@ -25,6 +26,9 @@ class BlankGuess {
 
   /// `tool_radius_mm`: of the tool in the spindle, 0 if not known.
   void add(const Motion& motion, double tool_radius_mm);
+
+  /// The same for a tilted tool: what the motion is cut as.
+  void add(const Motion& motion, std::span<const CutMove> moves, double tool_radius_mm);
 
   /// A box in whole mm around the feed moves:
   ///   X, Y   the feed moves of the tip, plus the tool's radius and the margin on every side

@@ -1,5 +1,6 @@
 #include "twin/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -52,30 +53,62 @@ Finding Checks::finding_at(FindingId id, const CheckedMove& move, const Vec3& pl
   return finding;
 }
 
+/// Of the tool at all tilts that a move can have: the tool from its tip upward as far as the
+/// blank's own size is inside a ball of that size.
+bool Checks::may_touch(std::span<const CutMove> moves, const Cutter& cutter) const {
+  Box way;
+  for (const CutMove& move : moves) {
+    way.extend(move.from_mm);
+    way.extend(move.to_mm);
+  }
+  const double size = glm::length(bounds_mm_.size()) + cutter.radius_mm();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way.min[axis] - size > bounds_mm_.max[axis] || way.max[axis] + size < bounds_mm_.min[axis])
+      return false;
+  }
+  return true;
+}
+
+std::optional<Checks::Touch> Checks::first_touch(const CheckedMove& move) const {
+  std::optional<Touch> touch;
+  for (std::size_t i = 0; i < move.moves.size(); ++i) {
+    const std::optional<Contact> contact =
+        stock_.first_contact(move.cutter, move.moves[i], kContactTolerance_mm);
+    if (!contact) continue;
+    if (touch) {
+      touch->contact.depth_mm = std::max(touch->contact.depth_mm, contact->depth_mm);
+      continue;
+    }
+    const double within =
+        move.moves.size() == 1 ? fraction_of(move.motion, contact->tip_mm, move.step.length_mm) : 0;
+    touch =
+        Touch{*contact, (static_cast<double>(i) + within) / static_cast<double>(move.moves.size())};
+  }
+  return touch;
+}
+
 void Checks::check_traverse(const CheckedMove& move) {
-  const std::optional<Contact> contact =
-      stock_.first_contact(move.cutter, cut_move_from(move.motion, 0), kContactTolerance_mm);
-  if (!contact) {
+  const std::optional<Touch> touch = first_touch(move);
+  if (!touch) {
     rapid_.reset();
     return;
   }
   if (!rapid_) {
-    const double fraction = fraction_of(move.motion, contact->tip_mm, move.step.length_mm);
-    Finding finding = finding_at(FindingId::kRapidContact, move, contact->tip_mm, fraction);
+    Finding finding =
+        finding_at(FindingId::kRapidContact, move, touch->contact.tip_mm, touch->fraction);
     finding.text = "traverse touches the workpiece";
     rapid_ = log_.add(std::move(finding));
   }
-  log_.deepen(*rapid_, contact->depth_mm);
+  log_.deepen(*rapid_, touch->contact.depth_mm);
 }
 
 void Checks::check_standing_spindle(const CheckedMove& move) {
-  const std::optional<Contact> contact =
-      stock_.first_contact(move.cutter, cut_move_from(move.motion, 0), kContactTolerance_mm);
-  if (!contact) return;
-  const double fraction = fraction_of(move.motion, contact->tip_mm, move.step.length_mm);
-  Finding finding = finding_at(FindingId::kSpindleOffContact, move, contact->tip_mm, fraction);
+  const std::optional<Touch> touch = first_touch(move);
+  if (!touch) return;
+  Finding finding =
+      finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm, touch->fraction);
   finding.text = "feed move touches the workpiece while the spindle stands";
-  finding.depth_mm = contact->depth_mm;
+  finding.depth_mm = touch->contact.depth_mm;
   spindle_ = log_.add(std::move(finding));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
@@ -17,11 +18,12 @@ namespace kerf {
 /// and below anything that marks a part.
 inline constexpr double kContactTolerance_mm = 0.01;
 
-/// A move with what the checks need to know of it.
+/// A motion with what the checks need to know of it.
 struct CheckedMove {
   const Motion& motion;
   const TimedStep& step;
   const Cutter& cutter;
+  std::span<const CutMove> moves;  ///< it is cut as these
   int tool = 0;
 };
 
@@ -35,6 +37,8 @@ class Checks {
 
   /// False if the cutter stays clear of the blank on the whole way. Cheap: boxes only.
   bool may_touch(const Motion& motion, double radius_mm) const;
+  /// The same for tilted tools.
+  bool may_touch(std::span<const CutMove> moves, const Cutter& cutter) const;
 
   /// rapid-contact. An event ends with the first traverse that touches nothing.
   void check_traverse(const CheckedMove& move);
@@ -52,7 +56,8 @@ class Checks {
   void forget_events() { rapid_ = spindle_ = below_ = std::nullopt; }
 
   /// below-stock: the tip below the floor of the blank, inside the blank's outline (its box): the
-  /// tool cuts the table. An event ends with the first move that stays above.
+  /// tool cuts the table. An event ends with the first move that stays above. For upright tools:
+  /// of a machine that turns the workpiece nobody knows what is below it.
   void check_floor(const CheckedMove& move);
 
  private:
@@ -62,6 +67,11 @@ class Checks {
     double depth_mm = 0;
   };
   std::optional<Below> below_floor(const Motion& motion) const;
+  struct Touch {
+    Contact contact;
+    double fraction = 0;  ///< of the motion
+  };
+  std::optional<Touch> first_touch(const CheckedMove& move) const;
   Finding finding_at(FindingId id, const CheckedMove& move, const Vec3& place,
                      double fraction) const;
 

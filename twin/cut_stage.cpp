@@ -26,12 +26,25 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       log_(log),
       limits_known_(options.limits_known),
       limits_origin_(options.planner.limits_origin),
+      kinematics_(options.kinematics),
+      joint_limits_(options.joint_limits),
       timeline_(options, *this),
       checks_(stock, log),
       axis_limits_(options.limits, log) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
+}
+
+void CutStage::set_frame(const WorkpieceFrame& frame) {
+  axis_limits_.set_frame(frame);
+  if (!kinematics_) return;
+  const ToolPath* const before = machine_moves_.path();
+  const Result<bool> follows = machine_moves_.follow(kinematics_, frame, stock_.cell_mm());
+  assert(follows);  // who made the machine has tried it
+  if (before != nullptr && !follows.value()) return;
+  if (stock_.takes_tilted_tools()) motion_moves_ = machine_moves_;
+  if (!rotary_check_) rotary_check_.emplace(*machine_moves_.path(), joint_limits_);
 }
 
 void CutStage::take(std::span<const Motion> motions) {
@@ -90,6 +103,7 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
+  check_turns(m, step);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     flush_whole();  // with the cutter that made these moves
     checks_.end_spindle_event();
@@ -155,15 +169,15 @@ void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
   // may just clear the way for the tool change that the comment announces.
   if (!mounted_ && m.tool == 0 && !book_.has_arguments()) return;
   if (!mount_for(m) || !m.start_known) return;
-  const Cutter& cutter = *mounted_->cutter;
-  if (!checks_.may_touch(m, cutter.radius_mm())) {
+  divide(m);
+  if (!comes_near(m)) {
     checks_.clear_traverse();
     return;
   }
-  const CheckedMove move{m, step, cutter, mounted_->number};
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number};
   flush_whole();
   checks_.check_traverse(move);
-  checks_.check_floor(move);
+  if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   push(m, step, false);
 }
 
@@ -175,24 +189,112 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
   note_speed(m, step);
-  const Cutter& cutter = *mounted_->cutter;
-  const CheckedMove move{m, step, cutter, mounted_->number};
+  divide(m);
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number};
   if (!reached_stock_) note_reach(m);
-  checks_.check_floor(move);
+  if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = m.spindle == SpindleState::kStopped;
-  if (spindle_off && !checks_.spindle_event_open() && checks_.may_touch(m, cutter.radius_mm())) {
+  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) {
     flush_whole();
     checks_.check_standing_spindle(move);
   }
   push(m, step, spindle_off);
 }
 
+/// What it is cut as.
+void CutStage::divide(const Motion& m) {
+  divided_.clear();
+  motion_moves_.append(m, *mounted_->cutter, 0, divided_);
+}
+
+bool CutStage::comes_near(const Motion& m) const {
+  const Cutter& cutter = *mounted_->cutter;
+  return motion_moves_.is_upright(m) ? checks_.may_touch(m, cutter.radius_mm())
+                                     : checks_.may_touch(divided_, cutter);
+}
+
 void CutStage::note_reach(const Motion& m) {
-  if (checks_.may_touch(m, mounted_->cutter->radius_mm())) {
+  if (comes_near(m)) {
     reached_stock_ = true;
     return;
   }
-  feed_bounds_mm_.extend(bounds_of(m));
+  for (const CutMove& move : divided_) {
+    feed_bounds_mm_.extend(move.from_mm);
+    feed_bounds_mm_.extend(move.to_mm);
+  }
+  if (divided_.size() == 1) feed_bounds_mm_.extend(bounds_of(m));
+}
+
+void CutStage::check_turns(const Motion& m, const TimedStep& step) {
+  if (rotary_check_) {
+    rotary_check_->check(m, step.duration_s, rotary_faults_);
+    if (!rotary_faults_.empty()) report_rotary_faults(step);
+  }
+  if (turn_reported_) return;
+  if (stock_.takes_tilted_tools()) {
+    if (!motion_moves_.is_upright(m)) report_assumptions(m);
+  } else if (m.from_abc_deg != m.to_abc_deg) {
+    report_ignored_turn(m, step);
+  }
+}
+
+/// Once: what the machine is taken to be, where nothing says it.
+void CutStage::report_assumptions(const Motion& m) {
+  turn_reported_ = true;
+  for (const std::string& note : kinematics_->notes) {
+    Finding finding;
+    finding.id = FindingId::kKinematics;
+    finding.severity = Severity::kNote;
+    finding.source = m.source;
+    finding.text = note;
+    log_.add(std::move(finding));
+  }
+}
+
+void CutStage::report_rotary_faults(const TimedStep& step) {
+  for (RotaryFault& fault : rotary_faults_) {
+    Finding finding;
+    switch (fault.kind) {
+      case RotaryFaultKind::kNoAxis:
+        finding.id = FindingId::kNoRotaryAxis;
+        break;
+      case RotaryFaultKind::kSingularPose:
+        finding.id = FindingId::kSingularPose;
+        finding.severity = Severity::kWarning;
+        break;
+      case RotaryFaultKind::kJointTooFast:
+        finding.id = FindingId::kOverFeed;
+        finding.severity = limits_known_ ? Severity::kWarning : Severity::kNote;
+        break;
+      case RotaryFaultKind::kJointLimit:
+        finding.id = FindingId::kAxisLimit;
+        break;
+      case RotaryFaultKind::kToolTooLong:
+        finding.id = FindingId::kToolTooLong;
+        break;
+    }
+    finding.source = fault.source;
+    finding.time_s = step.start_s;
+    finding.text = std::move(fault.text);
+    finding.hint = std::move(fault.hint);
+    log_.add(std::move(finding));
+  }
+  rotary_faults_.clear();
+}
+
+/// Once: a model for upright tools was asked for, and the program is not for one.
+void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
+  turn_reported_ = true;
+  Finding finding;
+  finding.id = FindingId::kRotaryIgnored;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.tool = m.tool;
+  finding.text = fmt::format(
+      "A, B or C move, and the model {} is for upright tools over a workpiece that lies still: it "
+      "is cut as if they stood (--model octree follows them)",
+      stock_.name());
+  log_.add(std::move(finding));
 }
 
 /// A program that never comes near its blank was written for another zero, or another blank.
@@ -282,7 +384,7 @@ void CutStage::report_over_feed() {
 /// The programmed move, or what the machine makes of it.
 void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
   if (path_.empty()) {
-    push_one(m, step.duration_s, spindle_off);
+    push_moves(m, step.duration_s, spindle_off);
     return;
   }
   Motion piece = m;
@@ -297,13 +399,21 @@ void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
     piece.from_mm = part.from_mm;
     piece.to_mm = part.to_mm;
     piece.arc = part.arc;
-    push_one(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
+    divide(piece);
+    push_moves(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
   }
 }
 
-void CutStage::push_one(const Motion& m, double duration_s, bool spindle_off) {
-  moves_.push_back(cut_move_from(m, next_id_++));
-  in_flight_.push_back(InFlight{duration_s, use_, is_feed(m), spindle_off});
+/// Those of divide().
+void CutStage::push_moves(const Motion& m, double duration_s, bool spindle_off) {
+  const std::uint64_t id = labels_ ? labels_->number_of({mounted_->number, m.source}) : next_id_++;
+  const double share_s =
+      duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
+  for (CutMove& move : divided_) {
+    move.id = id;
+    moves_.push_back(move);
+    in_flight_.push_back(InFlight{share_s, use_, is_feed(m), spindle_off});
+  }
   if (moves_.size() >= kMovesPerCut) flush();
 }
 

@@ -2,7 +2,10 @@
 // what each tool did.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,7 +14,10 @@
 #include "stock/stock_model.h"
 #include "twin/axis_limits.h"
 #include "twin/checks.h"
+#include "twin/cut_labels.h"
 #include "twin/finding.h"
+#include "twin/kinematics/rotary_checks.h"
+#include "twin/motion_moves.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
 
@@ -51,7 +57,10 @@ class CutStage : private StepSink {
   CutStage(StockModel& stock, ToolBook& tools, FindingLog& log, const TimelineOptions& options);
 
   /// Before the first motion that moves: where the workpiece lies in the machine.
-  void set_frame(const WorkpieceFrame& frame) { axis_limits_.set_frame(frame); }
+  void set_frame(const WorkpieceFrame& frame);
+  /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
+  /// the other. Outlives the stage.
+  void label_by(CutLabels& labels) { labels_ = &labels; }
   /// Motions in program order. They are given to the model as soon as their times are known (which
   /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
@@ -94,13 +103,19 @@ class CutStage : private StepSink {
   bool mount_for(const Motion& motion);
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
+  void divide(const Motion& motion);
+  bool comes_near(const Motion& motion) const;
   void note_reach(const Motion& motion);
+  void check_turns(const Motion& motion, const TimedStep& step);
+  void report_ignored_turn(const Motion& motion, const TimedStep& step);
+  void report_assumptions(const Motion& motion);
+  void report_rotary_faults(const TimedStep& step);
   void report_outside_stock();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
   void report_over_feed();
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
-  void push_one(const Motion& motion, double duration_s, bool spindle_off);
+  void push_moves(const Motion& motion, double duration_s, bool spindle_off);
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
@@ -122,6 +137,13 @@ class CutStage : private StepSink {
   FindingLog& log_;
   bool limits_known_;
   std::string limits_origin_;
+  std::shared_ptr<const MachineKinematics> kinematics_;  ///< null: nobody turns anything
+  std::array<AxisLimits, kAxisCount> joint_limits_;
+  MotionMoves machine_moves_;                ///< as the machine moves
+  MotionMoves motion_moves_;                 ///< as the model cuts
+  std::optional<RotaryCheck> rotary_check_;  ///< over machine_moves_.path()
+  std::vector<RotaryFault> rotary_faults_;
+  std::vector<CutMove> divided_;  ///< the present motion
   Timeline timeline_;
   bool timed_ = false;         ///< motions come with their times: take_timed()
   std::uint64_t taken_ = 0;    ///< motions
@@ -137,12 +159,14 @@ class CutStage : private StepSink {
   std::uint32_t use_ = 0;
   int spindle_tool_ = 0;
   bool feed_missing_reported_ = false;
+  bool turn_reported_ = false;
   bool reached_stock_ = false;  ///< a feed move came near the blank, in boxes
   Box feed_bounds_mm_;          ///< of all feed moves, until then
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;
   std::uint64_t next_id_ = 0;
+  CutLabels* labels_ = nullptr;
 };
 
 }  // namespace kerf

@@ -69,6 +69,14 @@ const char* to_string(FindingId id) {
       return "late-start";
     case FindingId::kLineNotReached:
       return "line-not-reached";
+    case FindingId::kKinematics:
+      return "kinematics";
+    case FindingId::kNoRotaryAxis:
+      return "no-rotary-axis";
+    case FindingId::kSingularPose:
+      return "singular-pose";
+    case FindingId::kToolTooLong:
+      return "tool-too-long";
   }
   return "";
 }

@@ -38,6 +38,10 @@ enum class FindingId : std::uint8_t {
   kLengthUnknown,   ///< a tool whose length nothing tells; it counts as 0
   kLateStart,       ///< the machine was running its program when it was first seen
   kLineNotReached,  ///< no move of the line where the report was to begin
+  kKinematics,      ///< what is taken for known of a machine that turns tool or workpiece
+  kNoRotaryAxis,    ///< A, B or C of a machine that has none
+  kSingularPose,    ///< an axis turns far while the spindle hardly does
+  kToolTooLong,     ///< longer than the way to the pivot that the controller reckons with
 };
 
 /// "rapid-contact", ...: the `id` of the report.

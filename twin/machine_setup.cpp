@@ -8,10 +8,14 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "interp_bridge/ini_file.h"
+#include "twin/kinematics/kinematics_setup.h"
+#include "twin/kinematics/rotary_checks.h"
+#include "twin/kinematics/tool_path.h"
 
 namespace kerf {
 namespace {
@@ -257,6 +261,28 @@ void list_what_is_not_understood(IniReader& reader) {
   }
 }
 
+void read_kinematics(IniReader& reader, const IniEntry& entry, double unit_mm,
+                     MachineSetup& setup) {
+  Result<MachineKinematics> machine =
+      kinematics_of_ini(reader.file(), setup.interpreter.working_folder, setup.joint_letters,
+                        unit_mm, KinematicsRequest{});
+  if (!machine) {
+    reader.fault(entry,
+                 fmt::format("{}; positions are taken as those of the tip in a machine with "
+                             "straight axes",
+                             machine.error()),
+                 {}, Severity::kWarning);
+    return;
+  }
+  // Whatever the frame is: no other fault of a machine shows only there.
+  if (const Result<ToolPath> path = ToolPath::create(*machine, {}, {}); !path) {
+    reader.fault(entry, path.error(), {}, Severity::kWarning);
+    return;
+  }
+  setup.timeline.kinematics = std::make_shared<const MachineKinematics>(std::move(machine.value()));
+  setup.timeline.joint_limits = joint_limits_of_ini(reader.file(), setup.joint_letters, unit_mm);
+}
+
 }  // namespace
 
 bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics) {
@@ -295,14 +321,8 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   interpreter.startup_code = reader.text("RS274NGC", "RS274NGC_STARTUP_CODE");
   interpreter.random_toolchanger = reader.number("EMCIO", "RANDOM_TOOLCHANGER").value_or(0) != 0;
   interpreter.tool_lengths = true;
-  if (const IniEntry* const kins = ini->find("KINS", "KINEMATICS");
-      kins != nullptr && setup.kinematics != "trivkins") {
-    reader.fault(
-        *kins,
-        fmt::format("the kinematics {} are not modelled: positions are taken as those of the "
-                    "tip in a machine with straight axes",
-                    setup.kinematics),
-        {}, Severity::kWarning);
+  if (const IniEntry* const kins = ini->find("KINS", "KINEMATICS"); kins != nullptr) {
+    read_kinematics(reader, *kins, unit_mm, setup);
   }
   list_what_is_not_understood(reader);
   return !has_error(diagnostics);

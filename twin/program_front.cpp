@@ -9,6 +9,9 @@
 namespace kerf {
 namespace {
 
+/// Of a tool whose way is only to be bounded: its tip counts.
+constexpr double kGuessReach_mm = 1;
+
 void add_program_finding(FindingId id, Severity severity, std::string text, FindingLog& log) {
   Finding finding;
   finding.id = id;
@@ -18,11 +21,6 @@ void add_program_finding(FindingId id, Severity severity, std::string text, Find
 }
 
 void add_what_is_not_simulated(const ProgramSummary& summary, FindingLog& log) {
-  if (summary.has_rotary_motion) {
-    add_program_finding(
-        FindingId::kRotaryIgnored, Severity::kWarning,
-        "the program moves A, B or C; the Z-map has no rotary axes and cuts as if they stood", log);
-  }
   for (const ProgramNote& note : summary.notes) {
     Finding finding;
     finding.id = FindingId::kNotSimulated;
@@ -43,11 +41,31 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
     return false;
   }
   if (!found.blank) return true;
-  front.stock = make_stock(*found.blank, options.stock, found.origin, diagnostics, outcome);
-  return front.stock.stock != nullptr;
+  front.blank = std::move(found.blank);
+  front.blank_origin = std::move(found.origin);
+  return fill_front(options, front, diagnostics, outcome);
 }
 
 }  // namespace
+
+bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics& diagnostics,
+                Outcome& outcome) {
+  front.stock = {};  // the memory of the one before is free again
+  front.stock = make_stock(*front.blank, front.choice, options.stock, front.blank_origin,
+                           diagnostics, outcome);
+  return front.stock.stock != nullptr;
+}
+
+bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, ProgramFront& front,
+                        Diagnostics& diagnostics, Outcome& outcome) {
+  if (tilt.empty() || options.stock.kind || stock_model(front.choice.kind).takes_tilted_tools) {
+    return true;
+  }
+  StockNeeds needs;
+  needs.tilt = tilt;
+  front.choice = choose_stock(options.stock, needs);
+  return !front.stock.stock || fill_front(options, front, diagnostics, outcome);
+}
 
 std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostics& diagnostics,
                                        Outcome& outcome) {
@@ -59,25 +77,27 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
                            diagnostics)) {
     return std::nullopt;
   }
+  front.choice = choose_stock(options.stock, stock_needs(front.tools));
   if (!choose_known_blank(options, front, diagnostics, outcome)) return std::nullopt;
   outcome = Outcome::kFinished;
   return front;
 }
 
-void BlankSurvey::add(std::span<const Motion> motions) {
+void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves) {
   for (const Motion& m : motions) {
     if (is_feed(m) && m.tool != tool_) {
       tool_ = m.tool;
       const ResolvedTool& mounted = book_.mount(tool_, m.source.line);
       radius_mm_ = mounted.cutter ? mounted.cutter->radius_mm() : 0;
     }
-    guess_.add(m, radius_mm_);
+    if (moves.is_upright(m)) {
+      guess_.add(m, radius_mm_);
+    } else {
+      divided_.clear();
+      moves.path()->moves_of(m, kGuessReach_mm, 0, divided_);
+      guess_.add(m, divided_, radius_mm_);
+    }
   }
-}
-
-StockSetup BlankSurvey::make(const StockSettings& settings, Diagnostics& diagnostics,
-                             Outcome& outcome) const {
-  return make_stock(guess_.blank(), settings, "guessed", diagnostics, outcome);
 }
 
 std::optional<Finding> BlankSurvey::warning() const {

@@ -39,6 +39,9 @@ struct ProgramFront {
   /// Without a stock: nobody gave a blank and no comment describes one. Then it is guessed from the
   /// motions (BlankSurvey).
   StockSetup stock;
+  StockChoice choice;          ///< of its model, by what is known of the tools
+  std::optional<Blank> blank;  ///< what `stock` was made of
+  std::string blank_origin;
 };
 
 /// Checks everything that can be checked before the program is interpreted: files, comments, tool
@@ -47,16 +50,25 @@ struct ProgramFront {
 std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostics& diagnostics,
                                        Outcome& outcome);
 
+/// Makes front.stock of front.blank, by front.choice. False as make_stock().
+bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics& diagnostics,
+                Outcome& outcome);
+
+/// A motion of the program needs a model for tilted tools (TiltWatch::found()): makes the workpiece
+/// anew, uncut, unless its model was asked for or holds them. False as make_stock().
+bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, ProgramFront& front,
+                        Diagnostics& diagnostics, Outcome& outcome);
+
 /// Guesses the blank from all motions of a program, those beyond --until-line included: where a
 /// program works does not depend on how much of it is run. One thread.
 class BlankSurvey {
  public:
   BlankSurvey(double margin_mm, ToolSources tools)
-      : margin_mm_(margin_mm), guess_(margin_mm), book_(std::move(tools), true) {}
+      : margin_mm_(margin_mm), guess_(margin_mm), book_(std::move(tools), nullptr) {}
 
-  void add(std::span<const Motion> motions);
-  /// As make_stock().
-  StockSetup make(const StockSettings& settings, Diagnostics& diagnostics, Outcome& outcome) const;
+  /// `moves`: how the machine moves.
+  void add(std::span<const Motion> motions, const MotionMoves& moves);
+  Blank blank() const { return guess_.blank(); }
   /// Says what was assumed. Nothing where nothing moves: nothing will be cut.
   std::optional<Finding> warning() const;
 
@@ -66,6 +78,7 @@ class BlankSurvey {
   ToolBook book_;
   int tool_ = -1;
   double radius_mm_ = 0;  ///< of that tool
+  std::vector<CutMove> divided_;
 };
 
 /// How the reading of a program ended.

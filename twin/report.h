@@ -18,9 +18,10 @@ namespace kerf {
 
 /// The workpiece after the run.
 struct StockReport {
-  std::string model;        ///< "zmap"
-  std::string description;  ///< "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0"
-  std::string origin;       ///< "--stock", "comment in line 3 (workpiece)", "guessed"
+  std::string model;         ///< "zmap"
+  std::string model_reason;  ///< why a model was chosen that holds more than the Z-map; else empty
+  std::string description;   ///< "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0"
+  std::string origin;        ///< "--stock", "comment in line 3 (workpiece)", "guessed"
   double cell_mm = 0;
   double blank_mm3 = 0;
   double remaining_mm3 = 0;

@@ -42,6 +42,7 @@ Json stock_json(const Report& report) {
   const StockReport& s = *report.stock;
   Json out;
   out["model"] = s.model;
+  if (!s.model_reason.empty()) out["model_reason"] = s.model_reason;
   out["origin"] = s.origin;
   out["cell_mm"] = rounded(s.cell_mm);
   out["blank_mm3"] = rounded(s.blank_mm3);

@@ -52,6 +52,9 @@ void add_stock(std::string& out, const StockReport& s) {
   out += fmt::format("stock     {} ({})\n", s.description, s.origin);
   out += fmt::format("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
                      static_cast<double>(s.cells) / 1e6);
+  if (!s.model_reason.empty()) {
+    out += fmt::format("          {} because {}\n", s.model, s.model_reason);
+  }
   const double removed = s.blank_mm3 - s.remaining_mm3;
   const double percent = s.blank_mm3 > 0 ? 100 * removed / s.blank_mm3 : 0;
   out += fmt::format("removed   {} of {} ({:.1f} %)\n", volume_text(removed),

@@ -24,6 +24,7 @@ Session::Session(SessionOptions options, ProgramFront front, Clock::time_point s
       front_(std::move(front)),
       shown_program_(front_.program.get()),
       window_(options_.lines),
+      tilt_(options_.timeline.kinematics),
       start_(start) {}
 
 Session::~Session() = default;
@@ -60,7 +61,8 @@ bool Session::gather(std::span<const Motion> motions, BlankSurvey& survey) {
   } else {
     kept_ = {};
   }
-  survey.add(motions);
+  tilt_.look_at(motions, front_.program->workpiece_frame());
+  survey.add(motions, tilt_.moves());
   return true;
 }
 
@@ -83,8 +85,12 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
     return false;
   }
   if (stop.stop_requested() && report_.program.stopped_early) return true;
-  front_.stock = survey.make(options_.stock, diagnostics, outcome);
-  if (!front_.stock.stock) return false;
+  front_.blank = survey.blank();
+  front_.blank_origin = "guessed";
+  if (!make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome) ||
+      !fill_front(options_, front_, diagnostics, outcome)) {
+    return false;
+  }
   if (std::optional<Finding> warning = survey.warning()) {
     report_.findings.add(std::move(*warning));
   }
@@ -94,7 +100,10 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
 /// False: no more motions are wanted.
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
-  stage.set_frame((second_pass_ ? *second_pass_ : *front_.program).workpiece_frame());
+  const WorkpieceFrame& frame = (second_pass_ ? *second_pass_ : *front_.program).workpiece_frame();
+  tilt_.look_at(motions, frame);
+  if (must_begin_again()) return false;
+  stage.set_frame(frame);
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
@@ -107,8 +116,13 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   return !window_.over();
 }
 
-/// False: stopped before the end.
-bool Session::stream(CutStage& stage, std::stop_token stop) {
+/// A motion tilts the tool, and the model that was chosen without knowing of it is for upright
+/// ones.
+bool Session::must_begin_again() const {
+  return !tilt_.found().empty() && !options_.stock.kind && !stock()->takes_tilted_tools();
+}
+
+Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   Program& program = second_pass_ ? *second_pass_ : *front_.program;
   BatchQueue queue;
   ProgramSummary summary;
@@ -127,22 +141,39 @@ bool Session::stream(CutStage& stage, std::stop_token stop) {
   const double first_pass_s = report_.program.interpret_s;
   report_.program = std::move(summary);
   report_.program.interpret_s += first_pass_s;
-  return !(stop.stop_requested() && report_.program.stopped_early);
+  if (must_begin_again()) return Pass::kTilted;
+  return stop.stop_requested() && report_.program.stopped_early ? Pass::kStopped : Pass::kWhole;
 }
 
-bool Session::cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics) {
+Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
+                                   Diagnostics& diagnostics) {
   if (!kept_whole_) {
     const bool second = !report_.program.interpreter.empty();
     if (second) second_pass_ = Program::open(options_.program, diagnostics);
-    return second && !second_pass_ ? true : stream(stage, stop);
+    return second && !second_pass_ ? Pass::kWhole : stream(stage, stop);
   }
   const std::span<const Motion> all(kept_);
   for (std::size_t at = 0; at < all.size(); at += BatchQueue::kBatchMotions) {
-    if (stop.stop_requested()) return false;
+    if (stop.stop_requested()) return Pass::kStopped;
     const std::size_t count = std::min(BatchQueue::kBatchMotions, all.size() - at);
     if (!cut_batch(stage, all.subspan(at, count))) break;
   }
-  return true;
+  return Pass::kWhole;
+}
+
+/// Forgets what the pass has found, and makes the workpiece anew in a model that can hold it.
+bool Session::begin_again(Diagnostics& diagnostics, Outcome& outcome) {
+  if (options_.program.path == "-") {
+    diagnostics.push_back(general_error(
+        fmt::format("{}, and standard input cannot be read a second time for another model",
+                    tilt_.found()),
+        "--model octree is for tilted tools from the start"));
+    outcome = Outcome::kUsageError;
+    return false;
+  }
+  report_.findings = {};
+  window_ = LineWindow(options_.lines);
+  return make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome);
 }
 
 Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
@@ -152,11 +183,20 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   Outcome outcome = Outcome::kFinished;
   if (!stock() && !guess_blank(stop, diagnostics, outcome)) return outcome;
   if (!stock()) return conclude(true);  // stopped while the blank was guessed
+  if (const std::optional<Outcome> ended = cut_and_report(stop, diagnostics)) return *ended;
+  if (!begin_again(diagnostics, outcome)) return outcome;
+  return cut_and_report(stop, diagnostics).value();
+}
+
+/// Nothing: the program needs another model, and nothing is reported.
+std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics& diagnostics) {
   if (observer_) observer_->on_start(*stock());
-  ToolBook book(front_.tools, false);
+  ToolBook book(front_.tools, row_of(*stock()).can_cut);
   CutStage stage(*front_.stock.stock, book, report_.findings, options_.timeline);
   const double cpu_before = thread_cpu_s();
-  const bool whole = cut_program(stage, stop, diagnostics);
+  const Pass pass = cut_program(stage, stop, diagnostics);
+  if (pass == Pass::kTilted) return std::nullopt;
+  const bool whole = pass == Pass::kWhole;
   const Clock::time_point finish_start = Clock::now();
   stage.finish(whole);
   if (observer_) observer_->on_cut(*stock(), {}, stage.timeline().clock_s());

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -26,7 +27,8 @@ namespace kerf {
 class SessionObserver {
  public:
   virtual ~SessionObserver() = default;
-  /// The blank is there, nothing is cut yet.
+  /// The blank is there, nothing is cut yet. Comes a second time if the program turns out to need
+  /// another model, and everything begins again.
   virtual void on_start(const StockModel& stock) = 0;
   /// These motions have been taken; `end_s` is the program time up to which the workpiece is cut
   /// (the times of the last motions, and so their cuts, wait for what follows). The last call
@@ -66,17 +68,22 @@ class Session {
   Report& report() { return report_; }
   const Report& report() const { return report_; }
   /// Null if the run ended before there was one.
-  const ZMap* stock() const { return front_.stock.stock.get(); }
+  const StockModel* stock() const { return front_.stock.stock.get(); }
 
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
 
   bool guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
   bool gather(std::span<const Motion> motions, BlankSurvey& survey);
+  /// How a pass through the program ended.
+  enum class Pass { kWhole, kStopped, kTilted };
   ProgramSummary interpret(Program& program, const MotionSink& sink, std::stop_token stop);
-  bool cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
-  bool stream(CutStage& stage, std::stop_token stop);
+  Pass cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
+  Pass stream(CutStage& stage, std::stop_token stop);
+  bool must_begin_again() const;
+  bool begin_again(Diagnostics& diagnostics, Outcome& outcome);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
+  std::optional<Outcome> cut_and_report(std::stop_token stop, Diagnostics& diagnostics);
   Outcome conclude(bool stopped);
   void complete_report(const CutStage& stage);
   void complete_timing();
@@ -87,6 +94,7 @@ class Session {
       second_pass_;  ///< a guessed blank and a long file: interpreted once more
   std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
   LineWindow window_;
+  TiltWatch tilt_;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass

@@ -14,7 +14,7 @@
 namespace kerf {
 namespace {
 
-/// Bytes that a run needs at least for each cell: its height. A surface (picture, mesh) takes as
+/// Bytes that models of heights need at least for each cell. A surface (picture, mesh) takes as
 /// much again and more.
 constexpr double kBytesPerCell = 4.0;
 
@@ -36,11 +36,20 @@ bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics)
   return true;
 }
 
-std::unique_ptr<ZMap> load_stock(const Blank& blank, const StockSettings& settings,
-                                 Diagnostics& diagnostics, Outcome& outcome) {
+std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& choice,
+                                       const StockSettings& settings, Diagnostics& diagnostics,
+                                       Outcome& outcome) {
   if (settings.cell_mm > 0) {
     diagnostics.push_back(
         general_error("--cell: a saved workpiece keeps its own cells; leave --cell out"));
+    return nullptr;
+  }
+  if (choice.kind != StockKind::kZmap) {
+    const std::string why = choice.reason.empty() ? "" : fmt::format(" ({})", choice.reason);
+    diagnostics.push_back(
+        general_error(fmt::format("{}: a saved workpiece is a Z-map; the model {} is needed{}",
+                                  blank.state_file, stock_model(choice.kind).name, why),
+                      "--stock with the blank's shape, or --model zmap"));
     return nullptr;
   }
   auto loaded = ZMap::load(blank.state_file, settings.threads, settings.kernel);
@@ -50,18 +59,19 @@ std::unique_ptr<ZMap> load_stock(const Blank& blank, const StockSettings& settin
   return nullptr;
 }
 
-std::unique_ptr<ZMap> fill_stock(const Blank& blank, const StockSettings& settings,
-                                 const std::string& origin, Diagnostics& diagnostics) {
-  ZMapOptions options;
-  options.blank = blank;
-  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
-  options.threads = settings.threads;
-  options.kernel = settings.kernel;
-  if (refuse_memory(blank, options.cell_mm, diagnostics)) return nullptr;
-  auto created = ZMap::create(options);
+std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& choice,
+                                       const StockSettings& settings, const std::string& origin,
+                                       Diagnostics& diagnostics) {
+  const double cell_mm =
+      settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
+  if (choice.kind != StockKind::kOctree && refuse_memory(blank, cell_mm, diagnostics)) {
+    return nullptr;
+  }
+  auto created = stock_model(choice.kind).create(blank, settings);
   if (created) return std::move(created.value());
-  const char* option = created.error().rfind("cell", 0) == 0 ? "--cell" : origin.c_str();
-  diagnostics.push_back(general_error(fmt::format("{}: {}", option, created.error())));
+  const bool by_cell = created.error().rfind("cell", 0) == 0;
+  diagnostics.push_back(
+      general_error(fmt::format("{}: {}", by_cell ? "--cell" : origin, created.error())));
   return nullptr;
 }
 
@@ -74,14 +84,21 @@ Diagnostic general_error(std::string message, std::string hint) {
   return d;
 }
 
-StockSetup make_stock(const Blank& blank, const StockSettings& settings, const std::string& origin,
-                      Diagnostics& diagnostics, Outcome& outcome) {
+StockSetup make_stock(const Blank& blank, const StockChoice& choice, const StockSettings& settings,
+                      const std::string& origin, Diagnostics& diagnostics, Outcome& outcome) {
+  StockChoice fitting = choice;
+  if (!settings.kind && choice.kind != StockKind::kOctree) {
+    const std::string need = need_of_blank(blank);
+    if (!need.empty()) fitting = {StockKind::kOctree, need};
+  }
   outcome = Outcome::kUsageError;
   StockSetup setup;
   setup.facts.origin = origin;
   setup.facts.description = describe(blank);
-  setup.stock = blank.state_file.empty() ? fill_stock(blank, settings, origin, diagnostics)
-                                         : load_stock(blank, settings, diagnostics, outcome);
+  setup.facts.model_reason = fitting.reason;
+  setup.stock = blank.state_file.empty()
+                    ? fill_stock(blank, fitting, settings, origin, diagnostics)
+                    : load_stock(blank, fitting, settings, diagnostics, outcome);
   return setup;
 }
 
@@ -141,7 +158,7 @@ bool add_interpreter_findings(const Diagnostics& said, bool open_ended, FindingL
   return end_remarked;
 }
 
-StockReport stock_report(const ZMap& stock, const StockReport& facts) {
+StockReport stock_report(const StockModel& stock, const StockReport& facts) {
   StockReport report = facts;
   report.model = stock.name();
   report.cell_mm = stock.cell_mm();

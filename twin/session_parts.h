@@ -9,30 +9,25 @@
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
 #include "stock/blank.h"
-#include "stock/zmap/zmap.h"
 #include "twin/outcome.h"
 #include "twin/report.h"
+#include "twin/stock_choice.h"
 #include "twin/tools.h"
 
 namespace kerf {
 
-/// How a workpiece is modelled.
-struct StockSettings {
-  double cell_mm = 0;  ///< 0: default_cell_mm() of the blank
-  int threads = 1;     ///< cutting threads
-  ZMapKernel kernel = ZMapKernel::kAuto;
-};
-
 /// A workpiece with what the report says of it.
 struct StockSetup {
-  std::unique_ptr<ZMap> stock;
+  std::unique_ptr<StockModel> stock;
   StockReport facts;  ///< description and origin
 };
 
-/// The blank as a Z-map. `origin`: what asked for it, for messages. Null with diagnostics if there
-/// is not memory for it, the cells do not suit it, or a saved workpiece cannot be read.
-StockSetup make_stock(const Blank& blank, const StockSettings& settings, const std::string& origin,
-                      Diagnostics& diagnostics, Outcome& outcome);
+/// The blank in the chosen model (a saved workpiece in its own), or in one that can hold it, unless
+/// settings.kind asks for one. `origin`: what asked for it, for
+/// messages. Null with diagnostics if there is not memory for it, the cells do not suit it, or a
+/// saved workpiece cannot be read.
+StockSetup make_stock(const Blank& blank, const StockChoice& choice, const StockSettings& settings,
+                      const std::string& origin, Diagnostics& diagnostics, Outcome& outcome);
 
 /// A blank written in a comment of the program. Nothing in `blank` if there is none; false, with a
 /// diagnostic, if it cannot be understood.
@@ -54,7 +49,7 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const 
 bool add_interpreter_findings(const Diagnostics& said, bool open_ended, FindingLog& log);
 
 /// The stock part of the report, from the workpiece as it is now.
-StockReport stock_report(const ZMap& stock, const StockReport& facts);
+StockReport stock_report(const StockModel& stock, const StockReport& facts);
 
 /// Peak resident memory of this process, MB.
 double peak_rss_mb();

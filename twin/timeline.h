@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,10 +13,16 @@
 
 namespace kerf {
 
+struct MachineKinematics;
+
 struct TimelineOptions {
   MachineLimits limits = MachineLimits::small_mill();
   bool limits_known = false;  ///< of the user's machine; false: assumed
   PlannerOptions planner;     ///< with_path: the steps carry the planned path
+  /// How the machine turns the tool or the workpiece; null: A, B and C turn nothing.
+  std::shared_ptr<const MachineKinematics> kinematics;
+  /// By the letter of the axis that the joint moves; no limits without an INI.
+  std::array<AxisLimits, kAxisCount> joint_limits{};
 };
 
 /// Sums over the motions of a program.

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 
-#include "stock/zmap/zmap.h"
-
 namespace kerf {
 
-ToolBook::ToolBook(ToolSources sources, bool model_holds_undercuts)
-    : sources_(std::move(sources)), model_holds_undercuts_(model_holds_undercuts) {
+ToolBook::ToolBook(ToolSources sources, CutterCheck can_cut)
+    : sources_(std::move(sources)), can_cut_(can_cut) {
   std::stable_sort(sources_.hints.begin(), sources_.hints.end(),
                    [](const ToolHint& a, const ToolHint& b) { return a.line < b.line; });
 }
@@ -19,7 +17,7 @@ const ResolvedTool& ToolBook::mount(int tool, std::uint32_t line) {
   const auto known = tools_.find(tool);
   if (known != tools_.end() && known->second.cutter) return known->second;
   ResolvedTool resolved = tool == 0 ? resolve_empty_spindle(fresh_hint) : resolve(tool, fresh_hint);
-  refuse_undercut(resolved);
+  refuse_unfit(resolved);
   return tools_[tool] = std::move(resolved);
 }
 
@@ -129,16 +127,11 @@ ResolvedTool ToolBook::resolve_empty_spindle(std::optional<std::size_t> fresh_hi
   return out;
 }
 
-void ToolBook::refuse_undercut(ResolvedTool& tool) const {
-  if (!tool.cutter || model_holds_undercuts_) return;
-  if (tool.cutter->undercuts()) {
-    tool.trouble =
-        fmt::format("{} cuts undercuts, which the Z-map cannot hold", tool.cutter->spec());
-  } else if (const Done fit = ZMap::can_cut(*tool.cutter); !fit) {
-    tool.trouble = fit.error();
-  } else {
-    return;
-  }
+void ToolBook::refuse_unfit(ResolvedTool& tool) const {
+  if (!tool.cutter || can_cut_ == nullptr) return;
+  const Done fit = can_cut_(*tool.cutter);
+  if (fit) return;
+  tool.trouble = fit.error();
   tool.cutter.reset();
 }
 

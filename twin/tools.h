@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "interp_bridge/program.h"
 #include "stock/cutter/cutter.h"
 #include "stock/cutter/shape_spec.h"
@@ -38,10 +39,13 @@ struct ResolvedTool {
 /// with one exception that is marked `assumed`: a program that cuts before any tool change has no
 /// tool number, and then the only tool that --tool describes (or, without
 /// --tool, the only one that comments describe) is taken.
-/// Cutters with undercuts are refused where the stock model cannot hold them.
+/// Cutters are refused where the stock model cannot hold what they leave.
 class ToolBook {
  public:
-  ToolBook(ToolSources sources, bool model_holds_undercuts);
+  /// Whether a stock model can cut with it, or why not.
+  using CutterCheck = Done (*)(const Cutter& cutter);
+  /// `can_cut` null: every cutter is welcome.
+  ToolBook(ToolSources sources, CutterCheck can_cut);
 
   /// The tool now in the spindle, on the first move it makes, at `line` of the program (0: not
   /// known). A comment without a tool number belongs to the first tool that moves at or after its
@@ -58,10 +62,10 @@ class ToolBook {
   bool from_comments(ResolvedTool& out, std::optional<std::size_t> fresh_hint) const;
   bool from_table(ResolvedTool& out) const;
   std::optional<std::size_t> take_nameless_hint(std::uint32_t line);
-  void refuse_undercut(ResolvedTool& tool) const;
+  void refuse_unfit(ResolvedTool& tool) const;
 
   ToolSources sources_;
-  bool model_holds_undercuts_;
+  CutterCheck can_cut_;
   std::size_t next_hint_ = 0;  ///< hints before this one lie before the last tool change
   std::map<int, ResolvedTool> tools_;
 };

@@ -46,7 +46,7 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   a.work.cell = std::string("0");
   a.work.threads = std::string("1.5");
   a.work.kernel = std::string("gpu");
-  a.work.model = std::string("octree");
+  a.work.model = std::string("voxels");
   a.source.interp = std::string("rs274");
   a.source.block_delete = std::string("maybe");
   a.mesh_tolerance = std::string("fine");
@@ -54,7 +54,7 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   EXPECT_EQ(faults_of(a),
             "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
-            "kerf: error: --model: octree is not in this version; allowed: zmap, auto\n"
+            "kerf: error: --model: 'voxels' is no model; allowed: zmap, mmap, octree, auto\n"
             "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
             "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
             "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"
@@ -63,13 +63,14 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
             "1000 (mm)\n");
 }
 
-TEST(RunOptions, ToolsGivenTwiceOrWithUndercutsAreRefused) {
+TEST(RunOptions, ToolsGivenTwiceOrBeyondTheModelAreRefused) {
   RunArguments a;
+  a.work.model = "zmap";
   a.work.tools = {"1=flat:6", "1=ball:6", "2=lollipop:6:3"};
   EXPECT_EQ(faults_of(a),
             "kerf: error: --tool: '1=ball:6': tool 1 is given twice\n"
-            "kerf: error: --tool: '2=lollipop:6:3': lollipop:6:3 cuts undercuts, which the Z-map "
-            "cannot hold\n");
+            "kerf: error: --tool: '2=lollipop:6:3': lollipop:6:3 cuts below itself (its neck is "
+            "thinner than its head); a Z-map cannot hold undercuts\n");
 }
 
 TEST(RunOptions, TwoOutputsToOnePlaceAreRefused) {

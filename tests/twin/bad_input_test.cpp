@@ -117,7 +117,8 @@ TEST_F(BadInput, CellLargerThanTheStockOrTooSmall) {
 TEST_F(BadInput, UnknownShapeAndToolZero) {
   expect(run({"part.canon", "--tool", "1=flet:6", "--tool", "0=flat:6"}), 2,
          "kerf: error: --tool: tool 1: flet:6: unknown shape 'flet'; did you mean 'flat'? Shapes: "
-         "flat, ball, bull, vee, taper, drill, lollipop, tslot, profile\n"
+         "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, "
+         "profile\n"
          "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n");
 }
 
@@ -126,7 +127,7 @@ TEST_F(BadInput, CutterWithAHollowBottom) {
   expect(
       run({"part.canon", "--tool", "1=profile:cup.profile"}), 2,
       "kerf: error: --tool: '1=profile:cup.profile': profile:cup.profile has a hollow bottom (its "
-      "profile falls from radius 0 outward); a Z-map cannot cut with it\n");
+      "profile falls from radius 0 outward); an octree cannot cut with it\n");
 }
 
 TEST_F(BadInput, InterpreterNotInstalled) {

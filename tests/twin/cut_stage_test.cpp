@@ -24,7 +24,7 @@ class Shop {
     row.diameter_mm = 6;
     row.line = 2;
     sources.table.push_back(row);
-    book_ = std::make_unique<ToolBook>(sources, false);
+    book_ = std::make_unique<ToolBook>(sources, ZMap::can_cut);
     stage_ = std::make_unique<CutStage>(*stock_, *book_, log_, TimelineOptions{});
     std::span<const Motion> left(program.list());
     while (!left.empty()) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "twin/kinematics/machine_kinematics.h"
+
 namespace kerf {
 namespace {
 
@@ -169,8 +171,12 @@ TEST_F(MachineSetupTest, JointsOfAGantryAndUnknownKinematics) {
   EXPECT_EQ(axis('Z').max_velocity, 7);
   EXPECT_EQ(setup_.interpreter.start[2], 5);
   ASSERT_TRUE(read("[KINS]\nKINEMATICS = xyzac-trt-kins\n"));
+  ASSERT_TRUE(setup_.timeline.kinematics);
+  EXPECT_EQ(setup_.timeline.kinematics->module, "xyzac-trt-kins");
+  ASSERT_TRUE(read("[KINS]\nKINEMATICS = tripodkins\n"));
+  EXPECT_FALSE(setup_.timeline.kinematics);
   EXPECT_NE(
-      messages().find("mill.ini:2:14: warning: the kinematics xyzac-trt-kins are not modelled"),
+      messages().find("mill.ini:2:14: warning: tripodkins is no chain of links that kerf knows"),
       std::string::npos)
       << messages();
 }

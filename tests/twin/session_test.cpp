@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "twin/kinematics/machine_kinematics.h"
 
 namespace kerf {
 namespace {
@@ -18,7 +21,6 @@ class Recorder final : public SessionObserver {
     start_digest = stock.digest();
   }
   void on_cut(const StockModel&, std::span<const Motion> motions, double end) override {
-    EXPECT_EQ(starts, 1);
     EXPECT_GE(end, end_s);
     moves += motions.size();
     end_s = end;
@@ -91,8 +93,101 @@ TEST_F(SessionTest, TakesBlankAndToolFromComments) {
   EXPECT_EQ(report.findings.total(), 0U);
 }
 
-TEST_F(SessionTest, CylindersOnTheirSideAreRefused) {
+/// A bar along X, 20 mm thick, on a table that turns about X: four flats, 8 mm from the middle.
+class SessionOnATurningTable : public SessionTest {
+ protected:
+  SessionOnATurningTable() {
+    std::ofstream listing(options_.program.path);
+    listing << "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+            << "    2 N1     SELECT_TOOL(1)\n    3 N1     CHANGE_TOOL(1)\n"
+            << "    4 N2     START_SPINDLE_CLOCKWISE(0)\n    5 N2     SET_FEED_RATE(300.0000)\n";
+    int number = 6;
+    for (int side = 0; side < 4; ++side) {
+      const auto step = [&](const char* command, double x, double z) {
+        listing << "    " << number++ << " N" << 10 * side + 10 << "    " << command << "(" << x
+                << ".0, 0.0, " << z << ".0, " << 90 * side << ".0, 0.0, 0.0)\n";
+      };
+      step("STRAIGHT_TRAVERSE", -20, 30);
+      step("STRAIGHT_TRAVERSE", -20, 8);
+      step("STRAIGHT_FEED", 50, 8);
+      step("STRAIGHT_TRAVERSE", 50, 30);
+    }
+    listing << "    " << number << " N99    PROGRAM_END()\n";
+    options_.blank = parse_blank("cylinder:0,0,0:30:20:x").value();
+    options_.tools.push_back(std::move(parse_tool_argument("1=flat:30").value()));
+    options_.stock.cell_mm = 0.4;
+    options_.timeline.kinematics = std::make_shared<const MachineKinematics>(
+        known_machine("trivkins", "XYZABC", {}, {}).value());
+  }
+};
+
+TEST_F(SessionOnATurningTable, FourFlatsMakeASquareBar) {
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->model, "octree");
+  EXPECT_EQ(report.stock->model_reason, "the blank has a cylinder along x");
+  // A disc of radius 10 less four segments beyond 8.
+  const double segment = 100 * std::acos(0.8) - 8 * 6;
+  const double expected = 30 * (kPi * 100 - 4 * segment);
+  EXPECT_NEAR(report.stock->remaining_mm3, expected, 0.003 * expected);
+  for (const Finding& finding : report.findings.kept()) {
+    EXPECT_EQ(finding.id, FindingId::kKinematics) << finding.text;
+  }
+}
+
+TEST_F(SessionOnATurningTable, ABoxBeginsAsAZmapAndAgainAsAnOctree) {
+  options_.blank = parse_blank("box:0,-9,-9:30,9,9").value();
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->model, "octree");
+  EXPECT_EQ(report.stock->model_reason, "line 20 turns the tool or the workpiece: A90");
+  EXPECT_NEAR(report.stock->remaining_mm3, 30 * 16 * 16, 5);
+  EXPECT_EQ(report.motion.moves, 16U);
+  EXPECT_EQ(recorder_.starts, 2);
+}
+
+TEST_F(SessionOnATurningTable, AZmapThatWasAskedForIsToldOfAsAnError) {
+  options_.blank = parse_blank("box:0,-9,-9:30,9,9").value();
+  options_.stock.kind = StockKind::kZmap;
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->model, "zmap");
+  ASSERT_EQ(report.findings.count(Severity::kError), 1U);
+  const Finding& finding = report.findings.kept()[0];
+  EXPECT_EQ(finding.id, FindingId::kRotaryIgnored);
+  EXPECT_EQ(finding.source.line, 20U);
+  EXPECT_EQ(finding.text,
+            "A, B or C move, and the model zmap is for upright tools over a workpiece that lies "
+            "still: it is cut as if they stood (--model octree follows them)");
+}
+
+TEST_F(SessionOnATurningTable, WithoutABlankItIsGuessedInTheWorkpiece) {
+  options_.blank.reset();
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->model, "octree");
+  // The tip runs along four lines 8 mm from the middle.
+  EXPECT_LE(report.stock->bounds_mm.min.z, -8);
+  EXPECT_GE(report.stock->bounds_mm.max.y, 8);
+  EXPECT_EQ(recorder_.starts, 1);
+}
+
+TEST_F(SessionOnATurningTable, AMachineWithoutTheAxisIsAnError) {
+  options_.blank = parse_blank("box:0,-9,-9:30,9,9").value();
+  options_.timeline.kinematics =
+      std::make_shared<const MachineKinematics>(known_machine("trivkins", "XYZ", {}, {}).value());
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  bool told = false;
+  for (const Finding& finding : report.findings.kept()) {
+    told |= finding.id == FindingId::kNoRotaryAxis && finding.source.line == 20;
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST_F(SessionTest, TheZmapRefusesCylindersOnTheirSide) {
   write_listing("");
+  options_.stock.kind = StockKind::kZmap;
   options_.blank = parse_blank("cylinder:0,0,-5:25:10:x").value();
   EXPECT_EQ(run(), Outcome::kUsageError);
   ASSERT_EQ(diagnostics_.size(), 1U);

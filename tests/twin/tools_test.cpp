@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "stock/zmap/zmap.h"
+
 namespace kerf {
 namespace {
 
@@ -38,7 +40,7 @@ TEST(ToolBook, ArgumentsComeBeforeCommentsBeforeTheTable) {
   sources.table = {row(1, 3, "ball nose"), row(2, 3, "ball nose"), row(3, 3, "ball nose")};
   sources.hints = {hint(1, 2, "bull:6:1"), hint(2, 3, "bull:6:1")};
   sources.arguments.push_back(argument("1=flat:8"));
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 1), "flat:8");
   EXPECT_EQ(book.mount(1, 10).origin, "--tool");
   EXPECT_EQ(shape_of(book, 2), "bull:6:1");
@@ -51,7 +53,7 @@ TEST(ToolBook, ArgumentsComeBeforeCommentsBeforeTheTable) {
 TEST(ToolBook, DiameterAloneIsAGuess) {
   ToolSources sources;
   sources.table = {row(5, 4, "")};
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 5), "flat:4");
   EXPECT_TRUE(book.mount(5, 10).guessed);
 }
@@ -59,14 +61,14 @@ TEST(ToolBook, DiameterAloneIsAGuess) {
 TEST(ToolBook, WholeShapesComeBeforeGuessedOnes) {
   ToolSources sources;
   sources.hints = {hint(1, 1, "flat:6", true), hint(1, 9, "ball:6")};
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 1), "ball:6");
 }
 
 TEST(ToolBook, NeverGivesOneToolForAnother) {
   ToolSources sources;
   sources.arguments.push_back(argument("1=flat:8"));
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 2), "");
   EXPECT_TRUE(book.mount(2, 10).trouble.empty());
 }
@@ -74,7 +76,7 @@ TEST(ToolBook, NeverGivesOneToolForAnother) {
 TEST(ToolBook, CommentWithoutNumberBelongsToTheNextTool) {
   ToolSources sources;
   sources.hints = {hint(-1, 5, "flat:6"), hint(-1, 20, "ball:4")};
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 7, 8), "flat:6");
   EXPECT_EQ(shape_of(book, 2, 15), "") << "the comment in line 5 is used up";
   EXPECT_EQ(shape_of(book, 3, 25), "ball:4");
@@ -83,19 +85,19 @@ TEST(ToolBook, CommentWithoutNumberBelongsToTheNextTool) {
 TEST(ToolBook, EmptySpindleTakesTheOnlyToolThatIsDescribed) {
   ToolSources one;
   one.arguments.push_back(argument("4=flat:8"));
-  ToolBook book(one, false);
+  ToolBook book(one, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 0), "flat:8");
   EXPECT_TRUE(book.mount(0, 1).assumed);
   EXPECT_EQ(book.mount(0, 1).number, 4);
 
   ToolSources two = one;
   two.arguments.push_back(argument("5=flat:8"));
-  ToolBook unsure(two, false);
+  ToolBook unsure(two, ZMap::can_cut);
   EXPECT_EQ(shape_of(unsure, 0), "");
 
   ToolSources comments;
   comments.hints = {hint(3, 2, "ball:6")};
-  ToolBook hinted(comments, false);
+  ToolBook hinted(comments, ZMap::can_cut);
   EXPECT_EQ(shape_of(hinted, 0), "ball:6");
   EXPECT_EQ(hinted.mount(0, 1).number, 3);
 }
@@ -103,17 +105,19 @@ TEST(ToolBook, EmptySpindleTakesTheOnlyToolThatIsDescribed) {
 TEST(ToolBook, UndercutsNeedAModelThatHoldsThem) {
   ToolSources sources;
   sources.arguments.push_back(argument("1=lollipop:6:3"));
-  ToolBook zmap(sources, false);
+  ToolBook zmap(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(zmap, 1), "");
-  EXPECT_EQ(zmap.mount(1, 1).trouble, "lollipop:6:3 cuts undercuts, which the Z-map cannot hold");
-  ToolBook other(sources, true);
+  EXPECT_EQ(zmap.mount(1, 1).trouble,
+            "lollipop:6:3 cuts below itself (its neck is thinner than its head); a Z-map cannot "
+            "hold undercuts");
+  ToolBook other(sources, nullptr);
   EXPECT_EQ(shape_of(other, 1), "lollipop:6:3");
 }
 
 TEST(ToolBook, TableRowWithoutDiameterIsNoTool) {
   ToolSources sources;
   sources.table = {row(1, 0, "ball nose")};
-  ToolBook book(sources, false);
+  ToolBook book(sources, ZMap::can_cut);
   EXPECT_EQ(shape_of(book, 1), "");
   EXPECT_EQ(book.mount(1, 1).trouble, "the tool table (line 4) gives no diameter for it");
 }

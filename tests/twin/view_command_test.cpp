@@ -232,6 +232,18 @@ TEST_F(ViewFiles, ALogWantsAWindowOrReplay) {
             "kerf: error: --at-line: is for programs, not for logs\n");
 }
 
+TEST_F(ViewFiles, ALogWithoutADisplayNamesTheWayWithoutOne) {
+  const std::string log = folder_.write("run.csv", "t_s,x_mm,y_mm,z_mm\n0,1,2,3\n1,2,3,4\n");
+  const KerfResult result = view({log, "--quiet"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(result.err,
+            "kerf: error: no window: there is no display (DISPLAY is not set); pictures need no "
+            "display: --png FILE\n"
+            "   hint: kerf replay LOG needs no window; with --png FILE it draws what the log "
+            "leaves\n");
+  EXPECT_EQ(result.out, "") << "it has not been replayed";
+}
+
 /// With a window.
 class ViewWindow : public ::testing::Test {
  protected:
@@ -314,6 +326,14 @@ TEST_F(ViewWindow, PlaysStepsAndCloses) {
   ASSERT_TRUE(changes_from(end));
   EXPECT_LT(different_pixels(settled(), start), 30U) << "uncut again";
   kerf_->key("Q");
+  expect_end(0);
+  EXPECT_EQ(result_.err, "");
+}
+
+TEST_F(ViewWindow, ADestroyedWindowIsAClosedOne) {
+  open({"view", program_});
+  settled();
+  ASSERT_TRUE(xdotool("search --onlyvisible --name '^kerf - ' windowclose"));
   expect_end(0);
   EXPECT_EQ(result_.err, "");
 }
@@ -425,6 +445,24 @@ TEST_F(ViewWindow, ALogAtItsEndStaysUntilItIsClosedOrInterrupted) {
     expect_end(0);
     EXPECT_NE(result_.out.find("6001 samples"), std::string::npos) << result_.out;
   }
+}
+
+TEST_F(ViewWindow, WhatALogCutIsColouredByTool) {
+  // The first tool's colour is a blue; the path is blue, too, but thin.
+  const auto blue = [](const Picture& picture) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
+      if (picture.rgb[i + 2] > picture.rgb[i] + 60) ++count;
+    }
+    return count;
+  };
+  open({"view", write_log(), "--speed", "1000"});
+  const std::size_t plain = blue(settled());
+  kerf_->key("v");
+  kerf_->key("v");
+  EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return blue(now) > plain + 4000; }));
+  kerf_->key("Q");
+  expect_end(0);
 }
 
 TEST_F(ViewWindow, ALogIsInterrupted) {

@@ -46,8 +46,13 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
                   "state:FILE (a "
                   "saved workpiece); several joined by +")
       ->type_name("SPEC");
-  command.add_option("--model", a.model, "workpiece model: zmap | auto (default auto)")
+  command
+      .add_option("--model", a.model,
+                  "workpiece model: zmap | mmap | octree | auto (default auto: what tools and "
+                  "motions need)")
       ->type_name("NAME");
+  command.add_flag("--additive", a.additive,
+                   "material is added along the path (printing, welding), within the blank's box");
   command
       .add_option("--cell", a.cell,
                   "edge of a cell (default: suits the blank, at most 4 million cells)")

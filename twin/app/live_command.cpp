@@ -241,6 +241,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<LiveView> view;
   if (window) {
+    session->keep_cut_ids();
     view.emplace(view_options(request, *session, stop, *window), *observer, window->mailbox,
                  window->commands);
     observer = &*view;
@@ -265,14 +266,18 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   std::fflush(stdout);
   print(diagnostics, request.quiet);
   // What it came to may be looked at until the window is closed.
-  if (view && !stop.stop_requested()) view->end(session->stock(), stop.get_token());
+  if (view && !stop.stop_requested()) {
+    view->end(session->stock(), session->cut_labels(), stop.get_token());
+  }
   return exit_code(outcome, session->report(), diagnostics);
 }
 
-/// With a window, if one is wanted and there is a display; a machine is watched without one, too.
+/// With a window, if one is wanted and there is a display; without one a machine is watched and a
+/// log replayed, too, unless the window is all that was asked for.
 int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source,
                     std::stop_source& stop) {
-  if (!request.window || !has_display()) return watch(request, std::move(source), stop, nullptr);
+  const bool may_try = has_display() || request.needs_window;
+  if (!request.window || !may_try) return watch(request, std::move(source), stop, nullptr);
   LiveWindow window;
   const auto go_on = [&](const std::string& reason) {
     Diagnostic d = fault(fmt::format("{}; going on without a window", reason));
@@ -288,6 +293,12 @@ int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source
         go_on(reason);
       });
   if (code) return *code;
+  if (request.needs_window) {
+    Diagnostic d = fault(code.error());
+    d.hint = "kerf replay LOG needs no window; with --png FILE it draws what the log leaves";
+    print({d}, false);
+    return kExitFailure;
+  }
   go_on(code.error());
   return watch(request, std::move(source), stop, nullptr);
 }

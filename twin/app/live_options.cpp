@@ -165,6 +165,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   options.tools = work.tools.empty() ? request.config.tools : std::move(work.tools);
   options.blank = work.blank ? std::move(work.blank) : request.config.stock.blank;
   options.stock = work.stock;
+  if (a.work.model.empty()) options.stock.kind = request.config.stock.model;
   if (a.work.cell.empty() && request.config.stock.cell_mm) {
     options.stock.cell_mm = *request.config.stock.cell_mm;
   }
@@ -186,8 +187,10 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.events = a.events;
   request.outputs = a.outputs;
   request.quiet = a.quiet;
+  request.needs_window = a.in_window;
   // A log that is run as fast as it goes is there for its report.
-  request.window = !a.no_view && request.config.view.window && !std::isinf(request.options.speed);
+  request.window = a.in_window ||
+                   (!a.no_view && request.config.view.window && !std::isinf(request.options.speed));
   check_output_arguments(request.outputs, diagnostics);
   return request;
 }

@@ -35,6 +35,7 @@ struct LiveArguments {
   OutputPaths outputs;
   bool quiet = false;
   bool no_view = false;
+  bool in_window = false;  ///< `kerf view LOG`: with a window or not at all
 };
 
 /// The same, understood.
@@ -52,7 +53,8 @@ struct LiveRequest {
   double cpu_limit_percent = 0;  ///< 0: none
   double memory_limit_mb = 0;    ///< 0: none
   bool quiet = false;
-  bool window = false;  ///< wanted; there may be no display
+  bool window = false;        ///< wanted; there may be no display
+  bool needs_window = false;  ///< without one there is nothing to be done
 };
 
 enum class LiveCommand { kShadow, kReplay };

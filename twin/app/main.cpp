@@ -20,6 +20,7 @@
 #include "twin/app/machine_command.h"
 #include "twin/app/run_command.h"
 #include "twin/app/view_command.h"
+#include "twin/stock_choice.h"
 #include "twin/suggest.h"
 
 namespace kerf {
@@ -85,10 +86,15 @@ constexpr const char* kSources =
     "hal      pins of the LinuxCNC that runs on this computer\n"
     "log      recordings of kerf, CSV, halsampler files, candump -l files\n";
 
-constexpr const char* kModels =
-    "zmap   one height a cell: three-axis milling, no undercuts; exact sweeps of straight moves "
-    "and of arcs in XY\n"
-    "auto   the model that the motions need (zmap in this version)\n";
+std::string model_list() {
+  std::string list;
+  for (const StockModelRow& row : stock_models()) {
+    list += fmt::format("{:<7} {}\n", row.name, row.purpose);
+  }
+  return list +
+         "auto    the first of these that holds what tools, blank and motions need; the report "
+         "says why\n";
+}
 
 std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
 
@@ -171,7 +177,7 @@ struct Commands {
     // Found and started by machine_command(), before this is asked.
     add(app, "machine", "a simulated machine that serves its positions", kMachineExample,
         [] { return kExitUsage; });
-    add_list(app, "models", "list the workpiece models", kModels);
+    add_list(app, "models", "list the workpiece models", model_list());
     add_list(app, "sources", "list where positions may come from", kSources);
     add_list(app, "tools", "list the tool shapes", fmt::format("{}\n", shape_help()));
   }

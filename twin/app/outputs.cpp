@@ -53,7 +53,7 @@ std::string file_name(const std::string& path) {
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const std::string& path, const TriangleMesh& mesh, const ZMap& stock,
+Done write_picture(const std::string& path, const TriangleMesh& mesh, const StockModel& stock,
                    const std::string& name, Diagnostics& diagnostics) {
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
@@ -61,7 +61,12 @@ Done write_picture(const std::string& path, const TriangleMesh& mesh, const ZMap
   Result<Picture> picture = draw_part(mesh, options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
-  picture = draw_heights(stock.height_grid(), options, ray_threads());
+  const std::shared_ptr<const HeightGrid> heights = stock.height_grid();
+  if (!heights) {
+    return Error{fmt::format("drawing {}: {} (without OpenGL only workpieces without undercuts)",
+                             path, reason)};
+  }
+  picture = draw_heights(heights, options, ray_threads());
   if (!picture) return Error{fmt::format("drawing {}: {}", path, picture.error())};
   Diagnostic note;
   note.severity = Severity::kNote;
@@ -102,7 +107,7 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
   }
 }
 
-void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const ZMap* stock,
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    Report& report, Diagnostics& diagnostics) {
   const Clock::time_point start = Clock::now();
   const auto elapsed_s = [&] {

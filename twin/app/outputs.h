@@ -37,7 +37,7 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// mesh time, adds it to the total, and brings the peak memory up to date before the JSON is
 /// written, which comes last.
 /// `stock`: null if there was none.
-void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const ZMap* stock,
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    Report& report, Diagnostics& diagnostics);
 
 }  // namespace kerf

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
+#include "twin/kinematics/kinematics_setup.h"
 #include "twin/machine_setup.h"
 
 namespace kerf {
@@ -25,6 +27,11 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
     options.tool_table_path = std::move(setup.tool_table_path);
     request.timeline = std::move(setup.timeline);
     request.joint_letters = std::move(setup.joint_letters);
+  }
+  if (a.ini.empty()) {
+    // The machine that most people have who turn a part without saying how: it lies on a table.
+    request.timeline.kinematics =
+        std::make_shared<const MachineKinematics>(kinematics_of_request({}, "XYZABC").value());
   }
   if (!a.tool_table.empty()) options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -23,63 +21,16 @@
 #include "twin/app/progress_bar.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/window_host.h"
-#include "twin/compare/design_part.h"
 #include "twin/playback/load_program.h"
-#include "twin/suggest.h"
 #include "twin/view/drawn_machine.h"
 #include "twin/view/frame_writer.h"
 #include "twin/view/player_view.h"
 #include "twin/view/tool_shape.h"
-#include "viewer/window/settings.h"
 
 namespace kerf {
 namespace {
 
-constexpr OptionRange kSpeed{0.1, 1000, false, "program seconds a second"};
-constexpr OptionRange kFps{0.1, 1000, false, "frames a second"};
-constexpr OptionRange kLine{1, 4e9, false, "lines"};
-constexpr OptionRange kTolerance{kMinTolerance_mm, kMaxTolerance_mm, false, "mm"};
-constexpr OptionRange kKeyframes{1, 1e6, false, "MB"};
-constexpr int kMostPixels = 16384;
 constexpr std::chrono::milliseconds kPatience{200};
-
-struct NamedView {
-  const char* name;
-  StandardView view;
-};
-constexpr std::array<NamedView, 7> kViews{{{"iso", StandardView::kIsometric},
-                                           {"top", StandardView::kTop},
-                                           {"bottom", StandardView::kBottom},
-                                           {"front", StandardView::kFront},
-                                           {"back", StandardView::kBack},
-                                           {"left", StandardView::kLeft},
-                                           {"right", StandardView::kRight}}};
-
-struct NamedRoad {
-  const char* name;
-  DrawRoad road;
-};
-constexpr std::array<NamedRoad, 3> kRoads{
-    {{"mesh", DrawRoad::kMesh}, {"raycast", DrawRoad::kRaycast}, {"csg", DrawRoad::kCsg}}};
-
-/// The arguments, understood.
-struct ViewRequest {
-  RunRequest run;
-  std::optional<double> speed;  ///< play at once; infinity: as fast as it can be cut
-  std::uint32_t at_line = 0;
-  PlayerOptions player;
-  std::string png;
-  FilmOptions film;
-  FrameOptions frame;
-  MachineChoice machine;
-  std::string ini;
-  std::string compare;  ///< file of the design part
-  std::shared_ptr<const DesignPart> design;
-  double tolerance_mm = 0.05;
-  bool local = true;
-  bool at_end = false;
-  bool wants_window() const { return png.empty() && film.folder.empty(); }
-};
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
@@ -92,138 +43,6 @@ Diagnostic fault(std::string message, std::string hint = {}) {
   d.message = std::move(message);
   d.hint = std::move(hint);
   return d;
-}
-
-/// "1280x720".
-std::optional<glm::ivec2> size_from(const std::string& text) {
-  glm::ivec2 size{0};
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.x);
-  if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return std::nullopt;
-  const auto height = std::from_chars(width.ptr + 1, end, size.y);
-  if (height.ec != std::errc() || height.ptr != end) return std::nullopt;
-  if (size.x < 1 || size.y < 1 || size.x > kMostPixels || size.y > kMostPixels) return std::nullopt;
-  return size;
-}
-
-void read_pictures(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
-  request.png = a.png;
-  request.film.folder = a.frames;
-  request.film.fps = reader.number("--fps", a.fps, kFps, request.film.fps);
-  if (!a.fps.empty() && a.frames.empty()) reader.fault("--fps", "there is no --frames DIR");
-  if (!a.png.empty() && !a.frames.empty()) {
-    reader.fault("--png", "there is --frames already: one of the two");
-  }
-  if (!a.size.empty()) {
-    if (const auto size = size_from(a.size)) {
-      request.frame.size_px = *size;
-    } else {
-      reader.fault("--size",
-                   fmt::format("'{}' is not allowed; must be WIDTHxHEIGHT, each from 1 to "
-                               "{} (pixels), as 1280x720",
-                               a.size, kMostPixels));
-    }
-  }
-  if (request.wants_window() && !(a.size.empty() && a.view.empty())) {
-    reader.fault(a.size.empty() ? "--view" : "--size", "is for --png and --frames");
-  }
-  if (!request.wants_window() && a.no_local) {
-    reader.fault("--full-redraw", "is for the window; files get the whole picture every time");
-  }
-  if (!a.png.empty() && !a.speed.empty()) {
-    reader.fault("--speed", "is for the window and for --frames; a picture stands still");
-  }
-  request.frame.draw.is_local = false;
-  if (a.view.empty()) return;
-  std::string names;
-  for (const NamedView& view : kViews) {
-    if (a.view == view.name) {
-      request.frame.view = view.view;
-      return;
-    }
-    names += fmt::format("{}{}", names.empty() ? "" : " | ", view.name);
-  }
-  reader.fault("--view", fmt::format("'{}' is not allowed; must be {}", a.view, names));
-}
-
-void read_comparison(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
-  request.compare = a.compare;
-  request.tolerance_mm =
-      reader.number("--tolerance", a.tolerance, kTolerance, request.tolerance_mm);
-  if (a.compare.empty() && !a.tolerance.empty()) {
-    reader.fault("--tolerance", "there is no --compare DESIGN.stl");
-  }
-  if (a.compare.empty()) return;
-  request.frame.draw.color_by = ColorBy::kDeviation;
-  request.frame.draw.tolerance_mm = request.tolerance_mm;
-}
-
-void read_road(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
-  if (a.draw.empty()) return;
-  const auto named = std::find_if(kRoads.begin(), kRoads.end(),
-                                  [&](const NamedRoad& road) { return a.draw == road.name; });
-  if (named == kRoads.end()) {
-    reader.fault("--draw",
-                 fmt::format("'{}' is not allowed; must be mesh | raycast | csg", a.draw));
-    return;
-  }
-  request.frame.road = named->road;
-  if (named->road == DrawRoad::kMesh) return;
-  if (request.wants_window()) {
-    reader.fault("--draw", fmt::format("{} is for --png and --frames; the window draws by mesh",
-                                       named->name));
-  }
-  if (!a.compare.empty()) {
-    reader.fault("--draw",
-                 fmt::format("{} shows no deviations; --compare is for mesh alone", named->name));
-  }
-}
-
-/// The command line goes before the configuration.
-void complete(const LiveConfig& config, const ViewArguments& a, SessionOptions& session) {
-  if (session.tools.empty()) session.tools = config.tools;
-  if (!session.blank) session.blank = config.stock.blank;
-  if (a.run.work.cell.empty() && config.stock.cell_mm) {
-    session.stock.cell_mm = *config.stock.cell_mm;
-  }
-  if (a.run.work.margin.empty()) session.margin_mm = config.stock.margin_mm;
-}
-
-ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
-  ViewRequest request;
-  const std::optional<LiveConfig> config = read_config(a.config, a.sets, diagnostics);
-  RunArguments run = a.run;
-  if (config) {
-    if (run.source.ini.empty()) run.source.ini = config->machine.ini.value_or("");
-    if (run.source.tool_table.empty()) {
-      run.source.tool_table = config->machine.tool_table.value_or("");
-    }
-    request.machine = config->machine.drawn;
-  }
-  request.ini = run.source.ini;
-  request.run = understand(run, diagnostics);
-  if (config) complete(*config, a, request.run.session);
-  OptionReader reader(diagnostics);
-  if (a.speed == "max") {
-    request.speed = std::numeric_limits<double>::infinity();
-  } else if (!a.speed.empty()) {
-    request.speed = reader.number("--speed", a.speed, kSpeed, 1);
-  }
-  request.at_line =
-      static_cast<std::uint32_t>(reader.whole_number("--at-line", a.at_line, kLine, 0));
-  const double keyframes_mb =
-      reader.number("--keyframes", a.keyframes, kKeyframes,
-                    config ? config->view.keyframes_mb : ConfigView{}.keyframes_mb);
-  request.player.keyframe_bytes = static_cast<std::size_t>(keyframes_mb * 1048576.0);
-  request.local = !a.no_local;
-  read_pictures(a, reader, request);
-  read_comparison(a, reader, request);
-  read_road(a, reader, request);
-  request.film.speed = request.speed.value_or(1);
-  if (!std::isfinite(request.film.speed)) {
-    reader.fault("--speed", "max has no frames a second; --frames wants a number");
-  }
-  return request;
 }
 
 enum class Kind { kProgram, kState, kLog };
@@ -263,7 +82,8 @@ std::unique_ptr<LoadedProgram> load(const ViewRequest& request, Kind kind,
     outcome = Outcome::kFailed;
     return nullptr;
   }
-  StockSetup setup = make_stock(*blank, request.run.session.stock, path, diagnostics, outcome);
+  StockSetup setup =
+      make_stock(*blank, StockChoice{}, request.run.session.stock, path, diagnostics, outcome);
   if (!setup.stock) return nullptr;
   auto loaded = std::make_unique<LoadedProgram>();
   loaded->player.track = ProgramTrackBuilder().build({}, {});
@@ -500,6 +320,7 @@ int view_log(const ViewArguments& arguments) {
   live.work = arguments.run.work;
   live.speed = arguments.speed;
   live.quiet = arguments.run.quiet;
+  live.in_window = true;
   return live_command(live, LiveCommand::kReplay);
 }
 

@@ -2,35 +2,18 @@
 #pragma once
 
 #include <stop_token>
-#include <string>
-#include <vector>
 
-#include "twin/app/live_options.h"
 #include "twin/app/run_options.h"
+#include "twin/app/view_options.h"
 
 namespace kerf {
 
-/// The arguments as written. Empty = not given.
-struct ViewArguments {
-  std::string config;
-  std::vector<std::string> sets;
-  RunArguments run;  ///< run.source.program is PROGRAM, LOG or STATE
-  std::string speed;
-  std::string at_line;
-  std::string keyframes;
-  std::string png;
-  std::string frames;
-  std::string fps;
-  std::string size;
-  std::string view;
-  std::string draw;
-  std::string compare;
-  std::string tolerance;
-  bool no_local = false;
-};
-
 /// Opens the window at once and reads the program meanwhile. With --png or --frames there is no
 /// window: the same renderer draws into files. Returns the exit code.
+///
+/// A window is all that is asked for: where there can be none, the command fails and names what
+/// works without one (--png for a program, `kerf replay` for a log; `kerf replay` itself, which has
+/// a report to make, goes on in the console). A log whose display is lost later is read to its end.
 int view_command(const ViewArguments& arguments);
 
 /// After a dry run: the program in a window, at its end. Error: there can be none.

@@ -12,6 +12,20 @@ constexpr OptionRange kCell{0, 1000, true, "mm"};
 constexpr OptionRange kMargin{0, 10000, false, "mm"};
 constexpr OptionRange kThreads{1, 256, false, "threads"};
 
+void read_model(const WorkArguments& a, OptionReader& reader, WorkRequest& work) {
+  work.stock.additive = a.additive;
+  if (a.additive && !a.model.empty() && a.model != "auto" && a.model != "octree") {
+    reader.fault("--additive", fmt::format("the model {} only removes; allowed: octree", a.model));
+  }
+  if (a.model.empty() || a.model == "auto") return;
+  if (const StockModelRow* const row = find_stock_model(a.model)) {
+    work.stock.kind = row->kind;
+  } else {
+    reader.fault("--model",
+                 fmt::format("'{}' is no model; allowed: {}", a.model, stock_model_names()));
+  }
+}
+
 void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkRequest& work) {
   for (const std::string& text : arguments.tools) {
     Result<ToolShapeArgument> tool = parse_tool_argument(text);
@@ -24,12 +38,7 @@ void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkReques
                    fmt::format("'{}': tool 0 is the empty spindle; numbers begin at 1", text));
       continue;
     }
-    if (tool->cutter.undercuts()) {
-      reader.fault("--tool", fmt::format("'{}': {} cuts undercuts, which the Z-map cannot hold",
-                                         text, tool->cutter.spec()));
-      continue;
-    }
-    if (const Done fit = ZMap::can_cut(tool->cutter); !fit) {
+    if (const Done fit = can_be_cut(work.stock.kind, tool->cutter); !fit) {
       reader.fault("--tool", fmt::format("'{}': {}", text, fit.error()));
       continue;
     }
@@ -54,11 +63,6 @@ void read_stock(const WorkArguments& arguments, OptionReader& reader, WorkReques
 }
 
 void read_choices(const WorkArguments& a, OptionReader& reader, WorkRequest& work) {
-  if (a.model == "mmap" || a.model == "octree" || a.model == "sheet" || a.model == "turning") {
-    reader.fault("--model", fmt::format("{} is not in this version; allowed: zmap, auto", a.model));
-  } else if (!a.model.empty() && a.model != "zmap" && a.model != "auto") {
-    reader.fault("--model", fmt::format("'{}' is no model; allowed: zmap, auto", a.model));
-  }
   if (a.path == "planned") {
     work.planned_path = true;
   } else if (a.path == "programmed") {
@@ -88,6 +92,7 @@ int default_threads() {
 
 WorkRequest understand_work(const WorkArguments& a, OptionReader& reader) {
   WorkRequest work;
+  read_model(a, reader, work);
   read_tools(a, reader, work);
   read_stock(a, reader, work);
   read_choices(a, reader, work);

@@ -17,6 +17,7 @@ namespace kerf {
 struct WorkArguments {
   std::vector<std::string> tools;
   std::string stock;
+  bool additive = false;
   std::string model;
   std::string cell;
   std::string threads;

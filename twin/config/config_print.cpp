@@ -129,6 +129,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
     printer.close();
   }
   printer.open("stock");
+  printer.put("model", config.stock.model ? stock_model(*config.stock.model).name : "auto");
   if (config.stock.blank) printer.text("blank", config.stock.blank_spec);
   if (config.stock.cell_mm) printer.put("cell_mm", *config.stock.cell_mm);
   printer.put("margin_mm", config.stock.margin_mm);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "stock/cutter/scan.h"
-#include "stock/zmap/zmap.h"
 
 namespace kerf {
 namespace {
@@ -54,27 +53,26 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   read_drawn_machine(machine, out.drawn);
 }
 
-/// Why the Z-map cannot use it; empty: it can.
+/// Why it cannot be used (with the model, if one is asked for); empty: it can.
 std::string trouble_with(const ToolShapeArgument& tool,
-                         const std::vector<ToolShapeArgument>& others) {
+                         const std::vector<ToolShapeArgument>& others,
+                         std::optional<StockKind> model) {
   if (tool.tool == 0) return "tool 0 is the empty spindle; numbers begin at 1";
   for (const ToolShapeArgument& other : others) {
     if (other.tool == tool.tool) return fmt::format("tool {} is given twice", tool.tool);
   }
-  if (tool.cutter.undercuts()) {
-    return fmt::format("{} cuts undercuts, which the Z-map cannot hold", tool.cutter.spec());
-  }
-  if (const Done fit = ZMap::can_cut(tool.cutter); !fit) return fit.error();
+  if (const Done fit = can_be_cut(model, tool.cutter); !fit) return fit.error();
   return {};
 }
 
-void read_tools(const GroupReader& tools, std::vector<ToolShapeArgument>& out) {
+void read_tools(const GroupReader& tools, std::optional<StockKind> model,
+                std::vector<ToolShapeArgument>& out) {
   if (!tools.is_there()) return;
   for (const auto& node : tools.node()->children) {
     if (node->faulty) continue;
     Result<ToolShapeArgument> tool = parse_tool_argument(
         fmt::format("{}={}", node->key, resolved_spec(*node, "profile:", tools.faults())));
-    const std::string trouble = tool ? trouble_with(*tool, out) : tool.error();
+    const std::string trouble = tool ? trouble_with(*tool, out, model) : tool.error();
     if (trouble.empty()) {
       out.push_back(std::move(tool.value()));
     } else {
@@ -84,6 +82,10 @@ void read_tools(const GroupReader& tools, std::vector<ToolShapeArgument>& out) {
 }
 
 void read_stock(const GroupReader& stock, ConfigStock& out) {
+  // The words of the key table: auto, then the models in their order.
+  if (const int word = stock.word("model"); word > 0) {
+    out.model = stock_models()[static_cast<std::size_t>(word) - 1].kind;
+  }
   stock.number("cell_mm", out.cell_mm);
   stock.number("margin_mm", out.margin_mm);
   ConfigNode* const node = stock.find("blank");
@@ -160,8 +162,8 @@ std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
 
 void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_machine(root.group("machine"), config.machine);
-  read_tools(root.group("tools"), config.tools);
   read_stock(root.group("stock"), config.stock);
+  read_tools(root.group("tools"), config.stock.model, config.tools);
   read_follow(root.group("follow"), config.follow);
   const GroupReader view = root.group("view");
   view.number("window", config.view.window);

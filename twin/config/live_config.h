@@ -21,6 +21,7 @@
 #include "twin/live/live_frame.h"
 #include "twin/live/path_follower.h"
 #include "twin/machine_model/machine_choice.h"
+#include "twin/stock_choice.h"
 
 namespace kerf {
 
@@ -41,9 +42,10 @@ struct ConfigMachine {
 /// `stock:`
 struct ConfigStock {
   std::optional<Blank> blank;
-  std::string blank_spec;         ///< the text that `blank` was read from; empty without one
-  std::optional<double> cell_mm;  ///< grid size
-  double margin_mm = 5;           ///< around a blank guessed from the program
+  std::string blank_spec;          ///< the text that `blank` was read from; empty without one
+  std::optional<StockKind> model;  ///< absent: what tools and motions need
+  std::optional<double> cell_mm;   ///< grid size
+  double margin_mm = 5;            ///< around a blank guessed from the program
 };
 
 /// `follow:`

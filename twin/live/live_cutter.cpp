@@ -9,6 +9,7 @@
 
 #include "twin/motion_geometry.h"
 #include "twin/motion_nearest.h"
+#include "twin/stock_choice.h"
 
 namespace kerf {
 namespace {
@@ -54,13 +55,13 @@ Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& plac
 
 }  // namespace
 
-LiveCutter::LiveCutter(ZMap& stock, const ToolSources& tools, FindingLog& log,
+LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& log,
                        LiveCutOptions options, std::unique_ptr<Program> program)
     : stock_(stock),
       log_(log),
       options_(std::move(options)),
       frame_(options_.frame),
-      book_(tools, false),
+      book_(tools, row_of(stock).can_cut),
       stage_(stock, book_, log, options_.timeline),
       follower_(options_.follow),
       join_after_s_(kJoin_s) {

@@ -69,9 +69,11 @@ struct LivePlace {
 class LiveCutter {
  public:
   /// `program` may be null. The references must outlive the cutter.
-  LiveCutter(ZMap& stock, const ToolSources& tools, FindingLog& log, LiveCutOptions options,
+  LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& log, LiveCutOptions options,
              std::unique_ptr<Program> program);
 
+  /// For a workpiece that keeps cut ids: see CutStage. Before the first sample.
+  void label_by(CutLabels& labels) { stage_.label_by(labels); }
   /// The next sample, `t_s` after the first by one clock. `lost`: others are known to be missing
   /// before it.
   void take(const AxisSample& sample, double t_s, bool lost);
@@ -121,7 +123,7 @@ class LiveCutter {
   void cut(const Motion& motion, double duration_s);
   SpindleState spindle() const;
 
-  ZMap& stock_;
+  StockModel& stock_;
   FindingLog& log_;
   LiveCutOptions options_;
   LiveFrame frame_;

@@ -96,6 +96,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   for (const ToolTableRow& row : tools.table) {
     options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
   }
+  choice_ = choose_stock(options_.stock, stock_needs(tools));
   CommentBlank found;
   if (options_.blank) {
     found = {options_.blank, "--stock"};
@@ -104,7 +105,8 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   if (!found.blank && !guess_blank(tools, diagnostics, outcome)) return false;
   if (found.blank) {
-    StockSetup setup = make_stock(*found.blank, options_.stock, found.origin, diagnostics, outcome);
+    StockSetup setup =
+        make_stock(*found.blank, choice_, options_.stock, found.origin, diagnostics, outcome);
     stock_ = std::move(setup.stock);
     stock_facts_ = std::move(setup.facts);
   }
@@ -122,6 +124,11 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   return true;
 }
 
+void LiveSession::keep_cut_ids() {
+  stock_->keep_cut_ids(true);
+  cutter_->label_by(labels_);
+}
+
 /// From the motions of the program.
 bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics,
                               Outcome& outcome) {
@@ -135,7 +142,7 @@ bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics
   const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
   if (!first_pass) return false;
   BlankGuess guess(options_.margin_mm);
-  ToolBook book(tools, true);
+  ToolBook book(tools, nullptr);
   Diagnostics said;
   first_pass->run(
       [&](std::span<const Motion> motions) {
@@ -146,7 +153,8 @@ bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics
         return true;
       },
       {}, said);
-  StockSetup setup = make_stock(guess.blank(), options_.stock, "guessed", diagnostics, outcome);
+  StockSetup setup =
+      make_stock(guess.blank(), choice_, options_.stock, "guessed", diagnostics, outcome);
   stock_ = std::move(setup.stock);
   stock_facts_ = std::move(setup.facts);
   if (!stock_) return false;
@@ -372,7 +380,7 @@ void LiveSession::show_frame() {
   cutter_->hand_over();
   const double age_s = seconds(now - newest_.arrival);
   observer_->on_frame(*stock_, cutter_->stage().cutter(), status_now(state_now(age_s), age_s),
-                      trail_);
+                      trail_, labels_.all());
   trail_.clear();
 }
 

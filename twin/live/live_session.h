@@ -89,10 +89,11 @@ class LiveObserver {
   /// `stock` during the call only; its snapshot() has all samples. `cutter`: in the spindle, null
   /// as long as none that is known was needed.
   /// `trail`: where the tip has been since the last call, points farther apart than kTrail_mm.
+  /// `labels`: of all cuts so far, by cut id; empty unless LiveSession::keep_cut_ids() was called.
   virtual void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
-                        std::span<const Vec3> trail) {
+                        std::span<const Vec3> trail, std::span<const CutLabel> labels) {
     static_cast<void>(stock), static_cast<void>(cutter), static_cast<void>(status);
-    static_cast<void>(trail);
+    static_cast<void>(trail), static_cast<void>(labels);
   }
   static constexpr double kTrail_mm = 0.05;
 };
@@ -119,6 +120,13 @@ class LiveSession {
   /// Asked between batches how long to sleep, to leave the computer to others.
   void set_rest(std::function<std::chrono::microseconds()> rest) { rest_ = std::move(rest); }
 
+  /// The workpiece remembers which tool and line cut it where, for windows; its cut ids are the
+  /// numbers of labels. Costs as much memory as its heights do, and some cutting time; what it
+  /// becomes is the same. Before run().
+  void keep_cut_ids();
+  /// By cut id; after run().
+  std::span<const CutLabel> cut_labels() const { return labels_.all(); }
+
   /// Of a log, while it runs: program seconds a second, 0 stands still, infinity goes as fast as it
   /// can. Any thread. A machine has its own speed.
   void set_speed(double speed) { speed_ = speed; }
@@ -128,7 +136,7 @@ class LiveSession {
 
   /// After run().
   Report& report() { return report_; }
-  const ZMap* stock() const { return stock_.get(); }
+  const StockModel* stock() const { return stock_.get(); }
   const ToolSources& tool_sources() const { return tool_sources_; }
   std::string source_name() const { return source_->describe(); }
 
@@ -154,9 +162,11 @@ class LiveSession {
   LiveOptions options_;
   std::unique_ptr<PositionSource> source_;
   std::unique_ptr<Program> program_;
-  std::unique_ptr<ZMap> stock_;
+  StockChoice choice_;
+  std::unique_ptr<StockModel> stock_;
   StockReport stock_facts_;
   ToolSources tool_sources_;
+  CutLabels labels_;
   std::unique_ptr<LiveCutter> cutter_;
   LiveObserver* observer_ = nullptr;
   SampleTap tap_;

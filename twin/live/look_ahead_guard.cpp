@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "twin/stock_choice.h"
+
 namespace kerf {
 namespace {
 
@@ -19,7 +21,7 @@ LookAheadGuard::~LookAheadGuard() = default;
 void LookAheadGuard::restart(const StockModel& stock, const WorkpieceFrame& frame) {
   stage_.reset();
   stock_ = stock.snapshot();
-  book_ = std::make_unique<ToolBook>(tools_, false);
+  book_ = std::make_unique<ToolBook>(tools_, row_of(stock).can_cut);
   log_ = std::make_unique<FindingLog>();
   stage_ = std::make_unique<CutStage>(*stock_, *book_, *log_, timeline_);
   stage_->set_frame(frame);

@@ -56,13 +56,6 @@ MachineKind usual_machine_kind(const MachineFacts& facts) {
   return MachineKind::kKneeMill;
 }
 
-Pose machine_from_workpiece(const WorkpieceFrame& frame) {
-  Pose pose = turn({0, 0, 1}, frame.rotation_deg);
-  // LinuxCNC turns about the origin of the G5x system; G92 is a shift within it.
-  pose.origin_mm = frame.g5x_mm + pose.direction(frame.g92_mm);
-  return pose;
-}
-
 MachineRoom machine_room(const MachineSetup* setup, const WorkpieceFrame& frame,
                          const Box& blank_mm, const Box& reach_mm, double tool_length_mm) {
   MachineRoom room;

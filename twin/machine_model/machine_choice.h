@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "twin/kinematics/work_frame.h"
 #include "twin/machine_model/builtin_models.h"
 #include "twin/machine_model/linked_machine.h"
 #include "twin/machine_setup.h"
@@ -40,9 +41,6 @@ struct MachineChoice {
   std::optional<MachineKind> kind;
   std::optional<LinkedMachine> links;
 };
-
-/// Where the program's frame lies in the machine.
-Pose machine_from_workpiece(const WorkpieceFrame& frame);
 
 /// A room with the machine's travels and its tilting axis. `setup` null: no INI.
 MachineRoom machine_room(const MachineSetup* setup, const WorkpieceFrame& frame,

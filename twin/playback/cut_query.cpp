@@ -139,9 +139,10 @@ double least_height(const Motion& m, const LeftHeight& left, bool convex) {
 
 }  // namespace
 
-CutQuery::CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools)
+CutQuery::CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools,
+                   ToolBook::CutterCheck can_cut)
     : track_(std::move(track)), mounts_(1) {
-  MountedTools mounted(std::move(tools));
+  MountedTools mounted(std::move(tools), can_cut);
   const ResolvedTool* last = nullptr;
   for (std::size_t i = 0; i < track_->size(); ++i) {
     if (i % kChunk == 0) chunks_.emplace_back();

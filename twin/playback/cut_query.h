@@ -20,7 +20,9 @@ class CutQuery {
  public:
   static constexpr std::size_t kChunk = 256;
 
-  CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools);
+  /// `can_cut`: as the ToolBook of the session that cuts it.
+  CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools,
+           ToolBook::CutterCheck can_cut = nullptr);
 
   /// The motion that touched the point last, of those before `until` and the part of `until.motion`
   /// up to its fraction. Nothing: none did, the point is of the blank.

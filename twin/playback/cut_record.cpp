@@ -47,8 +47,9 @@ void CutRecord::note_cost(std::size_t motion, double cost_s) {
 }
 
 void CutRecord::note_removed(std::size_t motion, double removed_mm3) {
-  std::atomic_ref(removed_mm3_[motion])
-      .store(static_cast<float>(removed_mm3), std::memory_order_relaxed);
+  const std::atomic_ref sum(removed_mm3_[motion]);  // only this thread writes
+  sum.store(sum.load(std::memory_order_relaxed) + static_cast<float>(removed_mm3),
+            std::memory_order_relaxed);
 }
 
 std::vector<float> CutRecord::removed_mm3() const {

@@ -42,6 +42,7 @@ class CutRecord {
   void note_finish(std::size_t motion) { flags_[motion] |= kFinishes; }
   void note_break(std::size_t motion) { flags_[motion] |= kBreaks; }
   void note_cost(std::size_t motion, double cost_s);
+  /// A motion may be several moves: what they remove is added up.
   void note_removed(std::size_t motion, double removed_mm3);
 
  private:

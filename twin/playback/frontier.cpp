@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "twin/stock_choice.h"
+
 namespace kerf {
 namespace {
 
@@ -15,9 +17,10 @@ constexpr double kCellsAtOnce = 1e6;
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
                    const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope)
     : track_(track),
+      moves_(MotionMoves::of(*blank, options.kinematics, track.frame())),
       record_(track.size()),
-      stock_(std::move(blank), track, record_, store),
-      book_(std::move(tools), false),
+      stock_(std::move(blank), track, moves_, record_, store),
+      book_(std::move(tools), row_of(stock_).can_cut),
       stage_(stock_, book_, log_, options),
       scope_(scope) {
   stage_.set_frame(track.frame());

@@ -6,6 +6,7 @@
 
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
+#include "twin/motion_moves.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
@@ -37,10 +38,13 @@ class Frontier {
   bool complete() const { return complete_; }
 
   const CutRecord& record() const { return record_; }
+  /// How the program's motions are cut.
+  const MotionMoves& moves() const { return moves_; }
   const FindingLog& findings() const { return log_; }
 
  private:
   const ProgramTrack& track_;
+  MotionMoves moves_;
   CutRecord record_;
   RecordingStock stock_;
   ToolBook book_;

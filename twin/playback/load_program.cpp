@@ -41,7 +41,8 @@ ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>&
 /// The tools of a program, each once.
 class ToolList {
  public:
-  explicit ToolList(const ToolSources& sources) : mounted_(sources), table_(sources.table) {}
+  ToolList(const ToolSources& sources, ToolBook::CutterCheck can_cut)
+      : mounted_(sources, can_cut), table_(sources.table) {}
 
   void add(const Motion& m) {
     const ResolvedTool* const tool = mounted_.at(m);
@@ -70,7 +71,8 @@ class Loading {
         program_(*front.program),
         window_(options.lines),
         timeline_(options.timeline, planned_),
-        tools_(front.tools) {
+        tools_(front.tools, stock_model(front.choice.kind).can_cut),
+        tilt_(options.timeline.kinematics) {
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
   }
 
@@ -83,6 +85,7 @@ class Loading {
 
   const std::optional<BlankSurvey>& survey() const { return survey_; }
   const LineWindow& window() const { return window_; }
+  const std::string& tilt() const { return tilt_.found(); }
   std::size_t report_from() const {
     return planned_.first_of(window_.begun() ? before_window_ : motions_);
   }
@@ -95,7 +98,8 @@ class Loading {
  private:
   /// False: no more motions are wanted.
   bool take(std::span<const Motion> motions) {
-    if (survey_) survey_->add(motions);
+    tilt_.look_at(motions, program_.workpiece_frame());
+    if (survey_) survey_->add(motions, tilt_.moves());
     if (!window_.over()) {
       const LineWindow::Split split = window_.split(motions);
       for (const Motion& m : motions.first(split.before + split.within)) {
@@ -116,6 +120,7 @@ class Loading {
   PlannedSteps planned_{builder_};
   Timeline timeline_;
   ToolList tools_;
+  TiltWatch tilt_;
   std::optional<BlankSurvey> survey_;
   std::size_t motions_ = 0;
   std::size_t before_window_ = 0;
@@ -151,12 +156,14 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   const bool stopped = control.stop.stop_requested() && loaded->summary.stopped_early;
   FindingLog remarks;
   if (loading.survey()) {
-    front->stock = loading.survey()->make(options.stock, diagnostics, outcome);
-    if (!front->stock.stock) return nullptr;
+    front->blank = loading.survey()->blank();
+    front->blank_origin = "guessed";
     if (std::optional<Finding> warning = loading.survey()->warning()) {
       remarks.add(std::move(*warning));
     }
   }
+  if (!make_room_for_tilt(options, loading.tilt(), *front, diagnostics, outcome)) return nullptr;
+  if (!front->stock.stock && !fill_front(options, *front, diagnostics, outcome)) return nullptr;
   const ProgramEnd end =
       conclude_program(loaded->summary, std::move(said), loading.window(), stopped, remarks);
   loaded->outcome = outcome = end.outcome;
@@ -171,7 +178,8 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   player.track = loading.build(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
   player.blank = std::move(front->stock.stock);
-  loaded->cuts = std::make_shared<const CutQuery>(player.track, front->tools);
+  loaded->cuts =
+      std::make_shared<const CutQuery>(player.track, front->tools, row_of(*player.blank).can_cut);
   player.tools = std::move(front->tools);
   player.timeline = options.timeline;
   player.remarks = remarks.kept();

@@ -13,7 +13,8 @@ namespace kerf {
 /// comment without a tool number is. One thread.
 class MountedTools {
  public:
-  explicit MountedTools(ToolSources sources) : book_(std::move(sources), false) {}
+  MountedTools(ToolSources sources, ToolBook::CutterCheck can_cut)
+      : book_(std::move(sources), can_cut) {}
 
   /// Motions in program order. The tool that makes this one; null if it does not move, or if
   /// CutStage would not ask for its tool yet. Valid until the next call.

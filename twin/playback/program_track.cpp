@@ -85,6 +85,15 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
   return move;
 }
 
+void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
+                                std::vector<CutMove>& out) const {
+  if (moves.path() == nullptr) {
+    out.push_back(cut_move(i));
+  } else {
+    moves.append(motion(i), cutter, i, out);
+  }
+}
+
 TimedStep ProgramTrack::step(std::size_t i) const {
   TimedStep step;
   step.start_s = start_s(i);
@@ -206,19 +215,24 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.mist} << 25 | std::uint64_t{m.feed_per_rev} << 26 |
       std::uint64_t{m.start_known} << 27;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
-  const std::uint64_t tolerances = std::uint64_t{std::bit_cast<std::uint32_t>(m.blend_tolerance_mm)}
-                                       << 32 |
-                                   std::bit_cast<std::uint32_t>(m.merge_tolerance_mm);
+  const auto floats = [](float a, float b) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);
+  };
   return {flags,
           tool << 32 | m.source.file,
-          tolerances,
+          floats(m.blend_tolerance_mm, m.merge_tolerance_mm),
           bits(m.duration_s),
           bits(m.tool_offset_mm.x),
           bits(m.tool_offset_mm.y),
           bits(m.tool_offset_mm.z),
           bits(m.arc.axis.x),
           bits(m.arc.axis.y),
-          bits(m.arc.axis.z)};
+          bits(m.arc.axis.z),
+          m.torch.outputs,
+          floats(m.torch.analog[0], m.torch.analog[1]),
+          floats(m.torch.analog[2], m.torch.analog[3]),
+          std::uint64_t{m.torch.material} << 32 | std::uint64_t{m.torch.spindles_on} << 8 |
+              std::uint64_t{m.torch.adaptive_feed} << 1 | std::uint64_t{m.torch.overburn}};
 }
 
 std::uint64_t ProgramTrackBuilder::mode_of(const Motion& m) {

@@ -14,6 +14,7 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
+#include "twin/motion_moves.h"
 #include "twin/playback/packed_column.h"
 #include "twin/timeline.h"
 
@@ -42,6 +43,9 @@ class ProgramTrack {
   TimedStep step(std::size_t i) const;
   /// cut_move_from(motion(i), i), at a fifth of the cost.
   CutMove cut_move(std::size_t i) const;
+  /// MotionMoves::append() of motion(i), with i for an id.
+  void append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
+                    std::vector<CutMove>& out) const;
   MotionKind kind(std::size_t i) const { return mode_of(i).kind; }
   int tool(std::size_t i) const { return mode_of(i).tool; }
   SourceRef source(std::size_t i) const;
@@ -142,7 +146,7 @@ class ProgramTrackBuilder final : public StepSink {
 
  private:
   /// The bits of what motions share.
-  using ModeKey = std::array<std::uint64_t, 10>;
+  using ModeKey = std::array<std::uint64_t, 14>;
   static ModeKey key_of(const Motion& motion);
   std::uint64_t mode_of(const Motion& motion);
   void sort_lines();

@@ -34,6 +34,7 @@ bool same_bits(const Vec3& a, const Vec3& b) {
 
 bool same_move(const CutMove& a, const CutMove& b) {
   if (!same_bits(a.from_mm, b.from_mm) || !same_bits(a.to_mm, b.to_mm)) return false;
+  if (a.axis_from != b.axis_from || a.axis_to != b.axis_to) return false;
   if (a.arc.has_value() != b.arc.has_value()) return false;
   return !a.arc ||
          (same_bits(a.arc->center_mm, b.arc->center_mm) && same_bits(a.arc->axis, b.arc->axis) &&
@@ -53,6 +54,7 @@ bool level_circle(const CutMove& move) {
 /// No model joins `next` to `before`.
 bool breaks_between(const CutMove& before, const CutMove& next) {
   if (before.to_mm != next.from_mm) return true;
+  if (!before.is_vertical() || !next.is_vertical()) return true;
   if (level_circle(before) || level_circle(next)) return true;
   if (before.arc || next.arc) return false;
   const Vec2 a = Vec2(before.to_mm) - Vec2(before.from_mm);
@@ -75,9 +77,10 @@ double cells_under(const CutMove& move, const Cutter& cutter, double cell_mm) {
 }
 
 RecordingStock::RecordingStock(std::unique_ptr<StockModel> stock, const ProgramTrack& track,
-                               CutRecord& record, KeyframeStore& store)
+                               const MotionMoves& moves, CutRecord& record, KeyframeStore& store)
     : stock_(std::move(stock)),
       track_(track),
+      moves_(moves),
       record_(record),
       store_(store),
       cell_mm_(stock_->cell_mm()) {
@@ -89,12 +92,20 @@ void RecordingStock::expect(std::size_t settled, std::size_t end) {
   expected_end_ = end;
 }
 
-/// The moves come in the order of the motions, some of which are left out.
-std::size_t RecordingStock::motion_of(const CutMove& move) {
-  while (next_motion_ < expected_end_ && !same_move(track_.cut_move(next_motion_), move)) {
-    ++next_motion_;
+/// The moves come in the order of the motions, some of which are left out; those of one motion
+/// follow each other.
+std::size_t RecordingStock::motion_of(const Cutter& cutter, const CutMove& move) {
+  if (pieces_left_ > 0) {
+    --pieces_left_;
+    return next_motion_ - 1;
+  }
+  for (; next_motion_ < expected_end_; ++next_motion_) {
+    divided_.clear();
+    track_.append_moves(next_motion_, moves_, cutter, divided_);
+    if (!divided_.empty() && same_move(divided_.front(), move)) break;
   }
   assert(next_motion_ < expected_end_);
+  pieces_left_ = divided_.size() - 1;
   return next_motion_++;
 }
 
@@ -134,8 +145,10 @@ void RecordingStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   numbered_.assign(moves.begin(), moves.end());
   std::size_t done = 0;
   for (std::size_t n = 0; n < moves.size(); ++n) {
-    const std::size_t motion = motion_of(moves[n]);
+    const bool goes_on = pieces_left_ > 0;
+    const std::size_t motion = motion_of(cutter, moves[n]);
     numbered_[n].id = motion;
+    if (goes_on) continue;
     bool breaks = !previous_ || breaks_between(*previous_, moves[n]);
     const bool seam = !breaks && (run_moves_ > kLongestRun || run_cells_ > kLongestRunCells);
     if (seam || (breaks && (n - done >= kMovesAPart || done == 0))) {

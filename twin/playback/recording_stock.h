@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "twin/motion_moves.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
@@ -36,8 +37,9 @@ double cells_under(const CutMove& move, const Cutter& cutter, double cell_mm);
 /// model joins the two sides.
 class RecordingStock final : public StockModel {
  public:
-  RecordingStock(std::unique_ptr<StockModel> stock, const ProgramTrack& track, CutRecord& record,
-                 KeyframeStore& store);
+  /// `moves`: how the program's motions are cut.
+  RecordingStock(std::unique_ptr<StockModel> stock, const ProgramTrack& track,
+                 const MotionMoves& moves, CutRecord& record, KeyframeStore& store);
 
   /// The caller is about to take motions [0, end); all below `settled` it has given to the model or
   /// will not.
@@ -77,13 +79,16 @@ class RecordingStock final : public StockModel {
   }
   void keep_cut_ids(bool wanted) override { stock_->keep_cut_ids(wanted); }
   bool keeps_cut_ids() const override { return stock_->keeps_cut_ids(); }
+  Done accepts(const Cutter& cutter) const override { return stock_->accepts(cutter); }
+  bool takes_tilted_tools() const override { return stock_->takes_tilted_tools(); }
+  Done save(const std::string& path) const override { return stock_->save(path); }
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override {
     return stock_->cut_id_at(point_mm);
   }
   std::shared_ptr<const HeightGrid> height_grid() const override { return stock_->height_grid(); }
 
  private:
-  std::size_t motion_of(const CutMove& move);
+  std::size_t motion_of(const Cutter& cutter, const CutMove& move);
   void cut_part(const Cutter& cutter, std::span<const CutMove> moves,
                 std::vector<CutReport>& reports);
   void finish_here(std::vector<CutReport>& reports);
@@ -92,6 +97,7 @@ class RecordingStock final : public StockModel {
 
   std::unique_ptr<StockModel> stock_;
   const ProgramTrack& track_;
+  const MotionMoves& moves_;
   CutRecord& record_;
   KeyframeStore& store_;
   double cell_mm_;
@@ -99,6 +105,8 @@ class RecordingStock final : public StockModel {
   double cost_s_ = 0;
   std::size_t next_motion_ = 0;  ///< the next move given belongs to this one or a later one
   std::size_t expected_end_ = 0;
+  std::vector<CutMove> divided_;     ///< the motion before next_motion_
+  std::size_t pieces_left_ = 0;      ///< of it, still to come
   std::optional<CutMove> previous_;  ///< move; empty: nothing is held back
   std::size_t previous_motion_ = 0;
   std::string previous_cutter_;

@@ -2,7 +2,6 @@
 
 #include <cassert>
 
-#include "twin/motion_geometry.h"
 #include "twin/motion_nearest.h"
 #include "twin/playback/recording_stock.h"
 
@@ -16,8 +15,9 @@ constexpr std::size_t kMotionsAnOffer = 256;
 
 }  // namespace
 
-StockCursor::StockCursor(const ProgramTrack& track, const CutRecord& record, KeyframeStore& store)
-    : track_(track), record_(record), store_(store) {
+StockCursor::StockCursor(const ProgramTrack& track, const MotionMoves& moves,
+                         const CutRecord& record, KeyframeStore& store)
+    : track_(track), motion_moves_(moves), record_(record), store_(store) {
   stock_ = store_.at_or_before(0)->stock->snapshot();
 }
 
@@ -58,8 +58,11 @@ bool StockCursor::approach(std::size_t goal) {
       cut();
       cutter = record_.cutter(motion);
     }
-    moves_.push_back(track_.cut_move(motion));
-    cells += cells_under(moves_.back(), *cutter, stock_->cell_mm());
+    const std::size_t first_move = moves_.size();
+    track_.append_moves(motion, motion_moves_, *cutter, moves_);
+    for (const CutMove& move : std::span(moves_).subspan(first_move)) {
+      cells += cells_under(move, *cutter, stock_->cell_mm());
+    }
     if (!record_.finishes(motion)) continue;
     cut();
     stock_->finish(reports_);
@@ -72,9 +75,11 @@ bool StockCursor::approach(std::size_t goal) {
 std::unique_ptr<StockModel> StockCursor::picture(double fraction) const {
   std::unique_ptr<StockModel> copy = stock_->snapshot();
   if (fraction <= 0 || motion_ >= track_.size() || !record_.cuts(motion_)) return copy;
-  const CutMove part = cut_move_from(part_of(track_.motion(motion_), 0, fraction), motion_);
+  const std::shared_ptr<const Cutter> cutter = record_.cutter(motion_);
+  std::vector<CutMove> part;
+  motion_moves_.append(part_of(track_.motion(motion_), 0, fraction), *cutter, motion_, part);
   std::vector<CutReport> reports;
-  copy->cut(*record_.cutter(motion_), std::span(&part, 1), reports);
+  copy->cut(*cutter, part, reports);
   copy->finish(reports);
   return copy;
 }

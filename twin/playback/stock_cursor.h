@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "twin/motion_moves.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
@@ -18,7 +19,9 @@ namespace kerf {
 /// gaps it leaves new keyframes. One thread.
 class StockCursor {
  public:
-  StockCursor(const ProgramTrack& track, const CutRecord& record, KeyframeStore& store);
+  /// `moves`: how the program's motions are cut; as they were recorded.
+  StockCursor(const ProgramTrack& track, const MotionMoves& moves, const CutRecord& record,
+              KeyframeStore& store);
 
   /// All motions before this one are cut.
   std::size_t motion() const { return motion_; }
@@ -35,6 +38,7 @@ class StockCursor {
   void offer_keyframe();
 
   const ProgramTrack& track_;
+  const MotionMoves& motion_moves_;
   const CutRecord& record_;
   KeyframeStore& store_;
   std::unique_ptr<StockModel> stock_;

@@ -124,4 +124,5 @@ def main():
     return 0 if result["program_s"] is not None and not machine.errors else 1
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -101,7 +101,7 @@ TEST(ConfigKeys, WrongKinds) {
 TEST(ConfigKeys, UnknownKeys) {
   EXPECT_EQ(said_of("Stock: {}\n"), "1:1: Stock: unknown key (did you mean stock?)\n");
   EXPECT_EQ(said_of("stock:\n  zoom: 1\n"),
-            "2:3: stock.zoom: unknown key (here may be: blank, cell_mm, margin_mm)\n");
+            "2:3: stock.zoom: unknown key (here may be: blank, cell_mm, margin_mm, model)\n");
   EXPECT_EQ(said_of("machine:\n  work_offset: {x: 1, w: 2}\n"),
             "2:23: machine.work_offset.w: unknown key (here may be: rotation, x, y, z)\n");
   EXPECT_EQ(said_of("tools: {one: flat:6}\n"),
@@ -144,16 +144,27 @@ TEST(ConfigKeys, Words) {
             "1:16: follow.path: 'no' is not allowed; must be one of programmed, planned\n");
 }
 
+TEST(ConfigKeys, ModelsAreThoseThereAre) {
+  std::string words = "auto";
+  for (const StockModelRow& row : stock_models()) words.append("|").append(row.name);
+  for (const KeySpec& key : key_table()) {
+    if (key.path != "stock.model") continue;
+    EXPECT_EQ(key.words, words);
+  }
+}
+
 TEST(ConfigKeys, Tools) {
   EXPECT_EQ(said_of("tools:\n"
                     "  0: flat:6\n"
                     "  1: flat:6\n"
                     "  01: flat:7\n"
-                    "  2: lollipop:6:3\n"),
+                    "  2: lollipop:6:3\n"
+                    "stock: {model: zmap}\n"),
             "2:6: tools.0: 'flat:6': tool 0 is the empty spindle; numbers begin at 1\n"
             "4:7: tools.01: 'flat:7': tool 1 is given twice\n"
-            "5:6: tools.2: 'lollipop:6:3': lollipop:6:3 cuts undercuts, which the Z-map cannot "
-            "hold\n");
+            "5:6: tools.2: 'lollipop:6:3': lollipop:6:3 cuts below itself (its neck is thinner "
+            "than its head); a Z-map cannot hold undercuts\n");
+  EXPECT_EQ(said_of("tools:\n  2: lollipop:6:3\n"), "read\n");
   EXPECT_NE(said_of("tools:\n  3: flatt:6\n").find("2:6: tools.3: 'flatt:6': "), std::string::npos);
   EXPECT_NE(said_of("tools:\n  3: profile:none\n").find("dir/none"), std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
 #include "tests/twin/live/live_shop.h"
 
 namespace kerf {
@@ -27,7 +28,7 @@ ToolSources cutters() {
 /// The workpiece of a dry run.
 std::unique_ptr<ZMap> dry_run(std::span<const Motion> program) {
   auto stock = block();
-  ToolBook book(cutters(), false);
+  ToolBook book(cutters(), ZMap::can_cut);
   FindingLog log;
   CutStage stage(*stock, book, log, TimelineOptions{});
   stage.take(program);

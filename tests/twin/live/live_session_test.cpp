@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <deque>
 #include <mutex>
@@ -101,6 +102,46 @@ struct Watched {
   }
   Report& report() { return session->report(); }
 };
+
+/// Where each point of a row along X was cut by.
+std::vector<std::optional<CutLabel>> labels_along(const LiveSession& session, double y, double z) {
+  std::vector<std::optional<CutLabel>> out;
+  for (const double x : {12.0, 20.0, 28.0}) {
+    const auto id = session.stock()->cut_id_at({x, y, z});
+    out.push_back(id ? std::optional(session.cut_labels()[*id]) : std::nullopt);
+  }
+  return out;
+}
+
+TEST(LiveSession, TheWorkpieceKnowsWhoCutIt) {
+  // The way there by tool 1 in lines 4 and 5, back lower in line 5 again, and by nobody's line.
+  std::vector<AxisSample> samples = {at(10, 20, 1, 0),    at(10, 20, -1, 0.1), at(16, 20, -1, 0.2),
+                                     at(24, 20, -1, 0.3), at(30, 20, -1, 0.4), at(30, 20, -2, 0.5),
+                                     at(24, 20, -2, 0.6)};
+  const std::array<std::int32_t, 7> lines = {0, 4, 4, 5, 5, 0, 0};
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].line = lines[i];
+  std::string digest;
+  for (const bool keeps : {false, true}) {
+    Diagnostics diagnostics;
+    Outcome outcome = Outcome::kFailed;
+    const auto session = LiveSession::open(with_block(), std::make_unique<ListedSource>(samples),
+                                           diagnostics, outcome);
+    ASSERT_TRUE(session);
+    if (keeps) session->keep_cut_ids();
+    ASSERT_EQ(session->run({}, diagnostics), Outcome::kFinished);
+    if (!keeps) {
+      digest = session->stock()->digest();
+      EXPECT_TRUE(session->cut_labels().empty());
+      continue;
+    }
+    EXPECT_EQ(session->stock()->digest(), digest) << "the workpiece is the same";
+    const auto labels = labels_along(*session, 20, -1);
+    EXPECT_EQ(labels[0], (CutLabel{1, {0, 4}}));
+    EXPECT_EQ(labels[1], (CutLabel{1, {0, 5}}));
+    EXPECT_EQ(labels_along(*session, 20, -2)[2], (CutLabel{1, {0, 0}})) << "with no line";
+    EXPECT_EQ(session->cut_labels().size(), 3U) << "as many as lines, not as moves";
+  }
+}
 
 TEST(LiveSession, ALogIsReplayedAndReported) {
   Watched run(with_block(), std::make_unique<ListedSource>(std::vector{

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stock/zmap/zmap.h"
 #include "tests/stock/sweep_oracle.h"
 #include "tests/twin/playback/tracks.h"
 
@@ -82,7 +83,7 @@ TEST(CutQuery, NamesTheMotionThatMadeACell) {
   const auto track = test::track_of(motions);
   const CutQuery query(track, test::two_tools());
   const std::unique_ptr<ZMap> stock = test::block_40();
-  ToolBook book(test::two_tools(), false);
+  ToolBook book(test::two_tools(), ZMap::can_cut);
   FindingLog log;
   CutStage stage(*stock, book, log, TimelineOptions{});
   stage.take(motions);

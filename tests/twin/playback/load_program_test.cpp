@@ -9,6 +9,7 @@
 
 #include "tests/interp_bridge/program_test_support.h"
 #include "twin/finding_json.h"
+#include "twin/kinematics/machine_kinematics.h"
 #include "twin/session.h"
 
 namespace kerf {
@@ -120,6 +121,39 @@ class LoadProgram : public testing::Test {
   Outcome outcome_ = Outcome::kUsageError;
   std::size_t compared_findings_ = 0;
 };
+
+/// Rows on four sides of a bar that a table turns about X, and one while it turns.
+std::string turned_rows() {
+  std::vector<std::pair<int, std::string>> commands = {{1, "SELECT_TOOL(1)"},
+                                                       {1, "CHANGE_TOOL(1)"},
+                                                       {1, "START_SPINDLE_CLOCKWISE(0)"},
+                                                       {1, "SET_FEED_RATE(600.0000)"}};
+  const auto turned = [](const char* command, double x, double z, double a) {
+    return fmt::format("{}({:.4f}, 0.0000, {:.4f}, {:.4f}, 0.0000, 0.0000)", command, x, z, a);
+  };
+  for (int side = 0; side < 4; ++side) {
+    commands.emplace_back(10 * side + 2, turned("STRAIGHT_TRAVERSE", -5, 20, 90 * side));
+    commands.emplace_back(10 * side + 3, turned("STRAIGHT_FEED", -5, 6, 90 * side));
+    commands.emplace_back(10 * side + 4, turned("STRAIGHT_FEED", 25, 6, 90 * side));
+    commands.emplace_back(10 * side + 5, turned("STRAIGHT_TRAVERSE", 25, 20, 90 * side));
+  }
+  commands.emplace_back(50, turned("STRAIGHT_FEED", 10, 7, 270));
+  commands.emplace_back(51, turned("STRAIGHT_FEED", 15, 7, 400));
+  commands.emplace_back(52, turned("STRAIGHT_TRAVERSE", 15, 20, 400));
+  commands.emplace_back(53, "PROGRAM_END()");
+  return listing(commands);
+}
+
+TEST_F(LoadProgram, WhereATableTurnsThePlayerEndsAsTheDryRunDoes) {
+  write(turned_rows());
+  options_.stock.cell_mm = 0.5;
+  options_.timeline.kinematics = std::make_shared<const MachineKinematics>(
+      known_machine("trivkins", "XYZABC", {}, {}).value());
+  options_.blank = parse_blank("box:0,-8,-8:20,8,8").value();
+  expect_as_session();
+  options_.blank.reset();
+  expect_as_session();
+}
 
 TEST_F(LoadProgram, EndsAsADryRunDoes) {
   write(slots());
@@ -324,6 +358,7 @@ TEST_F(LoadProgram, NothingToPlayIsNoProgram) {
 
   diagnostics_.clear();
   write(slots());
+  options_.stock.kind = StockKind::kZmap;
   options_.blank = parse_blank("cylinder:0,0,-5:25:10:x").value();
   EXPECT_FALSE(load());
   EXPECT_EQ(outcome_, Outcome::kUsageError);

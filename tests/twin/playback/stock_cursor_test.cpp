@@ -17,7 +17,7 @@ struct Shop {
       : track(test::track_of(motions)),
         store(budget_bytes, finest_s),
         frontier(*track, test::block_40(), test::two_tools(), TimelineOptions{}, store),
-        cursor(*track, frontier.record(), store) {
+        cursor(*track, frontier.moves(), frontier.record(), store) {
     while (!frontier.complete()) frontier.advance(track->size());
   }
 
@@ -131,7 +131,7 @@ TEST(Frontier, StopsWhereItIsTold) {
   while (frontier.reached() < 534) frontier.advance(534);
   EXPECT_EQ(frontier.reached(), 534U);
   EXPECT_FALSE(frontier.complete());
-  StockCursor cursor(*track, frontier.record(), store);
+  StockCursor cursor(*track, frontier.moves(), frontier.record(), store);
   while (!cursor.approach(534)) {
   }
   EXPECT_EQ(cursor.picture(0)->digest(), test::digest_after(motions, 534));

@@ -100,7 +100,7 @@ inline std::vector<Motion> varied_program(unsigned seed, int moves) {
 inline std::string digest_after(std::span<const Motion> motions, std::size_t count,
                                 std::vector<Finding>* findings = nullptr) {
   const std::unique_ptr<ZMap> stock = block_40();
-  ToolBook book(two_tools(), false);
+  ToolBook book(two_tools(), ZMap::can_cut);
   FindingLog log;
   CutStage stage(*stock, book, log, TimelineOptions{});
   stage.take(motions.first(count));
@@ -123,7 +123,7 @@ inline std::map<std::size_t, std::string> digests_after(std::span<const Motion> 
   for (const Motion& m : motions) timeline.push(m);
   timeline.finish();
   const std::unique_ptr<ZMap> stock = block_40();
-  ToolBook book(two_tools(), false);
+  ToolBook book(two_tools(), ZMap::can_cut);
   FindingLog log;
   CutStage stage(*stock, book, log, TimelineOptions{});
   std::sort(counts.begin(), counts.end());

@@ -1,0 +1,192 @@
+#include "twin/kinematics/kinematics_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "twin/kinematics/hal_facts.h"
+
+namespace kerf {
+namespace {
+
+std::string join(const std::vector<std::string>& items) {
+  std::string out;
+  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + item;
+  return out;
+}
+
+/// Pins of the modules that take the tool's length.
+std::string tool_pin(std::string_view module) {
+  if (module == "xyzac-trt-kins" || module == "xyzbc-trt-kins") return "tool-offset";
+  if (module == "xyzab_tdr_kins") return "tool-offset-z";
+  // The tool lengthens the way from the pivot to the controlled point.
+  if (module == "5axiskins") return "pivot-length";
+  return {};
+}
+
+bool is_angle(std::string_view pin) { return pin.rfind("ALPHA", 0) == 0; }
+
+/// Numbers of the module's pins with where they are from.
+class GeometrySearch {
+ public:
+  GeometrySearch(std::string_view module, const KinematicsRequest& request)
+      : module_(module), pins_(geometry_pins(module)), geometry_(request.geometry) {
+    for (const auto& [pin, value] : request.geometry) {
+      given_.push_back(fmt::format("{} {:g}", pin, value));
+    }
+  }
+
+  void search(const HalFacts& hal, double unit_mm) {
+    for (const GeometryPin& pin : pins_) {
+      if (geometry_.count(pin.name) != 0) continue;
+      const std::string full = fmt::format("{}.{}", module_, pin.name);
+      const HalValue value = hal.value_of(full);
+      // A part that nobody knows: better all of it as the module has it.
+      if (value.is_set && (value.from.empty() || !value.has_tool_length)) {
+        geometry_[pin.name] = is_angle(pin.name) ? value.number : value.number * unit_mm;
+        from_hal_.push_back(fmt::format("{} {:g}", pin.name, geometry_[pin.name]));
+      } else if (!value.from.empty()) {
+        elsewhere_.push_back(fmt::format("{} (from {})", pin.name, join(value.from)));
+      }
+    }
+  }
+
+  /// All of it in mm; what nobody sets is in units of the machine, too.
+  KinematicsGeometry complete(double unit_mm) const {
+    KinematicsGeometry all = geometry_;
+    for (const GeometryPin& pin : pins_) {
+      all.try_emplace(pin.name, is_angle(pin.name) ? pin.standard : pin.standard * unit_mm);
+    }
+    return all;
+  }
+
+  void tell(std::vector<std::string>& notes) const {
+    if (pins_.empty()) return;
+    std::vector<std::string> standard;
+    for (const GeometryPin& pin : pins_) {
+      if (geometry_.count(pin.name) == 0) {
+        standard.push_back(fmt::format("{} {:g}", pin.name, pin.standard));
+      }
+    }
+    std::string text;
+    const auto add = [&](const char* origin, const std::vector<std::string>& items) {
+      if (items.empty()) return;
+      text += (text.empty() ? "" : "; ") + fmt::format("{}: {}", origin, join(items));
+    };
+    add("from the configuration", given_);
+    add("from HAL", from_hal_);
+    add("as the module has them", standard);
+    add("set by a running program, not known", elsewhere_);
+    notes.push_back(fmt::format("{}, geometry {}", module_, text));
+  }
+
+ private:
+  std::string module_;
+  std::vector<GeometryPin> pins_;
+  KinematicsGeometry geometry_;
+  std::vector<std::string> given_, from_hal_, elsewhere_;
+};
+
+/// Which analog output switches the kinematics.
+void find_switch(const HalFacts& hal, MachineKinematics& machine) {
+  if (!machine.is_switchable() || !hal.known()) return;
+  constexpr std::string_view kOutput = "motion.analog-out-0";
+  for (const std::string& pin : hal.linked_with("motion.switchkins-type")) {
+    if (pin.rfind(kOutput, 0) != 0 || pin.size() != kOutput.size() + 1) continue;
+    machine.switch_output = static_cast<unsigned>(pin.back() - '0');
+    return;
+  }
+  const std::string name = machine.types.front().name;
+  machine.types.resize(1);
+  machine.notes = {
+      fmt::format("no net ties an analog output to motion.switchkins-type in the HAL files: the "
+                  "kinematics stay {}",
+                  name)};
+}
+
+void find_tool(const HalFacts& hal, MachineKinematics& machine) {
+  const bool follows =
+      std::any_of(machine.types.begin(), machine.types.end(),
+                  [](const KinematicsType& type) { return type.mode == KinematicsMode::kTip; });
+  if (!follows) return;
+  const std::string pin = tool_pin(machine.module);
+  if (pin.empty()) {
+    machine.told_tool_mm = 0;  // it has no way to know
+    return;
+  }
+  if (!hal.known()) {
+    machine.notes.push_back(
+        fmt::format("{} is taken to be told the tool's length", machine.module));
+    return;
+  }
+  const HalValue value = hal.value_of(machine.module + "." + pin);
+  if (value.has_tool_length) return;
+  const bool pivot = pin == "pivot-length";
+  machine.told_tool_mm = value.is_set && !pivot ? value.number : 0.0;
+  machine.notes.push_back(fmt::format(
+      "motion.tooloffset.z is not netted to {}.{}: the tip of a tool with a length (G43) moves off "
+      "its place when the machine turns",
+      machine.module, pin));
+}
+
+void tell_side(const KinematicsRequest& request, const RotaryPlacement& placement,
+               MachineKinematics& machine) {
+  const bool open = machine.types.front().mode == KinematicsMode::kAxes &&
+                    !machine.is_switchable() && machine.turns();
+  if (!open || request.rotary_side) return;
+  const Vec3& c = placement.center_mm;
+  machine.notes.push_back(
+      fmt::format("{} does not say what A, B and C turn: taken for a table that turns about lines "
+                  "through X{:g} Y{:g} Z{:g} (machine coordinates)",
+                  machine.module, c.x, c.y, c.z));
+}
+
+RotaryPlacement placement_of(const KinematicsRequest& request) {
+  return {request.rotary_side.value_or(RotarySide::kTable),
+          request.rotary_center_mm.value_or(Vec3(0.0))};
+}
+
+std::string_view first_word(std::string_view text) {
+  return text.substr(0, text.find_first_of(" \t"));
+}
+
+}  // namespace
+
+Result<MachineKinematics> kinematics_of_ini(IniFile& ini, const std::string& folder,
+                                            std::string_view joint_letters, double unit_mm,
+                                            const KinematicsRequest& request) {
+  std::string kinematics = request.kinematics;
+  if (kinematics.empty()) {
+    const IniEntry* const entry = ini.find("KINS", "KINEMATICS");
+    kinematics = entry != nullptr ? entry->value : "trivkins";
+  }
+  const HalFacts hal(ini, folder);
+  GeometrySearch search(first_word(kinematics), request);
+  search.search(hal, unit_mm);
+  const RotaryPlacement placement = placement_of(request);
+  Result<MachineKinematics> machine =
+      known_machine(kinematics, joint_letters, search.complete(unit_mm), placement);
+  if (!machine) return machine;
+  find_switch(hal, *machine);
+  find_tool(hal, *machine);
+  if (machine->told_tool_mm) *machine->told_tool_mm *= unit_mm;
+  if (request.told_tool_mm) machine->told_tool_mm = request.told_tool_mm;
+  search.tell(machine->notes);
+  tell_side(request, placement, *machine);
+  return machine;
+}
+
+Result<MachineKinematics> kinematics_of_request(const KinematicsRequest& request,
+                                                std::string_view joint_letters) {
+  const RotaryPlacement placement = placement_of(request);
+  Result<MachineKinematics> machine =
+      known_machine(request.kinematics.empty() ? "trivkins" : request.kinematics, joint_letters,
+                    request.geometry, placement);
+  if (!machine) return machine;
+  GeometrySearch(machine->module, request).tell(machine->notes);
+  if (request.told_tool_mm) machine->told_tool_mm = request.told_tool_mm;
+  tell_side(request, placement, *machine);
+  return machine;
+}
+
+}  // namespace kerf

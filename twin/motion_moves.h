@@ -1,0 +1,51 @@
+// twin/motion_moves.h - motions as the stock model takes them: one move each, several where the
+// machine turns the tool or the workpiece.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "twin/kinematics/tool_path.h"
+
+namespace kerf {
+
+/// Until follow() every motion is that of an upright tool over a workpiece that lies still,
+/// whatever A, B and C do. Values; const calls from any number of threads.
+class MotionMoves {
+ public:
+  MotionMoves() = default;
+
+  /// From now on as this machine moves. `cell_mm`: of the model, for the tolerance
+  /// (ToolPathTolerance::of_cell). True: something has changed; false: machine and frame are those
+  /// of before. path() stays where it is. Error: as ToolPath::create(); then nothing has changed.
+  Result<bool> follow(std::shared_ptr<const MachineKinematics> machine, const WorkpieceFrame& frame,
+                      double cell_mm);
+
+  /// Null: every motion is upright.
+  const ToolPath* path() const { return path_ ? &*path_ : nullptr; }
+  /// The motion is one move of an upright tool: cut_move_from().
+  bool is_upright(const Motion& motion) const { return !path_ || path_->is_upright(motion); }
+  /// Appends the moves of a motion that moves the tip, all with this id.
+  void append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
+              std::vector<CutMove>& out) const;
+
+  /// Of a machine over this model: if it takes tilted tools, as the machine moves (null: every
+  /// motion is upright). The machine can have that frame.
+  static MotionMoves of(const StockModel& stock, std::shared_ptr<const MachineKinematics> machine,
+                        const WorkpieceFrame& frame);
+
+  /// From the tip to where the tolerance holds: the flutes, as far as their length is known, else
+  /// four diameters.
+  static double reach_mm(const Cutter& cutter);
+
+ private:
+  std::shared_ptr<const MachineKinematics> machine_;
+  WorkpieceFrame frame_;
+  std::optional<ToolPath> path_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,189 @@
+#include "twin/stock_choice.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "stock/cutter/shape_spec.h"
+#include "stock/octree/octree.h"
+#include "stock/zmap/mmap/mmap.h"
+#include "twin/blank_choice.h"
+
+namespace kerf {
+namespace {
+
+/// Bodies that begin as much above the floor of the blank stand on it all the same.
+constexpr double kFloor_mm = 1e-9;
+constexpr double kMostOctreeCells = 1e6;
+
+using Created = Result<std::unique_ptr<StockModel>>;
+
+double cell_of(const Blank& blank, const StockSettings& settings) {
+  return settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
+}
+
+template <class Model>
+Created as_model(Result<std::unique_ptr<Model>> made) {
+  if (!made) return Error{made.error()};
+  return std::unique_ptr<StockModel>(std::move(made.value()));
+}
+
+Created create_zmap(const Blank& blank, const StockSettings& settings) {
+  ZMapOptions options;
+  options.blank = blank;
+  options.cell_mm = cell_of(blank, settings);
+  options.threads = settings.threads;
+  options.kernel = settings.kernel;
+  return as_model(ZMap::create(options));
+}
+
+Created create_mmap(const Blank& blank, const StockSettings& settings) {
+  ZMapOptions options;
+  options.blank = blank;
+  options.cell_mm = cell_of(blank, settings);
+  options.threads = settings.threads;
+  options.kernel = settings.kernel;
+  return as_model(MMap::create(options));
+}
+
+/// Least of the usual cells that gives the surface of the blank's box at most a million of them.
+double octree_cell_mm(const Blank& blank) {
+  const Box box = blank.bounds_mm();
+  const Vec3 size = box.size();
+  const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+  double cell = 0.01;
+  for (const double step : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0}) {
+    if (area / (cell * cell) <= kMostOctreeCells) break;
+    cell = step;
+  }
+  return cell;
+}
+
+std::size_t machine_memory_bytes() {
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+Created create_octree(const Blank& blank, const StockSettings& settings) {
+  OctreeOptions options;
+  options.blank = blank;
+  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank);
+  options.threads = settings.threads;
+  options.additive = settings.additive;
+  options.memory_limit_bytes = machine_memory_bytes();
+  return as_model(Octree::create(options));
+}
+
+constexpr std::array kModels{
+    StockModelRow{StockKind::kZmap, "zmap",
+                  "one height a cell: three-axis milling without undercuts; exact sweeps of "
+                  "straight moves and of arcs in XY",
+                  create_zmap, ZMap::can_cut, false},
+    StockModelRow{
+        StockKind::kMmap, "mmap",
+        "heights, and gaps below them: three-axis milling with T-slot cutters, lollipops, "
+        "dovetails; where nothing is undercut it is the zmap",
+        create_mmap, MMap::can_cut, false},
+    StockModelRow{StockKind::kOctree, "octree",
+                  "a surface in space: tilted tools, parts that turn, material that is added "
+                  "(--additive); takes more time and memory",
+                  create_octree, Octree::can_cut, true},
+};
+
+/// Of a tool that has a shape; empty: the Z-map will do.
+std::string undercut_of(int tool, const Cutter& cutter) {
+  if (ZMap::can_cut(cutter) || !MMap::can_cut(cutter)) return {};
+  return fmt::format("tool {} ({}) cuts undercuts", tool, cutter.spec());
+}
+
+}  // namespace
+
+std::span<const StockModelRow> stock_models() { return kModels; }
+
+const StockModelRow& stock_model(StockKind kind) {
+  return *std::find_if(kModels.begin(), kModels.end(),
+                       [kind](const StockModelRow& row) { return row.kind == kind; });
+}
+
+const StockModelRow& row_of(const StockModel& stock) { return *find_stock_model(stock.name()); }
+
+const StockModelRow* find_stock_model(std::string_view name) {
+  const auto row = std::find_if(kModels.begin(), kModels.end(),
+                                [name](const StockModelRow& r) { return r.name == name; });
+  return row == kModels.end() ? nullptr : &*row;
+}
+
+Done can_be_cut(std::optional<StockKind> kind, const Cutter& cutter) {
+  return (kind ? stock_model(*kind) : kModels.back()).can_cut(cutter);
+}
+
+std::string stock_model_names() {
+  std::string names;
+  for (const StockModelRow& row : kModels) names.append(row.name).append(", ");
+  return names + "auto";
+}
+
+void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& frame) {
+  if (!machine_ || !found_.empty()) return;
+  // Any tolerance will do: nothing is divided. A frame that the machine cannot have was refused
+  // when the machine was set up.
+  if (!moves_.follow(machine_, frame, 1.0)) return;
+  for (const Motion& m : motions) {
+    if (moves_.is_upright(m)) continue;
+    std::string turned;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (m.to_abc_deg[i] == 0 && m.from_abc_deg[i] == m.to_abc_deg[i]) continue;
+      turned.append(turned.empty() ? "" : " ")
+          .append(fmt::format("{}{:g}", "ABC"[i], m.to_abc_deg[i]));
+    }
+    found_ = fmt::format("line {} turns the tool or the workpiece: {}", m.source.line, turned);
+    return;
+  }
+}
+
+StockNeeds stock_needs(const ToolSources& tools) {
+  StockNeeds needs;
+  for (const ToolShapeArgument& tool : tools.arguments) {
+    if (needs.undercut.empty()) needs.undercut = undercut_of(tool.tool, tool.cutter);
+  }
+  const auto add_hint = [&needs](const ToolHint& hint) {
+    if (!needs.undercut.empty()) return;
+    if (const Result<Cutter> cutter = parse_shape(hint.shape)) {
+      needs.undercut = undercut_of(hint.tool, *cutter);
+    }
+  };
+  for (const ToolHint& hint : tools.hints) add_hint(hint);
+  for (const ToolTableRow& row : tools.table) {
+    if (!(row.diameter_mm > 0)) continue;
+    if (const auto hint = shape_from_remark(row.tool, row.diameter_mm, row.remark)) add_hint(*hint);
+  }
+  return needs;
+}
+
+std::string need_of_blank(const Blank& blank) {
+  const double floor_mm = blank.bounds_mm().min.z;
+  for (const BlankBody& body : blank.bodies) {
+    if (body.kind != BlankBody::Kind::kBox && body.axis != 'z') {
+      return fmt::format("the blank has a cylinder along {}", body.axis);
+    }
+    if (body.bounds_mm.min.z > floor_mm + kFloor_mm) {
+      return fmt::format("the blank has a body that begins at Z{:g}, above its floor Z{:g}",
+                         body.bounds_mm.min.z, floor_mm);
+    }
+  }
+  return {};
+}
+
+StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs) {
+  if (settings.kind) return {*settings.kind, {}};
+  if (settings.additive) return {StockKind::kOctree, "material is added"};
+  if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt};
+  if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank};
+  if (!needs.undercut.empty()) return {StockKind::kMmap, needs.undercut};
+  return {};
+}
+
+}  // namespace kerf
