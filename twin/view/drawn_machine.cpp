@@ -1,10 +1,22 @@
 #include "twin/view/drawn_machine.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
 
 namespace kerf {
+namespace {
+
+bool is_same_turn(const glm::dmat3& a, const glm::dmat3& b) {
+  constexpr double kSame = 1e-6;
+  for (int i = 0; i < 3; ++i) {
+    if (glm::length(a[i] - b[i]) > kSame) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 WorkRoom work_room(const ProgramTrack& track, const Box& blank_mm, double tool_length_mm) {
   WorkRoom room;
@@ -55,6 +67,24 @@ std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_
   std::vector<glm::mat4> poses;
   link_poses(machine, position_of_axes(machine, axes, tool_length_mm), poses);
   return poses;
+}
+
+std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Pose& tool_in_workpiece,
+                                   const std::array<double, 3>& abc_deg, double tool_length_mm) {
+  AxisValues axes{};
+  for (int i = 0; i < 3; ++i) axes[static_cast<std::size_t>(i)] = tool_in_workpiece.origin_mm[i];
+  for (unsigned signs = 0; signs < 8; ++signs) {
+    for (unsigned i = 0; i < 3; ++i) axes[i + 3] = (signs >> i & 1) != 0 ? -abc_deg[i] : abc_deg[i];
+    const auto position = position_of_tip(machine, axes, tool_length_mm);
+    if (!position) return {};
+    const Pose tool =
+        machine.link_from_workpiece.inverse() * machine.chain.workpiece_from_tool(*position);
+    if (!is_same_turn(tool.rotation, tool_in_workpiece.rotation)) continue;
+    std::vector<glm::mat4> poses;
+    link_poses(machine, *position, poses);
+    return poses;
+  }
+  return {};
 }
 
 }  // namespace kerf

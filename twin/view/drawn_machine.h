@@ -32,6 +32,13 @@ std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
 /// From the tip to the highest point of the tool.
 double drawn_height_mm(const ToolShape& shape);
 
+/// Poses of the links of a machine that stands so that the tool is seen from the workpiece as
+/// `tool_in_workpiece` (its origin the tip). The slides are solved for; A, B and C are those of the
+/// controller, with the signs that this machine has for them. Empty: it cannot stand so, since it
+/// does not turn what the program turns.
+std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Pose& tool_in_workpiece,
+                                   const std::array<double, 3>& abc_deg, double tool_length_mm);
+
 /// Poses of the machine's links for a tip and rotary axes of the program.
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,
                                    const std::array<double, 3>& abc_deg, double tool_length_mm);

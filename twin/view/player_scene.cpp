@@ -188,13 +188,26 @@ double PlayerScene::removed_mm3(const PlayerState& state) {
   return removed_mm3_;
 }
 
+/// Of the state's motion, which is the last one where the program is over.
+double PlayerScene::fraction(const PlayerState& state) const {
+  return state.place.motion >= track_->size() ? 1 : state.place.fraction;
+}
+
+std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) const {
+  const ToolPath* const path = shown_.moves.path();
+  if (path == nullptr) {
+    return drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+  }
+  const AxisValues axes = path->axes_at(state.motion, fraction(state));
+  return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)),
+                     {axes[3], axes[4], axes[5]}, tool_length_mm_);
+}
+
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
   const ToolPath* const path = shown_.moves.path();
   if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
-  const bool over = state.place.motion >= track_->size();  // the motion is the last one
-  const double fraction = over ? 1 : state.place.fraction;
-  return {path->pose_at(state.motion, fraction).origin_mm,
-          path->spindle_at(state.motion, fraction)};
+  const Pose pose = path->pose_at(state.motion, fraction(state));
+  return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
 }
 
 std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
@@ -219,7 +232,7 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   moment->coolant = coolant_text(motion.mist, motion.flood);
   moment->work_offset = shown_.work_offset;
   if (shown_.machine) {
-    moment->link_poses = drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+    moment->link_poses = machine_poses(state);
   }
   has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
   moment->axes =

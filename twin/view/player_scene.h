@@ -67,6 +67,8 @@ class PlayerScene {
   bool behind() const { return feeder_.behind() || !path_.complete(); }
 
  private:
+  double fraction(const PlayerState& state) const;
+  std::vector<glm::mat4> machine_poses(const PlayerState& state) const;
   ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
   bool is_removed_due(const PlayerState& state) const;
