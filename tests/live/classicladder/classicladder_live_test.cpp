@@ -230,7 +230,7 @@ TEST(ClassicLadderStart, InchesAndTwice) {
       "timeout 20 bash -c \"until [ \\$(wc -l <polls.txt) -gt $((n + 3)) ]; do sleep 0.02; done\"";
   const LiveSession session(plan);
   ASSERT_EQ(session.status(), 0) << session.said();
-  EXPECT_EQ(session.times("connected"), 2);
+  EXPECT_EQ(session.times("connected"), 2) << session.said();
   const std::vector<ServedRegisters> polls = session.polls();
   ASSERT_FALSE(polls.empty()) << session.said();
   std::istringstream joints(session.file("joints.txt"));

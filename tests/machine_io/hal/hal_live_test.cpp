@@ -138,9 +138,11 @@ class HalLive : public testing::Test {
     folder_ = pattern;
     const std::filesystem::path run = folder_ / "run";
     std::ofstream(folder_ / "program.ngc") << kProgram;
-    // While the machine stands at the program's end: HAL as it is, a second kerf-hal, and HAL with
-    // its threads stopped, until HalSource has come back from that.
+    // While the machine stands at the program's end, and its pins say so: HAL as it is, a second
+    // kerf-hal, and HAL with its threads stopped, until HalSource has come back from that.
     const std::string at_end =
+        "timeout 20 bash -c 'until halcmd getp halui.program.is-idle | grep -q TRUE; do "
+        "sleep 0.02; done'; "
         "halcmd -s show pin >pins.txt; halcmd -s show sig >sigs.txt; " KERF_HAL
         " --rate 100 2>second.txt | head -c 288 >second.bin; "
         "halcmd stop; " KERF_HAL

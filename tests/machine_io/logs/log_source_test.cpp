@@ -240,7 +240,7 @@ TEST(CsvLog, BearsLongLinesAndBytesThatAreNoText) {
   text += "\n3,3,z\n4,";
   text += std::string("4\0004", 3);
   text += ",z\n";
-  text += std::string(500, '\0') + "\n5,5,z\n";
+  text.append(500, '\0').append("\n5,5,z\n");
   const ReadLog log = read_as(folder, text);
   ASSERT_EQ(log.samples.size(), 3U);
   EXPECT_EQ(log.samples[1].position[0], 3.0);
