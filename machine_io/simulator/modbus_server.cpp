@@ -127,6 +127,7 @@ ModbusServer::Outcome ModbusServer::answer(int fd, const std::uint8_t* query, in
   modbus_t* const context = endpoint_->context();
   const std::uint8_t* const pdu = query + modbus_get_header_length(context);
   const bool reads = pdu[0] == kReadHolding || pdu[0] == kReadInput;
+  ++asked_;
   if (!reads) ++refused_;
   const ServedState served = board_.read();
   const ActiveFaults& faults = served.faults;

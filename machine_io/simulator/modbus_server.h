@@ -55,6 +55,8 @@ class ModbusServer {
 
   /// As opened: "127.0.0.1:41234", "[::1]:502", "/dev/pts/5", "/dev/pts/5 link /tmp/ttyM".
   const std::string& address() const { return address_; }
+  /// Requests that came, of any function.
+  std::uint64_t asked() const { return asked_; }
   /// Requests by a function other than 3 and 4: somebody tried to write, or to ask for coils.
   std::uint64_t refused() const { return refused_; }
 
@@ -80,6 +82,7 @@ class ModbusServer {
   Reopened reopened_;
   std::string address_;
   std::unique_ptr<Answering> answering_;
+  std::atomic<std::uint64_t> asked_ = 0;
   std::atomic<std::uint64_t> refused_ = 0;
   std::uint32_t noise_ = 1;  ///< of the fault garbage: the same bytes each time
   int stop_fd_ = -1;

@@ -131,7 +131,7 @@ bool RunningKerf::wait_until(const std::function<bool()>& ready) const {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (std::chrono::steady_clock::now() < limit) {
     if (has_read_its_input() && catches_interrupts() && ready()) return true;
-    std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return false;
 }

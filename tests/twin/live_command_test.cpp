@@ -85,8 +85,9 @@ class Shadow : public ::testing::Test {
   void start(const std::string& program_text, const std::vector<std::string>& more = {},
              const std::vector<std::string>& machine_options = {}) {
     program_ = folder_.write("part.ngc", program_text);
-    std::vector<std::string> arguments = {program_,    "--modbus-tcp", "127.0.0.1:0",   "--frame",
-                                          "workpiece", "--hold",       "--start-delay", "1"};
+    std::vector<std::string> arguments = {
+        program_, "--modbus-tcp",      "127.0.0.1:0",   "--frame", "workpiece",
+        "--hold", "--wait-for-reader", "--start-delay", "1"};
     arguments.insert(arguments.end(), machine_options.begin(), machine_options.end());
     machine_ = std::make_unique<MachineProcess>(arguments);
     const std::string listening = machine_->wait_line("listening");
@@ -224,7 +225,7 @@ TEST_F(Shadow, KilledItLeavesARecordingThatReplays) {
 TEST_F(Shadow, ADiskThatIsFullEndsTheRecordingNotTheWatch) {
   program_ = folder_.write("part.ngc", kProgram);
   MachineProcess machine({program_, "--modbus-tcp", "127.0.0.1:0", "--frame", "workpiece", "--hold",
-                          "--start-delay", "1"});
+                          "--wait-for-reader", "--start-delay", "1"});
   KerfCall call;
   config_ = folder_.write("machine.yaml", with_port(kConfig, machine.wait_line("listening")));
   call.arguments = {"shadow", "-c", config_, "--record", folder_.file("run.csv"), "--for", "3"};

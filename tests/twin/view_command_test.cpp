@@ -486,7 +486,7 @@ TEST_F(ViewWindow, ALogGoesOnWhenTheDisplayIsGone) {
 
 TEST_F(ViewWindow, AMachineIsFollowed) {
   MachineProcess machine({program_, "--modbus-tcp", "127.0.0.1:0", "--frame", "workpiece", "--hold",
-                          "--start-delay", "1"});
+                          "--wait-for-reader", "--start-delay", "1"});
   const std::string listening = machine.wait_line("listening");
   ASSERT_NE(listening, "") << machine.err();
   const std::string config = folder_.write(

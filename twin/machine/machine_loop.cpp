@@ -84,11 +84,16 @@ MachineLoopResult run_machine_loop(const MachineLoopOptions& options, MachinePla
   SimulatedState state = player.state();
   ActiveFaults faults;
   bool started = false;
+  double begins_s = options.start_delay_s;
+  bool waits = static_cast<bool>(options.has_reader);
   double before_s = -options.start_delay_s;
   double sent_s = 0;
   while (!stop.stop_requested()) {
-    const double time_s = deadlines.wait(result.skipped) - options.start_delay_s;
-    if (time_s >= 0 && !started) {
+    const double clock_s = deadlines.wait(result.skipped);
+    if (waits) begins_s = clock_s + options.start_delay_s;
+    waits = waits && !options.has_reader();
+    const double time_s = clock_s - begins_s;
+    if (time_s >= 0 && !waits && !started) {
       started = true;
       before_s = 0;
       say("started");

@@ -18,6 +18,8 @@ struct MachineLoopOptions {
   double rate_hz = 1000;
   double speed = 1;  ///< seconds of the program in one of the clock
   double start_delay_s = 0;
+  /// If set, start_delay_s counts from when it says yes.
+  std::function<bool()> has_reader;
   bool hold = false;  ///< go on at the end, until stopped
   std::vector<FaultRule> faults;
 };

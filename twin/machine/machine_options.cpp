@@ -120,6 +120,10 @@ MachineRequest understand_machine(const MachineArguments& a, Diagnostics& diagno
   } else if (!a.frame.empty() && a.frame != "machine") {
     reader.fault("--frame", fmt::format("'{}' is no frame; allowed: machine, workpiece", a.frame));
   }
+  if (a.wait_for_reader && !a.can.empty()) {
+    reader.fault("--wait-for-reader", "not with --can: who reads frames does not ask for them");
+  }
+  request.wait_for_reader = a.wait_for_reader;
   request.repeat = a.repeat;
   request.hold = a.hold;
   return request;

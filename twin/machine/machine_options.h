@@ -27,6 +27,7 @@ struct MachineArguments {
   std::string rate;
   std::string speed;
   std::string start_delay;
+  bool wait_for_reader = false;
   std::string frame;
   bool repeat = false;
   bool hold = false;
@@ -43,6 +44,7 @@ struct MachineRequest {
   double rate_hz = 1000;
   double speed = 1;
   double start_delay_s = 0;
+  bool wait_for_reader = false;
   ServedFrame frame = ServedFrame::kMachine;
   bool repeat = false;
   bool hold = false;

@@ -64,6 +64,8 @@ void add_options(CLI::App& app, MachineArguments& a) {
   add("--rate", a.rate, "HZ", "updates of the positions (default 1000)");
   add("--speed", a.speed, "X", "2 = twice as fast (default 1)");
   add("--start-delay", a.start_delay, "S", "wait before the program starts (default 0)");
+  app.add_flag("--wait-for-reader", a.wait_for_reader,
+               "the start, or its delay, waits until positions have been asked for");
   add("--frame", a.frame, "NAME",
       "machine (with offsets and tool length) | workpiece (the tip; default machine)");
   app.add_flag("--repeat", a.repeat, "begin again at the end");
@@ -120,6 +122,7 @@ struct Outlets {
   std::unique_ptr<ModbusServer> rtu;
   std::unique_ptr<CanSender> can;
 
+  std::uint64_t asked() const { return (tcp ? tcp->asked() : 0) + (rtu ? rtu->asked() : 0); }
   std::uint64_t refused() const { return (tcp ? tcp->refused() : 0) + (rtu ? rtu->refused() : 0); }
 };
 
@@ -164,9 +167,10 @@ int run_machine(const MachineRequest& request) {
                 std::move(program));
   MachinePlayer player(feed, request.frame);
   player.prepare(stop.get_token());
-  MachineLoopOptions options{request.rate_hz, request.speed, request.start_delay_s, request.hold,
-                             request.faults};
   Outlets out;
+  MachineLoopOptions options{request.rate_hz, request.speed, request.start_delay_s, {},
+                             request.hold,    request.faults};
+  if (request.wait_for_reader) options.has_reader = [&out] { return out.asked() > 0; };
   publish_start(player, options, out.board);
   if (const std::string why = open_outlets(request, out); !why.empty()) return fail(why);
   const MachineLoopResult result =

@@ -64,6 +64,9 @@ TEST_F(MachineArgumentsTest, EachFaultHasItsText) {
                "exception, restart, nan, freeze, jump\n");
   expect_usage({tcp, free_port, "--frame", "tool"},
                "kerf: error: --frame: 'tool' is no frame; allowed: machine, workpiece\n");
+  expect_usage({"--can", "can0", "--wait-for-reader"},
+               "kerf: error: --wait-for-reader: not with --can: who reads frames does not ask for "
+               "them\n");
   expect_usage({tcp, free_port, "--sped", "2"},
                "kerf: error: unknown option --sped; did you mean --speed?\n"
                "   hint: kerf-machine --help lists what there is\n");

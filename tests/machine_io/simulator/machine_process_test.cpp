@@ -9,6 +9,7 @@
 #include <csignal>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "base/geometry.h"
 #include "tests/base/temporary_folder.h"
@@ -131,6 +132,21 @@ TEST(Machine, ServesTheProgramsPositionsOverTcp) {
   machine.send(SIGTERM);
   EXPECT_EQ(machine.finish(), 0);
   EXPECT_EQ(machine.err(), "");
+}
+
+TEST(Machine, WaitsUntilItIsAsked) {
+  const Program program;
+  MachineProcess machine({program.path(), "--modbus-tcp", "127.0.0.1:0", "--wait-for-reader",
+                          "--start-delay", "0.1", "--speed", "20"});
+  ModbusClient client(machine.wait_line("listening modbus-tcp"));
+  ASSERT_TRUE(client.connected());
+  // Without waiting it would be over.
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_EQ(client.read(), 0);
+  EXPECT_EQ(client.integer(4), 5000);
+  EXPECT_EQ(client.registers[kToolRegister], 0);
+  EXPECT_NE(machine.wait_line("finished after"), "");
+  EXPECT_EQ(machine.finish(), 0);
 }
 
 TEST(Machine, TwentyTimesAsFastIsTheSamePath) {
