@@ -10,6 +10,7 @@
 
 #include "base/geometry.h"
 #include "viewer/scene.h"
+#include "viewer/view_detail.h"
 
 namespace kerf {
 
@@ -51,11 +52,11 @@ struct BreakpointCommand {
   int line = 1;
   bool set = true;
 };
-/// The camera came nearer or went away: how much of the workpiece a pixel shows (two pixels, where
-/// the processor draws). Sent when it changes by a factor of two; patches much finer than this need
-/// not be made.
+/// The camera moved: how much of the workpiece a pixel shows (two pixels, where the processor
+/// draws). Sent when it changes by a factor of two somewhere; patches much finer than this need not
+/// be made.
 struct DetailCommand {
-  double pixel_mm = 1.0;
+  ViewDetail detail;
 };
 /// Colours other than ColorBy::kPlain and kHeight are made by the owner of the workpiece.
 struct ColorCommand {

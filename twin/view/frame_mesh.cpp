@@ -21,7 +21,7 @@ class MeshRoad final : public FrameRoad {
     camera_.set_perspective(options_.perspective);
     camera_.look_from(options_.view);
     camera_.fit(renderer_.fit_box(), options_.size_px);
-    scene_.set_detail(camera_.pixel_mm(options_.size_px));
+    scene_.set_detail(camera_.detail(options_.size_px));
   }
 
   Result<Picture> draw(const std::shared_ptr<const PlayerState>& state) override {

@@ -220,7 +220,7 @@ bool LiveView::obey(const ViewerCommand& command) {
   std::visit(
       [&](const auto& c) {
         using Command = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.pixel_mm);
+        if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.detail);
         if constexpr (std::is_same_v<Command, ColorCommand>) colors_.choose(c);
         if constexpr (std::is_same_v<Command, PickCommand>) update_.picked = who_cut(c.point_mm);
         if constexpr (std::is_same_v<Command, CloseCommand>) {

@@ -12,7 +12,9 @@
 namespace kerf {
 namespace {
 
-constexpr double kCellsPerPixel = 2.0;
+/// Joined cells may be larger than a pixel by a quarter: then a workpiece that fills the picture is
+/// as fine at its near end as in its middle.
+constexpr double kCellsPerPixel = 1.6;
 /// Of a picture whose size is not known yet.
 constexpr double kUsualPixels = 800.0;
 
@@ -35,14 +37,10 @@ void PatchFeeder::follow(std::shared_ptr<const StockModel> stock) {
   }
   stock_ = std::move(stock);
   behind_ = stock_ != nullptr;
+  if (stock_ && !same_blank) choose_levels();
 }
 
-void PatchFeeder::start_anew(const StockModel& stock) {
-  find_neighbors(stock);
-  if (pixel_mm_ > 0) return;
-  const Vec3 size = stock.bounds_mm().size();
-  pixel_mm_ = std::max({size.x, size.y, size.z}) / kUsualPixels;
-}
+void PatchFeeder::start_anew(const StockModel& stock) { find_neighbors(stock); }
 
 /// However the tiles lie: the middles of two that touch are no farther apart than the longest of
 /// all their edges.
@@ -89,19 +87,33 @@ bool PatchFeeder::is_old(std::size_t tile) {
   return shown.is_old;
 }
 
-void PatchFeeder::set_detail(double pixel_mm) {
-  pixel_mm_ = pixel_mm;
+void PatchFeeder::set_detail(const ViewDetail& detail) {
+  detail_ = detail;
   behind_ = stock_ != nullptr;
+  if (stock_) choose_levels();
 }
 
 void PatchFeeder::compare_with(std::shared_ptr<const DesignPart> design, double tolerance_mm) {
   design_ = std::move(design);
   tolerance_mm_ = tolerance_mm;
+  if (stock_) choose_levels();
 }
 
-int PatchFeeder::wanted_level() const {
-  if (design_) return 0;
-  const double joined = pixel_mm_ / (stock_->cell_mm() * kCellsPerPixel);
+void PatchFeeder::choose_levels() {
+  levels_.assign(shown_.size(), 0);
+  if (design_) return;
+  const Vec3 size = stock_->bounds_mm().size();
+  const ViewDetail detail =
+      detail_.value_or(ViewDetail{std::max({size.x, size.y, size.z}) / kUsualPixels});
+  for (std::uint32_t tile = 0; tile < levels_.size(); ++tile) {
+    levels_[tile] = static_cast<std::int8_t>(level_for(detail, stock_->tile_box(tile)));
+  }
+}
+
+/// Goes by the point of the box that is nearest to the eye; what lies behind the eye is not seen.
+int PatchFeeder::level_for(const ViewDetail& detail, const Box& box) const {
+  if (detail.largest_in(box) <= 0) return StockModel::kPatchLevels - 1;
+  const double joined = detail.smallest_in(box) / (stock_->cell_mm() * kCellsPerPixel);
   if (!(joined >= 1)) return 0;
   const int level = 1 + static_cast<int>(std::floor(std::log2(joined)));
   return std::min(level, StockModel::kPatchLevels - 1);
@@ -116,8 +128,8 @@ std::shared_ptr<const MeshPatch> PatchFeeder::patch(std::uint32_t tile, int leve
 std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::time_point deadline) {
   std::vector<std::shared_ptr<const MeshPatch>> made;
   if (!behind_) return made;
-  const auto level = static_cast<std::int8_t>(wanted_level());
   const auto make = [&](std::size_t tile) {
+    const std::int8_t level = levels_[tile];
     auto made_patch = patch(static_cast<std::uint32_t>(tile), level);
     Shown& shown = shown_[tile];
     const auto triangles = static_cast<std::uint32_t>(made_patch->indices.size() / 3);
@@ -132,7 +144,7 @@ std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::tim
   for (const bool cut_ones : {true, false}) {
     for (std::size_t i = 0; i < tiles; ++i) {
       const std::size_t tile = (next_ + i) % tiles;
-      if (cut_ones ? !is_old(tile) : shown_[tile].level == level) continue;
+      if (cut_ones ? !is_old(tile) : shown_[tile].level == levels_[tile]) continue;
       make(tile);
       if (late()) {
         next_ = (tile + 1) % tiles;

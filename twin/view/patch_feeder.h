@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "stock/stock_model.h"
 #include "twin/compare/design_part.h"
 #include "viewer/scene.h"
+#include "viewer/view_detail.h"
 
 namespace kerf {
 
@@ -25,9 +27,9 @@ class PatchFeeder {
   /// From now on this workpiece is shown; a snapshot, or null for none. Of another blank than the
   /// one before: all is made anew.
   void follow(std::shared_ptr<const StockModel> stock);
-  /// What a pixel shows, mm: finer cells than two a pixel are joined (StockModel::patch levels).
-  /// Until it is told: as if the blank filled a picture of usual size.
-  void set_detail(double pixel_mm);
+  /// What a pixel shows: cells much finer than that are joined (StockModel::patch levels), tile
+  /// by tile. Until it is told: as if the blank filled a picture of usual size.
+  void set_detail(const ViewDetail& detail);
 
   /// Before the first patch is made: all get their deviation from `design`, coloured by
   /// `tolerance_mm`. They are made of every cell then, whatever a pixel shows: joined cells lie as
@@ -51,7 +53,8 @@ class PatchFeeder {
   void start_anew(const StockModel& stock);
   void find_neighbors(const StockModel& stock);
   bool is_old(std::size_t tile);
-  int wanted_level() const;
+  void choose_levels();
+  int level_for(const ViewDetail& detail, const Box& box) const;
   std::shared_ptr<const MeshPatch> patch(std::uint32_t tile, int level) const;
 
   std::shared_ptr<const StockModel> stock_;
@@ -59,8 +62,9 @@ class PatchFeeder {
   double tolerance_mm_ = 0;
   std::vector<Shown> shown_;
   std::vector<std::vector<std::uint32_t>> neighbors_;  ///< of each tile, itself among them
-  double pixel_mm_ = 0;
-  std::size_t next_ = 0;  ///< where looking for tiles goes on
+  std::optional<ViewDetail> detail_;
+  std::vector<std::int8_t> levels_;  ///< of each tile, as it should be drawn
+  std::size_t next_ = 0;             ///< where looking for tiles goes on
   std::size_t triangles_ = 0;
   bool behind_ = false;
 };

@@ -52,7 +52,7 @@ class PlayerScene {
   /// Of a file and line as the window names them; nothing if there is no such file.
   std::optional<SourceRef> source_of(const std::string& file, int line) const;
 
-  void set_detail(double pixel_mm) { feeder_.set_detail(pixel_mm); }
+  void set_detail(const ViewDetail& detail) { feeder_.set_detail(detail); }
   /// What the player does not know: speed asked for, breakpoints of the user.
   void set_controls(double speed, std::vector<SourceRef> breakpoints);
   void set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3);

@@ -83,7 +83,7 @@ bool PlayerView::obey(const ViewerCommand& command) {
           if (c.index >= 0) player_.seek_finding_number(static_cast<std::size_t>(c.index));
         }
         if constexpr (std::is_same_v<Command, BreakpointCommand>) set_breakpoint(c);
-        if constexpr (std::is_same_v<Command, DetailCommand>) scene_.set_detail(c.pixel_mm);
+        if constexpr (std::is_same_v<Command, DetailCommand>) scene_.set_detail(c.detail);
         if constexpr (std::is_same_v<Command, ColorCommand>)
           scene_.set_colors(c, player_.removed_mm3());
         if constexpr (std::is_same_v<Command, PickCommand>)

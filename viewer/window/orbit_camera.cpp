@@ -38,6 +38,13 @@ double OrbitCamera::pixel_mm(glm::ivec2 size_px) const {
   return extent_mm_ / std::max(1, size_px.y);
 }
 
+ViewDetail OrbitCamera::detail(glm::ivec2 size_px) const {
+  const double at_target = pixel_mm(size_px);
+  if (!is_perspective()) return {at_target};
+  const Vec3 per_mm = -at_target / distance_mm() * axes().back;
+  return {at_target - glm::dot(per_mm, target_mm_), per_mm};
+}
+
 Vec3 OrbitCamera::in_target_plane(glm::vec2 px, glm::ivec2 size_px) const {
   const glm::dvec2 middle = 0.5 * glm::dvec2(size_px);
   const Axes a = axes();

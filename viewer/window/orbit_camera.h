@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/geometry.h"
+#include "viewer/view_detail.h"
 
 namespace kerf {
 
@@ -51,6 +52,7 @@ class OrbitCamera {
 
   /// The depth range covers `content`, which must not be empty.
   Projection projection(const Box& content, glm::ivec2 size_px) const;
+  ViewDetail detail(glm::ivec2 size_px) const;
   /// Edge of a pixel in the target plane.
   double pixel_mm(glm::ivec2 size_px) const;
 

@@ -33,6 +33,20 @@ std::string free_picture_path(const std::string& folder) {
   return path.starts_with("./") ? path.substr(2) : path;
 }
 
+/// At one of the corners of what is shown a pixel shows half as much or twice as much.
+bool is_other_detail(const ViewDetail& before, const ViewDetail& now, const Box& box) {
+  // A place beside the eye is as near as one can be.
+  const double least = std::max(0.01 * now.largest_in(box), std::numeric_limits<double>::min());
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at{(corner & 1) != 0 ? box.max.x : box.min.x,
+                  (corner & 2) != 0 ? box.max.y : box.min.y,
+                  (corner & 4) != 0 ? box.max.z : box.min.z};
+    const double was = std::max(before.at(at), least), is = std::max(now.at(at), least);
+    if (is >= was * kDetailStep || was >= is * kDetailStep) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void Window::Impl::move_camera() {
@@ -78,10 +92,12 @@ void Window::Impl::click(glm::vec2 cursor_px) {
 }
 
 void Window::Impl::tell_detail() {
-  const double pixel_mm = camera_.pixel_mm(area_px_) * detail_px_;
-  if (pixel_mm < told_pixel_mm_ * kDetailStep && pixel_mm > told_pixel_mm_ / kDetailStep) return;
-  told_pixel_mm_ = pixel_mm;
-  commands_.push(DetailCommand{pixel_mm});
+  const ViewDetail detail = camera_.detail(area_px_).times(detail_px_);
+  Box box = renderer_->fit_box();
+  if (box.empty()) box.extend(Vec3(0.0));
+  if (told_detail_ && !is_other_detail(*told_detail_, detail, box)) return;
+  told_detail_ = detail;
+  commands_.push(DetailCommand{detail});
 }
 
 void Window::Impl::act(Action action) {

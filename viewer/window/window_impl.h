@@ -132,7 +132,7 @@ class Window::Impl {
   bool wants_fit_ = true;
   bool pressed_in_picture_ = false;
   double detail_px_ = 1.0;
-  double told_pixel_mm_ = 0.0;
+  std::optional<ViewDetail> told_detail_;
 
   int frames_to_draw_ = 1;
   bool panels_are_due_ = true;  // in the next frame

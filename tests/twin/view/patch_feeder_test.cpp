@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -34,7 +35,7 @@ TEST(PatchFeeder, FirstAllThenWhatWasCut) {
   const auto stock = test::block_40();
   PatchFeeder feeder;
   feeder.follow(stock->snapshot());
-  feeder.set_detail(0.05);
+  feeder.set_detail({0.05});
   EXPECT_EQ(tiles_of(feeder.make_until(Clock::time_point::max())).size(), stock->tile_count());
   EXPECT_FALSE(feeder.behind());
   EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
@@ -104,7 +105,7 @@ TEST(PatchFeeder, WhatWasHandedOutLastIsTheWorkpieceAsItIs) {
     }
   };
   for (const double pixel_mm : {0.1, 0.9}) {
-    feeder.set_detail(pixel_mm);
+    feeder.set_detail({pixel_mm});
     // Forward, and jumps to and fro; of some states only a part is made before the next comes.
     for (const std::size_t at : {0u, 1u, 2u, 5u, 1u, 3u, 4u, 0u, 5u}) {
       feeder.follow(states[at]);
@@ -137,13 +138,47 @@ TEST(PatchFeeder, FromAfarCellsAreJoined) {
   const auto stock = test::block_40(0.1);
   PatchFeeder feeder;
   feeder.follow(stock->snapshot());
-  feeder.set_detail(0.1);
+  feeder.set_detail({0.1});
   feeder.make_until(Clock::time_point::max());
-  feeder.set_detail(0.9);
+  feeder.set_detail({0.9});
   EXPECT_TRUE(feeder.behind());
   for (const auto& patch : feeder.make_until(Clock::time_point::max())) {
-    EXPECT_EQ(patch->level, 3) << "0.9 mm a pixel: 0.45 mm is fine enough, 0.8 mm is not";
+    EXPECT_EQ(patch->level, 3) << "0.9 mm a pixel: 0.8 mm is fine enough";
   }
+}
+
+TEST(PatchFeeder, WhatIsFarFromTheEyeIsMadeCoarser) {
+  const auto stock = test::block_40(0.1);
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  // The eye at x = 10, looking along +x.
+  const ViewDetail detail{-10 * 0.05, {0.05, 0, 0}};
+  feeder.set_detail(detail);
+  std::set<int> levels;
+  const auto patches = feeder.make_until(Clock::time_point::max());
+  EXPECT_EQ(patches.size(), stock->tile_count());
+  for (const auto& patch : patches) {
+    const Box box = stock->tile_box(patch->tile);
+    levels.insert(patch->level);
+    if (box.max.x <= 10) {
+      EXPECT_EQ(patch->level, StockModel::kPatchLevels - 1) << "behind the eye";
+      continue;
+    }
+    const double nearest_mm = std::max(0.0, 0.05 * (box.min.x - 10));
+    const double joined_mm = 0.1 * std::exp2(patch->level);
+    EXPECT_LE(joined_mm, std::max(0.1, 1.2501 * nearest_mm)) << box.min.x;
+    if (patch->level < StockModel::kPatchLevels - 1) {
+      EXPECT_GT(1.6001 * joined_mm, nearest_mm);
+    }
+  }
+  EXPECT_GE(levels.size(), 3u);
+  // Nearer to some, farther from others: only these are made.
+  feeder.set_detail({-10 * 0.05, {0.05, 0, 1e-9}});
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
+  feeder.set_detail({-10 * 0.1, {0.1, 0, 0}});
+  const auto again = feeder.make_until(Clock::time_point::max());
+  EXPECT_FALSE(again.empty());
+  EXPECT_LT(again.size(), patches.size());
 }
 
 }  // namespace
