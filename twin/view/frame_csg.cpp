@@ -77,7 +77,7 @@ class CsgRoad final : public FrameRoad {
     caster_.draw(projection_);
     std::vector<float> depths = renderer_.read_depth().depths;
     lay_over(caster_, &picture, &depths);
-    lines_.draw(state->place, &picture, &depths);
+    lines_.draw(*state, &picture, &depths);
     return picture;
   }
 

@@ -10,7 +10,10 @@ FrameLines::FrameLines(const RoadStart& start, const Projection& projection)
     : projection_(projection),
       nearness_{towards_eye(projection, LineNearness::kPath_px),
                 towards_eye(projection, LineNearness::kMarkers_px)},
-      path_(start.track, start.shown.planned) {
+      path_(start.track, start.shown.planned),
+      shows_findings_(
+          start.options.draw.looks[static_cast<std::size_t>(SceneObject::kFindings)].is_visible),
+      files_(start.shown.files) {
   SceneSetup setup;
   if (start.state.stock) setup.bounds_mm = start.state.stock->bounds_mm();
   const auto is_shown = [&](SceneObject object) {
@@ -28,8 +31,12 @@ FrameLines::FrameLines(const RoadStart& start, const Projection& projection)
   }
 }
 
-void FrameLines::draw(const TrackPlace& place, Picture* picture, std::vector<float>* depths) const {
-  lines_.draw(projection_, nearness_, path_.past_vertices(place), picture, depths);
+void FrameLines::draw(const PlayerState& state, Picture* picture, std::vector<float>* depths) {
+  if (shows_findings_ && state.findings && state.findings != shown_findings_) {
+    shown_findings_ = state.findings;
+    lines_.set_findings(finding_list(*state.findings, files_)->findings);
+  }
+  lines_.draw(projection_, nearness_, path_.past_vertices(state.place), picture, depths);
 }
 
 }  // namespace kerf

@@ -31,7 +31,7 @@ class RaycastRoad final : public FrameRoad {
     caster_.draw(projection_);
     Picture picture = caster_.picture();
     std::vector<float> depths(caster_.depths().begin(), caster_.depths().end());
-    lines_.draw(state->place, &picture, &depths);
+    lines_.draw(*state, &picture, &depths);
     return picture;
   }
 

@@ -28,8 +28,8 @@ struct RoadStart {
 
 /// All objects, through the window's renderer. Error: no OpenGL.
 Result<std::unique_ptr<FrameRoad>> make_mesh_road(RoadStart start);
-/// Workpiece, tool, path, outline of the blank and frames, by rays on the CPU. Never touches
-/// OpenGL.
+/// Workpiece, tool, path, outline of the blank, frames and findings, by rays on the CPU. Never
+/// touches OpenGL.
 Result<std::unique_ptr<FrameRoad>> make_raycast_road(RoadStart start);
 /// The same objects, the workpiece by image-space CSG from the moves. Error: no OpenGL; the blank
 /// is not a box; a cutter whose outline cannot be subtracted.

@@ -24,6 +24,13 @@ constexpr std::array<glm::vec4, 3> kAxisColors{
 constexpr double kFrameShare = 0.22;
 constexpr double kFrameWithoutBlank_mm = 20.0;
 constexpr float kBarb = 0.12f;
+constexpr glm::vec4 kErrorColor{222 / 255.0f, 32 / 255.0f, 32 / 255.0f, 1.0f};
+constexpr glm::vec4 kWarningColor{245 / 255.0f, 158 / 255.0f, 24 / 255.0f, 1.0f};
+constexpr glm::vec4 kNoteColor{60 / 255.0f, 130 / 255.0f, 220 / 255.0f, 1.0f};
+constexpr float kMarkRadius_px = 5.5f;
+// A darker rim, so that a mark is seen on any ground.
+constexpr float kRimBegins = 0.7f;
+constexpr float kRimShade = 0.45f;
 
 /// Where lines are cut off that come from behind the eye.
 constexpr float kLeastW = 1e-4f;
@@ -71,20 +78,47 @@ class Canvas {
     }
   }
 
+  /// A round mark, whatever lies before it.
+  void draw_mark(const Place& at, const glm::vec4& rgba) const {
+    const glm::vec4 rim(kRimShade * glm::vec3(rgba), rgba.a);
+    const auto first = [](float middle) {
+      return std::max(0, static_cast<int>(std::floor(middle - kMarkRadius_px)));
+    };
+    const auto end = [](float middle, int size) {
+      return std::min(size, static_cast<int>(std::ceil(middle + kMarkRadius_px)) + 1);
+    };
+    for (int y = first(at.y); y < end(at.y, picture_.height_px); ++y) {
+      for (int x = first(at.x); x < end(at.x, picture_.width_px); ++x) {
+        const float off_px =
+            std::hypot(static_cast<float>(x) + 0.5f - at.x, static_cast<float>(y) + 0.5f - at.y);
+        const float cover = std::clamp(kMarkRadius_px + 0.5f - off_px, 0.0f, 1.0f);
+        if (cover < kLeastCover) continue;
+        mix(pixel_at(x, y), cover, off_px > kRimBegins * kMarkRadius_px ? rim : rgba);
+      }
+    }
+  }
+
  private:
+  std::size_t pixel_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width_px) +
+           static_cast<std::size_t>(x);
+  }
+
   void blend(int x, int y, float depth, float cover, const glm::vec4& rgba) const {
-    const std::size_t pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width_px) +
-        static_cast<std::size_t>(x);
+    const std::size_t pixel = pixel_at(x, y);
     if (depth >= 1.0f || depth > depths_[pixel]) return;
+    mix(pixel, cover, rgba);
+    // The faint rim of a line hides nothing.
+    if (cover >= 0.5f) depths_[pixel] = depth;
+  }
+
+  void mix(std::size_t pixel, float cover, const glm::vec4& rgba) const {
     const float alpha = cover * rgba.a;
     for (int k = 0; k < 3; ++k) {
       std::uint8_t& byte = picture_.rgb[3 * pixel + static_cast<std::size_t>(k)];
       const float mixed = static_cast<float>(byte) * (1 - alpha) + 255.0f * rgba[k] * alpha;
       byte = static_cast<std::uint8_t>(std::clamp(mixed, 0.0f, 255.0f) + 0.5f);
     }
-    // The faint rim of a line hides nothing.
-    if (cover >= 0.5f) depths_[pixel] = depth;
   }
 
   Picture& picture_;
@@ -187,6 +221,17 @@ void SceneLines::set_setup(const SceneSetup& setup) {
   }
 }
 
+void SceneLines::set_findings(std::span<const SceneFinding> findings) {
+  marks_.clear();
+  for (const SceneFinding& finding : findings) {
+    if (!finding.position_mm) continue;
+    const glm::vec4& rgba = finding.severity == Severity::kError     ? kErrorColor
+                            : finding.severity == Severity::kWarning ? kWarningColor
+                                                                     : kNoteColor;
+    marks_.push_back({glm::vec3(*finding.position_mm), rgba});
+  }
+}
+
 void SceneLines::draw(const Projection& projection, const LineNearness& nearness,
                       std::uint64_t past_vertices, Picture* picture,
                       std::vector<float>* depths) const {
@@ -198,6 +243,10 @@ void SceneLines::draw(const Projection& projection, const LineNearness& nearness
     const auto ends =
         marker_lens.places(marker_lens.clip(line.from_mm), marker_lens.clip(line.to_mm));
     if (ends) canvas.draw(ends->first, ends->second, line.rgba);
+  }
+  for (const Mark& mark : marks_) {
+    const glm::vec4 at = marker_lens.clip(mark.at_mm);
+    if (at.w >= kLeastW) canvas.draw_mark(marker_lens.place(at), mark.rgba);
   }
 }
 

@@ -1,5 +1,5 @@
-// viewer/raycast/scene_lines.h - toolpath, outline of the blank and frames over a picture, on the
-// CPU.
+// viewer/raycast/scene_lines.h - toolpath, outline of the blank, frames and marks of findings over
+// a picture, on the CPU.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "viewer/picture.h"
@@ -24,13 +25,15 @@ struct LineNearness {
   float markers = 0.0f;
 };
 
-/// The lines that the scene renderer of the window draws into the kept scene, with the same
-/// colours, one pixel wide and antialiased by coverage, for pictures that are made without it.
+/// The lines and marks that the scene renderer of the window draws into the kept scene, with the
+/// same colours, one pixel wide and antialiased by coverage, for pictures that are made without it.
 /// Knows no OpenGL.
 class SceneLines {
  public:
   /// Outline of the blank, frames.
   void set_setup(const SceneSetup& setup);
+  /// Round marks, seen through everything. Those without a place have none.
+  void set_findings(std::span<const SceneFinding> findings);
   /// Of traverses, feeds and planned segments; all are unless this says otherwise.
   void show_path(const std::array<bool, 3>& is_shown) { is_shown_ = is_shown; }
   /// The next chunk of the path.
@@ -49,7 +52,12 @@ class SceneLines {
     glm::vec4 rgba{1.0f};
   };
   std::array<bool, 3> is_shown_{true, true, true};
+  struct Mark {
+    glm::vec3 at_mm{0.0f};
+    glm::vec4 rgba{1.0f};
+  };
   std::vector<Line> markers_;
+  std::vector<Mark> marks_;
   std::vector<std::shared_ptr<const PathChunk>> path_;
 };
 

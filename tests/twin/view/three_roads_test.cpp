@@ -405,6 +405,28 @@ TEST_F(FrameRoads, LinesAreInTheSamePlaces) {
   }
 }
 
+TEST_F(FrameRoads, FindingsAreInTheSamePlaces) {
+  open(random_program(6, 8));
+  auto state = std::make_shared<PlayerState>(*at_time(0.5 * track_->duration_s()));
+  const auto plain = std::make_shared<const PlayerState>(*state);
+  std::vector<Finding> findings(9);
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const auto at = static_cast<double>(i);
+    findings[i].severity = static_cast<Severity>(i % 3);
+    findings[i].position_mm = Vec3(2 + 2 * at, 18 - 1.5 * at, -0.8 * at);
+  }
+  state->findings = std::make_shared<const std::vector<Finding>>(std::move(findings));
+  const auto marks_of = [&](DrawRoad road) {
+    return line_mask(draw(road, false, state), draw(road, false, plain));
+  };
+  const std::vector<char> by_mesh = marks_of(DrawRoad::kMesh);
+  for (const DrawRoad road : {DrawRoad::kRaycast, DrawRoad::kCsg}) {
+    const std::vector<char> marks = marks_of(road);
+    EXPECT_LT(share_alone(by_mesh, marks), kMostLinesAlone);
+    EXPECT_LT(share_alone(marks, by_mesh), kMostLinesAlone);
+  }
+}
+
 TEST_F(FrameRoads, CsgRefusesBlanksThatAreNoBox) {
   auto blank = cut_by(random_program(1, 10));
   open({}, std::move(blank));

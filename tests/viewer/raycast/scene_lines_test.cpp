@@ -152,5 +152,36 @@ TEST_F(SceneLinesTest, OutlineAndFrames) {
   EXPECT_NEAR(red(20, 29), 214, 1) << "X is red";
 }
 
+TEST_F(SceneLinesTest, MarksOfFindingsAreRoundAndSeenThroughEverything) {
+  SceneFinding finding;
+  finding.severity = Severity::kError;
+  finding.position_mm = Vec3(20, 20, 0.2);
+  const std::array<SceneFinding, 2> findings{finding, SceneFinding{}};
+  SceneLines lines;
+  lines.set_findings(findings);
+  depths_.assign(depths_.size(), 0.1f);
+  draw(lines);
+  double area_px = 0;
+  for (int y = 0; y < kSide_px; ++y) {
+    for (int x = 0; x < kSide_px; ++x) {
+      const double from_middle = std::hypot(x + 0.5 - 20, y + 0.5 - 20);
+      EXPECT_EQ(is_marked(x, y), from_middle < 5.9) << x << ' ' << y;
+      if (from_middle < 3) {
+        EXPECT_EQ(red(x, y), 222);
+      }
+      if (from_middle > 4.1 && from_middle < 4.9) {
+        EXPECT_NEAR(red(x, y), 0.45 * 222, 1) << "the rim";
+      }
+      area_px += is_marked(x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(area_px, 80);
+  EXPECT_EQ(depths_, std::vector<float>(depths_.size(), 0.1f));
+  clear();
+  lines.set_findings({});
+  draw(lines);
+  EXPECT_FALSE(is_marked(20, 20));
+}
+
 }  // namespace
 }  // namespace kerf
