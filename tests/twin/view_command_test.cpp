@@ -333,7 +333,7 @@ TEST_F(ViewWindow, PlaysStepsAndCloses) {
 TEST_F(ViewWindow, ADestroyedWindowIsAClosedOne) {
   open({"view", program_});
   settled();
-  ASSERT_TRUE(xdotool("search --onlyvisible --name '^kerf - ' windowclose"));
+  ASSERT_TRUE(xdotool("search --onlyvisible --name '^kerf - part.ngc$' windowclose"));
   expect_end(0);
   EXPECT_EQ(result_.err, "");
 }

@@ -177,9 +177,8 @@ LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
   const std::string& program =
       request.options.program ? request.options.program->path : std::string();
   options.source_name = session.source_name();
-  options.title = fmt::format(
-      "kerf - {}",
-      program.empty() ? options.source_name : std::filesystem::path(program).filename().string());
+  options.title =
+      program.empty() ? options.source_name : std::filesystem::path(program).filename().string();
   options.blank_mm = session.stock()->bounds_mm();
   options.blank_outline = box_outline(options.blank_mm);
   options.stock = session.stock()->snapshot();

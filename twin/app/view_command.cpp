@@ -61,10 +61,6 @@ Kind kind_of(const std::string& path) {
                                                                            : Kind::kProgram;
 }
 
-std::string title_of(const std::string& path) {
-  return fmt::format("kerf - {}", std::filesystem::path(path).filename().string());
-}
-
 /// Program, blank, tools; null on error.
 std::unique_ptr<LoadedProgram> load(const ViewRequest& request, Kind kind,
                                     const LoadControl& control, Diagnostics& diagnostics,
@@ -138,7 +134,8 @@ Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stoc
 
 /// With the machine around it. What is wrong with that one is said; the program is shown without.
 ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
-  ViewedProgram shown = viewed_program(loaded, title_of(request.run.session.program.path));
+  ViewedProgram shown = viewed_program(
+      loaded, std::filesystem::path(request.run.session.program.path).filename().string());
   if (request.design && loaded.player.blank) {
     shown.design = request.design;
     shown.tolerance_mm = request.tolerance_mm;

@@ -25,7 +25,7 @@ class LiveViewTest : public testing::Test {
  protected:
   LiveViewOptions options() {
     LiveViewOptions options;
-    options.title = "kerf - bench";
+    options.title = "bench";
     options.source_name = "a script";
     options.blank_mm = stock_->bounds_mm();
     options.tools = test::two_tools();
@@ -107,7 +107,7 @@ TEST_F(LiveViewTest, ShowsTheWorkpieceToolAndPlace) {
   ASSERT_TRUE(view_->wants_frames());
   frame(at({5, 20, 3}, 1.5));
   ASSERT_TRUE(until([&] { return known_.setup && known_.tool_shape && is_shown(); }));
-  EXPECT_EQ(known_.setup->title, "kerf - bench");
+  EXPECT_EQ(known_.setup->title, "bench");
   ASSERT_TRUE(moment([](const Moment& m) { return m.tool_pose.has_value(); }));
   const Moment& m = *known_.moment;
   EXPECT_EQ(m.state, PlayState::kFollowing);
