@@ -27,6 +27,8 @@ constexpr Rgba kNoteColor{60, 130, 220, 255};
 constexpr float kMarker_px = 11.0f;
 /// As those of the path (path_store.cpp), and a little more: markers win over the path.
 constexpr double kNearer_px = 3.0;
+/// Frames win over the outline of the blank, along which they often lie.
+constexpr double kFramesNearer_px = 4.0;
 /// Length of the arrows of a frame that names none, as a share of the largest side of the blank.
 constexpr double kFrameShare = 0.22;
 constexpr double kFrameWithoutBlank_mm = 20.0;
@@ -125,6 +127,7 @@ void MarkerStore::draw(const Projection& projection, const Opacities& opacities,
   glEnable(GL_PROGRAM_POINT_SIZE);
   if (may_smooth) glEnable(GL_LINE_SMOOTH);
   draw_batch(blank_, GL_LINES, opacities.blank);
+  program_.set("towards_eye", towards_eye(projection, kFramesNearer_px));
   draw_batch(frames_, GL_LINES, opacities.frames);
   glDisable(GL_LINE_SMOOTH);
   // Seen through the workpiece: what was found mostly lies on it or in it.
