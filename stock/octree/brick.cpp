@@ -122,33 +122,24 @@ BrickRef OpenBrick::close(bool with_ids) const {
   return BrickRef::adopt(brick);
 }
 
-// The sum over all upward edges along one axis is the volume as dexels give it: right to O(cell^2)
-// on curved and slanting surfaces. A node's share is the mean of its three. On a face along the
-// axes only the edges across it are right, the others see it half way between nodes: there the
-// former make up for the latter.
+// Counting nodes is right but for how far the surface lies from half way between them, which each
+// axis that crosses it tells by itself: all of them together weigh 1, the squares of the normal's
+// parts. So an axis along a surface, whose edges do not see it, has no say, and what is left is
+// O(cell^2), of edges and curvature.
 void OpenBrick::update_volume(int i, int j, unsigned nodes) {
-  /// 0.26 degrees: of a curved surface next to nothing.
-  constexpr float kAlong = 0.99999f;
-  constexpr int kScale = kNodeVolume / 3 / kEdgeParts;
+  constexpr float kScale = static_cast<float>(kNodeVolume / kEdgeParts);
   const unsigned own = columns[j * kSide + i];
   const unsigned crosses[3] = {crossed(0, i, j), crossed(1, i, j), crossed(2, i, j)};
-  const unsigned any = crosses[0] | crosses[1] | crosses[2];
   for (; nodes != 0; nodes &= nodes - 1) {
     const int k = std::countr_zero(nodes);
     const bool solid = (own >> k & 1u) != 0;
     std::int32_t share = solid ? kNodeVolume : 0;
-    if (any >> k & 1u) {
-      int sum = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        int part = solid ? kEdgeParts : 0;
-        if (crosses[axis] >> k & 1u) {
-          const std::size_t e = edge_number(axis, i, j, k);
-          part = solid ? place[e] : kEdgeParts - place[e];
-          if (std::abs(unpack_direction(direction[e])[axis]) > kAlong) part = 3 * part - kEdgeParts;
-        }
-        sum += part;
-      }
-      share = sum * kScale;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((crosses[axis] >> k & 1u) == 0) continue;
+      const std::size_t e = edge_number(axis, i, j, k);
+      const float along = unpack_direction(direction[e])[axis];
+      const int beyond = solid ? place[e] - kEdgeParts / 2 : kEdgeParts / 2 - place[e];
+      share += static_cast<std::int32_t>(along * along * kScale * static_cast<float>(beyond));
     }
     std::int32_t& before = volume_of[(j * kBrick + i) * kBrick + k];
     volume += share - before;

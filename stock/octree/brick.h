@@ -79,7 +79,7 @@ struct OpenBrick {
     return (c ^ next) & 0xffu;
   }
   /// Anew from columns and crossings: volume_of of the nodes in `nodes` of column (i, j), and the
-  /// sum.
+  /// sum. Planes are exact but for their ends.
   void update_volume(int i, int j, unsigned nodes);
   void update_height(int i, int j);
   /// Height of the highest solid node above node 0, in nodes (-1: none), and of the highest

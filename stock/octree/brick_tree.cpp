@@ -18,16 +18,24 @@ std::uint64_t next_version() {
 }
 
 Lattice Lattice::over(const Box& blank, double cell_mm) {
+  std::array<int, 3> cells{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double size = blank.size()[static_cast<int>(a)];
+    // The slack keeps 100 mm / 0.1 mm at 1000 cells.
+    cells[a] = std::max(1, static_cast<int>(std::ceil(size / cell_mm - 1e-6)));
+  }
+  return of_cells(blank, cells);
+}
+
+Lattice Lattice::of_cells(const Box& blank, const std::array<int, 3>& cells) {
   Lattice lattice;
   lattice.bounds_mm = blank;
+  lattice.cells = cells;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t a = static_cast<std::size_t>(axis);
-    const double size = blank.size()[axis];
-    // The slack keeps 100 mm / 0.1 mm at 1000 cells.
-    lattice.cells[a] = std::max(1, static_cast<int>(std::ceil(size / cell_mm - 1e-6)));
-    lattice.cell_mm[axis] = size / lattice.cells[a];
+    lattice.cell_mm[axis] = blank.size()[axis] / cells[a];
     lattice.origin_mm[axis] = blank.min[axis] - lattice.cell_mm[axis] / 2;
-    lattice.tiles[a] = (lattice.cells[a] + 2 + kTileNodes - 1) / kTileNodes;
+    lattice.tiles[a] = (cells[a] + 2 + kTileNodes - 1) / kTileNodes;
   }
   return lattice;
 }

@@ -31,6 +31,7 @@ struct Lattice {
   std::array<int, 3> tiles{};
 
   static Lattice over(const Box& blank, double cell_mm);
+  static Lattice of_cells(const Box& blank, const std::array<int, 3>& cells);
   double place_mm(int axis, int node) const { return origin_mm[axis] + node * cell_mm[axis]; }
   double node_mm3() const { return cell_mm.x * cell_mm.y * cell_mm.z; }
   int column_count() const { return tiles[0] * tiles[1]; }

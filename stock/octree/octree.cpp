@@ -16,8 +16,10 @@
 #include "stock/octree/dual_contour_mesh.h"
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
+#include "stock/octree/octree_state.h"
 #include "stock/octree/tool_bodies.h"
 #include "stock/octree/tree_cut.h"
+#include "stock/state_bytes.h"
 
 namespace kerf {
 namespace {
@@ -153,6 +155,23 @@ Result<std::unique_ptr<Octree>> Octree::create(const OctreeOptions& options) {
     impl->blank_mm3 = bodies.size() == 1 && bodies[0].kind == BlankBody::Kind::kBox
                           ? box.volume_mm3()
                           : impl->mm3(volume_of(impl->tree));
+  return std::unique_ptr<Octree>(new Octree(std::move(impl)));
+}
+
+Done Octree::save(const std::string& path) const {
+  return write_tree(path, {impl_->tree, impl_->additive, impl_->blank_mm3, impl_->removed});
+}
+
+Result<std::unique_ptr<Octree>> Octree::load(const std::string& path, int threads) {
+  const Result<std::string> bytes = read_state_bytes(path);
+  if (!bytes) return Error{bytes.error()};
+  Result<SavedTree> saved = parse_tree(*bytes, path);
+  if (!saved) return Error{saved.error()};
+  auto impl = std::make_unique<Impl>(std::move(saved->tree));
+  impl->additive = saved->additive;
+  impl->blank_mm3 = saved->blank_mm3;
+  impl->removed = saved->removed;
+  impl->pool = std::make_shared<WorkerPool>(std::max(1, threads));
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }
 

@@ -37,9 +37,12 @@ struct OctreeOptions {
 ///
 /// Not held: what is thinner than a cell. Of several crossings of one edge the odd ones count: a
 /// slot or rib between two nodes may vanish, also where a later move makes it part of a wider cut:
-/// on such an edge the later move's surface counts, up to cell^2 / 8r too high beside a cutter of
-/// radius r, and more beside its sharp edges. (The same moves once more take that away; within one
-/// move it is seen to.) The surface stays closed nevertheless.
+/// on such an edge the later move's surface counts. The same moves once more take that away; within
+/// one move it is seen to. Beside a cutter of radius r it is up to cell^2 / 8r too high. Beside a
+/// sharp point it is what of the cutter is narrower than a cell: for a vee of half angle a at most
+/// cell^2 / (4 tan a) mm3 for each mm of path; measured, with vees of 20 to 90 degrees on paths
+/// that cross themselves, 0.012 cell^2 a mm and 4 cell^3 a move, of all that is cut 0.7 % in cells
+/// of 0.5 mm and 0.004 % in cells of 0.1 mm. The surface stays closed nevertheless.
 ///
 /// Sources: S. Frisken et al., "Adaptively sampled distance fields", SIGGRAPH 2000 (the field);
 /// T. Ju et al., "Dual contouring of Hermite data", SIGGRAPH 2002 (what is kept of it).
@@ -70,12 +73,18 @@ class Octree final : public StockModel {
   void keep_cut_ids(bool keep) override;
   bool keeps_cut_ids() const override;
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
+  /// Saves and loads the workpiece (stock/octree/octree_state.h), without cut ids. A damaged file
+  /// is an error that says what is wrong with it.
+  Done save(const std::string& path) const override;
+  static Result<std::unique_ptr<Octree>> load(const std::string& path, int threads = 1);
   std::string name() const override { return "octree"; }
   Box bounds_mm() const override;
   double cell_mm() const override;
   std::size_t cell_count() const override;
-  /// Of a blank that is one box exact; otherwise, and for all that is removed, summed over nodes:
-  /// off by O(cell^2), for flat and smooth surfaces alike.
+  /// Of a blank that is one box exact; otherwise, and for all that is removed, summed over nodes
+  /// and crossings: off by O(cell^2), for flat and smooth surfaces of any direction alike
+  /// (brick.h). In cells that a cutter rounds off, a move that takes next to nothing may count as a
+  /// little less than nothing; sums are right.
   double blank_mm3() const override;
   double remaining_mm3() const override;
   std::string digest() const override;

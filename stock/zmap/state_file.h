@@ -1,17 +1,19 @@
-// stock/zmap/state_file.h - a workpiece on disk: kerf-state/1.
+// stock/zmap/state_file.h - heights on disk: kerf-state/1 (stock/state_bytes.h) of a Z-map, and the
+// first part of that of an M-map (stock/zmap/mmap/mmap_state.h).
 //
-//   kerf-state/1\n
-//   model zmap\n
-//   bounds_mm x0 y0 z0 x1 y1 z1\n      shortest decimals that give the same doubles
-//   cells nx ny\n
-//   blank_mm3 v\n
-//   data\n                             nx * ny IEEE float32, little endian, row by row (y outer):
-//   height in mm xxh3-128 of all bytes before, 16 bytes, big endian
+//   model zmap
+//   bounds_mm x0 y0 z0 x1 y1 z1
+//   cells nx ny
+//   blank_mm3 v
+//   data
+// Then nx * ny IEEE float32, row by row (y outer): height in mm.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "base/result.h"
+#include "stock/state_bytes.h"
 #include "stock/zmap/tile_grid.h"
 
 namespace kerf {
@@ -20,6 +22,17 @@ struct SavedState {
   TileGrid grid;
   double blank_mm3 = 0;
 };
+
+/// Head and heights, with which the file of any model of heights begins.
+void put_heights(StateWriter& file, const std::string& model, const TileGrid& grid,
+                 double blank_mm3);
+struct SavedHeights {
+  SavedState state;
+  std::size_t end = 0;  ///< of the heights in the file
+};
+/// `goes_on`: there may be more between the heights and the checksum, which is checked.
+Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& name,
+                                   const std::string& model, bool goes_on);
 
 Done write_state(const std::string& path, const TileGrid& grid, double blank_mm3);
 

@@ -7,14 +7,27 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "stock/octree/octree_state.h"
+#include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/state_file.h"
+
+namespace {
+
+/// By every model.
+void parse(const std::string& bytes) {
+  (void)kerf::parse_state(bytes, "fuzz");
+  (void)kerf::parse_columns(bytes, "fuzz");
+  (void)kerf::octree::parse_tree(bytes, "fuzz");
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes(reinterpret_cast<const char*>(data), size);
-  (void)kerf::parse_state(bytes, "fuzz");
+  parse(bytes);
   XXH128_canonical_t sum;
   XXH128_canonicalFromHash(&sum, XXH3_128bits(bytes.data(), bytes.size()));
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-  (void)kerf::parse_state(bytes, "fuzz");
+  parse(bytes);
   return 0;
 }

@@ -97,7 +97,9 @@ TEST_F(StateFile, SaysWhatIsWrong) {
     return parse_state(text, "part.state").error();
   };
   EXPECT_EQ(fault(""), "part.state: not a saved workpiece (it must begin with \"kerf-state/1\")");
-  EXPECT_EQ(fault("kerf-state/1\nmodel octree\n"), "part.state: the head is damaged near byte 26");
+  EXPECT_EQ(fault("kerf-state/1\nmodel zmap\nx"), "part.state: the head is damaged near byte 24");
+  EXPECT_EQ(fault("kerf-state/1\nmodel octree\n"),
+            "part.state: a workpiece of the model octree, not of zmap");
   EXPECT_EQ(fault(bytes.substr(0, bytes.size() - 1)),
             "part.state: " + std::to_string(bytes.size() - 1) +
                 " bytes long, but 7 x 4 cells need " + std::to_string(bytes.size()) +

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "stock/state_bytes.h"
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
@@ -19,6 +20,7 @@
 #include "stock/zmap/mmap/column_sweeper.h"
 #include "stock/zmap/mmap/head_contact.h"
 #include "stock/zmap/mmap/mmap_mesh.h"
+#include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_patch.h"
 
@@ -81,6 +83,20 @@ Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
   const double blank_mm3 = volume_of(*grid);
   return std::unique_ptr<MMap>(new MMap(
       std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads)));
+}
+
+Done MMap::save(const std::string& path) const {
+  return write_columns(path, {impl_->grid(), impl_->gaps, impl_->blank_mm3});
+}
+
+Result<std::unique_ptr<MMap>> MMap::load(const std::string& path, int threads, ZMapKernel kernel) {
+  const Result<std::string> bytes = read_state_bytes(path);
+  if (!bytes) return Error{bytes.error()};
+  Result<SavedColumns> saved = parse_columns(*bytes, path);
+  if (!saved) return Error{saved.error()};
+  auto impl = std::make_unique<Impl>(std::move(saved->heights), saved->blank_mm3, kernel, threads);
+  impl->gaps = std::move(saved->gaps);
+  return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 
 Done MMap::can_cut(const Cutter& cutter) { return check_bottom(cutter, "an M-map"); }

@@ -54,6 +54,11 @@ class MMap final : public StockModel {
   void keep_cut_ids(bool keep) override;
   bool keeps_cut_ids() const override;
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
+  /// Saves and loads the workpiece (stock/zmap/mmap/mmap_state.h), without cut ids. A damaged file
+  /// is an error that says where.
+  Done save(const std::string& path) const override;
+  static Result<std::unique_ptr<MMap>> load(const std::string& path, int threads = 1,
+                                            ZMapKernel kernel = ZMapKernel::kAuto);
   std::string name() const override { return "mmap"; }
   Box bounds_mm() const override;
   double cell_mm() const override;

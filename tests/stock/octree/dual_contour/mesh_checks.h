@@ -5,7 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <map>
+#include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,32 +19,36 @@ namespace kerf {
 /// Empty for a closed oriented 2-manifold: each edge in two triangles, once in each direction; the
 /// triangles at each vertex one ring; no vertex unused. Else what is wrong.
 inline std::string manifold_fault(const TriangleMesh& mesh) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ways;
-  std::vector<std::vector<std::array<std::uint32_t, 2>>> around(mesh.positions_mm.size());
+  // Of each vertex: the corners after and before it in its triangles.
+  using Ends = std::array<std::uint32_t, 2>;
+  std::vector<std::uint32_t> begin(mesh.positions_mm.size() + 1, 0);
   for (const auto& t : mesh.triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return "triangle with equal corners";
-    for (std::size_t n = 0; n < 3; ++n) {
-      ways.emplace_back(t[n], t[(n + 1) % 3]);
-      around[t[n]].push_back({t[(n + 1) % 3], t[(n + 2) % 3]});
-    }
+    for (const std::uint32_t corner : t) ++begin[corner + 1];
   }
-  std::sort(ways.begin(), ways.end());
-  for (std::size_t n = 0; n < ways.size(); ++n) {
-    if (n > 0 && ways[n] == ways[n - 1]) return "edge twice in one direction";
-    if (!std::binary_search(ways.begin(), ways.end(), std::pair(ways[n].second, ways[n].first)))
-      return "boundary edge";
-  }
-  for (const auto& ends : around) {
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Ends> all(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
+  for (const auto& t : mesh.triangles)
+    for (std::size_t n = 0; n < 3; ++n) all[place[t[n]]++] = {t[(n + 1) % 3], t[(n + 2) % 3]};
+  for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex) {
+    const auto ends =
+        std::span<const Ends>(all).subspan(begin[vertex], begin[vertex + 1] - begin[vertex]);
     if (ends.empty()) return "unused vertex";
+    const auto count = [&](std::size_t side, std::uint32_t corner) {
+      return std::count_if(ends.begin(), ends.end(),
+                           [&](const Ends& e) { return e[side] == corner; });
+    };
+    for (const Ends& e : ends) {
+      if (count(0, e[0]) > 1) return "edge twice in one direction";
+      if (count(1, e[0]) != 1 || count(0, e[1]) != 1) return "boundary edge";
+    }
     std::uint32_t at = ends[0][0];
     std::size_t steps = 0;
     do {
-      const auto next =
-          std::find_if(ends.begin(), ends.end(), [&](const auto& pair) { return pair[0] == at; });
-      if (next == ends.end()) return "open ring";
-      at = (*next)[1];
+      at = (*std::find_if(ends.begin(), ends.end(), [&](const Ends& e) { return e[0] == at; }))[1];
       ++steps;
-    } while (at != ends[0][0] && steps <= ends.size());
+    } while (at != ends[0][0]);
     if (steps != ends.size()) return "two rings at a vertex";
   }
   return {};

@@ -1,0 +1,124 @@
+#include "stock/state_bytes.h"
+
+#include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "base/atomic_file.h"
+
+namespace kerf {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "numbers are written as they lie in memory");
+static_assert(kStateHashBytes == sizeof(XXH128_canonical_t));
+
+template <class T>
+bool read_numbers(std::optional<std::string_view> line, T* out, int count) {
+  if (!line) return false;
+  std::string_view value = *line;
+  for (int i = 0; i < count; ++i) {
+    while (!value.empty() && value.front() == ' ') value.remove_prefix(1);
+    const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), out[i]);
+    if (fault != std::errc()) return false;
+    value.remove_prefix(static_cast<std::size_t>(end - value.data()));
+  }
+  return value.empty();
+}
+
+}  // namespace
+
+struct StateWriter::Impl {
+  AtomicFile file;
+  XXH3_state_t hash;
+  explicit Impl(AtomicFile f) : file(std::move(f)) { XXH3_128bits_reset(&hash); }
+};
+
+StateWriter::StateWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+StateWriter::StateWriter(StateWriter&&) noexcept = default;
+StateWriter::~StateWriter() = default;
+
+Result<StateWriter> StateWriter::create(const std::string& path) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  return StateWriter(std::make_unique<Impl>(std::move(*file)));
+}
+
+void StateWriter::put(const void* data, std::size_t bytes) {
+  XXH3_128bits_update(&impl_->hash, data, bytes);
+  impl_->file.write(data, bytes);
+}
+
+Done StateWriter::commit() {
+  XXH128_canonical_t sum;
+  XXH128_canonicalFromHash(&sum, XXH3_128bits_digest(&impl_->hash));
+  impl_->file.write(&sum, sizeof sum);
+  return impl_->file.commit();
+}
+
+std::optional<std::string_view> StateHead::line(std::string_view key) {
+  const std::string_view rest = bytes_.substr(position_);
+  const std::size_t end = rest.find('\n');
+  if (end == std::string_view::npos || rest.substr(0, key.size()) != key) return std::nullopt;
+  std::string_view value = rest.substr(key.size(), end - key.size());
+  position_ += end + 1;
+  if (!value.empty() && value.front() == ' ') value.remove_prefix(1);
+  return value;
+}
+
+bool StateHead::numbers(std::string_view key, double* out, int count) {
+  return read_numbers(line(key), out, count);
+}
+
+bool StateHead::numbers(std::string_view key, std::int64_t* out, int count) {
+  return read_numbers(line(key), out, count);
+}
+
+Result<std::string> read_state_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{fmt::format("{}: {}", path, std::strerror(errno))};
+  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) return Error{fmt::format("{}: cannot be read", path)};
+  return bytes;
+}
+
+bool has_right_checksum(std::string_view bytes) {
+  if (bytes.size() < kStateHashBytes) return false;
+  const std::size_t end = bytes.size() - kStateHashBytes;
+  XXH128_canonical_t sum;
+  std::memcpy(&sum, bytes.data() + end, kStateHashBytes);
+  return XXH128_isEqual(XXH128_hashFromCanonical(&sum), XXH3_128bits(bytes.data(), end)) != 0;
+}
+
+Result<std::string> model_of_state(std::string_view bytes, const std::string& name) {
+  if (bytes.substr(0, kStateMagic.size()) != kStateMagic)
+    return Error{
+        fmt::format("{}: not a saved workpiece (it must begin with \"kerf-state/1\")", name)};
+  StateHead head(bytes);
+  head.line("kerf-state/1");
+  const auto model = head.line("model");
+  if (!model)
+    return Error{fmt::format("{}: the head is damaged near byte {}", name, head.position())};
+  return std::string(*model);
+}
+
+Result<StateHead> head_of_state(std::string_view bytes, const std::string& name,
+                                std::string_view model) {
+  const Result<std::string> found = model_of_state(bytes, name);
+  if (!found) return Error{found.error()};
+  if (*found != model)
+    return Error{fmt::format("{}: a workpiece of the model {}, not of {}", name, *found, model)};
+  StateHead head(bytes);
+  head.line("kerf-state/1");
+  head.line("model");
+  return head;
+}
+
+}  // namespace kerf

@@ -1,0 +1,131 @@
+// Programs that tilt the tool or turn the part, cut by kerf: pictures of the parts against such
+// that were looked at and found good. After a wanted change of the looks:
+//     KERF_UPDATE_GOLDEN=1 ctest -R RotaryPictures
+// then look at tests/golden/rotary/*.png before they are committed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/twin/kerf_process.h"
+#include "tests/viewer/png_reader.h"
+#include "viewer/picture.h"
+
+namespace kerf {
+namespace {
+
+/// Side of the squares that one pixel is the mean of: drivers differ along edges.
+constexpr int kShrink = 5;
+
+Picture shrink(const Picture& picture) {
+  Picture small{picture.width_px / kShrink, picture.height_px / kShrink, {}};
+  for (int y = 0; y < small.height_px; ++y) {
+    for (int x = 0; x < 3 * small.width_px; ++x) {
+      int sum = 0;
+      for (int n = 0; n < kShrink * kShrink; ++n) {
+        const int row = kShrink * y + n / kShrink, column = kShrink * (x / 3) + n % kShrink;
+        sum += picture.rgb[static_cast<std::size_t>(3 * (row * picture.width_px + column) + x % 3)];
+      }
+      small.rgb.push_back(static_cast<std::uint8_t>(sum / (kShrink * kShrink)));
+    }
+  }
+  return small;
+}
+
+/// Mean over the channels of a part of two pictures, of 255.
+double difference(const Picture& a, const Picture& b, int left, int top, int width, int height) {
+  double sum = 0;
+  for (int y = top; y < top + height; ++y) {
+    for (int x = 3 * left; x < 3 * (left + width); ++x) {
+      const std::size_t n = static_cast<std::size_t>(3 * y * a.width_px + x);
+      sum += std::abs(a.rgb[n] - b.rgb[n]);
+    }
+  }
+  return sum / (3.0 * width * height);
+}
+
+struct Job {
+  std::string name, program, ini;
+  std::vector<std::string> work;  ///< blank, tools, cell
+};
+
+/// Cuts, draws and compares.
+void expect_looks_as_it_did(const Job& job) {
+  constexpr double kWholeDifference = 1.5;
+  // A slot that leans by ten degrees less makes 6 to 15 there.
+  constexpr int kPart_px = 40;
+  constexpr double kPartDifference = 3;
+  const TestFolder folder;
+  KerfCall call;
+  call.arguments = {"run",      job.program, "--ini", job.ini,
+                    "--interp", "bridge",    "--png", folder.file("part.png")};
+  call.arguments.insert(call.arguments.end(), job.work.begin(), job.work.end());
+  const KerfResult result = run_kerf(call);
+  ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
+  EXPECT_NE(result.out.find("octree, cells of"), std::string::npos) << result.out;
+  const Picture drawn = read_png_file(folder.file("part.png"));
+  ASSERT_EQ(drawn.width_px, 1600);
+  const Picture found = shrink(drawn);
+  const std::string path = std::string(KERF_GOLDEN_FOLDER) + "/" + job.name + ".png";
+  if (std::getenv("KERF_UPDATE_GOLDEN") != nullptr) {
+    const Done done = write_png(path, found);
+    ASSERT_TRUE(done) << done.error();
+  }
+  const Picture golden = read_png_file(path);
+  ASSERT_EQ(golden.rgb.size(), found.rgb.size()) << path;
+  EXPECT_LT(difference(golden, found, 0, 0, found.width_px, found.height_px), kWholeDifference)
+      << job.name;
+  for (int y = 0; y + kPart_px <= found.height_px; y += kPart_px)
+    for (int x = 0; x + kPart_px <= found.width_px; x += kPart_px)
+      EXPECT_LT(difference(golden, found, x, y, kPart_px, kPart_px), kPartDifference)
+          << job.name << " at " << x << ' ' << y;
+}
+
+/// One of this folder's programs.
+Job own(const std::string& name, std::vector<std::string> work) {
+  const std::string start = std::string(ROTARY_FOLDER) + "/" + name;
+  return {name, start + ".ngc", start + ".ini", std::move(work)};
+}
+
+/// One of LinuxCNC's, for its machine with a tilting rotary table.
+Job linuxcncs(const std::string& name, std::vector<std::string> work) {
+  const std::string folder =
+      "/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/vismach/5axis/"
+      "table-rotary-tilting/";
+  return {name, folder + "demos/" + name + ".ngc", folder + "xyzac-trt.ini", std::move(work)};
+}
+
+bool is_installed(const Job& job) { return file_exists(job.program) && file_exists(job.ini); }
+
+TEST(RotaryPictures, ShaftOnAFourthAxis) {
+  expect_looks_as_it_did(
+      own("wrapped_shaft", {"--stock", "cylinder:0,0,0:80:40:x", "--tool", "1=flat:6", "--tool",
+                            "2=drill:4:118", "--cell", "1"}));
+}
+
+TEST(RotaryPictures, BlockUnderABridgeMillsHead) {
+  expect_looks_as_it_did(
+      own("bridge_mill", {"--stock", "box:-36,-36,-30:36,36,0", "--tool", "1=flat:16", "--tool",
+                          "2=ball:5", "--tool", "3=flat:10", "--cell", "1"}));
+}
+
+TEST(RotaryPictures, SlotsOfARobot) {
+  expect_looks_as_it_did(own(
+      "robot", {"--stock", "box:-60,-60,-40:60,60,0", "--tool", "1=bull:14:3", "--cell", "1.5"}));
+}
+
+TEST(RotaryPictures, Impeller) {
+  const Job job = linuxcncs("impeller-7bl-xyzac", {"--stock", "cylinder:0,0,-8:32:90", "--tool",
+                                                   "1=ball:4", "--cell", "1.5"});
+  if (!is_installed(job)) GTEST_SKIP() << "LinuxCNC's examples are not installed";
+  expect_looks_as_it_did(job);
+}
+
+TEST(RotaryPictures, Boat) {
+  const Job job = linuxcncs("boat-xyzac", {"--stock", "box:-60,-37,-19:57,33,0", "--cell", "1.5"});
+  if (!is_installed(job)) GTEST_SKIP() << "LinuxCNC's examples are not installed";
+  expect_looks_as_it_did(job);
+}
+
+}  // namespace
+}  // namespace kerf
