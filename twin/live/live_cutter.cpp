@@ -42,6 +42,8 @@ constexpr double kJoin_s = 0.3;
 constexpr double kJoinAgain = 4;
 /// A machine that says it runs the program for so long without being seen on its path is off it.
 constexpr double kNeverSeen_s = 1.0;
+/// An axis that has turned by less stands. Degrees.
+constexpr double kTurned_deg = 0.01;
 
 Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place, int tool) {
   Finding finding;
@@ -335,6 +337,27 @@ void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump
   log_.add(std::move(finding));
 }
 
+/// Once: A, B or C stand elsewhere than where they were first seen, and the model knows upright
+/// tools over a workpiece that lies still.
+void LiveCutter::note_turn(const Sighting& now) {
+  if (!first_abc_deg_) first_abc_deg_ = now.abc_deg;
+  if (turn_told_ || stock_.takes_tilted_tools()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double turned_deg = now.abc_deg[i] - (*first_abc_deg_)[i];
+    if (!(std::abs(turned_deg) > kTurned_deg)) continue;
+    turn_told_ = true;
+    Finding finding =
+        finding_of(FindingId::kRotaryIgnored, Severity::kError, now.t_s, now.tip_mm, now.tool);
+    finding.source = place_.source;
+    finding.text = fmt::format(
+        "{} has turned by {:.2f} degrees, and the model {} is for upright tools over a workpiece "
+        "that lies still: it is cut as if A, B and C stood (--model octree follows them)",
+        "ABC"[i], turned_deg, stock_.name());
+    log_.add(std::move(finding));
+    return;
+  }
+}
+
 /// The machine has another tool than the program has where the machine is.
 void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm) {
   if (!point.on_path || sample_.tool < 0) return;
@@ -399,7 +422,9 @@ void LiveCutter::cut(const Motion& motion, double duration_s) {
 void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s,
                            bool off_path) {
   const double length_mm = glm::length(now.tip_mm - from_mm);
-  if (length_mm < kStill_mm) return;
+  const std::array<double, 3>& from_abc_deg = before_ ? before_->abc_deg : now.abc_deg;
+  const bool turns = stock_.takes_tilted_tools() && from_abc_deg != now.abc_deg;
+  if (length_mm < kStill_mm && !turns) return;
   Motion motion;
   motion.kind = MotionKind::kFeed;
   motion.spindle = spindle();
@@ -408,7 +433,9 @@ void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double dura
   motion.source = {0, sample_.line > 0 ? static_cast<std::uint32_t>(sample_.line) : 0};
   motion.from_mm = from_mm;
   motion.to_mm = now.tip_mm;
-  motion.to_abc_deg = motion.from_abc_deg = now.abc_deg;
+  // A model of upright tools is not asked about turns: note_turn() has told.
+  motion.from_abc_deg = turns ? from_abc_deg : now.abc_deg;
+  motion.to_abc_deg = now.abc_deg;
   motion.tool_offset_mm = {0, 0, now.tool_length_mm};
   motion.feed_mm_per_min = duration_s > 0 ? 60 * length_mm / duration_s : 0;
   facts_.chord_mm += length_mm;
@@ -418,7 +445,7 @@ void LiveCutter::cut_chord(const Vec3& from_mm, const Sighting& now, double dura
     if (tool.cutter) radius_mm = tool.cutter->radius_mm();
   }
   // Jogging in the air needs no tool that is known.
-  if (!near_stock(from_mm, now.tip_mm, radius_mm)) return;
+  if (!stock_.takes_tilted_tools() && !near_stock(from_mm, now.tip_mm, radius_mm)) return;
   cut(motion, duration_s);
   // The workpiece is no longer what the program makes of it.
   guard_stale_ |= off_path;
@@ -461,6 +488,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   }
   double driven_mm = 0;
   for (const auto& [motion, share_s] : driven_) driven_mm += path_length_mm(motion);
+  note_turn(now);
   note_tool(now, point, driven_mm);
   note_off_path(now, point);
   place_.off_path = off_path_event_.has_value();

@@ -116,6 +116,7 @@ class LiveCutter {
   void note_length(int tool, double t_s);
   void note_limits(const Vec3& machine_mm, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
+  void note_turn(const Sighting& now);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
   void cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s, bool off_path);
@@ -148,6 +149,8 @@ class LiveCutter {
   std::optional<FindingLog::Handle> off_path_event_;
   std::optional<double> beyond_since_s_;  ///< the positions lie beyond the machine's limits
   bool beyond_told_ = false;
+  std::optional<std::array<double, 3>> first_abc_deg_;
+  bool turn_told_ = false;
   int length_told_ = 0;  ///< tool whose length is not known
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's

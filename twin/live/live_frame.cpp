@@ -1,11 +1,11 @@
 #include "twin/live/live_frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf {
 namespace {
 
-constexpr const char* kAxisLetters = "XYZABCUVW";
 constexpr unsigned kTipAxes = 0b111;
 
 /// Positions by axis, and which of them are known.
@@ -14,7 +14,26 @@ struct ByAxis {
   unsigned known = 0;
 };
 
-ByAxis by_axis(const AxisSample& sample, const std::array<int, kMaxPositions>& axis) {
+/// Of belts neither X nor Y is known unless both are.
+ByAxis by_kinematics(const AxisSample& sample, const MachineKinematics& machine) {
+  ByAxis out;
+  AxisValues joints{};
+  for (std::size_t i = 0; i < machine.joint_letters.size(); ++i) {
+    if (!sample.has(i)) continue;
+    joints[i] = sample.position[i];
+    const auto axis = std::find(kAxisLetters.begin(), kAxisLetters.end(), machine.joint_letters[i]);
+    out.known |= 1U << (axis - kAxisLetters.begin());
+  }
+  constexpr unsigned kBelts = 0b11;
+  if (machine.belts && (out.known & kBelts) != kBelts) out.known &= ~kBelts;
+  const AxisValues axes = machine.axes_of(joints, 0);
+  std::copy(axes.begin(), axes.end(), out.position.begin());
+  return out;
+}
+
+ByAxis by_axis(const AxisSample& sample, const LiveFrameOptions& options) {
+  if (options.kinematics) return by_kinematics(sample, *options.kinematics);
+  const std::array<int, kMaxPositions>& axis = options.axis;
   ByAxis out;
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     if (axis[i] < 0 || !sample.has(i)) continue;
@@ -33,12 +52,12 @@ void LiveFrame::turn() {
 }
 
 std::string LiveFrame::missing_axes(const AxisSample& sample) const {
-  const ByAxis axes = by_axis(sample, options_.axis);
+  const ByAxis axes = by_axis(sample, options_);
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     if (axes.known >> axis & 1U) continue;
     if (!text.empty()) text += " and ";
-    text += kAxisLetters[axis];
+    text += kAxisLetters[static_cast<std::size_t>(axis)];
   }
   return text;
 }
@@ -66,7 +85,7 @@ double LiveFrame::length_of(const AxisSample& sample, std::optional<double> prog
 
 std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
                                            std::optional<double> program_length_mm) const {
-  const ByAxis axes = by_axis(sample, options_.axis);
+  const ByAxis axes = by_axis(sample, options_);
   if ((axes.known & kTipAxes) != kTipAxes) return std::nullopt;
   LivePose pose;
   const Vec3 there{axes.position[0], axes.position[1], axes.position[2]};

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "interp_bridge/motion.h"
 #include "machine_io/position_source.h"
+#include "twin/kinematics/machine_kinematics.h"
 
 namespace kerf {
 
@@ -28,6 +30,9 @@ struct LiveFrameOptions {
   /// axis[i]: which axis (0 = X .. 8 = W) position i of the samples is; -1: none. With trivial
   /// kinematics a joint is an axis, and this is all there is to it.
   std::array<int, kMaxPositions> axis = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  /// Of a machine whose joints are not its axes under other names (corexykins): position i is that
+  /// of joint i then, and `axis` does not matter. Null: `axis` says it all.
+  std::shared_ptr<const MachineKinematics> kinematics;
   bool workpiece_frame = false;  ///< positions are the tip's, in the workpiece frame
   WorkpieceFrame work;           ///< where the workpiece lies in the machine
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;

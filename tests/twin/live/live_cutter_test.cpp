@@ -237,6 +237,28 @@ TEST(LiveCutter, PositionsOfAnotherMachineAreSuspected) {
             "positions of another machine, or in another unit?");
 }
 
+TEST(LiveCutter, AnAxisThatTurnsIsToldOnceWhereTheModelCannotFollow) {
+  Watch watch;
+  double t_s = 0;
+  const auto at = [&](double x, double c_deg) {
+    AxisSample sample;
+    for (std::size_t i = 0; i < 6; ++i) sample.set(i, 0);
+    sample.set(0, x);
+    sample.set(5, c_deg);
+    sample.tool = 1;
+    watch.cutter().take(sample, t_s += 0.1, false);
+  };
+  // It may stand anywhere.
+  at(0, 90);
+  at(1, 90.005);
+  EXPECT_TRUE(watch.ids().empty());
+  at(2, 91.5);
+  at(3, 95);
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kRotaryIgnored});
+  EXPECT_NE(watch.log().kept().front().text.find("C has turned by 1.50 degrees"), std::string::npos)
+      << watch.log().kept().front().text;
+}
+
 TEST(LiveCutter, AToolWhoseLengthNobodyTellsIsNamedOnce) {
   LiveCutOptions options;
   auto stock = block();

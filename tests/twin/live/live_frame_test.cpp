@@ -41,6 +41,20 @@ TEST(LiveFrame, JointsAreTheAxesTheyMove) {
   EXPECT_EQ(frame.pose_of(sample, std::nullopt)->tip_mm, Vec3(1, 2.5, 3));
 }
 
+TEST(LiveFrame, JointsOfBeltsAreSumAndDifference) {
+  LiveFrameOptions options;
+  options.kinematics =
+      std::make_shared<const MachineKinematics>(known_machine("corexykins", "XYZ", {}, {}).value());
+  const LiveFrame frame(options);
+  AxisSample sample = at(30 + 8, 30 - 8, 5);
+  ASSERT_TRUE(frame.pose_of(sample, std::nullopt));
+  EXPECT_EQ(frame.pose_of(sample, std::nullopt)->tip_mm, Vec3(30, 8, 5));
+  AxisSample one;
+  one.set(0, 38);
+  one.set(2, 5);
+  EXPECT_EQ(frame.missing_axes(one), "X and Y") << "neither by one belt";
+}
+
 TEST(LiveFrame, MissingAxesAreNamed) {
   const LiveFrame frame({});
   AxisSample sample;
