@@ -27,7 +27,7 @@ enum class MotionKind : std::uint8_t {
   kDwell,     ///< no motion, `duration_s`
   kToolChange,  ///< `tool` is the new tool; no motion
   kStop,        ///< M0, M1, M60: the program waits for the operator
-  kProgramEnd,  ///< M2, M30 or closing %
+  kProgramEnd,  ///< M2, M30 or closing %; with the spindles that the program leaves to M2 to stop
 };
 
 /// Circular part of a motion: the tip turns about an axis through `center_mm` along `axis` (unit

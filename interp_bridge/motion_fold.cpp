@@ -367,6 +367,31 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
   }
 }
 
+/// The first that turns.
+void MotionFold::choose_spindle() {
+  const auto turning = std::find_if(spindles_.begin(), spindles_.end(), [](const Spindle& one) {
+    return one.state != SpindleState::kStopped;
+  });
+  spindle_ = turning == spindles_.end()
+                 ? 0
+                 : static_cast<std::size_t>(std::distance(spindles_.begin(), turning));
+  update_rpm();
+  note_spindles();
+}
+
+/// M2 stops all spindles before it ends the program: those that it found turning are told with the
+/// end, so that it can be seen whether the program has stopped them itself.
+void MotionFold::append_program_end(SourceRef source, std::vector<Motion>& out) {
+  const auto stopped = spindles_;
+  for (Spindle& spindle : spindles_) {
+    if (spindle.stopped_from != SpindleState::kStopped) spindle.state = spindle.stopped_from;
+  }
+  choose_spindle();
+  append(MotionKind::kProgramEnd, source, out);
+  spindles_ = stopped;
+  choose_spindle();
+}
+
 bool MotionFold::fold_spindle(const CanonicalCommand& command) {
   const auto for_each = [&](auto change) {
     // -1 is all of them (M5 $-1); numbers beyond the last spindle are not on any machine.
@@ -374,23 +399,16 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
     for (std::size_t i = 0; i < kMaxSpindles; ++i) {
       if (number == -1 || number == static_cast<int>(i)) change(spindles_[i]);
     }
-    const auto turning = std::find_if(spindles_.begin(), spindles_.end(), [](const Spindle& one) {
-      return one.state != SpindleState::kStopped;
-    });
-    spindle_ = turning == spindles_.end()
-                   ? 0
-                   : static_cast<std::size_t>(std::distance(spindles_.begin(), turning));
-    update_rpm();
-    note_spindles();
+    choose_spindle();
     return true;
   };
   switch (command.name) {
     case CanonicalName::kStartSpindleClockwise:
-      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kClockwise; });
+      return for_each([](Spindle& spindle) { spindle.start(SpindleState::kClockwise); });
     case CanonicalName::kStartSpindleCounterclockwise:
-      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kCounterclockwise; });
+      return for_each([](Spindle& spindle) { spindle.start(SpindleState::kCounterclockwise); });
     case CanonicalName::kStopSpindleTurning:
-      return for_each([](Spindle& spindle) { spindle.state = SpindleState::kStopped; });
+      return for_each([](Spindle& spindle) { spindle.stop(); });
     case CanonicalName::kSetSpindleSpeed:
       return for_each([&](Spindle& spindle) { spindle.speed = command.number(1); });
     case CanonicalName::kSetSpindleMode:
@@ -474,7 +492,7 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
     case CanonicalName::kProgramEnd:
     case CanonicalName::kFinish:
       has_program_end_ = true;
-      append(MotionKind::kProgramEnd, source, out);
+      append_program_end(source, out);
       return true;
     default:
       return false;

@@ -131,6 +131,17 @@ class MotionFold {
     double speed = 0;            ///< rpm; under G96 m/min or ft/min
     double surface_max_rpm = 0;  ///< > 0: G96
     double surface_unit_mm = 0;  ///< mm in one unit of surface speed: 1000 or 304.8
+    /// How it turned when it was last told to stop.
+    SpindleState stopped_from = SpindleState::kStopped;
+
+    void start(SpindleState direction) {
+      state = direction;
+      stopped_from = SpindleState::kStopped;
+    }
+    void stop() {
+      stopped_from = state;
+      state = SpindleState::kStopped;
+    }
   };
   static constexpr std::size_t kMaxSpindles = 8;  ///< EMCMOT_MAX_SPINDLES
 
@@ -151,6 +162,8 @@ class MotionFold {
   void fold_rigid_tap(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   bool fold_frame(const CanonicalCommand& command);
   bool fold_spindle(const CanonicalCommand& command);
+  void choose_spindle();
+  void append_program_end(SourceRef source, std::vector<Motion>& out);
   bool fold_feed(const CanonicalCommand& command);
   bool fold_event(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void change_tool_length(const CanonicalCommand& command);

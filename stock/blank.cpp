@@ -15,20 +15,27 @@ namespace {
 constexpr double kMaxCoordinate_mm = 1e5;
 constexpr double kMinSize_mm = 0.001;
 constexpr std::size_t kMaxBodies = 1000;
+/// What cuts straight through is no thicker, by far.
+constexpr double kMaxThickness_mm = 1000;
 
 constexpr std::array<std::string_view, 6> kKinds = {"box",   "cylinder", "tube",
                                                     "state", "stl",      "sheet"};
 constexpr std::string_view kForms =
-    "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], state:FILE";
+    "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
+    "state:FILE, "
+    "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS";
 
-Result<Vec3> parse_point(std::string_view name, std::string_view text) {
+/// `form`: x,y,z or x,y.
+Result<Vec3> parse_point(std::string_view name, std::string_view text,
+                         std::string_view form = "x,y,z") {
   const std::vector<std::string_view> parts = split(text, ',');
-  if (parts.size() != 3) {
-    return Error{fmt::format("{}: '{}' has {} {}; must be x,y,z", name, shown(text), parts.size(),
-                             parts.size() == 1 ? "value" : "values")};
+  const std::size_t axes = form.size() / 2 + 1;
+  if (parts.size() != axes) {
+    return Error{fmt::format("{}: '{}' has {} {}; must be {}", name, shown(text), parts.size(),
+                             parts.size() == 1 ? "value" : "values", form)};
   }
   Vec3 point(0);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < static_cast<int>(axes); ++axis) {
     const Result<double> value = parse_within(fmt::format("{} {}", name, "XYZ"[axis]),
                                               trim(parts[static_cast<std::size_t>(axis)]),
                                               -kMaxCoordinate_mm, kMaxCoordinate_mm, "mm");
@@ -124,10 +131,11 @@ Result<BlankBody> parse_body(std::string_view text) {
   if (kind == "box") return parse_box(fields);
   if (kind == "cylinder") return parse_round(fields, false);
   if (kind == "tube") return parse_round(fields, true);
-  if (kind == "stl" || kind == "sheet") {
+  if (kind == "stl") {
     return Error{fmt::format("{}: is not supported by this version; forms: {}", kind, kForms)};
   }
   if (kind == "state") return Error{"state:FILE stands alone; it cannot be added to other bodies"};
+  if (kind == "sheet") return Error{"a sheet stands alone; it cannot be added to other bodies"};
   if (kind.empty()) return Error{fmt::format("no stock is given; forms: {}", kForms)};
   return Error{fmt::format("unknown stock '{}'{} Forms: {}", shown(kind),
                            did_you_mean(kind, kKinds), kForms)};
@@ -147,6 +155,47 @@ std::vector<std::string_view> split_bodies(std::string_view text) {
   }
   bodies.push_back(trim(text.substr(begin)));
   return bodies;
+}
+
+constexpr std::string_view kSheetForms =
+    "the form is sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS or "
+    "sheet:FILE.svg:THICKNESS";
+
+bool is_drawing(std::string_view file) {
+  const std::string lower = to_lower(file);
+  return lower.size() > 4 && (lower.ends_with(".dxf") || lower.ends_with(".svg"));
+}
+
+/// `text`: behind "sheet:". A file name may hold any character, '+' and ':' too.
+Result<BlankSheet> parse_sheet(std::string_view text) {
+  const std::size_t last = text.rfind(':');
+  if (last == std::string_view::npos) return Error{std::string(kSheetForms)};
+  const std::string_view outline = trim(text.substr(0, last));
+  BlankSheet sheet;
+  if (is_drawing(outline)) {
+    sheet.file = std::string(outline);
+  } else {
+    if (split_bodies(text).size() > 1) {
+      return Error{"a sheet stands alone; it cannot be added to other bodies"};
+    }
+    const std::vector<std::string_view> corners = split(outline, ':');
+    if (corners.size() != 2) return Error{std::string(kSheetForms)};
+    const Result<Vec3> low = parse_point("first corner", corners[0], "x,y");
+    if (!low) return Error{low.error()};
+    const Result<Vec3> high = parse_point("second corner", corners[1], "x,y");
+    if (!high) return Error{high.error()};
+    for (int axis = 0; axis < 2; ++axis) {
+      const std::string fault = order_fault("XY"[axis], (*low)[axis], (*high)[axis]);
+      if (!fault.empty()) return Error{fault};
+    }
+    sheet.low_mm = Vec2(*low);
+    sheet.high_mm = Vec2(*high);
+  }
+  const Result<double> thickness =
+      parse_within("thickness", trim(text.substr(last + 1)), kMinSize_mm, kMaxThickness_mm, "mm");
+  if (!thickness) return Error{thickness.error()};
+  sheet.thickness_mm = *thickness;
+  return sheet;
 }
 
 /// To 0.1 um, for messages.
@@ -177,10 +226,26 @@ std::string describe(const BlankBody& body) {
                      length, "XYZ"[axis], center, range(axis));
 }
 
+std::string describe(const BlankSheet& sheet) {
+  const std::string thickness = rounded(sheet.thickness_mm);
+  if (!sheet.file.empty()) {
+    return fmt::format("sheet {} mm thick, outline from {}, Z-{}..0", thickness, shown(sheet.file),
+                       thickness);
+  }
+  const Vec2 size = sheet.high_mm - sheet.low_mm;
+  return fmt::format("sheet {} x {} x {} mm, X{}..{} Y{}..{} Z-{}..0", rounded(size.x),
+                     rounded(size.y), thickness, rounded(sheet.low_mm.x), rounded(sheet.high_mm.x),
+                     rounded(sheet.low_mm.y), rounded(sheet.high_mm.y), thickness);
+}
+
 }  // namespace
 
 Box Blank::bounds_mm() const {
   Box bounds;
+  if (sheet && sheet->file.empty()) {
+    bounds.extend(Vec3(sheet->low_mm, -sheet->thickness_mm));
+    bounds.extend(Vec3(sheet->high_mm, 0));
+  }
   for (const BlankBody& body : bodies) bounds.extend(body.bounds_mm);
   return bounds;
 }
@@ -194,6 +259,12 @@ Result<Blank> parse_blank(std::string_view spec) {
     const std::string_view file = trim(spec.substr(colon + 1));
     if (file.empty()) return Error{"state:: the file name is missing; the form is state:FILE"};
     blank.state_file = std::string(file);
+    return blank;
+  }
+  if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "sheet") {
+    Result<BlankSheet> sheet = parse_sheet(spec.substr(colon + 1));
+    if (!sheet) return Error{fmt::format("{}: {}", shown(spec), sheet.error())};
+    blank.sheet = std::move(sheet.value());
     return blank;
   }
   const std::vector<std::string_view> texts = split_bodies(spec);
@@ -213,6 +284,7 @@ Result<Blank> parse_blank(std::string_view spec) {
 std::string describe(const Blank& blank) {
   if (!blank.state_file.empty())
     return fmt::format("workpiece saved in {}", shown(blank.state_file));
+  if (blank.sheet) return describe(*blank.sheet);
   std::string text;
   for (const BlankBody& body : blank.bodies) {
     if (!text.empty()) text += " + ";

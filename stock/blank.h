@@ -1,6 +1,7 @@
 // stock/blank.h - the uncut workpiece as --stock describes it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,17 +22,29 @@ struct BlankBody {
   double inner_diameter_mm = 0;  ///< kTube
 };
 
-/// Several bodies add up (union). `state_file` set: the blank is a saved workpiece instead.
+/// Sheet metal, from which a torch, laser or jet cuts: its upper face is at Z0, as the posts of
+/// these machines have it. A rectangle, or any outline from a drawing (outline_file.h).
+struct BlankSheet {
+  Vec2 low_mm{0}, high_mm{0};  ///< corners; of no meaning with a file
+  double thickness_mm = 0;
+  std::string file;  ///< the drawing, DXF or SVG by its name; empty: the rectangle
+};
+
+/// Several bodies add up (union). `state_file` set: the blank is a saved workpiece instead; `sheet`
+/// set: it is a sheet instead.
 struct Blank {
   std::vector<BlankBody> bodies;
   std::string state_file;
+  std::optional<BlankSheet> sheet;
+  /// Empty for a saved workpiece and for a sheet from a drawing, which nobody has read yet.
   Box bounds_mm() const;
 };
 
-/// SPEC: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | tube:x,y,z0:z1:d:inner[:axis] |
-/// state:FILE ; several joined by '+'. stl: and sheet: are named as not supported by this version.
-/// Zero or negative sizes, reversed corners, non-numbers are errors that show what was found and
-/// what is allowed.
+/// SPEC: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | tube:x,y,z0:z1:d:inner[:axis] ;
+/// several of these joined by '+'; or state:FILE | sheet:x0,y0:x1,y1:THICKNESS |
+/// sheet:FILE.dxf:THICKNESS | sheet:FILE.svg:THICKNESS. stl: is named as not supported by this
+/// version. Zero or negative sizes, reversed corners, non-numbers are errors that show what was
+/// found and what is allowed. Reads no file.
 Result<Blank> parse_blank(std::string_view spec);
 
 /// "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0": for messages.

@@ -121,6 +121,9 @@ class StockModel {
   /// name and renamed. Error: also from a model that has no such file.
   virtual Done save(const std::string& path) const;
 
+  /// The model itself, where this one only stands before another.
+  virtual const StockModel& bare() const { return *this; }
+
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank
   virtual double cell_mm() const = 0;

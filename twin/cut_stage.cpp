@@ -83,6 +83,7 @@ void CutStage::begin_reporting() {
   axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();
+  if (torch_) torch_->begin_reporting();
   mounted_ = nullptr;
   feed_missing_reported_ = false;
   over_feed_ = {};
@@ -95,6 +96,10 @@ void CutStage::finish(bool whole) {
   flush_whole();
   if (holding_) begin_reporting();  // with nothing
   report_over_feed();
+  if (torch_) {
+    torch_->finish(whole);
+    return;
+  }
   if (whole) report_outside_stock();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
@@ -104,6 +109,11 @@ void CutStage::finish(bool whole) {
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
   check_turns(m, step);
+  if (torch_) {
+    if (is_feed(m) && m.start_known) note_speed(m, step);
+    torch_->take(m, step, path_);
+    return;
+  }
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     flush_whole();  // with the cutter that made these moves
     checks_.end_spindle_event();
@@ -292,8 +302,8 @@ void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
   finding.tool = m.tool;
   finding.text = fmt::format(
       "A, B or C move, and the model {} is for upright tools over a workpiece that lies still: it "
-      "is cut as if they stood (--model octree follows them)",
-      stock_.name());
+      "is cut as if they stood{}",
+      stock_.name(), torch_ ? "" : " (--model octree follows them)");
   log_.add(std::move(finding));
 }
 
@@ -387,18 +397,8 @@ void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
     push_moves(m, step.duration_s, spindle_off);
     return;
   }
-  Motion piece = m;
   for (const PathPiece& part : path_) {
-    if (part.curved) {
-      piece.kind = MotionKind::kArc;
-    } else if (m.kind == MotionKind::kArc) {
-      piece.kind = MotionKind::kFeed;
-    } else {
-      piece.kind = m.kind;
-    }
-    piece.from_mm = part.from_mm;
-    piece.to_mm = part.to_mm;
-    piece.arc = part.arc;
+    const Motion piece = motion_of(m, part);
     divide(piece);
     push_moves(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
   }
@@ -458,18 +458,7 @@ void CutStage::count_feed(ToolUse& use, double duration_s, double removed_mm3) c
     duration_s = std::exchange(use.grain_s, 0);
     removed_mm3 = std::exchange(use.grain_mm3, 0);
   }
-  if (removed_mm3 <= 0) return;
-  use.cut_s += duration_s;
-  use.window_s += duration_s;
-  use.window_mm3 += removed_mm3;
-  if (use.window_s >= kPeakWindow_s) close_window(use);
-}
-
-void CutStage::close_window(ToolUse& use) {
-  if (use.window_s > 0)
-    use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, use.window_mm3 / use.window_s);
-  use.window_s = 0;
-  use.window_mm3 = 0;
+  add_cutting(use, duration_s, removed_mm3);
 }
 
 }  // namespace kerf

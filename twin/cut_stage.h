@@ -19,30 +19,11 @@
 #include "twin/kinematics/rotary_checks.h"
 #include "twin/motion_moves.h"
 #include "twin/timeline.h"
+#include "twin/tool_use.h"
 #include "twin/tools.h"
+#include "twin/torch_stage.h"
 
 namespace kerf {
-
-/// What one tool did.
-struct ToolUse {
-  int number = 0;
-  std::string shape;  ///< SHAPE text; empty: undefined, did not cut
-  std::string origin;
-  bool guessed = false;
-  double cut_s = 0;    ///< time of feed moves that removed material
-  double feed_mm = 0;  ///< length of all its feed moves
-  double removed_mm3 = 0;
-  double max_depth_mm = 0;    ///< greatest height of material that one move removed
-  double peak_mm3_per_s = 0;  ///< greatest removal rate over kPeakWindow_s of cutting
-  double window_s = 0;        ///< cutting time and volume of the window that is open
-  double window_mm3 = 0;
-  double grain_s = 0;  ///< time and volume of the grain that is open (take_timed)
-  double grain_mm3 = 0;
-};
-
-/// Removal rates are taken over at least this much cutting time: single moves of a finishing pass
-/// last milliseconds and remove whole cells or nothing.
-inline constexpr double kPeakWindow_s = 0.5;
 
 /// Steps of a watched machine are shorter than a cell; its cutting time is counted in grains of
 /// this many seconds that removed something.
@@ -61,6 +42,13 @@ class CutStage : private StepSink {
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage.
   void label_by(CutLabels& labels) { labels_ = &labels; }
+  /// The workpiece is a sheet, and the tools are torches: what cuts, and what it is checked for, is
+  /// TorchStage's. Before the first motion; not together with label_by() and take_timed() of a
+  /// machine that is watched.
+  void burn(BeamSettings settings) { torch_.emplace(stock_, book_, log_, std::move(settings)); }
+  /// Of a program that burns; null: it mills.
+  TorchStage* torch() { return torch_ ? &*torch_ : nullptr; }
+  const TorchStage* torch() const { return torch_ ? &*torch_ : nullptr; }
   /// Motions in program order. They are given to the model as soon as their times are known (which
   /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
@@ -80,7 +68,7 @@ class CutStage : private StepSink {
   void finish(bool whole = true);
 
   const Timeline& timeline() const { return timeline_; }
-  const std::vector<ToolUse>& tools() const { return uses_; }
+  const std::vector<ToolUse>& tools() const { return torch_ ? torch_->tools() : uses_; }
   /// In the spindle, as far as it has been needed; null: none that is known. Until the next call.
   const Cutter* cutter() const {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
@@ -120,7 +108,6 @@ class CutStage : private StepSink {
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
   void count_feed(ToolUse& use, double duration_s, double removed_mm3) const;
-  static void close_window(ToolUse& use);
 
   /// Feed moves that ask for more than the axes can do.
   struct OverFeed {
@@ -154,6 +141,7 @@ class CutStage : private StepSink {
   OverFeed over_feed_;
   Checks checks_;
   AxisLimitCheck axis_limits_;
+  std::optional<TorchStage> torch_;
   std::vector<ToolUse> uses_;
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
   std::uint32_t use_ = 0;

@@ -77,6 +77,20 @@ const char* to_string(FindingId id) {
       return "singular-pose";
     case FindingId::kToolTooLong:
       return "tool-too-long";
+    case FindingId::kTorchLeftOn:
+      return "torch-left-on";
+    case FindingId::kNoBeam:
+      return "no-beam";
+    case FindingId::kKerfZero:
+      return "kerf-zero";
+    case FindingId::kPierceInPart:
+      return "pierce-in-part";
+    case FindingId::kCrossesPart:
+      return "crosses-part";
+    case FindingId::kBeamOff:
+      return "beam-off";
+    case FindingId::kSmallPart:
+      return "small-part";
   }
   return "";
 }

@@ -42,6 +42,13 @@ enum class FindingId : std::uint8_t {
   kNoRotaryAxis,    ///< A, B or C of a machine that has none
   kSingularPose,    ///< an axis turns far while the spindle hardly does
   kToolTooLong,     ///< longer than the way to the pivot that the controller reckons with
+  kTorchLeftOn,     ///< the program ends with the beam on
+  kNoBeam,          ///< the program never turns the beam on
+  kKerfZero,        ///< a kerf of no width
+  kPierceInPart,    ///< pierces a part that has come free
+  kCrossesPart,     ///< the head goes over a part that has come free, and may have tipped
+  kBeamOff,         ///< feed moves over the sheet at cut height with the beam off
+  kSmallPart,       ///< a part came free that may tilt or fall between the slats
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "interp_bridge/timing/planner.h"
+
 namespace kerf {
 namespace {
 
@@ -94,6 +96,19 @@ CutMove cut_move_from(const Motion& m, std::uint64_t id) {
   }
   move.id = id;
   return move;
+}
+
+Motion motion_of(const Motion& motion, const PathPiece& piece) {
+  Motion moved = motion;
+  if (piece.curved) {
+    moved.kind = MotionKind::kArc;
+  } else if (motion.kind == MotionKind::kArc) {
+    moved.kind = MotionKind::kFeed;
+  }
+  moved.from_mm = piece.from_mm;
+  moved.to_mm = piece.to_mm;
+  moved.arc = piece.arc;
+  return moved;
 }
 
 }  // namespace kerf

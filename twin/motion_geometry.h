@@ -7,6 +7,8 @@
 
 namespace kerf {
 
+struct PathPiece;
+
 /// Length of the way of the tip. Helices exactly; spirals (radius changing with the angle) by their
 /// mean radius, which is right to second order in the change. 0 for motions that do not move.
 double path_length_mm(const Motion& motion);
@@ -24,5 +26,8 @@ bool is_feed(const Motion& motion);
 
 /// The motion as the stock model takes it.
 CutMove cut_move_from(const Motion& motion, std::uint64_t id);
+
+/// A piece of the path that the machine plans for a motion, as a motion of its own.
+Motion motion_of(const Motion& motion, const PathPiece& piece);
 
 }  // namespace kerf

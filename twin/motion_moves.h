@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
 #include "twin/kinematics/tool_path.h"
+#include "twin/torch_moves.h"
 
 namespace kerf {
 
@@ -29,7 +31,12 @@ class MotionMoves {
   const ToolPath* path() const { return path_ ? &*path_ : nullptr; }
   /// The motion is one move of an upright tool: cut_move_from().
   bool is_upright(const Motion& motion) const { return !path_ || path_->is_upright(motion); }
-  /// Appends the moves of a motion that moves the tip, all with this id.
+  /// From now on the moves are those of a torch.
+  void burn(TorchMoves torch) { torch_ = std::move(torch); }
+  /// Null: a tool, which cuts on every motion that moves.
+  const TorchMoves* torch() const { return torch_ ? &*torch_ : nullptr; }
+  /// Appends the moves of a motion that moves the tip, all with this id. Not of a torch: whether
+  /// that pierces the motions before tell (TorchMoves::append).
   void append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
               std::vector<CutMove>& out) const;
 
@@ -46,6 +53,7 @@ class MotionMoves {
   std::shared_ptr<const MachineKinematics> machine_;
   WorkpieceFrame frame_;
   std::optional<ToolPath> path_;
+  std::optional<TorchMoves> torch_;
 };
 
 }  // namespace kerf

@@ -40,9 +40,16 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
   } else if (!find_comment_blank(*front.program, options.program.path, found, diagnostics)) {
     return false;
   }
+  if (!found.blank && options.stock.kind == StockKind::kSheet) {
+    diagnostics.push_back(general_error("--model sheet: there is no sheet",
+                                        "--stock sheet:x0,y0:x1,y1:THICKNESS gives one"));
+    outcome = Outcome::kUsageError;
+    return false;
+  }
   if (!found.blank) return true;
   front.blank = std::move(found.blank);
   front.blank_origin = std::move(found.origin);
+  if (front.is_sheet()) front.choice = {StockKind::kSheet, {}};
   return fill_front(options, front, diagnostics, outcome);
 }
 
@@ -58,7 +65,8 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
 
 bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, ProgramFront& front,
                         Diagnostics& diagnostics, Outcome& outcome) {
-  if (tilt.empty() || options.stock.kind || stock_model(front.choice.kind).takes_tilted_tools) {
+  if (tilt.empty() || options.stock.kind || front.is_sheet() ||
+      stock_model(front.choice.kind).takes_tilted_tools) {
     return true;
   }
   StockNeeds needs;

@@ -12,6 +12,7 @@
 #include "interp_bridge/program.h"
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
+#include "twin/beam_settings.h"
 #include "twin/blank_choice.h"
 #include "twin/finding.h"
 #include "twin/line_window.h"
@@ -27,6 +28,7 @@ struct SessionOptions {
   std::vector<ToolShapeArgument> tools;  ///< of --tool
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
+  BeamOptions beam;      ///< for a sheet
   double margin_mm = 5;  ///< around a guessed blank
   TimelineOptions timeline;
   LineRange lines;  ///< cut silently up to there, reported from there, stopped there
@@ -42,6 +44,8 @@ struct ProgramFront {
   StockChoice choice;          ///< of its model, by what is known of the tools
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
+
+  bool is_sheet() const { return blank && blank->sheet; }
 };
 
 /// Checks everything that can be checked before the program is interpreted: files, comments, tool

@@ -12,6 +12,7 @@
 #include "twin/finding.h"
 #include "twin/line_window.h"
 #include "twin/live/live_report.h"
+#include "twin/sheet_report.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -48,6 +49,7 @@ struct Report {
   MotionTotals motion;
   std::string time_model;
   std::optional<StockReport> stock;  ///< absent if the run ended before there was one
+  std::optional<SheetReport> sheet;  ///< of a workpiece that is one
   std::vector<ToolUse> tools;
   std::optional<LiveReport> live;  ///< of shadow and replay
   FindingLog findings;
@@ -59,7 +61,8 @@ struct Report {
 /// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
 /// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
 /// program.from_line, program.until_line (where asked for), tools[].origin, findings_total,
-/// timing_s.cut_cpu, motion.moves_without_feed, live (shadow and replay).
+/// timing_s.cut_cpu, motion.moves_without_feed, live (shadow and replay), sheet (SheetReport; for a
+/// workpiece that is one).
 std::string json_text(const Report& report);
 
 /// The page of text that `kerf run` prints; findings are only counted (they are printed as

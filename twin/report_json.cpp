@@ -139,6 +139,7 @@ std::string json_text(const Report& report) {
   out["program"] = program_json(report);
   out["motion"] = motion_json(report);
   out["stock"] = stock_json(report);
+  if (report.sheet) out["sheet"] = sheet_json(*report.sheet, report.program.files);
   out["tools"] = tools_json(report);
   if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);

@@ -50,8 +50,12 @@ std::string lines_text(const LineRange& lines) {
 
 void add_stock(std::string& out, const StockReport& s) {
   out += fmt::format("stock     {} ({})\n", s.description, s.origin);
-  out += fmt::format("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
-                     static_cast<double>(s.cells) / 1e6);
+  if (s.model == "sheet") {
+    out += fmt::format("          {}, {} corners of polygons\n", s.model, s.cells);
+  } else {
+    out += fmt::format("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
+                       static_cast<double>(s.cells) / 1e6);
+  }
   if (!s.model_reason.empty()) {
     out += fmt::format("          {} because {}\n", s.model, s.model_reason);
   }
@@ -147,6 +151,7 @@ std::string summary_text(const Report& report) {
                      report.program.program_lines, m.moves, m.arcs);
   out += lines_text(report.lines);
   if (report.stock) add_stock(out, *report.stock);
+  if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
   out +=
       fmt::format("time      {}\n          {}\n", duration_text(m.duration_s), report.time_model);

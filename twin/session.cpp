@@ -104,6 +104,9 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   tilt_.look_at(motions, frame);
   if (must_begin_again()) return false;
   stage.set_frame(frame);
+  if (TorchStage* const torch = stage.torch()) {
+    if (materials_.take(taken_materials_)) torch->set_materials(taken_materials_);
+  }
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
@@ -119,7 +122,8 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
 /// A motion tilts the tool, and the model that was chosen without knowing of it is for upright
 /// ones.
 bool Session::must_begin_again() const {
-  return !tilt_.found().empty() && !options_.stock.kind && !stock()->takes_tilted_tools();
+  return !tilt_.found().empty() && !options_.stock.kind && !front_.is_sheet() &&
+         !stock()->takes_tilted_tools();
 }
 
 Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
@@ -127,7 +131,10 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   BatchQueue queue;
   ProgramSummary summary;
   std::thread reader([&] {
-    const MotionSink sink = [&](std::span<const Motion> motions) { return queue.push(motions); };
+    const MotionSink sink = [&](std::span<const Motion> motions) {
+      materials_.put(program.materials());
+      return queue.push(motions);
+    };
     summary = interpret(program, sink, stop);
     queue.close();
   });
@@ -193,6 +200,9 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (observer_) observer_->on_start(*stock());
   ToolBook book(front_.tools, row_of(*stock()).can_cut);
   CutStage stage(*front_.stock.stock, book, report_.findings, options_.timeline);
+  if (front_.is_sheet()) {
+    stage.burn(beam_settings(options_.beam, front_.program->is_qtplasmac()));
+  }
   const double cpu_before = thread_cpu_s();
   const Pass pass = cut_program(stage, stop, diagnostics);
   if (pass == Pass::kTilted) return std::nullopt;
@@ -226,6 +236,10 @@ void Session::complete_report(const CutStage& stage) {
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
   report_.stock = stock_report(*stock(), front_.stock.facts);
+  if (stage.torch() && as_sheet(*stock())) {
+    report_.sheet =
+        sheet_report(*as_sheet(*stock()), *stage.torch(), options_.beam.density_kg_per_m3);
+  }
 }
 
 }  // namespace kerf

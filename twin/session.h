@@ -15,6 +15,7 @@
 #include "stock/zmap/zmap.h"
 #include "twin/cut_stage.h"
 #include "twin/line_window.h"
+#include "twin/material_mail.h"
 #include "twin/outcome.h"
 #include "twin/program_front.h"
 #include "twin/report.h"
@@ -93,6 +94,8 @@ class Session {
   std::unique_ptr<Program>
       second_pass_;  ///< a guessed blank and a long file: interpreted once more
   std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
+  MaterialMail materials_;  ///< from the thread that reads to the one that cuts
+  std::vector<TorchMaterial> taken_materials_;
   LineWindow window_;
   TiltWatch tilt_;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_

@@ -6,9 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <utility>
 
+#include "stock/octree/octree.h"
+#include "stock/state_bytes.h"
+#include "stock/zmap/mmap/mmap.h"
 #include "twin/blank_choice.h"
 
 namespace kerf {
@@ -36,6 +41,31 @@ bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics)
   return true;
 }
 
+/// By the head of the file; of one that has none, loading says what is wrong.
+StockKind saved_kind(const std::string& path) {
+  std::array<char, 128> head{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  const auto model = model_of_state({head.data(), static_cast<std::size_t>(file.gcount())}, path);
+  const StockModelRow* const row = model ? find_stock_model(model.value()) : nullptr;
+  return row ? row->kind : StockKind::kZmap;
+}
+
+template <typename Model>
+Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> model) {
+  if (!model) return Error{model.error()};
+  return std::unique_ptr<StockModel>(std::move(model.value()));
+}
+
+Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
+                                               const StockSettings& settings) {
+  if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
+  if (kind == StockKind::kMmap) {
+    return as_stock(MMap::load(path, settings.threads, settings.kernel));
+  }
+  return as_stock(ZMap::load(path, settings.threads, settings.kernel));
+}
+
 std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& choice,
                                        const StockSettings& settings, Diagnostics& diagnostics,
                                        Outcome& outcome) {
@@ -44,15 +74,18 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
         general_error("--cell: a saved workpiece keeps its own cells; leave --cell out"));
     return nullptr;
   }
-  if (choice.kind != StockKind::kZmap) {
+  const StockKind saved = saved_kind(blank.state_file);
+  const bool is_other = settings.kind && *settings.kind != saved;
+  if (is_other || choice.kind > saved) {
     const std::string why = choice.reason.empty() ? "" : fmt::format(" ({})", choice.reason);
-    diagnostics.push_back(
-        general_error(fmt::format("{}: a saved workpiece is a Z-map; the model {} is needed{}",
-                                  blank.state_file, stock_model(choice.kind).name, why),
-                      "--stock with the blank's shape, or --model zmap"));
+    diagnostics.push_back(general_error(
+        fmt::format("{}: a workpiece saved as {}; the model {} is {}{}", blank.state_file,
+                    stock_model(saved).name, stock_model(choice.kind).name,
+                    is_other ? "asked for" : "needed", why),
+        fmt::format("--stock with the blank's shape, or --model {}", stock_model(saved).name)));
     return nullptr;
   }
-  auto loaded = ZMap::load(blank.state_file, settings.threads, settings.kernel);
+  auto loaded = load_saved(saved, blank.state_file, settings);
   if (loaded) return std::move(loaded.value());
   diagnostics.push_back(general_error(loaded.error()));
   outcome = Outcome::kFailed;
@@ -62,6 +95,12 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
 std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& choice,
                                        const StockSettings& settings, const std::string& origin,
                                        Diagnostics& diagnostics) {
+  if (blank.sheet) {
+    auto sheet = stock_model(choice.kind).create(blank, settings);
+    if (sheet) return std::move(sheet.value());
+    diagnostics.push_back(general_error(fmt::format("{}: {}", origin, sheet.error())));
+    return nullptr;
+  }
   const double cell_mm =
       settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
   if (choice.kind != StockKind::kOctree && refuse_memory(blank, cell_mm, diagnostics)) {
@@ -87,7 +126,9 @@ Diagnostic general_error(std::string message, std::string hint) {
 StockSetup make_stock(const Blank& blank, const StockChoice& choice, const StockSettings& settings,
                       const std::string& origin, Diagnostics& diagnostics, Outcome& outcome) {
   StockChoice fitting = choice;
-  if (!settings.kind && choice.kind != StockKind::kOctree) {
+  if (blank.sheet) {
+    fitting = {StockKind::kSheet, settings.kind ? "" : "the blank is a sheet"};
+  } else if (!settings.kind && choice.kind != StockKind::kOctree) {
     const std::string need = need_of_blank(blank);
     if (!need.empty()) fitting = {StockKind::kOctree, need};
   }
@@ -96,9 +137,15 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
   setup.facts.origin = origin;
   setup.facts.description = describe(blank);
   setup.facts.model_reason = fitting.reason;
+  const std::string trouble = misfit(settings, blank);
+  if (!trouble.empty()) {
+    diagnostics.push_back(general_error(trouble));
+    return setup;
+  }
   setup.stock = blank.state_file.empty()
                     ? fill_stock(blank, fitting, settings, origin, diagnostics)
                     : load_stock(blank, fitting, settings, diagnostics, outcome);
+  if (!setup.stock && blank.sheet && !blank.sheet->file.empty()) outcome = Outcome::kFailed;
   return setup;
 }
 

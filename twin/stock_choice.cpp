@@ -7,8 +7,10 @@
 #include <array>
 #include <utility>
 
+#include "stock/cutter/scan.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/octree/octree.h"
+#include "stock/sheet/outline_file.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "twin/blank_choice.h"
 
@@ -77,6 +79,29 @@ Created create_octree(const Blank& blank, const StockSettings& settings) {
   return as_model(Octree::create(options));
 }
 
+Created create_sheet(const Blank& blank, const StockSettings&) {
+  const BlankSheet& sheet = *blank.sheet;
+  SheetOptions options;
+  options.bottom_mm = -sheet.thickness_mm;
+  options.top_mm = 0;
+  if (sheet.file.empty()) {
+    options.outline = rectangle_outline(sheet.low_mm, sheet.high_mm);
+  } else {
+    const bool svg = to_lower(sheet.file).ends_with(".svg");
+    Result<SheetOutline> outline = read_outline_file(
+        sheet.file, svg ? OutlineFormat::kSvg : OutlineFormat::kDxf, options.arc_tolerance_mm);
+    if (!outline) return Error{outline.error()};
+    options.outline = std::move(outline.value());
+  }
+  return as_model(Sheet::create(options));
+}
+
+Done sheet_can_cut(const Cutter& cutter) {
+  if (2 * cutter.radius_mm() >= Sheet::kMinKerf_mm) return std::monostate{};
+  return Error{fmt::format("a kerf of {:g} mm is too narrow; must be at least {:g} mm",
+                           2 * cutter.radius_mm(), Sheet::kMinKerf_mm)};
+}
+
 constexpr std::array kModels{
     StockModelRow{StockKind::kZmap, "zmap",
                   "one height a cell: three-axis milling without undercuts; exact sweeps of "
@@ -91,6 +116,10 @@ constexpr std::array kModels{
                   "a surface in space: tilted tools, parts that turn, material that is added "
                   "(--additive); takes more time and memory",
                   create_octree, Octree::can_cut, true},
+    StockModelRow{StockKind::kSheet, "sheet",
+                  "polygons: sheet metal under a torch, laser or jet (--stock sheet:..); kerfs, "
+                  "piercing, parts that come free",
+                  create_sheet, sheet_can_cut, false},
 };
 
 /// Of a tool that has a shape; empty: the Z-map will do.
@@ -108,6 +137,8 @@ const StockModelRow& stock_model(StockKind kind) {
                        [kind](const StockModelRow& row) { return row.kind == kind; });
 }
 
+const Sheet* as_sheet(const StockModel& stock) { return dynamic_cast<const Sheet*>(&stock.bare()); }
+
 const StockModelRow& row_of(const StockModel& stock) { return *find_stock_model(stock.name()); }
 
 const StockModelRow* find_stock_model(std::string_view name) {
@@ -117,7 +148,7 @@ const StockModelRow* find_stock_model(std::string_view name) {
 }
 
 Done can_be_cut(std::optional<StockKind> kind, const Cutter& cutter) {
-  return (kind ? stock_model(*kind) : kModels.back()).can_cut(cutter);
+  return stock_model(kind.value_or(StockKind::kOctree)).can_cut(cutter);
 }
 
 std::string stock_model_names() {
@@ -161,6 +192,19 @@ StockNeeds stock_needs(const ToolSources& tools) {
     if (const auto hint = shape_from_remark(row.tool, row.diameter_mm, row.remark)) add_hint(*hint);
   }
   return needs;
+}
+
+std::string misfit(const StockSettings& settings, const Blank& blank) {
+  const bool sheet_wanted = settings.kind == StockKind::kSheet;
+  if (blank.sheet && settings.additive) {
+    return "--additive: nothing is added to a sheet; a box can be added to";
+  }
+  if (blank.sheet && settings.cell_mm > 0) return "--cell: a sheet has no cells; leave it out";
+  if (!settings.kind || sheet_wanted == blank.sheet.has_value()) return {};
+  return fmt::format(
+      "--model {}: the blank is {}a sheet ({}); {}", stock_model(*settings.kind).name,
+      sheet_wanted ? "not " : "", describe(blank),
+      sheet_wanted ? "--stock sheet:x0,y0:x1,y1:THICKNESS is one" : "allowed for it: sheet, auto");
 }
 
 std::string need_of_blank(const Blank& blank) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "stock/sheet/sheet.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/zmap.h"
 #include "twin/motion_moves.h"
@@ -14,7 +15,7 @@
 
 namespace kerf {
 
-enum class StockKind { kZmap, kMmap, kOctree };
+enum class StockKind { kZmap, kMmap, kOctree, kSheet };
 
 /// How a workpiece is modelled.
 struct StockSettings {
@@ -36,16 +37,19 @@ struct StockModelRow {
   bool takes_tilted_tools;
 };
 
-/// In the order of what they hold: each holds what those before it do.
+/// In the order of what they hold: each holds what those before it do. The sheet stands apart, at
+/// the end: it is for sheets alone, and sheets are for it alone.
 std::span<const StockModelRow> stock_models();
 const StockModelRow& stock_model(StockKind kind);
 /// Which of them this is, whoever wraps it.
 const StockModelRow& row_of(const StockModel& stock);
+/// The sheet that this is, whoever wraps it; null: it is another model.
+const Sheet* as_sheet(const StockModel& stock);
 /// Of that name, or null.
 const StockModelRow* find_stock_model(std::string_view name);
-/// Whether the model that was asked for (none: any of them) can cut with it, or why not.
+/// Whether the model that was asked for (none: any but the sheet) can cut with it, or why not.
 Done can_be_cut(std::optional<StockKind> kind, const Cutter& cutter);
-/// "zmap, mmap, octree, auto"
+/// "zmap, mmap, octree, sheet, auto"
 std::string stock_model_names();
 
 /// Why a model that holds less does not do; empty: it does.
@@ -76,6 +80,8 @@ class TiltWatch {
 
 /// What the tools that are known before the program runs ask for.
 StockNeeds stock_needs(const ToolSources& tools);
+/// Why the model that was asked for is not for this blank; empty: it is, or none was asked for.
+std::string misfit(const StockSettings& settings, const Blank& blank);
 /// What only the octree holds of a blank; empty: nothing.
 std::string need_of_blank(const Blank& blank);
 

@@ -43,7 +43,7 @@ struct Form {
   std::array<std::string_view, 3> parameters;
 };
 
-constexpr std::array<Form, 10> kForms = {{
+constexpr std::array<Form, 11> kForms = {{
     {"flat", "flat:D", 1, 0, {"diameter D"}},
     {"ball", "ball:D", 1, 0, {"diameter D"}},
     {"bull", "bull:D:R", 2, 0, {"diameter D", "corner radius R"}},
@@ -57,11 +57,13 @@ constexpr std::array<Form, 10> kForms = {{
      3,
      0,
      {"diameter D", "side angle ANGLE", "shaft diameter SHAFT"}},
+    {"kerf", "kerf:W", 1, 0, {"kerf width W"}},
     {"profile", "profile:FILE", 1, 0, {"file name FILE"}},
 }};
 
-constexpr std::array<std::string_view, 10> kShapeNames = {
-    "flat", "ball", "bull", "vee", "taper", "drill", "lollipop", "tslot", "dovetail", "profile"};
+constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
+                                                          "taper",    "drill", "lollipop", "tslot",
+                                                          "dovetail", "kerf",  "profile"};
 constexpr std::array<std::string_view, 3> kOptionNames = {"flute", "shank", "holder"};
 
 constexpr std::string_view kHelp =
@@ -76,6 +78,7 @@ constexpr std::string_view kHelp =
     "tslot:D:T:SHAFT      disc of thickness T on a shaft\n"
     "dovetail:D:ANGLE:SHAFT  cone widest at its bottom, on a shaft: ANGLE of its side to the "
     "bottom\n"
+    "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
     "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]   (mm, degrees)\n";
 
@@ -553,7 +556,7 @@ Result<Cutter> parse_shape(std::string_view spec) {
   if (name.empty()) {
     return Error{
         "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
-        "lollipop, tslot, dovetail, profile)"};
+        "lollipop, tslot, dovetail, kerf, profile)"};
   }
   for (const Form& form : kForms) {
     if (form.name != name) continue;
@@ -565,7 +568,7 @@ Result<Cutter> parse_shape(std::string_view spec) {
   }
   return Error{
       fmt::format("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
-                  "lollipop, tslot, dovetail, profile",
+                  "lollipop, tslot, dovetail, kerf, profile",
                   shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 

@@ -21,6 +21,8 @@ namespace kerf {
 ///     tslot:D:T:SHAFT    disc of thickness T on a shaft: flat, with a neck
 ///     dovetail:D:ANGLE:SHAFT  cone that widens downward: D at its flat bottom, SHAFT at its top;
 ///                        ANGLE between its side and its bottom
+///     kerf:W             torch, laser or jet: the width of its kerf. To other models than that of
+///                        a sheet it is a flat end mill
 ///     profile:FILE       outline from a file (profile_file.h)
 /// Each may add, in any order, divided by colons:
 ///     flute=L            the cutting part ends L above the tip, at least as high as the shape

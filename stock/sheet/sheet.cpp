@@ -191,6 +191,13 @@ bool Sheet::has_material(const Vec2& point_mm) const {
   return sheet::holds_material(impl_->grid, sheet::to_units(point_mm));
 }
 
+std::optional<std::uint32_t> Sheet::piece_at(const Vec2& point_mm) const {
+  if (!(std::abs(point_mm.x) + std::abs(point_mm.y) < kMaxPunchCoordinate_mm)) return std::nullopt;
+  const std::uint32_t index = sheet::piece_under(impl_->grid, sheet::to_units(point_mm));
+  if (index == sheet::kNoPiece) return std::nullopt;
+  return impl_->labels.records()[index].number;
+}
+
 std::vector<SheetPiece> Sheet::pieces() const {
   const std::vector<sheet::PieceRecord>& records = impl_->labels.records();
   std::vector<std::int64_t> area2(records.size(), 0);

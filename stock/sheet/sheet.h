@@ -69,11 +69,15 @@ class Sheet final : public StockModel {
                                        double tolerance_mm) const override;
   /// Whether there is material at this place (its edge counts).
   bool has_material(const Vec2& point_mm) const;
+  /// The number of the piece that has material at this place; nothing where there is none.
+  /// O(corners of its tile).
+  std::optional<std::uint32_t> piece_at(const Vec2& point_mm) const;
 
   /// Everything that hangs together, by number: the main sheet, parts, slugs, offcuts, slivers.
   /// Their areas add up to remaining_mm3() / thickness. Kept while cutting; O(tiles and rings).
   std::vector<SheetPiece> pieces() const;
-  /// How many there have been so far; a change tells that something has come free.
+  /// How many there have been so far; a change tells that something has come free, with the numbers
+  /// from the former count to the new one.
   std::size_t piece_numbers() const;
   /// Rings round one piece, holes clockwise, across tiles. Empty for a number that is none.
   SheetOutline outline_of(std::uint32_t piece) const;

@@ -60,23 +60,36 @@ double meets_tile(const Tile& tile, const Rect& box, const Vec2& a, const Vec2& 
 
 }  // namespace
 
-bool holds_material(const SheetGrid& grid, const Point& p) {
+std::uint32_t piece_under(const SheetGrid& grid, const Point& p) {
   // A point on a border may be in material of either side.
   const Rect near{p.X - 1, p.Y - 1, p.X, p.Y};
   const SheetGrid::TileRange range = grid.tiles_meeting(near);
   for (int row = range.first_row; row <= range.last_row; ++row) {
     for (int column = range.first_column; column <= range.last_column; ++column) {
+      const Tile& tile = grid.tile(grid.index_of(column, row));
       int depth = 0;
-      for (const TileRingPointer& ring : grid.tile(grid.index_of(column, row)).rings) {
-        if (!ring->box.holds(p)) continue;
-        const Side side = locate(p, ring->points);
-        if (side == Side::kBorder) return true;
-        if (side == Side::kInside) depth += ring->is_outer() ? 1 : -1;
+      // Of rings within rings the innermost outer one is the smallest.
+      const TileRing* innermost = nullptr;
+      std::uint32_t piece = kNoPiece;
+      for (std::size_t i = 0; i < tile.rings.size(); ++i) {
+        const TileRing& ring = *tile.rings[i];
+        if (!ring.box.holds(p)) continue;
+        const Side side = locate(p, ring.points);
+        if (side == Side::kOutside) continue;
+        if (side == Side::kBorder) return tile.pieces[ring.is_outer() ? i : owners(tile)[i]];
+        depth += ring.is_outer() ? 1 : -1;
+        if (!ring.is_outer() || (innermost && innermost->area2 <= ring.area2)) continue;
+        innermost = &ring;
+        piece = tile.pieces[i];
       }
-      if (depth > 0) return true;
+      if (depth > 0) return piece;
     }
   }
-  return false;
+  return kNoPiece;
+}
+
+bool holds_material(const SheetGrid& grid, const Point& p) {
+  return piece_under(grid, p) != kNoPiece;
 }
 
 std::optional<double> first_meeting(const SheetGrid& grid, std::span<const Vec2> way_mm,

@@ -76,7 +76,7 @@ TEST(Blank, Described) {
 
 constexpr const char* kForms =
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
-    "state:FILE";
+    "state:FILE, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS";
 
 TEST(Blank, UnknownAndUnsupportedKinds) {
   EXPECT_EQ(error_of(""), std::string("no stock is given; forms: ") + kForms);
@@ -84,12 +84,48 @@ TEST(Blank, UnknownAndUnsupportedKinds) {
             std::string("bax:0: unknown stock 'bax'; did you mean 'box'? Forms: ") + kForms);
   EXPECT_EQ(error_of("stl:part.stl"),
             std::string("stl:part.stl: stl: is not supported by this version; forms: ") + kForms);
-  EXPECT_EQ(
-      error_of("sheet:0,0:1,1:2"),
-      std::string("sheet:0,0:1,1:2: sheet: is not supported by this version; forms: ") + kForms);
   EXPECT_EQ(error_of("box:0,0,0:1,1,1+state:x"),
             "state:x: state:FILE stands alone; it cannot be added to other bodies");
   EXPECT_EQ(error_of("state:"), "state:: the file name is missing; the form is state:FILE");
+}
+
+TEST(Blank, Sheet) {
+  const Result<Blank> blank = parse_blank(" Sheet: -10,0 : 90,50 :3");
+  ASSERT_TRUE(blank) << blank.error();
+  ASSERT_TRUE(blank->sheet);
+  EXPECT_EQ(blank->sheet->low_mm, Vec2(-10, 0));
+  EXPECT_EQ(blank->sheet->high_mm, Vec2(90, 50));
+  EXPECT_EQ(blank->sheet->thickness_mm, 3);
+  EXPECT_EQ(blank->bounds_mm(), (Box{{-10, 0, -3}, {90, 50, 0}})) << "its top is at Z0";
+  EXPECT_EQ(describe(*blank), "sheet 100 x 50 x 3 mm, X-10..90 Y0..50 Z-3..0");
+  const Result<Blank> drawn = parse_blank("sheet:a+b:c.DXF:1.5");
+  ASSERT_TRUE(drawn) << drawn.error();
+  EXPECT_EQ(drawn->sheet->file, "a+b:c.DXF");
+  EXPECT_TRUE(drawn->bounds_mm().empty());
+  EXPECT_EQ(describe(*drawn), "sheet 1.5 mm thick, outline from a+b:c.DXF, Z-1.5..0");
+  EXPECT_EQ(parse_blank("sheet:rest.svg:2")->sheet->file, "rest.svg");
+}
+
+TEST(Blank, SheetErrors) {
+  const std::string form =
+      "the form is sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS or "
+      "sheet:FILE.svg:THICKNESS";
+  EXPECT_EQ(error_of("sheet:"), "sheet:: " + form);
+  EXPECT_EQ(error_of("sheet:part.dxf"), "sheet:part.dxf: " + form);
+  EXPECT_EQ(error_of("sheet:0,0:1,1"), "sheet:0,0:1,1: " + form);
+  EXPECT_EQ(error_of("sheet:0,0,0:1,1:2"),
+            "sheet:0,0,0:1,1:2: first corner: '0,0,0' has 3 values; must be x,y");
+  EXPECT_EQ(error_of("sheet:0,0:1,0:2"),
+            "sheet:0,0:1,0:2: Y runs from 0 to 0; the second must be at least 0.001 mm above the "
+            "first");
+  EXPECT_EQ(error_of("sheet:0,0:1,1:0"),
+            "sheet:0,0:1,1:0: thickness: 0 is not allowed; must be from 0.001 to 1000 (mm)");
+  EXPECT_EQ(error_of("sheet:a.svg:thick"), "sheet:a.svg:thick: thickness: 'thick' is not a number");
+  EXPECT_EQ(error_of("sheet:0,0:1,1:2+box:0,0,0:1,1,1"),
+            "sheet:0,0:1,1:2+box:0,0,0:1,1,1: a sheet stands alone; it cannot be added to other "
+            "bodies");
+  EXPECT_EQ(error_of("box:0,0,0:1,1,1+sheet:0,0:1,1:2"),
+            "sheet:0,0:1,1:2: a sheet stands alone; it cannot be added to other bodies");
 }
 
 TEST(Blank, BoxErrors) {

@@ -142,16 +142,27 @@ TEST(Shape, NecksOfUndercuttingCutters) {
   EXPECT_EQ(parse_shape("tslot:20:3:8:flute=3:shank=12")->shank_diameter_mm(), 12);
 }
 
+TEST(Shape, KerfIsItsWidth) {
+  const Result<Cutter> kerf = parse_shape("KERF:1.50");
+  ASSERT_TRUE(kerf) << kerf.error();
+  EXPECT_EQ(kerf->spec(), "kerf:1.5");
+  EXPECT_EQ(kerf->radius_mm(), 0.75);
+  EXPECT_EQ(kerf->height_mm(0.7), 0);
+  EXPECT_EQ(error_of("kerf"), "kerf: kerf width W is missing; the form is kerf:W");
+  EXPECT_EQ(error_of("kerf:0"),
+            "kerf:0: kerf width W: 0 is not allowed; must be from 0.001 to 1000 (mm)");
+}
+
 TEST(Shape, UnknownNames) {
   EXPECT_EQ(error_of("flatt:3"),
             "flatt:3: unknown shape 'flatt'; did you mean 'flat'? Shapes: flat, ball, bull, vee, "
-            "taper, drill, lollipop, tslot, dovetail, profile");
+            "taper, drill, lollipop, tslot, dovetail, kerf, profile");
   EXPECT_EQ(error_of("endmill:3"),
             "endmill:3: unknown shape 'endmill'. Shapes: flat, ball, bull, vee, taper, drill, "
-            "lollipop, tslot, dovetail, profile");
+            "lollipop, tslot, dovetail, kerf, profile");
   EXPECT_EQ(error_of("  "),
             "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
-            "lollipop, tslot, dovetail, profile)");
+            "lollipop, tslot, dovetail, kerf, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
             "shank=D[xL], holder=DxL[+DxL..]");

@@ -54,7 +54,7 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   EXPECT_EQ(faults_of(a),
             "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; on or off\n"
-            "kerf: error: --model: 'voxels' is no model; allowed: zmap, mmap, octree, auto\n"
+            "kerf: error: --model: 'voxels' is no model; allowed: zmap, mmap, octree, sheet, auto\n"
             "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
             "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
             "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"

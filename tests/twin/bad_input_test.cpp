@@ -117,7 +117,7 @@ TEST_F(BadInput, CellLargerThanTheStockOrTooSmall) {
 TEST_F(BadInput, UnknownShapeAndToolZero) {
   expect(run({"part.canon", "--tool", "1=flet:6", "--tool", "0=flat:6"}), 2,
          "kerf: error: --tool: tool 1: flet:6: unknown shape 'flet'; did you mean 'flat'? Shapes: "
-         "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, "
+         "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, kerf, "
          "profile\n"
          "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n");
 }

@@ -20,6 +20,7 @@ class MotionList {
   MotionList& spindle(bool on) {
     state_.spindle = on ? SpindleState::kClockwise : SpindleState::kStopped;
     state_.spindle_rpm = on ? 10000 : 0;
+    state_.torch.spindles_on = on ? 1 : 0;
     return *this;
   }
   MotionList& at(Vec3 place) {

@@ -199,14 +199,23 @@ TEST_F(RunCommand, LongFileWithoutBlankIsReadTwiceAndALongStdinRefused) {
             "   hint: --stock SPEC gives the blank, and then any length will do\n");
 }
 
-TEST_F(RunCommand, SavedWorkpieceGoesOn) {
-  run(slot({"--state", "first.kerf", "--json", "first.json"}));
-  const KerfResult result = run(
-      {"slot.canon", "--tool", "1=flat:6", "--stock", "state:first.kerf", "--json", "again.json"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(json("again.json")["stock"]["digest"], json("first.json")["stock"]["digest"])
-      << "the slot is cut already";
-  EXPECT_EQ(json("again.json")["tools"][0]["removed_mm3"], 0.0);
+TEST_F(RunCommand, SavedWorkpieceGoesOnInItsModel) {
+  for (const std::string model : {"zmap", "mmap", "octree"}) {
+    run(slot({"--state", "first.kerf", "--json", "first.json", "--model", model}));
+    const KerfResult result = run({"slot.canon", "--tool", "1=flat:6", "--stock",
+                                   "state:first.kerf", "--json", "again.json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json first = json("first.json")["stock"], again = json("again.json")["stock"];
+    EXPECT_EQ(again["model"], model);
+    EXPECT_EQ(again["digest"], first["digest"]) << "the slot is cut already";
+    EXPECT_NEAR(json("again.json")["tools"][0]["removed_mm3"], 0.0, 1e-9) << model;
+  }
+  const KerfResult other =
+      run({"slot.canon", "--tool", "1=flat:6", "--stock", "state:first.kerf", "--model", "zmap"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_EQ(other.err,
+            "kerf: error: first.kerf: a workpiece saved as octree; the model zmap is asked for\n"
+            "   hint: --stock with the blank's shape, or --model octree\n");
 }
 
 TEST_F(RunCommand, ToolTableDescribesTools) {

@@ -50,6 +50,29 @@ TEST(StockChoice, WhatIsAskedForIsTaken) {
   EXPECT_EQ(choose_stock(settings, {}).kind, StockKind::kOctree);
 }
 
+TEST(StockChoice, SheetsAndTheirModelAreForEachOther) {
+  const Blank sheet = parse_blank("sheet:0,0:100,50:3").value();
+  const Blank box = parse_blank("box:0,0,-3:100,50,0").value();
+  StockSettings settings;
+  EXPECT_EQ(misfit(settings, sheet), "");
+  EXPECT_EQ(misfit(settings, box), "");
+  settings.kind = StockKind::kSheet;
+  EXPECT_EQ(misfit(settings, sheet), "");
+  EXPECT_EQ(misfit(settings, box),
+            "--model sheet: the blank is not a sheet (box 100 x 50 x 3 mm, X0..100 Y0..50 Z-3..0); "
+            "--stock sheet:x0,y0:x1,y1:THICKNESS is one");
+  settings.kind = StockKind::kZmap;
+  EXPECT_EQ(misfit(settings, sheet),
+            "--model zmap: the blank is a sheet (sheet 100 x 50 x 3 mm, X0..100 Y0..50 Z-3..0); "
+            "allowed for it: sheet, auto");
+  const Result<std::unique_ptr<StockModel>> made = stock_model(StockKind::kSheet).create(sheet, {});
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_EQ((*made)->name(), "sheet");
+  EXPECT_EQ((*made)->bounds_mm(), sheet.bounds_mm());
+  EXPECT_EQ(&row_of(**made), &stock_model(StockKind::kSheet));
+  EXPECT_NE(as_sheet(**made), nullptr);
+}
+
 TEST(StockChoice, BlanksThatOnlyTheOctreeHolds) {
   EXPECT_EQ(need_of_blank(parse_blank("box:0,0,-5:10,10,0").value()), "");
   EXPECT_EQ(need_of_blank(parse_blank("cylinder:0,0,-5:0:10").value()), "");

@@ -43,13 +43,14 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
   command
       .add_option("--stock", a.stock,
                   "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
-                  "state:FILE (a "
-                  "saved workpiece); several joined by +")
+                  "several of these joined by +; or state:FILE (a saved workpiece); or "
+                  "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
+                  "(metal to be cut by a torch, laser or jet; its top is at Z0)")
       ->type_name("SPEC");
   command
       .add_option("--model", a.model,
-                  "workpiece model: zmap | mmap | octree | auto (default auto: what tools and "
-                  "motions need)")
+                  "workpiece model: zmap | mmap | octree | sheet | auto (default auto: what blank, "
+                  "tools and motions need)")
       ->type_name("NAME");
   command.add_flag("--additive", a.additive,
                    "material is added along the path (printing, welding), within the blank's box");
@@ -71,6 +72,56 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
       ->type_name("N");
   command.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
       ->type_name("NAME");
+}
+
+void add_torch_options(CLI::App& command, TorchArguments& a) {
+  command
+      .add_option(
+          "--beam", a.beam,
+          "sheets: what turns the torch on: m3 | m62:N | m67:N | m7 | m8 | s | feed | "
+          "z<LEVEL, joined by +, inverted by !; or plasmac | laser (default m3; of QtPlasmaC "
+          "programs plasmac)")
+      ->type_name("TRIGGER");
+  command
+      .add_option("--kerf", a.kerf,
+                  "sheets: width of the kerf (default: --tool N=kerf:W, the material, the tool's "
+                  "diameter)")
+      ->type_name("MM");
+  command
+      .add_option("--pierce", a.pierce,
+                  "sheets: diameter of the hole where the torch pierces (default: the kerf)")
+      ->type_name("MM");
+  command
+      .add_option("--slats", a.slats,
+                  "sheets: distance of the table's slats; parts that are smaller are found")
+      ->type_name("MM");
+  command
+      .add_option("--density", a.density, "sheets: for the weight of parts (default 7850, steel)")
+      ->type_name("KG/M3");
+  command
+      .add_option("--qtplasmac", a.qtplasmac,
+                  "whether the program is read as QtPlasmaC does (default auto: if it or the INI "
+                  "says so)")
+      ->type_name("auto|on|off");
+  command
+      .add_option("--materials", a.materials,
+                  "QtPlasmaC's material file (default: MACHINE_material.cfg beside the INI)")
+      ->type_name("FILE");
+  command
+      .add_option("--hal", a.hal,
+                  "value of a HAL pin that the program reads by #<_hal[PIN]>, "
+                  "repeatable")
+      ->type_name("PIN=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_outline_options(CLI::App& command, OutputPaths& a) {
+  command
+      .add_option("--dxf", a.dxf,
+                  "what is left of a sheet, for --stock sheet:FILE.dxf:THICKNESS, and each part "
+                  "beside it: NAME-part-N.dxf")
+      ->type_name("FILE");
+  command.add_option("--svg", a.svg, "the same as SVG")->type_name("FILE");
 }
 
 void add_output_options(CLI::App& command, OutputPaths& a, std::string& mesh_tolerance) {
@@ -115,12 +166,14 @@ void add_run_options(CLI::App& run, RunArguments& a) {
   add_program_argument(run, a.source);
   add_program_options(run, a.source);
   add_work_options(run, a.work);
+  add_torch_options(run, a.torch);
   run.add_option("--from-line", a.from_line,
                  "cut what comes before line N without a word, report from there")
       ->type_name("N");
   run.add_option("--until-line", a.until_line, "stop before the first move beyond line N")
       ->type_name("N");
   add_output_options(run, a.outputs, a.mesh_tolerance);
+  add_outline_options(run, a.outputs);
   run.add_flag("--view", a.view, "then show it in a window, at its end");
   run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
 }
@@ -136,6 +189,7 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
       ->allow_extra_args(false);
   add_program_options(view, a.run.source);
   add_work_options(view, a.run.work);
+  add_torch_options(view, a.run.torch);
   view.add_option("--until-line", a.run.until_line, "nothing beyond line N")->type_name("N");
   view.add_option("--at-line", a.at_line, "begin at line N")->type_name("N");
   view.add_option("--speed", a.speed, "play at once: program seconds a second, 0.1 to 1000, or max")

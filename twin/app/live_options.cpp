@@ -133,6 +133,48 @@ void read_work_offset(LiveRequest& request, Diagnostics& diagnostics) {
   diagnostics.push_back(std::move(d));
 }
 
+/// What a running machine tells does not say when its torch is on.
+void refuse_sheet(const std::optional<Blank>& blank, const StockSettings& stock,
+                  const LiveArguments& a, OptionReader& reader) {
+  const char* const hint = "kerf run and kerf view cut sheets";
+  if (blank && blank->sheet) {
+    reader.fault(a.work.stock.empty() ? "stock.blank" : "--stock",
+                 "a sheet cannot be followed on a running machine by this version", hint);
+  } else if (stock.kind == StockKind::kSheet) {
+    reader.fault("--model", "a sheet cannot be followed on a running machine by this version",
+                 hint);
+  }
+}
+
+/// Joints that are not the axes under other names: what makes axes of them, or why nothing does.
+void choose_kinematics(LiveRequest& request, const PositionSource& source,
+                       Diagnostics& diagnostics) {
+  LiveCutOptions& cutting = request.options.cutting;
+  const std::shared_ptr<const MachineKinematics>& machine = cutting.timeline.kinematics;
+  if (!machine || cutting.frame.workpiece_frame ||
+      coordinates_of(request.config, source) != CoordinateKind::kJoints) {
+    return;
+  }
+  const KinematicsType& first = machine->type(0);
+  if (first.mode != KinematicsMode::kAxes) {
+    Diagnostic d;
+    d.file = request.ini;
+    d.message = fmt::format(
+        "positions of joints: {} makes X Y Z of them by how its axes have turned, and that cannot "
+        "be followed on a running machine by this version",
+        machine->module);
+    d.hint =
+        "positions by axes can be read (source.coordinates: axes), or the tip's in the workpiece "
+        "(source.frame: workpiece)";
+    diagnostics.push_back(std::move(d));
+    return;
+  }
+  const KinematicsType plain;
+  if (machine->belts || first.source != plain.source || first.sign != plain.sign) {
+    cutting.frame.kinematics = machine;
+  }
+}
+
 }  // namespace
 
 LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnostics& diagnostics) {
@@ -164,6 +206,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
       options.program.has_value() && program.program.machine.tool_lengths;
   options.tools = work.tools.empty() ? request.config.tools : std::move(work.tools);
   options.blank = work.blank ? std::move(work.blank) : request.config.stock.blank;
+  refuse_sheet(options.blank, work.stock, a, reader);
   options.stock = work.stock;
   if (a.work.model.empty()) options.stock.kind = request.config.stock.model;
   if (a.work.cell.empty() && request.config.stock.cell_mm) {
@@ -201,6 +244,7 @@ void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostic
     request.config.machine.joints = request.joint_letters;
   }
   cutting.frame = frame_for(request.config, source);
+  choose_kinematics(request, source, diagnostics);
   cutting.work_known = request.config.machine.work_offset.has_value();
   if (cutting.frame.workpiece_frame || cutting.work_known) return;
   if (!request.parameter_path.empty()) {

@@ -45,8 +45,9 @@ constexpr const char* kExamples =
     "  kerf tools\n";
 
 constexpr const char* kRunExample =
-    "Example:\n"
-    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n";
+    "Examples:\n"
+    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n"
+    "  kerf run plate.ngc --stock sheet:0,0:600,400:3 --kerf 1.2 --pierce 3 --dxf rest.dxf\n";
 
 constexpr const char* kViewExample =
     "Examples:\n"
@@ -92,8 +93,8 @@ std::string model_list() {
     list += fmt::format("{:<7} {}\n", row.name, row.purpose);
   }
   return list +
-         "auto    the first of these that holds what tools, blank and motions need; the report "
-         "says why\n";
+         "auto    sheet for a sheet, else the first of these that holds what tools, blank and "
+         "motions need; the report says why\n";
 }
 
 std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }

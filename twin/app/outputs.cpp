@@ -25,10 +25,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-std::array<NamedPath, 5> named(const OutputPaths& paths) {
-  return {NamedPath{"--json", &paths.json}, NamedPath{"--png", &paths.png},
-          NamedPath{"--stl", &paths.stl}, NamedPath{"--ply", &paths.ply},
-          NamedPath{"--state", &paths.state}};
+std::array<NamedPath, 7> named(const OutputPaths& paths) {
+  return {NamedPath{"--json", &paths.json},   NamedPath{"--png", &paths.png},
+          NamedPath{"--stl", &paths.stl},     NamedPath{"--ply", &paths.ply},
+          NamedPath{"--state", &paths.state}, NamedPath{"--dxf", &paths.dxf},
+          NamedPath{"--svg", &paths.svg}};
 }
 
 void fault(Diagnostics& diagnostics, std::string message) {
@@ -57,7 +58,8 @@ Done write_picture(const std::string& path, const TriangleMesh& mesh, const Stoc
                    const std::string& name, Diagnostics& diagnostics) {
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
-  options.caption = fmt::format("{}  {} {:.3g} mm", file_name(name), stock.name(), stock.cell_mm());
+  options.caption = fmt::format("{}  {}", file_name(name), stock.name());
+  if (!as_sheet(stock)) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
   Result<Picture> picture = draw_part(mesh, options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
@@ -126,6 +128,11 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
   }
   if (stock && !paths.state.empty()) note_failure(stock->save(paths.state), diagnostics);
+  if (const Sheet* const sheet = stock ? as_sheet(*stock) : nullptr; sheet && report.sheet) {
+    std::vector<std::string> errors;
+    write_outlines(*sheet, *report.sheet, paths.dxf, paths.svg, errors);
+    for (std::string& error : errors) fault(diagnostics, std::move(error));
+  }
   if (!stock && (wants_mesh || !paths.state.empty())) {
     fault(diagnostics,
           "stopped before there was a workpiece; no picture, mesh or state is written");

@@ -16,9 +16,11 @@ struct OutputPaths {
   std::string stl;
   std::string ply;
   std::string state;
+  std::string dxf;  ///< what is left of a sheet, and parts beside it (write_outlines)
+  std::string svg;
 
   bool uses_stdout() const {
-    for (const std::string* path : {&json, &png, &stl, &ply, &state}) {
+    for (const std::string* path : {&json, &png, &stl, &ply, &state, &dxf, &svg}) {
       if (*path == "-" || *path == "/dev/stdout") return true;
     }
     return false;

@@ -22,6 +22,17 @@ void read_lines(const RunArguments& a, OptionReader& reader, LineRange& lines) {
                fmt::format("{} lies beyond --until-line {}", lines.from, lines.until));
 }
 
+/// What can be known before anything is cut: that there will be no sheet to write.
+void read_outline_wishes(const RunRequest& request, OptionReader& reader) {
+  if (request.session.blank && request.session.blank->sheet) return;
+  for (const auto& [option, path] :
+       {std::pair("--dxf", &request.outputs.dxf), std::pair("--svg", &request.outputs.svg)}) {
+    if (path->empty()) continue;
+    reader.fault(option, "only a sheet has outlines to write",
+                 "--stock sheet:x0,y0:x1,y1:THICKNESS cuts from one");
+  }
+}
+
 }  // namespace
 
 RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
@@ -29,6 +40,7 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
   RunRequest request;
   SessionOptions& session = request.session;
   ProgramRequest source = understand_program(a.source, reader);
+  session.beam = understand_torch(a.torch, reader, source.program.torch);
   session.program = std::move(source.program);
   session.timeline = std::move(source.timeline);
   WorkRequest work = understand_work(a.work, reader);
@@ -41,6 +53,7 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
   request.mesh_tolerance_mm = reader.number("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
                                             request.mesh_tolerance_mm);
   request.outputs = a.outputs;
+  read_outline_wishes(request, reader);
   request.quiet = a.quiet;
   request.view = a.view;
   if (a.view && a.source.program == "-") {

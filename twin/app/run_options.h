@@ -6,6 +6,7 @@
 #include "base/diagnostic.h"
 #include "twin/app/outputs.h"
 #include "twin/app/program_options.h"
+#include "twin/app/torch_options.h"
 #include "twin/app/work_options.h"
 #include "twin/session.h"
 
@@ -15,6 +16,7 @@ namespace kerf {
 struct RunArguments {
   ProgramArguments source;
   WorkArguments work;
+  TorchArguments torch;
   std::string mesh_tolerance;
   std::string from_line;
   std::string until_line;

@@ -169,6 +169,10 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   read_pictures(a, reader, request);
   read_comparison(a, reader, request);
   read_road(a, reader, request);
+  const std::optional<Blank>& blank = request.run.session.blank;
+  if (request.frame.road != DrawRoad::kMesh && blank && blank->sheet) {
+    reader.fault("--draw", "a sheet is drawn by mesh alone");
+  }
   request.film.speed = request.speed.value_or(1);
   if (!std::isfinite(request.film.speed)) {
     reader.fault("--speed", "max has no frames a second; --frames wants a number");

@@ -90,8 +90,12 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
   stock.number("margin_mm", out.margin_mm);
   ConfigNode* const node = stock.find("blank");
   if (node == nullptr) return;
-  const std::string spec = resolved_spec(*node, "state:", stock.faults());
+  std::string spec = resolved_spec(*node, "state:", stock.faults());
   Result<Blank> blank = parse_blank(spec);
+  if (blank && blank->sheet && !blank->sheet->file.empty()) {
+    spec = resolved_spec(*node, "sheet:", stock.faults());
+    blank = parse_blank(spec);
+  }
   if (!blank) {
     stock.faults().at_value(*node, blank.error());
     return;

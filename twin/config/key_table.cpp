@@ -136,13 +136,15 @@ constexpr std::array kKeys{
             .purpose = "shape, as --tool has it: flat:6, ball:10:flute=22, profile:FILE, .."},
 
     KeySpec{.path = "stock", .purpose = "the workpiece"},
-    KeySpec{.path = "stock.blank",
-            .type = T::kText,
-            .unit = "mm",
-            .purpose = "blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, .."},
+    KeySpec{
+        .path = "stock.blank",
+        .type = T::kText,
+        .unit = "mm",
+        .purpose =
+            "blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, sheet:0,0:600,400:3, .."},
     KeySpec{.path = "stock.model",
             .type = T::kWord,
-            .words = "auto|zmap|mmap|octree",
+            .words = "auto|zmap|mmap|octree|sheet",
             .fallback = "auto",
             .purpose = "how the workpiece is modelled; auto: what tools and motions need"},
     KeySpec{.path = "stock.cell_mm",

@@ -92,11 +92,14 @@ LinkSpec read_link(const GroupReader& group) {
   read_vector(group, "origin", link.chain.origin_mm);
   if (ConfigNode* const mesh = group.find("mesh")) {
     const Result<Blank> shape = parse_blank(mesh->scalar);
-    if (shape && shape->state_file.empty()) {
+    if (shape && !shape->bodies.empty()) {
       link.bodies = shape->bodies;
       link.bodies_spec = mesh->scalar;
     } else {
-      group.faults().at_value(*mesh, shape ? "'state:' is no shape of a machine" : shape.error(),
+      group.faults().at_value(*mesh,
+                              shape ? shape->sheet ? "'sheet:' is no shape of a machine; a box is"
+                                                   : "'state:' is no shape of a machine"
+                                    : shape.error(),
                               "a file is named by stl: FILE");
     }
   }

@@ -12,18 +12,27 @@ namespace {
 constexpr std::size_t kMotionsAtOnce = 512;
 constexpr double kCellsAtOnce = 1e6;
 
+MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
+                     const ProgramTrack& track, const std::optional<BeamSettings>& beam) {
+  MotionMoves moves = MotionMoves::of(blank, options.kinematics, track.frame());
+  if (beam) moves.burn(TorchMoves(beam->trigger, beam->pierce_mm));
+  return moves;
+}
+
 }  // namespace
 
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
-                   const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope)
+                   const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope,
+                   const std::optional<BeamSettings>& beam)
     : track_(track),
-      moves_(MotionMoves::of(*blank, options.kinematics, track.frame())),
+      moves_(moves_of(*blank, options, track, beam)),
       record_(track.size()),
       stock_(std::move(blank), track, moves_, record_, store),
       book_(std::move(tools), row_of(stock_).can_cut),
       stage_(stock_, book_, log_, options),
       scope_(scope) {
   stage_.set_frame(track.frame());
+  if (beam) stage_.burn(*beam);
   if (scope_.from > 0) stage_.hold_reports();
 }
 

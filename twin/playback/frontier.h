@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
@@ -23,12 +24,13 @@ struct ReportScope {
 };
 
 /// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
-/// of the report. Everything before reached() can afterwards be cut again from the record and the
-/// keyframes. One thread.
+/// of the report (`beam`: of a sheet). Everything before reached() can afterwards be cut again from
+/// the record and the keyframes. One thread.
 class Frontier {
  public:
   Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
-           const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {});
+           const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {},
+           const std::optional<BeamSettings>& beam = {});
 
   /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
   void advance(std::size_t end);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "interp_bridge/parameter_file.h"
+#include "twin/kerf_book.h"
 #include "twin/playback/mounted_tools.h"
 #include "twin/playback/planned_steps.h"
 
@@ -38,26 +39,46 @@ ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>&
   return out;
 }
 
-/// The tools of a program, each once.
+std::optional<BeamSettings> beam_of(const SessionOptions& options, const ProgramFront& front) {
+  if (!front.is_sheet()) return std::nullopt;
+  return beam_settings(options.beam, front.program->is_qtplasmac());
+}
+
+/// The tools of a program, each once. Of a torch (`beam`) each kerf.
 class ToolList {
  public:
-  ToolList(const ToolSources& sources, ToolBook::CutterCheck can_cut)
-      : mounted_(sources, can_cut), table_(sources.table) {}
+  ToolList(const ToolSources& sources, ToolBook::CutterCheck can_cut,
+           const std::optional<BeamSettings>& beam)
+      : mounted_(sources, can_cut), book_(sources, can_cut), table_(sources.table) {
+    if (!beam) return;
+    torch_.emplace(beam->trigger, beam->pierce_mm);
+    kerfs_.emplace(book_, beam->kerf_mm, beam->is_qtplasmac);
+  }
 
-  void add(const Motion& m) {
-    const ResolvedTool* const tool = mounted_.at(m);
+  /// `materials`: all that the motions so far name.
+  void add(const Motion& m, std::span<const TorchMaterial> materials) {
+    const ResolvedTool* const tool = at(m, materials);
     if (!tool || tool == last_) return;
     last_ = tool;
+    const ProgramTool fresh = described(*tool, table_);
     const bool known = std::any_of(tools_.begin(), tools_.end(), [&](const ProgramTool& listed) {
-      return listed.number == tool->number;
+      return listed.number == fresh.number && (!torch_ || listed.shape == fresh.shape);
     });
-    if (!known) tools_.push_back(described(*tool, table_));
+    if (!known) tools_.push_back(fresh);
   }
 
   std::vector<ProgramTool> take() { return std::move(tools_); }
 
  private:
+  const ResolvedTool* at(const Motion& m, std::span<const TorchMaterial> materials) {
+    if (!torch_) return mounted_.at(m);
+    return torch_->burns(m) ? &kerfs_->of(m, materials) : nullptr;
+  }
+
   MountedTools mounted_;
+  ToolBook book_;
+  std::optional<TorchMoves> torch_;
+  std::optional<KerfBook> kerfs_;  ///< over book_
   std::vector<ToolTableRow> table_;
   std::vector<ProgramTool> tools_;
   const ResolvedTool* last_ = nullptr;
@@ -71,7 +92,7 @@ class Loading {
         program_(*front.program),
         window_(options.lines),
         timeline_(options.timeline, planned_),
-        tools_(front.tools, stock_model(front.choice.kind).can_cut),
+        tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front)),
         tilt_(options.timeline.kinematics) {
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
   }
@@ -103,7 +124,7 @@ class Loading {
     if (!window_.over()) {
       const LineWindow::Split split = window_.split(motions);
       for (const Motion& m : motions.first(split.before + split.within)) {
-        tools_.add(m);
+        tools_.add(m, program_.materials());
         timeline_.push(m);
       }
       before_window_ += split.before;
@@ -178,10 +199,15 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   player.track = loading.build(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
   player.blank = std::move(front->stock.stock);
-  loaded->cuts =
-      std::make_shared<const CutQuery>(player.track, front->tools, row_of(*player.blank).can_cut);
+  // A torch has no height by which a point could be said to be cut or not.
+  if (!front->is_sheet()) {
+    loaded->cuts =
+        std::make_shared<const CutQuery>(player.track, front->tools, row_of(*player.blank).can_cut);
+  }
   player.tools = std::move(front->tools);
   player.timeline = options.timeline;
+  player.beam = beam_of(options, *front);
+  if (player.beam) player.beam->materials = front->program->materials();
   player.remarks = remarks.kept();
   return loaded;
 }

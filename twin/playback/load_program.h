@@ -49,7 +49,8 @@ struct LoadedProgram {
   /// "-" for stdin.
   std::vector<std::string> files;
   std::vector<ProgramTool> tools;
-  std::shared_ptr<const CutQuery> cuts;  ///< which line and tool made a point of the surface
+  /// Which line and tool made a point of the surface; null for sheets.
+  std::shared_ptr<const CutQuery> cuts;
   /// As the machine's parameter file has them; empty: no INI, or it names none. What the program
   /// itself sets (G10) is not in them. Places of a track are those of the first offset that the
   /// program uses, ProgramTrack::frame(), also while another one is in force; which one that is at

@@ -9,11 +9,13 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
+#include "twin/beam_settings.h"
 #include "twin/finding.h"
 #include "twin/playback/program_track.h"
 #include "twin/timeline.h"
@@ -29,6 +31,8 @@ struct PlayerProgram {
   /// Limits for the checks (over-feed, axis limits). What is cut is the track;
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
+  /// Of a sheet, with all materials of the program; such a blank needs it.
+  std::optional<BeamSettings> beam;
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
   bool whole = true;  ///< false: it goes on behind the track's end, unread

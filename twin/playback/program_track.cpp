@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "twin/motion_geometry.h"
+#include "twin/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -87,10 +88,27 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
 
 void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
                                 std::vector<CutMove>& out) const {
-  if (moves.path() == nullptr) {
+  if (moves.torch() != nullptr) {
+    append_part(i, 1, moves, cutter, out);
+  } else if (moves.path() == nullptr) {
     out.push_back(cut_move(i));
   } else {
     moves.append(motion(i), cutter, i, out);
+  }
+}
+
+bool ProgramTrack::pierces(std::size_t i, const TorchMoves& torch) const {
+  return torch.pierces(i, [this](std::size_t n) { return motion(n); });
+}
+
+void ProgramTrack::append_part(std::size_t i, double fraction, const MotionMoves& moves,
+                               const Cutter& cutter, std::vector<CutMove>& out) const {
+  Motion m = motion(i);
+  if (fraction < 1) m = part_of(m, 0, fraction);
+  if (const TorchMoves* const torch = moves.torch()) {
+    if (torch->burns(m)) torch->append(m, pierces(i, *torch), cutter, i, out);
+  } else {
+    moves.append(m, cutter, i, out);
   }
 }
 

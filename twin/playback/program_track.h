@@ -43,9 +43,13 @@ class ProgramTrack {
   TimedStep step(std::size_t i) const;
   /// cut_move_from(motion(i), i), at a fifth of the cost.
   CutMove cut_move(std::size_t i) const;
-  /// MotionMoves::append() of motion(i), with i for an id.
+  /// What motion(i) is cut as, with i for an id: MotionMoves::append(), or the moves of a torch
+  /// (none where its beam is off).
   void append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
                     std::vector<CutMove>& out) const;
+  /// The same of its way up to `fraction`.
+  void append_part(std::size_t i, double fraction, const MotionMoves& moves, const Cutter& cutter,
+                   std::vector<CutMove>& out) const;
   MotionKind kind(std::size_t i) const { return mode_of(i).kind; }
   int tool(std::size_t i) const { return mode_of(i).tool; }
   SourceRef source(std::size_t i) const;
@@ -103,6 +107,7 @@ class ProgramTrack {
     return modes_[static_cast<std::size_t>(mode_.at(i))];
   }
   const Jump* jump_at(std::size_t i) const;
+  bool pierces(std::size_t i, const TorchMoves& torch) const;
   /// Index into lines_ of the first block that is not before (line, motion).
   std::size_t line_lower_bound(SourceRef line, std::size_t motion) const;
 

@@ -57,6 +57,7 @@ class RecordingStock final : public StockModel {
   }
   std::unique_ptr<StockModel> snapshot() const override { return stock_->snapshot(); }
   std::size_t unique_bytes() const override { return stock_->unique_bytes(); }
+  const StockModel& bare() const override { return stock_->bare(); }
   std::string name() const override { return stock_->name(); }
   Box bounds_mm() const override { return stock_->bounds_mm(); }
   double cell_mm() const override { return stock_->cell_mm(); }

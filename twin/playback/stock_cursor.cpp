@@ -2,7 +2,6 @@
 
 #include <cassert>
 
-#include "twin/motion_nearest.h"
 #include "twin/playback/recording_stock.h"
 
 namespace kerf {
@@ -77,7 +76,7 @@ std::unique_ptr<StockModel> StockCursor::picture(double fraction) const {
   if (fraction <= 0 || motion_ >= track_.size() || !record_.cuts(motion_)) return copy;
   const std::shared_ptr<const Cutter> cutter = record_.cutter(motion_);
   std::vector<CutMove> part;
-  motion_moves_.append(part_of(track_.motion(motion_), 0, fraction), *cutter, motion_, part);
+  track_.append_part(motion_, fraction, motion_moves_, *cutter, part);
   std::vector<CutReport> reports;
   copy->cut(*cutter, part, reports);
   copy->finish(reports);

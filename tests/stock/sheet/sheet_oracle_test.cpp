@@ -29,6 +29,44 @@ TEST(SheetOracle, points_are_material_where_no_move_came_near) {
   }
 }
 
+/// Whether p is in an odd number of rings.
+bool is_within(const SheetOutline& outline, const Vec2& p) {
+  bool inside = false;
+  for (const std::vector<Vec2>& ring : outline.rings) {
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+      const Vec2 &a = ring[i], &b = ring[j];
+      if ((a.y > p.y) == (b.y > p.y)) continue;
+      if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+TEST(SheetOracle, piece_at_is_the_piece_whose_outline_holds_the_point) {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> x(0, 60), y(0, 40);
+  std::size_t pieces = 0;
+  for (const int tiles : {1, 3, 8}) {
+    for (int round = 0; round < 4; ++round) {
+      const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), tiles);
+      test::cut(*sheet, 0.4, test::random_moves(random, 40));
+      std::vector<std::pair<std::uint32_t, SheetOutline>> outlines;
+      for (const SheetPiece& piece : sheet->pieces())
+        outlines.emplace_back(piece.number, sheet->outline_of(piece.number));
+      pieces += outlines.size();
+      for (int i = 0; i < 100; ++i) {
+        const Vec2 p(x(random), y(random));
+        std::optional<std::uint32_t> expected;
+        for (const auto& [number, outline] : outlines) {
+          if (is_within(outline, p)) expected = number;
+        }
+        ASSERT_EQ(sheet->piece_at(p), expected) << tiles << " at " << p.x << ' ' << p.y;
+      }
+    }
+  }
+  EXPECT_GT(pieces, 100U);
+}
+
 TEST(SheetOracle, contour_is_within_tolerance_of_the_exact_offset) {
   std::mt19937 random(21);
   for (int round = 0; round < 30; ++round) {

@@ -70,6 +70,17 @@ TEST(ConfigKeys, PathsOfSetsAreRelativeToTheCurrentFolder) {
   EXPECT_EQ(read.config->stock.blank->state_file, "dir/part.state");
 }
 
+TEST(ConfigKeys, DrawingsOfSheetsLieBesideTheFile) {
+  const ReadText drawn("stock:\n  blank: 'sheet: plate.dxf:3'\n");
+  ASSERT_TRUE(drawn.config) << drawn.said();
+  EXPECT_EQ(drawn.config->stock.blank->sheet->file, "dir/plate.dxf");
+  EXPECT_EQ(drawn.config->stock.blank->sheet->thickness_mm, 3);
+  const ReadText plain("stock:\n  blank: sheet:0,0:100,50:3\n  model: sheet\n");
+  ASSERT_TRUE(plain.config) << plain.said();
+  EXPECT_EQ(plain.config->stock.blank->sheet->high_mm, Vec2(100, 50));
+  EXPECT_EQ(plain.config->stock.model, StockKind::kSheet);
+}
+
 TEST(ConfigKeys, ProfilesLieBesideTheFile) {
   const ConfigFolder folder;
   folder.write("rounder.txt", "line 3 0\nline 3 10\n");

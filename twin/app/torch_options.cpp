@@ -1,0 +1,65 @@
+#include "twin/app/torch_options.h"
+
+#include <fmt/format.h>
+
+#include "stock/cutter/scan.h"
+#include "stock/sheet/sheet.h"
+
+namespace kerf {
+namespace {
+
+constexpr OptionRange kKerf{Sheet::kMinKerf_mm, 100, false, "mm"};
+constexpr OptionRange kPierce{Sheet::kMinKerf_mm, 100, false, "mm"};
+constexpr OptionRange kSlats{1, 10000, false, "mm"};
+constexpr OptionRange kDensity{1, 30000, false, "kg/m3"};
+constexpr double kFarthest = 1e12;
+
+void read_choice(const std::string& text, OptionReader& reader, TorchOptions& torch) {
+  if (text == "on") {
+    torch.qtplasmac = QtPlasmacChoice::kOn;
+  } else if (text == "off") {
+    torch.qtplasmac = QtPlasmacChoice::kOff;
+  } else if (!text.empty() && text != "auto") {
+    reader.fault("--qtplasmac", fmt::format("'{}' is not allowed; must be auto, on or off", text));
+  }
+}
+
+void read_pin(const std::string& text, OptionReader& reader, TorchOptions& torch) {
+  const std::size_t equals = text.find('=');
+  const std::string_view name = trim(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || name.empty()) {
+    reader.fault("--hal", fmt::format("'{}' is not PIN=VALUE", text));
+    return;
+  }
+  const Result<double> value = parse_within(name, trim(std::string_view(text).substr(equals + 1)),
+                                            -kFarthest, kFarthest, "");
+  if (value) {
+    torch.hal_values[to_lower(name)] = *value;
+  } else {
+    reader.fault("--hal", value.error());
+  }
+}
+
+}  // namespace
+
+BeamOptions understand_torch(const TorchArguments& a, OptionReader& reader, TorchOptions& torch) {
+  BeamOptions beam;
+  if (!a.beam.empty()) {
+    const Result<BeamTrigger> trigger = BeamTrigger::parse(a.beam);
+    if (trigger) {
+      beam.trigger = *trigger;
+    } else {
+      reader.fault("--beam", trigger.error());
+    }
+  }
+  beam.kerf_mm = reader.number("--kerf", a.kerf, kKerf, 0);
+  beam.pierce_mm = reader.number("--pierce", a.pierce, kPierce, 0);
+  beam.slats_mm = reader.number("--slats", a.slats, kSlats, 0);
+  beam.density_kg_per_m3 = reader.number("--density", a.density, kDensity, beam.density_kg_per_m3);
+  read_choice(a.qtplasmac, reader, torch);
+  torch.materials_path = a.materials;
+  for (const std::string& pin : a.hal) read_pin(pin, reader, torch);
+  return beam;
+}
+
+}  // namespace kerf

@@ -1,0 +1,174 @@
+#include "twin/torch_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Of a motion that is longer no more points than these are looked at.
+constexpr double kMostPoints = 1000;
+/// What is left of a kerf's rounding is no part: smaller pieces tip nowhere.
+constexpr double kLeastPart_mm = 1;
+
+bool moves_sideways(const Motion& m) {
+  return m.from_mm.x != m.to_mm.x || m.from_mm.y != m.to_mm.y ||
+         (m.kind == MotionKind::kArc && m.arc.sweep_rad != 0);
+}
+
+int points_of(const Motion& m) {
+  return static_cast<int>(
+      std::clamp(std::ceil(path_length_mm(m) / TorchChecks::kStep_mm), 1.0, kMostPoints));
+}
+
+/// QtPlasmaC's other tools, and a torch that the program holds off, are dark on purpose.
+bool is_dark_on_purpose(const Motion& m) {
+  return m.torch.overburn || !m.torch.torch_enabled() || torch_tool(m.torch) != TorchTool::kNone;
+}
+
+}  // namespace
+
+bool TorchChecks::is_low(const Vec3& place) const {
+  return cut_z_mm_ && place.z <= *cut_z_mm_ + kLow_mm;
+}
+
+const FreedPiece* TorchChecks::freed_at(const Vec3& place) const {
+  const std::optional<std::uint32_t> number = sheet_.piece_at(Vec2(place));
+  if (!number || *number < uncut_pieces_) return nullptr;
+  return &freed_[*number - uncut_pieces_];
+}
+
+Finding TorchChecks::finding(FindingId id, const Motion& m, const TimedStep& step,
+                             const Vec3& place) const {
+  Finding out;
+  out.id = id;
+  out.severity = Severity::kWarning;
+  out.source = m.source;
+  out.time_s = step.start_s;
+  out.position_mm = place;
+  out.tool = m.tool;
+  return out;
+}
+
+void TorchChecks::pierces(const Motion& m, const TimedStep& step) {
+  if (freed_.empty()) return;
+  const FreedPiece* const piece = freed_at(m.from_mm);
+  if (!piece) return;
+  crossed_.insert(piece->number);
+  Finding out = finding(FindingId::kPierceInPart, m, step, m.from_mm);
+  out.severity = Severity::kError;
+  out.text = fmt::format("pierces piece {}, which is free since line {} and may have moved",
+                         piece->number, piece->source.line);
+  log_.add(std::move(out));
+}
+
+/// Each piece is told once: whoever goes over it goes over it often.
+void TorchChecks::check_way(const Motion& m, const TimedStep& step, bool burning) {
+  const int points = points_of(m);
+  for (int i = 0; i <= points; ++i) {
+    const Vec3 place = point_at(m, static_cast<double>(i) / points);
+    if (!burning && !is_low(place)) continue;
+    const FreedPiece* const piece = freed_at(place);
+    if (!piece || !crossed_.insert(piece->number).second) continue;
+    Finding out = finding(FindingId::kCrossesPart, m, step, place);
+    out.text = fmt::format("{} piece {}, which is free since line {} and may have tipped",
+                           burning ? "cuts into" : "the head travels at cut height over",
+                           piece->number, piece->source.line);
+    log_.add(std::move(out));
+  }
+}
+
+void TorchChecks::burns(const Motion& m, const TimedStep& step) {
+  if (!freed_.empty()) check_way(m, step, true);
+  if (moves_sideways(m)) {
+    const double high = std::max(m.from_mm.z, m.to_mm.z);
+    cut_z_mm_ = std::max(cut_z_mm_.value_or(high), high);
+  }
+}
+
+void TorchChecks::travels(const Motion& m, const TimedStep& step) {
+  const bool feeds = is_feed(m);
+  if (!m.start_known || !cut_z_mm_ || !moves_sideways(m)) return;
+  if (!feeds && m.kind != MotionKind::kTraverse) return;
+  if (!freed_.empty() && !options_.is_qtplasmac) check_way(m, step, false);
+  if (!feeds || (options_.is_qtplasmac && is_dark_on_purpose(m))) return;
+  const int points = dark_.moves > 0 ? 1 : points_of(m);
+  for (int i = 0; i <= points; ++i) {
+    const Vec3 place = point_at(m, static_cast<double>(i) / points);
+    if (!is_low(place) || !sheet_.has_material(Vec2(place))) continue;
+    if (dark_.moves++ == 0) {
+      dark_.source = m.source;
+      dark_.time_s = step.start_s;
+      dark_.place_mm = place;
+      dark_.tool = m.tool;
+    }
+    return;
+  }
+}
+
+void TorchChecks::stays_on(SourceRef source, double time_s) {
+  Finding out;
+  out.id = FindingId::kTorchLeftOn;
+  out.severity = Severity::kWarning;
+  out.source = source;
+  out.time_s = time_s;
+  out.text = "the program ends with the beam on";
+  log_.add(std::move(out));
+}
+
+void TorchChecks::note_freed(const Motion& m, const TimedStep& step) {
+  const std::size_t numbers = sheet_.piece_numbers();
+  while (uncut_pieces_ + freed_.size() < numbers) {
+    const auto number = static_cast<std::uint32_t>(uncut_pieces_ + freed_.size());
+    freed_.push_back({number, m.source, step.start_s + step.duration_s});
+  }
+}
+
+void TorchChecks::forget_events() {
+  crossed_.clear();
+  dark_ = {};
+  report_from_ = freed_.size();
+}
+
+void TorchChecks::finish() {
+  if (dark_.moves > 0) {
+    Finding out;
+    out.id = FindingId::kBeamOff;
+    out.severity = Severity::kWarning;
+    out.source = dark_.source;
+    out.time_s = dark_.time_s;
+    out.position_mm = dark_.place_mm;
+    out.tool = dark_.tool;
+    out.text = fmt::format(
+        "{} over the sheet at cut height with the beam off, the first",
+        dark_.moves == 1 ? "a feed move runs" : fmt::format("{} feed moves run", dark_.moves));
+    log_.add(std::move(out));
+  }
+  if (options_.slats_mm > 0) report_small_parts();
+}
+
+void TorchChecks::report_small_parts() {
+  for (const SheetPiece& piece : sheet_.pieces()) {
+    if (piece.number < uncut_pieces_ + report_from_) continue;
+    const Vec2 size = piece.max_mm - piece.min_mm;
+    const double longest = std::max(size.x, size.y);
+    if (longest >= options_.slats_mm || longest < kLeastPart_mm) continue;
+    const FreedPiece& freed = freed_[piece.number - uncut_pieces_];
+    Finding out;
+    out.id = FindingId::kSmallPart;
+    out.severity = Severity::kWarning;
+    out.source = freed.source;
+    out.time_s = freed.time_s;
+    out.text = fmt::format(
+        "piece {} comes free, {:.1f} x {:.1f} mm: it may tilt or fall between slats that are {:g} "
+        "mm apart",
+        piece.number, size.x, size.y, options_.slats_mm);
+    log_.add(std::move(out));
+  }
+}
+
+}  // namespace kerf

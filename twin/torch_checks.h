@@ -1,0 +1,89 @@
+// twin/torch_checks.h - troubles of cutting sheets with a torch: pieces that have come free in the
+// way, moves without the beam, a beam that stays on.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/sheet/sheet.h"
+#include "twin/finding.h"
+#include "twin/timeline.h"
+
+namespace kerf {
+
+/// A piece that the program has cut free, and what did it.
+struct FreedPiece {
+  std::uint32_t number = 0;  ///< SheetPiece::number
+  SourceRef source;
+  double time_s = 0;
+};
+
+/// What the checks have to know of the machine.
+struct TorchCheckOptions {
+  /// Between cuts that machine's torch is up, whatever the program says; it has other tools as
+  /// well.
+  bool is_qtplasmac = false;
+  double slats_mm = 0;  ///< from one slat of the table to the next; 0: not known
+};
+
+/// Asked before a motion cuts. Paths are looked at in points kStep_mm apart: what is narrower than
+/// that, no head can hit. One thread.
+class TorchChecks {
+ public:
+  static constexpr double kStep_mm = 3;
+  /// Up to as much above the height of the cuts the head is too low to travel over a piece that has
+  /// tipped.
+  static constexpr double kLow_mm = 1;
+
+  TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options)
+      : sheet_(sheet), log_(log), options_(options), uncut_pieces_(sheet.piece_numbers()) {}
+
+  /// pierce-in-part.
+  void pierces(const Motion& motion, const TimedStep& step);
+  /// crosses-part, of a motion with the beam on.
+  void burns(const Motion& motion, const TimedStep& step);
+  /// crosses-part and beam-off, of one without it.
+  void travels(const Motion& motion, const TimedStep& step);
+  /// torch-left-on.
+  void stays_on(SourceRef source, double time_s);
+  /// What the motion has cut free.
+  void note_freed(const Motion& motion, const TimedStep& step);
+  /// beam-off is one finding for the program; small-part.
+  void finish();
+  /// What went on before is not reported on.
+  void forget_events();
+
+  const std::vector<FreedPiece>& freed() const { return freed_; }
+
+ private:
+  struct Dark {
+    std::uint64_t moves = 0;
+    SourceRef source;  ///< the first, and what is told of it
+    double time_s = 0;
+    Vec3 place_mm{0};
+    int tool = 0;
+  };
+
+  bool is_low(const Vec3& place_mm) const;
+  const FreedPiece* freed_at(const Vec3& place_mm) const;
+  void check_way(const Motion& motion, const TimedStep& step, bool burning);
+  Finding finding(FindingId id, const Motion& motion, const TimedStep& step,
+                  const Vec3& place_mm) const;
+  void report_small_parts();
+
+  const Sheet& sheet_;
+  FindingLog& log_;
+  TorchCheckOptions options_;
+  std::size_t uncut_pieces_;       ///< higher numbers have been cut free
+  std::vector<FreedPiece> freed_;  ///< by number
+  std::optional<double> cut_z_mm_;
+  std::unordered_set<std::uint32_t> crossed_;  ///< told once
+  std::size_t report_from_ = 0;                ///< index into freed_
+  Dark dark_;
+};
+
+}  // namespace kerf

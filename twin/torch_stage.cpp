@@ -1,0 +1,189 @@
+#include "twin/torch_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "twin/motion_geometry.h"
+#include "twin/planned_pieces.h"
+#include "twin/stock_choice.h"
+
+namespace kerf {
+namespace {
+
+bool goes_up_or_down(const Motion& m) {
+  return m.kind != MotionKind::kArc && m.from_mm.x == m.to_mm.x && m.from_mm.y == m.to_mm.y;
+}
+
+}  // namespace
+
+TorchStage::TorchStage(StockModel& stock, ToolBook& tools, FindingLog& log, BeamSettings settings)
+    : stock_(stock),
+      log_(log),
+      settings_(std::move(settings)),
+      moves_(settings_.trigger, settings_.pierce_mm),
+      kerfs_(tools, settings_.kerf_mm, settings_.is_qtplasmac),
+      checks_(*as_sheet(stock), log, {settings_.is_qtplasmac, settings_.slats_mm}) {}
+
+void TorchStage::set_materials(std::span<const TorchMaterial> materials) {
+  settings_.materials.assign(materials.begin(), materials.end());
+}
+
+/// The programmed motion, or what the machine makes of it.
+void TorchStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
+  for_each_piece(m, step, path,
+                 [this](const Motion& piece, const TimedStep& part) { take_piece(piece, part); });
+}
+
+void TorchStage::take_piece(const Motion& m, const TimedStep& step) {
+  has_fed_ = has_fed_ || is_feed(m);
+  if (!moves_.is_lit(m)) {
+    pierced_ = false;
+    checks_.travels(m, step);
+    return;
+  }
+  if (m.kind == MotionKind::kProgramEnd) checks_.stays_on(m.source, step.start_s);
+  totals_.beam_s += step.duration_s;
+  if (moves_.burns(m)) burn(m, step);
+}
+
+void TorchStage::burn(const Motion& m, const TimedStep& step) {
+  has_burnt_ = true;
+  const bool pierces = !std::exchange(pierced_, true);
+  const ResolvedTool& kerf = kerfs_.of(m, settings_.materials);
+  if (&kerf != kerf_ || uses_.empty()) {
+    kerf_ = &kerf;
+    use_ = static_cast<std::size_t>(&use_of(kerf, m) - uses_.data());
+  }
+  if (!goes_up_or_down(m)) {
+    totals_.cut_mm += step.length_mm;
+    uses_[use_].feed_mm += step.length_mm;
+  }
+  if (pierces) {
+    ++totals_.pierces;
+    if (settings_.is_qtplasmac && m.torch.material < settings_.materials.size()) {
+      totals_.beam_s += settings_.materials[m.torch.material].pierce_delay_s;
+    }
+  }
+  if (!kerf.cutter) {
+    report_no_kerf(kerf, m, step);
+    return;
+  }
+  if (pierces) checks_.pierces(m, step);
+  cut(m, step, pierces);
+}
+
+void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
+  divided_.clear();
+  moves_.append(m, pierces, *kerf_->cutter, 0, divided_);
+  if (divided_.empty()) return;
+  checks_.burns(m, step);
+  reports_.clear();
+  stock_.cut(*kerf_->cutter, divided_, reports_);
+  stock_.finish(reports_);
+  ToolUse& use = uses_[use_];
+  double removed_mm3 = 0;
+  for (const CutReport& report : reports_) {
+    removed_mm3 += report.removed_mm3;
+    use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
+  }
+  use.removed_mm3 += removed_mm3;
+  add_cutting(use, step.duration_s, removed_mm3);
+  has_removed_ = has_removed_ || removed_mm3 > 0;
+  if (!has_removed_) burnt_mm_.extend(bounds_of(m));
+  checks_.note_freed(m, step);
+}
+
+/// One row a tool and kerf: a change of material is a change of tool.
+ToolUse& TorchStage::use_of(const ResolvedTool& kerf, const Motion& m) {
+  const std::string shape = kerf.cutter ? kerf.cutter->spec() : std::string();
+  for (ToolUse& use : uses_) {
+    if (use.number == kerf.number && use.shape == shape) return use;
+  }
+  ToolUse& use = uses_.emplace_back();
+  use.number = kerf.number;
+  use.origin = kerf.cutter ? kerf.origin : std::string();
+  use.shape = shape;
+  announce(kerf, m);
+  return use;
+}
+
+void TorchStage::announce(const ResolvedTool& kerf, const Motion& m) {
+  if (!kerf.cutter || !kerf.assumed) return;
+  Finding finding;
+  finding.id = FindingId::kToolAssumed;
+  finding.severity = Severity::kNote;
+  finding.source = m.source;
+  finding.tool = kerf.number;
+  finding.text = fmt::format(
+      "the program cuts before any tool change; tool {} ({}, {}) is taken to be the torch",
+      kerf.number, kerf.cutter->spec(), kerf.origin);
+  log_.add(std::move(finding));
+}
+
+/// Once a tool.
+void TorchStage::report_no_kerf(const ResolvedTool& kerf, const Motion& m, const TimedStep& step) {
+  ToolUse& use = uses_[use_];
+  if (!use.origin.empty()) return;
+  use.origin = "nothing";
+  Finding finding;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.tool = m.tool;
+  if (kerf.trouble.empty()) {
+    finding.id = FindingId::kToolUndefined;
+    finding.text = fmt::format(
+        "the width of the kerf is not known; the moves of tool {} do not cut (--kerf MM, or --tool "
+        "N=kerf:MM)",
+        m.tool);
+  } else {
+    finding.id = FindingId::kKerfZero;
+    finding.text = fmt::format("tool {}: {}; its moves do not cut", m.tool, kerf.trouble);
+  }
+  log_.add(std::move(finding));
+}
+
+void TorchStage::begin_reporting() {
+  totals_ = {};
+  uses_.clear();
+  kerf_ = nullptr;
+  checks_.forget_events();
+}
+
+void TorchStage::finish(bool whole) {
+  if (whole) {
+    if (has_fed_ && !has_burnt_) report_no_beam();
+    if (!has_removed_ && !burnt_mm_.empty()) report_outside();
+  }
+  checks_.finish();
+  for (ToolUse& use : uses_) {
+    if (use.peak_mm3_per_s == 0) close_window(use);
+  }
+}
+
+void TorchStage::report_no_beam() {
+  Finding finding;
+  finding.id = FindingId::kNoBeam;
+  finding.severity = Severity::kWarning;
+  finding.text =
+      "the program never turns the beam on, nothing is cut; --beam TRIGGER says what turns it on";
+  log_.add(std::move(finding));
+}
+
+void TorchStage::report_outside() {
+  const auto extent = [](const Box& box) {
+    return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f}", box.min.x, box.max.x, box.min.y,
+                       box.max.y);
+  };
+  Finding finding;
+  finding.id = FindingId::kOutsideStock;
+  finding.severity = Severity::kWarning;
+  finding.text = fmt::format(
+      "the beam never meets the sheet: the cuts are at {}, the sheet at {}; is the sheet given in "
+      "the coordinates that the program writes?",
+      extent(burnt_mm_), extent(stock_.bounds_mm()));
+  log_.add(std::move(finding));
+}
+
+}  // namespace kerf
