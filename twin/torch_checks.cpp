@@ -78,7 +78,23 @@ void TorchChecks::check_way(const Motion& m, const TimedStep& step, bool burning
     out.text = fmt::format("{} piece {}, which is free since line {} and may have tipped",
                            burning ? "cuts into" : "the head travels at cut height over",
                            piece->number, piece->source.line);
+    if (burning) {
+      log_.add(std::move(out));
+    } else {
+      tell_travel(std::move(out));
+    }
+  }
+}
+
+void TorchChecks::tell_travel(Finding out) {
+  if (++travels_ < kTravelsTold) {
     log_.add(std::move(out));
+  } else if (travels_ == kTravelsTold) {
+    last_travel_text_ = out.text;
+    last_travel_ = log_.add(std::move(out));
+  } else {
+    log_.reword(last_travel_, fmt::format("{}; and later over {} more pieces", last_travel_text_,
+                                          travels_ - kTravelsTold));
   }
 }
 
@@ -130,6 +146,7 @@ void TorchChecks::note_freed(const Motion& m, const TimedStep& step) {
 
 void TorchChecks::forget_events() {
   crossed_.clear();
+  travels_ = 0;
   dark_ = {};
   report_from_ = freed_.size();
 }

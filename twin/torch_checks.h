@@ -38,6 +38,9 @@ class TorchChecks {
   /// Up to as much above the height of the cuts the head is too low to travel over a piece that has
   /// tipped.
   static constexpr double kLow_mm = 1;
+  /// Travels over so many pieces are told one by one, the others with the last of these: the head
+  /// of a program that never moves Z travels over every piece.
+  static constexpr std::uint64_t kTravelsTold = 10;
 
   TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options)
       : sheet_(sheet), log_(log), options_(options), uncut_pieces_(sheet.piece_numbers()) {}
@@ -73,6 +76,7 @@ class TorchChecks {
   void check_way(const Motion& motion, const TimedStep& step, bool burning);
   Finding finding(FindingId id, const Motion& motion, const TimedStep& step,
                   const Vec3& place_mm) const;
+  void tell_travel(Finding finding);
   void report_small_parts();
 
   const Sheet& sheet_;
@@ -82,7 +86,10 @@ class TorchChecks {
   std::vector<FreedPiece> freed_;  ///< by number
   std::optional<double> cut_z_mm_;
   std::unordered_set<std::uint32_t> crossed_;  ///< told once
-  std::size_t report_from_ = 0;                ///< index into freed_
+  std::uint64_t travels_ = 0;                  ///< over pieces, since reports began
+  FindingLog::Handle last_travel_ = 0;         ///< the last that is told, and its text
+  std::string last_travel_text_;
+  std::size_t report_from_ = 0;  ///< index into freed_
   Dark dark_;
 };
 

@@ -125,6 +125,18 @@ TEST(TorchStage, PiercingAPartThatIsFreeIsAnError) {
   EXPECT_EQ(shop.findings()[1].severity, Severity::kError);
 }
 
+TEST(TorchStage, TravelsOverManyPartsAreToldTogether) {
+  MotionList program = torch_program();
+  for (int i = 0; i < 14; ++i) square(program, {10.0 + 13 * i, 20}, 6);
+  program.traverse({5, 23, 1}).traverse({199, 23, 1});
+  const TorchShop shop(program.list());
+  ASSERT_EQ(shop.ids(), Ids(TorchChecks::kTravelsTold, "crosses-part"));
+  EXPECT_NE(shop.findings().back().text.find("may have tipped; and later over 4 more pieces"),
+            std::string::npos)
+      << shop.findings().back().text;
+  EXPECT_EQ(shop.findings().front().text.find("more pieces"), std::string::npos);
+}
+
 TEST(TorchStage, HighAboveAPartTheHeadIsSafe) {
   MotionList program = torch_program();
   square(program, {60, 20}, 40).traverse({57, 20, 20}).traverse({150, 50, 20});

@@ -1,34 +1,23 @@
 // Saved octrees: round trip, every way a file can be damaged.
 #include "stock/octree/octree_state.h"
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include "stock/state_bytes.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/stock/octree/dual_contour/mesh_checks.h"
 #include "tests/stock/octree/octree_samples.h"
 
 namespace kerf::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 class OctreeState : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "kerf-state-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-    path_ = folder_ / "part.state";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string bytes() const { return *read_state_bytes(path_.string()); }
+  std::string bytes() const { return *read_state_bytes(path_); }
   void write(std::string_view text) const { std::ofstream(path_, std::ios::binary) << text; }
   /// With the checksum that belongs to it in place of its last bytes.
   void write_checked(const std::string& text) const {
-    Result<StateWriter> file = StateWriter::create(path_.string());
+    Result<StateWriter> file = StateWriter::create(path_);
     ASSERT_TRUE(file);
     file->put(text.data(), text.size() - kStateHashBytes);
     ASSERT_TRUE(file->commit());
@@ -37,7 +26,8 @@ class OctreeState : public testing::Test {
     return octree::parse_tree(text, "part.state").error();
   }
 
-  fs::path folder_, path_;
+  TemporaryFolder folder_;
+  const std::string path_ = folder_ / "part.state";
 };
 
 std::vector<CutMove> tilted_moves(double from) {
@@ -57,8 +47,8 @@ TEST_F(OctreeState, ComesBackTheSameAndCanBeCutFurther) {
     const auto tree = make_octree(c.blank, 0.37, 1, c.additive);
     const Cutter cutter = make_cutter("bull:3:0.5");
     cut(*tree, cutter, tilted_moves(1));
-    ASSERT_TRUE(tree->save(path_.string()));
-    const auto loaded = Octree::load(path_.string(), 2);
+    ASSERT_TRUE(tree->save(path_));
+    const auto loaded = Octree::load(path_, 2);
     ASSERT_TRUE(loaded) << loaded.error();
     Octree& copy = **loaded;
     EXPECT_EQ(copy.digest(), tree->digest()) << c.blank;
@@ -76,7 +66,7 @@ TEST_F(OctreeState, ComesBackTheSameAndCanBeCutFurther) {
 TEST_F(OctreeState, CutAtAnyByteItIsRefused) {
   const auto tree = make_octree("box:0,0,-4:6,5,0", 1);
   cut(*tree, make_cutter("ball:3"), {line({1, 1, -1}, {5, 4, -2})});
-  ASSERT_TRUE(tree->save(path_.string()));
+  ASSERT_TRUE(tree->save(path_));
   const std::string whole = bytes();
   ASSERT_TRUE(octree::parse_tree(whole, "part.state"));
   for (std::size_t n = 0; n < whole.size(); ++n) {
@@ -92,7 +82,7 @@ TEST_F(OctreeState, CutAtAnyByteItIsRefused) {
 TEST_F(OctreeState, WhateverIsLoadedCanBeCutAndMeshed) {
   const auto tree = make_octree("box:0,0,-4:9,5,0", 1);
   cut(*tree, make_cutter("ball:3"), {line({1, 1, -1}, {5, 4, -2})});
-  ASSERT_TRUE(tree->save(path_.string()));
+  ASSERT_TRUE(tree->save(path_));
   const std::string whole = bytes();
   std::mt19937 engine(4);
   int taken = 0, refused = 0;
@@ -102,7 +92,7 @@ TEST_F(OctreeState, WhateverIsLoadedCanBeCutAndMeshed) {
     damaged[at] = static_cast<char>(engine());
     if (trial % 5 == 0) damaged.erase(at, engine() % 5);
     write_checked(damaged);
-    const auto loaded = Octree::load(path_.string());
+    const auto loaded = Octree::load(path_);
     if (!loaded) {
       ++refused;
       continue;
@@ -118,7 +108,7 @@ TEST_F(OctreeState, WhateverIsLoadedCanBeCutAndMeshed) {
 
 TEST_F(OctreeState, SaysWhatIsWrong) {
   const auto tree = make_octree("box:0,0,-4:6,5,0", 1);
-  ASSERT_TRUE(tree->save(path_.string()));
+  ASSERT_TRUE(tree->save(path_));
   const std::string whole = bytes();
   EXPECT_EQ(fault(""), "part.state: not a saved workpiece (it must begin with \"kerf-state/1\")");
   EXPECT_EQ(fault("kerf-state/1\nmodel zmap\n"),
@@ -130,10 +120,10 @@ TEST_F(OctreeState, SaysWhatIsWrong) {
   const std::size_t data = whole.find("data\n") + 5;
   std::string solid = whole.substr(0, data) + "\1" + whole.substr(whole.size() - kStateHashBytes);
   write_checked(solid);  // solid beyond the blank as well
-  EXPECT_EQ(Octree::load(path_.string()).error(), path_.string() + ": the tiles are damaged");
-  const std::string none = (folder_ / "none").string();
+  EXPECT_EQ(Octree::load(path_).error(), path_ + ": the tiles are damaged");
+  const std::string none = folder_ / "none";
   EXPECT_EQ(Octree::load(none).error(), none + ": No such file or directory");
-  EXPECT_FALSE(tree->save((folder_ / "no" / "part.state").string()));
+  EXPECT_FALSE(tree->save(folder_ / "no/part.state"));
 }
 
 }  // namespace

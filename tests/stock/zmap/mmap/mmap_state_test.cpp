@@ -4,28 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 
 #include "stock/zmap/state_file.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/stock/zmap/mmap/mmap_samples.h"
 
 namespace kerf::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 class MMapState : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "kerf-state-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-    path_ = (folder_ / "part.state").string();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string bytes() const { return *read_state_bytes(path_); }
   /// What the file's bytes but for the checksum say.
   Result<SavedColumns> checked(const std::string& text) const {
@@ -36,8 +25,8 @@ class MMapState : public testing::Test {
     return parse_columns(bytes(), "part.state");
   }
 
-  fs::path folder_;
-  std::string path_;
+  TemporaryFolder folder_;
+  const std::string path_ = folder_ / "part.state";
 };
 
 /// A slot under a slot, across it a third.
