@@ -11,6 +11,11 @@
 //     "feed_per_rev": true   "feed" is mm a revolution (G95, G33)
 //     "spindle": "cw" | "ccw", "rpm"  the spindle turns
 //     "coolant": ["flood", "mist"]    which of them run
+//     "spindles": 3          bit n: M3 $n is on; left out where it is none or the first alone
+//     "outputs": [3]         digital outputs that are on (M62, M64)
+//     "analog": [0,0,0,50]   analog outputs (M67, M68), if one is not 0
+//     "adaptive_feed", "overburn": true   M52; QtPlasmaC's overburn
+//     "material": 2          row of QtPlasmaC's materials, if it is not the first
 //     "path": "exact-stop" | "exact-path"      G61.1, G61; "blend_mm", "merge_mm": G64 P Q
 #pragma once
 
