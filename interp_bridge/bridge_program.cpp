@@ -148,6 +148,10 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
     out.insert(out.end(), {"--start", fmt::format("{}", fmt::join(machine.start, " "))});
   }
   if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
+  if (!machine.tool_change_position.empty()) {
+    out.insert(out.end(),
+               {"--tool-change", fmt::format("{}", fmt::join(machine.tool_change_position, " "))});
+  }
   if (!machine.startup_code.empty()) {
     out.insert(out.end(), {"--startup", machine.startup_code});
   }

@@ -40,6 +40,9 @@ struct InterpreterSetup {
   bool inch_machine = false;  ///< unit of parameter file and tool table
   int axis_mask = 0x1ff;      ///< bit 0 is X .. bit 8 is W
   bool random_toolchanger = false;
+  /// [EMCIO]TOOL_CHANGE_POSITION: X Y Z, X Y Z A B C or all nine, machine coordinates, mm and
+  /// degrees. Empty: tools are changed where the machine stands. kerf-interp only.
+  std::vector<double> tool_change_position;
   /// The lengths of the tool table count (G43). Without a known place of the machine they must not:
   /// a program that begins with G43 and G0 X Y would find its tool a tool's length below Z0.
   bool tool_lengths = false;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "interp_bridge/ini_file.h"
@@ -245,6 +246,27 @@ constexpr std::array<std::string_view, 50> kKnownKeys = {
     "TRAJ.ARC_BLEND_SMOOTHING_THRESHOLD",
     "RS274NGC.USER_DEFINED_FUNCTION_MAX_DIRS"};
 
+/// [EMCIO]TOOL_CHANGE_POSITION, in machine units; mm and degrees. LinuxCNC takes three, six or nine
+/// numbers with blanks between them, and nothing else.
+void read_tool_change_position(IniReader& reader, double unit_mm, std::vector<double>& position) {
+  const IniEntry* const entry = reader.file().find("EMCIO", "TOOL_CHANGE_POSITION");
+  if (entry == nullptr) return;
+  std::istringstream numbers(entry->value);
+  for (double number = 0; position.size() < 9 && numbers >> number;) {
+    const std::size_t axis = position.size();
+    const bool angle = axis >= 3 && axis < 6;
+    position.push_back(angle ? number : number * unit_mm);
+  }
+  if (position.size() == 3 || position.size() == 6 || position.size() == 9) return;
+  reader.fault(
+      *entry,
+      fmt::format("[EMCIO]TOOL_CHANGE_POSITION: '{}' is not three, six or nine numbers with "
+                  "blanks between them; tools are changed where the machine stands",
+                  entry->value),
+      {}, Severity::kWarning);
+  position.clear();
+}
+
 /// Keys that a dry run would need to know, and does not.
 void list_what_is_not_understood(IniReader& reader) {
   for (const IniEntry& entry : reader.file().entries()) {
@@ -253,7 +275,7 @@ void list_what_is_not_understood(IniReader& reader) {
     if (!matters || entry.asked || entry.shadowed) continue;
     const std::string name = entry.section + "." + entry.key;
     if (std::find(kKnownKeys.begin(), kKnownKeys.end(), name) != kKnownKeys.end()) continue;
-    const bool modelled_not = name == "EMCIO.TOOL_CHANGE_POSITION" || name == "EMCIO.DB_PROGRAM";
+    const bool modelled_not = name == "EMCIO.DB_PROGRAM";
     reader.fault(entry,
                  fmt::format("[{}]{} is {}", entry.section, entry.key,
                              modelled_not ? "not modelled" : "not understood; it is passed over"),
@@ -321,6 +343,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   interpreter.startup_code = reader.text("RS274NGC", "RS274NGC_STARTUP_CODE");
   interpreter.random_toolchanger = reader.number("EMCIO", "RANDOM_TOOLCHANGER").value_or(0) != 0;
   interpreter.tool_lengths = true;
+  read_tool_change_position(reader, unit_mm, interpreter.tool_change_position);
   if (const IniEntry* const kins = ini->find("KINS", "KINEMATICS"); kins != nullptr) {
     read_kinematics(reader, *kins, unit_mm, setup);
   }

@@ -316,6 +316,13 @@ void UNCLAMP_AXIS(CANON_AXIS) { record(CanonicalName::kUnclampAxis); }
 void SELECT_TOOL(int tool) { record(CanonicalName::kSelectTool, {static_cast<double>(tool)}); }
 void START_CHANGE() { record(CanonicalName::kStartChange); }
 void CHANGE_TOOL(int row) {
+  // LinuxCNC's task moves the machine by itself: all axes at once, whatever is in the way.
+  if (world().tool_change_axes > 0) {
+    const Pose p = world().tool_change_position();
+    record(CanonicalName::kStraightTraverse,
+           {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
+    world().move_to(p);
+  }
   const int tool = world().load(row);
   record(CanonicalName::kChangeTool, {static_cast<double>(row), static_cast<double>(tool)});
 }

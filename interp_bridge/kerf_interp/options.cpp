@@ -25,6 +25,8 @@ constexpr const char* kUsage =
     "  --parameters FILE       variable file; it is rewritten\n"
     "  --block-delete on|off   lines that begin with / are skipped (on)\n"
     "  --random-toolchanger    M6 swaps tools\n"
+    "  --tool-change \"X Y Z [A B C [U V W]]\"\n"
+    "                          where the machine goes before M6, mm and degrees (it stays)\n"
     "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
     "  --startup BLOCK         run first\n"
     "  --torch FILE            QtPlasmaC's materials and the values of pins (README.md)\n";
@@ -95,6 +97,16 @@ bool read_start(const std::string& text, World& world) {
   return true;
 }
 
+bool read_tool_change(const std::string& text, World& world) {
+  std::istringstream numbers(text);
+  world.tool_change_axes = 0;
+  for (double number = 0; world.tool_change_axes < 9 && numbers >> number;) {
+    world.tool_change_place[world.tool_change_axes++] = number;
+  }
+  if (numbers.eof() && world.tool_change_axes > 0 && world.tool_change_axes % 3 == 0) return true;
+  return fault("--tool-change: '" + text + "' is not three, six or nine numbers");
+}
+
 bool read_number(const char* text, long least, long most, const char* option, long& value) {
   char* end = nullptr;
   value = std::strtol(text, &end, 10);
@@ -114,6 +126,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     kParameters,
     kBlockDelete,
     kRandom,
+    kToolChange,
     kStart,
     kStartup,
     kTorch
@@ -125,6 +138,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"parameters", required_argument, nullptr, kParameters},
                                     {"block-delete", required_argument, nullptr, kBlockDelete},
                                     {"random-toolchanger", no_argument, nullptr, kRandom},
+                                    {"tool-change", required_argument, nullptr, kToolChange},
                                     {"start", required_argument, nullptr, kStart},
                                     {"startup", required_argument, nullptr, kStartup},
                                     {"torch", required_argument, nullptr, kTorch},
@@ -164,6 +178,9 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kRandom:
         world.random_toolchanger = true;
+        break;
+      case kToolChange:
+        if (!read_tool_change(value, world)) return false;
         break;
       case kStart:
         if (!read_start(value, world)) return false;

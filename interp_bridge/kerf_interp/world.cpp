@@ -83,6 +83,12 @@ Pose World::program_from_machine(const Pose& m) const {
   return p;
 }
 
+Pose World::tool_change_position() const {
+  Pose machine = machine_;
+  std::copy_n(tool_change_place.begin(), tool_change_axes, machine.begin());
+  return program_from_machine(machine);
+}
+
 void World::move_to(const Pose& program) { machine_ = machine_from_program(program); }
 
 void World::probe_to(const Pose& program, bool found) {

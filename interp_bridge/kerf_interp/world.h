@@ -28,6 +28,10 @@ class World {
   int axis_mask = 0x1ff;
   bool block_delete = true;
   bool random_toolchanger = false;
+  /// [EMCIO]TOOL_CHANGE_POSITION, machine coordinates: the first so many axes go there before every
+  /// change. 0: it is changed where the machine stands.
+  std::size_t tool_change_axes = 0;
+  Pose tool_change_place{};
   std::string parameter_file;
   /// Pins that `#<_hal[..]>` reads, in machine units.
   std::map<std::string, double> hal_values;
@@ -80,6 +84,8 @@ class World {
   void stand_at(const Pose& machine) { machine_ = machine; }
   void move_to(const Pose& program);  ///< program coordinates and units
   double position(std::size_t axis) const { return program_from_machine(machine_)[axis]; }
+  /// Where tools are changed when the next is, program coordinates and units.
+  Pose tool_change_position() const;
   /// A probing move goes to its end, and finds it there if the program insists on it (G38.2, G38.4;
   /// they would be errors otherwise) or finds nothing if it may (G38.3, G38.5).
   void probe_to(const Pose& program, bool found);

@@ -500,6 +500,44 @@ TEST_F(BridgeProgram, RandomToolChangerSwapsPockets) {
   EXPECT_EQ(moves, expected);
 }
 
+TEST_F(BridgeProgram, ToolsAreChangedWhereTheMachineChangesThem) {
+  options_.machine.tool_change_position = {3, 4, -2};
+  options_.machine.tool_lengths = true;
+  options_.machine.start = {0, 0, 100};
+  options_.machine.start_known = true;
+  options_.machine.parameter_path =
+      folder_.write("mill.var", "5161\t0\n5220\t1\n5221\t12.5\n5222\t-7.25\n5223\t-60\n");
+  options_.tool_table_path = folder_.write("tool.tbl", "T1 P1 D6 Z40\nT2 P2 D5 Z55.25\n");
+  const ProgramRun run = this->run(
+      "G21 G90 G54 G17 G64\nG92 X1\nG0 X10 Y10 Z5\nT1 M6 G43\nM3 S1000\nG1 X20 F600\nG0 Z20\n"
+      "T2 M6\nG43\nG91 G0 X1\nG90 X30\nM5\nM2\n");
+  EXPECT_EQ(run.messages(), "");
+  // Where a real LinuxCNC 2.9 with the same INI, offsets and tools stood after each of its moves.
+  const std::vector<std::pair<Vec3, double>> machine_mm = {
+      {{9, 2.75, -55}, 0}, {{3, 4, -2}, 0},     {{19, 4, -2}, 40},   {{19, 4, 0}, 40},
+      {{3, 4, -2}, 40},    {{4, 4, -2}, 55.25}, {{29, 4, -2}, 55.25}};
+  std::vector<Motion> moves;
+  for (const Motion& m : run.motions) {
+    if (m.kind == MotionKind::kTraverse || m.kind == MotionKind::kFeed) moves.push_back(m);
+  }
+  ASSERT_EQ(moves.size(), machine_mm.size());
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const auto& [place, tool_length] = machine_mm[i];
+    const Vec3 tip_mm = place - Vec3(-1, -7.25, -60 + tool_length);
+    EXPECT_LT(glm::distance(moves[i].to_mm, tip_mm), 1e-9) << i;
+    EXPECT_TRUE(moves[i].start_known) << i;
+  }
+  EXPECT_EQ(moves[1].source.line, 4U);
+  EXPECT_EQ(moves[1].kind, MotionKind::kTraverse);
+
+  // A and those behind it go along if they are said.
+  options_.machine.tool_change_position = {3, 4, -2, 90, 0, 0};
+  const ProgramRun turned = this->run("G21 G90\nG0 X0 A10\nT1 M6\nG0 X1\nM2\n");
+  EXPECT_EQ(turned.messages(), "");
+  ASSERT_GE(turned.motions.size(), 2U);
+  EXPECT_EQ(turned.motions[1].to_abc_deg[0], 90);
+}
+
 TEST_F(BridgeProgram, ErrorOfASubroutineThatRunsNotOfItsText) {
   // Such an error unwinds the calls before it is told.
   const std::string sub = folder_.write("dry.ngc", "o<dry> sub\nG0 X2\nG1 X3\no<dry> endsub\nM2\n");

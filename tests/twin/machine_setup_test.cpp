@@ -150,7 +150,7 @@ TEST_F(MachineSetupTest, WhatIsNotUnderstoodIsListed) {
   write("mill.var", "5161\t0\n");
   ASSERT_TRUE(
       read("[TRAJ]\nMAX_LINEAR_VELOCTY = 5\nSPINDLES = 1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n"
-           "REMAP = M400\n[EMCIO]\nTOOL_CHANGE_POSITION = 0 0 0\n[HAL]\nANYTHING = 1\n"));
+           "REMAP = M400\n[EMCIO]\nDB_PROGRAM = ./tools\n[HAL]\nANYTHING = 1\n"));
   std::string out;
   for (const Diagnostic& d : diagnostics_) {
     EXPECT_EQ(d.severity, Severity::kNote);
@@ -158,7 +158,25 @@ TEST_F(MachineSetupTest, WhatIsNotUnderstoodIsListed) {
   }
   EXPECT_EQ(out,
             "2: [TRAJ]MAX_LINEAR_VELOCTY is not understood; it is passed over\n"
-            "8: [EMCIO]TOOL_CHANGE_POSITION is not modelled\n");
+            "8: [EMCIO]DB_PROGRAM is not modelled\n");
+}
+
+TEST_F(MachineSetupTest, ToolChangePosition) {
+  write("mill.var", "5161\t0\n");
+  const std::string parameters = "[RS274NGC]\nPARAMETER_FILE = mill.var\n";
+  ASSERT_TRUE(read(parameters + "[EMCIO]\nTOOL_CHANGE_POSITION = 1 2.5 -3\n"));
+  EXPECT_EQ(setup_.interpreter.tool_change_position, (std::vector<double>{1, 2.5, -3}));
+  EXPECT_EQ(messages(), "");
+  ASSERT_TRUE(read("[TRAJ]\nLINEAR_UNITS = inch\n" + parameters +
+                   "[EMCIO]\nTOOL_CHANGE_POSITION = 1 0 0 90 0 0 0 0 2\n"));
+  EXPECT_EQ(setup_.interpreter.tool_change_position,
+            (std::vector<double>{25.4, 0, 0, 90, 0, 0, 0, 0, 50.8}));
+  for (const char* const wrong : {"1 2", "1, 2, 3", "1 2 3 4", "up"}) {
+    ASSERT_TRUE(read(parameters + "[EMCIO]\nTOOL_CHANGE_POSITION = " + wrong + "\n"));
+    EXPECT_TRUE(setup_.interpreter.tool_change_position.empty()) << wrong;
+    EXPECT_NE(messages().find("is not three, six or nine numbers"), std::string::npos)
+        << messages();
+  }
 }
 
 TEST_F(MachineSetupTest, JointsOfAGantryAndUnknownKinematics) {
