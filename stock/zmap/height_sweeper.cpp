@@ -50,8 +50,7 @@ GridView HeightSweeper::view_without_tiles() const {
 
 /// A sweep over a tile of others goes to a tile that is empty: it lowers nothing and counts
 /// nothing.
-GridView HeightSweeper::view(OtherTiles* others) {
-  others_ = others != nullptr && others->any() ? others : nullptr;
+GridView HeightSweeper::view() {
   dumps_.clear();
   if (others_ != nullptr) {
     dumps_.resize(static_cast<std::size_t>(pool->threads()));
@@ -101,13 +100,15 @@ void HeightSweeper::share_out(std::size_t report_count, const GridView& view, co
 void HeightSweeper::run(OtherTiles* others, std::size_t report_count) {
   if (ops_.empty()) return;
   grid.begin_change();
-  sweep_own_tiles(others, report_count);
-  if (others_ != nullptr) others_->cut({ops_, tools_, cut_ids_.data()}, totals_);
+  const SweepBatch batch{ops_, tools_, cut_ids_.data()};
+  others_ = others != nullptr && others->take(batch) ? others : nullptr;
+  sweep_own_tiles(report_count);
+  if (others_ != nullptr) others_->cut(batch, totals_);
   ops_.clear();
 }
 
-void HeightSweeper::sweep_own_tiles(OtherTiles* others, std::size_t report_count) {
-  const GridView whole = view(others);
+void HeightSweeper::sweep_own_tiles(std::size_t report_count) {
+  const GridView whole = view();
   if (grid.keeps_cut_ids() && tools_.size() > 1) {
     // Move by move, or of two that cut equally deep with different parts of the cutter, the
     // earlier would be found by how they are divided into calls.

@@ -37,9 +37,12 @@ struct SweepBatch {
 class OtherTiles {
  public:
   virtual ~OtherTiles() = default;
-  virtual bool any() const = 0;
+  /// Chooses the tiles for a batch. False: there are none.
+  virtual bool take(const SweepBatch& batch) = 0;
+  /// The tile is one of those.
   virtual bool holds(std::size_t tile) const = 0;
-  /// Lowers them, after the others have been. Adds what was removed to totals[report].
+  /// Lowers them, after the others have been. Adds what was removed to totals[report]. `batch`:
+  /// that of take().
   virtual void cut(const SweepBatch& batch, std::span<SweepTotals> totals) = 0;
 };
 
@@ -76,8 +79,8 @@ class HeightSweeper {
   void cut_some(std::span<const CutMove> moves, OtherTiles* others,
                 std::vector<CutReport>& reports);
   void run(OtherTiles* others, std::size_t report_count);
-  void sweep_own_tiles(OtherTiles* others, std::size_t report_count);
-  GridView view(OtherTiles* others);
+  void sweep_own_tiles(std::size_t report_count);
+  GridView view();
   template <class Work>
   void share_out(std::size_t report_count, const GridView& view, const Work& work);
 

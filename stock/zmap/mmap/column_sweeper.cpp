@@ -22,7 +22,31 @@ struct Bounds {
     min_y = std::min(min_y, op.min_y - radius - kSlack_mm);
     max_y = std::max(max_y, op.max_y + radius + kSlack_mm);
   }
+  /// In X and Y.
+  bool meets(const Box& box) const {
+    return max_x >= box.min.x && min_x <= box.max.x && max_y >= box.min.y && min_y <= box.max.y;
+  }
 };
+
+/// Of the tip on its way.
+double lowest_mm(const SweepOp& op) {
+  switch (op.kind) {
+    case SweepOp::Kind::kStrip:
+      return std::min(op.z, op.z + op.slope * op.length);
+    case SweepOp::Kind::kHelix:
+      return op.z - op.slope * op.length;
+    case SweepOp::Kind::kCap:
+    case SweepOp::Kind::kArc:
+      break;
+  }
+  return op.z;
+}
+
+double radius_of(const SweepBatch& batch) {
+  double radius = 0;
+  for (const ConvexTool& tool : batch.tools) radius = std::max(radius, tool.radius);
+  return radius;
+}
 
 class ScratchTiles;
 
@@ -226,28 +250,46 @@ void ColumnSweeper::share_out(std::span<SweepTotals> totals, const Work& work) {
   }
 }
 
-void ColumnSweeper::cut(const SweepBatch& batch, std::span<SweepTotals> totals) {
-  // A tile may lose its last gap on the way; it is cut here to the end of the batch all the same.
-  std::vector<char> wanted(heights_.grid.tile_count());
-  Box wanted_mm;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (!holds(i)) continue;
-    wanted[i] = 1;
-    wanted_mm.extend(heights_.grid.tile_box(i));
+bool ColumnSweeper::take(const SweepBatch& batch) {
+  taken_.clear();
+  if (!gaps_.any()) return false;
+  const double radius = radius_of(batch);
+  Bounds all;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SweepOp& op : batch.ops) {
+    all.extend(op, radius);
+    lowest = std::min(lowest, lowest_mm(op));
   }
-  double radius = 0;
-  for (const ConvexTool& tool : batch.tools) radius = std::max(radius, tool.radius);
+  taken_.assign(heights_.grid.tile_count(), 0);
+  taken_mm_ = {};
+  for (std::size_t i = 0; i < taken_.size(); ++i) {
+    const GapTile* const tile = gaps_.tile(i);
+    if (tile == nullptr) continue;
+    const double top = static_cast<double>(tile->below_mm()) + kSlack_mm;
+    const Box box = heights_.grid.tile_box(i);
+    if (lowest > top || !all.meets(box)) continue;
+    taken_[i] = std::any_of(batch.ops.begin(), batch.ops.end(), [&](const SweepOp& op) {
+      Bounds bounds;
+      bounds.extend(op, radius);
+      return lowest_mm(op) <= top && bounds.meets(box);
+    });
+    if (taken_[i] != 0) taken_mm_.extend(box);
+  }
+  return !taken_mm_.empty();
+}
+
+void ColumnSweeper::cut(const SweepBatch& batch, std::span<SweepTotals> totals) {
+  const double radius = radius_of(batch);
+  // A tile may lose its last gap on the way; it is cut here to the end of the batch all the same.
   share_out(totals, [&](int thread, int threads, std::span<SweepTotals> sums) {
-    ScratchTiles scratch(heights_, &wanted);
+    ScratchTiles scratch(heights_, &taken_);
     Merger merger(heights_, gaps_, scratch);
     for (std::size_t first = 0, last; first < batch.ops.size(); first = last) {
       const std::uint32_t report = batch.ops[first].report;
       Bounds bounds;
       for (last = first; last < batch.ops.size() && batch.ops[last].report == report; ++last)
         bounds.extend(batch.ops[last], radius);
-      if (bounds.max_x < wanted_mm.min.x || bounds.min_x > wanted_mm.max.x ||
-          bounds.max_y < wanted_mm.min.y || bounds.min_y > wanted_mm.max.y)
-        continue;
+      if (!bounds.meets(taken_mm_)) continue;
       scratch.sweep(scratch.ray, batch.tools, batch.ops.subspan(first, last - first), thread,
                     threads);
       const std::uint32_t id =

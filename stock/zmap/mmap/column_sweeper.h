@@ -17,9 +17,10 @@ class ColumnSweeper final : public OtherTiles {
  public:
   ColumnSweeper(HeightSweeper& heights, GapGrid& gaps) : heights_(heights), gaps_(gaps) {}
 
-  bool any() const override { return gaps_.any(); }
-  bool holds(std::size_t tile) const override { return gaps_.tile(tile) != nullptr; }
-  /// Cutters without undercut, in tiles with gaps.
+  /// Cutters without undercut: the tiles that have gaps at heights that the batch may reach. Above
+  /// all gaps of a tile its heights are lowered as those of a Z-map, to the same bits.
+  bool take(const SweepBatch& batch) override;
+  bool holds(std::size_t tile) const override { return taken_[tile] != 0; }
   void cut(const SweepBatch& batch, std::span<SweepTotals> totals) override;
   /// A cutter with a head, everywhere. totals[i] receives what moves[i] removes.
   void cut_headed(const HeadedTool& tool, std::span<const CutMove> moves,
@@ -31,6 +32,8 @@ class ColumnSweeper final : public OtherTiles {
 
   HeightSweeper& heights_;
   GapGrid& gaps_;
+  std::vector<char> taken_;  ///< by tile
+  Box taken_mm_;
 };
 
 }  // namespace kerf

@@ -27,6 +27,7 @@ void GapTile::write(std::size_t cell, std::span<const Gap> gaps) {
       ++count_;
     }
     nodes_[index(node)].gap = gap;
+    below_mm_ = std::max(below_mm_, gap.high);
     last = node;
   }
   std::int32_t rest = link();

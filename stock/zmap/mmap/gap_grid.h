@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -31,6 +32,8 @@ class GapTile {
   bool empty() const { return count_ == 0; }
   std::size_t gap_count() const { return count_; }
   bool has(std::size_t cell) const { return first_[cell] != kNone; }
+  /// All gaps lie below this: the highest that there has been. -infinity: there was none.
+  float below_mm() const { return below_mm_; }
   /// Calls see(gap) for each of a cell's gaps, the topmost first.
   template <class See>
   void each(std::size_t cell, const See& see) const {
@@ -59,6 +62,7 @@ class GapTile {
   std::vector<Node> nodes_;
   std::int32_t free_ = kNone;
   std::size_t count_ = 0;
+  float below_mm_ = -std::numeric_limits<float>::infinity();
 };
 
 /// A tile without gaps is a null pointer. Copies share tiles until one of them writes; they may be
