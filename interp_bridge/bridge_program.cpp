@@ -340,6 +340,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
   feeding.torch = torch_;
+  feeding.signals = options_.signals;
   feeding.materials = &materials_;
   if (options_.machine.start_known) feeding.start = options_.machine.start;
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);

@@ -104,6 +104,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.feeder.max_commands = limit;
   reading.feeder.frame = &frame_;
   reading.feeder.torch = torch_;
+  reading.feeder.signals = options_.signals;
   reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);

@@ -28,6 +28,9 @@ enum class MotionKind : std::uint8_t {
   kToolChange,  ///< `tool` is the new tool; no motion
   kStop,        ///< M0, M1, M60: the program waits for the operator
   kProgramEnd,  ///< M2, M30 or closing %; with the spindles that the program leaves to M2 to stop
+  /// Where it is asked for (ProgramOptions::signals): spindle, coolant or an output has been
+  /// switched at once, or a user M-code come. No motion; the step has what is on from here.
+  kSignal,
 };
 
 /// Circular part of a motion: the tip turns about an axis through `center_mm` along `axis` (unit
@@ -110,6 +113,10 @@ struct Motion {
   /// not hold. kerf must not cut along such a move; `to_mm` is right, from_mm equals it, and an arc
   /// has a sweep of 0.
   bool start_known = true;
+  std::uint8_t user_m = 0;  ///< kSignal of M100 to M199: the number; else 0
+  /// kArc only: the rounded corner of a traverse, where the planned path is taken for the
+  /// program's; as rapid as that.
+  bool rapid = false;
   int tool = 0;  ///< tool number in the spindle, 0 = none
   SourceRef source;
   Vec3 from_mm{0};

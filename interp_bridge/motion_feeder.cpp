@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace kerf {
@@ -36,6 +37,7 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
   if (options_.start) fold_.stand_at(*options_.start);
   const TorchRun& torch = options_.torch;
   fold_.set_filter({torch.qtplasmac && !torch.text.is_filtered, torch.inch_machine});
+  fold_.set_signals(options_.signals.wanted);
   material_changed();
   batch_.reserve(kBatchMotions + kMotionsPerCommand);
 }
@@ -189,6 +191,17 @@ bool MotionFeeder::take_material_change(double number, SourceRef source) {
                   wanted, values_of(materials_.rows()[0])));
   unknown.hint = "QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI";
   diagnostics_.push_back(std::move(unknown));
+  return true;
+}
+
+bool MotionFeeder::take_user_code(double number, SourceRef source) {
+  const std::vector<int>& known = options_.signals.user_codes;
+  const auto code = static_cast<int>(number);  // the records' own: 100 to 199
+  if (std::find(known.begin(), known.end(), code) == known.end()) return false;
+  source_ = source;
+  const bool first = batch_.empty();
+  fold_.signal(static_cast<std::uint8_t>(code), source, batch_);
+  took(first);
   return true;
 }
 

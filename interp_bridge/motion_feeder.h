@@ -29,6 +29,7 @@ struct MotionFeederOptions {
   WorkpieceFrame* frame = nullptr;
   /// What is known of a torch machine. Without `torch.qtplasmac` its materials do not count.
   TorchRun torch;
+  SignalOptions signals;
   /// What TorchState::material indexes: written before motions with a new index are handed over.
   /// May be null.
   std::vector<TorchMaterial>* materials = nullptr;
@@ -50,6 +51,8 @@ class MotionFeeder {
   void add_foreign(std::string_view line);
   /// M190 P: true if it is QtPlasmaC's, and the material is another now.
   bool take_material_change(double number, SourceRef source);
+  /// M100 to M199: true if it is one that SignalOptions names, and a step has been made of it.
+  bool take_user_code(double number, SourceRef source);
   bool is_qtplasmac() const { return options_.torch.qtplasmac; }
 
   /// Hands over what has waited for longer than a screen would forgive (about 40 ms). False as

@@ -522,12 +522,34 @@ FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
       if (command.name == CanonicalName::kSetMotionControlMode && source.line != 0) {
         path_mode_said_ = true;
       }
-      if (!fold_frame(command) && !fold_spindle(command) && !fold_feed(command) &&
-          !fold_torch(command)) {
-        fold_event(command, source, out);
-      }
+      fold_switch(command, source, out);
       return FoldRemark::kNone;
   }
+}
+
+void MotionFold::signal(std::uint8_t user_m, SourceRef source, std::vector<Motion>& out) {
+  append(MotionKind::kSignal, source, out).user_m = user_m;
+}
+
+/// What does not move the machine. A signal for what it has switched.
+void MotionFold::fold_switch(const CanonicalCommand& command, SourceRef source,
+                             std::vector<Motion>& out) {
+  const auto take = [&] {
+    const bool switched =
+        fold_frame(command) || fold_spindle(command) || fold_feed(command) || fold_torch(command);
+    if (!switched) fold_event(command, source, out);
+    return switched;
+  };
+  if (!signals_) {
+    take();
+    return;
+  }
+  const auto state = [this] {
+    return std::tuple(spindles_[spindle_].state, rpm_, flood_, mist_, torch_.spindles_on,
+                      torch_.outputs, torch_.analog);
+  };
+  const auto before = state();
+  if (take() && state() != before) append(MotionKind::kSignal, source, out);
 }
 
 }  // namespace kerf

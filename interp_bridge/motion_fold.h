@@ -90,6 +90,10 @@ class MotionFold {
 
   /// Before the first command: QtPlasmaC's filter has its share.
   void set_filter(FilterSetup setup) { filter_ = setup; }
+  /// For the commands that follow: steps of MotionKind::kSignal are made.
+  void set_signals(bool wanted) { signals_ = wanted; }
+  /// Appends the step of a user M-code.
+  void signal(std::uint8_t user_m, SourceRef source, std::vector<Motion>& out);
   /// For the commands that follow. No effect without the filter.
   void set_filter_modes(const FilterModes& modes) { modes_ = modes; }
   /// For the steps that follow: TorchState::material, and its kerf.
@@ -166,6 +170,7 @@ class MotionFold {
   void append_program_end(SourceRef source, std::vector<Motion>& out);
   bool fold_feed(const CanonicalCommand& command);
   bool fold_event(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
+  void fold_switch(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void change_tool_length(const CanonicalCommand& command);
   // motion_fold_torch.cpp
   bool fold_torch(const CanonicalCommand& command);
@@ -229,8 +234,9 @@ class MotionFold {
   FilterModes modes_;
   double material_kerf_mm_ = 0;
   bool path_mode_said_ = false;  ///< by the program
-  bool compensation_ = false;    ///< G41, G42
-  bool hole_active_ = false;     ///< the filter's M67 E3 is in force
+  bool signals_ = false;
+  bool compensation_ = false;  ///< G41, G42
+  bool hole_active_ = false;   ///< the filter's M67 E3 is in force
   bool torch_off_by_filter_ = false;
   bool pierced_ = false;                  ///< since M3, in pierce-only mode
   std::optional<Vec3> overburn_from_mm_;  ///< end of the circle, while the tip stands beyond it

@@ -133,6 +133,7 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.diameters_known = !options_.tool_table_path.empty();
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
   reading.feeder.torch = torch_;
+  reading.feeder.signals = options_.signals;
   return reading;
 }
 

@@ -74,6 +74,13 @@ struct TorchOptions {
   std::map<std::string, double> hal_values;
 };
 
+/// What a machine does where nothing moves: of a punch, a stroke may be that alone.
+struct SignalOptions {
+  bool wanted = false;  ///< steps of MotionKind::kSignal come
+  /// User M-codes, 100 to 199, that the machine knows: a signal each. The others stay remarks.
+  std::vector<int> user_codes;
+};
+
 /// What to interpret and how.
 struct ProgramOptions {
   /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
@@ -86,6 +93,7 @@ struct ProgramOptions {
   InterpreterChoice interpreter = InterpreterChoice::kAuto;
   InterpreterSetup machine;
   TorchOptions torch;
+  SignalOptions signals;
   std::string rs274_path = "rs274";  ///< looked up in PATH
   /// Empty: beside this executable, in ../lib/kerf beside it, else looked up in PATH.
   std::string kerf_interp_path;

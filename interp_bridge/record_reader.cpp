@@ -157,6 +157,10 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
         place_ = {file_, head.line};
         return true;
       }
+      if (feeder_.take_user_code(number_at(payload, 0), {file_, head.line})) {
+        place_ = {file_, head.line};
+        return !feeder_.done();
+      }
       note(head, fmt::format("M{:g} P{:g} Q{:g}", number_at(payload, 0), number_at(payload, 1),
                              number_at(payload, 2)));
       return true;

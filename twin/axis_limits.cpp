@@ -80,6 +80,7 @@ void AxisLimitCheck::check(const Motion& m, const TimedStep& step) {
     case MotionKind::kToolChange:
     case MotionKind::kStop:
     case MotionKind::kProgramEnd:
+    case MotionKind::kSignal:
       return;
   }
   const Reach reach = reach_of(m);

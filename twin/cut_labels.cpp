@@ -42,8 +42,14 @@ std::uint32_t CutLabels::find_or_add(const CutLabel& label, std::size_t most) {
   if (*slot != kFree) return *slot;
   if (labels_.size() >= most) return kUnknown;
   *slot = static_cast<std::uint32_t>(labels_.size());
-  labels_.push_back(label);
+  labels_.push_back({label.tool, label.source});
   return *slot;
+}
+
+void CutLabels::note(std::uint64_t number, double removed_mm3, double cut_s) {
+  if (number >= labels_.size()) return;
+  labels_[number].removed_mm3 += removed_mm3;
+  labels_[number].cut_s += cut_s;
 }
 
 std::uint32_t CutLabels::number_of(const CutLabel& label) {

@@ -11,16 +11,21 @@
 
 namespace kerf {
 
-/// Who cut.
+/// Who cut, and what came of it so far.
 struct CutLabel {
   int tool = 0;
   SourceRef source;  ///< line 0: not known
-  bool operator==(const CutLabel&) const = default;
+  double removed_mm3 = 0;
+  double cut_s = 0;  ///< of all its moves, those through air as well
+  /// It is the same tool and line, whatever they did.
+  bool operator==(const CutLabel& other) const {
+    return tool == other.tool && source == other.source;
+  }
 };
 
 /// Numbers labels in the order in which they first come, for StockModel::keep_cut_ids(). A machine
 /// that is watched makes a thousand moves a second for weeks; their labels are no more than the
-/// program has lines, as often as it is run: about 24 bytes each, at most kMost of them. One
+/// program has lines, as often as it is run: about 40 bytes each, at most kMost of them. One
 /// thread.
 class CutLabels {
  public:
@@ -35,6 +40,9 @@ class CutLabels {
 
   /// Nanoseconds if it is the one that was asked for last.
   std::uint32_t number_of(const CutLabel& label);
+
+  /// A move of this label has been cut. A number that is none is left out.
+  void note(std::uint64_t number, double removed_mm3, double cut_s);
 
   /// By number. Only grows; until the next call of number_of().
   std::span<const CutLabel> all() const { return labels_; }

@@ -84,6 +84,7 @@ void CutStage::begin_reporting() {
   timeline_.begin_totals();
   uses_.clear();
   if (torch_) torch_->begin_reporting();
+  if (punch_) punch_->begin_reporting();
   mounted_ = nullptr;
   feed_missing_reported_ = false;
   over_feed_ = {};
@@ -100,6 +101,10 @@ void CutStage::finish(bool whole) {
     torch_->finish(whole);
     return;
   }
+  if (punch_) {
+    punch_->finish(whole);
+    return;
+  }
   if (whole) report_outside_stock();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
@@ -108,6 +113,11 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
+  if (punch_) {
+    if (is_feed(m) && m.start_known) note_speed(m, step);
+    punch_->take(m, step);
+    return;
+  }
   check_turns(m, step);
   if (torch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
@@ -124,7 +134,7 @@ void CutStage::cut(const Motion& m, const TimedStep& step) {
     flush_whole();  // the depths still to come belong to the event
     checks_.end_spindle_event();
   }
-  if (m.kind == MotionKind::kTraverse) {
+  if (is_traverse(m)) {
     take_traverse(m, step);
   } else if (is_feed(m)) {
     take_feed(m, step);
@@ -237,7 +247,8 @@ void CutStage::note_reach(const Motion& m) {
 
 void CutStage::check_turns(const Motion& m, const TimedStep& step) {
   if (rotary_check_) {
-    rotary_check_->check(m, step.duration_s, rotary_faults_);
+    // Sensors tremble: between two samples they are no measure of speed.
+    rotary_check_->check(m, timed_ ? 0 : step.duration_s, rotary_faults_);
     if (!rotary_faults_.empty()) report_rotary_faults(step);
   }
   if (turn_reported_) return;
@@ -246,6 +257,12 @@ void CutStage::check_turns(const Motion& m, const TimedStep& step) {
   } else if (m.from_abc_deg != m.to_abc_deg) {
     report_ignored_turn(m, step);
   }
+}
+
+void CutStage::check_whole(const Motion& m, const TimedStep& step) {
+  if (!rotary_check_ || !stock_.takes_tilted_tools() || motion_moves_.is_upright(m)) return;
+  rotary_check_->check_pole(m, rotary_faults_);
+  if (!rotary_faults_.empty()) report_rotary_faults(step);
 }
 
 /// Once: what the machine is taken to be, where nothing says it.
@@ -437,6 +454,7 @@ void CutStage::collect_reports() {
     const CutReport& report = reports_[i];
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
+    if (labels_) labels_->note(report.id, report.removed_mm3, move.duration_s);
     if (move.feed) count_feed(use, move.duration_s, report.removed_mm3);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;

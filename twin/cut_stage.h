@@ -18,10 +18,12 @@
 #include "twin/finding.h"
 #include "twin/kinematics/rotary_checks.h"
 #include "twin/motion_moves.h"
+#include "twin/punch_stage.h"
 #include "twin/timeline.h"
 #include "twin/tool_use.h"
 #include "twin/tools.h"
 #include "twin/torch_stage.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -46,6 +48,10 @@ class CutStage : private StepSink {
   /// TorchStage's. Before the first motion; not together with label_by() and take_timed() of a
   /// machine that is watched.
   void burn(BeamSettings settings) { torch_.emplace(stock_, book_, log_, std::move(settings)); }
+  /// The same of a sheet under a punch: what cuts is PunchStage's.
+  void punch(TurretPointer turret) { punch_.emplace(stock_, log_, std::move(turret)); }
+  /// Null: it is none that punches.
+  const PunchStage* punch() const { return punch_ ? &*punch_ : nullptr; }
   /// Of a program that burns; null: it mills.
   TorchStage* torch() { return torch_ ? &*torch_ : nullptr; }
   const TorchStage* torch() const { return torch_ ? &*torch_ : nullptr; }
@@ -55,6 +61,9 @@ class CutStage : private StepSink {
   /// A motion of a machine that is watched: its time is known. Not to be mixed with take(), whose
   /// motions wait for theirs.
   void take_timed(const Motion& motion, const TimedStep& timed);
+  /// A motion of the program that a machine which is watched has made, in the parts that
+  /// take_timed() was given: what is only to be seen of the whole.
+  void check_whole(const Motion& motion, const TimedStep& timed);
   /// All that was taken is in the workpiece.
   void complete() { flush_whole(); }
   /// All that was taken has been given to the model, which may hold some back.
@@ -67,8 +76,15 @@ class CutStage : private StepSink {
   /// The program is over, or stopped before its end (`whole` = false).
   void finish(bool whole = true);
 
+  /// How the machine turns tool and workpiece; null: it does not.
+  const ToolPath* machine_path() const { return machine_moves_.path(); }
+  /// The motion is cut by an upright tool.
+  bool is_upright(const Motion& motion) const { return motion_moves_.is_upright(motion); }
+
   const Timeline& timeline() const { return timeline_; }
-  const std::vector<ToolUse>& tools() const { return torch_ ? torch_->tools() : uses_; }
+  const std::vector<ToolUse>& tools() const {
+    return torch_ ? torch_->tools() : punch_ ? punch_->tools() : uses_;
+  }
   /// In the spindle, as far as it has been needed; null: none that is known. Until the next call.
   const Cutter* cutter() const {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
@@ -142,6 +158,7 @@ class CutStage : private StepSink {
   Checks checks_;
   AxisLimitCheck axis_limits_;
   std::optional<TorchStage> torch_;
+  std::optional<PunchStage> punch_;
   std::vector<ToolUse> uses_;
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
   std::uint32_t use_ = 0;

@@ -91,6 +91,26 @@ const char* to_string(FindingId id) {
       return "beam-off";
     case FindingId::kSmallPart:
       return "small-part";
+    case FindingId::kStationEmpty:
+      return "station-empty";
+    case FindingId::kNoPunch:
+      return "no-punch";
+    case FindingId::kHitOnClamp:
+      return "hit-on-clamp";
+    case FindingId::kHitOffSheet:
+      return "hit-off-sheet";
+    case FindingId::kHitInAir:
+      return "hit-in-air";
+    case FindingId::kHitOnPart:
+      return "hit-on-part";
+    case FindingId::kWebLeft:
+      return "web-left";
+    case FindingId::kPunchDown:
+      return "punch-down";
+    case FindingId::kGripLost:
+      return "grip-lost";
+    case FindingId::kNoHit:
+      return "no-hit";
   }
   return "";
 }

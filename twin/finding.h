@@ -49,6 +49,16 @@ enum class FindingId : std::uint8_t {
   kCrossesPart,     ///< the head goes over a part that has come free, and may have tipped
   kBeamOff,         ///< feed moves over the sheet at cut height with the beam off
   kSmallPart,       ///< a part came free that may tilt or fall between the slats
+  kStationEmpty,    ///< the punch strikes with a tool that has no station in the turret
+  kNoPunch,         ///< it strikes with no tool
+  kHitOnClamp,      ///< it comes down on a clamp
+  kHitOffSheet,     ///< beside the sheet
+  kHitInAir,        ///< where all has been punched out already
+  kHitOnPart,       ///< on a piece that has come free
+  kWebLeft,         ///< nibbling leaves webs between strokes: the slug stays attached
+  kPunchDown,       ///< the sheet moves while the punch is down
+  kGripLost,        ///< a clamp holds nothing of the sheet
+  kNoHit,           ///< the program never makes the punch strike
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -29,6 +29,7 @@ constexpr double kInchMm = 25.4;
 class IniReader {
  public:
   IniReader(IniFile& ini, Diagnostics& diagnostics) : ini_(ini), diagnostics_(diagnostics) {}
+  Diagnostics& diagnostics() { return diagnostics_; }
 
   std::string text(const char* section, const char* key) {
     const IniEntry* const entry = ini_.find(section, key);
@@ -283,31 +284,61 @@ void list_what_is_not_understood(IniReader& reader) {
   }
 }
 
-void read_kinematics(IniReader& reader, const IniEntry& entry, double unit_mm,
-                     MachineSetup& setup) {
+/// Where the joints stand after homing is where the machine is: robots, and machines that follow
+/// the tip, are not at the values of their joints.
+void start_at_home(IniReader& reader, const MachineKinematics& machine, double unit_mm,
+                   InterpreterSetup& interpreter) {
+  if (machine.type(0).mode == KinematicsMode::kAxes) return;
+  AxisValues joints{};
+  for (std::size_t i = 0; i < std::min(machine.joint_letters.size(), joints.size()); ++i) {
+    const std::string section = fmt::format("JOINT_{}", i);
+    const IniEntry* const type = reader.file().find(section, "TYPE");
+    const bool turns = type != nullptr ? type->value == "ANGULAR" : machine.turns_joint(i);
+    joints[i] = reader.number(section, "HOME").value_or(0) * (turns ? 1.0 : unit_mm);
+  }
+  const AxisValues axes = machine.axes_of(joints, 0);
+  std::copy(axes.begin(), axes.end(), interpreter.start.begin());
+}
+
+/// `entry` null: the INI has none, and the configuration says what they are.
+void read_kinematics(IniReader& reader, const IniEntry* entry, double unit_mm,
+                     const KinematicsRequest* request, MachineSetup& setup) {
+  // Who says it in a configuration means it.
+  const bool given = request != nullptr && request->is_given();
+  const auto fault = [&](const std::string& text) {
+    if (!given) {
+      reader.fault(*entry, text, {}, Severity::kWarning);
+      return;
+    }
+    Diagnostic d;
+    d.message = fmt::format("machine.kinematics: {}", text);
+    reader.diagnostics().push_back(std::move(d));
+  };
   Result<MachineKinematics> machine =
       kinematics_of_ini(reader.file(), setup.interpreter.working_folder, setup.joint_letters,
-                        unit_mm, KinematicsRequest{});
+                        unit_mm, request != nullptr ? *request : KinematicsRequest{});
   if (!machine) {
-    reader.fault(entry,
-                 fmt::format("{}; positions are taken as those of the tip in a machine with "
-                             "straight axes",
-                             machine.error()),
-                 {}, Severity::kWarning);
+    fault(given ? machine.error()
+                : fmt::format("{}; positions are taken as those of the tip in a machine with "
+                              "straight axes",
+                              machine.error()));
     return;
   }
   // Whatever the frame is: no other fault of a machine shows only there.
   if (const Result<ToolPath> path = ToolPath::create(*machine, {}, {}); !path) {
-    reader.fault(entry, path.error(), {}, Severity::kWarning);
+    fault(path.error());
     return;
   }
+  start_at_home(reader, *machine, unit_mm, setup.interpreter);
   setup.timeline.kinematics = std::make_shared<const MachineKinematics>(std::move(machine.value()));
+  setup.timeline.kinematics_known = true;
   setup.timeline.joint_limits = joint_limits_of_ini(reader.file(), setup.joint_letters, unit_mm);
 }
 
 }  // namespace
 
-bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics) {
+bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics,
+                        const KinematicsRequest* kinematics) {
   Result<IniFile> ini = IniFile::read(path, diagnostics);
   if (!ini) {
     Diagnostic d;
@@ -344,8 +375,9 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   interpreter.random_toolchanger = reader.number("EMCIO", "RANDOM_TOOLCHANGER").value_or(0) != 0;
   interpreter.tool_lengths = true;
   read_tool_change_position(reader, unit_mm, interpreter.tool_change_position);
-  if (const IniEntry* const kins = ini->find("KINS", "KINEMATICS"); kins != nullptr) {
-    read_kinematics(reader, *kins, unit_mm, setup);
+  const IniEntry* const kins = ini->find("KINS", "KINEMATICS");
+  if (kins != nullptr || (kinematics != nullptr && kinematics->is_given())) {
+    read_kinematics(reader, kins, unit_mm, kinematics, setup);
   }
   list_what_is_not_understood(reader);
   return !has_error(diagnostics);

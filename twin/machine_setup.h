@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
+#include "twin/kinematics/kinematics_setup.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -27,6 +28,9 @@ struct MachineSetup {
 /// Not read: [HAL], [APPLICATIONS] and all else that says how the machine is driven and shown. The
 /// interpreter reads [RS274NGC], [EMCIO], [AXIS_*] and [PYTHON] itself (remaps, subroutine paths,
 /// features).
-bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics);
+///
+/// `kinematics`: of the configuration, which wins; null: it says nothing of them.
+bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics,
+                        const KinematicsRequest* kinematics = nullptr);
 
 }  // namespace kerf

@@ -84,7 +84,12 @@ Box bounds_of(const Motion& m) {
 }
 
 bool is_feed(const Motion& m) {
-  return m.kind == MotionKind::kFeed || m.kind == MotionKind::kArc || m.kind == MotionKind::kThread;
+  return m.kind == MotionKind::kFeed || (m.kind == MotionKind::kArc && !m.rapid) ||
+         m.kind == MotionKind::kThread;
+}
+
+bool is_traverse(const Motion& m) {
+  return m.kind == MotionKind::kTraverse || (m.kind == MotionKind::kArc && m.rapid);
 }
 
 CutMove cut_move_from(const Motion& m, std::uint64_t id) {
@@ -102,6 +107,7 @@ Motion motion_of(const Motion& motion, const PathPiece& piece) {
   Motion moved = motion;
   if (piece.curved) {
     moved.kind = MotionKind::kArc;
+    moved.rapid = motion.kind == MotionKind::kTraverse;
   } else if (motion.kind == MotionKind::kArc) {
     moved.kind = MotionKind::kFeed;
   }

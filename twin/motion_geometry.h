@@ -23,6 +23,8 @@ Box bounds_of(const Motion& motion);
 
 /// Feed, arc, thread: moves that are meant to cut.
 bool is_feed(const Motion& motion);
+/// Rapid: a traverse, or a corner of one that the machine rounds (Motion::rapid).
+bool is_traverse(const Motion& motion);
 
 /// The motion as the stock model takes it.
 CutMove cut_move_from(const Motion& motion, std::uint64_t id);

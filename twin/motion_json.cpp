@@ -51,6 +51,7 @@ bool moves(MotionKind kind) {
     case MotionKind::kToolChange:
     case MotionKind::kStop:
     case MotionKind::kProgramEnd:
+    case MotionKind::kSignal:
       return false;
   }
   return false;
@@ -150,6 +151,8 @@ const char* to_string(MotionKind kind) {
       return "stop";
     case MotionKind::kProgramEnd:
       return "program-end";
+    case MotionKind::kSignal:
+      return "signal";
   }
   return "";
 }

@@ -11,6 +11,7 @@
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
 #include "twin/kinematics/tool_path.h"
+#include "twin/punch_moves.h"
 #include "twin/torch_moves.h"
 
 namespace kerf {
@@ -35,8 +36,12 @@ class MotionMoves {
   void burn(TorchMoves torch) { torch_ = std::move(torch); }
   /// Null: a tool, which cuts on every motion that moves.
   const TorchMoves* torch() const { return torch_ ? &*torch_ : nullptr; }
-  /// Appends the moves of a motion that moves the tip, all with this id. Not of a torch: whether
-  /// that pierces the motions before tell (TorchMoves::append).
+  /// From now on they are the strokes of a punch.
+  void punch(PunchMoves punch) { punch_ = std::move(punch); }
+  /// Null: none.
+  const PunchMoves* punch() const { return punch_ ? &*punch_ : nullptr; }
+  /// Appends the moves of a motion that moves the tip, all with this id. Not of a torch or a punch:
+  /// whether that pierces or strikes the motions before tell (TorchMoves, PunchMoves).
   void append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
               std::vector<CutMove>& out) const;
 
@@ -54,6 +59,7 @@ class MotionMoves {
   WorkpieceFrame frame_;
   std::optional<ToolPath> path_;
   std::optional<TorchMoves> torch_;
+  std::optional<PunchMoves> punch_;
 };
 
 }  // namespace kerf

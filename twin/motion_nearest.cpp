@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "twin/motion_geometry.h"
@@ -13,8 +14,10 @@ namespace {
 constexpr double kSamePlace_mm = 1e-3;
 /// Of the refinement along helices and spirals.
 constexpr int kRefinements = 3;
+/// Of arcs on which axes turn: a piece of 0.1 rad becomes shorter than 1e-7 of it.
+constexpr int kThirds = 40;
 
-NearestPoint nearest_on_line(const Motion& m, const Vec3& place, double from_t) {
+PointOnWay nearest_on_line(const Motion& m, const Vec3& place, double from_t) {
   const Vec3 way = m.to_mm - m.from_mm;
   const double square = glm::dot(way, way);
   double t = from_t;
@@ -80,10 +83,10 @@ struct AxisView {
   double along = 0, x = 0, y = 0;  ///< of the place
 };
 
-NearestPoint nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
+PointOnWay nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
   AxisView view(m);
   view.look_at(place);
-  NearestPoint best{from_t, view.distance(from_t)};
+  PointOnWay best{from_t, view.distance(from_t)};
   const auto consider = [&](double t) {
     const double distance = view.distance(t);
     if (distance < best.distance_mm - kSamePlace_mm) best = {t, distance};
@@ -103,9 +106,80 @@ NearestPoint nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
   return best;
 }
 
+/// How far the axes are from those of the motion, as a way, at its start and what is added to its
+/// end.
+struct TurnedWay {
+  TurnedWay(const Motion& m, const TurnedAxes& turned) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!turned.counts[i]) continue;
+      const auto axis = static_cast<int>(i);
+      const double mm_per_deg = turned.lever_mm * kPi / 180;
+      off[axis] = mm_per_deg * (turned.abc_deg[i] - m.from_abc_deg[i]);
+      way[axis] = mm_per_deg * (m.to_abc_deg[i] - m.from_abc_deg[i]);
+    }
+  }
+  Vec3 off{0}, way{0};
+};
+
+PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const TurnedWay& turned,
+                                   double from_t) {
+  const Vec3 way = m.to_mm - m.from_mm;
+  const double square = glm::dot(way, way) + glm::dot(turned.way, turned.way);
+  double t = from_t;
+  if (square > 0) {
+    const double along = glm::dot(place - m.from_mm, way) + glm::dot(turned.off, turned.way);
+    t = std::clamp(along / square, from_t, 1.0);
+  }
+  const double tip_mm = glm::length(place - (m.from_mm + t * way));
+  return {t, std::hypot(tip_mm, glm::length(turned.off - t * turned.way))};
+}
+
+/// By trials, and by thirds about the best of them.
+PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const TurnedWay& turned,
+                                  double from_t) {
+  const auto distance = [&](double t) {
+    return std::hypot(glm::length(place - point_at(m, t)),
+                      glm::length(turned.off - t * turned.way));
+  };
+  const int trials = 16 + static_cast<int>(8 * std::abs(m.arc.sweep_rad));
+  const double step = (1 - from_t) / trials;
+  PointOnWay best{from_t, distance(from_t)};
+  for (int i = 1; i <= trials; ++i) {
+    const double t = i == trials ? 1.0 : from_t + i * step;
+    if (const double here = distance(t); here < best.distance_mm - kSamePlace_mm) best = {t, here};
+  }
+  double low = std::max(from_t, best.t - step);
+  double high = std::min(1.0, best.t + step);
+  for (int i = 0; i < kThirds; ++i) {
+    const double third = (high - low) / 3;
+    if (distance(low + third) <= distance(high - third)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  const double t = (low + high) / 2;
+  if (const double here = distance(t); here < best.distance_mm) best = {t, here};
+  return best;
+}
+
 }  // namespace
 
-NearestPoint nearest_on(const Motion& m, const Vec3& place_mm, double from_t) {
+PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, const TurnedAxes& turned,
+                      double from_t) {
+  const TurnedWay axes(m, turned);
+  if (axes.way == Vec3(0)) {
+    PointOnWay point = nearest_on(m, place_mm, from_t);
+    if (axes.off != Vec3(0)) {
+      point.distance_mm = std::hypot(point.distance_mm, glm::length(axes.off));
+    }
+    return point;
+  }
+  return m.kind == MotionKind::kArc ? nearest_on_turning_arc(m, place_mm, axes, from_t)
+                                    : nearest_on_turning_line(m, place_mm, axes, from_t);
+}
+
+PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, double from_t) {
   return m.kind == MotionKind::kArc ? nearest_on_arc(m, place_mm, from_t)
                                     : nearest_on_line(m, place_mm, from_t);
 }

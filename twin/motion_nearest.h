@@ -1,13 +1,15 @@
 // twin/motion_nearest.h - the point of a motion's way that lies nearest to a place. mm.
 #pragma once
 
+#include <array>
+
 #include "base/geometry.h"
 #include "interp_bridge/motion.h"
 
 namespace kerf {
 
 /// A place on the way of a motion.
-struct NearestPoint {
+struct PointOnWay {
   double t = 0;  ///< fraction of the way (of the angle, for arcs), as in point_at()
   double distance_mm = 0;
 };
@@ -15,7 +17,21 @@ struct NearestPoint {
 /// The nearest point at or after fraction `from_t`. Where an arc of several turns passes the place
 /// more than once as near (within 1 um), the first passage. Lines and circles exactly; helices and
 /// spirals to within 0.1 um as long as they rise or grow by less than a radius a turn.
-NearestPoint nearest_on(const Motion& motion, const Vec3& place_mm, double from_t);
+PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, double from_t);
+
+/// Axes that turn, as a place has them.
+struct TurnedAxes {
+  std::array<double, 3> abc_deg{};
+  std::array<bool, 3> counts{};  ///< false: not known, or not to be compared
+  /// An axis that is off by an angle is off by the way of a point so far from its line. mm.
+  double lever_mm = 0;
+};
+
+/// The same where A, B and C count, too: the distance is that of a place in six dimensions. Exact
+/// for lines, and for arcs on which none of them turns; else to within 1 um, as long as the place
+/// is less than a radius from the way.
+PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, const TurnedAxes& turned,
+                      double from_t);
 
 /// The part of a motion between two fractions of its way, 0 <= from_t <= to_t <= 1. With 0 and 1
 /// the motion itself, bit for bit.

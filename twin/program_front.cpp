@@ -46,10 +46,18 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
     outcome = Outcome::kUsageError;
     return false;
   }
+  if (options.turret && !(found.blank && is_sheet(*found.blank))) {
+    diagnostics.push_back(
+        general_error(fmt::format("--turret: only a sheet can be punched; the blank is {}",
+                                  found.blank ? describe(*found.blank) : "not given"),
+                      "--stock sheet:x0,y0:x1,y1:THICKNESS gives a sheet"));
+    outcome = Outcome::kUsageError;
+    return false;
+  }
   if (!found.blank) return true;
   front.blank = std::move(found.blank);
   front.blank_origin = std::move(found.origin);
-  if (front.is_sheet()) front.choice = {StockKind::kSheet, {}};
+  if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}};
   return fill_front(options, front, diagnostics, outcome);
 }
 

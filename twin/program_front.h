@@ -20,6 +20,7 @@
 #include "twin/session_parts.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -29,6 +30,7 @@ struct SessionOptions {
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
   BeamOptions beam;      ///< for a sheet
+  TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
   double margin_mm = 5;  ///< around a guessed blank
   TimelineOptions timeline;
   LineRange lines;  ///< cut silently up to there, reported from there, stopped there
@@ -45,7 +47,7 @@ struct ProgramFront {
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
 
-  bool is_sheet() const { return blank && blank->sheet; }
+  bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };
 
 /// Checks everything that can be checked before the program is interpreted: files, comments, tool

@@ -131,6 +131,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   }
   add_live(out, live);
   if (report.stock) add_stock(out, *report.stock);
+  if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
   out += fmt::format("findings  {}\n", count_text(report.findings));
   out += fmt::format("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,

@@ -25,6 +25,7 @@ Session::Session(SessionOptions options, ProgramFront front, Clock::time_point s
       shown_program_(front_.program.get()),
       window_(options_.lines),
       tilt_(options_.timeline.kinematics),
+      switched_(options_.timeline.kinematics),
       start_(start) {}
 
 Session::~Session() = default;
@@ -101,6 +102,7 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
   const WorkpieceFrame& frame = (second_pass_ ? *second_pass_ : *front_.program).workpiece_frame();
+  motions = switched_.follow(motions, frame);
   tilt_.look_at(motions, frame);
   if (must_begin_again()) return false;
   stage.set_frame(frame);
@@ -180,6 +182,7 @@ bool Session::begin_again(Diagnostics& diagnostics, Outcome& outcome) {
   }
   report_.findings = {};
   window_ = LineWindow(options_.lines);
+  switched_ = SwitchedMotions(options_.timeline.kinematics);
   return make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome);
 }
 
@@ -200,7 +203,9 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (observer_) observer_->on_start(*stock());
   ToolBook book(front_.tools, row_of(*stock()).can_cut);
   CutStage stage(*front_.stock.stock, book, report_.findings, options_.timeline);
-  if (front_.is_sheet()) {
+  if (front_.is_sheet() && options_.turret) {
+    stage.punch(options_.turret);
+  } else if (front_.is_sheet()) {
     stage.burn(beam_settings(options_.beam, front_.program->is_qtplasmac()));
   }
   const double cpu_before = thread_cpu_s();
@@ -208,7 +213,8 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (pass == Pass::kTilted) return std::nullopt;
   const bool whole = pass == Pass::kWhole;
   const Clock::time_point finish_start = Clock::now();
-  stage.finish(whole);
+  // Where a sheet's program was stopped it may not have come to cut yet.
+  stage.finish(whole && !(front_.is_sheet() && window_.over()));
   if (observer_) observer_->on_cut(*stock(), {}, stage.timeline().clock_s());
   report_.timing.cut_s += seconds_since(finish_start);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
@@ -239,6 +245,10 @@ void Session::complete_report(const CutStage& stage) {
   if (stage.torch() && as_sheet(*stock())) {
     report_.sheet =
         sheet_report(*as_sheet(*stock()), *stage.torch(), options_.beam.density_kg_per_m3);
+  }
+  if (stage.punch() && as_sheet(*stock())) {
+    report_.sheet =
+        sheet_report(*as_sheet(*stock()), *stage.punch(), options_.beam.density_kg_per_m3);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "interp_bridge/program.h"
 #include "stock/zmap/zmap.h"
 #include "twin/cut_stage.h"
+#include "twin/kinematics/switched_motions.h"
 #include "twin/line_window.h"
 #include "twin/material_mail.h"
 #include "twin/outcome.h"
@@ -98,6 +99,7 @@ class Session {
   std::vector<TorchMaterial> taken_materials_;
   LineWindow window_;
   TiltWatch tilt_;
+  SwitchedMotions switched_;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass

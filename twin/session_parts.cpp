@@ -6,13 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 #include "stock/octree/octree.h"
-#include "stock/state_bytes.h"
+#include "stock/sheet/sheet.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "twin/blank_choice.h"
 
@@ -41,16 +39,6 @@ bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics)
   return true;
 }
 
-/// By the head of the file; of one that has none, loading says what is wrong.
-StockKind saved_kind(const std::string& path) {
-  std::array<char, 128> head{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), head.size());
-  const auto model = model_of_state({head.data(), static_cast<std::size_t>(file.gcount())}, path);
-  const StockModelRow* const row = model ? find_stock_model(model.value()) : nullptr;
-  return row ? row->kind : StockKind::kZmap;
-}
-
 template <typename Model>
 Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> model) {
   if (!model) return Error{model.error()};
@@ -59,6 +47,7 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
+  if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));

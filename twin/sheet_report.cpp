@@ -60,14 +60,13 @@ std::vector<int> depths_of(const Sheet& sheet, const std::vector<SheetPiece>& pi
   return depths;
 }
 
-SheetPart part_of(const SheetPiece& piece, const TorchStage& stage, double density) {
+SheetPart part_of(const SheetPiece& piece, const std::vector<FreedPiece>& freed, double density) {
   SheetPart part;
   part.number = piece.number;
   part.area_mm2 = piece.area_mm2;
   part.min_mm = piece.min_mm;
   part.max_mm = piece.max_mm;
   part.weight_kg = piece.weight_kg(density);
-  const std::vector<FreedPiece>& freed = stage.freed();
   const auto by = std::lower_bound(
       freed.begin(), freed.end(), piece.number,
       [](const FreedPiece& entry, std::uint32_t number) { return entry.number < number; });
@@ -105,9 +104,11 @@ double SheetReport::parts_mm2() const {
   return sum;
 }
 
-SheetReport sheet_report(const Sheet& sheet, const TorchStage& stage, double density) {
+namespace {
+
+SheetReport report_of(const Sheet& sheet, const std::vector<FreedPiece>& freed_pieces,
+                      double density) {
   SheetReport report;
-  report.cuts = stage.totals();
   report.thickness_mm = sheet.thickness_mm();
   report.density_kg_per_m3 = density;
   report.blank_mm2 = sheet.blank_mm3() / sheet.thickness_mm();
@@ -123,16 +124,61 @@ SheetReport sheet_report(const Sheet& sheet, const TorchStage& stage, double den
   const std::vector<int> depths = depths_of(sheet, freed);
   for (std::size_t i = 0; i < freed.size(); ++i) {
     std::vector<SheetPart>& list = depths[i] % 2 == 0 ? report.parts : report.slugs;
-    list.push_back(part_of(freed[i], stage, density));
+    list.push_back(part_of(freed[i], freed_pieces, density));
   }
+  return report;
+}
+
+Json punch_json(const PunchTotals& punch) {
+  Json out;
+  out["hits"] = punch.hits;
+  out["nibbled_mm"] = rounded(punch.nibbled_mm);
+  out["regrips"] = punch.regrips;
+  Json stations = Json::array();
+  for (const StationUse& use : punch.stations) {
+    stations.push_back(
+        {{"station", use.station}, {"name", use.name}, {"shape", use.shape}, {"hits", use.hits}});
+  }
+  out["stations"] = std::move(stations);
+  return out;
+}
+
+std::string punch_text(const PunchTotals& punch) {
+  std::string out = fmt::format("sheet     {}", count_text(punch.hits, "hit"));
+  if (punch.nibbled_mm > 0) out += fmt::format(", {:.1f} mm nibbled", punch.nibbled_mm);
+  if (punch.regrips > 0) out += fmt::format(", {}", count_text(punch.regrips, "re-grip"));
+  out += '\n';
+  for (const StationUse& use : punch.stations) {
+    out += fmt::format("          station {:<3} {}, {}{}\n", use.station, use.shape,
+                       count_text(use.hits, "hit"),
+                       use.name.empty() ? "" : fmt::format(" ({})", use.name));
+  }
+  return out;
+}
+
+}  // namespace
+
+SheetReport sheet_report(const Sheet& sheet, const TorchStage& stage, double density) {
+  SheetReport report = report_of(sheet, stage.freed(), density);
+  report.cuts = stage.totals();
+  return report;
+}
+
+SheetReport sheet_report(const Sheet& sheet, const PunchStage& stage, double density) {
+  SheetReport report = report_of(sheet, stage.freed(), density);
+  report.punch = stage.totals();
   return report;
 }
 
 Json sheet_json(const SheetReport& report, const std::vector<std::string>& files) {
   Json out;
-  out["cut_mm"] = rounded(report.cuts.cut_mm);
-  out["pierces"] = report.cuts.pierces;
-  out["beam_s"] = rounded(report.cuts.beam_s);
+  if (report.punch) {
+    out["punch"] = punch_json(*report.punch);
+  } else {
+    out["cut_mm"] = rounded(report.cuts.cut_mm);
+    out["pierces"] = report.cuts.pierces;
+    out["beam_s"] = rounded(report.cuts.beam_s);
+  }
   out["thickness_mm"] = rounded(report.thickness_mm);
   out["density_kg_per_m3"] = rounded(report.density_kg_per_m3);
   out["blank_mm2"] = rounded(report.blank_mm2);
@@ -147,8 +193,10 @@ Json sheet_json(const SheetReport& report, const std::vector<std::string>& files
 
 std::string sheet_text(const SheetReport& report) {
   std::string out =
-      fmt::format("sheet     cut {:.1f} mm, {}, beam on for {:.1f} s\n", report.cuts.cut_mm,
-                  count_text(report.cuts.pierces, "pierce"), report.cuts.beam_s);
+      report.punch
+          ? punch_text(*report.punch)
+          : fmt::format("sheet     cut {:.1f} mm, {}, beam on for {:.1f} s\n", report.cuts.cut_mm,
+                        count_text(report.cuts.pierces, "pierce"), report.cuts.beam_s);
   out += fmt::format("          {}, {} ({:.1f} % of the blank); {}; {} left\n",
                      count_text(report.parts.size(), "part"), area_text(report.parts_mm2()),
                      100 * report.yield(), count_text(report.slugs.size(), "slug"),
@@ -156,9 +204,11 @@ std::string sheet_text(const SheetReport& report) {
   for (std::size_t i = 0; i < std::min(report.parts.size(), kPartsShown); ++i) {
     const SheetPart& part = report.parts[i];
     const Vec2 size = part.max_mm - part.min_mm;
-    out += fmt::format("          part {:<4} {}, {:.1f} x {:.1f} mm, {:.3f} kg, free at line {}\n",
-                       part.number, area_text(part.area_mm2), size.x, size.y, part.weight_kg,
-                       part.freed_by.line);
+    out += fmt::format("          part {:<4} {}, {:.1f} x {:.1f} mm, {:.3f} kg, free", part.number,
+                       area_text(part.area_mm2), size.x, size.y, part.weight_kg);
+    // A machine without a program is on no line.
+    if (part.freed_by.line > 0) out += fmt::format(" at line {}", part.freed_by.line);
+    out += '\n';
   }
   if (report.parts.size() > kPartsShown) {
     out += fmt::format("          and {} more\n", report.parts.size() - kPartsShown);

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "interp_bridge/motion.h"
 #include "stock/sheet/sheet.h"
+#include "twin/punch_stage.h"
 #include "twin/torch_stage.h"
 
 namespace kerf {
@@ -23,6 +25,7 @@ struct SheetPart {
 
 struct SheetReport {
   TorchTotals cuts;
+  std::optional<PunchTotals> punch;  ///< it was punched; `cuts` is nothing
   double thickness_mm = 0;
   double density_kg_per_m3 = 0;
   double blank_mm2 = 0;
@@ -40,9 +43,12 @@ struct SheetReport {
 /// Pieces smaller than a square millimetre are slivers of rounding, and neither part nor slug.
 /// O(tiles and corners), and O(n^2) box tests for n pieces.
 SheetReport sheet_report(const Sheet& sheet, const TorchStage& stage, double density_kg_per_m3);
+SheetReport sheet_report(const Sheet& sheet, const PunchStage& stage, double density_kg_per_m3);
 
 /// cut_mm, pierces, beam_s, thickness_mm, density_kg_per_m3, blank_mm2, remaining_mm2, kerf_mm2,
-/// parts_mm2, yield, parts and slugs: number, area_mm2, bounds_mm, weight_kg, file, line.
+/// parts_mm2, yield, parts and slugs: number, area_mm2, bounds_mm, weight_kg, file, line. Of a
+/// sheet that was punched, instead of the first three, `punch`: hits, nibbled_mm, regrips,
+/// stations: each with station, name, shape, hits.
 nlohmann::ordered_json sheet_json(const SheetReport& report, const std::vector<std::string>& files);
 
 /// Lines for the page of text; the first kPartsShown parts.

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <utility>
 
 #include "stock/cutter/scan.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/outline_file.h"
+#include "stock/state_bytes.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "twin/blank_choice.h"
 
@@ -194,13 +196,27 @@ StockNeeds stock_needs(const ToolSources& tools) {
   return needs;
 }
 
+StockKind saved_kind(const std::string& path) {
+  std::array<char, 128> head{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  const auto model = model_of_state({head.data(), static_cast<std::size_t>(file.gcount())}, path);
+  const StockModelRow* const row = model ? find_stock_model(model.value()) : nullptr;
+  return row ? row->kind : StockKind::kZmap;
+}
+
+bool is_sheet(const Blank& blank) {
+  return blank.sheet ||
+         (!blank.state_file.empty() && saved_kind(blank.state_file) == StockKind::kSheet);
+}
+
 std::string misfit(const StockSettings& settings, const Blank& blank) {
   const bool sheet_wanted = settings.kind == StockKind::kSheet;
   if (blank.sheet && settings.additive) {
     return "--additive: nothing is added to a sheet; a box can be added to";
   }
   if (blank.sheet && settings.cell_mm > 0) return "--cell: a sheet has no cells; leave it out";
-  if (!settings.kind || sheet_wanted == blank.sheet.has_value()) return {};
+  if (!settings.kind || sheet_wanted == is_sheet(blank)) return {};
   return fmt::format(
       "--model {}: the blank is {}a sheet ({}); {}", stock_model(*settings.kind).name,
       sheet_wanted ? "not " : "", describe(blank),

@@ -80,6 +80,10 @@ class TiltWatch {
 
 /// What the tools that are known before the program runs ask for.
 StockNeeds stock_needs(const ToolSources& tools);
+/// Of a saved workpiece, by the head of its file; of one that has none, loading says what is wrong.
+StockKind saved_kind(const std::string& path);
+/// Of sheet metal, new or saved. Reads the head of a saved one.
+bool is_sheet(const Blank& blank);
 /// Why the model that was asked for is not for this blank; empty: it is, or none was asked for.
 std::string misfit(const StockSettings& settings, const Blank& blank);
 /// What only the octree holds of a blank; empty: nothing.

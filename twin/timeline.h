@@ -21,6 +21,7 @@ struct TimelineOptions {
   PlannerOptions planner;     ///< with_path: the steps carry the planned path
   /// How the machine turns the tool or the workpiece; null: A, B and C turn nothing.
   std::shared_ptr<const MachineKinematics> kinematics;
+  bool kinematics_known = false;  ///< those of the user's machine; false: assumed
   /// By the letter of the axis that the joint moves; no limits without an INI.
   std::array<AxisLimits, kAxisCount> joint_limits{};
 };

@@ -30,6 +30,18 @@ bool is_dark_on_purpose(const Motion& m) {
   return m.torch.overburn || !m.torch.torch_enabled() || torch_tool(m.torch) != TorchTool::kNone;
 }
 
+/// A machine without a program is on no line.
+std::string free_since(const FreedPiece& piece) {
+  return piece.source.line > 0 ? fmt::format("free since line {}", piece.source.line)
+                               : std::string("free");
+}
+
+/// QtPlasmaC's machine lifts a torch that M5 has put out. One that output 3 holds off stays down,
+/// and goes on at cut height.
+bool stays_down(const Motion& m) {
+  return (m.torch.spindles_on & 1) != 0 && !m.torch.torch_enabled();
+}
+
 }  // namespace
 
 bool TorchChecks::is_low(const Vec3& place) const {
@@ -61,8 +73,8 @@ void TorchChecks::pierces(const Motion& m, const TimedStep& step) {
   crossed_.insert(piece->number);
   Finding out = finding(FindingId::kPierceInPart, m, step, m.from_mm);
   out.severity = Severity::kError;
-  out.text = fmt::format("pierces piece {}, which is free since line {} and may have moved",
-                         piece->number, piece->source.line);
+  out.text = fmt::format("pierces piece {}, which is {} and may have moved", piece->number,
+                         free_since(*piece));
   log_.add(std::move(out));
 }
 
@@ -75,9 +87,9 @@ void TorchChecks::check_way(const Motion& m, const TimedStep& step, bool burning
     const FreedPiece* const piece = freed_at(place);
     if (!piece || !crossed_.insert(piece->number).second) continue;
     Finding out = finding(FindingId::kCrossesPart, m, step, place);
-    out.text = fmt::format("{} piece {}, which is free since line {} and may have tipped",
+    out.text = fmt::format("{} piece {}, which is {} and may have tipped",
                            burning ? "cuts into" : "the head travels at cut height over",
-                           piece->number, piece->source.line);
+                           piece->number, free_since(*piece));
     if (burning) {
       log_.add(std::move(out));
     } else {
@@ -110,7 +122,8 @@ void TorchChecks::travels(const Motion& m, const TimedStep& step) {
   const bool feeds = is_feed(m);
   if (!m.start_known || !cut_z_mm_ || !moves_sideways(m)) return;
   if (!feeds && m.kind != MotionKind::kTraverse) return;
-  if (!freed_.empty() && !options_.is_qtplasmac) check_way(m, step, false);
+  const bool may_be_low = !options_.is_qtplasmac || stays_down(m);
+  if (!freed_.empty() && may_be_low) check_way(m, step, false);
   if (!feeds || (options_.is_qtplasmac && is_dark_on_purpose(m))) return;
   const int points = dark_.moves > 0 ? 1 : points_of(m);
   for (int i = 0; i <= points; ++i) {

@@ -24,8 +24,8 @@ struct FreedPiece {
 
 /// What the checks have to know of the machine.
 struct TorchCheckOptions {
-  /// Between cuts that machine's torch is up, whatever the program says; it has other tools as
-  /// well.
+  /// After M5 that machine's torch is up, whatever the program says (held off by output 3 it stays
+  /// down); it has other tools as well.
   bool is_qtplasmac = false;
   double slats_mm = 0;  ///< from one slat of the table to the next; 0: not known
 };

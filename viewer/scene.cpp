@@ -100,6 +100,8 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
     older->path.clear();
     older->path_chunk_count.reset();
     older->findings.reset();
+    older->heights.reset();
+    older->cut_moves.reset();
   }
   older->patches.insert(older->patches.end(), newer.patches.begin(), newer.patches.end());
   keep_last(&older->patches, [](const MeshPatch& patch) { return patch.tile; });
@@ -111,6 +113,9 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
   }
   older->path.insert(older->path.end(), newer.path.begin(), newer.path.end());
   keep_last(&older->path, [](const PathChunk& chunk) { return chunk.index; });
+  replace_if(&older->heights, std::move(newer.heights));
+  replace_if(&older->cut_moves, std::move(newer.cut_moves));
+  replace_if(&older->road, std::move(newer.road));
   replace_if(&older->setup, std::move(newer.setup));
   replace_if(&older->tool_shape, std::move(newer.tool_shape));
   replace_if(&older->findings, std::move(newer.findings));

@@ -17,6 +17,7 @@
 
 #include "base/diagnostic.h"
 #include "base/geometry.h"
+#include "base/height_grid.h"
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 
@@ -190,6 +191,40 @@ struct CutColors {
   std::vector<ColorLegendEntry> legend;
 };
 
+/// How the workpiece gets into the picture. All three draw it at the same place; tool, path, marks
+/// and machine are drawn over and into each in the same way.
+enum class DrawRoad {
+  kMesh,     ///< SceneUpdate::patches: with colours, section and deviations.
+  kRaycast,  ///< SceneUpdate::heights, by rays on the CPU.
+  kCsg,      ///< SceneUpdate::cut_moves, subtracted from the blank in the picture.
+};
+
+/// What a road cannot do with the workpiece there is.
+enum class RoadLimit {
+  kNone,
+  kNoHeights,  ///< Rays need one height a cell; RoadAnswer::detail names the model.
+  kCompared,   ///< Deviations from a design part are drawn by mesh alone.
+  kNoBox,      ///< CSG begins with a full Z-map; RoadAnswer::detail says what the blank is.
+  kTilted,     ///< CSG cuts with upright tools, and here tools or workpiece turn.
+  kTool,       ///< A tool cannot be subtracted; RoadAnswer::detail says which and why.
+  kWatched,    ///< CSG has no moves of a machine that is watched.
+  kNewest,     ///< CSG shows the newest moves alone: those since RoadAnswer::line.
+};
+
+/// The answer to a RoadCommand, and again whenever it becomes another one.
+struct RoadAnswer {
+  DrawRoad road = DrawRoad::kMesh;  ///< That was asked for.
+  RoadLimit limit = RoadLimit::kNone;
+  std::string detail;
+  int line = 0;
+  /// Else the values for this road do not come, those for the mesh do.
+  bool is_drawn() const { return limit == RoadLimit::kNone || limit == RoadLimit::kNewest; }
+  bool operator==(const RoadAnswer&) const = default;
+};
+
+/// The blank and the moves that cut it (viewer/csg/cut_moves.h).
+struct CutMoves;
+
 /// Part of a machine that moves as one: table, saddle, head.
 struct MachineLink {
   std::string name;
@@ -246,6 +281,9 @@ struct SceneUpdate {
   /// Of a tile the last one that comes counts, whatever its version: after a jump back it may be a
   /// version that was shown before. A patch without triangles empties its tile.
   std::vector<std::shared_ptr<const MeshPatch>> patches;
+  std::shared_ptr<const HeightGrid> heights;      ///< Of the whole workpiece.
+  std::shared_ptr<const CutMoves> cut_moves;      ///< All that are shown.
+  std::shared_ptr<const RoadAnswer> road;         ///< The answer to a RoadCommand.
   std::optional<std::uint32_t> path_chunk_count;  ///< Chunks from this number on are dropped.
   std::vector<std::shared_ptr<const PathChunk>> path;
   std::shared_ptr<const SceneSetup> setup;

@@ -64,6 +64,11 @@ struct ColorCommand {
   int first_line = 0;  ///< Of the main program, for kLineRange.
   int last_line = 0;
 };
+/// By which road the workpiece is to be drawn: its values are wanted from now on. The answer is
+/// SceneUpdate::road.
+struct RoadCommand {
+  DrawRoad road = DrawRoad::kMesh;
+};
 /// Who cut this point of the surface last.
 struct PickCommand {
   Vec3 point_mm{0.0};
@@ -74,7 +79,7 @@ using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
                  SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
                  NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
-                 DetailCommand, ColorCommand, PickCommand, CloseCommand>;
+                 DetailCommand, ColorCommand, RoadCommand, PickCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -166,6 +166,7 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
       stand(m, 0);
       break;
     case MotionKind::kProgramEnd:
+    case MotionKind::kSignal:
       stand(m, 0);
       break;
     default:

@@ -12,11 +12,13 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/geometry.h"
 #include "base/result.h"
 
 namespace kerf {
@@ -45,6 +47,8 @@ struct ToolSection {
 /// Immutable after construction.
 class Cutter {
  public:
+  using Footprint = std::vector<std::vector<Vec2>>;
+
   /// Checks the pieces: finite, a connected chain that starts at radius 0 and z = 0 is the lowest
   /// point, radius not decreasing, last radius above 0. Vertical steps are allowed (a line with r0
   /// == r1). The message names the piece.
@@ -82,6 +86,12 @@ class Cutter {
   void set_flute_length_mm(double length) { flute_length_mm_ = length; }
   std::optional<double> shank_diameter_mm() const { return shank_diameter_mm_; }
   void set_shank_diameter_mm(double d) { shank_diameter_mm_ = d; }
+  /// Of a punch: its outline about the axis at angle 0, closed chains of points, even-odd, mm, as
+  /// it goes straight through (Sheet::cut() says how moves place it). Null: a cutter that turns.
+  const Footprint* footprint() const { return footprint_.get(); }
+  void set_footprint(Footprint rings) {
+    footprint_ = std::make_shared<const Footprint>(std::move(rings));
+  }
   std::span<const ToolSection> holder() const { return holder_; }
   void set_holder(std::vector<ToolSection> holder) { holder_ = std::move(holder); }
   void set_spec(std::string spec) { spec_ = std::move(spec); }
@@ -95,6 +105,7 @@ class Cutter {
   std::optional<double> flute_length_mm_;
   std::optional<double> shank_diameter_mm_;
   std::vector<ToolSection> holder_;
+  std::shared_ptr<const Footprint> footprint_;
 };
 
 }  // namespace kerf

@@ -17,6 +17,11 @@ constexpr double kSameCorner = 1e-3;
 /// Chords of a spiral keep within this share of the tolerance; their round ends have the rest.
 constexpr double kChordShare = 0.25;
 constexpr int kMaxChords = 100'000;
+/// Circles as polygons keep the order of their radii, and round ends their side of the way, if the
+/// tolerance is less than this part of the kerf's radius.
+constexpr double kPlainTolerance = 0.2;
+/// Ends of an arc that are so far apart, seen from its centre, do not meet.
+constexpr double kPlainGap_rad = 0.1;
 
 Vec2 direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -25,7 +30,10 @@ class Builder {
   Builder(double radius_mm, double tolerance_mm, CircleTables& tables)
       : radius_(radius_mm), tolerance_(tolerance_mm), tables_(tables) {}
 
-  void disc(const Vec2& center) { circle(center, radius_, false); }
+  void disc(const Vec2& center) {
+    circle(center, radius_, false);
+    is_plain_ = kerf_.rings.size() == 1 && resolves(radius_);
+  }
 
   void capsule(const Vec2& from, const Vec2& to) {
     const Vec2 way = to - from;
@@ -35,6 +43,7 @@ class Builder {
     arc(to, radius_, heading - kPi / 2, heading + kPi / 2);
     arc(from, radius_, heading + kPi / 2, heading + 3 * kPi / 2);
     end();
+    is_plain_ = kerf_.rings.size() == 1 && resolves(radius_);
   }
 
   /// From angle a0 counter-clockwise to a1 > a0.
@@ -43,7 +52,9 @@ class Builder {
     const double sweep = a1 - a0;
     if (sweep >= 2 * kPi * (1 - 1e-12)) {
       circle(center, arc_radius + radius_, false);
-      if (arc_radius - radius_ > kNoWay_mm) circle(center, arc_radius - radius_, true);
+      const double inner = arc_radius - radius_;
+      if (inner > kNoWay_mm) circle(center, inner, true);
+      is_plain_ = resolves(radius_) && (inner <= kNoWay_mm || resolves(inner));
       return;
     }
     const Vec2 first = center + arc_radius * direction(a0);
@@ -55,6 +66,9 @@ class Builder {
       arc(last, radius_, a1, a1 + kPi);
       arc(center, arc_radius - radius_, a1, a0);
       arc(first, radius_, a0 - kPi, a0);
+      const double ends = 2 * std::asin(radius_ / arc_radius);
+      is_plain_ = sweep + ends < 2 * kPi - kPlainGap_rad && resolves(radius_) &&
+                  resolves(arc_radius - radius_);
     } else {
       // Where the circles of both ends meet: on the bisector, opposite to the arc's middle.
       const double half = sweep / 2;
@@ -72,6 +86,7 @@ class Builder {
 
   Kerf take() {
     for (const Ring& ring : kerf_.rings) kerf_.box.extend(bounds_of(ring));
+    kerf_.plain = is_plain_;
     return std::move(kerf_);
   }
 
@@ -84,6 +99,7 @@ class Builder {
     return positive > 1.5 * kPi ? 0 : positive;  // just below a full turn: none, rounded
   }
 
+  bool resolves(double radius_mm) const { return tolerance_ < kPlainTolerance * radius_mm; }
   void begin() { ring_.clear(); }
   void end() {
     while (ring_.size() > 1 && ring_.front() == ring_.back()) ring_.pop_back();
@@ -132,6 +148,7 @@ class Builder {
   CircleTables& tables_;
   Ring ring_;
   Kerf kerf_;
+  bool is_plain_ = false;  // of the ring that was added last, if it is the only one
 };
 
 bool usable(const Vec3& p) {

@@ -18,11 +18,12 @@
 
 namespace kerf::sheet {
 
-/// Rings that wind round every point of the kerf at least once, and round no other. They may cross
-/// themselves and each other.
+/// Rings that wind round every point of the kerf at least once, and round no other.
 struct Kerf {
   Rings rings;
   Rect box;
+  /// They cross neither themselves nor each other, and wind round no point twice. If not, they may.
+  bool plain = false;
 };
 
 /// Corners of regular polygons on the unit circle, kept for the next time. Not for several threads.

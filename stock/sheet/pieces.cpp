@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <unordered_map>
 
 namespace kerf::sheet {
 namespace {
@@ -15,6 +14,47 @@ bool reaches_out(const Rect& inner, const Rect& outer) {
          inner.max_y >= outer.max_y;
 }
 
+/// Numbers by key, in one piece of memory.
+class FlatTable {
+ public:
+  /// The number that the key has; `fresh` if it had none so far.
+  std::uint32_t find_or_add(std::uint64_t key, std::uint32_t fresh, bool& is_new) {
+    if (2 * (count_ + 1) > entries_.size()) grow();
+    Entry& entry = entries_[place(key)];
+    is_new = entry.key == kFree;
+    if (is_new) {
+      entry = {key, fresh};
+      ++count_;
+    }
+    return entry.number;
+  }
+
+ private:
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};
+  struct Entry {
+    std::uint64_t key = kFree;
+    std::uint32_t number = 0;
+  };
+
+  std::size_t place(std::uint64_t key) const {
+    const std::size_t mask = entries_.size() - 1;
+    // Keys are pairs of small numbers: multiplied they spread over the upper half.
+    std::size_t at = (key * 0x9e37'79b9'7f4a'7c15u) >> 32 & mask;
+    while (entries_[at].key != kFree && entries_[at].key != key) at = (at + 1) & mask;
+    return at;
+  }
+  void grow() {
+    std::vector<Entry> former(std::max<std::size_t>(64, 2 * entries_.size()));
+    former.swap(entries_);
+    for (const Entry& entry : former) {
+      if (entry.key != kFree) entries_[place(entry.key)] = entry;
+    }
+  }
+
+  std::vector<Entry> entries_;
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 /// Several groups of nodes that grow until they meet or are complete.
@@ -23,8 +63,9 @@ class PieceLabels::Search {
   Search(const SheetGrid& grid, std::span<const Suspect> suspects) : grid_(grid) {
     for (const Suspect& suspect : suspects) {
       const auto group = static_cast<std::uint32_t>(groups_.size());
-      if (!group_of_.emplace(key(suspect.node), group).second) continue;
-      groups_.push_back({group, {suspect.node}, 0});
+      bool is_new = false;
+      group_of_.find_or_add(key(suspect.node), group, is_new);
+      if (is_new) groups_.push_back({group, {suspect.node}, 0});
     }
     open_ = groups_.size();
   }
@@ -41,7 +82,7 @@ class PieceLabels::Search {
         if (group.next == group.nodes.size()) {
           group.done = true;
           --open_;
-          complete.push_back(group.nodes);
+          complete.push_back(std::move(group.nodes));
         } else {
           expand(growing[i]);
         }
@@ -70,13 +111,14 @@ class PieceLabels::Search {
   void expand(std::uint32_t g) {
     const Node node = groups_[g].nodes[groups_[g].next++];
     neighbours_.clear();
-    append_neighbours(grid_, node.tile, node.ring, grid_.tile(node.tile).runs, neighbours_);
+    append_neighbours(grid_, node.tile, grid_.tile(node.tile), node.ring, neighbours_);
     for (const Node& other : neighbours_) {
-      const auto [at, is_new] = group_of_.emplace(key(other), g);
+      bool is_new = false;
+      const std::uint32_t group = group_of_.find_or_add(key(other), g, is_new);
       if (is_new) {
         groups_[root(g)].nodes.push_back(other);
       } else {
-        join(root(g), root(at->second));
+        join(root(g), root(group));
       }
     }
   }
@@ -98,7 +140,7 @@ class PieceLabels::Search {
 
   const SheetGrid& grid_;
   std::vector<Group> groups_;
-  std::unordered_map<std::uint64_t, std::uint32_t> group_of_;
+  FlatTable group_of_;
   std::vector<Node> neighbours_;
   std::size_t open_ = 0;
 };
@@ -121,7 +163,7 @@ PieceLabels::PieceLabels(SheetGrid& grid) {
         stack.pop_back();
         record.box.extend(grid.tile(node.tile).rings[node.ring]->box);
         neighbours.clear();
-        append_neighbours(grid, node.tile, node.ring, grid.tile(node.tile).runs, neighbours);
+        append_neighbours(grid, node.tile, grid.tile(node.tile), node.ring, neighbours);
         for (const Node& other : neighbours) {
           if (pieces[other.tile][other.ring] != kNoPiece) continue;
           pieces[other.tile][other.ring] = piece;
@@ -133,16 +175,18 @@ PieceLabels::PieceLabels(SheetGrid& grid) {
   for (std::size_t t = 0; t < pieces.size(); ++t) grid.set_pieces(t, std::move(pieces[t]));
 }
 
-void PieceLabels::append_neighbours(const SheetGrid& grid, std::size_t tile, std::uint32_t ring,
-                                    std::span<const BorderRun> runs, std::vector<Node>& found) {
-  for (const BorderRun& run : runs) {
+void PieceLabels::append_neighbours(const SheetGrid& grid, std::size_t index, const Tile& tile,
+                                    std::uint32_t ring, std::vector<Node>& found) {
+  for (const BorderRun& run : tile.runs) {
     if (run.ring != ring) continue;
-    const std::int64_t next = grid.neighbour(tile, run.side);
+    const std::int64_t next = grid.neighbour(index, run.side);
     if (next < 0) continue;
     const auto opposite = static_cast<BorderSide>((run.side + 2) % 4);
-    for (const BorderRun& other : grid.tile(static_cast<std::size_t>(next)).runs) {
-      if (other.side == opposite && bridges(run, other))
-        found.push_back({static_cast<std::uint32_t>(next), other.ring});
+    const std::span<const BorderRun> others =
+        runs_of(grid.tile(static_cast<std::size_t>(next)), opposite);
+    for (const BorderRun& other : others) {
+      if (other.low >= run.high) break;
+      if (bridges(run, other)) found.push_back({static_cast<std::uint32_t>(next), other.ring});
     }
   }
 }
@@ -161,7 +205,7 @@ void PieceLabels::update(SheetGrid& grid, std::span<const TileChange> changes,
     for (const std::uint32_t ring : change.gone) {
       if (!before.rings[ring]->is_outer()) continue;
       neighbours.clear();
-      append_neighbours(grid, change.tile, ring, before.runs, neighbours);
+      append_neighbours(grid, change.tile, before, ring, neighbours);
       for (const Node& node : neighbours) suspects_.push_back({before.pieces[ring], node});
     }
   }
@@ -180,7 +224,7 @@ void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Su
   if (suspects.size() < 2) return;
   bool reaches = false;
   const std::size_t first = records_.size();
-  for (const std::vector<Node>& nodes : Search(grid, suspects).run()) {
+  for (std::vector<Node>& nodes : Search(grid, suspects).run()) {
     const auto fresh = static_cast<std::uint32_t>(records_.size());
     records_.push_back({fresh, move_id, relabel(grid, nodes, fresh)});
     reaches |= reaches_out(records_.back().box, records_[piece].box);
@@ -189,7 +233,7 @@ void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Su
   // What has the largest box goes on as the piece that it was: a frame round a part cut out of it,
   // as well as the larger half of a sheet that is cut in two.
   PieceRecord& rest = records_[piece];
-  rest.box = box_of_piece(grid, piece);
+  rest.box = box_of_piece(grid, piece, rest.box);
   PieceRecord* largest = &rest;
   for (std::size_t i = first; i < records_.size(); ++i) {
     if (box_area(records_[i].box) > box_area(largest->box)) largest = &records_[i];
@@ -198,25 +242,46 @@ void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Su
   std::swap(rest.number, largest->number);
 }
 
-Rect PieceLabels::relabel(SheetGrid& grid, std::span<const Node> nodes, std::uint32_t piece) {
+Rect PieceLabels::relabel(SheetGrid& grid, std::vector<Node>& nodes, std::uint32_t piece) {
   Rect box;
-  for (const Node& node : nodes) {
-    box.extend(grid.tile(node.tile).rings[node.ring]->box);
-    std::vector<std::uint32_t> pieces = grid.tile(node.tile).pieces;
-    pieces[node.ring] = piece;
-    grid.set_pieces(node.tile, std::move(pieces));
+  std::sort(nodes.begin(), nodes.end());  // each tile once
+  for (std::size_t i = 0; i < nodes.size();) {
+    const std::uint32_t index = nodes[i].tile;
+    const Tile& tile = grid.tile(index);
+    std::vector<std::uint32_t> pieces = tile.pieces;
+    for (; i < nodes.size() && nodes[i].tile == index; ++i) {
+      box.extend(tile.rings[nodes[i].ring]->box);
+      pieces[nodes[i].ring] = piece;
+    }
+    grid.set_pieces(index, std::move(pieces));
   }
   return box;
 }
 
-Rect PieceLabels::box_of_piece(const SheetGrid& grid, std::uint32_t piece) {
+/// From each side of `within` inward, up to the first row or column of tiles with some of it.
+Rect PieceLabels::box_of_piece(const SheetGrid& grid, std::uint32_t piece, const Rect& within) {
+  const SheetGrid::TileRange all = grid.tiles_meeting(within);
   Rect box;
-  for (std::size_t t = 0; t < grid.tile_count(); ++t) {
-    const Tile& tile = grid.tile(t);
-    for (std::size_t ring = 0; ring < tile.rings.size(); ++ring) {
-      if (tile.pieces[ring] == piece) box.extend(tile.rings[ring]->box);
+  const auto add = [&](const SheetGrid::TileRange& range) {
+    bool found = false;
+    for (int row = range.first_row; row <= range.last_row; ++row) {
+      for (int column = range.first_column; column <= range.last_column; ++column) {
+        const Tile& tile = grid.tile(grid.index_of(column, row));
+        for (std::size_t ring = 0; ring < tile.rings.size(); ++ring) {
+          if (tile.pieces[ring] != piece) continue;
+          box.extend(tile.rings[ring]->box);
+          found = true;
+        }
+      }
     }
-  }
+    return found;
+  };
+  const auto add_column = [&](int i) { return add({i, i, all.first_row, all.last_row}); };
+  const auto add_row = [&](int i) { return add({all.first_column, all.last_column, i, i}); };
+  for (int i = all.first_column; i <= all.last_column && !add_column(i);) ++i;
+  for (int i = all.last_column; i >= all.first_column && !add_column(i);) --i;
+  for (int i = all.first_row; i <= all.last_row && !add_row(i);) ++i;
+  for (int i = all.last_row; i >= all.first_row && !add_row(i);) --i;
   return box;
 }
 

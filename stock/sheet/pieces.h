@@ -51,12 +51,12 @@ class PieceLabels {
   };
   class Search;
 
-  static void append_neighbours(const SheetGrid& grid, std::size_t tile, std::uint32_t ring,
-                                std::span<const BorderRun> runs, std::vector<Node>& found);
+  static void append_neighbours(const SheetGrid& grid, std::size_t index, const Tile& tile,
+                                std::uint32_t ring, std::vector<Node>& found);
   void check(SheetGrid& grid, std::uint32_t piece, std::span<const Suspect> suspects,
              std::uint64_t move_id);
-  static Rect relabel(SheetGrid& grid, std::span<const Node> nodes, std::uint32_t piece);
-  static Rect box_of_piece(const SheetGrid& grid, std::uint32_t piece);
+  static Rect relabel(SheetGrid& grid, std::vector<Node>& nodes, std::uint32_t piece);
+  static Rect box_of_piece(const SheetGrid& grid, std::uint32_t piece, const Rect& within);
 
   std::vector<PieceRecord> records_;
   std::vector<Suspect> suspects_;  // kept for its memory

@@ -27,6 +27,9 @@ using Rings = ClipperLib::Paths;
 /// span) stays below 2^30 units, where the clipping library computes with 64 bits.
 inline constexpr double kUnitsPerMm = 1e4;
 inline constexpr double kMaxCoordinate_mm = 1e5;
+/// What a sheet may be.
+inline constexpr double kMinThickness_mm = 0.001, kMaxThickness_mm = 1000;
+inline constexpr double kMinTolerance_mm = 0.0001, kMaxTolerance_mm = 1;
 
 /// Half a unit and more is rounded away from zero, so mirrored drawings stay mirrored. The caller
 /// keeps |mm| below 1e13.
@@ -63,6 +66,11 @@ std::int64_t twice_area(const Ring& ring);
 /// Positive if c lies to the left of the line from a to b. Exact for points less than 200 m apart.
 inline std::int64_t turn(const Point& a, const Point& b, const Point& c) {
   return static_cast<std::int64_t>((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
+}
+
+inline std::int64_t twice_area_of(const Rect& rect) {
+  return 2 * static_cast<std::int64_t>(rect.max_x - rect.min_x) *
+         static_cast<std::int64_t>(rect.max_y - rect.min_y);
 }
 
 enum class Side { kOutside, kInside, kBorder };

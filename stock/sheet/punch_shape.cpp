@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "stock/cutter/scan.h"
-#include "stock/sheet/outline_curves.h"
+#include "stock/sheet/kerf_contour.h"
 #include "stock/sheet/outline_file.h"
 
 namespace kerf {
@@ -35,13 +35,32 @@ SheetOutline rectangle(double a, double b) {
   return rectangle_outline({-a / 2, -b / 2}, {a / 2, b / 2});
 }
 
+Vec2 direction(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+
+/// Both ends lie on the circle, where straight edges go on; the corners between them so far outside
+/// that the polygon has the area of the half disc: with n triangles of angle a,
+///     sin a ((n - 2) c^2 + 2 c r) / 2 = pi r^2 / 2
+void append_half_circle(const Vec2& center, double r, double from_rad, double tolerance_mm,
+                        std::vector<Vec2>& ring) {
+  const int n = sheet::CirclePolygon::within(r, tolerance_mm).count / 2;
+  const double a = kPi / n;
+  const double c = r * (std::sqrt(1 + (n - 2) * kPi / std::sin(a)) - 1) / (n - 2);
+  for (int i = 0; i <= n; ++i) {
+    ring.push_back(center + (i == 0 || i == n ? r : c) * direction(from_rad + i * a));
+  }
+}
+
 Result<SheetOutline> parse_round(const Fields& fields, double tolerance_mm) {
   const Done count = check_count(fields, 2, "round:D");
   if (!count) return Error{count.error()};
   const Result<double> d = size_of("diameter D", fields[1]);
   if (!d) return Error{d.error()};
+  const auto polygon = sheet::CirclePolygon::within(*d / 2, tolerance_mm);
   SheetOutline shape;
-  sheet::append_arc({0, 0}, *d / 2, 0, 2 * kPi, tolerance_mm, shape.rings.emplace_back());
+  std::vector<Vec2>& ring = shape.rings.emplace_back();
+  for (int i = 0; i < polygon.count; ++i) {
+    ring.push_back(polygon.corner_mm * direction(2 * kPi * i / polygon.count));
+  }
   return shape;
 }
 
@@ -69,8 +88,7 @@ Result<SheetOutline> parse_two_edges(const Fields& fields, bool round, double to
   for (const double side : {0.0, kPi}) {
     const Vec2 center = side == 0 ? end : -end;
     const double from = turned + side - kPi / 2;
-    ring.push_back(center + radius * Vec2(std::cos(from), std::sin(from)));
-    sheet::append_arc(center, radius, from, kPi, tolerance_mm, ring);
+    append_half_circle(center, radius, from, tolerance_mm, ring);
   }
   return shape;
 }

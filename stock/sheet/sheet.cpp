@@ -9,17 +9,16 @@
 
 #include "stock/cutter/scan.h"
 #include "stock/sheet/pieces.h"
+#include "stock/sheet/punch_hits.h"
 #include "stock/sheet/sheet_border.h"
 #include "stock/sheet/sheet_contact.h"
 #include "stock/sheet/sheet_mesh.h"
+#include "stock/sheet/sheet_state.h"
+#include "stock/state_bytes.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kMinThickness_mm = 0.001;
-constexpr double kMaxThickness_mm = 1000;
-constexpr double kMinTolerance_mm = 0.0001;
-constexpr double kMaxTolerance_mm = 1;
 /// Beyond it, units do not fit into 64 bits.
 constexpr double kMaxPunchCoordinate_mm = 1e13;
 
@@ -28,7 +27,7 @@ constexpr std::size_t kUsualMoves = 12000;
 /// Best for few and for many moves (bench_sheet): tiles cost little while they are whole, and an
 /// operation costs what the corners in its tile do.
 constexpr double kTilesPerMove = 0.35;
-constexpr double kMinTiles = 64, kMaxTiles = 65536;
+constexpr double kMinTiles = 64, kMaxTiles = sheet::SheetGrid::kMaxTilesEachWay;
 /// Narrower tiles are crossed by every move.
 constexpr double kMinTileEdge_mm = 5;
 
@@ -93,13 +92,13 @@ Done check_range(std::string_view name, double value, double low, double high) {
 }  // namespace
 
 struct Sheet::Impl {
-  Impl(sheet::SheetGrid uncut, const SheetOptions& options)
-      : grid(std::move(uncut)),
+  explicit Impl(sheet::SavedSheet sheet)
+      : grid(std::move(sheet.grid)),
         labels(grid),
-        bottom_mm(options.bottom_mm),
-        top_mm(options.top_mm),
-        tolerance_mm(options.arc_tolerance_mm),
-        blank_area2(grid.area2()) {}
+        bottom_mm(sheet.bottom_mm),
+        top_mm(sheet.top_mm),
+        tolerance_mm(sheet.arc_tolerance_mm),
+        blank_area2(sheet.blank_area2) {}
 
   CutReport subtract(const sheet::Kerf& kerf, std::uint64_t id) {
     const std::int64_t before = grid.area2();
@@ -128,9 +127,9 @@ Result<std::unique_ptr<Sheet>> Sheet::create(const SheetOptions& options) {
   for (const Done& done : {check_range("sheet: bottom", options.bottom_mm,
                                        -sheet::kMaxCoordinate_mm, sheet::kMaxCoordinate_mm),
                            check_range("sheet: thickness", options.top_mm - options.bottom_mm,
-                                       kMinThickness_mm, kMaxThickness_mm),
+                                       sheet::kMinThickness_mm, sheet::kMaxThickness_mm),
                            check_range("sheet: arc tolerance", options.arc_tolerance_mm,
-                                       kMinTolerance_mm, kMaxTolerance_mm),
+                                       sheet::kMinTolerance_mm, sheet::kMaxTolerance_mm),
                            check_outline(options.outline)}) {
     if (!done) return Error{done.error()};
   }
@@ -138,8 +137,23 @@ Result<std::unique_ptr<Sheet>> Sheet::create(const SheetOptions& options) {
   sheet::Rect box;
   for (const sheet::Ring& ring : rings) box.extend(sheet::bounds_of(ring));
   const Tiling tiling = tiling_for(options, box);
-  sheet::SheetGrid grid(rings, tiling.columns, tiling.rows);
-  return std::unique_ptr<Sheet>(new Sheet(std::make_unique<Impl>(std::move(grid), options)));
+  sheet::SavedSheet uncut{sheet::SheetGrid(rings, tiling.columns, tiling.rows), options.bottom_mm,
+                          options.top_mm, options.arc_tolerance_mm};
+  uncut.blank_area2 = uncut.grid.area2();
+  return std::unique_ptr<Sheet>(new Sheet(std::make_unique<Impl>(std::move(uncut))));
+}
+
+Done Sheet::save(const std::string& path) const {
+  const Impl& m = *impl_;
+  return sheet::write_sheet(path, {m.grid, m.bottom_mm, m.top_mm, m.tolerance_mm, m.blank_area2});
+}
+
+Result<std::unique_ptr<Sheet>> Sheet::load(const std::string& path) {
+  const Result<std::string> bytes = read_state_bytes(path);
+  if (!bytes) return Error{bytes.error()};
+  Result<sheet::SavedSheet> saved = sheet::parse_sheet(*bytes, path);
+  if (!saved) return Error{saved.error()};
+  return std::unique_ptr<Sheet>(new Sheet(std::make_unique<Impl>(std::move(*saved))));
 }
 
 Sheet::Sheet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -147,10 +161,26 @@ Sheet::~Sheet() = default;
 
 void Sheet::cut(const Cutter& cutter, std::span<const CutMove> moves,
                 std::vector<CutReport>& reports) {
+  if (cutter.footprint() != nullptr) return strike(cutter, moves, reports);
   for (const CutMove& move : moves) {
     const sheet::Kerf kerf =
         sheet::kerf_of_move(move, cutter.radius_mm(), impl_->tolerance_mm, impl_->tables);
     reports.push_back(impl_->subtract(kerf, move.id));
+  }
+}
+
+/// Strokes of one id are one operation.
+void Sheet::strike(const Cutter& punch, std::span<const CutMove> strokes,
+                   std::vector<CutReport>& reports) {
+  for (std::size_t first = 0, next = 0; first < strokes.size(); first = next) {
+    const std::uint64_t id = strokes[first].id;
+    next = first + 1;
+    while (next < strokes.size() && next - first < sheet::kMostStrokes && strokes[next].id == id) {
+      ++next;
+    }
+    const std::span<const CutMove> together = strokes.subspan(first, next - first);
+    reports.push_back(impl_->subtract(sheet::kerf_of_strokes(punch, together), id));
+    for (std::size_t i = first + 1; i < next; ++i) reports.push_back({id, 0, 0});
   }
 }
 

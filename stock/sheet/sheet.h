@@ -56,6 +56,8 @@ class Sheet final : public StockModel {
 
   /// A move with a number that is not finite, or beyond 1e13 mm, removes nothing. depth_mm of a
   /// report is the thickness where something was removed.
+  /// Of a cutter with a footprint each move is a stroke (punch_hits.h); those of one id that follow
+  /// each other in a call are cut together, the first's report has what they remove.
   void cut(const Cutter& cutter, std::span<const CutMove> moves,
            std::vector<CutReport>& reports) override;
   void finish(std::vector<CutReport>& reports) override;
@@ -83,6 +85,12 @@ class Sheet final : public StockModel {
   SheetOutline outline_of(std::uint32_t piece) const;
   /// Of all of them.
   SheetOutline outline() const;
+
+  /// Saves and loads the sheet (stock/sheet/sheet_state.h). All that lies apart in a loaded one
+  /// counts as a blank of its own: who freed it is not told. A damaged file is an error that says
+  /// what is wrong with it.
+  Done save(const std::string& path) const override;
+  static Result<std::unique_ptr<Sheet>> load(const std::string& path);
 
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
@@ -119,6 +127,8 @@ class Sheet final : public StockModel {
  private:
   struct Impl;
   explicit Sheet(std::unique_ptr<Impl> impl);
+  void strike(const Cutter& punch, std::span<const CutMove> strokes,
+              std::vector<CutReport>& reports);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -73,6 +73,20 @@ SheetGrid::SheetGrid(const Rings& outline, int columns, int rows) : columns_(col
   }
 }
 
+SheetGrid::SheetGrid(const Rect& bounds, int columns, int rows)
+    : bounds_(bounds), columns_(columns), rows_(rows) {
+  const std::size_t count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  tiles_.assign(count, std::make_shared<const Tile>(make_tile({}, {})));
+}
+
+void SheetGrid::set_rings(std::size_t index, std::vector<Ring> rings) {
+  std::vector<TileRingPointer> shared;
+  shared.reserve(rings.size());
+  for (Ring& ring : rings) shared.push_back(make_tile_ring(std::move(ring)));
+  tiles_[index] = std::make_shared<const Tile>(make_tile(tile_rect(index), std::move(shared)));
+  area2_ += tiles_[index]->area2;
+}
+
 Rect SheetGrid::tile_rect(std::size_t index) const {
   const int column = static_cast<int>(index) % columns_, row = static_cast<int>(index) / columns_;
   return {part(bounds_.min_x, bounds_.max_x, column, columns_),
@@ -112,47 +126,65 @@ void SheetGrid::subtract(const Kerf& kerf, std::vector<TileChange>& changes) {
     band.extend(tile_rect(last));
     shorten_rings(kerf.rings, band, row_rings_);
     for (std::size_t index = first; index <= last; ++index) {
-      if (!tiles_[index]->rings.empty()) subtract_from_tile(index, row_rings_, changes);
+      if (!tiles_[index]->rings.empty()) subtract_from_tile(index, row_rings_, kerf.plain, changes);
     }
   }
 }
 
-void SheetGrid::subtract_from_tile(std::size_t index, const Rings& kerf,
+void SheetGrid::subtract_from_tile(std::size_t index, const Rings& kerf, bool plain,
                                    std::vector<TileChange>& changes) {
   const Rect rect = tile_rect(index);
   const Rect edges = shorten_rings(kerf, rect, shortened_);
   if (edges.empty() && winding_number(shortened_, {rect.min_x, rect.min_y}) == 0) return;
   const Tile& tile = *tiles_[index];
   subject_.clear();
-  std::vector<TileRingPointer> rings;
-  rings.reserve(tile.rings.size() + 2);
-  std::vector<std::uint32_t> pieces;
-  TileChange change;
+  subject_rings_.clear();
   for (std::uint32_t i = 0; i < tile.rings.size(); ++i) {
     const TileRing& ring = *tile.rings[i];
-    const bool meets = ring.box.meets(edges);
-    if (meets) subject_.push_back(ring.points);
-    if (meets || winding_number(shortened_, ring.points[0]) != 0) {
-      change.gone.push_back(i);
+    if (!ring.box.meets(edges)) continue;
+    subject_.push_back(&ring.points);
+    subject_rings_.push_back(i);
+  }
+  bool by_crossings = false;
+  if (!subject_.empty()) {
+    ++operations_;
+    by_crossings = plain && difference_.subtract(subject_, shortened_, rect);
+    if (!by_crossings) subtract_by_library();
+  }
+  std::vector<TileRingPointer> rings, again;
+  rings.reserve(tile.rings.size() + 4);
+  std::vector<std::uint32_t> pieces;
+  TileChange change;
+  for (std::uint32_t i = 0, at = 0; i < tile.rings.size(); ++i) {
+    const bool took_part = at < subject_rings_.size() && subject_rings_[at] == i;
+    bool stays = false;
+    if (took_part) {
+      stays = by_crossings && difference_.untouched()[at];
+      ++at;
+      // It may have lost a piece from its inside.
+      if (stays && difference_.has_fresh_outer()) {
+        again.push_back(tile.rings[i]);
+        stays = false;
+      }
     } else {
+      stays = winding_number(shortened_, tile.rings[i]->points[0]) == 0;
+    }
+    if (stays) {
       rings.push_back(tile.rings[i]);
       pieces.push_back(tile.pieces[i]);
+    } else {
+      change.gone.push_back(i);
     }
   }
-  if (change.gone.empty()) return;
   change.first_new = static_cast<std::uint32_t>(rings.size());
+  for (TileRingPointer& ring : again) rings.push_back(std::move(ring));
   if (!subject_.empty()) {
-    ClipperLib::Clipper clipper;
-    clipper.AddPaths(subject_, ClipperLib::ptSubject, true);
-    clipper.AddPaths(shortened_, ClipperLib::ptClip, true);
-    clipper.Execute(ClipperLib::ctDifference, result_, ClipperLib::pftNonZero,
-                    ClipperLib::pftNonZero);
-    ++operations_;
-    for (Ring& points : result_) {
+    for (Ring& points : by_crossings ? difference_.fresh() : result_) {
       TileRingPointer ring = make_tile_ring(std::move(points));
       if (std::abs(ring->area2) >= kMinArea2) rings.push_back(std::move(ring));
     }
   }
+  if (change.gone.empty() && rings.size() == tile.rings.size()) return;
   Tile next = make_tile(rect, std::move(rings));
   if (next.area2 >= tile.area2) return;  // met nothing, but for rounding
   std::copy(pieces.begin(), pieces.end(), next.pieces.begin());
@@ -161,6 +193,14 @@ void SheetGrid::subtract_from_tile(std::size_t index, const Rings& kerf,
       next.pieces[i] = tile.pieces[origin_of(next.rings[i]->points, tile, change.gone)];
   }
   replace(index, std::move(next), std::move(change), changes);
+}
+
+void SheetGrid::subtract_by_library() {
+  ClipperLib::Clipper clipper;
+  for (const Ring* const ring : subject_) clipper.AddPath(*ring, ClipperLib::ptSubject, true);
+  clipper.AddPaths(shortened_, ClipperLib::ptClip, true);
+  clipper.Execute(ClipperLib::ctDifference, result_, ClipperLib::pftNonZero,
+                  ClipperLib::pftNonZero);
 }
 
 void SheetGrid::replace(std::size_t index, Tile tile, TileChange change,

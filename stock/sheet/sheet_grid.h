@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "stock/sheet/difference.h"
 #include "stock/sheet/kerf_contour.h"
 #include "stock/sheet/tile.h"
 
@@ -24,6 +25,8 @@ class SheetGrid {
  public:
   /// `outline`: rings that wind once round the material, holes clockwise.
   SheetGrid(const Rings& outline, int columns, int rows);
+  /// Without material: set_rings() gives each tile its own. At least one unit for each tile.
+  SheetGrid(const Rect& bounds, int columns, int rows);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -50,6 +53,8 @@ class SheetGrid {
   /// operation. Leaves no specks: what has less than kMinArea2 goes with the kerf.
   void subtract(const Kerf& kerf, std::vector<TileChange>& changes);
 
+  /// Material of an empty tile: a region within it.
+  void set_rings(std::size_t index, std::vector<Ring> rings);
   /// Assigns pieces; the tile keeps its version, which tells of its rings alone.
   void set_pieces(std::size_t index, std::vector<std::uint32_t> pieces);
 
@@ -61,9 +66,12 @@ class SheetGrid {
 
   /// Twice one square micrometre: below what the grid of 0.1 um resolves as a shape.
   static constexpr std::int64_t kMinArea2 = 200;
+  static constexpr int kMaxTilesEachWay = 65536;
 
  private:
-  void subtract_from_tile(std::size_t index, const Rings& kerf, std::vector<TileChange>& changes);
+  void subtract_from_tile(std::size_t index, const Rings& kerf, bool plain,
+                          std::vector<TileChange>& changes);
+  void subtract_by_library();
   void replace(std::size_t index, Tile tile, TileChange change, std::vector<TileChange>& changes);
 
   Rect bounds_;
@@ -71,7 +79,11 @@ class SheetGrid {
   std::vector<TilePointer> tiles_;
   std::int64_t area2_ = 0;
   std::uint64_t operations_ = 0;
-  Rings row_rings_, shortened_, subject_, result_;  // kept for their memory
+  // Kept for their memory:
+  Rings row_rings_, shortened_, result_;
+  std::vector<const Ring*> subject_;
+  std::vector<std::uint32_t> subject_rings_;
+  Difference difference_;
 };
 
 }  // namespace kerf::sheet

@@ -75,6 +75,11 @@ Tile make_tile(const Rect& rect, std::vector<TileRingPointer> rings) {
     if (ring.is_outer() && touches_border(rect, ring.box))
       add_runs(rect, ring.points, i, tile.runs);
   }
+  std::sort(tile.runs.begin(), tile.runs.end(), [](const BorderRun& a, const BorderRun& b) {
+    return a.side != b.side ? a.side < b.side : a.low < b.low;
+  });
+  for (const BorderRun& run : tile.runs) ++tile.first_run[run.side + 1u];
+  for (std::size_t side = 0; side < 4; ++side) tile.first_run[side + 1] += tile.first_run[side];
   tile.version = next_version();
   return tile;
 }

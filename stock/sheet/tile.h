@@ -46,12 +46,19 @@ struct Tile {
   std::vector<TileRingPointer> rings;
   /// Of each ring: the piece of the sheet that it belongs to (pieces.h); kNoPiece for holes.
   std::vector<std::uint32_t> pieces;
+  /// By side, then along it. Those of a side: from first_run[side] to first_run[side + 1].
   std::vector<BorderRun> runs;
+  std::array<std::uint32_t, 5> first_run{};
   std::int64_t area2 = 0;
   /// Equal numbers mean equal rings, whichever copies of a sheet the tiles come from.
   std::uint64_t version = 0;
 };
 using TilePointer = std::shared_ptr<const Tile>;
+
+inline std::span<const BorderRun> runs_of(const Tile& tile, BorderSide side) {
+  return std::span(tile.runs).subspan(tile.first_run[side],
+                                      tile.first_run[side + 1u] - tile.first_run[side]);
+}
 
 /// Takes rings of a region within `rect`; all of no piece yet. Gives it a version of its own.
 Tile make_tile(const Rect& rect, std::vector<TileRingPointer> rings);

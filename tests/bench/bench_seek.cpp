@@ -1,12 +1,15 @@
 // bench_seek: how long a jump to a line of a program takes in the player.
 //
 //   bench_seek [--program FILE --stock SPEC --tool N=SHAPE] [--cell MM] [--seeks N] [--seed N]
+//   bench_seek --nest MOVES [--seeks N] [--seed N]
 //
-// Without a program: w2_finish_1m (workloads.h). Loads it, cuts it once to its end, and seeks to
-// random lines, to and fro. The workpieces of a sample of the places are first compared with those
-// of cutting from the start: wrong ones end the run. Then times, from the command until the state
-// of the new place is there: p50, p95, maximum; single blocks forward and back; finding the motion
-// that made a point of the surface. Ends with 1 if the p95 of the seeks exceeds kMost_ms.
+// Without a program: w2_finish_1m (workloads.h). --nest: a torch program of so many cuts, discs
+// with two holes each in a lattice (lead-in and full circle), from a sheet of 2000 mm x 1000 mm.
+// Loads it, cuts it once to its end, and seeks to random lines, to and fro. The workpieces of a
+// sample of the places are first compared with those of cutting from the start: wrong ones end the
+// run. Then times, from the command until the state of the new place is there: p50, p95, maximum;
+// single blocks forward and back; finding the motion that made a point of the surface. Ends with 1
+// if the p95 of the seeks exceeds kMost_ms.
 #include <fmt/format.h>
 #include <stdlib.h>
 
@@ -47,6 +50,7 @@ constexpr int kSteps = 200;
 struct Arguments {
   std::string program, stock, tool;
   double cell_mm = 0;
+  int nest_moves = 0;
   int seeks = 200;
   unsigned seed = 1;
 };
@@ -86,6 +90,28 @@ double p95(std::vector<double> ms) {
   return ms[ms.size() * 95 / 100];
 }
 
+/// The inner contours of a disc first, as nests are cut. One line a motion.
+std::string nest_of_discs(int moves) {
+  constexpr double kPitch_mm = 30;
+  constexpr int kColumns = 66;
+  std::string text = "G21 G90 G17 F3000 T1 M6\n";
+  for (int part = 0; moves > 0; ++part) {
+    const double x = (part % kColumns + 0.5) * kPitch_mm, y = (part / kColumns + 0.5) * kPitch_mm;
+    const auto contour = [&](double shift, double radius, double lead) {
+      if (moves <= 0) return;
+      text += fmt::format("G0 X{:.3f} Y{:.3f}\nM3 S1\nG1 X{:.3f}\n", x + shift + radius + lead, y,
+                          x + shift + radius);
+      if (moves > 1) text += fmt::format("G{} I{:.3f} J0\n", lead > 0 ? 2 : 3, -radius);
+      text += "M5\n";
+      moves -= 2;
+    };
+    contour(kPitch_mm * 0.2, kPitch_mm * 0.17, -2);
+    contour(-kPitch_mm * 0.2, kPitch_mm * 0.17, -2);
+    contour(0, kPitch_mm * 0.44, 2);
+  }
+  return text + "M2\n";
+}
+
 /// The program to be played, in a folder that goes with it.
 class Source {
  public:
@@ -94,6 +120,13 @@ class Source {
     std::string name = (fs::temp_directory_path() / "kerf-bench-XXXXXX").string();
     if (!mkdtemp(name.data())) fail("cannot make a folder in " + name);
     folder_ = name;
+    if (arguments_.nest_moves > 0) {
+      arguments_.program = folder_ / "nest.ngc";
+      arguments_.stock = "sheet:0,0:2000,1000:3";
+      arguments_.tool = "1=kerf:3";
+      std::ofstream(arguments_.program) << nest_of_discs(arguments_.nest_moves);
+      return;
+    }
     for (const Workload& workload : workloads()) {
       if (workload.name != "w2_finish_1m") continue;
       arguments_.program = folder_ / "w2_finish_1m.ngc";
@@ -164,15 +197,17 @@ void cut_to_the_end(const Player& player) {
 
 /// Digests at some motions, by cutting from the start; no keyframes, no record.
 std::vector<std::string> dry_run(const ProgramTrack& track, const SessionOptions& options,
-                                 const ToolSources& tools, const std::vector<std::size_t>& places) {
+                                 const ToolSources& tools, const std::optional<BeamSettings>& beam,
+                                 const std::vector<std::size_t>& places) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   const StockSetup setup =
       make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
-  ToolBook book(tools, ZMap::can_cut);
+  ToolBook book(tools, row_of(*setup.stock).can_cut);
   FindingLog log;
   CutStage stage(*setup.stock, book, log, {});
+  if (beam) stage.burn(*beam);
   std::vector<std::string> digests;
   std::size_t done = 0;
   for (const std::size_t place : places) {
@@ -254,6 +289,7 @@ int run(const Arguments& arguments) {
   std::unique_ptr<LoadedProgram> loaded = load(options);
   const std::shared_ptr<const CutQuery> cuts = loaded->cuts;
   const ToolSources tools = loaded->player.tools;
+  const std::optional<BeamSettings> beam = loaded->player.beam;
   const std::shared_ptr<const ProgramTrack> track = loaded->player.track;
   const double loaded_mb = rss_mb();
   Player player(std::move(loaded->player), {});
@@ -269,7 +305,7 @@ int run(const Arguments& arguments) {
       places.insert(random() % track->size());
     }
     const std::vector<std::size_t> list(places.begin(), places.end());
-    compare(player, list, dry_run(*track, options, tools, list));
+    compare(player, list, dry_run(*track, options, tools, beam, list));
   }
   const std::vector<double> seeks = time_seeks(player, arguments);
   print_times("seek to a random line", seeks);
@@ -277,8 +313,10 @@ int run(const Arguments& arguments) {
   print_times("a block forward", time_steps(player, 1));
   print_times("a block back", time_steps(player, -1));
   reached(player, player.seek_end());
-  print_times("who cut this point", time_queries(*cuts, player, true));
-  print_times("who cut this point (nobody)", time_queries(*cuts, player, false));
+  if (cuts) {
+    print_times("who cut this point", time_queries(*cuts, player, true));
+    print_times("who cut this point (nobody)", time_queries(*cuts, player, false));
+  }
   const auto state = player.state();
   fmt::print("afterwards: {} keyframes, {:.0f} MB; process {:.0f} MB, at most {:.0f} MB\n",
              state->keyframes, static_cast<double>(state->keyframe_bytes) / 1e6, rss_mb(),
@@ -302,6 +340,8 @@ Arguments understand(int argc, char** argv) {
       arguments.tool = value;
     } else if (name == "--cell") {
       arguments.cell_mm = std::atof(value);
+    } else if (name == "--nest") {
+      arguments.nest_moves = std::max(1, std::atoi(value));
     } else if (name == "--seeks") {
       arguments.seeks = std::max(1, std::atoi(value));
     } else if (name == "--seed") {

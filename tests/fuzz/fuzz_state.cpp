@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "stock/octree/octree_state.h"
+#include "stock/sheet/sheet_state.h"
 #include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/state_file.h"
 
@@ -18,6 +19,7 @@ void parse(const std::string& bytes) {
   (void)kerf::parse_state(bytes, "fuzz");
   (void)kerf::parse_columns(bytes, "fuzz");
   (void)kerf::octree::parse_tree(bytes, "fuzz");
+  (void)kerf::sheet::parse_sheet(bytes, "fuzz");
 }
 
 }  // namespace

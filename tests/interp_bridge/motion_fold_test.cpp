@@ -377,5 +377,42 @@ TEST(MotionFold, ProbeAndProgramEnd) {
   EXPECT_TRUE(Folded({"FINISH()"}).ended);
 }
 
+/// M3 and M5 without a move between them leave no other trace.
+TEST(MotionFold, SignalsTellWhatIsSwitchedWhereNothingMoves) {
+  const auto folded = [](bool wanted) {
+    MotionFold fold;
+    fold.set_signals(wanted);
+    std::vector<Motion> motions;
+    std::uint32_t number = 0;
+    for (const char* const call :
+         {"STRAIGHT_TRAVERSE(1.0, 2.0, 3.0, 0.0, 0.0, 0.0)", "SET_SPINDLE_SPEED(0, 1.0000)",
+          "START_SPINDLE_CLOCKWISE(0)", "START_SPINDLE_CLOCKWISE(0)", "STOP_SPINDLE_TURNING(0)",
+          "SET_AUX_OUTPUT_BIT(5)", "SET_MOTION_OUTPUT_BIT(6)", "SET_FEED_RATE(100.0)", "FLOOD_ON()",
+          "DWELL(0.5)"}) {
+      CanonicalLine line;
+      const std::string text = std::string("    1 N..... ") + call;
+      parse_canonical_line(text, line);
+      EXPECT_EQ(line.kind, CanonicalLineKind::kCommand) << call;
+      fold.fold(line.command, {0, ++number}, motions);
+    }
+    fold.signal(123, {0, ++number}, motions);
+    return motions;
+  };
+  EXPECT_EQ(folded(false).size(), 3U);
+  const std::vector<Motion> motions = folded(true);
+  ASSERT_EQ(motions.size(), 8U);
+  EXPECT_EQ(motions[1].kind, MotionKind::kSignal) << "S";
+  EXPECT_EQ(motions[2].source.line, 3U) << "a second M3 switches nothing";
+  EXPECT_EQ(motions[2].torch.spindles_on, 1);
+  EXPECT_EQ(motions[2].to_mm, Vec3(1, 2, 3));
+  EXPECT_TRUE(motions[2].start_known);
+  EXPECT_EQ(motions[3].torch.spindles_on, 0);
+  EXPECT_TRUE(motions[4].torch.output(5));
+  EXPECT_TRUE(motions[5].flood);
+  EXPECT_FALSE(motions[5].torch.output(6)) << "M62 takes effect with the next move";
+  EXPECT_EQ(motions[6].kind, MotionKind::kDwell);
+  EXPECT_EQ(motions[7].user_m, 123);
+}
+
 }  // namespace
 }  // namespace kerf

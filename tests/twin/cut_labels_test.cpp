@@ -21,6 +21,20 @@ TEST(CutLabels, OneNumberForAllCutsOfALine) {
   EXPECT_EQ(labels.all()[2], (CutLabel{2, {0, 7}}));
 }
 
+TEST(CutLabels, WhatTheCutsOfALabelDoAddsUp) {
+  CutLabels labels;
+  const std::uint32_t seven = labels.number_of({1, {0, 7}});
+  const std::uint32_t eight = labels.number_of({1, {0, 8}});
+  labels.note(seven, 2.5, 0.5);
+  labels.note(eight, 1.0, 0.25);
+  labels.note(seven, 0.0, 0.5);
+  labels.note(CutLabels::kUnknown, 9.0, 9.0);
+  EXPECT_EQ(labels.all()[seven].removed_mm3, 2.5);
+  EXPECT_EQ(labels.all()[seven].cut_s, 1.0);
+  EXPECT_EQ(labels.all()[eight].removed_mm3, 1.0);
+  EXPECT_EQ(labels.number_of({1, {0, 7}}), seven) << "it is the same label";
+}
+
 TEST(CutLabels, AsAMapHasThem) {
   CutLabels labels;
   std::map<std::tuple<int, unsigned, unsigned>, std::uint32_t> known;

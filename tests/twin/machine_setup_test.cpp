@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -223,6 +224,27 @@ TEST_F(MachineSetupTest, SamplesOfLinuxcnc) {
   }
   EXPECT_GE(good, 280U);
   std::cout << good << " samples load, " << bad << " say why not\n";
+}
+
+/// A robot whose joints are homed to 0, -45, 0, 0, -45 and 0 degrees is where LinuxCNC 2.9 says it
+/// is: at the place that its kinematics make of them, not at their values.
+TEST_F(MachineSetupTest, AHomedRobotStandsWhereItsKinematicsSay) {
+  std::string ini =
+      "[TRAJ]\nCOORDINATES = X Y Z A B C\nLINEAR_UNITS = mm\n"
+      "[KINS]\nKINEMATICS = pumakins\nJOINTS = 6\n[RS274NGC]\nPARAMETER_FILE = p.var\n";
+  write("p.var", "5220 1\n");
+  const std::array<double, 6> home{0, -45, 0, 0, -45, 0};
+  for (std::size_t i = 0; i < home.size(); ++i) {
+    ini += "[JOINT_" + std::to_string(i) + "]\nTYPE = ANGULAR\nHOME = " + std::to_string(home[i]) +
+           "\n";
+  }
+  read(ini);
+  ASSERT_TRUE(setup_.timeline.kinematics) << messages();
+  const auto& start = setup_.interpreter.start;
+  EXPECT_NEAR(start[0], 600.33008, 1e-4);
+  EXPECT_NEAR(start[1], 70, 1e-4);
+  EXPECT_NEAR(start[2], -35.35534, 1e-4);
+  EXPECT_NEAR(start[4], -90, 1e-4);
 }
 
 }  // namespace

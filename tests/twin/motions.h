@@ -1,6 +1,8 @@
 // tests/twin/motions.h - motions by hand, one after the other.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "interp_bridge/motion.h"
@@ -23,6 +25,15 @@ class MotionList {
     state_.torch.spindles_on = on ? 1 : 0;
     return *this;
   }
+  MotionList& output(unsigned n, bool on) {
+    const std::uint64_t bit = std::uint64_t{1} << n;
+    state_.torch.outputs = on ? state_.torch.outputs | bit : state_.torch.outputs & ~bit;
+    return *this;
+  }
+  MotionList& turned(std::array<double, 3> abc_deg) {
+    state_.from_abc_deg = state_.to_abc_deg = abc_deg;
+    return *this;
+  }
   MotionList& at(Vec3 place) {
     state_.to_mm = place;
     return *this;
@@ -37,6 +48,13 @@ class MotionList {
   MotionList& arc(Vec3 to, Vec3 center, Vec3 axis, double sweep_rad) {
     move(MotionKind::kArc, to);
     list_.back().arc = ArcGeometry{center, axis, sweep_rad};
+    return *this;
+  }
+  /// What has been switched, or a user M-code, where signals are wanted.
+  MotionList& signal(std::uint8_t user_m = 0) {
+    Motion m = next(MotionKind::kSignal);
+    m.user_m = user_m;
+    list_.push_back(m);
     return *this;
   }
   MotionList& dwell(double seconds) {

@@ -1,6 +1,7 @@
 // `kerf run` on sheets: blanks, torches, what comes out.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "tests/twin/kerf_process.h"
@@ -183,13 +184,6 @@ TEST_F(SheetCommand, FaultsOfOptionsAreTold) {
   expect_refused(run({"slot.canon", "--stock", "box:0,0,0:1,1,1", "--svg", "a.svg"}), 2,
                  "kerf: error: --svg: only a sheet has outlines to write\n"
                  "   hint: --stock sheet:x0,y0:x1,y1:THICKNESS cuts from one\n");
-  folder_.write("log.csv", "t,x,y,z\n0,0,0,0\n1,1,1,1\n");
-  const KerfResult live =
-      run({"log.csv", "--stock", stock, "--no-view", "--speed", "max"}, "replay");
-  EXPECT_EQ(live.exit_code, 2);
-  EXPECT_NE(live.err.find("--stock: a sheet cannot be followed on a running machine"),
-            std::string::npos)
-      << live.err;
 }
 
 /// M2 stops the spindle before it ends the program: whether the program did is seen all the same.
@@ -229,6 +223,96 @@ TEST_F(SheetCommand, TheViewDrawsIt) {
   const KerfResult rays = run(
       {"slot.canon", "--stock", stock, "--kerf", "1", "--png", "r.png", "--draw", "csg"}, "view");
   expect_refused(rays, 2, "kerf: error: --draw: a sheet is drawn by mesh alone\n");
+}
+
+constexpr const char* kTurret =
+    "stations:\n"
+    "  1: {punch: round:10, name: hole}\n"
+    "  2: {punch: rectangle:30:5, index: true}\n"
+    "punch: {trigger: m3}\n"
+    "clamps:\n"
+    "  - {x: 10, y: -30, width: 20, depth: 35}\n";
+
+/// A listing, so that no LinuxCNC is needed: one hole by M3 and M5 with nothing between them.
+constexpr const char* kHole =
+    "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+    "    2 N1     SELECT_TOOL(1)\n"
+    "    3 N1     CHANGE_TOOL(1)\n"
+    "    4 N2     STRAIGHT_TRAVERSE(50.0000, 50.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
+    "    5 N3     SET_SPINDLE_SPEED(0, 1.0000)\n"
+    "    6 N4     START_SPINDLE_CLOCKWISE(0)\n"
+    "    7 N5     STOP_SPINDLE_TURNING(0)\n"
+    "    8 N6     STRAIGHT_TRAVERSE(0.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
+    "    9 N7     PROGRAM_END()\n";
+
+TEST_F(SheetCommand, PunchedSheetsAreReported) {
+  folder_.write("press.yaml", kTurret);
+  folder_.write("hole.canon", kHole);
+  const KerfResult result =
+      run({"hole.canon", "--stock", "sheet:0,0:100,100:2", "--turret", "press.yaml", "--json",
+           "r.json", "--svg", "rest.svg", "--dxf", "rest.dxf"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json sheet = report("r.json")["sheet"];
+  EXPECT_EQ(sheet.count("cut_mm"), 0U);
+  EXPECT_EQ(sheet["punch"]["hits"], 1);
+  EXPECT_EQ(sheet["punch"]["nibbled_mm"], 0);
+  EXPECT_EQ(sheet["punch"]["stations"],
+            Json::parse(R"([{"station":1,"name":"hole","shape":"round:10","hits":1}])"));
+  EXPECT_NEAR(sheet["kerf_mm2"], 3.14159265 * 25, 0.02);
+  EXPECT_EQ(report("r.json")["tools"][0]["shape"], "punch:round:10");
+  EXPECT_NE(result.out.find("sheet     1 hit\n"
+                            "          station 1   round:10, 1 hit (hole)\n"),
+            std::string::npos)
+      << result.out;
+  EXPECT_EQ(listing(folder_.path()), "hole.canon press.yaml r.json rest.dxf rest.svg");
+  // What is left is a blank of its own.
+  const KerfResult again = run({"hole.canon", "--stock", "sheet:rest.dxf:2", "--turret",
+                                "press.yaml", "--json", "a.json", "--quiet"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(report("a.json")["findings"][0]["id"], "hit-in-air") << again.out;
+}
+
+TEST_F(SheetCommand, PunchProgramsOfEveryTriggerByTheInterpreter) {
+  const std::vector<std::array<std::string, 3>> cases{
+      {"m3", "G0 X50 Y50 Z5\nS1\nM3\nM5\nG0 X70\nM3 G4 P0.1\nM5\n", "2"},
+      {"m64:0", "G0 X50 Y50 Z5\nM64 P0\nM65 P0\nG0 X70\nM64 P0\nM65 P0\n", "2"},
+      {"m62:0", "G0 X50 Y50 Z5\nM62 P0\nG0 X70\nM63 P0\nG0 X80\n", "1"},
+      {"m101", "G0 X50 Y50 Z5\nM101\nG0 X70\nM101\nG91 G0 X10\nM101\n", "3"},
+      {"g81", "G0 X50 Y50 Z5\nF500\nG98 G81 X50 Y50 Z-1 R1\nX65\nX80\nG80\n", "3"},
+      {"z<0", "G0 X50 Y50 Z5\nF500\nG81 X50 Y50 Z-1 R1 L3\nG80\nG1 Z-0.5\nG0 Z5\n", "4"},
+  };
+  for (const auto& [trigger, program, hits] : cases) {
+    folder_.write("press.yaml", "stations: {1: round:6}\npunch: {trigger: '" + trigger + "'}\n");
+    folder_.write("part.ngc", "G21 G90\nT1 M6\n" + program + "M2\n");
+    const KerfResult result = run({"part.ngc", "--stock", "sheet:0,0:100,100:2", "--turret",
+                                   "press.yaml", "--json", "r.json", "--interp", "bridge"});
+    if (result.exit_code == 4 && result.err.find("kerf-interp") != std::string::npos) {
+      GTEST_SKIP() << "no interpreter";
+    }
+    EXPECT_LE(result.exit_code, 1) << trigger << ": " << result.err;
+    EXPECT_EQ(report("r.json")["sheet"]["punch"]["hits"], std::stoi(hits)) << trigger;
+    EXPECT_EQ(result.err.find("not-simulated"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(SheetCommand, FaultsOfPunchingAreTold) {
+  folder_.write("hole.canon", kHole);
+  folder_.write("press.yaml", "stations: {1: round:6}\npunch: {trigger: m99}\n");
+  const std::string stock = "sheet:0,0:100,100:2";
+  const KerfResult fault = run({"hole.canon", "--stock", stock, "--turret", "press.yaml"});
+  EXPECT_EQ(fault.exit_code, 2);
+  EXPECT_EQ(fault.err.find("press.yaml:2:18: error: punch.trigger: 'm99' is no trigger"), 0U)
+      << fault.err;
+  folder_.write("press.yaml", kTurret);
+  expect_refused(run({"hole.canon", "--stock", "box:0,0,-5:9,9,0", "--turret", "press.yaml"}), 2,
+                 "kerf: error: --turret: only a sheet can be punched; the blank is box 9 x 9 x 5 "
+                 "mm, X0..9 Y0..9 Z-5..0\n"
+                 "   hint: --stock sheet:x0,y0:x1,y1:THICKNESS gives a sheet\n");
+  expect_refused(run({"hole.canon", "--stock", stock, "--turret", "press.yaml", "--kerf", "1"}), 2,
+                 "kerf: error: --kerf: is for torches, lasers and jets; --turret punches\n");
+  expect_refused(
+      run({"hole.canon", "--stock", stock, "--turret", "press.yaml", "--path", "planned"}), 2,
+      "kerf: error: --path: planned is for cutting; a punch strikes where the program says\n");
 }
 
 }  // namespace

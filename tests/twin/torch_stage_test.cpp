@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/twin/torch_shop.h"
@@ -96,6 +97,34 @@ TEST(TorchStage, OnlyTheBeamCuts) {
   coolant.trigger = BeamTrigger::parse("m8").value();
   program.last().flood = true;
   EXPECT_NEAR(TorchShop(program.list(), coolant).kerf_mm2(), 10 * kKerf + kPi, kClose_mm2);
+}
+
+TEST(TorchStage, AProgramThatWasStoppedMayNotHaveComeToItsBeam) {
+  MotionList program = torch_program();
+  program.feed({50, 50, 0});
+  const std::unique_ptr<Sheet> sheet = test::sheet_200();
+  FindingLog log;
+  ToolBook book(test::torch_of("kerf:2"), stock_model(StockKind::kSheet).can_cut);
+  CutStage stage(*sheet, book, log, TimelineOptions{});
+  stage.burn({});
+  stage.take(program.list());
+  stage.finish(false);
+  EXPECT_TRUE(log.kept().empty());
+}
+
+TEST(TorchStage, QtPlasmacTravelsLowOnlyWhereTheTorchIsHeldOff) {
+  for (const bool held_off : {false, true}) {
+    MotionList program = torch_program();
+    square(program, {60, 20}, 40);
+    if (held_off) program.spindle(true).output(3, true);
+    program.feed({80, 40, 1});
+    BeamSettings settings;
+    settings.trigger = BeamTrigger::parse("plasmac").value();
+    settings.is_qtplasmac = true;
+    const TorchShop shop(program.list(), settings);
+    const std::vector<std::string> ids = shop.ids();
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), "crosses-part"), held_off ? 1 : 0);
+  }
 }
 
 TEST(TorchStage, SlugsOfHolesAreNoParts) {

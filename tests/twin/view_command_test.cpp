@@ -368,6 +368,37 @@ TEST_F(ViewWindow, ColoursOfLastTimeAreThereAgain) {
   expect_end(0);
 }
 
+/// The mesh has what is left of the blank darker, CSG what is cut in other colours: what is the
+/// same is where the room behind is seen.
+TEST_F(ViewWindow, ThreeRoadsShowTheSamePart) {
+  constexpr double kMostOfOutline = 0.005;
+  const auto is_room = [](const Picture& picture, std::size_t at) {
+    return picture.rgb[at + 2] > picture.rgb[at] && picture.rgb[at] > 195;
+  };
+  const auto outlines_apart = [&](const Picture& a, const Picture& b) {
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i + 2 < std::min(a.rgb.size(), b.rgb.size()); i += 3) {
+      apart += is_room(a, i) != is_room(b, i) ? 1 : 0;
+    }
+    return static_cast<double>(apart) / (static_cast<double>(a.rgb.size()) / 3);
+  };
+  open({"view", program_, "--at-line", "14", "--draw", "raycast"});
+  const Picture first = settled();
+  kerf_->key("r");
+  kerf_->key("r");
+  ASSERT_TRUE(changes_from(first)) << "it was not the mesh";
+  const Picture mesh = settled();
+  for (const char* road : {"raycast", "csg"}) {
+    kerf_->key("r");
+    EXPECT_TRUE(kerf_->shows([&](const Picture& now) {
+      return different_pixels(now, mesh) > 300 && outlines_apart(now, mesh) < kMostOfOutline;
+    })) << road;
+  }
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_EQ(result_.err, "");
+}
+
 TEST_F(ViewWindow, AnInterruptEndsIt) {
   for (const int signal : {SIGINT, SIGTERM}) {
     open({"view", program_, "--speed", "0.1"});

@@ -45,7 +45,7 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
                   "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
                   "several of these joined by +; or state:FILE (a saved workpiece); or "
                   "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
-                  "(metal to be cut by a torch, laser or jet; its top is at Z0)")
+                  "(metal to be cut by a torch, laser or jet, or punched; its top is at Z0)")
       ->type_name("SPEC");
   command
       .add_option("--model", a.model,
@@ -115,6 +115,14 @@ void add_torch_options(CLI::App& command, TorchArguments& a) {
       ->allow_extra_args(false);
 }
 
+void add_turret_option(CLI::App& command, TorchArguments& a) {
+  command
+      .add_option("--turret", a.turret,
+                  "sheets: the punch press that the program is for: stations, what makes it "
+                  "strike, clamps (YAML; configs/punch/turret.yaml explains it)")
+      ->type_name("FILE");
+}
+
 void add_outline_options(CLI::App& command, OutputPaths& a) {
   command
       .add_option("--dxf", a.dxf,
@@ -164,9 +172,15 @@ void add_shadow_options(CLI::App& shadow, LiveArguments& a) {
 
 void add_run_options(CLI::App& run, RunArguments& a) {
   add_program_argument(run, a.source);
+  run.add_option("-c,--config", a.config, "configuration: machine, beam, tools, stock")
+      ->type_name("FILE");
+  run.add_option("--set", a.sets, "any key of the configuration, repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   add_program_options(run, a.source);
   add_work_options(run, a.work);
   add_torch_options(run, a.torch);
+  add_turret_option(run, a.torch);
   run.add_option("--from-line", a.from_line,
                  "cut what comes before line N without a word, report from there")
       ->type_name("N");
@@ -190,6 +204,7 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
   add_program_options(view, a.run.source);
   add_work_options(view, a.run.work);
   add_torch_options(view, a.run.torch);
+  add_turret_option(view, a.run.torch);
   view.add_option("--until-line", a.run.until_line, "nothing beyond line N")->type_name("N");
   view.add_option("--at-line", a.at_line, "begin at line N")->type_name("N");
   view.add_option("--speed", a.speed, "play at once: program seconds a second, 0.1 to 1000, or max")
@@ -215,8 +230,9 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
                   "of pictures: iso | top | bottom | front | back | left | right (default iso)")
       ->type_name("NAME");
   view.add_option("--draw", a.draw,
-                  "pictures by mesh (all that the window shows) | raycast (without OpenGL) | csg "
-                  "(blank minus moves, no cells); the last two: workpiece and tool (default mesh)")
+                  "workpiece by mesh | raycast (pictures without OpenGL) | csg (blank minus "
+                  "moves); the last two have no colours and no section (default mesh, or as the "
+                  "window has it)")
       ->type_name("NAME");
   view.add_flag("--quiet", a.run.quiet, "no warnings, no progress bar");
 }
@@ -241,9 +257,13 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
       ->type_name("FILE");
   add_program_options(live, a.source);
   add_work_options(live, a.work);
+  add_torch_options(live, a.torch);
   if (command == LiveCommand::kShadow) add_shadow_options(live, a);
   live.add_flag("--no-view", a.no_view,
                 "no window (there is one where there is a display, but for --speed max)");
+  live.add_option("--draw", a.draw,
+                  "the window's workpiece by mesh | raycast (default as it remembers it)")
+      ->type_name("NAME");
   live.add_option("--for", a.for_s, "end after so long")->type_name("SECONDS");
   live.add_option("--gap", a.gap,
                   "the way between two positions with a gap between them: mark | cut | ignore "
@@ -258,6 +278,7 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
   live.add_option("--events", a.events, "states, findings and warnings as JSON lines")
       ->type_name("FILE");
   add_output_options(live, a.outputs, a.mesh_tolerance);
+  add_outline_options(live, a.outputs);
   live.add_flag("--quiet", a.quiet, "errors and warnings of collisions only");
 }
 

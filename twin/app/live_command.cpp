@@ -284,8 +284,10 @@ int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source
     d.hint = "--no-view does not try one";
     print({d}, request.quiet);
   };
+  WindowOptions options;
+  options.road = request.draw;
   const Result<int> code = work_beside_window(
-      {}, window.mailbox, window.commands, stop,
+      options, window.mailbox, window.commands, stop,
       [&] { return watch(request, std::move(source), stop, &window); },
       [&](const std::string& reason) {
         window.lost = true;

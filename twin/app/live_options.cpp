@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "interp_bridge/parameter_file.h"
+#include "twin/app/view_options.h"
 #include "twin/config/make_source.h"
 
 namespace kerf {
@@ -133,46 +135,20 @@ void read_work_offset(LiveRequest& request, Diagnostics& diagnostics) {
   diagnostics.push_back(std::move(d));
 }
 
-/// What a running machine tells does not say when its torch is on.
-void refuse_sheet(const std::optional<Blank>& blank, const StockSettings& stock,
-                  const LiveArguments& a, OptionReader& reader) {
-  const char* const hint = "kerf run and kerf view cut sheets";
-  if (blank && blank->sheet) {
-    reader.fault(a.work.stock.empty() ? "stock.blank" : "--stock",
-                 "a sheet cannot be followed on a running machine by this version", hint);
-  } else if (stock.kind == StockKind::kSheet) {
-    reader.fault("--model", "a sheet cannot be followed on a running machine by this version",
-                 hint);
-  }
-}
-
-/// Joints that are not the axes under other names: what makes axes of them, or why nothing does.
-void choose_kinematics(LiveRequest& request, const PositionSource& source,
-                       Diagnostics& diagnostics) {
+/// Joints that are not the axes under other names: what makes axes of them.
+void choose_kinematics(LiveRequest& request, const PositionSource& source) {
   LiveCutOptions& cutting = request.options.cutting;
   const std::shared_ptr<const MachineKinematics>& machine = cutting.timeline.kinematics;
   if (!machine || cutting.frame.workpiece_frame ||
       coordinates_of(request.config, source) != CoordinateKind::kJoints) {
     return;
   }
-  const KinematicsType& first = machine->type(0);
-  if (first.mode != KinematicsMode::kAxes) {
-    Diagnostic d;
-    d.file = request.ini;
-    d.message = fmt::format(
-        "positions of joints: {} makes X Y Z of them by how its axes have turned, and that cannot "
-        "be followed on a running machine by this version",
-        machine->module);
-    d.hint =
-        "positions by axes can be read (source.coordinates: axes), or the tip's in the workpiece "
-        "(source.frame: workpiece)";
-    diagnostics.push_back(std::move(d));
-    return;
-  }
   const KinematicsType plain;
-  if (machine->belts || first.source != plain.source || first.sign != plain.sign) {
-    cutting.frame.kinematics = machine;
-  }
+  const bool others =
+      std::any_of(machine->types.begin(), machine->types.end(), [&](const KinematicsType& type) {
+        return type.mode != plain.mode || type.source != plain.source || type.sign != plain.sign;
+      });
+  if (machine->belts || others) cutting.frame.kinematics = machine;
 }
 
 }  // namespace
@@ -191,9 +167,14 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   complete(source.ini, machine.ini);
   complete(source.tool_table, machine.tool_table);
   request.ini = source.ini;
+  source.kinematics = machine.kinematics;
+  source.joints = machine.joints;
   ProgramRequest program = understand_program(source, reader);
   WorkRequest work = understand_work(a.work, reader);
   LiveOptions& options = request.options;
+  TorchArguments torch = a.torch;
+  complete_torch(request.config.beam, torch);
+  options.beam = understand_torch(torch, reader, program.program.torch);
   // Where the machine stands when it starts the program is seen, not read from its INI.
   program.program.machine.start_known = false;
   request.inch_machine = program.program.machine.inch_machine;
@@ -206,7 +187,6 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
       options.program.has_value() && program.program.machine.tool_lengths;
   options.tools = work.tools.empty() ? request.config.tools : std::move(work.tools);
   options.blank = work.blank ? std::move(work.blank) : request.config.stock.blank;
-  refuse_sheet(options.blank, work.stock, a, reader);
   options.stock = work.stock;
   if (a.work.model.empty()) options.stock.kind = request.config.stock.model;
   if (a.work.cell.empty() && request.config.stock.cell_mm) {
@@ -229,8 +209,10 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.record = a.record;
   request.events = a.events;
   request.outputs = a.outputs;
+  check_outline_wishes(options.blank, request.outputs, reader);
   request.quiet = a.quiet;
   request.needs_window = a.in_window;
+  request.draw = understand_draw(a.draw, reader);
   // A log that is run as fast as it goes is there for its report.
   request.window = a.in_window ||
                    (!a.no_view && request.config.view.window && !std::isinf(request.options.speed));
@@ -240,11 +222,13 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
 
 void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics) {
   LiveCutOptions& cutting = request.options.cutting;
-  if (request.config.machine.joints.empty()) {
-    request.config.machine.joints = request.joint_letters;
+  std::string& joints = request.config.machine.joints;
+  if (joints.empty()) joints = request.joint_letters;
+  if (joints.empty() && cutting.timeline.kinematics_known) {
+    joints = cutting.timeline.kinematics->joint_letters;
   }
   cutting.frame = frame_for(request.config, source);
-  choose_kinematics(request, source, diagnostics);
+  choose_kinematics(request, source);
   cutting.work_known = request.config.machine.work_offset.has_value();
   if (cutting.frame.workpiece_frame || cutting.work_known) return;
   if (!request.parameter_path.empty()) {

@@ -2,15 +2,18 @@
 // configuration to checked values.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "twin/app/outputs.h"
 #include "twin/app/program_options.h"
+#include "twin/app/torch_options.h"
 #include "twin/app/work_options.h"
 #include "twin/config/live_config.h"
 #include "twin/live/live_session.h"
+#include "viewer/scene.h"
 
 namespace kerf {
 
@@ -18,6 +21,7 @@ namespace kerf {
 struct LiveArguments {
   ProgramArguments source;  ///< source.program is --program
   WorkArguments work;
+  TorchArguments torch;
   std::string config;
   std::vector<std::string> sets;
   std::string log;     ///< replay
@@ -32,6 +36,7 @@ struct LiveArguments {
   std::string cpu_limit;     ///< shadow
   std::string memory_limit;  ///< shadow
   std::string mesh_tolerance;
+  std::string draw;  ///< by which road the window draws
   OutputPaths outputs;
   bool quiet = false;
   bool no_view = false;
@@ -53,8 +58,9 @@ struct LiveRequest {
   double cpu_limit_percent = 0;  ///< 0: none
   double memory_limit_mb = 0;    ///< 0: none
   bool quiet = false;
-  bool window = false;        ///< wanted; there may be no display
-  bool needs_window = false;  ///< without one there is nothing to be done
+  bool window = false;           ///< wanted; there may be no display
+  std::optional<DrawRoad> draw;  ///< in the window; none: as it remembers it
+  bool needs_window = false;     ///< without one there is nothing to be done
 };
 
 enum class LiveCommand { kShadow, kReplay };

@@ -22,16 +22,27 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
   options.path = a.program;
   if (!a.ini.empty()) {
     MachineSetup setup;
-    read_machine_setup(a.ini, setup, reader.diagnostics());
+    KinematicsRequest kinematics = a.kinematics.value_or(KinematicsRequest{});
+    kinematics.hal_pins = a.hal_pins;
+    read_machine_setup(a.ini, setup, reader.diagnostics(), &kinematics);
     options.machine = std::move(setup.interpreter);
     options.tool_table_path = std::move(setup.tool_table_path);
     request.timeline = std::move(setup.timeline);
     request.joint_letters = std::move(setup.joint_letters);
   }
   if (a.ini.empty()) {
-    // The machine that most people have who turn a part without saying how: it lies on a table.
-    request.timeline.kinematics =
-        std::make_shared<const MachineKinematics>(kinematics_of_request({}, "XYZABC").value());
+    // Where nobody says how: the machine that most people have who turn a part. It lies on a table.
+    const bool links = a.kinematics && a.kinematics->linked;
+    Result<MachineKinematics> machine =
+        kinematics_of_request(a.kinematics.value_or(KinematicsRequest{}),
+                              a.joints.empty() && !links ? "XYZABC" : a.joints);
+    if (machine) {
+      request.timeline.kinematics =
+          std::make_shared<const MachineKinematics>(std::move(machine.value()));
+      request.timeline.kinematics_known = a.kinematics.has_value();
+    } else {
+      reader.fault("machine.kinematics", machine.error());
+    }
   }
   if (!a.tool_table.empty()) options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {

@@ -1,10 +1,13 @@
 // twin/app/program_options.h - the options about the program itself, which several commands share.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 
 #include "interp_bridge/program.h"
 #include "twin/app/option_reader.h"
+#include "twin/kinematics/kinematics_setup.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -18,6 +21,11 @@ struct ProgramArguments {
   std::string block_delete;
   std::string max_commands;
   std::string max_seconds;
+  /// Of a configuration (machine.kinematics, machine.joints), as read.
+  std::optional<KinematicsRequest> kinematics;
+  std::string joints;
+  /// Values of HAL pins that are told; those of the kinematics are for these, too.
+  std::map<std::string, double> hal_pins;
 };
 
 /// The same, understood.

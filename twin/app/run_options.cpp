@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "twin/app/option_reader.h"
@@ -22,25 +23,39 @@ void read_lines(const RunArguments& a, OptionReader& reader, LineRange& lines) {
                fmt::format("{} lies beyond --until-line {}", lines.from, lines.until));
 }
 
-/// What can be known before anything is cut: that there will be no sheet to write.
-void read_outline_wishes(const RunRequest& request, OptionReader& reader) {
-  if (request.session.blank && request.session.blank->sheet) return;
-  for (const auto& [option, path] :
-       {std::pair("--dxf", &request.outputs.dxf), std::pair("--svg", &request.outputs.svg)}) {
-    if (path->empty()) continue;
-    reader.fault(option, "only a sheet has outlines to write",
-                 "--stock sheet:x0,y0:x1,y1:THICKNESS cuts from one");
-  }
-}
-
 }  // namespace
 
-RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
+void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
+  ProgramArguments& source = arguments.source;
+  if (source.ini.empty()) source.ini = config.machine.ini.value_or("");
+  if (source.tool_table.empty()) source.tool_table = config.machine.tool_table.value_or("");
+  source.kinematics = config.machine.kinematics;
+  source.joints = config.machine.joints;
+  if (arguments.torch.turret.empty()) complete_torch(config.beam, arguments.torch);
+}
+
+void complete_session(const LiveConfig& config, const RunArguments& a, SessionOptions& session) {
+  if (session.tools.empty()) session.tools = config.tools;
+  if (!session.blank) session.blank = config.stock.blank;
+  if (a.work.model.empty()) session.stock.kind = config.stock.model;
+  if (a.work.cell.empty() && config.stock.cell_mm) session.stock.cell_mm = *config.stock.cell_mm;
+  if (a.work.margin.empty()) session.margin_mm = config.stock.margin_mm;
+}
+
+RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
+  RunArguments a = given;
+  std::optional<LiveConfig> config;
+  if (!a.config.empty() || !a.sets.empty()) config = read_config(a.config, a.sets, diagnostics);
+  if (config) complete_arguments(*config, a);
   OptionReader reader(diagnostics);
   RunRequest request;
   SessionOptions& session = request.session;
+  TorchOptions torch;
+  session.beam = understand_torch(a.torch, reader, torch);
+  a.source.hal_pins = torch.hal_values;
   ProgramRequest source = understand_program(a.source, reader);
-  session.beam = understand_torch(a.torch, reader, source.program.torch);
+  source.program.torch = std::move(torch);
+  session.turret = understand_turret(a.torch, reader, source.program);
   session.program = std::move(source.program);
   session.timeline = std::move(source.timeline);
   WorkRequest work = understand_work(a.work, reader);
@@ -48,12 +63,16 @@ RunRequest understand(const RunArguments& a, Diagnostics& diagnostics) {
   session.blank = std::move(work.blank);
   session.stock = work.stock;
   session.margin_mm = work.margin_mm;
+  if (config) complete_session(*config, a, session);
   session.timeline.planner.with_path = work.planned_path.value_or(false);
+  if (session.turret && work.planned_path.value_or(false)) {
+    reader.fault("--path", "planned is for cutting; a punch strikes where the program says");
+  }
   read_lines(a, reader, session.lines);
   request.mesh_tolerance_mm = reader.number("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
                                             request.mesh_tolerance_mm);
   request.outputs = a.outputs;
-  read_outline_wishes(request, reader);
+  check_outline_wishes(request.session.blank, request.outputs, reader);
   request.quiet = a.quiet;
   request.view = a.view;
   if (a.view && a.source.program == "-") {

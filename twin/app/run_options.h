@@ -2,18 +2,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/diagnostic.h"
 #include "twin/app/outputs.h"
 #include "twin/app/program_options.h"
 #include "twin/app/torch_options.h"
 #include "twin/app/work_options.h"
+#include "twin/config/live_config.h"
 #include "twin/session.h"
 
 namespace kerf {
 
 /// The arguments as written. Empty = not given.
 struct RunArguments {
+  std::string config;             ///< of `kerf run`; other commands read theirs themselves
+  std::vector<std::string> sets;  ///< likewise
   ProgramArguments source;
   WorkArguments work;
   TorchArguments torch;
@@ -33,6 +37,11 @@ struct RunRequest {
   bool view = false;  ///< in a window, when it is done
   bool quiet = false;
 };
+
+/// What the configuration says of machine, beam, tools and blank, where the command line does not.
+void complete_arguments(const LiveConfig& config, RunArguments& arguments);
+void complete_session(const LiveConfig& config, const RunArguments& arguments,
+                      SessionOptions& session);
 
 /// All faults at once, as diagnostics: "--cell: '0' is not allowed; must be above 0 and at most
 /// 1000 (mm)".

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "stock/cutter/scan.h"
 #include "stock/sheet/sheet.h"
+#include "twin/config/turret_reader.h"
 
 namespace kerf {
 namespace {
@@ -42,6 +45,22 @@ void read_pin(const std::string& text, OptionReader& reader, TorchOptions& torch
 
 }  // namespace
 
+void complete_torch(const ConfigBeam& config, TorchArguments& arguments) {
+  const auto text = [](std::string& given, const std::optional<std::string>& configured) {
+    if (given.empty() && configured) given = *configured;
+  };
+  const auto number = [](std::string& given, const std::optional<double>& configured) {
+    if (given.empty() && configured) given = fmt::format("{}", *configured);
+  };
+  text(arguments.beam, config.trigger);
+  number(arguments.kerf, config.kerf_mm);
+  number(arguments.pierce, config.pierce_mm);
+  number(arguments.slats, config.slats_mm);
+  number(arguments.density, config.density_kg_per_m3);
+  text(arguments.qtplasmac, config.qtplasmac);
+  text(arguments.materials, config.materials);
+}
+
 BeamOptions understand_torch(const TorchArguments& a, OptionReader& reader, TorchOptions& torch) {
   BeamOptions beam;
   if (!a.beam.empty()) {
@@ -60,6 +79,30 @@ BeamOptions understand_torch(const TorchArguments& a, OptionReader& reader, Torc
   torch.materials_path = a.materials;
   for (const std::string& pin : a.hal) read_pin(pin, reader, torch);
   return beam;
+}
+
+void check_outline_wishes(const std::optional<Blank>& blank, const OutputPaths& outputs,
+                          OptionReader& reader) {
+  if (blank && is_sheet(*blank)) return;
+  for (const auto& [option, path] :
+       {std::pair("--dxf", &outputs.dxf), std::pair("--svg", &outputs.svg)}) {
+    if (path->empty()) continue;
+    reader.fault(option, "only a sheet has outlines to write",
+                 "--stock sheet:x0,y0:x1,y1:THICKNESS cuts from one");
+  }
+}
+
+TurretPointer understand_turret(const TorchArguments& a, OptionReader& reader,
+                                ProgramOptions& program) {
+  if (a.turret.empty()) return nullptr;
+  const std::pair<const char*, const std::string*> torches[] = {
+      {"--beam", &a.beam}, {"--kerf", &a.kerf}, {"--pierce", &a.pierce}, {"--slats", &a.slats}};
+  for (const auto& [option, text] : torches) {
+    if (!text->empty()) reader.fault(option, "is for torches, lasers and jets; --turret punches");
+  }
+  TurretPointer turret = read_turret(a.turret, reader.diagnostics());
+  if (turret) program.signals = {true, turret->user_codes()};
+  return turret;
 }
 
 }  // namespace kerf

@@ -150,10 +150,15 @@ ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
       longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(cutter->cutter)));
     }
   }
+  if (const TurretPointer& turret = loaded.player.turret) {
+    for (const auto& [number, station] : turret->stations) {
+      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(station.punch)));
+    }
+  }
   Diagnostics diagnostics;
-  shown.machine = drawn_machine(
-      request.machine, request.ini,
-      work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm), diagnostics);
+  WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
+  room.turret = loaded.player.turret;
+  shown.machine = drawn_machine(request.machine, request.ini, room, diagnostics);
   print(diagnostics, request.run.quiet);
   return shown;
 }
@@ -199,6 +204,7 @@ class Work {
       // program that is not there yet.
       const bool lasts = std::holds_alternative<ColorCommand>(command) ||
                          std::holds_alternative<DetailCommand>(command) ||
+                         std::holds_alternative<RoadCommand>(command) ||
                          std::holds_alternative<SpeedCommand>(command);
       if (lasts) waiting_.push_back(std::move(command));
     }
@@ -225,6 +231,7 @@ int in_window(const ViewRequest& request, Kind kind, std::stop_source& stop) {
   CommandQueue commands;
   WindowOptions options;
   options.is_local = request.local;
+  options.road = request.window_road;
   const Result<int> code = work_beside_window(options, mailbox, commands, stop,
                                               Work(request, kind, mailbox, commands, stop));
   if (code) return *code;
@@ -316,6 +323,7 @@ int view_log(const ViewArguments& arguments) {
   live.source.program.clear();
   live.work = arguments.run.work;
   live.speed = arguments.speed;
+  live.draw = arguments.draw;
   live.quiet = arguments.run.quiet;
   live.in_window = true;
   return live_command(live, LiveCommand::kReplay);
@@ -328,6 +336,7 @@ int show_program(const RunRequest& run, std::stop_source& stop) {
   request.run = run;
   request.run.quiet = true;  // the dry run has said it
   request.at_end = true;
+  if (run.session.turret) request.machine.kind = MachineKind::kPunch;
   return in_window(request, Kind::kProgram, stop);
 }
 

@@ -107,52 +107,38 @@ void read_comparison(const ViewArguments& a, OptionReader& reader, ViewRequest& 
 }
 
 void read_road(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
-  if (a.draw.empty()) return;
-  const auto named = std::find_if(kRoads.begin(), kRoads.end(),
-                                  [&](const NamedRoad& road) { return a.draw == road.name; });
-  if (named == kRoads.end()) {
+  const std::optional<DrawRoad> road = understand_draw(a.draw, reader);
+  if (!road) return;
+  request.frame.road = *road;
+  if (request.wants_window()) request.window_road = *road;
+  if (*road != DrawRoad::kMesh && !a.compare.empty()) {
     reader.fault("--draw",
-                 fmt::format("'{}' is not allowed; must be mesh | raycast | csg", a.draw));
-    return;
+                 fmt::format("{} shows no deviations; --compare is for mesh alone", a.draw));
   }
-  request.frame.road = named->road;
-  if (named->road == DrawRoad::kMesh) return;
-  if (request.wants_window()) {
-    reader.fault("--draw", fmt::format("{} is for --png and --frames; the window draws by mesh",
-                                       named->name));
-  }
-  if (!a.compare.empty()) {
-    reader.fault("--draw",
-                 fmt::format("{} shows no deviations; --compare is for mesh alone", named->name));
-  }
-}
-
-/// The command line goes before the configuration.
-void complete(const LiveConfig& config, const ViewArguments& a, SessionOptions& session) {
-  if (session.tools.empty()) session.tools = config.tools;
-  if (!session.blank) session.blank = config.stock.blank;
-  if (a.run.work.cell.empty() && config.stock.cell_mm) {
-    session.stock.cell_mm = *config.stock.cell_mm;
-  }
-  if (a.run.work.margin.empty()) session.margin_mm = config.stock.margin_mm;
 }
 
 }  // namespace
+
+std::optional<DrawRoad> understand_draw(const std::string& text, OptionReader& reader) {
+  if (text.empty()) return std::nullopt;
+  for (const NamedRoad& road : kRoads) {
+    if (text == road.name) return road.road;
+  }
+  reader.fault("--draw", fmt::format("'{}' is not allowed; must be mesh | raycast | csg", text));
+  return std::nullopt;
+}
 
 ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   ViewRequest request;
   const std::optional<LiveConfig> config = read_config(a.config, a.sets, diagnostics);
   RunArguments run = a.run;
   if (config) {
-    if (run.source.ini.empty()) run.source.ini = config->machine.ini.value_or("");
-    if (run.source.tool_table.empty()) {
-      run.source.tool_table = config->machine.tool_table.value_or("");
-    }
+    complete_arguments(*config, run);
     request.machine = config->machine.drawn;
   }
   request.ini = run.source.ini;
   request.run = understand(run, diagnostics);
-  if (config) complete(*config, a, request.run.session);
+  if (config) complete_session(*config, run, request.run.session);
   OptionReader reader(diagnostics);
   if (a.speed == "max") {
     request.speed = std::numeric_limits<double>::infinity();
@@ -170,8 +156,14 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   read_comparison(a, reader, request);
   read_road(a, reader, request);
   const std::optional<Blank>& blank = request.run.session.blank;
-  if (request.frame.road != DrawRoad::kMesh && blank && blank->sheet) {
+  // The window says so itself, and draws by mesh.
+  if (request.frame.road != DrawRoad::kMesh && !request.wants_window() && blank &&
+      is_sheet(*blank)) {
     reader.fault("--draw", "a sheet is drawn by mesh alone");
+  }
+  // A turret is a machine's: it is drawn, unless another one is asked for.
+  if (request.run.session.turret && !request.machine.kind && !request.machine.links) {
+    request.machine.kind = MachineKind::kPunch;
   }
   request.film.speed = request.speed.value_or(1);
   if (!std::isfinite(request.film.speed)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "twin/app/option_reader.h"
 #include "twin/app/run_options.h"
 #include "twin/compare/design_part.h"
 #include "twin/machine_model/machine_choice.h"
@@ -43,9 +44,10 @@ struct ViewRequest {
   std::uint32_t at_line = 0;    ///< shown first; 0: the beginning (of a picture: the end)
   PlayerOptions player;
   std::string png;
-  FilmOptions film;       ///< no folder: none is wanted
-  FrameOptions frame;     ///< for files
-  MachineChoice machine;  ///< drawn around the workpiece
+  FilmOptions film;                     ///< no folder: none is wanted
+  FrameOptions frame;                   ///< for files
+  std::optional<DrawRoad> window_road;  ///< none: as the window remembers it
+  MachineChoice machine;                ///< drawn around the workpiece
   std::string ini;
   std::string compare;                       ///< file of the design part
   std::shared_ptr<const DesignPart> design;  ///< read by the command, not here
@@ -55,6 +57,9 @@ struct ViewRequest {
   /// Nothing is drawn into files.
   bool wants_window() const { return png.empty() && film.folder.empty(); }
 };
+
+/// The road that --draw names; none if it is not given, or wrong.
+std::optional<DrawRoad> understand_draw(const std::string& text, OptionReader& reader);
 
 /// Reads every option, so that all faults are told at once; with an error among the diagnostics the
 /// request is not to be used. The command line goes before the configuration. Opens no file but the

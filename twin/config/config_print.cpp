@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "twin/config/config_reader.h"
 #include "twin/config/live_config.h"
@@ -99,17 +100,43 @@ void print_links(Printer& printer, const LinkedMachine& machine) {
   printer.close();
 }
 
+void print_kinematics(Printer& printer, const KinematicsRequest& kinematics) {
+  if (kinematics.linked) {
+    printer.put("kinematics", "links");
+    printer.put("follows_tip", kinematics.linked->follows_tip ? "yes" : "no");
+  } else if (!kinematics.kinematics.empty()) {
+    printer.text("kinematics", kinematics.kinematics);
+  }
+  if (!kinematics.geometry.empty()) {
+    printer.open("geometry");
+    for (const auto& [pin, value] : kinematics.geometry) printer.put(pin, value);
+    printer.close();
+  }
+  if (kinematics.rotary_side) {
+    printer.put("rotary_side", *kinematics.rotary_side == RotarySide::kTable ? "table" : "head");
+  }
+  if (kinematics.rotary_center_mm) {
+    printer.put("rotary_center", vector_text(*kinematics.rotary_center_mm));
+  }
+  if (kinematics.told_tool_mm) printer.put("told_tool_length", *kinematics.told_tool_mm);
+}
+
 void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.open("machine");
   printer.text("ini", machine.ini);
   printer.text("tool_table", machine.tool_table);
   if (!machine.joints.empty()) printer.text("joints", machine.joints);
+  if (machine.kinematics) print_kinematics(printer, *machine.kinematics);
   if (machine.work_offset) {
     printer.open("work_offset");
     printer.put("x", machine.work_offset->g5x_mm.x);
     printer.put("y", machine.work_offset->g5x_mm.y);
     printer.put("z", machine.work_offset->g5x_mm.z);
     printer.put("rotation", machine.work_offset->rotation_deg);
+    for (std::size_t i = 0; i < 3; ++i) {
+      constexpr std::array kNames{"a", "b", "c"};
+      printer.put(kNames[i], machine.work_offset->offset_abc_deg[i]);
+    }
     printer.close();
   }
   printer.put("tool_length", name_of(machine.tool_length));
@@ -117,6 +144,24 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.max_mm_per_min) printer.put("max_speed_mm_per_min", *machine.max_mm_per_min);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
+  printer.close();
+}
+
+/// Only what is given: the rest hangs on the program.
+void print_beam(Printer& printer, const ConfigBeam& beam) {
+  if (beam == ConfigBeam{}) return;
+  printer.open("beam");
+  printer.text("trigger", beam.trigger);
+  const std::pair<const char*, const std::optional<double>*> numbers[] = {
+      {"kerf_mm", &beam.kerf_mm},
+      {"pierce_mm", &beam.pierce_mm},
+      {"slats_mm", &beam.slats_mm},
+      {"density_kg_per_m3", &beam.density_kg_per_m3}};
+  for (const auto& [key, value] : numbers) {
+    if (*value) printer.put(key, **value);
+  }
+  printer.text("qtplasmac", beam.qtplasmac);
+  printer.text("materials", beam.materials);
   printer.close();
 }
 
@@ -134,6 +179,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
   if (config.stock.cell_mm) printer.put("cell_mm", *config.stock.cell_mm);
   printer.put("margin_mm", config.stock.margin_mm);
   printer.close();
+  print_beam(printer, config.beam);
   printer.open("follow");
   printer.text("program", config.follow.program);
   if (config.follow.planned_path) {

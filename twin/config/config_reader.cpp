@@ -18,6 +18,9 @@ void read_work_offset(const GroupReader& offset, ConfigMachine& machine) {
   offset.number("y", frame.g5x_mm.y);
   offset.number("z", frame.g5x_mm.z);
   offset.number("rotation", frame.rotation_deg);
+  offset.number("a", frame.offset_abc_deg[0]);
+  offset.number("b", frame.offset_abc_deg[1]);
+  offset.number("c", frame.offset_abc_deg[2]);
   machine.work_offset = frame;
 }
 
@@ -51,6 +54,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("tool", out.tool);
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
   read_drawn_machine(machine, out.drawn);
+  read_kinematics(machine, out);
 }
 
 /// Why it cannot be used (with the model, if one is asked for); empty: it can.
@@ -102,6 +106,23 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
   }
   out.blank = std::move(blank.value());
   out.blank_spec = spec;
+}
+
+void read_beam(const GroupReader& beam, ConfigBeam& out) {
+  beam.number("kerf_mm", out.kerf_mm);
+  beam.number("pierce_mm", out.pierce_mm);
+  beam.number("slats_mm", out.slats_mm);
+  beam.number("density_kg_per_m3", out.density_kg_per_m3);
+  out.qtplasmac = beam.text("qtplasmac");
+  out.materials = beam.path("materials");
+  ConfigNode* const node = beam.find("trigger");
+  if (node == nullptr) return;
+  const Result<BeamTrigger> trigger = BeamTrigger::parse(node->scalar);
+  if (trigger) {
+    out.trigger = node->scalar;
+  } else {
+    beam.faults().at_value(*node, trigger.error());
+  }
 }
 
 void read_follow(const GroupReader& follow, ConfigFollow& out) {
@@ -168,6 +189,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_machine(root.group("machine"), config.machine);
   read_stock(root.group("stock"), config.stock);
   read_tools(root.group("tools"), config.stock.model, config.tools);
+  read_beam(root.group("beam"), config.beam);
   read_follow(root.group("follow"), config.follow);
   const GroupReader view = root.group("view");
   view.number("window", config.view.window);

@@ -69,6 +69,12 @@ void read_workshop(const GroupReader& root, LiveConfig& config);
 /// machine.model, machine.links and what belongs to them.
 void read_drawn_machine(const GroupReader& machine, MachineChoice& out);
 
+/// machine.kinematics and what belongs to it, after the joints and the links.
+void read_kinematics(const GroupReader& machine, ConfigMachine& out);
+
+/// "x,y,z" of a key; what was there if it is absent or faulty.
+void read_vector(const GroupReader& group, std::string_view key, Vec3& out);
+
 /// The group source, after machine.
 void read_source(const GroupReader& source, LiveConfig& config);
 

@@ -35,6 +35,9 @@ bool segment_matches(std::string_view segment, const std::string& key) {
   if (segment == "ITEM") {
     return std::find(item_names().begin(), item_names().end(), key) != item_names().end();
   }
+  if (segment == "PIN") {
+    return std::find(pin_names().begin(), pin_names().end(), key) != pin_names().end();
+  }
   if (segment == "NUMBER") {
     return !key.empty() && key.size() <= 9 && key.find_first_not_of("0123456789") == key.npos;
   }
@@ -125,6 +128,8 @@ class KeyChecker {
       }
       if (name == "ITEM") {
         names.insert(names.end(), item_names().begin(), item_names().end());
+      } else if (name == "PIN") {
+        names.insert(names.end(), pin_names().begin(), pin_names().end());
       } else {
         names.emplace_back(name);
       }

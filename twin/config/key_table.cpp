@@ -8,6 +8,7 @@
 
 #include "machine_io/can/can_signal.h"
 #include "machine_io/modbus/modbus_settings.h"
+#include "twin/kinematics/machine_kinematics.h"
 
 namespace kerf {
 namespace {
@@ -28,6 +29,39 @@ constexpr std::array kKeys{
             .type = T::kText,
             .purpose =
                 "axis that each joint moves, joint 0 first (XYYZ); else by the INI, or XYZABCUVW"},
+    KeySpec{.path = "machine.kinematics",
+            .type = T::kText,
+            .purpose =
+                "as [KINS]KINEMATICS has it, or `links`: those below move tool and workpiece; "
+                "else by the INI"},
+    KeySpec{
+        .path = "machine.follows_tip",
+        .type = T::kYesNo,
+        .purpose = "kinematics: links: X Y Z are the tip on the workpiece, however it has turned"},
+    KeySpec{.path = "machine.geometry", .purpose = "numbers that the kinematics take as HAL pins"},
+    KeySpec{.path = "machine.geometry.PIN",
+            .type = T::kNumber,
+            .unit = "mm; ALPHA-n radians",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .purpose =
+                "by the pin's name: y-offset, pivot-length, D4; else by HAL, or as the module "
+                "has it"},
+    KeySpec{
+        .path = "machine.rotary_side",
+        .type = T::kWord,
+        .words = "table|head",
+        .purpose = "what A, B and C turn, where the kinematics do not say (trivkins); else table"},
+    KeySpec{.path = "machine.rotary_center",
+            .type = T::kText,
+            .unit = "mm",
+            .purpose = "x,y,z: where the lines that they turn about meet, machine coordinates"},
+    KeySpec{.path = "machine.told_tool_length",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .purpose = "that the kinematics reckon with; else as HAL nets it, or that of G43"},
     KeySpec{.path = "machine.work_offset", .purpose = "where the work zero lies in the machine"},
     KeySpec{.path = "machine.work_offset.x",
             .type = T::kNumber,
@@ -57,6 +91,27 @@ constexpr std::array kKeys{
             .most = 360,
             .fallback = "0",
             .purpose = "turn of the work's X axis against the machine's, counterclockwise"},
+    KeySpec{.path = "machine.work_offset.a",
+            .type = T::kNumber,
+            .unit = "degrees",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "machine position of the work's A0"},
+    KeySpec{.path = "machine.work_offset.b",
+            .type = T::kNumber,
+            .unit = "degrees",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "the same in B"},
+    KeySpec{.path = "machine.work_offset.c",
+            .type = T::kNumber,
+            .unit = "degrees",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "the same in C"},
     KeySpec{.path = "machine.tool_length",
             .type = T::kWord,
             .words = "auto|source|program|table|none",
@@ -80,7 +135,9 @@ constexpr std::array kKeys{
             .purpose = "the machine that is drawn; else by the INI's axes, travels and kinematics"},
     KeySpec{.path = "machine.links",
             .type = T::kGroups,
-            .purpose = "the machine that is drawn, link by link, instead of model"},
+            .purpose =
+                "the machine that is drawn, link by link, instead of model; with `kinematics: "
+                "links` the machine that cuts"},
     KeySpec{.path = "machine.links.name", .type = T::kText, .purpose = "of the link"},
     KeySpec{.path = "machine.links.parent",
             .type = T::kText,
@@ -162,6 +219,43 @@ constexpr std::array kKeys{
             .most = 10000,
             .fallback = "5",
             .purpose = "around a blank that is guessed from the program"},
+
+    KeySpec{.path = "beam", .purpose = "sheets: the torch, laser or jet that cuts them"},
+    KeySpec{.path = "beam.trigger",
+            .type = T::kText,
+            .purpose = "what turns it on, as --beam has it: m3, laser, m62:0, ..; else m3, or "
+                       "plasmac for programs of QtPlasmaC"},
+    KeySpec{.path = "beam.kerf_mm",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0.01,
+            .most = 100,
+            .purpose = "width of the cuts of tools that `tools` does not describe"},
+    KeySpec{.path = "beam.pierce_mm",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0.01,
+            .most = 100,
+            .purpose = "diameter of the hole where it pierces; else the kerf"},
+    KeySpec{.path = "beam.slats_mm",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 1,
+            .most = 10000,
+            .purpose = "from one slat of the table to the next: smaller parts fall through"},
+    KeySpec{.path = "beam.density_kg_per_m3",
+            .type = T::kNumber,
+            .unit = "kg/m3",
+            .least = 1,
+            .most = 30000,
+            .purpose = "of the metal, for the weight of parts; else that of steel, 7850"},
+    KeySpec{.path = "beam.qtplasmac",
+            .type = T::kWord,
+            .words = "auto|on|off",
+            .purpose = "whether the program is for QtPlasmaC; auto: by what it reads"},
+    KeySpec{.path = "beam.materials",
+            .type = T::kFile,
+            .purpose = "material file of QtPlasmaC: kerf widths by number"},
 
     KeySpec{.path = "follow", .purpose = "the program that the machine runs"},
     KeySpec{.path = "follow.program", .type = T::kFile, .purpose = "NC program"},
@@ -591,6 +685,19 @@ const std::vector<std::string>& item_names() {
     std::vector<std::string> all(kAxisKeys.begin(), kAxisKeys.end());
     for (std::size_t i = 0; i < kMaxPositions; ++i) all.push_back(fmt::format("J{}", i));
     all.insert(all.end(), std::begin(kSmallItems), std::end(kSmallItems));
+    return all;
+  }();
+  return names;
+}
+
+const std::vector<std::string>& pin_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const std::string& module : known_modules()) {
+      for (const GeometryPin& pin : geometry_pins(module)) all.push_back(pin.name);
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }();
   return names;

@@ -32,7 +32,7 @@ enum SourceMask : std::uint8_t {
 };
 
 /// One key. In `path`, ITEM stands for what a map may name (X..W, J0..J8, tool, line, ...), and
-/// NUMBER for a tool number.
+/// NUMBER for a tool number, PIN for a number that kinematics take.
 struct KeySpec {
   std::string_view path;
   KeyType type = KeyType::kGroup;
@@ -60,6 +60,8 @@ std::vector<std::string> words_of(const KeySpec& spec);
 /// "X", .. "W": axis 0 to 8; "J0" .. "J8": joint 0 to 8. -1: neither.
 int axis_of_item(std::string_view item);
 int joint_of_item(std::string_view item);
+/// All that PIN stands for: numbers of any of the kinematics.
+const std::vector<std::string>& pin_names();
 /// All that ITEM stands for.
 const std::vector<std::string>& item_names();
 

@@ -17,6 +17,7 @@
 #include "machine_io/recorder.h"
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
+#include "twin/kinematics/kinematics_setup.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
 #include "twin/live/path_follower.h"
@@ -37,6 +38,8 @@ struct ConfigMachine {
   std::optional<int> tool;               ///< in the spindle, where the source does not say
   std::optional<double> max_mm_per_min;  ///< positions that need more are a gap
   MachineChoice drawn;                   ///< `model` and `links`
+  /// `kinematics` and what belongs to it; links are those of `drawn`, too.
+  std::optional<KinematicsRequest> kinematics;
 };
 
 /// `stock:`
@@ -46,6 +49,15 @@ struct ConfigStock {
   std::optional<StockKind> model;  ///< absent: what tools and motions need
   std::optional<double> cell_mm;   ///< grid size
   double margin_mm = 5;            ///< around a blank guessed from the program
+};
+
+/// `beam:`, for sheets. What is not given comes from the command line or is BeamOptions' default.
+struct ConfigBeam {
+  std::optional<std::string> trigger;  ///< BeamTrigger::parse() takes it
+  std::optional<double> kerf_mm, pierce_mm, slats_mm, density_kg_per_m3;
+  std::optional<std::string> qtplasmac;  ///< auto, on, off
+  std::optional<std::string> materials;  ///< path
+  bool operator==(const ConfigBeam&) const = default;
 };
 
 /// `follow:`
@@ -84,6 +96,7 @@ struct LiveConfig {
   ConfigMachine machine;
   std::vector<ToolShapeArgument> tools;
   ConfigStock stock;
+  ConfigBeam beam;
   ConfigFollow follow;
   ConfigView view;
   ConfigSourceCommon common;

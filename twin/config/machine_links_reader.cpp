@@ -10,27 +10,6 @@
 namespace kerf {
 namespace {
 
-/// "x,y,z".
-void read_vector(const GroupReader& group, std::string_view key, Vec3& out) {
-  ConfigNode* const node = group.find(key);
-  if (node == nullptr) return;
-  const std::vector<std::string_view> parts = split(node->scalar, ',');
-  Vec3 read(0.0);
-  bool good = parts.size() == 3;
-  for (std::size_t i = 0; good && i < 3; ++i) {
-    const std::optional<double> value = parse_decimal(trim(parts[i]));
-    good = value.has_value();
-    if (good) read[static_cast<int>(i)] = *value;
-  }
-  if (good) {
-    out = read;
-    return;
-  }
-  group.faults().at_value(
-      *node, fmt::format("'{}' is not allowed; must be three numbers, x,y,z", shown(node->scalar)),
-      "as in 0,0,-120.5");
-}
-
 void read_color(const GroupReader& group, std::uint32_t& out) {
   ConfigNode* const node = group.find("color");
   if (node == nullptr) return;
@@ -154,6 +133,26 @@ void read_links(const GroupReader& machine, ConfigNode& list, LinkedMachine& out
 }
 
 }  // namespace
+
+void read_vector(const GroupReader& group, std::string_view key, Vec3& out) {
+  ConfigNode* const node = group.find(key);
+  if (node == nullptr) return;
+  const std::vector<std::string_view> parts = split(node->scalar, ',');
+  Vec3 read(0.0);
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const std::optional<double> value = parse_decimal(trim(parts[i]));
+    good = value.has_value();
+    if (good) read[static_cast<int>(i)] = *value;
+  }
+  if (good) {
+    out = read;
+    return;
+  }
+  group.faults().at_value(
+      *node, fmt::format("'{}' is not allowed; must be three numbers, x,y,z", shown(node->scalar)),
+      "as in 0,0,-120.5");
+}
 
 void read_drawn_machine(const GroupReader& machine, MachineChoice& out) {
   // In the order of the key table.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "twin/kinematics/hal_facts.h"
+#include "twin/kinematics/tool_path.h"
 
 namespace kerf {
 namespace {
@@ -24,13 +25,33 @@ std::string tool_pin(std::string_view module) {
   return {};
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
 bool is_angle(std::string_view pin) { return pin.rfind("ALPHA", 0) == 0; }
 
 /// Numbers of the module's pins with where they are from.
 class GeometrySearch {
  public:
+  /// Error: a number is given that the module does not take.
+  static Done check(std::string_view module, const KinematicsGeometry& given) {
+    std::vector<std::string> names;
+    for (const GeometryPin& pin : geometry_pins(module)) names.push_back(pin.name);
+    for (const auto& [pin, value] : given) {
+      if (std::find(names.begin(), names.end(), pin) != names.end()) continue;
+      return Error{fmt::format("'{}' is no number of {}; {}", pin, module,
+                               names.empty() ? "it takes none" : "it takes " + join(names))};
+    }
+    return std::monostate{};
+  }
+
   GeometrySearch(std::string_view module, const KinematicsRequest& request)
-      : module_(module), pins_(geometry_pins(module)), geometry_(request.geometry) {
+      : module_(module),
+        pins_(geometry_pins(module)),
+        geometry_(request.geometry),
+        hal_pins_(request.hal_pins) {
     for (const auto& [pin, value] : request.geometry) {
       given_.push_back(fmt::format("{} {:g}", pin, value));
     }
@@ -40,6 +61,11 @@ class GeometrySearch {
     for (const GeometryPin& pin : pins_) {
       if (geometry_.count(pin.name) != 0) continue;
       const std::string full = fmt::format("{}.{}", module_, pin.name);
+      if (const auto told = hal_pins_.find(lower(full)); told != hal_pins_.end()) {
+        geometry_[pin.name] = is_angle(pin.name) ? told->second : told->second * unit_mm;
+        given_.push_back(fmt::format("{} {:g}", pin.name, geometry_[pin.name]));
+        continue;
+      }
       const HalValue value = hal.value_of(full);
       // A part that nobody knows: better all of it as the module has it.
       if (value.is_set && (value.from.empty() || !value.has_tool_length)) {
@@ -73,7 +99,7 @@ class GeometrySearch {
       if (items.empty()) return;
       text += (text.empty() ? "" : "; ") + fmt::format("{}: {}", origin, join(items));
     };
-    add("from the configuration", given_);
+    add("as told", given_);
     add("from HAL", from_hal_);
     add("as the module has them", standard);
     add("set by a running program, not known", elsewhere_);
@@ -84,6 +110,7 @@ class GeometrySearch {
   std::string module_;
   std::vector<GeometryPin> pins_;
   KinematicsGeometry geometry_;
+  std::map<std::string, double> hal_pins_;
   std::vector<std::string> given_, from_hal_, elsewhere_;
 };
 
@@ -150,15 +177,69 @@ std::string_view first_word(std::string_view text) {
   return text.substr(0, text.find_first_of(" \t"));
 }
 
+/// X, Y and Z of the axes that drive links, and what else does; all nine where joints do.
+std::string letters_of(const std::vector<ChainLink>& links) {
+  std::string letters;
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    const bool drives = std::any_of(links.begin(), links.end(), [&](const ChainLink& link) {
+      return link.joint != JointKind::kFixed && (link.by_joint || link.input == axis);
+    });
+    if (drives) letters += kAxisLetters[axis];
+  }
+  return letters;
+}
+
 }  // namespace
+
+bool takes_rotary_placement(std::string_view module) {
+  const auto machine = known_machine(module, "XYZ", {}, {});
+  return machine && machine->types.front().mode == KinematicsMode::kAxes &&
+         geometry_pins(module).empty();
+}
+
+Result<MachineKinematics> kinematics_of_links(const LinkedKinematics& linked,
+                                              std::string_view joint_letters) {
+  Result<KinematicChain> rest =
+      KinematicChain::create(linked.links, linked.workpiece_on, linked.tool_on);
+  if (!rest) return Error{rest.error()};
+  // A link of its own: no name of the file's may be that.
+  std::vector<ChainLink> links = linked.links;
+  ChainLink zero;
+  zero.name = linked.workpiece_on + " (zero)";
+  while (rest->find(zero.name)) zero.name += '\'';
+  zero.parent = linked.workpiece_on;
+  zero.origin_mm = rest->workpiece_from_tool({}).origin_mm;
+  links.push_back(zero);
+  Result<KinematicChain> chain = KinematicChain::create(links, zero.name, linked.tool_on);
+  if (!chain) return Error{chain.error()};
+  MachineKinematics machine;
+  machine.module = "links";
+  machine.joint_letters = joint_letters.empty() ? letters_of(links) : std::string(joint_letters);
+  machine.chain = std::move(chain.value());
+  KinematicsType type;
+  type.name = "links";
+  type.mode = linked.follows_tip ? KinematicsMode::kTip : KinematicsMode::kAxes;
+  machine.types.push_back(type);
+  if (const Result<ToolPath> path = ToolPath::create(machine, {}, {}); !path) {
+    return Error{path.error()};
+  }
+  if (linked.follows_tip && !machine.position_of({}, 0)) {
+    return Error{"the links do not slide along three directions: X, Y and Z cannot follow the tip"};
+  }
+  return machine;
+}
 
 Result<MachineKinematics> kinematics_of_ini(IniFile& ini, const std::string& folder,
                                             std::string_view joint_letters, double unit_mm,
                                             const KinematicsRequest& request) {
+  if (request.linked) return kinematics_of_links(*request.linked, joint_letters);
   std::string kinematics = request.kinematics;
   if (kinematics.empty()) {
     const IniEntry* const entry = ini.find("KINS", "KINEMATICS");
     kinematics = entry != nullptr ? entry->value : "trivkins";
+  }
+  if (const Done known = GeometrySearch::check(first_word(kinematics), request.geometry); !known) {
+    return Error{known.error()};
   }
   const HalFacts hal(ini, folder);
   GeometrySearch search(first_word(kinematics), request);
@@ -178,11 +259,15 @@ Result<MachineKinematics> kinematics_of_ini(IniFile& ini, const std::string& fol
 
 Result<MachineKinematics> kinematics_of_request(const KinematicsRequest& request,
                                                 std::string_view joint_letters) {
+  if (request.linked) return kinematics_of_links(*request.linked, joint_letters);
   const RotaryPlacement placement = placement_of(request);
   Result<MachineKinematics> machine =
       known_machine(request.kinematics.empty() ? "trivkins" : request.kinematics, joint_letters,
                     request.geometry, placement);
   if (!machine) return machine;
+  if (const Done known = GeometrySearch::check(machine->module, request.geometry); !known) {
+    return Error{known.error()};
+  }
   GeometrySearch(machine->module, request).tell(machine->notes);
   if (request.told_tool_mm) machine->told_tool_mm = request.told_tool_mm;
   tell_side(request, placement, *machine);

@@ -309,11 +309,21 @@ int MachineKinematics::type_of(const Motion& motion) const {
   return value > 0 && value < static_cast<double>(types.size()) ? static_cast<int>(value) : 0;
 }
 
-bool MachineKinematics::turns() const {
-  if (std::any_of(types.begin(), types.end(),
-                  [](const KinematicsType& t) { return t.mode == KinematicsMode::kArm; })) {
-    return true;
+bool MachineKinematics::is_arm() const {
+  return std::any_of(types.begin(), types.end(),
+                     [](const KinematicsType& t) { return t.mode == KinematicsMode::kArm; });
+}
+
+bool MachineKinematics::turns_joint(std::size_t joint) const {
+  for (const ChainLink& link : chain.links()) {
+    if (link.joint == JointKind::kFixed || !link.by_joint || link.input != joint) continue;
+    return link.joint == JointKind::kRotary;
   }
+  return joint < joint_letters.size() && is_rotary_axis(axis_of(joint_letters[joint]));
+}
+
+bool MachineKinematics::turns() const {
+  if (is_arm()) return true;
   return chain.is_driven_by(3) || chain.is_driven_by(4) || chain.is_driven_by(5);
 }
 

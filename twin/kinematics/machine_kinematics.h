@@ -28,6 +28,9 @@ enum class KinematicsMode : std::uint8_t {
   kArm,
 };
 
+/// No module has more types.
+inline constexpr std::size_t kMostKinematicsTypes = 3;
+
 /// One of the kinematics that a module can be switched to (motion.switchkins-type).
 struct KinematicsType {
   std::string name;  ///< "identity", "userk", or that of the module
@@ -65,7 +68,7 @@ struct MachineKinematics {
   std::string joint_letters;  ///< Axis of each joint, "XYYZ"; of a robot those of `identity`.
   bool belts = false;         ///< corexykins: joints 0 and 1 are X + Y and X - Y.
   KinematicChain chain;       ///< Driven by machine axes, of a robot by joints.
-  std::vector<KinematicsType> types;  ///< [motion.switchkins-type]; one at least.
+  std::vector<KinematicsType> types;  ///< [motion.switchkins-type]; 1 .. kMostKinematicsTypes.
   /// Analog output that motion.switchkins-type hangs on: M68 E3 Q.., as LinuxCNC's M428, M429 and
   /// M430 have it. 0 .. 3.
   unsigned switch_output = 3;
@@ -88,6 +91,10 @@ struct MachineKinematics {
   bool is_switchable() const { return types.size() > 1; }
   /// Does any type turn the tool or the workpiece? (Does A, B or C exist?)
   bool turns() const;
+  /// A robot: some type is kArm. Its chain is driven by joints.
+  bool is_arm() const;
+  /// The joint counts degrees: it turns a link of the chain, or its axis is A, B or C.
+  bool turns_joint(std::size_t joint) const;
 
   /// Forward, as the module does it: the axes for these joints. `tool_mm`: as told_tool_mm, for a
   /// tool offset of that length. A B C of a robot: roll, pitch, yaw in -180 .. 180.

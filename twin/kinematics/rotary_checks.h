@@ -52,6 +52,9 @@ class RotaryCheck {
   /// `duration_s`: that the motion takes; 0: not known, speeds are not looked at.
   void check(const Motion& motion, double duration_s, std::vector<RotaryFault>& out);
 
+  /// The pole alone: of a motion that a machine has been seen to make, in parts.
+  void check_pole(const Motion& motion, std::vector<RotaryFault>& out);
+
   /// Motions that had the fault.
   std::uint64_t count(RotaryFaultKind kind) const {
     return counts_[static_cast<std::size_t>(kind)];
@@ -62,7 +65,6 @@ class RotaryCheck {
   void add(RotaryFaultKind kind, std::size_t axis, const Motion& motion, std::string text,
            std::string hint, std::vector<RotaryFault>& out);
   void check_axes(const Motion& motion, std::vector<RotaryFault>& out);
-  void check_pole(const Motion& motion, std::vector<RotaryFault>& out);
   void check_joints(const Motion& motion, double duration_s, std::vector<RotaryFault>& out);
   void check_tool(const Motion& motion, std::vector<RotaryFault>& out);
 

@@ -86,6 +86,7 @@ bool moves_tip(const Motion& m) {
     case MotionKind::kToolChange:
     case MotionKind::kStop:
     case MotionKind::kProgramEnd:
+    case MotionKind::kSignal:
       break;
   }
   return false;

@@ -83,8 +83,7 @@ class ToolPath {
 
   /// The program switches kinematics (MachineKinematics::type_of) while the machine stands turned:
   /// it stays where it is, and X Y Z are other numbers from there on. Sets next.from_mm to them.
-  /// The interpreter knows nothing of this; axis words that `next` does not have stay as they were
-  /// under the kinematics before.
+  /// The interpreter knows nothing of this: SwitchedMotions sees to what follows from it.
   void take_up(const Motion& before, Motion& next) const;
 
  private:

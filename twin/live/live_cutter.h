@@ -13,6 +13,7 @@
 
 #include "machine_io/position_source.h"
 #include "stock/zmap/zmap.h"
+#include "twin/beam_settings.h"
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
 #include "twin/live/live_facts.h"
@@ -46,15 +47,27 @@ struct LiveCutOptions {
   /// be empty.
   std::function<std::unique_ptr<Program>()> reopen;
   bool wait_for_program = false;  ///< a log waits for the interpreter, a machine does not
+  /// Of a sheet; such a workpiece needs it. On the path of a program the beam is on where the
+  /// program has it on. Elsewhere it is on while the spindle turns, as the source tells it: M3 of
+  /// cutting tables. Where nothing tells it, it is off. There is no look-ahead.
+  std::optional<BeamSettings> beam;
 };
 
 /// The machine now.
+///
+/// Between two samples the machine is taken to go as its controller interpolates: X Y Z straight
+/// and A B C evenly, in the numbers of the kinematics in force (LivePose). Without a program these
+/// are those of the module's first type; of positions of joints the tool is where it is at each
+/// sample whatever the type, and only the way between two depends on it.
 struct LivePlace {
-  bool known = false;  ///< X, Y and Z were in the last sample
-  Vec3 tip_mm{0};      ///< workpiece frame
-  Vec3 machine_mm{0};  ///< X Y Z as the machine has them
-  std::array<double, 3> abc_deg{};
-  double spindle_rpm = 0;  ///< signed; NaN: not known
+  bool known = false;               ///< X, Y and Z were in the last sample
+  Vec3 tip_mm{0};                   ///< workpiece frame: on the part, however that has turned
+  bool turns = false;               ///< the model follows what turns, and so do these:
+  Pose tool_pose;                   ///< of the tool there; its origin is tip_mm
+  Vec3 spindle{0, 0, 1};            ///< there, from the tip to the nose
+  Vec3 machine_mm{0};               ///< X Y Z as the machine has them
+  std::array<double, 3> abc_deg{};  ///< as the program has them
+  double spindle_rpm = 0;           ///< signed; NaN: not known
   int tool = -1;
   bool followed = false;     ///< there is a program, and the tip is on its path
   bool off_path = false;     ///< it should be, and is not
@@ -95,16 +108,27 @@ class LiveCutter {
 
  private:
   struct Sighting {
-    Vec3 tip_mm{0};
+    ProgramPlace place;  ///< under kinematics_type_
+    Pose pose;           ///< of the tool in the workpiece
     double t_s = 0;
     double tool_length_mm = 0;
     int tool = -1;
-    std::array<double, 3> abc_deg{};
+    std::array<bool, 3> abc_known{};
+    AxisSample sample;
   };
   void adopt_program_frame();
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
-  FollowedPlace place_of(const Sighting& now, const AxisSample& sample, double elapsed_s) const;
-  FollowedPoint follow(Sighting& now, const AxisSample& sample, double elapsed_s);
+  static Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place,
+                            int tool);
+  const MachineKinematics* switched_machine() const;
+  std::optional<double> assumed_length_mm() const;
+  FollowedPlace place_of(const Sighting& now, double elapsed_s) const;
+  FollowedPoint follow(Sighting& now, double elapsed_s);
+  void check_passed(double until_s);
+  void take_kinematics(int type, bool without_length, Sighting& now);
+  static ProgramPlace place_on_path(const Sighting& now, const FollowedPoint& point);
+  Pose pose_in_workpiece(const Sighting& at) const;
+  double way_between(const Sighting& before, const Sighting& now) const;
   bool join(const FollowedPlace& place);
   std::optional<std::uint64_t> motion_at(const FollowedPlace& place) const;
   void cut_before(std::uint64_t motion);
@@ -117,10 +141,12 @@ class LiveCutter {
   void note_limits(const Vec3& machine_mm, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
   void note_turn(const Sighting& now);
+  void note_unseen_axes(const Sighting& now);
+  void note_unseen_beam(const Sighting& now);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
-  void cut_chord(const Vec3& from_mm, const Sighting& now, double duration_s, bool off_path);
-  void cut_path(double duration_s);
+  void cut_chord(const ProgramPlace& from, const Sighting& now, double duration_s, bool off_path);
+  void cut_path(const Sighting& now, const FollowedPoint& point, double duration_s);
   void cut(const Motion& motion, double duration_s);
   SpindleState spindle() const;
 
@@ -138,7 +164,8 @@ class LiveCutter {
 
   AxisSample sample_;  ///< the last one
   std::optional<Sighting> before_;
-  Vec3 cut_to_mm_{0};  ///< where the cutter has come to in the workpiece
+  ProgramPlace cut_to_;      ///< where the cutter has come to
+  int kinematics_type_ = 0;  ///< in force, as the program has it where the machine is
   bool was_on_path_ = false;
   double period_s_ = 0;    ///< usual time between samples
   bool was_fast_ = false;  ///< between the last two samples, faster than the machine can be
@@ -151,6 +178,9 @@ class LiveCutter {
   bool beyond_told_ = false;
   std::optional<std::array<double, 3>> first_abc_deg_;
   bool turn_told_ = false;
+  bool unseen_told_ = false;
+  bool beam_told_ = false;
+  std::vector<TorchMaterial> materials_;
   int length_told_ = 0;  ///< tool whose length is not known
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's

@@ -1,5 +1,7 @@
 #include "twin/live/live_frame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,43 +9,84 @@ namespace kerf {
 namespace {
 
 constexpr unsigned kTipAxes = 0b111;
+constexpr unsigned kTurningAxes = 0b111000;
 
-/// Positions by axis, and which of them are known.
-struct ByAxis {
-  std::array<double, kMaxPositions> position{};
-  unsigned known = 0;
-};
+unsigned bit(std::size_t index) { return 1U << index; }
 
-/// Of belts neither X nor Y is known unless both are.
-ByAxis by_kinematics(const AxisSample& sample, const MachineKinematics& machine) {
-  ByAxis out;
-  AxisValues joints{};
-  for (std::size_t i = 0; i < machine.joint_letters.size(); ++i) {
-    if (!sample.has(i)) continue;
-    joints[i] = sample.position[i];
-    const auto axis = std::find(kAxisLetters.begin(), kAxisLetters.end(), machine.joint_letters[i]);
-    out.known |= 1U << (axis - kAxisLetters.begin());
-  }
-  constexpr unsigned kBelts = 0b11;
-  if (machine.belts && (out.known & kBelts) != kBelts) out.known &= ~kBelts;
-  const AxisValues axes = machine.axes_of(joints, 0);
-  std::copy(axes.begin(), axes.end(), out.position.begin());
-  return out;
+std::size_t axis_of(char letter) {
+  return static_cast<std::size_t>(std::find(kAxisLetters.begin(), kAxisLetters.end(), letter) -
+                                  kAxisLetters.begin());
 }
 
-ByAxis by_axis(const AxisSample& sample, const LiveFrameOptions& options) {
-  if (options.kinematics) return by_kinematics(sample, *options.kinematics);
-  const std::array<int, kMaxPositions>& axis = options.axis;
-  ByAxis out;
-  for (std::size_t i = 0; i < kMaxPositions; ++i) {
-    if (axis[i] < 0 || !sample.has(i)) continue;
-    out.position[static_cast<std::size_t>(axis[i])] = sample.position[i];
-    out.known |= 1U << axis[i];
+/// Joints whose positions are known.
+unsigned known_joints(const AxisSample& sample, const MachineKinematics& machine) {
+  unsigned known = 0;
+  for (std::size_t i = 0; i < std::min(machine.joint_letters.size(), kMaxPositions); ++i) {
+    if (sample.has(i)) known |= bit(i);
   }
-  return out;
+  return known;
+}
+
+/// Joints without which the forward kinematics tell nothing of X, Y and Z.
+unsigned needed_joints(const MachineKinematics& machine) {
+  unsigned needed = 0;
+  const bool follows =
+      std::any_of(machine.types.begin(), machine.types.end(),
+                  [](const KinematicsType& type) { return type.mode != KinematicsMode::kAxes; });
+  for (std::size_t i = 0; i < std::min(machine.joint_letters.size(), kMaxPositions); ++i) {
+    const char letter = machine.joint_letters[i];
+    const std::size_t axis = axis_of(letter);
+    if (machine.is_arm()) {
+      if (machine.chain.is_driven_by_joint(i)) needed |= bit(i);
+      continue;
+    }
+    // Of several joints on one axis the first counts.
+    if (machine.joint_letters.find(letter) != i) continue;
+    const bool slides = (bit(axis) & kTipAxes) != 0;
+    if (slides || (follows && machine.chain.is_driven_by(axis))) needed |= bit(i);
+  }
+  return needed;
+}
+
+/// "X", or of a robot "joint 3".
+std::string name_of_joint(const MachineKinematics& machine, std::size_t joint) {
+  if (machine.is_arm()) return fmt::format("joint {}", joint);
+  return std::string(1, machine.joint_letters[joint]);
 }
 
 }  // namespace
+
+/// X Y Z .. W of the controller.
+struct LiveFrame::Axes {
+  AxisValues value{};
+  unsigned known = 0;  ///< bits
+};
+
+LiveFrame::Axes LiveFrame::axes_of(const AxisSample& sample, int type, double tool_mm) const {
+  Axes out;
+  if (const MachineKinematics* const machine = options_.kinematics.get()) {
+    AxisValues joints{};
+    for (std::size_t i = 0; i < std::min(joints.size(), kMaxPositions); ++i) {
+      if (sample.has(i)) joints[i] = sample.position[i];
+    }
+    out.value = machine->axes_of(joints, type, tool_mm);
+    const unsigned known = known_joints(sample, *machine);
+    const unsigned needed = needed_joints(*machine);
+    if ((known & needed) == needed) out.known = kTipAxes;
+    for (std::size_t i = 0; i < machine->joint_letters.size(); ++i) {
+      const std::size_t axis = axis_of(machine->joint_letters[i]);
+      if ((bit(axis) & kTurningAxes) != 0 && (known & bit(i)) != 0) out.known |= bit(axis);
+    }
+    return out;
+  }
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    const int axis = options_.axis[i];
+    if (axis < 0 || !sample.has(i)) continue;
+    out.value[static_cast<std::size_t>(axis)] = sample.position[i];
+    out.known |= 1U << axis;
+  }
+  return out;
+}
 
 void LiveFrame::turn() {
   const double angle = options_.work.rotation_deg * kPi / 180.0;
@@ -52,12 +95,22 @@ void LiveFrame::turn() {
 }
 
 std::string LiveFrame::missing_axes(const AxisSample& sample) const {
-  const ByAxis axes = by_axis(sample, options_);
   std::string text;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axes.known >> axis & 1U) continue;
-    if (!text.empty()) text += " and ";
-    text += kAxisLetters[static_cast<std::size_t>(axis)];
+  const auto add = [&](const std::string& name) {
+    text.append(text.empty() ? "" : " and ").append(name);
+  };
+  if (const MachineKinematics* const machine = options_.kinematics.get()) {
+    unsigned missing = needed_joints(*machine) & ~known_joints(sample, *machine);
+    // Neither is known by one belt.
+    if (machine->belts && (missing & 0b11) != 0) missing |= 0b11;
+    for (std::size_t i = 0; i < machine->joint_letters.size(); ++i) {
+      if ((missing & bit(i)) != 0) add(name_of_joint(*machine, i));
+    }
+    return text;
+  }
+  const Axes axes = axes_of(sample, 0, 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if ((axes.known & bit(axis)) == 0) add(std::string(1, kAxisLetters[axis]));
   }
   return text;
 }
@@ -83,23 +136,39 @@ double LiveFrame::length_of(const AxisSample& sample, std::optional<double> prog
   return 0;
 }
 
+/// Machine coordinates without the tool's length and the work offset.
+Vec3 LiveFrame::tip_of(const Axes& axes, double tool_mm) const {
+  const WorkpieceFrame& work = options_.work;
+  const Vec3 there{axes.value[0], axes.value[1], axes.value[2]};
+  const Vec3 tip = there - Vec3{0, 0, tool_mm} - work.g5x_mm;
+  return Vec3{cos_ * tip.x + sin_ * tip.y, cos_ * tip.y - sin_ * tip.x, tip.z} - work.g92_mm;
+}
+
 std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
-                                           std::optional<double> program_length_mm) const {
-  const ByAxis axes = by_axis(sample, options_);
-  if ((axes.known & kTipAxes) != kTipAxes) return std::nullopt;
+                                           std::optional<double> program_length_mm,
+                                           int type) const {
   LivePose pose;
-  const Vec3 there{axes.position[0], axes.position[1], axes.position[2]};
-  for (std::size_t i = 0; i < 3; ++i) pose.abc_deg[i] = axes.position[3 + i];
-  pose.machine_mm = there;
+  if (!options_.workpiece_frame) {
+    pose.tool_length_mm = length_of(sample, program_length_mm, pose.length_known);
+  }
+  const Axes axes = axes_of(sample, type, pose.tool_length_mm);
+  if ((axes.known & kTipAxes) != kTipAxes) return std::nullopt;
+  pose.machine_mm = {axes.value[0], axes.value[1], axes.value[2]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    pose.abc_deg[i] = axes.value[3 + i];
+    pose.abc_known[i] = (axes.known & bit(3 + i)) != 0;
+  }
   if (options_.workpiece_frame) {
-    pose.tip_mm = there;
+    pose.tip_mm = pose.machine_mm;
     return pose;
   }
-  pose.tool_length_mm = length_of(sample, program_length_mm, pose.length_known);
-  const WorkpieceFrame& work = options_.work;
-  const Vec3 tip = there - Vec3{0, 0, pose.tool_length_mm} - work.g5x_mm;
-  pose.tip_mm = Vec3{cos_ * tip.x + sin_ * tip.y, cos_ * tip.y - sin_ * tip.x, tip.z} - work.g92_mm;
-  for (std::size_t i = 0; i < 3; ++i) pose.abc_deg[i] -= work.offset_abc_deg[i];
+  pose.tip_mm = tip_of(axes, pose.tool_length_mm);
+  const auto& machine = options_.kinematics;
+  if (machine && machine->type(type).mode == KinematicsMode::kTip) {
+    const double longer_mm = pose.tool_length_mm + 1;
+    pose.along_tool = pose.tip_mm - tip_of(axes_of(sample, type, longer_mm), longer_mm);
+  }
+  for (std::size_t i = 0; i < 3; ++i) pose.abc_deg[i] -= options_.work.offset_abc_deg[i];
   return pose;
 }
 

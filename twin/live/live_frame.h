@@ -30,8 +30,9 @@ struct LiveFrameOptions {
   /// axis[i]: which axis (0 = X .. 8 = W) position i of the samples is; -1: none. With trivial
   /// kinematics a joint is an axis, and this is all there is to it.
   std::array<int, kMaxPositions> axis = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-  /// Of a machine whose joints are not its axes under other names (corexykins): position i is that
-  /// of joint i then, and `axis` does not matter. Null: `axis` says it all.
+  /// Of a machine whose joints are not its axes under other names (corexykins, kinematics that
+  /// follow the tip, robots): position i is that of joint i then, and `axis` does not matter. Null:
+  /// `axis` says it all.
   std::shared_ptr<const MachineKinematics> kinematics;
   bool workpiece_frame = false;  ///< positions are the tip's, in the workpiece frame
   WorkpieceFrame work;           ///< where the workpiece lies in the machine
@@ -41,12 +42,23 @@ struct LiveFrameOptions {
   int tool = -1;
 };
 
-/// The machine at one moment.
+/// The machine at one moment, in the numbers that a program would have there: Motion::to_mm and
+/// to_abc_deg. What these mean depends on the kinematics (KinematicsMode):
+///
+///     kAxes       X Y Z are the slides', less offsets. Where a table turns this is not the
+///                 workpiece frame, which turns with it
+///     kTip, kArm  X Y Z are the tip in the workpiece frame, whatever has turned
+///
+/// ToolPath says where the tool is in the workpiece for either.
 struct LivePose {
-  Vec3 tip_mm{0};  ///< workpiece frame
+  Vec3 tip_mm{0};
+  std::array<double, 3> abc_deg{};  ///< of kArm roll, pitch and yaw, in -180 .. 180
+  std::array<bool, 3> abc_known{};  ///< false: no position of that axis has come, 0 is assumed
+  /// tip_mm of a tool that is 1 mm longer is tip_mm less this: (0, 0, 1), but where the controller
+  /// follows the tip of a tool whose length it is told.
+  Vec3 along_tool{0, 0, 1};
   Vec3 machine_mm{
       0};  ///< X Y Z as the machine has them; of positions in the workpiece frame: tip_mm
-  std::array<double, 3> abc_deg{};
   double tool_length_mm = 0;
   bool length_known = true;  ///< false: taken as 0 because nothing tells it
 };
@@ -56,11 +68,13 @@ class LiveFrame {
  public:
   explicit LiveFrame(LiveFrameOptions options) : options_(std::move(options)) { turn(); }
 
-  /// Nothing if X, Y or Z of the sample is not known (missing_axes() then says which).
-  /// `program_length_mm`: the G43 in force in the program, if it is followed.
-  std::optional<LivePose> pose_of(const AxisSample& sample,
-                                  std::optional<double> program_length_mm) const;
-  /// "Z", "X and Y": those without which there is no tip.
+  /// Nothing if a position is not known without which there is no tip (missing_axes() then says
+  /// which): X, Y, Z, and where the kinematics need them to tell these, the axes that turn.
+  /// `program_length_mm`: the G43 in force in the program, if it is followed. `type`: of the
+  /// kinematics in force (MachineKinematics::types); of positions by axes it does not matter.
+  std::optional<LivePose> pose_of(const AxisSample& sample, std::optional<double> program_length_mm,
+                                  int type = 0) const;
+  /// "Z", "X and Y", "joint 3": those without which there is no tip.
   std::string missing_axes(const AxisSample& sample) const;
 
   int tool_of(const AxisSample& sample) const {
@@ -73,7 +87,10 @@ class LiveFrame {
   const LiveFrameOptions& options() const { return options_; }
 
  private:
+  struct Axes;
   void turn();
+  Axes axes_of(const AxisSample& sample, int type, double tool_mm) const;
+  Vec3 tip_of(const Axes& axes, double tool_mm) const;
   double length_of(const AxisSample& sample, std::optional<double> program_length_mm,
                    bool& known) const;
 

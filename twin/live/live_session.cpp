@@ -9,6 +9,8 @@
 
 #include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
+#include "twin/program_front.h"
+#include "twin/sheet_report.h"
 
 namespace kerf {
 namespace {
@@ -80,6 +82,12 @@ std::unique_ptr<LiveSession> LiveSession::open(LiveOptions options,
   return session;
 }
 
+struct LiveSession::Survey {
+  bool guesses = false;  ///< the blank is to be guessed
+  std::optional<Blank> blank;
+  std::string tilt;  ///< TiltWatch::found()
+};
+
 bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   ProgramOptions program;
   program.tool_table_path = options_.tool_table_path;
@@ -96,14 +104,19 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   for (const ToolTableRow& row : tools.table) {
     options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
   }
-  choice_ = choose_stock(options_.stock, stock_needs(tools));
   CommentBlank found;
   if (options_.blank) {
     found = {options_.blank, "--stock"};
   } else if (program_ && !find_comment_blank(*program_, program.path, found, diagnostics)) {
     return false;
   }
-  if (!found.blank && !guess_blank(tools, diagnostics, outcome)) return false;
+  Survey survey;
+  survey.guesses = !found.blank;
+  if (!survey_program(tools, survey, diagnostics)) return false;
+  StockNeeds needs = stock_needs(tools);
+  needs.tilt = need_of_tilt(survey);
+  choice_ = choose_stock(options_.stock, needs);
+  if (!found.blank && !guess_blank(survey, diagnostics, outcome)) return false;
   if (found.blank) {
     StockSetup setup =
         make_stock(*found.blank, choice_, options_.stock, found.origin, diagnostics, outcome);
@@ -117,6 +130,17 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
       return Program::open(again, ignored);
     };
   }
+  if (as_sheet(*stock_)) {
+    options_.cutting.beam = beam_settings(options_.beam, program_ && program_->is_qtplasmac());
+    if (!program_) options_.cutting.beam->trigger = BeamTrigger();
+    if (!program_ && options_.beam.trigger) {
+      Diagnostic note = general_error(
+          "--beam: without a program (--program) the beam is on while the source's spindle turns, "
+          "whatever the trigger");
+      note.severity = Severity::kWarning;
+      diagnostics.push_back(std::move(note));
+    }
+  }
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
   cutter_ = std::make_unique<LiveCutter>(*stock_, tools, report_.findings, options_.cutting,
@@ -129,32 +153,58 @@ void LiveSession::keep_cut_ids() {
   cutter_->label_by(labels_);
 }
 
+/// One reading of the program beforehand, if anything is to be learnt from it: where it works, and
+/// whether it turns anything on a machine that can.
+bool LiveSession::survey_program(const ToolSources& tools, Survey& survey,
+                                 Diagnostics& diagnostics) {
+  const TimelineOptions& timeline = options_.cutting.timeline;
+  const bool may_turn = !options_.stock.kind && timeline.kinematics && timeline.kinematics->turns();
+  if (!program_ || options_.program->path == "-" || !(survey.guesses || may_turn)) return true;
+  const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
+  if (!first_pass) return false;
+  TiltWatch tilt(timeline.kinematics);
+  BlankSurvey blank(options_.margin_mm, tools);
+  Diagnostics said;
+  first_pass->run(
+      [&](std::span<const Motion> motions) {
+        tilt.look_at(motions, first_pass->workpiece_frame());
+        if (survey.guesses) blank.add(motions, tilt.moves());
+        return survey.guesses || tilt.found().empty();
+      },
+      {}, said);
+  survey.tilt = tilt.found();
+  if (survey.guesses) survey.blank = blank.blank();
+  return true;
+}
+
+/// As in a dry run where there is a program. A machine without one may turn whenever it likes.
+std::string LiveSession::need_of_tilt(const Survey& survey) const {
+  const TimelineOptions& timeline = options_.cutting.timeline;
+  if (program_ && options_.program->path != "-") return survey.tilt;
+  if (!timeline.kinematics_known || !timeline.kinematics || !timeline.kinematics->turns()) {
+    return {};
+  }
+  const MachineKinematics& machine = *timeline.kinematics;
+  std::string axes;
+  for (std::size_t i = 3; i < 6; ++i) {
+    if (machine.is_arm() || !machine.chain.is_driven_by(i)) continue;
+    axes.append(axes.empty() ? "" : " and ").append(1, kAxisLetters[i]);
+  }
+  return fmt::format("the machine turns the tool or the workpiece ({}{}{})", machine.module,
+                     axes.empty() ? "" : ": ", axes);
+}
+
 /// From the motions of the program.
-bool LiveSession::guess_blank(const ToolSources& tools, Diagnostics& diagnostics,
-                              Outcome& outcome) {
+bool LiveSession::guess_blank(const Survey& survey, Diagnostics& diagnostics, Outcome& outcome) {
   outcome = Outcome::kUsageError;
-  if (!program_ || options_.program->path == "-") {
+  if (!survey.blank) {
     diagnostics.push_back(general_error(
         "no blank is given: without a program there is nothing to guess it from",
         "--stock box:x0,y0,z0:x1,y1,z1 gives it, in the coordinates of the work offset"));
     return false;
   }
-  const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
-  if (!first_pass) return false;
-  BlankGuess guess(options_.margin_mm);
-  ToolBook book(tools, nullptr);
-  Diagnostics said;
-  first_pass->run(
-      [&](std::span<const Motion> motions) {
-        for (const Motion& m : motions) {
-          const ResolvedTool* tool = is_feed(m) ? &book.mount(m.tool, m.source.line) : nullptr;
-          guess.add(m, tool && tool->cutter ? tool->cutter->radius_mm() : 0);
-        }
-        return true;
-      },
-      {}, said);
   StockSetup setup =
-      make_stock(guess.blank(), choice_, options_.stock, "guessed", diagnostics, outcome);
+      make_stock(*survey.blank, choice_, options_.stock, "guessed", diagnostics, outcome);
   stock_ = std::move(setup.stock);
   stock_facts_ = std::move(setup.facts);
   if (!stock_) return false;
@@ -246,7 +296,7 @@ void LiveSession::measure_program(std::stop_token stop) {
   program_total_s_ = timeline.clock_s();
 }
 
-/// Seconds since the first sample. By the device's clock as long as that goes along with ours.
+/// Seconds since the first sample. By the stamps as long as they go along with the arrivals.
 double LiveSession::time_of(const ArrivedSample& arrived) {
   const std::int64_t stamp = stamp_of(arrived.sample);
   if (!first_) {
@@ -259,9 +309,12 @@ double LiveSession::time_of(const ArrivedSample& arrived) {
   double elapsed_s = by_arrival_s;
   if (stamp != AxisSample::kNoTime && stamp_before_ns_ != AxisSample::kNoTime) {
     const double by_stamp_s = seconds(stamp - stamp_before_ns_);
-    const bool plausible = by_stamp_s >= 0 && std::abs(by_stamp_s - by_arrival_s) < kPlausible_s;
+    // Without a clock of its own the stamp is ours, of when it was read: so a recording of this
+    // run, which has no other times, is cut as the run was.
     const bool own_clock = arrived.sample.device_ns != AxisSample::kNoTime;
-    if (options_.log() || (own_clock && plausible)) elapsed_s = std::max(0.0, by_stamp_s);
+    const double allowed_s = own_clock ? kPlausible_s : kClockStep_s;
+    const bool plausible = by_stamp_s >= 0 && std::abs(by_stamp_s - by_arrival_s) < allowed_s;
+    if (options_.log() || plausible) elapsed_s = std::max(0.0, by_stamp_s);
   }
   stamp_before_ns_ = stamp;
   return t_s_ + elapsed_s;
@@ -468,6 +521,9 @@ void LiveSession::conclude(bool stopped) {
   report_.motion.duration_s = t_s_;
   report_.tools = cutter_->stage().tools();
   report_.stock = stock_report(*stock_, stock_facts_);
+  if (const TorchStage* const torch = cutter_->stage().torch()) {
+    report_.sheet = sheet_report(*as_sheet(*stock_), *torch, options_.beam.density_kg_per_m3);
+  }
   report_.timing.total_s = seconds(Clock::now() - start_);
   report_.peak_rss_mb = peak_rss_mb();
   if (stopped && options_.log()) report_.partial_reason = "interrupted before the end of the log";

@@ -47,6 +47,9 @@ struct LiveOptions {
   std::optional<Blank> blank;
   StockSettings stock;
   double margin_mm = 5;  ///< around a blank guessed from the program
+  /// For a sheet. Without a program there is nothing to look for the trigger in, and a warning says
+  /// so (LiveCutOptions::beam).
+  BeamOptions beam;
   LiveCutOptions cutting;
   double stale_after_s = 0.5;
   double lost_after_s = 2.0;
@@ -144,7 +147,11 @@ class LiveSession {
   using Clock = std::chrono::steady_clock;
   LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source);
   bool set_up(Diagnostics& diagnostics, Outcome& outcome);
-  bool guess_blank(const ToolSources& tools, Diagnostics& diagnostics, Outcome& outcome);
+  /// What the program is found to need before it is followed.
+  struct Survey;
+  bool survey_program(const ToolSources& tools, Survey& survey, Diagnostics& diagnostics);
+  bool guess_blank(const Survey& survey, Diagnostics& diagnostics, Outcome& outcome);
+  std::string need_of_tilt(const Survey& survey) const;
   void read_source(std::stop_token stop);
   void pace(const AxisSample& sample, const std::stop_token& stop);
   void measure_program(std::stop_token stop);

@@ -1,6 +1,7 @@
 #include "twin/live/path_follower.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "twin/motion_geometry.h"
@@ -12,16 +13,41 @@ namespace {
 /// Before the machine has been found, it may start anywhere within so much of the program. s.
 constexpr double kFirstSearch_s = 5.0;
 
-bool moves(const Motion& m) {
-  return m.kind == MotionKind::kTraverse || m.kind == MotionKind::kProbe || is_feed(m);
-}
+bool moves(const Motion& m) { return is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m); }
 
 }  // namespace
 
-Vec3 tip_on(const Motion& m, const FollowedPlace& place) {
-  Vec3 tip = place.tip_mm;
-  if (place.without_length) tip.z -= m.tool_offset_mm.z;
-  return tip;
+std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
+                                    const std::array<double, 3>& to_deg) {
+  // Every attitude has two such triples, and each of their angles as many as there are turns.
+  const std::array<std::array<double, 3>, 2> both{
+      abc_deg, {abc_deg[0] + 180, 180 - abc_deg[1], abc_deg[2] + 180}};
+  std::array<double, 3> best = abc_deg;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::array<double, 3> one : both) {
+    double off = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      one[i] += 360 * std::round((to_deg[i] - one[i]) / 360);
+      off += std::abs(one[i] - to_deg[i]);
+    }
+    if (off >= least) continue;
+    least = off;
+    best = one;
+  }
+  return best;
+}
+
+ProgramPlace place_on(const Motion& m, const FollowedPlace& place) {
+  ProgramPlace here = place.here;
+  bool arm = false;
+  if (place.machine) {
+    const int type = place.machine->type_of(m);
+    here = place.by_type[static_cast<std::size_t>(type)];
+    arm = place.machine->type(type).mode == KinematicsMode::kArm;
+  }
+  if (place.without_length) here.tip_mm -= m.tool_offset_mm.z * here.along_tool;
+  if (arm) here.abc_deg = nearest_turns(here.abc_deg, m.to_abc_deg);
+  return here;
 }
 
 void PathFollower::begin_at(double program_s) {
@@ -37,28 +63,27 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
                           std::span<const PathPiece> path) {
   end_s_ = timed.start_s + timed.duration_s;
   if (!moves(motion) || !motion.start_known) return;
-  if (path.empty()) {
-    if (motion.from_mm == motion.to_mm) return;
+  const bool turns = motion.from_abc_deg != motion.to_abc_deg;
+  for (std::size_t i = 0; i < 3; ++i) {
+    turned_[i] = turned_[i] || motion.from_abc_deg[i] != motion.to_abc_deg[i];
+  }
+  // Where something turns the planned path is the motion itself.
+  if (path.empty() || turns) {
+    const bool is_arc = motion.kind == MotionKind::kArc && motion.arc.sweep_rad != 0;
+    if (motion.from_mm == motion.to_mm && !turns && !is_arc) return;
     add(motion, timed.start_s, timed.duration_s);
     return;
   }
-  Motion piece = motion;
   const double share_s = timed.duration_s / static_cast<double>(path.size());
   double start_s = timed.start_s;
   for (const PathPiece& part : path) {
-    piece.kind = part.curved                       ? MotionKind::kArc
-                 : motion.kind == MotionKind::kArc ? MotionKind::kFeed
-                                                   : motion.kind;
-    piece.from_mm = part.from_mm;
-    piece.to_mm = part.to_mm;
-    piece.arc = part.arc;
-    add(piece, start_s, share_s);
+    add(motion_of(motion, part), start_s, share_s);
     start_s += share_s;
   }
 }
 
 void PathFollower::add(const Motion& motion, double start_s, double duration_s) {
-  pieces_.push_back({motion, start_s, duration_s, moved_s_});
+  pieces_.push_back({motion, start_s, duration_s, moved_s_, turned_});
   moved_s_ += duration_s;
 }
 
@@ -69,6 +94,14 @@ double PathFollower::program_s() const {
 
 bool PathFollower::passed_all() const {
   return pieces_.empty() || (pieces_.size() == 1 && found_ && t_ >= 1);
+}
+
+PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place,
+                                    double from_t) const {
+  const ProgramPlace here = place_on(piece.motion, place);
+  TurnedAxes turned{here.abc_deg, place.abc_known, options_.lever_mm};
+  for (std::size_t i = 0; i < 3; ++i) turned.counts[i] = turned.counts[i] && piece.turned[i];
+  return nearest_on(piece.motion, here.tip_mm, turned, from_t);
 }
 
 /// One past the last piece that the machine can have reached.
@@ -102,7 +135,7 @@ std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace&
       continue;
     }
     if (tool >= 0 && m.tool != tool) continue;
-    const NearestPoint point = nearest_on(m, tip_on(m, place), i == 0 ? t_ : 0);
+    const PointOnWay point = nearest_of(pieces_[i], place, i == 0 ? t_ : 0);
     const Candidate here{i, point.t, point.distance_mm};
     if (!nearest || here.distance_mm < nearest->distance_mm) nearest = here;
     // A better place at the far side of an ambiguity, or the same approach going on.
@@ -148,7 +181,15 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (!at) return point;
   const Piece& piece = pieces_[at->piece];
   point.distance_mm = at->distance_mm;
-  point.place_mm = point_at(piece.motion, at->t);
+  point.place.tip_mm = point_at(piece.motion, at->t);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double from = piece.motion.from_abc_deg[i];
+    const double to = piece.motion.to_abc_deg[i];
+    point.place.abc_deg[i] = at->t >= 1 ? to : from + at->t * (to - from);
+  }
+  point.place.along_tool = place_on(piece.motion, place).along_tool;
+  point.turned = piece.turned;
+  if (place.machine) point.kinematics_type = place.machine->type_of(piece.motion);
   point.source = piece.motion.source;
   point.tool = piece.motion.tool;
   point.tool_length_mm = piece.motion.tool_offset_mm.z;

@@ -1,6 +1,7 @@
 // twin/live/path_follower.h - where on the programmed path a machine is, from where its tip is.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -10,6 +11,8 @@
 #include <span>
 
 #include "interp_bridge/motion.h"
+#include "twin/kinematics/machine_kinematics.h"
+#include "twin/motion_nearest.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -24,16 +27,26 @@ struct FollowOptions {
   double haste = 2.5;
   /// And how far ahead of the plan it may be besides. s.
   double slack_s = 0.1;
+  /// An axis that is off by an angle is off by the way of a point so far from its line. mm.
+  double lever_mm = 50;
 };
 
-/// Where the tip is, if the machine is on this motion.
-struct FollowedPlace;
-Vec3 tip_on(const Motion& motion, const FollowedPlace& place);
+/// A place in the numbers of a program (LivePose).
+struct ProgramPlace {
+  Vec3 tip_mm{0};
+  std::array<double, 3> abc_deg{};
+  Vec3 along_tool{0, 0, 1};  ///< the tip of a tool that is 1 mm longer is at tip_mm less this
+};
 
 /// What of the machine is needed to find it on the path.
 struct FollowedPlace {
-  Vec3 tip_mm{0};
-  /// tip_mm is where a tool of no length would have its tip: the lengths are those that the program
+  ProgramPlace here;
+  std::array<bool, 3> abc_known{};  ///< those that are not are not compared
+  /// Of a machine that may switch its kinematics, or of a robot: the same place in the numbers of
+  /// each type. Null: `here` is one for all.
+  const MachineKinematics* machine = nullptr;
+  std::array<ProgramPlace, kMostKinematicsTypes> by_type{};
+  /// The tip is where a tool of no length would have it: the lengths are those that the program
   /// has in force (Motion::tool_offset_mm, Z).
   bool without_length = false;
   double elapsed_s = 0;  ///< since the place before
@@ -41,21 +54,33 @@ struct FollowedPlace {
   int tool = -1;         ///< tool number that it says is in the spindle; -1: it does not say
 };
 
+/// The place, if the machine is on this motion. A robot's A B C are the turns that are nearest to
+/// those of the motion (nearest_turns()).
+ProgramPlace place_on(const Motion& motion, const FollowedPlace& place);
+
+/// Angles of the same attitude (roll, pitch, yaw) that are nearest to others.
+std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
+                                    const std::array<double, 3>& to_deg);
+
 /// Where the tip was found.
 struct FollowedPoint {
   bool on_path = false;
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
-  Vec3 place_mm{0};        ///< on the path
-  double tool_length_mm = 0;  ///< in force there, by the program
-  int tool = 0;               ///< in the spindle there, by the program
-  SourceRef source;           ///< of the motion there
-  double program_s = 0;       ///< program time there, by the plan
+  ProgramPlace place;      ///< on the path
+  int kinematics_type = 0;       ///< in force there, by the program
+  std::array<bool, 3> turned{};  ///< A, B, C: the program has turned it, up to there
+  double tool_length_mm = 0;     ///< in force there, by the program
+  int tool = 0;                  ///< in the spindle there, by the program
+  SourceRef source;              ///< of the motion there
+  double program_s = 0;          ///< program time there, by the plan
 };
 
-/// Follows a machine along a program, forward only. The path is given piece by piece as the
-/// interpreter and the planner yield it; what the machine has passed is forgotten, so memory is
-/// that of the look-ahead.
+/// Follows a machine along a program, forward only. In the numbers of the program, X Y Z A B C:
+/// what turns counts as FollowOptions::lever_mm says, once the program has turned it (before that
+/// a program knows no more of where it stands than that it stands). The path is given piece by
+/// piece as the interpreter and the planner yield it; what the machine has passed is forgotten, so
+/// memory is that of the look-ahead.
 ///
 /// A tip is looked for from the last point found on, as far as the machine can have come in the
 /// time that has passed (FollowOptions::haste). Among equally good places the first is taken: the
@@ -91,7 +116,8 @@ class PathFollower {
     Motion motion;
     double start_s = 0;  ///< program time
     double duration_s = 0;
-    double moved_s = 0;  ///< time in motion before it: without dwells and tool changes
+    double moved_s = 0;            ///< time in motion before it: without dwells and tool changes
+    std::array<bool, 3> turned{};  ///< the program has turned the axis by its end
     double time_at(double t) const { return start_s + t * duration_s; }
   };
   struct Candidate {
@@ -100,6 +126,7 @@ class PathFollower {
     double distance_mm = std::numeric_limits<double>::infinity();
   };
   void add(const Motion& motion, double start_s, double duration_s);
+  PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t) const;
   std::size_t reach(const FollowedPlace& place) const;
   std::optional<Candidate> search(const FollowedPlace& place, std::size_t end, int line,
                                   int tool) const;
@@ -112,6 +139,7 @@ class PathFollower {
   double end_s_ = 0;
   double moved_s_ = 0;  ///< time in motion of all that was appended
   bool found_ = false;
+  std::array<bool, 3> turned_{};  ///< by what has been appended
 };
 
 }  // namespace kerf

@@ -20,7 +20,10 @@ bool moves(std::span<const Motion> motions) {
 
 ProgramAhead::ProgramAhead(std::unique_ptr<Program> program, const TimelineOptions& options,
                            PathFollower& follower)
-    : program_(std::move(program)), follower_(follower), timeline_(options, *this) {
+    : program_(std::move(program)),
+      follower_(follower),
+      timeline_(options, *this),
+      switched_(options.kinematics) {
   thread_ = std::thread([this] {
     const MotionSink sink = [this](std::span<const Motion> motions) {
       {
@@ -28,7 +31,8 @@ ProgramAhead::ProgramAhead(std::unique_ptr<Program> program, const TimelineOptio
         if (files_.size() != program_->files().size()) files_ = program_->files();
         if (!frame_ && moves(motions)) frame_ = program_->workpiece_frame();
       }
-      return queue_.push(motions);
+      materials_.put(program_->materials());
+      return queue_.push(switched_.follow(motions, program_->workpiece_frame()));
     };
     summary_ = program_->run(sink, stop_.get_token(), diagnostics_);
     queue_.close();

@@ -14,7 +14,9 @@
 
 #include "interp_bridge/program.h"
 #include "twin/batch_queue.h"
+#include "twin/kinematics/switched_motions.h"
 #include "twin/live/path_follower.h"
+#include "twin/material_mail.h"
 #include "twin/timeline.h"
 
 namespace kerf {
@@ -61,6 +63,8 @@ class ProgramAhead : private StepSink {
   void stop();
   const ProgramSummary& summary() const { return summary_; }
   const Diagnostics& diagnostics() const { return diagnostics_; }
+  /// Of a torch program, all that the motions so far name. True: `materials` has more of them now.
+  bool take_materials(std::vector<TorchMaterial>& materials) { return materials_.take(materials); }
   /// Files that the motions name so far.
   std::vector<std::string> files() const;
 
@@ -71,7 +75,9 @@ class ProgramAhead : private StepSink {
   std::unique_ptr<Program> program_;
   PathFollower& follower_;
   Timeline timeline_;
+  SwitchedMotions switched_;  ///< of thread_
   BatchQueue queue_;
+  MaterialMail materials_;
   std::vector<Motion> batch_;
   std::deque<PlannedMotion> motions_;
   std::uint64_t forgotten_ = 0;

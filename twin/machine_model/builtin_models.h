@@ -4,9 +4,11 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "twin/machine_model/machine_model.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -22,6 +24,17 @@ enum class MachineKind : std::uint8_t {
 /// As configurations have it: "none", "knee-mill", "gantry", "lathe", "trunnion", "plasma",
 /// "punch".
 std::string_view name_of(MachineKind kind);
+
+/// Joints of a punch press that has a turret; no program names them.
+enum PunchJoint : std::uint8_t {
+  kGripX = 5,  ///< mm that the clamps have moved along the sheet, ..
+  kGripY = 6,
+  kTurret = 7,  ///< degrees; station i of n (in the order of their numbers) works at i / n turns
+  kStroke = 8,  ///< mm of the ram, from where Z has it; down is negative
+};
+
+/// The link of the punch in a station: its frame has the tip at the origin.
+std::string punch_link(int station);
 
 /// From least to greatest position.
 struct AxisTravel {
@@ -49,6 +62,7 @@ struct MachineRoom {
   double tool_length_mm = 100.0;  ///< From tip to nose, of the longest tool.
   bool has_c_axis = false;        ///< Lathe: the chuck turns with C.
   TrunnionGeometry trunnion;
+  TurretPointer turret;  ///< Punch: its stations and clamps, and what moves; null: as is usual.
 };
 
 /// The machine of that kind, for every kind but kNone. Each link a closed mesh, 300 to 5000
@@ -65,7 +79,9 @@ struct MachineRoom {
 ///     plasma      the same over slats, with a torch
 ///     lathe       spindle along Z, X to the turret, Y up; chuck, carriage Z, cross slide X
 ///     trunnion    saddle Y, table X, cradle A or B, platter C; head Z
-///     punch       frame and turret stand (translucent); carriage Y, clamps X, ram Z
+///     punch       frame and turret stand (translucent); carriage Y, clamps X, ram Z. With a turret
+///                 beside these: PunchJoint, punch_link(); and where the head moves, rails Y and
+///                 frame X
 MachineModel builtin_machine(MachineKind kind, const MachineRoom& room);
 
 }  // namespace kerf

@@ -117,12 +117,17 @@ std::optional<std::size_t> KinematicChain::find(std::string_view name) const {
   return place_of(links_, name);
 }
 
-bool KinematicChain::is_driven_by(std::size_t axis) const {
+bool KinematicChain::is_driven_by(std::size_t axis) const { return is_driven(false, axis); }
+
+bool KinematicChain::is_driven_by_joint(std::size_t joint) const { return is_driven(true, joint); }
+
+bool KinematicChain::is_driven(bool by_joint, std::size_t input) const {
   for (const std::size_t end : {workpiece_, tool_}) {
     for (auto link = static_cast<std::int32_t>(end); link >= 0;
          link = parents_[static_cast<std::size_t>(link)]) {
       const ChainLink& one = links_[static_cast<std::size_t>(link)];
-      if (one.joint != JointKind::kFixed && !one.by_joint && one.input == axis) return true;
+      if (one.joint != JointKind::kFixed && one.by_joint == by_joint && one.input == input)
+        return true;
     }
   }
   return false;

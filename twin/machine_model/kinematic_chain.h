@@ -82,6 +82,8 @@ class KinematicChain {
   std::optional<std::size_t> find(std::string_view name) const;
   /// Whether some joint between base and workpiece, or base and tool, is driven by this axis.
   bool is_driven_by(std::size_t axis) const;
+  /// The same by this joint's number (ChainLink::by_joint).
+  bool is_driven_by_joint(std::size_t joint) const;
 
   /// Pose of every link in the base's frame, in the order of links(). `base_from_link` has
   /// links().size() elements. O(links), allocates nothing; about 0.1 us a rotary joint.
@@ -91,6 +93,7 @@ class KinematicChain {
   Pose workpiece_from_tool(const MachinePosition& position) const;
 
  private:
+  bool is_driven(bool by_joint, std::size_t input) const;
   Pose joint_pose(std::size_t link, const MachinePosition& position) const;
   Pose base_from(std::size_t link, const MachinePosition& position) const;
 

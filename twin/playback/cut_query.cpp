@@ -24,7 +24,7 @@ constexpr int kMostSteps = 20'000;
 /// Shrinks the interval by 1e-12.
 constexpr int kGoldenSteps = 58;
 
-bool is_cutting(const Motion& m) { return is_feed(m) || m.kind == MotionKind::kTraverse; }
+bool is_cutting(const Motion& m) { return is_feed(m) || is_traverse(m); }
 
 double slope_at(const ProfilePiece& piece, double r, double z) {
   if (piece.kind == ProfilePiece::Kind::kLine) {

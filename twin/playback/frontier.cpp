@@ -13,9 +13,14 @@ constexpr std::size_t kMotionsAtOnce = 512;
 constexpr double kCellsAtOnce = 1e6;
 
 MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
-                     const ProgramTrack& track, const std::optional<BeamSettings>& beam) {
+                     const ProgramTrack& track, const std::optional<BeamSettings>& beam,
+                     const TurretPointer& turret) {
   MotionMoves moves = MotionMoves::of(blank, options.kinematics, track.frame());
-  if (beam) moves.burn(TorchMoves(beam->trigger, beam->pierce_mm));
+  if (turret) {
+    moves.punch(PunchMoves(turret));
+  } else if (beam) {
+    moves.burn(TorchMoves(beam->trigger, beam->pierce_mm));
+  }
   return moves;
 }
 
@@ -23,16 +28,20 @@ MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
 
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
                    const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope,
-                   const std::optional<BeamSettings>& beam)
+                   const std::optional<BeamSettings>& beam, const TurretPointer& turret)
     : track_(track),
-      moves_(moves_of(*blank, options, track, beam)),
+      moves_(moves_of(*blank, options, track, beam, turret)),
       record_(track.size()),
       stock_(std::move(blank), track, moves_, record_, store),
       book_(std::move(tools), row_of(stock_).can_cut),
       stage_(stock_, book_, log_, options),
       scope_(scope) {
   stage_.set_frame(track.frame());
-  if (beam) stage_.burn(*beam);
+  if (turret) {
+    stage_.punch(turret);
+  } else if (beam) {
+    stage_.burn(*beam);
+  }
   if (scope_.from > 0) stage_.hold_reports();
 }
 

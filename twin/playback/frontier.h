@@ -14,6 +14,7 @@
 #include "twin/playback/recording_stock.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -24,13 +25,13 @@ struct ReportScope {
 };
 
 /// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
-/// of the report (`beam`: of a sheet). Everything before reached() can afterwards be cut again from
-/// the record and the keyframes. One thread.
+/// of the report (`beam`: of a sheet under a torch, `turret`: under a punch). Everything before
+/// reached() can afterwards be cut again from the record and the keyframes. One thread.
 class Frontier {
  public:
   Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
            const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {},
-           const std::optional<BeamSettings>& beam = {});
+           const std::optional<BeamSettings>& beam = {}, const TurretPointer& turret = {});
 
   /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
   void advance(std::size_t end);

@@ -9,6 +9,7 @@
 
 #include "interp_bridge/parameter_file.h"
 #include "twin/kerf_book.h"
+#include "twin/kinematics/switched_motions.h"
 #include "twin/playback/mounted_tools.h"
 #include "twin/playback/planned_steps.h"
 
@@ -40,16 +41,19 @@ ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>&
 }
 
 std::optional<BeamSettings> beam_of(const SessionOptions& options, const ProgramFront& front) {
-  if (!front.is_sheet()) return std::nullopt;
+  if (!front.is_sheet() || options.turret) return std::nullopt;
   return beam_settings(options.beam, front.program->is_qtplasmac());
 }
 
-/// The tools of a program, each once. Of a torch (`beam`) each kerf.
+/// The tools of a program, each once. Of a torch (`beam`) each kerf, of a punch each station.
 class ToolList {
  public:
   ToolList(const ToolSources& sources, ToolBook::CutterCheck can_cut,
-           const std::optional<BeamSettings>& beam)
-      : mounted_(sources, can_cut), book_(sources, can_cut), table_(sources.table) {
+           const std::optional<BeamSettings>& beam, TurretPointer turret)
+      : turret_(std::move(turret)),
+        mounted_(sources, can_cut),
+        book_(sources, can_cut),
+        table_(sources.table) {
     if (!beam) return;
     torch_.emplace(beam->trigger, beam->pierce_mm);
     kerfs_.emplace(book_, beam->kerf_mm, beam->is_qtplasmac);
@@ -57,6 +61,10 @@ class ToolList {
 
   /// `materials`: all that the motions so far name.
   void add(const Motion& m, std::span<const TorchMaterial> materials) {
+    if (turret_) {
+      add_station(m);
+      return;
+    }
     const ResolvedTool* const tool = at(m, materials);
     if (!tool || tool == last_) return;
     last_ = tool;
@@ -75,6 +83,24 @@ class ToolList {
     return torch_->burns(m) ? &kerfs_->of(m, materials) : nullptr;
   }
 
+  void add_station(const Motion& m) {
+    const bool known =
+        m.tool == 0 || std::any_of(tools_.begin(), tools_.end(), [&](const ProgramTool& listed) {
+          return listed.number == m.tool;
+        });
+    if (known) return;
+    ProgramTool& tool = tools_.emplace_back();
+    tool.number = m.tool;
+    tool.origin = "turret";
+    if (const TurretStation* const station = turret_->station(m.tool)) {
+      tool.shape = station->punch.spec();
+      tool.remark = station->name;
+    } else {
+      tool.trouble = "the station is empty";
+    }
+  }
+
+  TurretPointer turret_;
   MountedTools mounted_;
   ToolBook book_;
   std::optional<TorchMoves> torch_;
@@ -92,8 +118,10 @@ class Loading {
         program_(*front.program),
         window_(options.lines),
         timeline_(options.timeline, planned_),
-        tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front)),
-        tilt_(options.timeline.kinematics) {
+        tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front),
+               options.turret),
+        tilt_(options.timeline.kinematics),
+        switched_(options.timeline.kinematics) {
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
   }
 
@@ -119,6 +147,7 @@ class Loading {
  private:
   /// False: no more motions are wanted.
   bool take(std::span<const Motion> motions) {
+    motions = switched_.follow(motions, program_.workpiece_frame());
     tilt_.look_at(motions, program_.workpiece_frame());
     if (survey_) survey_->add(motions, tilt_.moves());
     if (!window_.over()) {
@@ -142,6 +171,7 @@ class Loading {
   Timeline timeline_;
   ToolList tools_;
   TiltWatch tilt_;
+  SwitchedMotions switched_;
   std::optional<BlankSurvey> survey_;
   std::size_t motions_ = 0;
   std::size_t before_window_ = 0;
@@ -195,7 +225,8 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   loaded->work_offsets = read_work_offsets(options.program.machine);
   PlayerProgram& player = loaded->player;
   player.report_from = loading.report_from();
-  player.whole = !stopped;
+  // As Session has it.
+  player.whole = !stopped && !(front->is_sheet() && loading.window().over());
   player.track = loading.build(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
   player.blank = std::move(front->stock.stock);
@@ -208,6 +239,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   player.timeline = options.timeline;
   player.beam = beam_of(options, *front);
   if (player.beam) player.beam->materials = front->program->materials();
+  player.turret = options.turret;
   player.remarks = remarks.kept();
   return loaded;
 }

@@ -24,7 +24,7 @@ class MountedTools {
       mounted_ = nullptr;
     }
     const bool feed = is_feed(m);
-    if (!feed && m.kind != MotionKind::kTraverse) return nullptr;
+    if (!feed && !is_traverse(m)) return nullptr;
     if (mounted_) return mounted_;
     if (!feed && m.tool == 0 && !book_.has_arguments()) return nullptr;
     mounted_ = &book_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);

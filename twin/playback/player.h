@@ -20,6 +20,7 @@
 #include "twin/playback/program_track.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -31,8 +32,9 @@ struct PlayerProgram {
   /// Limits for the checks (over-feed, axis limits). What is cut is the track;
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
-  /// Of a sheet, with all materials of the program; such a blank needs it.
+  /// Of a sheet, with all materials of the program; such a blank needs it, or a turret.
   std::optional<BeamSettings> beam;
+  TurretPointer turret;  ///< of a sheet that is punched; null: it is not
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
   bool whole = true;  ///< false: it goes on behind the track's end, unread

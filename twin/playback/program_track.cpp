@@ -74,6 +74,8 @@ Motion ProgramTrack::motion(std::size_t i) const {
   return m;
 }
 
+bool ProgramTrack::is_traverse(std::size_t i) const { return kerf::is_traverse(mode_of(i)); }
+
 CutMove ProgramTrack::cut_move(std::size_t i) const {
   CutMove move;
   move.from_mm = from_mm(i);
@@ -88,7 +90,7 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
 
 void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
                                 std::vector<CutMove>& out) const {
-  if (moves.torch() != nullptr) {
+  if (moves.torch() != nullptr || moves.punch() != nullptr) {
     append_part(i, 1, moves, cutter, out);
   } else if (moves.path() == nullptr) {
     out.push_back(cut_move(i));
@@ -103,6 +105,11 @@ bool ProgramTrack::pierces(std::size_t i, const TorchMoves& torch) const {
 
 void ProgramTrack::append_part(std::size_t i, double fraction, const MotionMoves& moves,
                                const Cutter& cutter, std::vector<CutMove>& out) const {
+  if (const PunchMoves* const punch = moves.punch()) {
+    punch->append(
+        i, [this](std::size_t n) { return motion(n); }, fraction, i, out);
+    return;
+  }
   Motion m = motion(i);
   if (fraction < 1) m = part_of(m, 0, fraction);
   if (const TorchMoves* const torch = moves.torch()) {
@@ -119,7 +126,7 @@ TimedStep ProgramTrack::step(std::size_t i) const {
   step.programmed_mm_per_min = programmed_.real_at(i);
   step.allowed_mm_per_min = allowed_.real_at(i);
   const Motion m = motion(i);
-  const bool moves = m.kind == MotionKind::kTraverse || m.kind == MotionKind::kProbe || is_feed(m);
+  const bool moves = kerf::is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m);
   if (moves && m.start_known) step.length_mm = path_length_mm(m);
   return step;
 }
@@ -231,7 +238,8 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       static_cast<std::uint64_t>(m.kind) | static_cast<std::uint64_t>(m.spindle) << 8 |
       static_cast<std::uint64_t>(m.path_mode) << 16 | std::uint64_t{m.flood} << 24 |
       std::uint64_t{m.mist} << 25 | std::uint64_t{m.feed_per_rev} << 26 |
-      std::uint64_t{m.start_known} << 27;
+      std::uint64_t{m.start_known} << 27 | std::uint64_t{m.user_m} << 28 |
+      std::uint64_t{m.rapid} << 36;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
   const auto floats = [](float a, float b) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);

@@ -51,6 +51,7 @@ class ProgramTrack {
   void append_part(std::size_t i, double fraction, const MotionMoves& moves, const Cutter& cutter,
                    std::vector<CutMove>& out) const;
   MotionKind kind(std::size_t i) const { return mode_of(i).kind; }
+  bool is_traverse(std::size_t i) const;
   int tool(std::size_t i) const { return mode_of(i).tool; }
   SourceRef source(std::size_t i) const;
   Vec3 to_mm(std::size_t i) const;

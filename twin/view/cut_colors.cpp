@@ -49,16 +49,24 @@ void by_lines(const ColorCommand& wanted, const ProgramTrack& track, CutColors& 
   colors.legend = {line_range_entry(wanted)};
 }
 
-/// Classes by equal numbers of moves, bounds rounded to two digits for reading.
 void by_rate(const ProgramTrack& track, const std::vector<float>& removed_mm3, CutColors& colors) {
   std::vector<float> rates(std::min(track.size(), removed_mm3.size()), 0.0f);
-  std::vector<float> sorted;
   for (std::size_t i = 0; i < rates.size(); ++i) {
     const double duration_s = track.end_s(i) - track.start_s(i);
     if (duration_s > 0) rates[i] = removed_mm3[i] / static_cast<float>(duration_s);
-    if (rates[i] > 0) sorted.push_back(rates[i]);
   }
   std::fill(colors.of_move.begin(), colors.of_move.end(), colors.other);
+  color_by_rate(rates, colors);
+}
+
+}  // namespace
+
+/// Bounds of the classes are rounded to two digits for reading.
+void color_by_rate(std::span<const float> rates, CutColors& colors) {
+  std::vector<float> sorted;
+  for (const float rate : rates) {
+    if (rate > 0) sorted.push_back(rate);
+  }
   if (sorted.empty()) return;
   std::sort(sorted.begin(), sorted.end());
   std::array<float, kRates.size()> upper{};
@@ -77,8 +85,6 @@ void by_rate(const ProgramTrack& track, const std::vector<float>& removed_mm3, C
     colors.legend.push_back({kRates[k], fmt::format("<= {:.3g} mm\u00b3/s", upper[k])});
   }
 }
-
-}  // namespace
 
 std::uint32_t color_of_number(std::size_t number) { return kNumbered[number % kNumbered.size()]; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ std::string legend_text(const NamedTool& tool);
 /// For ColorBy::kLineRange: of cuts by this line, and what the colour of the lines asked for means.
 std::uint32_t color_of_line(const ColorCommand& wanted, const SourceRef& source);
 ColorLegendEntry line_range_entry(const ColorCommand& wanted);
+
+/// For ColorBy::kRemovalRate: gives each of the first colours in `of_move` that of its rate (mm3/s;
+/// those of 0 stay) in six classes of equally many, and adds what they mean to the legend.
+void color_by_rate(std::span<const float> rates, CutColors& colors);
 
 /// For kTool, kRemovalRate and kLineRange; null for the others. `removed_mm3`: by motion, as far as
 /// the program has been cut; what lies beyond counts as unknown.

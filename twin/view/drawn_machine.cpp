@@ -41,11 +41,10 @@ std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
       setup = std::move(read);
     }
   }
-  std::optional<MachineModel> model =
-      make_machine(choice, facts,
-                   machine_room(setup ? &*setup : nullptr, room.frame, room.blank_mm, room.reach_mm,
-                                room.tool_length_mm),
-                   diagnostics);
+  MachineRoom around = machine_room(setup ? &*setup : nullptr, room.frame, room.blank_mm,
+                                    room.reach_mm, room.tool_length_mm);
+  around.turret = room.turret;
+  std::optional<MachineModel> model = make_machine(choice, facts, around, diagnostics);
   return model ? std::make_shared<const MachineModel>(std::move(*model)) : nullptr;
 }
 
@@ -58,14 +57,17 @@ double drawn_height_mm(const ToolShape& shape) {
 }
 
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,
-                                   const std::array<double, 3>& abc_deg, double tool_length_mm) {
+                                   const std::array<double, 3>& abc_deg, double tool_length_mm,
+                                   const AxisValues& joints) {
   AxisValues axes{};
   for (int i = 0; i < 3; ++i) {
     axes[static_cast<std::size_t>(i)] = tip_mm[i];
     axes[static_cast<std::size_t>(i) + 3] = abc_deg[static_cast<std::size_t>(i)];
   }
   std::vector<glm::mat4> poses;
-  link_poses(machine, position_of_axes(machine, axes, tool_length_mm), poses);
+  MachinePosition position = position_of_axes(machine, axes, tool_length_mm);
+  position.joints = joints;
+  link_poses(machine, position, poses);
   return poses;
 }
 

@@ -18,6 +18,7 @@ struct WorkRoom {
   Box blank_mm;
   Box reach_mm;               ///< of the tips; may be empty
   double tool_length_mm = 0;  ///< of the longest tool as it is drawn
+  TurretPointer turret;       ///< of a punch press
 };
 
 /// The room of a program: all its motions, and all its tools as tool_shape_of() draws them.
@@ -39,8 +40,10 @@ double drawn_height_mm(const ToolShape& shape);
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Pose& tool_in_workpiece,
                                    const std::array<double, 3>& abc_deg, double tool_length_mm);
 
-/// Poses of the machine's links for a tip and rotary axes of the program.
+/// Poses of the machine's links for a tip and rotary axes of the program; `joints`: of links that
+/// go by joints.
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,
-                                   const std::array<double, 3>& abc_deg, double tool_length_mm);
+                                   const std::array<double, 3>& abc_deg, double tool_length_mm,
+                                   const AxisValues& joints = {});
 
 }  // namespace kerf

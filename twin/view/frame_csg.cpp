@@ -23,16 +23,6 @@ constexpr std::size_t kMostParts = 2 * kMostMoves;
 /// Round cutters lose no more than the chords of arcs do.
 constexpr double kTolerance_mm = FrameMoves::kChordTolerance_mm;
 
-/// Cells of the blank that do not reach its top.
-std::size_t low_cells(const HeightGrid& grid) {
-  const float top = static_cast<float>(grid.bounds_mm().max.z);
-  std::size_t low = 0;
-  for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) low += grid.height(i, j) < top ? 1 : 0;
-  }
-  return low;
-}
-
 /// The tool over what lies behind it; depths of both are of one projection.
 void lay_over(const RayCaster& tool, Picture* picture, std::vector<float>* depths) {
   for (std::size_t pixel = 0; pixel < depths->size(); ++pixel) {

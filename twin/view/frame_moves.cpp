@@ -48,6 +48,15 @@ bool reaches(const Box& tip_mm, double radius_mm, const Box& blank_mm) {
 
 }  // namespace
 
+std::size_t low_cells(const HeightGrid& grid) {
+  const float top = static_cast<float>(grid.bounds_mm().max.z);
+  std::size_t low = 0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) low += grid.height(i, j) < top ? 1 : 0;
+  }
+  return low;
+}
+
 FrameMoves::FrameMoves(std::shared_ptr<const ProgramTrack> track,
                        std::shared_ptr<const CutQuery> cuts, const Box& blank_mm)
     : track_(std::move(track)), cuts_(std::move(cuts)), blank_mm_(blank_mm) {
@@ -69,7 +78,7 @@ FrameMoves::FrameMoves(std::shared_ptr<const ProgramTrack> track,
 }
 
 const Cutter* FrameMoves::cutter_of(const Motion& m, std::size_t number) const {
-  if (!m.start_known || (!is_feed(m) && m.kind != MotionKind::kTraverse)) return nullptr;
+  if (!m.start_known || (!is_feed(m) && !is_traverse(m))) return nullptr;
   const Cutter* const cutter = cuts_ ? cuts_->cutter_at(number) : nullptr;
   return cutter && reaches(bounds_of(m), cutter->radius_mm(), blank_mm_) ? cutter : nullptr;
 }

@@ -8,11 +8,15 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/height_grid.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/program_track.h"
 #include "viewer/csg/csg_renderer.h"
 
 namespace kerf {
+
+/// Cells of a blank that do not reach its top: none of a box. Reads all cells.
+std::size_t low_cells(const HeightGrid& grid);
 
 /// The moves that the player's workpiece is cut with: traverses, feeds, arcs and threads whose
 /// start and tool are known. Probes and moves of unknown tools are left out, and so are moves whose

@@ -16,20 +16,15 @@
 
 namespace kerf {
 
-/// How a picture is made. All three look from the same place at the same workpiece.
-enum class DrawRoad {
-  kMesh,     ///< The window's renderer: all that the window shows. On the CPU where there is no
-             ///< graphics card.
-  kRaycast,  ///< Rays on the CPU, without OpenGL: workpiece and tool alone.
-  kCsg,      ///< The blank minus all moves, worked out in the picture (OpenGL): workpiece and tool
-             ///< alone. Does not look at the workpiece's cells, so walls are smooth at any cell
-             ///< size. At most 20 000 moves; the blank must be a box.
-};
-
 struct FrameOptions {
   glm::ivec2 size_px{1280, 720};
   StandardView view = StandardView::kIsometric;
   bool perspective = true;
+  /// All three look from the same place at the same workpiece. kMesh: the window's renderer, all
+  /// that the window shows; on the CPU where there is no graphics card. kRaycast: without OpenGL,
+  /// no machine, no colours, no section. kCsg: as that, with OpenGL; does not look at the
+  /// workpiece's cells, so walls are smooth at any cell size; at most 20 000 moves, and the blank
+  /// must be a box.
   DrawRoad road = DrawRoad::kMesh;
   DrawOptions draw;  ///< of kMesh
 };

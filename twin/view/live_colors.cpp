@@ -22,31 +22,58 @@ void LiveColors::add(std::span<const CutLabel> labels, std::span<const NamedTool
   seen_tools_.insert(seen_tools_.end(), names.begin(), names.end());
   if (!names.empty()) place_tools();
   labels_.insert(labels_.end(), labels.begin(), labels.end());
-  if (!wanted_) return;
+  if (!wanted_ || wanted_->mode == ColorBy::kRemovalRate) return;
   is_due_ = is_due_ || !names.empty() ||
             std::any_of(labels.begin(), labels.end(),
                         [&](const CutLabel& label) { return color_of(label) != other_; });
 }
 
+void LiveColors::update(std::span<const LabelUse> uses) {
+  for (const LabelUse& use : uses) {
+    labels_[use.cut_id].removed_mm3 = use.removed_mm3;
+    labels_[use.cut_id].cut_s = use.cut_s;
+  }
+  if (wanted_ && wanted_->mode == ColorBy::kRemovalRate && !uses.empty()) is_due_ = true;
+}
+
 void LiveColors::choose(const ColorCommand& wanted) {
   wanted_.reset();
-  if (wanted.mode == ColorBy::kTool || wanted.mode == ColorBy::kLineRange) wanted_ = wanted;
+  if (wanted.mode == ColorBy::kTool || wanted.mode == ColorBy::kLineRange ||
+      wanted.mode == ColorBy::kRemovalRate) {
+    wanted_ = wanted;
+  }
   is_due_ = wanted_.has_value();
   taken_at_ = {};  // whoever chose is waiting
 }
 
 std::shared_ptr<const CutColors> LiveColors::take(Clock::time_point now) {
-  if (!is_due_ || now - taken_at_ < kPeriod) return nullptr;
+  if (!is_due_) return nullptr;
+  const bool by_rate = wanted_->mode == ColorBy::kRemovalRate;
+  if (now - taken_at_ < (by_rate ? kRatePeriod : kPeriod)) return nullptr;
   is_due_ = false;
   taken_at_ = now;
   auto colors = std::make_shared<CutColors>();
   colors->mode = wanted_->mode;
+  if (by_rate) {
+    color_rates(*colors);
+    return colors;
+  }
   colors->of_move.reserve(labels_.size());
   for (const CutLabel& label : labels_) colors->of_move.push_back(color_of(label));
   if (!labels_.empty()) colors->other = colors->of_move.back();
   other_ = colors->other;
   colors->legend = legend();
   return colors;
+}
+
+void LiveColors::color_rates(CutColors& colors) const {
+  std::vector<float> rates;
+  rates.reserve(labels_.size());
+  for (const CutLabel& label : labels_) {
+    rates.push_back(label.cut_s > 0 ? static_cast<float>(label.removed_mm3 / label.cut_s) : 0.0f);
+  }
+  colors.of_move.assign(labels_.size(), colors.other);
+  color_by_rate(rates, colors);
 }
 
 std::uint32_t LiveColors::color_of(const CutLabel& label) const {

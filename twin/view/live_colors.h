@@ -17,21 +17,32 @@
 
 namespace kerf {
 
+/// What the cuts of a label have done so far: CutLabel::removed_mm3 and cut_s.
+struct LabelUse {
+  std::uint32_t cut_id = 0;
+  double removed_mm3 = 0;
+  double cut_s = 0;
+};
+
 /// Labels come with nearly every frame of a machine that is watched, but the table of their colours
 /// is the whole workpiece's news. So it is made anew only where it would be wrong: labels beyond it
 /// have the colour CutColors::other, which is that of the newest label; it is needed again when a
-/// tool or the line range changes, and then at most every kPeriod. One thread.
+/// tool or the line range changes, and then at most every kPeriod. Rates of removal change as long
+/// as something is cut; theirs are made every kRatePeriod, and the newest label has none yet. One
+/// thread.
 class LiveColors {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kPeriod{100};
+  static constexpr std::chrono::milliseconds kRatePeriod{500};
 
   /// The program's tools get their colours first, so that they are those of `kerf view`.
   void set_program_tools(std::vector<NamedTool> tools);
   /// The next labels, and the names of tools that are new among them.
   void add(std::span<const CutLabel> labels, std::span<const NamedTool> names);
-  /// ColorBy::kTool and kLineRange; by others it makes no colours: what single moves removed is not
-  /// kept.
+  /// What labels that were added have done since.
+  void update(std::span<const LabelUse> uses);
+  /// ColorBy::kTool, kLineRange and kRemovalRate; by others it makes no colours.
   void choose(const ColorCommand& wanted);
   /// Null as long as those that were taken last are right, or may wait.
   std::shared_ptr<const CutColors> take(Clock::time_point now);
@@ -44,6 +55,7 @@ class LiveColors {
  private:
   void place_tools();
   std::uint32_t color_of(const CutLabel& label) const;
+  void color_rates(CutColors& colors) const;
   std::vector<ColorLegendEntry> legend() const;
 
   std::vector<NamedTool> program_tools_;

@@ -142,6 +142,17 @@ void LiveView::note_labels(std::span<const CutLabel> labels, News& news) {
   noted_labels_ = labels.size();
 }
 
+/// Those that have cut: a look at each label, a millisecond for a million.
+void LiveView::note_uses(std::span<const CutLabel> labels, News& news) {
+  uses_at_ = Clock::now();
+  noted_s_.resize(labels.size(), 0.0);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (noted_s_[i] == labels[i].cut_s) continue;
+    noted_s_[i] = labels[i].cut_s;
+    news.uses.push_back({static_cast<std::uint32_t>(i), labels[i].removed_mm3, labels[i].cut_s});
+  }
+}
+
 void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
                         std::span<const Vec3> trail, std::span<const CutLabel> labels) {
   // So that tiles that were only passed over count as unchanged.
@@ -154,6 +165,7 @@ void LiveView::on_frame(StockModel& stock, const Cutter* cutter, const LiveStatu
   news_.trail.insert(news_.trail.end(), trail.begin(), trail.end());
   note_tool(status.place.tool, cutter, news_);
   note_labels(labels, news_);
+  if (Clock::now() - uses_at_ >= LiveColors::kRatePeriod) note_uses(labels, news_);
   arrived_.notify_one();
 }
 
@@ -164,6 +176,7 @@ void LiveView::end(const StockModel* stock, std::span<const CutLabel> labels,
     const std::lock_guard lock(mutex_);
     if (stock) news_.stock = stock->snapshot();
     note_labels(labels, news_);
+    note_uses(labels, news_);
     arrived_.notify_one();
   }
   if (thread_.joinable()) thread_.join();
@@ -190,7 +203,8 @@ void LiveView::run(std::stop_token stop) {
     News news;
     {
       std::unique_lock lock(mutex_);
-      const bool busy = feeder_.behind() || (program_path_ && !program_path_->complete());
+      const bool busy =
+          (draws_mesh() && feeder_.behind()) || (program_path_ && !program_path_->complete());
       if (!busy) arrived_.wait_for(lock, kPatience);
       news = std::exchange(news_, {});
     }
@@ -199,14 +213,16 @@ void LiveView::run(std::stop_token stop) {
     }
     take_news(news);
     if (auto colors = colors_.take(Clock::now())) update_.colors = std::move(colors);
-    update_.patches = feeder_.make_until(Clock::now() + kPatchSlice);
+    roads_.update(stock_, {}, &update_);
+    if (draws_mesh()) update_.patches = feeder_.make_until(Clock::now() + kPatchSlice);
     if (program_path_ && !program_path_->complete()) {
       auto chunks = program_path_->next_chunks();
       update_.path.insert(update_.path.end(), chunks.begin(), chunks.end());
     }
     const bool news_to_show = update_.setup || update_.moment || !update_.patches.empty() ||
                               !update_.path.empty() || update_.findings || update_.tool_shape ||
-                              update_.colors || update_.picked || update_.program;
+                              update_.colors || update_.picked || update_.program || update_.road ||
+                              update_.heights;
     if (news_to_show) mailbox_.publish(std::exchange(update_, {}));
   }
 }
@@ -222,6 +238,7 @@ bool LiveView::obey(const ViewerCommand& command) {
         using Command = std::decay_t<decltype(c)>;
         if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.detail);
         if constexpr (std::is_same_v<Command, ColorCommand>) colors_.choose(c);
+        if constexpr (std::is_same_v<Command, RoadCommand>) roads_.choose(c.road);
         if constexpr (std::is_same_v<Command, PickCommand>) update_.picked = who_cut(c.point_mm);
         if constexpr (std::is_same_v<Command, CloseCommand>) {
           goes_on = false;
@@ -273,6 +290,7 @@ void LiveView::take_news(News& news) {
     feeder_.follow(stock_);
   }
   colors_.add(news.labels, news.tools);
+  colors_.update(news.uses);
   if (news.tool_shape) {
     update_.tool_shape = std::move(news.tool_shape);
     tool_name_ = std::move(news.tool_name);
@@ -365,10 +383,14 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->removed_mm3 = status.removed_mm3;
   moment->notice = notice_of(status);
   if (!place.known) return moment;
-  moment->tool_pose = ToolPose{place.tip_mm, Vec3(0, 0, 1)};
+  moment->tool_pose = ToolPose{place.tip_mm, place.spindle};
   if (options_.machine) {
+    std::array<double, 3> machine_abc_deg = place.abc_deg;
+    for (std::size_t i = 0; i < 3; ++i) machine_abc_deg[i] += shown_work_.offset_abc_deg[i];
     moment->link_poses =
-        drawn_poses(*options_.machine, place.tip_mm, place.abc_deg, tool_length_mm_);
+        place.turns
+            ? drawn_poses(*options_.machine, place.tool_pose, machine_abc_deg, tool_length_mm_)
+            : drawn_poses(*options_.machine, place.tip_mm, place.abc_deg, tool_length_mm_);
   }
   has_rotary_ = has_rotary_ || place.abc_deg != std::array<double, 3>{};
   moment->axes =

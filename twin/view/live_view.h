@@ -19,6 +19,7 @@
 #include "twin/view/cut_colors.h"
 #include "twin/view/live_colors.h"
 #include "twin/view/patch_feeder.h"
+#include "twin/view/road_feeder.h"
 #include "twin/view/track_path.h"
 #include "viewer/scene_mailbox.h"
 #include "viewer/viewer_command.h"
@@ -86,11 +87,13 @@ class LiveView final : public LiveObserver {
     std::vector<Vec3> trail;
     std::vector<SceneFinding> findings;  ///< those that are new
     std::vector<CutLabel> labels;        ///< those that are new
+    std::vector<LabelUse> uses;          ///< of labels that have cut since they were told
     std::vector<NamedTool> tools;        ///< that are new among the labels
     std::unique_ptr<LiveProgram> program;
   };
 
   void run(std::stop_token stop);
+  bool draws_mesh() const { return roads_.drawn() == DrawRoad::kMesh; }
   void publish_start();
   bool obey(const ViewerCommand& command);
   void take_news(News& news);
@@ -99,6 +102,7 @@ class LiveView final : public LiveObserver {
   std::shared_ptr<const Moment> moment_now();
   void note_tool(int tool, const Cutter* cutter, News& news);
   void note_labels(std::span<const CutLabel> labels, News& news);
+  void note_uses(std::span<const CutLabel> labels, News& news);
   std::shared_ptr<const PickedPoint> who_cut(const Vec3& point_mm) const;
 
   LiveViewOptions options_;
@@ -113,9 +117,12 @@ class LiveView final : public LiveObserver {
   ToolBook book_;
   std::string shown_spec_;
   std::size_t noted_labels_ = 0;
+  std::vector<double> noted_s_;  ///< CutLabel::cut_s, by label
+  Clock::time_point uses_at_{};  ///< when they were looked at
   std::set<int> noted_tools_;
   // of the view's thread
   PatchFeeder feeder_;
+  RoadFeeder roads_;
   std::shared_ptr<const StockModel> stock_;  ///< the newest; null: none yet
   LiveColors colors_;
   std::vector<SceneFinding> findings_;

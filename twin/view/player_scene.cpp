@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "twin/motion_geometry.h"
 #include "twin/view/drawn_machine.h"
 #include "twin/view/moment_values.h"
 #include "twin/view/program_text.h"
@@ -39,12 +40,22 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   ViewedProgram shown;
   shown.title = std::move(title);
   shown.files = loaded.files;
-  if (loaded.player.blank) shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
+  if (loaded.player.blank) {
+    shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
+    shown.blank = loaded.player.blank->snapshot();
+  }
   shown.cuts = loaded.cuts;
+  shown.walls = SheetQuery::of(loaded.player);
   shown.planned = loaded.player.timeline.planner.with_path;
   if (loaded.player.blank) {
     shown.moves = MotionMoves::of(*loaded.player.blank, loaded.player.timeline.kinematics,
                                   loaded.player.track->frame());
+  }
+  if (loaded.player.turret && loaded.player.blank) {
+    constexpr double kThrough_mm = 1;  // beyond the underside
+    shown.punch =
+        std::make_shared<const PunchPose>(loaded.player.turret, *loaded.player.track,
+                                          loaded.player.blank->bounds_mm().min.z - kThrough_mm);
   }
   const WorkpieceFrame& used = loaded.player.track->frame();
   for (const NamedOffset& offset : loaded.work_offsets) {
@@ -65,6 +76,8 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
 PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
     : track_(std::move(track)),
       shown_(std::move(shown)),
+      roads_({track_, shown_.cuts, shown_.blank, shown_.moves.path() != nullptr,
+              shown_.design != nullptr}),
       path_(track_, shown_.planned, shown_.moves) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
 }
@@ -122,24 +135,31 @@ void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
   picked->point_mm = point_mm;
   if (shown_.design) picked->deviation_mm = shown_.design->distance_mm(point_mm);
   const double tolerance_mm = state.stock ? state.stock->cell_mm() : 0.0;
-  const auto motion =
-      shown_.cuts ? shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place) : std::nullopt;
+  std::optional<std::size_t> motion;
+  if (shown_.walls) {
+    if (const auto wall = shown_.walls->wall_at(point_mm, state.place)) {
+      motion = wall->motion;
+      picked->tool_name = wall->cutter;
+    }
+  } else if (shown_.cuts) {
+    motion = shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place);
+    const Cutter* const cutter = motion ? shown_.cuts->cutter_at(*motion) : nullptr;
+    if (cutter) picked->tool_name = tool_name_of(*cutter);
+  }
   if (motion) {
     const SourceRef source = track_->source(*motion);
     picked->tool = track_->tool(*motion);
     picked->file = static_cast<int>(source.file);
     picked->line = static_cast<int>(source.line);
     picked->time_s = track_->start_s(*motion);
-    if (const Cutter* cutter = shown_.cuts->cutter_at(*motion)) {
-      picked->tool_name = tool_name_of(*cutter);
-    }
   }
   waiting_.picked = std::move(picked);
 }
 
 bool PlayerScene::is_empty(const SceneUpdate& update) {
   return !update.moment && update.patches.empty() && update.path.empty() && !update.findings &&
-         !update.tool_shape && !update.colors && !update.picked;
+         !update.tool_shape && !update.colors && !update.picked && !update.road &&
+         !update.heights && !update.cut_moves;
 }
 
 SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
@@ -159,12 +179,19 @@ SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
       update.tool_shape =
           state->cutter ? tool_shape_of(*state->cutter) : std::make_shared<const ToolShape>();
       tool_length_mm_ = drawn_height_mm(*update.tool_shape);
+      if (shown_.punch && shown_.machine) {
+        // The machine has the punch, in its true shape.
+        auto holder = std::make_shared<ToolShape>(*update.tool_shape);
+        holder->cutter.clear();
+        update.tool_shape = std::move(holder);
+      }
     }
     state_ = state;
     update.moment = moment_of(*state);
     moment_stale_ = false;
   }
-  update.patches = feeder_.make_until(deadline);
+  roads_.update(state->stock, state->place, &update);
+  if (draws_mesh()) update.patches = feeder_.make_until(deadline);
   if (!path_.complete()) {
     update.path = path_.next_chunks();
     moment_stale_ = true;  // vertices that are past are counted as far as there are any
@@ -196,7 +223,14 @@ double PlayerScene::fraction(const PlayerState& state) const {
 std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) const {
   const ToolPath* const path = shown_.moves.path();
   if (path == nullptr) {
-    return drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+    if (!shown_.punch) {
+      return drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+    }
+    std::vector<glm::mat4> poses =
+        drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_,
+                    shown_.punch->joints(*track_, state));
+    shown_.punch->place_punch(*shown_.machine, *track_, state, poses);
+    return poses;
   }
   const AxisValues axes = path->axes_at(state.motion, fraction(state));
   return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)),
@@ -204,6 +238,7 @@ std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) cons
 }
 
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
+  if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
   const ToolPath* const path = shown_.moves.path();
   if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
   const Pose pose = path->pose_at(state.motion, fraction(state));
@@ -226,7 +261,7 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
     const bool clockwise = motion.spindle == SpindleState::kClockwise;
     moment->spindle_rpm = clockwise ? motion.spindle_rpm : -motion.spindle_rpm;
   }
-  moment->is_traverse = motion.kind == MotionKind::kTraverse;
+  moment->is_traverse = is_traverse(motion);
   moment->feed_mm_per_min =
       motion.feed_mm_per_min * (motion.feed_per_rev ? motion.spindle_rpm : 1.0);
   moment->coolant = coolant_text(motion.mist, motion.flood);

@@ -15,6 +15,9 @@
 #include "twin/playback/player.h"
 #include "twin/view/cut_colors.h"
 #include "twin/view/patch_feeder.h"
+#include "twin/view/punch_pose.h"
+#include "twin/view/road_feeder.h"
+#include "twin/view/sheet_query.h"
 #include "twin/view/track_path.h"
 #include "viewer/scene.h"
 #include "viewer/viewer_command.h"
@@ -26,12 +29,15 @@ struct ViewedProgram {
   std::string title;
   std::vector<std::string> files;  ///< paths, in the order of SourceRef::file
   std::vector<LineSegment> blank_outline;
-  std::string work_offset;  ///< "G54"; empty: not known
-  bool planned = false;     ///< the track is of the path that the machine runs
-  MotionMoves moves;        ///< where tool and tip are in the workpiece
+  std::shared_ptr<const StockModel> blank;  ///< a snapshot; null: there is none
+  std::string work_offset;                  ///< "G54"; empty: not known
+  bool planned = false;                     ///< the track is of the path that the machine runs
+  MotionMoves moves;                        ///< where tool and tip are in the workpiece
   std::vector<NamedTool> tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
+  std::shared_ptr<const PunchPose> punch;       ///< of a sheet that is punched; null: it is not
   std::shared_ptr<const CutQuery> cuts;         ///< who cut a point; null: not told
+  std::shared_ptr<const SheetQuery> walls;      ///< the same of a sheet; null: it is none
   std::shared_ptr<const DesignPart> design;     ///< the surface is compared with; null: with none
   double tolerance_mm = 0.05;                   ///< of that comparison
 };
@@ -53,6 +59,8 @@ class PlayerScene {
   std::optional<SourceRef> source_of(const std::string& file, int line) const;
 
   void set_detail(const ViewDetail& detail) { feeder_.set_detail(detail); }
+  /// Patches are made for the mesh alone; the answer is in the next update.
+  void set_road(DrawRoad road) { roads_.choose(road); }
   /// What the player does not know: speed asked for, breakpoints of the user.
   void set_controls(double speed, std::vector<SourceRef> breakpoints);
   void set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3);
@@ -64,9 +72,10 @@ class PlayerScene {
   SceneUpdate update(const std::shared_ptr<const PlayerState>& state, Clock::time_point deadline);
   static bool is_empty(const SceneUpdate& update);
   /// There is more to come without a new state.
-  bool behind() const { return feeder_.behind() || !path_.complete(); }
+  bool behind() const { return (draws_mesh() && feeder_.behind()) || !path_.complete(); }
 
  private:
+  bool draws_mesh() const { return roads_.drawn() == DrawRoad::kMesh; }
   double fraction(const PlayerState& state) const;
   std::vector<glm::mat4> machine_poses(const PlayerState& state) const;
   ToolPose tool_pose(const PlayerState& state) const;
@@ -77,6 +86,7 @@ class PlayerScene {
   std::shared_ptr<const ProgramTrack> track_;
   ViewedProgram shown_;
   PatchFeeder feeder_;
+  RoadFeeder roads_;
   TrackPath path_;
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;

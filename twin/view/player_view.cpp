@@ -84,6 +84,7 @@ bool PlayerView::obey(const ViewerCommand& command) {
         }
         if constexpr (std::is_same_v<Command, BreakpointCommand>) set_breakpoint(c);
         if constexpr (std::is_same_v<Command, DetailCommand>) scene_.set_detail(c.detail);
+        if constexpr (std::is_same_v<Command, RoadCommand>) scene_.set_road(c.road);
         if constexpr (std::is_same_v<Command, ColorCommand>)
           scene_.set_colors(c, player_.removed_mm3());
         if constexpr (std::is_same_v<Command, PickCommand>)

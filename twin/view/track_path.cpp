@@ -28,6 +28,7 @@ bool moves(MotionKind kind) {
     case MotionKind::kToolChange:
     case MotionKind::kStop:
     case MotionKind::kProgramEnd:
+    case MotionKind::kSignal:
       return false;
   }
   return false;
@@ -75,7 +76,7 @@ void TrackPath::add(std::size_t motion) {
     first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
     return;
   }
-  const PathKind shown = kind == MotionKind::kTraverse ? PathKind::kTraverse : feed_kind_;
+  const PathKind shown = track_->is_traverse(motion) ? PathKind::kTraverse : feed_kind_;
   if (moves_.path() != nullptr && add_tilted(motion, shown)) return;
   const Vec3 from_mm = track_->from_mm(motion);
   if (vertices_ == 0) push(from_mm, PathKind::kTraverse);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
@@ -14,6 +15,7 @@
 
 #include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/csg_store.h"
+#include "viewer/csg/query_pool.h"
 #include "viewer/gl_objects.h"
 #include "viewer/shaders/shaders.h"
 
@@ -31,6 +33,10 @@ constexpr float kFilm_slope = 0.02f;
 constexpr GLint kLastMark = 255;
 /// The blank seen from above, in steps along its longer side: finds solids that overlap in space.
 constexpr int kGround_steps = 2048;
+/// Solids that are taken at once at the beginning of a draw with a time limit.
+constexpr std::size_t kFirstGroup = 2;
+
+using Clock = std::chrono::steady_clock;
 
 /// Of material that the near plane cuts through.
 constexpr glm::vec3 kSection{0.45f, 0.43f, 0.41f};
@@ -43,6 +49,7 @@ struct Layer {
   TileClock clock;                       // of the picture
   TileClock ground;                      // of the blank seen from above
   std::vector<std::uint64_t> looked_at;  // by solid: when it was subtracted last
+  bool is_settled = true;                // no solid has to be looked at again
 };
 
 /// Texture-backed, so that layers can be laid over each other.
@@ -61,30 +68,6 @@ Done allocate(glm::ivec2 size_px, Layer* layer) {
   }
   return std::monostate{};
 }
-
-/// Occlusion queries, made as they are needed.
-class QueryPool {
- public:
-  QueryPool() = default;
-  QueryPool(const QueryPool&) = delete;
-  QueryPool& operator=(const QueryPool&) = delete;
-  ~QueryPool() { glDeleteQueries(static_cast<GLsizei>(names_.size()), names_.data()); }
-
-  void begin(std::size_t index) {
-    while (names_.size() <= index) glGenQueries(1, &names_.emplace_back(0));
-    glBeginQuery(GL_ANY_SAMPLES_PASSED, names_[index]);
-  }
-  static void end() { glEndQuery(GL_ANY_SAMPLES_PASSED); }
-  /// Waits for the card.
-  bool has_passed(std::size_t index) const {
-    GLuint any = GL_FALSE;
-    glGetQueryObjectuiv(names_[index], GL_QUERY_RESULT, &any);
-    return any != GL_FALSE;
-  }
-
- private:
-  std::vector<GLuint> names_;
-};
 
 struct Solid {
   StoredSolid stored;
@@ -139,18 +122,28 @@ class CsgRenderer::Impl {
   Done set_tools(std::span<const CsgTool> tools);
   void append(std::span<const SweptMove> moves);
   void clear_moves();
-  Done draw(const Projection& projection);
+  Done draw(const Projection& projection, double longest_ms, bool shows);
+  bool has_waiting() const { return !waiting_.empty() || !is_settled(); }
+  void bind_picture(int color_unit, int depth_unit) const;
   void show_in(GLuint framebuffer, glm::ivec2 corner_px) const;
   Picture read() const;
   DepthPicture read_depth() const;
 
   CsgCounters counters;
   std::size_t move_count = 0;
+  PixelRect last_changed;  // by the last draw()
 
  private:
   Done resize(const Projection& projection);
   PixelRect ground_of(const Box& box) const;
-  void place(std::size_t first_solid);
+  void begin_anew(const Projection& projection);
+  std::vector<std::uint32_t> take_newest(std::size_t count);
+  void place(std::vector<std::uint32_t>* solids);
+  void take_waiting(double longest_ms);
+  bool is_settled() const {
+    return std::all_of(layers_.begin(), layers_.end(),
+                       [](const Layer& layer) { return layer.is_settled; });
+  }
   void use_solid_program() const;
   void begin_layer(const Layer& layer, int number);
   PixelRect settle(Layer* layer, std::vector<std::uint32_t> pending);
@@ -174,10 +167,12 @@ class CsgRenderer::Impl {
   int convexity_ = 0;  // 0: no blank
   std::optional<SweepBuilder> builder_;
   std::vector<Solid> solids_;
-  std::vector<std::uint32_t> order_;  // of solids_, about from front to back
-  std::size_t drawn_solids_ = 0;      // that the layers know
-  std::uint64_t time_ = 1;            // counts batches; 0 is before all
-  GLint mark_ = kLastMark;            // of the batch last drawn, in the stencil
+  std::vector<std::uint32_t> order_;    // of solids_ that the layers know, about front to back
+  std::vector<std::uint32_t> waiting_;  // the others, the newest at the end
+  PixelRect unshown_;                   // of the layers, not in shown_ yet
+  Clock::time_point deadline_ = Clock::time_point::max();  // of the draw()
+  std::uint64_t time_ = 1;                                 // counts batches; 0 is before all
+  GLint mark_ = kLastMark;  // of the batch last drawn, in the stencil
   Projection projection_;
   glm::ivec2 size_px_{0};
   bool is_old_ = true;  // the layers, all of them
@@ -230,6 +225,7 @@ void CsgRenderer::Impl::append(std::span<const SweptMove> moves) {
           builder_->build(piece, move.from_mm, move.to_mm, tools_[move.tool].color);
       if (mesh.indices.empty() || !overlaps(mesh.bounds_mm, blank_mm_)) continue;
       counters.triangles += mesh.indices.size() / 3;
+      waiting_.push_back(static_cast<std::uint32_t>(solids_.size()));
       solids_.push_back({store_.add(mesh), mesh.bounds_mm, 0.5 * (move.from_mm + move.to_mm),
                          PixelArea{}, ground_of(mesh.bounds_mm)});
     }
@@ -242,6 +238,7 @@ void CsgRenderer::Impl::clear_moves() {
   store_.clear();
   solids_.clear();
   order_.clear();
+  waiting_.clear();
   counters = {};
   move_count = 0;
   is_old_ = true;
@@ -265,20 +262,72 @@ Done CsgRenderer::Impl::resize(const Projection& projection) {
   return std::monostate{};
 }
 
-/// Finds where the solids from this number on are in the picture, and their order.
-void CsgRenderer::Impl::place(std::size_t first_solid) {
-  std::vector<float> distance(solids_.size());
-  for (std::size_t i = first_solid; i < solids_.size(); ++i) {
-    Solid& solid = solids_[i];
+/// Finds where the solids are in the picture, and puts them in order, about from front to back.
+void CsgRenderer::Impl::place(std::vector<std::uint32_t>* solids) {
+  std::vector<std::pair<float, std::uint32_t>> by_distance;
+  for (const std::uint32_t number : *solids) {
+    Solid& solid = solids_[number];
     solid.area = pixels_of(solid.bounds_mm, projection_);
-    distance[i] = -(projection_.view_from_world * glm::vec4(glm::vec3(solid.middle_mm), 1.0f)).z;
+    by_distance.emplace_back(
+        -(projection_.view_from_world * glm::vec4(glm::vec3(solid.middle_mm), 1.0f)).z, number);
   }
-  order_.resize(solids_.size());
-  const auto added = order_.begin() + static_cast<std::ptrdiff_t>(first_solid);
-  std::iota(added, order_.end(), static_cast<std::uint32_t>(first_solid));
-  std::stable_sort(added, order_.end(), [&distance](std::uint32_t a, std::uint32_t b) {
-    return distance[a] < distance[b];
-  });
+  std::sort(by_distance.begin(), by_distance.end());
+  for (std::size_t i = 0; i < solids->size(); ++i) (*solids)[i] = by_distance[i].second;
+}
+
+/// No solid is subtracted from the layers any more.
+void CsgRenderer::Impl::begin_anew(const Projection& projection) {
+  projection_ = projection;
+  order_.clear();
+  waiting_.resize(solids_.size());
+  std::iota(waiting_.begin(), waiting_.end(), 0u);
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    use_solid_program();
+    glEnable(GL_CULL_FACE);
+    begin_layer(layers_[i], static_cast<int>(i));
+    layers_[i].is_settled = true;
+    layers_[i].clock = TileClock(size_px_);
+    layers_[i].ground = TileClock(glm::ivec2(kGround_steps));
+  }
+  unshown_ = PixelRect{{0, 0}, size_px_};
+  is_old_ = false;
+}
+
+std::vector<std::uint32_t> CsgRenderer::Impl::take_newest(std::size_t count) {
+  const auto begin = waiting_.end() - static_cast<std::ptrdiff_t>(std::min(count, waiting_.size()));
+  std::vector<std::uint32_t> taken(begin, waiting_.end());
+  waiting_.erase(begin, waiting_.end());
+  return taken;
+}
+
+/// Groups grow as long as they are taken quickly: many solids side by side cost little more than
+/// one. What the last draw() had no time to look at again comes first.
+void CsgRenderer::Impl::take_waiting(double longest_ms) {
+  const auto begin = Clock::now();
+  const bool is_limited = std::isfinite(longest_ms);
+  deadline_ = Clock::time_point::max();
+  const auto room = std::chrono::duration<double, std::milli>(is_limited ? longest_ms : 0.0);
+  if (is_limited) deadline_ = begin + std::chrono::duration_cast<Clock::duration>(room);
+  const auto settle_all = [this](const std::vector<std::uint32_t>& added) {
+    for (Layer& layer : layers_) {
+      use_solid_program();
+      glEnable(GL_CULL_FACE);
+      layer.looked_at.resize(solids_.size());
+      unshown_.extend(settle(&layer, layer.is_settled ? added : to_look_at_again(layer)));
+    }
+  };
+  bool has_done = !is_settled();
+  if (has_done) settle_all({});
+  std::size_t group = is_limited ? kFirstGroup : solids_.size();
+  while (!waiting_.empty() && is_settled()) {
+    const auto group_begin = Clock::now();
+    if (std::exchange(has_done, true) && group_begin > deadline_) return;
+    std::vector<std::uint32_t> added = take_newest(group);
+    place(&added);
+    order_.insert(order_.end(), added.begin(), added.end());
+    settle_all(added);
+    if (Clock::now() - group_begin < 0.25 * room) group *= 2;
+  }
 }
 
 void CsgRenderer::Impl::use_solid_program() const {
@@ -306,13 +355,15 @@ void CsgRenderer::Impl::begin_layer(const Layer& layer, int number) {
   mark_ = kLastMark;
 }
 
-/// Subtracts the solids, and again what may have to, until the layer stays as it is. Gives the
-/// pixels that changed.
+/// Subtracts the solids, and again what may have to, until the layer stays as it is or the time is
+/// over. Gives the pixels that changed.
 PixelRect CsgRenderer::Impl::settle(Layer* layer, std::vector<std::uint32_t> pending) {
   glBindFramebuffer(GL_FRAMEBUFFER, layer->framebuffer.name());
   glEnable(GL_STENCIL_TEST);
+  if (layers_.size() > 1) mark_ = kLastMark;  // each has a stencil of its own
   store_.bind();
   PixelRect changed;
+  layer->is_settled = pending.empty();
   while (!pending.empty()) {
     ++counters.sweeps;
     counters.subtractions += pending.size();
@@ -337,6 +388,8 @@ PixelRect CsgRenderer::Impl::settle(Layer* layer, std::vector<std::uint32_t> pen
     counters.batches += count;
     time_ += count;
     pending = to_look_at_again(*layer);
+    layer->is_settled = pending.empty();
+    if (Clock::now() >= deadline_) break;
   }
   return changed;
 }
@@ -421,6 +474,7 @@ void CsgRenderer::Impl::compose(const PixelRect& rect) {
   if (rect.empty()) return;
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.min.x, rect.min.y, rect.max.x - rect.min.x, rect.max.y - rect.min.y);
+  glEnable(GL_STENCIL_TEST);
   for (const Layer& layer : layers_) {
     use_solid_program();
     mark_inside(layer);
@@ -447,17 +501,12 @@ void CsgRenderer::Impl::compose(const PixelRect& rect) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-Done CsgRenderer::Impl::draw(const Projection& projection) {
+Done CsgRenderer::Impl::draw(const Projection& projection, double longest_ms, bool shows) {
   if (Done done = resize(projection); !done) return done;
   const bool is_full = is_old_ || !options_.is_local || projection != projection_;
-  projection_ = projection;
   store_.upload();
-  if (is_full) drawn_solids_ = 0;
-  place(drawn_solids_);
   counters.was_full = is_full;
   counters.sweeps = counters.batches = counters.subtractions = 0;
-  const std::vector<std::uint32_t> added(
-      order_.begin() + static_cast<std::ptrdiff_t>(drawn_solids_), order_.end());
 
   glViewport(0, 0, size_px_.x, size_px_.y);
   glDisable(GL_SCISSOR_TEST);
@@ -466,29 +515,25 @@ Done CsgRenderer::Impl::draw(const Projection& projection) {
   glEnable(GL_DEPTH_TEST);
   // What reaches beyond the clip planes keeps its front and its back.
   glEnable(GL_DEPTH_CLAMP);
-  PixelRect changed;
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    Layer& layer = layers_[i];
-    use_solid_program();
-    glEnable(GL_CULL_FACE);
-    if (is_full) {
-      begin_layer(layer, static_cast<int>(i));
-      layer.clock = TileClock(size_px_);
-      layer.ground = TileClock(glm::ivec2(kGround_steps));
-    }
-    layer.looked_at.resize(solids_.size());
-    changed.extend(settle(&layer, added));
+  if (is_full) begin_anew(projection);
+  take_waiting(longest_ms);
+  last_changed = {};
+  if (shows) {
+    last_changed = std::exchange(unshown_, {});
+    compose(last_changed);
   }
-  compose(is_full ? PixelRect{{0, 0}, size_px_} : changed);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_CULL_FACE);
   glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
-  drawn_solids_ = solids_.size();
-  is_old_ = false;
   counters.gpu_bytes = store_.gpu_bytes() + blank_store_.gpu_bytes();
   return std::monostate{};
+}
+
+void CsgRenderer::Impl::bind_picture(int color_unit, int depth_unit) const {
+  bind_texture(depth_unit, shown_.depths);
+  bind_texture(color_unit, shown_.colors);
 }
 
 void CsgRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) const {
@@ -556,7 +601,14 @@ Done CsgRenderer::set_blank(const CsgBlank& blank) { return impl_->set_blank(bla
 Done CsgRenderer::set_tools(std::span<const CsgTool> tools) { return impl_->set_tools(tools); }
 void CsgRenderer::append(std::span<const SweptMove> moves) { impl_->append(moves); }
 void CsgRenderer::clear_moves() { impl_->clear_moves(); }
-Done CsgRenderer::draw(const Projection& projection) { return impl_->draw(projection); }
+Done CsgRenderer::draw(const Projection& projection, double longest_ms, bool shows) {
+  return impl_->draw(projection, longest_ms, shows);
+}
+bool CsgRenderer::has_waiting() const { return impl_->has_waiting(); }
+PixelRect CsgRenderer::changed() const { return impl_->last_changed; }
+void CsgRenderer::bind_picture(int color_unit, int depth_unit) const {
+  impl_->bind_picture(color_unit, depth_unit);
+}
 void CsgRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px) const {
   impl_->show_in(framebuffer, corner_px);
 }

@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "base/result.h"
 #include "viewer/csg/csg_blank.h"
+#include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/depth_picture.h"
 #include "viewer/csg/swept_solid.h"
 #include "viewer/picture.h"
@@ -89,7 +91,20 @@ class CsgRenderer {
 
   /// Draws what is left, over a background. Without a blank: the background alone. Error: the size
   /// is more than this OpenGL can do.
-  Done draw(const Projection& projection);
+  ///
+  /// With a time limit moves are taken in small groups, the newest first, until it has passed; the
+  /// others wait for the next draw() (has_waiting()). At least one group is taken, so that the end
+  /// comes. What is drawn until then has too much material, nowhere too little. `shows` false: the
+  /// moves are taken, but the picture stays as it is until a draw() that shows.
+  Done draw(const Projection& projection,
+            double longest_ms = std::numeric_limits<double>::infinity(), bool shows = true);
+  /// Moves are not yet subtracted from the picture of the last draw().
+  bool has_waiting() const;
+  /// The pixels that the last draw() can have changed.
+  PixelRect changed() const;
+  /// Binds colour and depth of the picture last drawn to these texture units, rows from below. The
+  /// background has depth 1.
+  void bind_picture(int color_unit, int depth_unit) const;
 
   /// Copies the picture last drawn to a framebuffer (0: the window's), from its pixel `corner_px`
   /// (counted from the lower left) on.

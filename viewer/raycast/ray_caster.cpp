@@ -153,6 +153,19 @@ void RayCaster::cast_tool(const Light& light, const ToolRays& tool, std::size_t 
   put(&shown_, pixel, light.color(color, hit->normal));
 }
 
+void RayCaster::find_room(const Squares& squares, RayCounters* counters) const {
+  glm::ivec2 low(squares_x_, squares_y_), high(0);
+  for (std::size_t n = 0; n < squares.size(); ++n) {
+    if (!squares[n]) continue;
+    const glm::ivec2 square(static_cast<int>(n) % squares_x_, static_cast<int>(n) / squares_x_);
+    low = glm::min(low, square);
+    high = glm::max(high, square + 1);
+  }
+  if (low.x >= high.x) return;
+  counters->low_px = low * kSquare_px;
+  counters->high_px = glm::min(high * kSquare_px, projection_->size_px);
+}
+
 RayCounters RayCaster::draw(const Projection& projection, bool is_local) {
   RayCounters counters;
   counters.is_full = !is_local || projection_ != projection;
@@ -167,6 +180,7 @@ RayCounters RayCaster::draw(const Projection& projection, bool is_local) {
   if (!counters.is_full)
     for (const Box& box : changed_mm_) mark(box, &dirty);
   changed_mm_.clear();
+  find_room(dirty, &counters);
   counters.cast_px = for_squares(dirty, [&](int x0, int x1, int y) {
     for (int x = x0; x < x1; ++x)
       cast_workpiece(light, index_of(x, y), light.frame.ray(x + 0.5, y + 0.5));

@@ -23,6 +23,8 @@ struct RayCounters {
   std::size_t cast_px = 0;    ///< of the workpiece, cast again
   std::size_t copied_px = 0;  ///< copied and the tool cast over them
   bool is_full = false;       ///< the whole picture was cast
+  /// All of them lie in these pixels [low, high), from the upper left.
+  glm::ivec2 low_px{0}, high_px{0};
 };
 
 /// Casts a ray for each pixel: colour and window depth as the scene renderer of the window draws
@@ -64,6 +66,7 @@ class RayCaster {
 
   void resize(glm::ivec2 size_px);
   void mark(const Box& box_mm, Squares* squares) const;
+  void find_room(const Squares& squares, RayCounters* counters) const;
   template <class Work>
   std::size_t for_squares(const Squares& squares, const Work& work) const;
   void cast_workpiece(const Light& light, std::size_t pixel, const Ray& ray);

@@ -22,6 +22,7 @@ extern const char* const marker_vert;  ///< Outlines, axes, markers of findings.
 extern const char* const marker_frag;
 extern const char* const section_frag;    ///< The cut face of a section.
 extern const char* const glass_frag;      ///< The transparent workpiece over the rest.
+extern const char* const workpiece_frag;  ///< The workpiece as a picture with depth.
 extern const char* const csg_solid_vert;  ///< Image-space CSG: faces lit flat.
 extern const char* const csg_solid_frag;
 extern const char* const csg_inside_frag;  ///< Marks what is left of a layer of the blank.

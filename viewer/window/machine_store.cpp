@@ -74,11 +74,12 @@ ScreenRect MachineStore::take_changed(const Projection& projection) {
 }
 
 void MachineStore::draw(const Projection& projection, const GlProgram& program, float opacity,
-                        const ScreenRect& rect) const {
+                        bool opaque_parts, const ScreenRect& rect) const {
   std::vector<std::pair<double, std::size_t>> order;  // by height above the plane of the eye
   for (std::size_t i = 0; i < uploaded_; ++i) {
     const Link& link = links_[i];
     if (!link.pose || !link.rect.intersects(rect)) continue;
+    if ((link.rgba.a * opacity >= 1.0f) != opaque_parts) continue;
     const Vec3 middle = 0.5 * (link.box_mm.min + link.box_mm.max);
     const glm::vec4 seen = projection.view_from_world * *link.pose * glm::vec4(middle, 1.0f);
     order.emplace_back(static_cast<double>(seen.z), i);

@@ -32,9 +32,10 @@ class MachineStore {
   /// Where the links that moved since the last call were and are. A new projection moves all.
   ScreenRect take_changed(const Projection& projection);
   /// With viewer/shaders/scene, in use, of which it sets matrices and colour. Only the links that
-  /// touch `rect`; where they are seen through, from back to front.
+  /// touch `rect`: those that are opaque, or those that are seen through (by `opacity` or by their
+  /// own colour), from back to front.
   void draw(const Projection& projection, const GlProgram& program, float opacity,
-            const ScreenRect& rect) const;
+            bool opaque_parts, const ScreenRect& rect) const;
 
   /// Of all links that have a pose, in the workpiece frame.
   Box bounds_mm() const;

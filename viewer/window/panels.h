@@ -26,7 +26,7 @@
 
 namespace kerf {
 
-/// The values shown now; never null but `picked`.
+/// The values shown now; never null but `picked` and `road`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
@@ -34,6 +34,7 @@ struct ShownValues {
   std::shared_ptr<const ProgramTimeline> timeline = std::make_shared<ProgramTimeline>();
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
   std::shared_ptr<const PickedPoint> picked;
+  std::shared_ptr<const RoadAnswer> road;
   std::chrono::steady_clock::time_point moment_came{};
 
   /// Age of the newest sample now, also when no news come any more.
@@ -78,7 +79,8 @@ struct PanelContext {
   const ShownValues& shown;
   const DrawCounters& counters;
   const std::vector<ColorLegendEntry>& legend;
-  Box bounds_mm;  ///< Of the workpiece; may be empty.
+  DrawRoad drawn_road;  ///< May be the mesh although another one was asked for.
+  Box bounds_mm;        ///< Of the workpiece; may be empty.
   const Fonts& fonts;
   float scale;  ///< Of everything: 1, 2
   ViewSettings* settings;
@@ -113,6 +115,10 @@ void draw_inspection(const PanelContext& context, const Projection& projection,
 
 /// Asks the owner of the workpiece for the colours that are set.
 ColorCommand color_command(const ViewSettings& settings, const PanelState& state);
+
+/// What is to be known of the road by which the workpiece is drawn: why it is not the one that was
+/// chosen, what it does not show. Empty if nothing.
+std::string road_note(const PanelContext& context);
 
 /// The plane that hides part of the workpiece; none if it is off.
 std::optional<SectionPlane> section_plane(const SectionChoice& choice);

@@ -212,7 +212,8 @@ void draw_status(const PanelContext& context) {
                             ? theme::kGood
                             : theme::kDim;
   ImGui::TextColored(color, "%s", words(context));
-  const std::string& notice = context.state->notice.empty() ? moment.notice : context.state->notice;
+  std::string notice = context.state->notice.empty() ? moment.notice : context.state->notice;
+  if (notice.empty()) notice = road_note(context);
   if (!notice.empty()) {
     ImGui::SameLine(0.0f, 14.0f * context.scale);
     ImGui::TextColored(theme::kWarning, "%s", notice.c_str());

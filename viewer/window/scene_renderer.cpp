@@ -21,6 +21,7 @@
 #include "viewer/window/scene_programs.h"
 #include "viewer/window/surface_colors.h"
 #include "viewer/window/tool_store.h"
+#include "viewer/window/workpiece_roads.h"
 
 namespace kerf {
 namespace {
@@ -60,15 +61,19 @@ std::optional<glm::dvec4> kept_side(const std::optional<SectionPlane>& section) 
 
 class SceneRenderer::Impl {
  public:
-  Impl(ScenePrograms programs, PathStore path, MarkerStore markers)
-      : programs_(std::move(programs)), path_(std::move(path)), markers_(std::move(markers)) {
+  Impl(ScenePrograms programs, PathStore path, MarkerStore markers, WorkpieceRoads roads)
+      : programs_(std::move(programs)),
+        path_(std::move(path)),
+        markers_(std::move(markers)),
+        roads_(std::move(roads)) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px_);
   }
 
   void apply(const SceneUpdate& update);
   Done draw(const Projection& projection, const DrawOptions& options);
   bool has_waiting() const {
-    return patches_.waiting_bytes() > 0 || path_.has_waiting() || machine_.has_waiting();
+    return patches_.waiting_bytes() > 0 || path_.has_waiting() || machine_.has_waiting() ||
+           roads_.has_waiting();
   }
   ScreenRect take_changed() { return std::exchange(changed_, {}); }
   void show_in(GLuint framebuffer, glm::ivec2 corner_px, const ScreenRect& rect) const;
@@ -76,7 +81,12 @@ class SceneRenderer::Impl {
   std::optional<Vec3> pick(glm::ivec2 px) const;
   Box fit_box() const;
   const Box& depth_box() const { return depth_box_; }
-  std::vector<ColorLegendEntry> legend() const { return colors_.legend(shown_by_, scale_); }
+  std::vector<ColorLegendEntry> legend() const {
+    if (road_ != DrawRoad::kMesh) return {};
+    return colors_.legend(shown_by_, scale_);
+  }
+  DrawRoad drawn_road() const { return road_; }
+  const Projection& projection() const { return projection_; }
 
   DrawCounters counters;
 
@@ -113,6 +123,8 @@ class SceneRenderer::Impl {
   MarkerStore markers_;
   ToolStore tool_;
   MachineStore machine_;
+  WorkpieceRoads roads_;
+  DrawRoad road_ = DrawRoad::kMesh;  // drawn last
   Layer kept_;
   Layer glass_;
   Layer shown_;
@@ -179,6 +191,7 @@ void SceneRenderer::Impl::apply(const SceneUpdate& update) {
     path_box_.extend(box);
     grow_depth_box(box);
   }
+  roads_.apply(update);
   if (update.tool_shape) tool_.set_shape(*update.tool_shape);
   if (update.machine) machine_.set_machine(update.machine);
   if (update.colors) {
@@ -247,7 +260,10 @@ std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
 }
 
 Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& options) {
-  if (Done done = take_options(projection, options); !done) return done;
+  const Result<WorkpieceRoads::Step> step = roads_.prepare(projection, options.road);
+  if (!step) return Error{step.error()};
+  if (std::exchange(road_, step->road) != step->road || step->is_all_new) is_kept_old_ = true;
+  if (Done done = take_options(step->projection, options); !done) return done;
   timer_.collect();
   timer_.begin();
   const std::size_t bytes = upload(options.upload_bytes_per_frame);
@@ -261,7 +277,9 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   }
   scale_ = scale;
   shown_by_ = shown_by;
-  const ScreenRect rect = is_kept_old_ ? ScreenRect::whole(size_px_) : changed_rect(changed_mm_);
+  ScreenRect rect = step->changed;
+  rect.extend(changed_rect(changed_mm_));
+  if (is_kept_old_) rect = ScreenRect::whole(size_px_);
   DrawCounters::Kind& kind = is_kept_old_   ? counters.full
                              : rect.empty() ? counters.still
                                             : counters.local;
@@ -285,7 +303,8 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
 
 std::size_t SceneRenderer::Impl::gpu_bytes() const {
   return patches_.gpu_bytes() + path_.gpu_bytes() + machine_.gpu_bytes() + tool_.gpu_bytes() +
-         colors_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() + shown_.gpu_bytes();
+         colors_.gpu_bytes() + roads_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() +
+         shown_.gpu_bytes();
 }
 
 std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
@@ -322,6 +341,10 @@ std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
 
 std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
   if (!look(SceneObject::kWorkpiece).is_visible) return 0;
+  if (road_ != DrawRoad::kMesh) {
+    roads_.draw();
+    return 0;
+  }
   const std::optional<glm::dvec4> section = kept_side(options_.section);
   const auto use = [&](bool is_colored) -> const GlProgram& {
     const GlProgram& program =
@@ -439,8 +462,8 @@ void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, ScenePrograms::Var
     program.set("is_behind", variant.beside_glass < 0 ? 1 : 0);
   }
   const ObjectLook& machine = look(SceneObject::kMachine);
-  if (machine.is_visible && (machine.opacity >= 1.0f) == opaque_parts) {
-    machine_.draw(projection_, program, machine.opacity, rect);
+  if (machine.is_visible) {
+    machine_.draw(projection_, program, machine.opacity, opaque_parts, rect);
   }
   if (tool_rect_.intersects(rect)) {
     const ObjectLook& cutter = look(SceneObject::kCutter);
@@ -520,15 +543,17 @@ Box SceneRenderer::Impl::fit_box() const {
   return box;
 }
 
-Result<SceneRenderer> SceneRenderer::create() {
+Result<SceneRenderer> SceneRenderer::create(std::function<void()> wake) {
   Result<ScenePrograms> programs = ScenePrograms::create();
   if (!programs) return Error{programs.error()};
   Result<PathStore> path = PathStore::create();
   if (!path) return Error{path.error()};
   Result<MarkerStore> markers = MarkerStore::create();
   if (!markers) return Error{markers.error()};
-  return SceneRenderer(
-      std::make_unique<Impl>(std::move(*programs), std::move(*path), std::move(*markers)));
+  Result<WorkpieceRoads> roads = WorkpieceRoads::create(std::move(wake));
+  if (!roads) return Error{roads.error()};
+  return SceneRenderer(std::make_unique<Impl>(std::move(*programs), std::move(*path),
+                                              std::move(*markers), std::move(*roads)));
 }
 
 SceneRenderer::SceneRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -540,6 +565,8 @@ Done SceneRenderer::draw(const Projection& projection, const DrawOptions& option
   return impl_->draw(projection, options);
 }
 bool SceneRenderer::has_waiting() const { return impl_->has_waiting(); }
+DrawRoad SceneRenderer::drawn_road() const { return impl_->drawn_road(); }
+const Projection& SceneRenderer::projection() const { return impl_->projection(); }
 ScreenRect SceneRenderer::take_changed() { return impl_->take_changed(); }
 void SceneRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px,
                             const ScreenRect& rect) const {

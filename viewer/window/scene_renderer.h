@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,9 @@ struct SectionPlane {
 };
 
 struct DrawOptions {
+  /// As far as its values have come, else by mesh. Only the mesh has colours, section and
+  /// deviations.
+  DrawRoad road = DrawRoad::kMesh;
   std::array<ObjectLook, kSceneObjectCount> looks{};
   std::optional<SectionPlane> section;
   /// Of the workpiece. kTool, kRemovalRate and kLineRange show the CutColors that came last, when
@@ -95,7 +99,8 @@ struct DrawCounters {
 /// leaves blending, depth and scissor test off.
 class SceneRenderer {
  public:
-  static Result<SceneRenderer> create();
+  /// `wake`: called from another thread when has_waiting() may have become true.
+  static Result<SceneRenderer> create(std::function<void()> wake = {});
   SceneRenderer(SceneRenderer&&) noexcept;
   SceneRenderer& operator=(SceneRenderer&&) noexcept;
   ~SceneRenderer();
@@ -107,8 +112,13 @@ class SceneRenderer {
   /// card is full, or the context is lost (the driver was reset); the message says which.
   Done draw(const Projection& projection, const DrawOptions& options);
 
-  /// Patches or path wait for the next frame: draw again although nothing new came.
+  /// Patches, path or a picture of the workpiece wait for the next frame: draw again although
+  /// nothing new came.
   bool has_waiting() const;
+  /// By which road the workpiece was drawn last, and as seen how: by rays that may be as it was
+  /// asked for some frames before.
+  DrawRoad drawn_road() const;
+  const Projection& projection() const;
 
   /// What the colours of the workpiece last drawn mean; empty if nothing.
   std::vector<ColorLegendEntry> legend() const;

@@ -127,6 +127,10 @@ std::vector<Field> choices() {
           [](const ViewSettings& s) { return static_cast<int>(s.drawing.color_by); },
           [](int choice, ViewSettings* s) { s->drawing.color_by = static_cast<ColorBy>(choice); }),
       choice_field(
+          "draw", {"mesh", "raycast", "csg"},
+          [](const ViewSettings& s) { return static_cast<int>(s.drawing.road); },
+          [](int choice, ViewSettings* s) { s->drawing.road = static_cast<DrawRoad>(choice); }),
+      choice_field(
           "section.axis", {"x", "y", "z"}, [](const ViewSettings& s) { return s.section.axis; },
           [](int choice, ViewSettings* s) { s->section.axis = choice; }),
       switch_field("section.flipped", [](ViewSettings* s) { return &s->section.is_flipped; }),

@@ -43,6 +43,7 @@ constexpr std::array kShortcuts{
     Shortcut{"i", U'i', 0, Action::kInfoPanel, Text::kInfoPanel},
     Shortcut{"d", U'd', 0, Action::kCounters, Text::kDrawing},
     Shortcut{"l", U'l', 0, Action::kLocalDrawing, Text::kLocalDrawing},
+    Shortcut{"r", U'r', 0, Action::kNextRoad, Text::kNextRoad},
     Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
     Shortcut{"S", U'S', 0, Action::kWindowPicture, Text::kWindowPicture},
     Shortcut{"?", U'?', 0, Action::kHelp, Text::kShortcuts},

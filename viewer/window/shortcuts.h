@@ -43,6 +43,7 @@ enum class Action {
   kInfoPanel,
   kCounters,
   kLocalDrawing,
+  kNextRoad,
   kScreenshot,
   kWindowPicture,
   kHelp,

@@ -73,6 +73,18 @@ enum class Text {
   kPerspective,
   kPerspectiveWhat,
   kDrawing,
+  kNextRoad,
+  kRoadMesh,
+  kRoadRaycast,
+  kRoadCsg,
+  kRoadIsPlain,
+  kRoadNoHeights,
+  kRoadCompared,
+  kRoadNoBox,
+  kRoadTilted,
+  kRoadTool,
+  kRoadWatched,
+  kRoadNewest,
   kFull,
   kLocal,
   kStill,
@@ -150,7 +162,7 @@ enum class Text {
   kCount_
 };
 
-/// UTF-8; never empty.
+/// UTF-8; never empty. A `{}` stands for what the sentence is about.
 const char* text(Text which, Language language);
 
 /// "en", "de"

@@ -19,6 +19,8 @@ constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
                                  Text::kColorTool,      Text::kColorRemovalRate,
                                  Text::kColorLineRange, Text::kColorDeviation};
 
+constexpr std::array kRoads{Text::kRoadMesh, Text::kRoadRaycast, Text::kRoadCsg};
+
 bool header(const PanelContext& context, Text title, bool is_open) {
   return ImGui::CollapsingHeader(
       fmt::format("{}###{}", context.word(title), static_cast<int>(title)).c_str(),
@@ -130,9 +132,28 @@ void draw_section(const PanelContext& context) {
   ImGui::Checkbox(context.word(Text::kSectionFlip), &section.is_flipped);
 }
 
+void draw_roads(const PanelContext& context) {
+  DrawRoad& road = context.settings->drawing.road;
+  for (std::size_t i = 0; i < kRoads.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    const auto candidate = static_cast<DrawRoad>(i);
+    if (!ImGui::RadioButton(context.word(kRoads[i]), candidate == road) || candidate == road) {
+      continue;
+    }
+    road = candidate;
+    context.commands->push(RoadCommand{road});
+  }
+  if (const std::string note = road_note(context); !note.empty()) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(theme::kDim, "%s", note.c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
 void draw_drawing(const PanelContext& context) {
   if (!header(context, Text::kDrawing, false)) return;
   ViewSettings* settings = context.settings;
+  draw_roads(context);
   ImGui::Checkbox(context.word(Text::kLocalDrawing), &settings->drawing.is_local);
   ImGui::Checkbox(context.word(Text::kDarkBackground), &settings->drawing.is_dark);
   const DrawCounters& counters = context.counters;
@@ -192,6 +213,39 @@ void draw_view_tab(const PanelContext& context) {
 
 ColorCommand color_command(const ViewSettings& settings, const PanelState& state) {
   return {settings.drawing.color_by, state.first_line, state.last_line};
+}
+
+std::string road_note(const PanelContext& context) {
+  const DrawOptions& drawing = context.settings->drawing;
+  const RoadAnswer* const answer = context.shown.road.get();
+  if (drawing.road == DrawRoad::kMesh || answer == nullptr || answer->road != drawing.road) {
+    return {};
+  }
+  const auto about = [&](Text sentence, const auto& what) {
+    return fmt::format(fmt::runtime(context.word(sentence)), what);
+  };
+  switch (answer->limit) {
+    case RoadLimit::kNone:
+      break;
+    case RoadLimit::kNoHeights:
+      return about(Text::kRoadNoHeights, answer->detail);
+    case RoadLimit::kCompared:
+      return context.word(Text::kRoadCompared);
+    case RoadLimit::kNoBox:
+      return about(Text::kRoadNoBox, answer->detail);
+    case RoadLimit::kTilted:
+      return context.word(Text::kRoadTilted);
+    case RoadLimit::kTool:
+      return about(Text::kRoadTool, answer->detail);
+    case RoadLimit::kWatched:
+      return context.word(Text::kRoadWatched);
+    case RoadLimit::kNewest:
+      return about(Text::kRoadNewest, answer->line);
+  }
+  const bool is_missed = drawing.color_by != ColorBy::kPlain || context.settings->section.is_on;
+  if (context.drawn_road == DrawRoad::kMesh || !is_missed) return {};
+  return fmt::format("{}: {}", context.word(kRoads[static_cast<std::size_t>(context.drawn_road)]),
+                     context.word(Text::kRoadIsPlain));
 }
 
 std::optional<SectionPlane> section_plane(const SectionChoice& choice) {

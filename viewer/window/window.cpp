@@ -36,6 +36,8 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
     : options_(options), mailbox_(*mailbox), commands_(*commands) {
   settings_ = load_settings(options.settings_file, &settings_faults_);
   if (!options.is_local) settings_.drawing.is_local = false;
+  remembered_road_ = settings_.drawing.road;
+  settings_.drawing.road = options.road.value_or(remembered_road_);
   state_.notice = first_line(settings_faults_);
 }
 
@@ -70,6 +72,8 @@ void Window::Impl::remember_settings() {
     settings_.width_px = unscaled(width);
     settings_.height_px = unscaled(height);
   }
+  // What was asked for this time alone; another choice since is to be remembered.
+  if (options_.road == settings_.drawing.road) settings_.drawing.road = remembered_road_;
   // Nobody is left to be told; the next start has the settings of this one.
   static_cast<void>(save_settings(options_.settings_file, settings_));
 }
@@ -81,7 +85,7 @@ Done Window::Impl::open() {
   Result<GLFWwindow*> window = platform_.open_window(width, height, "kerf");
   if (!window) return Error{window.error()};
   window_ = *window;
-  Result<SceneRenderer> renderer = SceneRenderer::create();
+  Result<SceneRenderer> renderer = SceneRenderer::create(Platform::wake);
   if (!renderer) return Error{renderer.error()};
   renderer_ = std::move(*renderer);
   detail_px_ = SceneRenderer::detail_px();
@@ -90,6 +94,9 @@ Done Window::Impl::open() {
   install_callbacks();
   if (settings_.drawing.color_by != ColorBy::kPlain) {
     commands_.push(color_command(settings_, state_));
+  }
+  if (settings_.drawing.road != DrawRoad::kMesh) {
+    commands_.push(RoadCommand{settings_.drawing.road});
   }
   return std::monostate{};
 }

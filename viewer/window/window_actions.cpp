@@ -276,6 +276,13 @@ void Window::Impl::act_on_view(Action action) {
       commands_.push(color_command(settings_, state_));
       break;
     }
+    case Action::kNextRoad: {
+      constexpr int kRoads = static_cast<int>(DrawRoad::kCsg) + 1;
+      DrawRoad& road = settings_.drawing.road;
+      road = static_cast<DrawRoad>((static_cast<int>(road) + 1) % kRoads);
+      commands_.push(RoadCommand{road});
+      break;
+    }
     case Action::kSection:
       settings_.section.is_on = !settings_.section.is_on;
       break;

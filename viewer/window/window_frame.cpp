@@ -98,6 +98,7 @@ bool Window::Impl::take_news() {
 void Window::Impl::apply(const SceneUpdate& update) {
   renderer_->apply(update);
   if (update.clears) shown_.findings = std::make_shared<FindingList>();
+  if (update.road) shown_.road = update.road;
   if (update.setup) take_setup(update.setup);
   if (update.findings) shown_.findings = update.findings;
   if (update.program) {
@@ -230,8 +231,11 @@ Done Window::Impl::draw() {
   }
   tell_detail();
   settings_.drawing.section = section_plane(settings_.section);
-  projection_ = camera_.projection(renderer_->depth_box(), area_px_);
-  if (Done done = renderer_->draw(projection_, settings_.drawing); !done) return done;
+  const Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
+  if (Done done = renderer_->draw(wanted, settings_.drawing); !done) return done;
+  // Marks over a picture that came late go with it.
+  if (renderer_->projection() != projection_ && !draws_panels) panels_are_old_ = true;
+  projection_ = renderer_->projection();
   add_apart(renderer_->take_changed().moved(area_corner_px_), &changed);
   // Where a unit of Dear ImGui is not a pixel, its rectangles are no pixels either.
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
@@ -269,6 +273,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   const PanelContext context{.shown = shown_,
                              .counters = renderer_->counters(),
                              .legend = legend_,
+                             .drawn_road = renderer_->drawn_road(),
                              .bounds_mm = renderer_->fit_box(),
                              .fonts = fonts_,
                              .scale = scale_,

@@ -110,6 +110,7 @@ class Window::Impl {
   CommandQueue& commands_;
   ViewSettings settings_;
   Diagnostics settings_faults_;
+  DrawRoad remembered_road_ = DrawRoad::kMesh;  // before WindowOptions::road
 
   Platform platform_;
   GLFWwindow* window_ = nullptr;

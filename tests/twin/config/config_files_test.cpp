@@ -132,6 +132,7 @@ TEST(ConfigExamples, AreReadWithoutAWord) {
   int files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(KERF_CONFIGS_FOLDER)) {
     if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().parent_path().filename() == "punch") continue;  // turrets: turret_test.cpp
     Diagnostics diagnostics;
     const auto config = read_config(entry.path().string(), {}, diagnostics);
     for (const Diagnostic& one : diagnostics) ADD_FAILURE() << to_string(one);

@@ -81,6 +81,38 @@ TEST(ConfigKeys, DrawingsOfSheetsLieBesideTheFile) {
   EXPECT_EQ(plain.config->stock.model, StockKind::kSheet);
 }
 
+TEST(ConfigKeys, TheBeamOfASheet) {
+  const ReadText read(
+      "beam:\n  trigger: m3 + feed\n  kerf_mm: 1.5\n  pierce_mm: 3\n  slats_mm: 80\n"
+      "  density_kg_per_m3: 2700\n  qtplasmac: off\n  materials: shop.cfg\n");
+  ASSERT_TRUE(read.config) << read.said();
+  const ConfigBeam& beam = read.config->beam;
+  EXPECT_EQ(beam.trigger, "m3 + feed");
+  EXPECT_EQ(beam.kerf_mm, 1.5);
+  EXPECT_EQ(beam.pierce_mm, 3);
+  EXPECT_EQ(beam.slats_mm, 80);
+  EXPECT_EQ(beam.density_kg_per_m3, 2700);
+  EXPECT_EQ(beam.qtplasmac, "off");
+  EXPECT_EQ(beam.materials, "dir/shop.cfg");
+  // Printed, it is the same; what is not given is not printed.
+  const ReadText again(effective_yaml(*read.config));
+  ASSERT_TRUE(again.config) << again.said();
+  EXPECT_EQ(again.config->beam.trigger, beam.trigger);
+  EXPECT_EQ(again.config->beam.density_kg_per_m3, beam.density_kg_per_m3);
+  EXPECT_EQ(again.config->beam.materials, "dir/dir/shop.cfg") << "relative to that file, too";
+  EXPECT_EQ(effective_yaml(LiveConfig{}).find("beam"), std::string::npos);
+}
+
+TEST(ConfigKeys, WhatABeamIsNot) {
+  const std::string said =
+      said_of("beam:\n  trigger: m99\n  kerf_mm: 0\n  qtplasmac: maybe\n  kerf: 1\n");
+  EXPECT_NE(said.find("beam.trigger: beam trigger 'm99': 'm99' is none"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("beam.kerf_mm: 0"), std::string::npos) << said;
+  EXPECT_NE(said.find("beam.qtplasmac: 'maybe'"), std::string::npos) << said;
+  EXPECT_NE(said.find("beam.kerf"), std::string::npos) << said;
+}
+
 TEST(ConfigKeys, ProfilesLieBesideTheFile) {
   const ConfigFolder folder;
   folder.write("rounder.txt", "line 3 0\nline 3 10\n");
@@ -114,7 +146,7 @@ TEST(ConfigKeys, UnknownKeys) {
   EXPECT_EQ(said_of("stock:\n  zoom: 1\n"),
             "2:3: stock.zoom: unknown key (here may be: blank, cell_mm, margin_mm, model)\n");
   EXPECT_EQ(said_of("machine:\n  work_offset: {x: 1, w: 2}\n"),
-            "2:23: machine.work_offset.w: unknown key (here may be: rotation, x, y, z)\n");
+            "2:23: machine.work_offset.w: unknown key (here may be: a, b, c, rotation, x, y, z)\n");
   EXPECT_EQ(said_of("tools: {one: flat:6}\n"),
             "1:9: tools.one: is no tool number; must be a whole number, 1 to 99999 (as in 3: "
             "flat:6)\n");

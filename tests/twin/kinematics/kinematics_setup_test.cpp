@@ -64,6 +64,31 @@ TEST_F(KinematicsSetup, NumbersComeFromHalWhereTheyAreWrittenDown) {
             "them: x-rot-point 0, y-rot-point 0, z-offset 0");
 }
 
+TEST_F(KinematicsSetup, ToldPinsGoBeforeHalFiles) {
+  hal("a.hal", "setp xyzac-trt-kins.y-offset 20\n");
+  KinematicsRequest request;
+  request.hal_pins = {{"xyzac-trt-kins.y-offset", 1}, {"other.y-offset", 7}};
+  EXPECT_FALSE(request.is_given());
+  const auto machine =
+      read("[KINS]\nKINEMATICS = xyzac-trt-kins\n[HAL]\nHALFILE = a.hal\n", request, 25.4);
+  ASSERT_TRUE(machine) << machine.error();
+  EXPECT_NEAR(tilted_y(*machine, 0), 25.4, 1e-9);
+}
+
+TEST_F(KinematicsSetup, NumbersThatTheModuleDoesNotTakeAreErrors) {
+  KinematicsRequest request;
+  request.geometry["pivot-length"] = 5;
+  const auto trt = read("[KINS]\nKINEMATICS = rotatekins\n", request);
+  ASSERT_FALSE(trt);
+  EXPECT_EQ(trt.error(), "'pivot-length' is no number of rotatekins; it takes none");
+  request.kinematics = "maxkins";
+  EXPECT_TRUE(kinematics_of_request(request, "XYZABC"));
+  request.geometry["D4"] = 1;
+  const auto max = kinematics_of_request(request, "XYZABC");
+  ASSERT_FALSE(max);
+  EXPECT_EQ(max.error(), "'D4' is no number of maxkins; it takes pivot-length");
+}
+
 TEST_F(KinematicsSetup, TheConfigurationWins) {
   hal("a.hal", "setp xyzac-trt-kins.y-offset 20\n");
   KinematicsRequest request;

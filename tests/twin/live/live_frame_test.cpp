@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+
+#include "twin/kinematics/tool_path.h"
 
 namespace kerf {
 namespace {
@@ -53,6 +56,74 @@ TEST(LiveFrame, JointsOfBeltsAreSumAndDifference) {
   one.set(0, 38);
   one.set(2, 5);
   EXPECT_EQ(frame.missing_axes(one), "X and Y") << "neither by one belt";
+}
+
+/// Machines that follow the tip: what LinuxCNC commands for a place comes back as that place.
+TEST(LiveFrame, JointsOfAMachineThatFollowsTheTipAreItsPlaceOnThePart) {
+  WorkpieceFrame work;
+  work.g5x_mm = {12, -7, 30};
+  work.g92_mm = {1, 2, 3};
+  work.rotation_deg = 25;
+  work.offset_abc_deg = {3, 0, -8};
+  const auto machine = std::make_shared<const MachineKinematics>(
+      known_machine("xyzac-trt-kins", "",
+                    {{"x-rot-point", 10}, {"z-rot-point", 20}, {"y-offset", 4}, {"z-offset", 12}},
+                    {})
+          .value());
+  const auto path = ToolPath::create(*machine, work, {});
+  LiveFrameOptions options;
+  options.kinematics = machine;
+  options.work = work;
+  const LiveFrame frame(options);
+  for (const double length_mm : {0.0, 80.0}) {
+    Motion there;
+    there.start_known = false;
+    there.to_mm = {3, 14, -5};
+    there.from_abc_deg = there.to_abc_deg = {-35, 0, 110};
+    there.tool_offset_mm = {0, 0, length_mm};
+    for (int type = 0; type < 2; ++type) {
+      there.torch.analog[machine->switch_output] = static_cast<float>(type);
+      const AxisValues joints = path->machine_at(there, 1)->joints;
+      AxisSample sample;
+      for (std::size_t i = 0; i < 5; ++i) sample.set(i, joints[i]);
+      sample.tool_offset_z_mm = length_mm;
+      const auto pose = frame.pose_of(sample, std::nullopt, type);
+      ASSERT_TRUE(pose);
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(pose->tip_mm[i], there.to_mm[i], 1e-9) << type;
+      EXPECT_NEAR(pose->abc_deg[0], -35, 1e-9);
+      EXPECT_NEAR(pose->abc_deg[2], 110, 1e-9);
+      EXPECT_TRUE(pose->abc_known[0] && pose->abc_known[2] && !pose->abc_known[1]);
+      // Read without its length, and shortened afterwards: the same.
+      sample.tool_offset_z_mm = std::numeric_limits<double>::quiet_NaN();
+      const auto bare = frame.pose_of(sample, 0.0, type);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(bare->tip_mm[i] - length_mm * bare->along_tool[i], there.to_mm[i], 1e-9);
+      }
+    }
+  }
+  AxisSample half;
+  for (const std::size_t i : {0U, 1U, 2U, 3U}) half.set(i, 0);
+  EXPECT_FALSE(frame.pose_of(half, std::nullopt));
+  EXPECT_EQ(frame.missing_axes(half), "C");
+}
+
+TEST(LiveFrame, ARobotNeedsEveryJoint) {
+  LiveFrameOptions options;
+  options.kinematics =
+      std::make_shared<const MachineKinematics>(known_machine("pumakins", "", {}, {}).value());
+  const LiveFrame frame(options);
+  AxisSample sample;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (i != 2 && i != 4) sample.set(i, 10.0 * static_cast<double>(i));
+  }
+  EXPECT_FALSE(frame.pose_of(sample, std::nullopt));
+  EXPECT_EQ(frame.missing_axes(sample), "joint 2 and joint 4");
+  sample.set(2, -30);
+  sample.set(4, 15);
+  const auto pose = frame.pose_of(sample, std::nullopt);
+  ASSERT_TRUE(pose);
+  const AxisValues axes = options.kinematics->axes_of({0, 10, -30, 30, 15, 50}, 0);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(pose->tip_mm[i], axes[static_cast<std::size_t>(i)]);
 }
 
 TEST(LiveFrame, MissingAxesAreNamed) {

@@ -46,7 +46,7 @@ TEST(NearestOn, AgreesWithTrialsOnLinesArcsHelicesAndSpirals) {
     const double from_t = i % 2 ? share(random) : 0;
     const Vec3 near = point_at(m, share(random)) + 0.3 * Vec3{share(random), share(random), 0.1};
     for (const Vec3& place : {near, Vec3{anywhere(random), anywhere(random), anywhere(random)}}) {
-      const NearestPoint found = nearest_on(m, place, from_t);
+      const PointOnWay found = nearest_on(m, place, from_t);
       EXPECT_GE(found.t, from_t);
       EXPECT_LE(found.t, 1);
       EXPECT_NEAR(found.distance_mm, glm::length(point_at(m, found.t) - place), 1e-9);
@@ -94,7 +94,7 @@ class Chase {
 
   FollowedPoint see(double t_s, bool with_line = false, Vec3 error_mm = Vec3{0}) {
     FollowedPlace place;
-    place.tip_mm = machine_.tip(t_s) + error_mm;
+    place.here.tip_mm = machine_.tip(t_s) + error_mm;
     place.elapsed_s = t_s - t_s_;
     place.tool = machine_.at(t_s).motion.tool;
     if (with_line) place.line = static_cast<int>(machine_.at(t_s).motion.source.line);
@@ -189,7 +189,7 @@ TEST(PathFollower, AMachineThatPausesOrRunsAtHalfSpeedIsFollowed) {
   PathFollower& follower = chase.follower();
   // It stands for ten minutes.
   FollowedPlace still;
-  still.tip_mm = chase.machine().tip(0.99);
+  still.here.tip_mm = chase.machine().tip(0.99);
   still.elapsed_s = 0.1;
   for (int i = 0; i < 6000; ++i) {
     point = follower.follow(still, [&](const Motion& m, double) { chase.driven.push_back(m); });
@@ -199,7 +199,7 @@ TEST(PathFollower, AMachineThatPausesOrRunsAtHalfSpeedIsFollowed) {
   // And goes on at half the speed.
   const double end_s = chase.machine().duration_s();
   for (double t = 1; t < end_s; t += 0.005) {
-    still.tip_mm = chase.machine().tip(t);
+    still.here.tip_mm = chase.machine().tip(t);
     still.elapsed_s = 0.01;
     point = follower.follow(still, [&](const Motion& m, double) { chase.driven.push_back(m); });
     ASSERT_TRUE(point.on_path) << t;
@@ -226,7 +226,7 @@ TEST(PathFollower, StandsBeforeAToolChangeUntilTheMachineHasChanged) {
   Chase chase(program);
   const auto see = [&](Vec3 tip, int tool) {
     FollowedPlace place;
-    place.tip_mm = tip;
+    place.here.tip_mm = tip;
     place.elapsed_s = 0.5;
     place.tool = tool;
     return chase.follower().follow(place,
@@ -245,7 +245,7 @@ TEST(PathFollower, StandsBeforeAToolChangeUntilTheMachineHasChanged) {
 TEST(PathFollower, AnIdleMachineIsNotYetOnThePath) {
   Chase chase(busy_program());
   FollowedPlace place;
-  place.tip_mm = {0, 0, 5};
+  place.here.tip_mm = {0, 0, 5};
   place.line = 0;
   EXPECT_FALSE(chase.follower().follow(place, [](const Motion&, double) {}).on_path);
   place.line = 1;

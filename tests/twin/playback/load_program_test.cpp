@@ -167,7 +167,7 @@ TEST_F(LoadProgram, OfASheetItEndsAsTheDryRunDoes) {
   expect_as_session();
   EXPECT_EQ(compared_findings_, 5U) << "four strips, and the cut into one of them";
   options_.timeline.planner.with_path = true;
-  expect_as_session(false);  // rounded corners of traverses count as feeds there
+  expect_as_session();
   const std::unique_ptr<LoadedProgram> loaded = load();
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->cuts, nullptr);

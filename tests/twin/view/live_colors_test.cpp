@@ -35,7 +35,7 @@ TEST_F(LiveColorsTest, NothingUntilSomebodyAsks) {
   colors_.choose({ColorBy::kTool});
   ASSERT_TRUE(take());
   EXPECT_FALSE(take()) << "once";
-  colors_.choose({ColorBy::kRemovalRate});
+  colors_.choose({ColorBy::kHeight});
   EXPECT_FALSE(take());
   cut(2, 20, true);
   EXPECT_FALSE(take());
@@ -115,6 +115,39 @@ TEST_F(LiveColorsTest, ProgramsToolsHaveTheColoursOfKerfView) {
   EXPECT_EQ(colors->legend[2].text, "T9 mill");
   EXPECT_EQ(color(*colors, 0), color_of_number(2));
   EXPECT_EQ(colors_.name_of(2), "mill") << "the tool as it was known when it cut";
+}
+
+/// Slow, fast, and through air; what a line removed is divided by the time that all of its cuts
+/// took, however often the program ran.
+TEST_F(LiveColorsTest, RatesAreOfAllThatALineDid) {
+  cut(1, 10, true);
+  cut(1, 11);
+  cut(1, 12);
+  colors_.choose({ColorBy::kRemovalRate});
+  const auto none = take();
+  ASSERT_TRUE(none);
+  EXPECT_TRUE(none->legend.empty()) << "nothing has been told yet";
+  colors_.update(
+      std::array{LabelUse{0, 10.0, 2.0}, LabelUse{1, 300.0, 3.0}, LabelUse{2, 0.0, 4.0}});
+  EXPECT_FALSE(take()) << "not every moment";
+  now_ += LiveColors::kRatePeriod;
+  const auto colors = take();
+  ASSERT_TRUE(colors);
+  EXPECT_EQ(colors->mode, ColorBy::kRemovalRate);
+  ASSERT_GE(colors->legend.size(), 2u);
+  EXPECT_EQ(color(*colors, 0), colors->legend.front().color);
+  EXPECT_EQ(colors->legend.front().text, "<= 5 mm\u00b3/s");
+  EXPECT_EQ(color(*colors, 1), colors->legend.back().color);
+  EXPECT_EQ(colors->legend.back().text, "<= 100 mm\u00b3/s");
+  EXPECT_EQ(color(*colors, 2), CutColors{}.other) << "through air";
+  now_ += LiveColors::kRatePeriod;
+  EXPECT_FALSE(take()) << "nothing was cut since";
+  // The line is run again, faster.
+  colors_.update(std::array{LabelUse{0, 1010.0, 3.0}});
+  const auto later = take();
+  ASSERT_TRUE(later);
+  EXPECT_EQ(color(*later, 0), later->legend.back().color);
+  EXPECT_EQ(color(*later, 1), later->legend.front().color);
 }
 
 TEST_F(LiveColorsTest, KnowsItsLabels) {

@@ -315,6 +315,51 @@ TEST_F(LiveViewTest, TellsWhichToolAndLineCutWhere) {
   EXPECT_GT(timed.time_s, 0) << "when the program's line begins";
 }
 
+TEST_F(LiveViewTest, RaysHaveTheHeightsAndCsgSaysWhyNot) {
+  settle();
+  open(options());
+  frame(at({1, 2, 3}));
+  ASSERT_TRUE(until([&] { return is_shown(); }));
+  commands_.push(RoadCommand{DrawRoad::kRaycast});
+  ASSERT_TRUE(until([&] { return known_.road && known_.heights; }));
+  EXPECT_EQ(*known_.road, (RoadAnswer{DrawRoad::kRaycast, RoadLimit::kNone, "", 0}));
+  EXPECT_EQ(known_.heights->height(100, 50), 0.0f);
+  CutMove move;
+  move.from_mm = move.to_mm = {20, 10, -2};
+  std::vector<CutReport> reports;
+  stock_->cut(parse_tool_argument("1=flat:6").value().cutter, {&move, 1}, reports);
+  stock_->finish(reports);
+  frame(at({20, 10, -2}));
+  ASSERT_TRUE(until([&] { return known_.heights->height(100, 50) == -2.0f; }));
+  EXPECT_FALSE(is_shown()) << "no patches are made for it";
+  commands_.push(RoadCommand{DrawRoad::kCsg});
+  ASSERT_TRUE(until([&] { return known_.road->road == DrawRoad::kCsg; }));
+  EXPECT_EQ(known_.road->limit, RoadLimit::kWatched);
+  settle();
+  frame(at({20, 10, -2}));
+  ASSERT_TRUE(until([&] { return is_shown(); })) << "by mesh";
+}
+
+TEST_F(LiveViewTest, RatesOfRemovalComeWithTheCuts) {
+  stock_->keep_cut_ids(true);
+  settle();
+  commands_.push(ColorCommand{ColorBy::kRemovalRate});
+  open(options());
+  frame(at({1, 2, 3}));
+  labels_.note(labels_.number_of({1, {0, 7}}), 30.0, 1.0);
+  labels_.note(labels_.number_of({1, {0, 8}}), 500.0, 1.0);
+  std::stop_source never;
+  std::thread asks([&] {
+    EXPECT_TRUE(until([&] { return known_.colors && known_.colors->legend.size() == 2; }));
+    commands_.push(CloseCommand{});
+  });
+  view_->end(stock_.get(), labels_.all(), never.get_token());
+  asks.join();
+  ASSERT_TRUE(known_.colors);
+  EXPECT_EQ(known_.colors->legend[0].text, "<= 30 mm\u00b3/s");
+  EXPECT_EQ(known_.colors->of_move.at(1), known_.colors->legend[1].color);
+}
+
 TEST_F(LiveViewTest, TheLastCutsAreKnownAtTheEnd) {
   stock_->keep_cut_ids(true);
   settle();

@@ -178,5 +178,22 @@ TEST(SceneMailbox, IsFullUntilItsNewsAreTaken) {
   EXPECT_FALSE(mailbox.take());
 }
 
+TEST_F(PlayerViewTest, RoadsGetTheirValuesAndTheMeshComesBack) {
+  MotionList program;
+  program.at({5, 5, 5}).tool(1).spindle(true);
+  program.feed({5, 5, -2}).feed({35, 5, -2}).feed({35, 35, -2});
+  open(program);
+  ASSERT_TRUE(until([&] { return !patches_.empty(); }));
+  commands_.push(RoadCommand{DrawRoad::kRaycast});
+  ASSERT_TRUE(until([&] { return known_.road && known_.heights; }));
+  EXPECT_TRUE(known_.road->is_drawn());
+  patches_.clear();
+  commands_.push(SeekEndCommand{});
+  ASSERT_TRUE(until([&] { return known_.heights->height(100, 25) < -1.9f; }));
+  EXPECT_TRUE(patches_.empty()) << "nobody would draw them";
+  commands_.push(RoadCommand{DrawRoad::kMesh});
+  ASSERT_TRUE(until([&] { return !patches_.empty(); }));
+}
+
 }  // namespace
 }  // namespace kerf

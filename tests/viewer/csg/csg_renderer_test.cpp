@@ -372,6 +372,62 @@ TEST_F(CsgRendererTest, AddingAMoveTouchesItsNeighboursOnly) {
   EXPECT_EQ(renderer.counters().subtractions, 0u);
 }
 
+/// Group by group, the newest first: until the end there is too much material, never too little.
+TEST_F(CsgRendererTest, WithATimeLimitTheEndIsTheSame) {
+  const std::vector<SweptMove> moves = Programs(11).moves(120);
+  const Projection view = view_from(StandardView::kIsometric, true);
+  constexpr double kCoarse_mm = 0.1;
+  for (const TestBlank& blank : {box(), bridge()}) {
+    // Of a blank with a hollow, points at the wall of that may be taken for air.
+    const bool is_convex = !blank.hollow;
+    CsgRenderer at_once = renderer(blank.drawn, true, kCoarse_mm);
+    at_once.append(moves);
+    draw(&at_once, view);
+    EXPECT_FALSE(at_once.has_waiting());
+    const std::vector<float> end = at_once.read_depth().depths;
+    CsgRenderer in_parts = renderer(blank.drawn, true, kCoarse_mm);
+    in_parts.append(moves);
+    std::vector<float> before;
+    int draws = 0;
+    do {
+      ASSERT_TRUE(in_parts.draw(view, 1e-3));
+      const std::vector<float> now = in_parts.read_depth().depths;
+      for (std::size_t i = 0; is_convex && i < now.size(); ++i) {
+        ASSERT_LE(now[i], end[i]);
+        ASSERT_GE(now[i], before.empty() ? 0.0f : before[i]);
+      }
+      before = now;
+      ++draws;
+    } while (in_parts.has_waiting());
+    EXPECT_GT(draws, 3);
+    EXPECT_EQ(before, end);
+  }
+}
+
+TEST_F(CsgRendererTest, WhatIsNotFinishedMayBeKeptBack) {
+  const std::vector<SweptMove> moves = Programs(12).moves(60);
+  const Projection view = view_from(StandardView::kIsometric, true);
+  constexpr double kCoarse_mm = 0.1;
+  CsgRenderer renderer = this->renderer(box_blank(kBox), true, kCoarse_mm);
+  renderer.append(moves);
+  draw(&renderer, view);
+  const std::vector<float> all = renderer.read_depth().depths;
+  renderer.clear_moves();
+  renderer.append(std::span(moves).first(40));
+  ASSERT_TRUE(renderer.draw(view, 1e-3, false));
+  ASSERT_TRUE(renderer.has_waiting());
+  EXPECT_TRUE(renderer.changed().empty());
+  EXPECT_EQ(renderer.read_depth().depths, all) << "the picture before";
+  while (renderer.has_waiting()) ASSERT_TRUE(renderer.draw(view, 1e-3, false));
+  EXPECT_EQ(renderer.read_depth().depths, all);
+  draw(&renderer, view);
+  EXPECT_FALSE(renderer.changed().empty());
+  CsgRenderer fewer = this->renderer(box_blank(kBox), true, kCoarse_mm);
+  fewer.append(std::span(moves).first(40));
+  draw(&fewer, view);
+  EXPECT_EQ(renderer.read_depth().depths, fewer.read_depth().depths);
+}
+
 TEST_F(CsgRendererTest, ACutThroughTheFloorOpensIt) {
   CsgRenderer renderer = this->renderer(box_blank(kBox));
   const SweptMove slot{Vec3(20, 22, -20), Vec3(40, 22, -20),

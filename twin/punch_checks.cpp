@@ -1,0 +1,235 @@
+#include "twin/punch_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "stock/sheet/punch_hits.h"
+
+namespace kerf {
+namespace {
+
+/// Below it shapes only touch.
+constexpr double kLeastOverlap_mm2 = 1e-4;
+/// Of a stroke: less is what rounding and the chords of arcs leave at its edge.
+constexpr double kLeastShare = 1e-3;
+/// A clamp is looked at in so many places each way.
+constexpr int kGripPoints = 9;
+
+struct Extent {
+  Vec2 min{1e300}, max{-1e300};
+};
+
+Extent extent_of(const SheetOutline& shape) {
+  Extent extent;
+  for (const std::vector<Vec2>& ring : shape.rings) {
+    for (const Vec2& p : ring) {
+      extent.min = glm::min(extent.min, p);
+      extent.max = glm::max(extent.max, p);
+    }
+  }
+  return extent;
+}
+
+double signed_area_mm2(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    twice += ring[j].x * ring[i].y - ring[i].x * ring[j].y;
+  }
+  return twice / 2;
+}
+
+bool meet(const Extent& a, const Vec2& min, const Vec2& max) {
+  return a.min.x < max.x && a.max.x > min.x && a.min.y < max.y && a.max.y > min.y;
+}
+
+bool is_within(const Extent& a, const Vec2& min, const Vec2& max) {
+  return a.min.x >= min.x && a.max.x <= max.x && a.min.y >= min.y && a.max.y <= max.y;
+}
+
+/// How far the shape reaches along a direction.
+double reach_along(const SheetOutline& shape, const Vec2& direction) {
+  double low = 1e300, high = -1e300;
+  for (const std::vector<Vec2>& ring : shape.rings) {
+    for (const Vec2& p : ring) {
+      low = std::min(low, glm::dot(p, direction));
+      high = std::max(high, glm::dot(p, direction));
+    }
+  }
+  return high - low;
+}
+
+}  // namespace
+
+PunchChecks::PunchChecks(const Sheet& sheet, FindingLog& log, TurretPointer turret)
+    : sheet_(sheet),
+      log_(log),
+      turret_(std::move(turret)),
+      place_(turret_),
+      uncut_pieces_(sheet.piece_numbers()) {
+  SheetOutline whole = sheet.outline();
+  for (std::vector<Vec2>& ring : whole.rings) {
+    if (signed_area_mm2(ring) > 0) blank_.emplace_back().rings.push_back(std::move(ring));
+  }
+  const Vec3 size = sheet.bounds_mm().size();
+  blank_is_rectangle_ = blank_.size() == 1 && blank_[0].rings[0].size() == 4 &&
+                        std::abs(sheet.remaining_mm2() - size.x * size.y) < kLeastOverlap_mm2;
+}
+
+void PunchChecks::tell(FindingId id, Severity severity, const Motion& m, const TimedStep& step,
+                       const Vec3& place, std::string text) {
+  Told& told = told_[id];
+  if (++told.count > kTold) {
+    log_.reword(told.last, fmt::format("{}; and later {} more", told.text, told.count - kTold));
+    return;
+  }
+  Finding out;
+  out.id = id;
+  out.severity = severity;
+  out.source = m.source;
+  out.time_s = step.start_s;
+  out.position_mm = place;
+  out.tool = m.tool;
+  out.text = text;
+  told.text = std::move(text);
+  told.last = log_.add(std::move(out));
+}
+
+void PunchChecks::follow(const Motion& m, const TimedStep& step, bool drags) {
+  bool moved = !std::exchange(grip_checked_, true);
+  if (place_.follow(m)) {
+    ++regrips_;
+    moved = true;
+  }
+  if (moved) check_grip(m, step);
+  if (drags) {
+    tell(FindingId::kPunchDown, Severity::kWarning, m, step, m.from_mm,
+         "the sheet moves while the punch is down");
+  }
+}
+
+/// Some of the sheet has to lie between a clamp's jaws.
+void PunchChecks::check_grip(const Motion& m, const TimedStep& step) {
+  for (std::size_t i = 0; i < turret_->clamps.size(); ++i) {
+    const Vec2 min = turret_->clamps[i].min_mm + place_.shift_mm();
+    const Vec2 max = turret_->clamps[i].max_mm + place_.shift_mm();
+    bool holds = false;
+    for (int n = 0; n < kGripPoints * kGripPoints && !holds; ++n) {
+      const Vec2 share(n % kGripPoints, n / kGripPoints);
+      holds = sheet_.has_material(min + (share + 0.5) / double{kGripPoints} * (max - min));
+    }
+    if (holds) continue;
+    tell(FindingId::kGripLost, Severity::kError, m, step, Vec3(0.5 * (min + max), m.to_mm.z),
+         fmt::format("clamp {} holds nothing of the sheet", i + 1));
+  }
+}
+
+void PunchChecks::no_station(const Motion& m, const TimedStep& step, const Vec3& place) {
+  if (m.tool == 0) {
+    tell(FindingId::kNoPunch, Severity::kError, m, step, place,
+         "the punch strikes with no tool; nothing is cut");
+  } else {
+    tell(FindingId::kStationEmpty, Severity::kError, m, step, place,
+         fmt::format("station {} is empty; nothing is cut", m.tool));
+  }
+}
+
+bool PunchChecks::is_off_sheet(const CutMove& stroke, const SheetOutline& shape) const {
+  const Box box = sheet_.bounds_mm();
+  const Extent extent = extent_of(shape);
+  if (!meet(extent, Vec2(box.min), Vec2(box.max))) return true;
+  if (sheet_.has_material(Vec2(stroke.to_mm))) return false;
+  if (blank_is_rectangle_ && is_within(extent, Vec2(box.min), Vec2(box.max))) return false;
+  return std::none_of(blank_.begin(), blank_.end(), [&](const SheetOutline& outer) {
+    return overlap_mm2(shape, outer) >= kLeastOverlap_mm2;
+  });
+}
+
+void PunchChecks::check_clamps(const Motion& m, const TimedStep& step, const CutMove& stroke,
+                               const SheetOutline& shape) {
+  const Extent extent = extent_of(shape);
+  for (std::size_t i = 0; i < turret_->clamps.size(); ++i) {
+    const SheetClamp& clamp = turret_->clamps[i];
+    const Vec2 min = clamp.min_mm + place_.shift_mm() - clamp.clearance_mm;
+    const Vec2 max = clamp.max_mm + place_.shift_mm() + clamp.clearance_mm;
+    if (!meet(extent, min, max)) continue;
+    if (overlap_mm2(shape, rectangle_outline(min, max)) < kLeastOverlap_mm2) continue;
+    tell(FindingId::kHitOnClamp, Severity::kError, m, step, stroke.to_mm,
+         fmt::format("the punch comes down on clamp {}", i + 1));
+    return;
+  }
+}
+
+void PunchChecks::strikes(const Motion& m, const TimedStep& step, const Cutter& punch,
+                          std::span<const CutMove> strokes) {
+  off_sheet_ = false;
+  for (const CutMove& stroke : strokes) {
+    const SheetOutline shape = footprint_at(punch, stroke);
+    if (!turret_->clamps.empty()) check_clamps(m, step, stroke, shape);
+    if (is_off_sheet(stroke, shape)) {
+      off_sheet_ = true;
+      tell(FindingId::kHitOffSheet, Severity::kError, m, step, stroke.to_mm,
+           "the punch strikes beside the sheet");
+    }
+    if (freed_.empty()) continue;
+    const std::optional<std::uint32_t> number = sheet_.piece_at(Vec2(stroke.to_mm));
+    if (!number || *number < uncut_pieces_) continue;
+    tell(FindingId::kHitOnPart, Severity::kError, m, step, stroke.to_mm,
+         fmt::format("the punch strikes piece {}, which is free since line {} and may have moved",
+                     *number, freed_[*number - uncut_pieces_].source.line));
+  }
+}
+
+/// Material between two strokes of a row that do not touch.
+bool PunchChecks::web_between(const Cutter& punch, const CutMove& a, const CutMove& b) const {
+  if (!sheet_.has_material(Vec2(0.5 * (a.to_mm + b.to_mm)))) return false;
+  return overlap_mm2(footprint_at(punch, a), footprint_at(punch, b)) < kLeastOverlap_mm2;
+}
+
+/// Once a motion.
+void PunchChecks::check_webs(const Motion& m, const TimedStep& step, const Cutter& punch,
+                             std::span<const CutMove> strokes) {
+  for (std::size_t i = 1; i < strokes.size(); ++i) {
+    const CutMove &a = strokes[i - 1], &b = strokes[i];
+    const Vec2 way = Vec2(b.to_mm) - Vec2(a.to_mm);
+    const double length = glm::length(way);
+    if (length <= 0 || !web_between(punch, a, b)) continue;
+    const double reach = reach_along(footprint_at(punch, a), way / length);
+    tell(FindingId::kWebLeft, Severity::kWarning, m, step, 0.5 * (a.to_mm + b.to_mm),
+         fmt::format("webs stay between the strokes, and the slug with them: {:.2f} mm from one to "
+                     "the next, and {} reaches {:.2f} mm that way",
+                     length, punch.spec(), reach));
+    return;
+  }
+}
+
+void PunchChecks::struck(const Motion& m, const TimedStep& step, const Cutter& punch,
+                         std::span<const CutMove> strokes, double removed_mm3, bool nibbled) {
+  const double stroke_mm3 = area_mm2(footprint_at(punch, strokes.front())) * sheet_.thickness_mm();
+  if (removed_mm3 <= kLeastShare * stroke_mm3 && !off_sheet_) {
+    tell(FindingId::kHitInAir, Severity::kWarning, m, step, strokes.front().to_mm,
+         "the punch strikes where nothing is left of the sheet");
+  }
+  if (nibbled) check_webs(m, step, punch, strokes);
+  const std::size_t numbers = sheet_.piece_numbers();
+  while (uncut_pieces_ + freed_.size() < numbers) {
+    const auto number = static_cast<std::uint32_t>(uncut_pieces_ + freed_.size());
+    freed_.push_back({number, m.source, step.start_s + step.duration_s});
+  }
+}
+
+void PunchChecks::never_struck() {
+  Finding out;
+  out.id = FindingId::kNoHit;
+  out.severity = Severity::kWarning;
+  out.text = fmt::format(
+      "the program never makes the punch strike, nothing is cut; punch.trigger in {} says what "
+      "does",
+      turret_->path);
+  log_.add(std::move(out));
+}
+
+}  // namespace kerf

@@ -1,0 +1,79 @@
+// twin/punch_checks.h - troubles of punching sheets: clamps in the way, strokes that hit nothing,
+// webs between strokes, pieces that have come free.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/sheet/sheet.h"
+#include "twin/finding.h"
+#include "twin/punch_moves.h"
+#include "twin/timeline.h"
+#include "twin/torch_checks.h"
+#include "twin/turret.h"
+
+namespace kerf {
+
+/// Follows the clamps, and is asked before and after a motion's strokes are cut. Of each kind of
+/// trouble the first kTold are told one by one, the others with the last of these. One thread.
+class PunchChecks {
+ public:
+  static constexpr std::uint64_t kTold = 10;
+
+  PunchChecks(const Sheet& sheet, FindingLog& log, TurretPointer turret);
+
+  /// Every motion, before its strokes: re-gripping. grip-lost, punch-down.
+  void follow(const Motion& motion, const TimedStep& step, bool drags);
+  /// no-punch, station-empty.
+  void no_station(const Motion& motion, const TimedStep& step, const Vec3& place_mm);
+  /// Strokes of one motion that are about to be cut: hit-on-clamp, hit-off-sheet, hit-on-part.
+  void strikes(const Motion& motion, const TimedStep& step, const Cutter& punch,
+               std::span<const CutMove> strokes);
+  /// They have been cut: hit-in-air, web-left (`nibbled`), pieces that are free now.
+  void struck(const Motion& motion, const TimedStep& step, const Cutter& punch,
+              std::span<const CutMove> strokes, double removed_mm3, bool nibbled);
+  /// The program is over.
+  void never_struck();
+  /// What went on before is not reported on.
+  void forget_events() { told_.clear(); }
+
+  const std::vector<FreedPiece>& freed() const { return freed_; }
+  std::uint64_t regrips() const { return regrips_; }
+
+ private:
+  struct Told {
+    std::uint64_t count = 0;
+    FindingLog::Handle last = 0;
+    std::string text;  ///< of the last
+  };
+
+  void tell(FindingId id, Severity severity, const Motion& motion, const TimedStep& step,
+            const Vec3& place_mm, std::string text);
+  void check_grip(const Motion& motion, const TimedStep& step);
+  void check_clamps(const Motion& motion, const TimedStep& step, const CutMove& stroke,
+                    const SheetOutline& shape);
+  bool is_off_sheet(const CutMove& stroke, const SheetOutline& shape) const;
+  void check_webs(const Motion& motion, const TimedStep& step, const Cutter& punch,
+                  std::span<const CutMove> strokes);
+  bool web_between(const Cutter& punch, const CutMove& a, const CutMove& b) const;
+
+  const Sheet& sheet_;
+  FindingLog& log_;
+  TurretPointer turret_;
+  std::vector<SheetOutline> blank_;  ///< the outer ring of each piece: holes are no edge
+  bool blank_is_rectangle_ = false;
+  ClampPlace place_;
+  std::uint64_t regrips_ = 0;
+  bool grip_checked_ = false;
+  bool off_sheet_ = false;  ///< a stroke of the present motion
+  std::size_t uncut_pieces_;
+  std::vector<FreedPiece> freed_;
+  std::map<FindingId, Told> told_;
+};
+
+}  // namespace kerf

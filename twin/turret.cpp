@@ -1,0 +1,59 @@
+#include "twin/turret.h"
+
+#include <fmt/format.h>
+
+#include "stock/cutter/scan.h"
+
+namespace kerf {
+namespace {
+
+constexpr int kFirstUserCode = 100, kLastUserCode = 199;
+
+/// "m120" to 120.
+std::optional<int> user_code_in(std::string_view text) {
+  if (text.size() != 4 || text[0] != 'm') return std::nullopt;
+  int number = 0;
+  for (const char c : text.substr(1)) {
+    if (c < '0' || c > '9') return std::nullopt;
+    number = number * 10 + (c - '0');
+  }
+  const bool known = number >= kFirstUserCode && number <= kLastUserCode;
+  return known ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+Result<PunchTrigger> PunchTrigger::parse(std::string_view text) {
+  const std::string word = to_lower(trim(text));
+  PunchTrigger trigger;
+  if (word == "g81") {
+    trigger.kind_ = Kind::kPlunge;
+    return trigger;
+  }
+  if (const std::optional<int> code = user_code_in(word)) {
+    trigger.kind_ = Kind::kUserCode;
+    trigger.user_code_ = *code;
+    return trigger;
+  }
+  Result<BeamTrigger> state = BeamTrigger::parse(word);
+  if (!state) {
+    return Error{fmt::format(
+        "'{}' is no trigger; must be g81, m100 to m199, or conditions joined by +: m3, m3:0 to "
+        "m3:7, m4, m7, m8, m62:0 to m62:63 (M64 counts too), m67:0 to m67:3, s, feed, z<LEVEL in "
+        "mm, inverted by !",
+        shown(text))};
+  }
+  trigger.state_ = std::move(*state);
+  return trigger;
+}
+
+std::vector<int> Turret::user_codes() const {
+  std::vector<int> codes;
+  if (trigger.kind() == PunchTrigger::Kind::kUserCode) codes.push_back(trigger.user_code());
+  for (const Regrip& regrip : regrips) {
+    if (regrip.user_code != 0) codes.push_back(regrip.user_code);
+  }
+  return codes;
+}
+
+}  // namespace kerf
