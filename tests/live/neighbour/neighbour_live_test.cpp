@@ -23,6 +23,9 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int kRounds = 5;
+/// Where the rounds of a session say that kerf disturbs, further sessions add theirs: what comes
+/// from kerf stays, what came from elsewhere does not.
+constexpr int kSessions = 3;
 constexpr double kSeconds = 2.5;
 constexpr double kPeriod_us = 1000;
 
@@ -56,14 +59,20 @@ struct Turn {
   std::vector<double> time;  ///< that the thread's functions took
 };
 
-/// One session for all tests.
+/// LinuxCNC's, the same for all tests.
 struct Session {
-  fs::path folder;
+  fs::path folder;  ///< of the last run
   int status = -1;
   std::string said;
-  std::vector<Turn> turns;
+  std::vector<Turn> turns;  ///< of all runs
+  int runs = 0;
 
-  Session() {
+  Session() { run(); }
+  ~Session() { forget(); }
+  /// Appends the turns of another one.
+  void run() {
+    ++runs;
+    forget();
     std::string pattern = (fs::temp_directory_path() / "kerf-neighbour.XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) return;
     folder = pattern;
@@ -84,7 +93,7 @@ struct Session {
     said += text_of(folder / "linuxcnc.log") + text_of(folder / "kerf.err");
     read();
   }
-  ~Session() {
+  void forget() const {
     std::error_code ignored;
     if (!folder.empty()) fs::remove_all(folder, ignored);
   }
@@ -124,11 +133,24 @@ class Neighbour : public ::testing::Test {
     if (shell(RUN_LINUXCNC " --check", reason) != 0) GTEST_SKIP() << reason;
     if (!fs::exists(KERF_HAL_EXECUTABLE)) GTEST_SKIP() << "package linuxcnc-uspace-dev is missing";
     ASSERT_EQ(session().status, 0) << session().said;
-    ASSERT_EQ(session().turns.size(), 2U * kRounds) << session().said;
+    ASSERT_EQ(session().turns.size(), 2U * kRounds * session().runs) << session().said;
   }
 
-  /// Compares a statistic of each turn with kerf with that of the turn of the same round without.
   void compare(const std::string& name, std::vector<double> Turn::*values, double share) {
+    bool is_quiet = false;
+    compare_turns(name, values, share, is_quiet);
+    while (!is_quiet && !HasFatalFailure() && session().runs < kSessions) {
+      session().run();
+      SetUp();
+      if (!HasFatalFailure()) compare_turns(name, values, share, is_quiet);
+    }
+    EXPECT_TRUE(is_quiet) << name;
+  }
+
+ private:
+  /// Compares a statistic of each turn with kerf with that of the turn of the same round without.
+  static void compare_turns(const std::string& name, std::vector<double> Turn::*values,
+                            double share, bool& is_quiet) {
     std::vector<double> alone;
     std::vector<double> beside;
     for (const Turn& turn : session().turns) {
@@ -147,8 +169,7 @@ class Neighbour : public ::testing::Test {
     // Where turns without kerf differ more than that among themselves, this computer is too busy to
     // tell: then kerf is not to make the usual turn worse than the worst without it.
     const double worst_alone = *std::max_element(alone.begin(), alone.end());
-    EXPECT_TRUE(typical < kNoise || quantile(beside, 0.5) <= worst_alone)
-        << name << ": " << typical << " times";
+    is_quiet = typical < kNoise || quantile(beside, 0.5) <= worst_alone;
   }
 };
 
