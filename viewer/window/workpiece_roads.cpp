@@ -81,8 +81,11 @@ void WorkpieceRoads::cast(const Projection& wanted, Step* step) {
   worker_->look_from(wanted);
   worker_->set_workpiece(heights_);
   const std::unique_ptr<RayPicture> picture = worker_->take();
-  // One that was asked for before the workpiece came shows nothing.
-  if (picture && (ray_projection_ || (picture->is_whole && picture->has_workpiece))) {
+  if (picture && !ray_projection_ && !(picture->is_whole && picture->has_workpiece)) {
+    // One that was asked for before the workpiece came shows nothing, and what follows it may be
+    // the rest alone.
+    worker_->begin_anew();
+  } else if (picture) {
     step->is_all_new = picture->is_whole || picture->size_px != wanted.size_px;
     if (!step->is_all_new) {
       step->changed = {{picture->low_px.x, wanted.size_px.y - picture->high_px.y},
