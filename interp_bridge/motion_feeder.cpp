@@ -196,11 +196,12 @@ bool MotionFeeder::take_material_change(double number, SourceRef source) {
 
 bool MotionFeeder::take_user_code(double number, SourceRef source) {
   const std::vector<int>& known = options_.signals.user_codes;
-  const auto code = static_cast<int>(number);  // the records' own: 100 to 199
-  if (std::find(known.begin(), known.end(), code) == known.end()) return false;
+  const auto code =
+      std::find_if(known.begin(), known.end(), [&](int one) { return number == one; });
+  if (code == known.end()) return false;
   source_ = source;
   const bool first = batch_.empty();
-  fold_.signal(static_cast<std::uint8_t>(code), source, batch_);
+  fold_.signal(static_cast<std::uint8_t>(*code), source, batch_);
   took(first);
   return true;
 }
