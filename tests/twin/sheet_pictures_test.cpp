@@ -5,11 +5,8 @@
 // then look at tests/golden/sheet/*.png before they are committed.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "tests/twin/kerf_process.h"
-#include "tests/viewer/png_reader.h"
-#include "viewer/picture.h"
+#include "tests/viewer/golden_picture.h"
 
 namespace kerf {
 namespace {
@@ -19,34 +16,7 @@ constexpr int kShrink = 4;
 /// Mean over the channels, of 255. A station that is missing, or a panel that did not come free,
 /// makes 2 and more in a part.
 constexpr double kWholeDifference = 1;
-constexpr int kPart_px = 40;
 constexpr double kPartDifference = 4;
-
-Picture shrink(const Picture& picture) {
-  Picture small{picture.width_px / kShrink, picture.height_px / kShrink, {}};
-  for (int y = 0; y < small.height_px; ++y) {
-    for (int x = 0; x < 3 * small.width_px; ++x) {
-      int sum = 0;
-      for (int n = 0; n < kShrink * kShrink; ++n) {
-        const int row = kShrink * y + n / kShrink, column = kShrink * (x / 3) + n % kShrink;
-        sum += picture.rgb[static_cast<std::size_t>(3 * (row * picture.width_px + column) + x % 3)];
-      }
-      small.rgb.push_back(static_cast<std::uint8_t>(sum / (kShrink * kShrink)));
-    }
-  }
-  return small;
-}
-
-double difference(const Picture& a, const Picture& b, int left, int top, int width, int height) {
-  double sum = 0;
-  for (int y = top; y < top + height; ++y) {
-    for (int x = 3 * left; x < 3 * (left + width); ++x) {
-      const std::size_t n = static_cast<std::size_t>(3 * y * a.width_px + x);
-      sum += std::abs(a.rgb[n] - b.rgb[n]);
-    }
-  }
-  return sum / (3.0 * width * height);
-}
 
 /// `arguments`: what makes the picture of this name, without the file.
 void expect_looks_as_it_did(const std::string& name, std::vector<std::string> arguments) {
@@ -57,19 +27,9 @@ void expect_looks_as_it_did(const std::string& name, std::vector<std::string> ar
   call.arguments.push_back(folder.file("picture.png"));
   const KerfResult result = run_kerf(call);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Picture found = shrink(read_png_file(folder.file("picture.png")));
-  const std::string path = std::string(KERF_GOLDEN_FOLDER) + "/" + name + ".png";
-  if (std::getenv("KERF_UPDATE_GOLDEN") != nullptr) {
-    const Done done = write_png(path, found);
-    ASSERT_TRUE(done) << done.error();
-  }
-  const Picture golden = read_png_file(path);
-  ASSERT_EQ(golden.rgb.size(), found.rgb.size()) << path;
-  EXPECT_LT(difference(golden, found, 0, 0, found.width_px, found.height_px), kWholeDifference);
-  for (int y = 0; y + kPart_px <= found.height_px; y += kPart_px)
-    for (int x = 0; x + kPart_px <= found.width_px; x += kPart_px)
-      EXPECT_LT(difference(golden, found, x, y, kPart_px, kPart_px), kPartDifference)
-          << name << " at " << x << ' ' << y;
+  const Picture found = test::shrunk(read_png_file(folder.file("picture.png")), kShrink);
+  test::expect_golden(found, std::string(KERF_GOLDEN_FOLDER) + "/" + name + ".png",
+                      kWholeDifference, kPartDifference);
 }
 
 /// The example, by kerf-interp: `command` and what else it is given.

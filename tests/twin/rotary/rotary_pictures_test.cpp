@@ -4,45 +4,14 @@
 // then look at tests/golden/rotary/*.png before they are committed.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
-
 #include "tests/twin/kerf_process.h"
-#include "tests/viewer/png_reader.h"
-#include "viewer/picture.h"
+#include "tests/viewer/golden_picture.h"
 
 namespace kerf {
 namespace {
 
 /// Side of the squares that one pixel is the mean of: drivers differ along edges.
 constexpr int kShrink = 5;
-
-Picture shrink(const Picture& picture) {
-  Picture small{picture.width_px / kShrink, picture.height_px / kShrink, {}};
-  for (int y = 0; y < small.height_px; ++y) {
-    for (int x = 0; x < 3 * small.width_px; ++x) {
-      int sum = 0;
-      for (int n = 0; n < kShrink * kShrink; ++n) {
-        const int row = kShrink * y + n / kShrink, column = kShrink * (x / 3) + n % kShrink;
-        sum += picture.rgb[static_cast<std::size_t>(3 * (row * picture.width_px + column) + x % 3)];
-      }
-      small.rgb.push_back(static_cast<std::uint8_t>(sum / (kShrink * kShrink)));
-    }
-  }
-  return small;
-}
-
-/// Mean over the channels of a part of two pictures, of 255.
-double difference(const Picture& a, const Picture& b, int left, int top, int width, int height) {
-  double sum = 0;
-  for (int y = top; y < top + height; ++y) {
-    for (int x = 3 * left; x < 3 * (left + width); ++x) {
-      const std::size_t n = static_cast<std::size_t>(3 * y * a.width_px + x);
-      sum += std::abs(a.rgb[n] - b.rgb[n]);
-    }
-  }
-  return sum / (3.0 * width * height);
-}
 
 struct Job {
   std::string name, program, ini;
@@ -53,7 +22,6 @@ struct Job {
 void expect_looks_as_it_did(const Job& job) {
   constexpr double kWholeDifference = 1.5;
   // A slot that leans by ten degrees less makes 6 to 15 there.
-  constexpr int kPart_px = 40;
   constexpr double kPartDifference = 3;
   const TestFolder folder;
   KerfCall call;
@@ -65,20 +33,9 @@ void expect_looks_as_it_did(const Job& job) {
   EXPECT_NE(result.out.find("octree, cells of"), std::string::npos) << result.out;
   const Picture drawn = read_png_file(folder.file("part.png"));
   ASSERT_EQ(drawn.width_px, 1600);
-  const Picture found = shrink(drawn);
-  const std::string path = std::string(KERF_GOLDEN_FOLDER) + "/" + job.name + ".png";
-  if (std::getenv("KERF_UPDATE_GOLDEN") != nullptr) {
-    const Done done = write_png(path, found);
-    ASSERT_TRUE(done) << done.error();
-  }
-  const Picture golden = read_png_file(path);
-  ASSERT_EQ(golden.rgb.size(), found.rgb.size()) << path;
-  EXPECT_LT(difference(golden, found, 0, 0, found.width_px, found.height_px), kWholeDifference)
-      << job.name;
-  for (int y = 0; y + kPart_px <= found.height_px; y += kPart_px)
-    for (int x = 0; x + kPart_px <= found.width_px; x += kPart_px)
-      EXPECT_LT(difference(golden, found, x, y, kPart_px, kPart_px), kPartDifference)
-          << job.name << " at " << x << ' ' << y;
+  test::expect_golden(test::shrunk(drawn, kShrink),
+                      std::string(KERF_GOLDEN_FOLDER) + "/" + job.name + ".png", kWholeDifference,
+                      kPartDifference);
 }
 
 /// One of this folder's programs.
