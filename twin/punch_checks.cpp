@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "stock/sheet/punch_hits.h"
+#include "twin/motion_geometry.h"
+#include "twin/punch_moves.h"
 
 namespace kerf {
 namespace {
@@ -213,7 +215,16 @@ void PunchChecks::struck(const Motion& m, const TimedStep& step, const Cutter& p
     tell(FindingId::kHitInAir, Severity::kWarning, m, step, strokes.front().to_mm,
          "the punch strikes where nothing is left of the sheet");
   }
-  if (nibbled) check_webs(m, step, punch, strokes);
+  const double wanted_mm = turret_->pitch_mm(m.tool), length_mm = path_length_mm(m);
+  if (nibbled && length_mm > PunchMoves::kMostHits * wanted_mm) {
+    tell(FindingId::kWebLeft, Severity::kError, m, step, m.to_mm,
+         fmt::format("the move is {:.0f} mm long: with a pitch of {} mm it would take more than {} "
+                     "strokes; it was nibbled every {:.3f} mm",
+                     length_mm, wanted_mm, PunchMoves::kMostHits,
+                     length_mm / PunchMoves::kMostHits));
+  } else if (nibbled) {
+    check_webs(m, step, punch, strokes);
+  }
   const std::size_t numbers = sheet_.piece_numbers();
   while (uncut_pieces_ + freed_.size() < numbers) {
     const auto number = static_cast<std::uint32_t>(uncut_pieces_ + freed_.size());
