@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "stock/sheet/punch_hits.h"
@@ -263,6 +264,23 @@ TEST(PunchStage, StrokesBesideTheSheetAndIntoTheAir) {
   EXPECT_EQ(shop.ids(), (Ids{"hit-off-sheet", "hit-in-air"}));
   EXPECT_EQ(shop.findings()[0].source.line, 3U);
   EXPECT_EQ(shop.findings()[1].source.line, 8U);
+}
+
+/// A pitch is never made wider without a word.
+TEST(PunchStage, AMoveOfTooManyStrokesIsAnError) {
+  MotionList program = start(1);
+  program.traverse({-15000, 50, 5}).spindle(true).signal().feed({15000, 50, 5}).spindle(false);
+  program.signal();
+  const PunchShop shop(program.list(), turret("m3", 0.2));
+  const std::vector<Finding> findings(shop.findings().begin(), shop.findings().end());
+  const auto told = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.id == FindingId::kWebLeft;
+  });
+  ASSERT_NE(told, findings.end());
+  EXPECT_EQ(told->severity, Severity::kError);
+  EXPECT_EQ(told->text,
+            "the move is 30000 mm long: with a pitch of 0.2 mm it would take more than 100000 "
+            "strokes; it was nibbled every 0.300 mm");
 }
 
 TEST(PunchStage, WebsBetweenStrokesAreFound) {
