@@ -10,9 +10,9 @@ namespace kerf {
 /// lies.
 WallCourse::Half WallCourse::half(int center, int sign, int steps) const {
   Half half{steps};
-  const glm::ivec2 origin = line_[index(center)];
+  const glm::ivec2 origin = corner(center);
   for (int k = 1; k <= steps; ++k) {
-    const glm::ivec2 way = sign * (line_[index(center + sign * k)] - origin);
+    const glm::ivec2 way = sign * (corner(center + sign * k) - origin);
     half.sum += way;
     half.moment += k * way;
   }
@@ -31,9 +31,6 @@ glm::vec2 WallCourse::facing(bool at_higher_end, const glm::vec2& outward) const
   const int center = kMaxReach + edge_is_behind;
   int behind = std::min(reach_, behind_ + edge_is_behind);
   int ahead = std::min(reach_, ahead_ + !edge_is_behind);
-  const auto turns_between = [this](int first, int last) {  // without these two themselves
-    return turns_ & ((1u << last) - 1) & ~((2u << first) - 1);
-  };
   // Up to the corners: turns that have none beside them. A run that ends with the window may be
   // long.
   unsigned turns = turns_between(center - behind, center + ahead);

@@ -26,17 +26,19 @@ class TileCutIds {
   std::array<std::uint32_t, TileRelief::kSlots> ids_;
 };
 
-/// In parts of a cell. More than points picked in a picture miss a wall by.
-inline constexpr double kWallReach = 0.25;
+/// In parts of a cell. Farther than walls of patches are from the borders of cells (WallShift), and
+/// points picked in a picture from those.
+inline constexpr double kWallReach = 0.49;
+static_assert(kWallReach > WallShift::kMost);
 
 /// Number of the move that made the surface at `point_mm`; MeshPatch::kNotCut where none did, and
 /// beyond the grid. For a grid that keeps them.
 ///
 /// A point that is lower than its cell by more than a smooth surface is (TileRelief), and within
 /// kWallReach of a neighbour that is no higher than the point, lies on a wall: then the number is
-/// that neighbour's, whose move made the wall. (Walls of patches stand on the borders of cells, so
-/// a point on one may round to either side.) If there are several such neighbours, that of the
-/// lowest; beyond the grid is the side of the blank.
+/// that neighbour's, whose move made the wall. (A wall of a patch may stand on either side of the
+/// border of the cells.) If there are several such neighbours, that of the lowest; beyond the grid
+/// is the side of the blank.
 std::uint32_t cut_id_at(const TileGrid& grid, const Vec3& point_mm);
 
 }  // namespace kerf

@@ -52,13 +52,19 @@ class PatchBuilder {
  private:
   struct SplitCorner {
     TileRelief::Split split;
+    glm::vec2 xy_mm;  ///< where the wall has its course
     std::array<std::uint32_t, 4> vertex{kNone, kNone, kNone, kNone};  ///< by group
   };
   using Ring = std::array<std::uint32_t, 4 * kTileCells>;
 
-  std::uint32_t add_vertex(int i, int j, float z, std::uint32_t normal) {
-    patch_.vertices.push_back({{r_.x(i), r_.y(j), z}, normal});
+  std::uint32_t add_vertex(const glm::vec2& xy, float z, std::uint32_t normal) {
+    patch_.vertices.push_back({{xy, z}, normal});
     return static_cast<std::uint32_t>(patch_.vertices.size() - 1);
+  }
+  glm::vec2 unmoved(int i, int j) const { return {r_.x(i), r_.y(j)}; }
+  /// Of all that stands above each other at a corner.
+  glm::vec2 place_of(int i, int j) {
+    return r_.is_split(TileRelief::slot(i, j)) ? split_corner(i, j).xy_mm : unmoved(i, j);
   }
   /// Much cheaper than vector::insert() for so few.
   template <std::size_t kCount>
@@ -87,7 +93,7 @@ class PatchBuilder {
     if (vertex < kSplitCorner) return vertex;
     if (r_.is_split(corner)) [[unlikely]]
       return split_vertex(i, j, q);
-    return vertex = add_vertex(i, j, r_.corner_z(corner), r_.corner_normal(corner));
+    return vertex = add_vertex(unmoved(i, j), r_.corner_z(corner), r_.corner_normal(corner));
   }
   [[gnu::noinline]] std::uint32_t split_vertex(int i, int j, Quadrant q);
   /// Vertices of a cell, counter-clockwise from low x, y.
@@ -103,11 +109,19 @@ class PatchBuilder {
   std::uint32_t bottom_vertex(int i, int j);
 
   bool is_level(int i, int j, int size) const;
+  /// A corner of the cell's.
+  bool may_be_moved(int cell) const {
+    const std::uint32_t* const row = top_.data() + cell;
+    return (row[0] | row[1] | row[TileRelief::kStride] | row[TileRelief::kStride + 1]) >=
+           kSplitCorner;
+  }
+  bool is_rising(int i, int j, const std::array<std::uint32_t, 4>& corners, float height) const;
   template <class Corner>
   void add_fan(int i, int j, int width, int height, std::uint32_t center, bool upward,
                const Corner& corner);
   void add_square(int i, int j, int size);
   void add_cells(int first_i, int first_j, int last_i, int last_j);
+  bool is_seen_from(std::uint32_t center);
   void add_floor();
 
   struct WallEnd;
@@ -163,7 +177,7 @@ PatchBuilder::SplitCorner& PatchBuilder::split_corner(int i, int j) {
   std::uint32_t& number = top_[static_cast<std::size_t>(corner)];
   if (number == kNone) {
     number = kSplitCorner + static_cast<std::uint32_t>(splits_.size());
-    splits_.push_back({r_.split(corner)});
+    splits_.push_back({r_.split(corner), unmoved(i, j) + r_.shift_mm(i, j)});
   }
   return splits_[number - kSplitCorner];
 }
@@ -179,7 +193,7 @@ std::uint32_t PatchBuilder::split_vertex(int i, int j, Quadrant q) {
   if (vertex == kNone) {
     const glm::vec2 slope = at.split.slope[q];
     const glm::vec3 normal = glm::normalize(glm::vec3(-slope.x, -slope.y, 1));
-    vertex = add_vertex(i, j, at.split.z[q], pack_normal(normal));
+    vertex = add_vertex(at.xy_mm, at.split.z[q], pack_normal(normal));
     const auto in_group = [&](std::size_t r) { return at.split.group[r] == at.split.group[q]; };
     set_cut_by(vertex, cut_by_at(TileRelief::slot(i, j), in_group));
   }
@@ -188,7 +202,14 @@ std::uint32_t PatchBuilder::split_vertex(int i, int j, Quadrant q) {
 
 std::uint32_t PatchBuilder::bottom_vertex(int i, int j) {
   std::uint32_t& vertex = bottom_[static_cast<std::size_t>(TileRelief::slot(i, j))];
-  if (vertex == kNone) vertex = add_vertex(i, j, r_.floor(), pack_normal({0, 0, -1}));
+  if (vertex == kNone) {
+    // Moved with the walls that reach the floor: those about a cell without material.
+    const std::array<int, 4> cells = TileRelief::cells_about(TileRelief::slot(i, j));
+    const bool has_hole =
+        std::any_of(cells.begin(), cells.end(), [&](int cell) { return !r_.solid(cell); });
+    vertex =
+        add_vertex(has_hole ? place_of(i, j) : unmoved(i, j), r_.floor(), pack_normal({0, 0, -1}));
+  }
   return vertex;
 }
 
@@ -231,7 +252,8 @@ void PatchBuilder::add_square(int i, int j, int size) {
     const std::uint32_t up = pack_normal({0, 0, 1});
     const int middle = size / 2;
     const int first = TileRelief::slot(i, j);
-    const std::uint32_t center = add_vertex(i + middle, j + middle, r_.height(first), up);
+    const glm::vec2 xy = unmoved(i + middle, j + middle);
+    const std::uint32_t center = add_vertex(xy, r_.height(first), up);
     set_cut_by(center, cut_by(first));
     add_fan(i, j, size, size, center, true, [&](int x, int y) { return top_vertex(x, y, kA); });
     return;
@@ -263,11 +285,12 @@ void PatchBuilder::add_cells(int first_i, int first_j, int last_i, int last_j) {
     for (int i = first_i; i < last_i; ++i) {
       const int cell = TileRelief::slot(i, j);
       if (!r_.solid(cell)) continue;
-      const auto [a, b, c, d] = cell_corners(i, j);
-      // Of the two diagonals the one whose middle is nearer to the cell's height.
+      const std::array<std::uint32_t, 4> corners = cell_corners(i, j);
+      const auto [a, b, c, d] = corners;
       const auto z = [&](std::uint32_t v) { return patch_.vertices[v].position_mm.z; };
-      const float twice = 2 * r_.height(cell);
-      const bool rising = std::abs(z(a) + z(c) - twice) <= std::abs(z(b) + z(d) - twice);
+      const bool rising = may_be_moved(cell)
+                              ? is_rising(i, j, corners, r_.height(cell))
+                              : has_rising_diagonal({z(a), z(b), z(c), z(d)}, 2 * r_.height(cell));
       out[0] = a;
       out[1] = b;
       out[2] = rising ? c : d;
@@ -280,6 +303,38 @@ void PatchBuilder::add_cells(int first_i, int first_j, int last_i, int last_j) {
   patch_.indices.resize(static_cast<std::size_t>(out - patch_.indices.data()));
 }
 
+/// Whether that face of the cell is divided from its low x, y.
+bool PatchBuilder::is_rising(int i, int j, const std::array<std::uint32_t, 4>& corners,
+                             float height) const {
+  std::array<float, 4> z;
+  for (std::size_t k = 0; k < 4; ++k) z[k] = patch_.vertices[corners[k]].position_mm.z;
+  std::array<glm::vec2, 4> shift;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const glm::vec2 unmoved_mm = unmoved(i + (k == 1 || k == 2 ? 1 : 0), j + (k > 1 ? 1 : 0));
+    shift[k] = (glm::vec2(patch_.vertices[corners[k]].position_mm) - unmoved_mm) / r_.size_mm(i, j);
+  }
+  return has_rising_diagonal(z, 2 * height, shift);
+}
+
+/// Whether a fan may fill the tile's floor: corners on its border may be moved.
+bool PatchBuilder::is_seen_from(std::uint32_t center) {
+  const auto at = [&](int i, int j) {
+    return glm::vec2(patch_.vertices[bottom_vertex(i, j)].position_mm);
+  };
+  const glm::vec2 from(patch_.vertices[center].position_mm);
+  const auto is_left = [&](const glm::vec2& a, const glm::vec2& b) {
+    const glm::vec2 p = a - from, q = b - from;
+    return p.x * q.y - p.y * q.x > 0;
+  };
+  const int nx = r_.nx(), ny = r_.ny();
+  bool is_seen = true;
+  for (int i = 0; i < nx; ++i)
+    is_seen = is_seen && is_left(at(i, 0), at(i + 1, 0)) && is_left(at(i + 1, ny), at(i, ny));
+  for (int j = 0; j < ny; ++j)
+    is_seen = is_seen && is_left(at(nx, j), at(nx, j + 1)) && is_left(at(0, j + 1), at(0, j));
+  return is_seen;
+}
+
 void PatchBuilder::add_floor() {
   bool whole = true;
   for (int j = 0; j < r_.ny(); ++j)
@@ -287,16 +342,16 @@ void PatchBuilder::add_floor() {
   const auto corner = [&](int i, int j) { return bottom_vertex(i, j); };
   if (whole && r_.nx() > 1 && r_.ny() > 1) {
     const std::uint32_t center = bottom_vertex(r_.nx() / 2, r_.ny() / 2);
-    add_fan(0, 0, r_.nx(), r_.ny(), center, false, corner);
-    return;
+    if (is_seen_from(center)) return add_fan(0, 0, r_.nx(), r_.ny(), center, false, corner);
   }
   for (int j = 0; j < r_.ny(); ++j) {
     for (int i = 0; i < r_.nx(); ++i) {
       if (!r_.solid(TileRelief::slot(i, j))) continue;
-      const std::uint32_t a = corner(i, j), b = corner(i + 1, j);
-      const std::uint32_t c = corner(i + 1, j + 1), d = corner(i, j + 1);
-      add_triangle(a, c, b);
-      add_triangle(a, d, c);
+      const std::array<std::uint32_t, 4> v{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1),
+                                           corner(i, j + 1)};
+      const bool rising = is_rising(i, j, v, r_.floor());
+      add_triangle(v[0], v[rising ? 2 : 3], v[1]);
+      add_triangle(v[rising ? 0 : 1], v[3], v[2]);
     }
   }
 }
@@ -357,10 +412,11 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
     facing = {course.facing(false, outward), course.facing(true, outward)};
   }
   for (WallEnd* end : {&low, &high}) {
+    const glm::vec2 xy = place_of(end->i, end->j);
     const bool is_higher = along_y ? end->j > j : end->i > i;
     const std::uint32_t normal = pack_normal(glm::vec3(facing[is_higher], 0));
     for (std::size_t n = 0; n < end->count; ++n) {
-      end->vertex[n] = add_vertex(end->i, end->j, end->z[n], normal);
+      end->vertex[n] = add_vertex(xy, end->z[n], normal);
       set_cut_by(end->vertex[n], made_by);
     }
   }
@@ -399,11 +455,13 @@ void PatchBuilder::add_surface() {
   patch_.skirt_begin = static_cast<std::uint32_t>(patch_.indices.size());
 }
 
-/// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right.
+/// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right. It
+/// ends on the tile's border, wherever the top's corners were moved, so that no gap is left between
+/// tiles seen from above.
 void PatchBuilder::add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1) {
   // The top's own normals: where a skirt fills a crack it must not be seen.
   const auto below = [&](std::uint32_t top, int i, int j) {
-    const std::uint32_t vertex = add_vertex(i, j, r_.floor(), patch_.vertices[top].normal);
+    const std::uint32_t vertex = add_vertex(unmoved(i, j), r_.floor(), patch_.vertices[top].normal);
     if (cut_ids_) set_cut_by(vertex, patch_.cut_by[top]);
     return vertex;
   };

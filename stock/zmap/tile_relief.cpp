@@ -55,10 +55,11 @@ TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
   for (int i = 0; i <= nx_; ++i) x_[index(i)] = line(tx, i, grid.nx(), box.min.x, grid.cell_x_mm());
   for (int j = 0; j <= ny_; ++j) y_[index(j)] = line(ty, j, grid.ny(), box.min.y, grid.cell_y_mm());
   load_heights(grid, tx, ty, level);
-  const float cell_x = static_cast<float>(grid.cell_x_mm() * span);
-  const float cell_y = static_cast<float>(grid.cell_y_mm() * span);
-  find_links(cell_x, cell_y);
-  find_corners(cell_x, cell_y);
+  cell_mm_ = glm::dvec2(grid.cell_x_mm() * span, grid.cell_y_mm() * span);
+  const glm::ivec2 beyond = (grid_end_ - grid_begin_) * span - glm::ivec2(grid.nx(), grid.ny());
+  last_share_ = 1.0f - glm::vec2(beyond) / static_cast<float>(span);
+  find_links(cell_mm_.x, cell_mm_.y);
+  find_corners(cell_mm_.x, cell_mm_.y);
 }
 
 void TileRelief::load_heights(const TileGrid& grid, int tx, int ty, int level) {
@@ -163,9 +164,7 @@ void TileRelief::find_corners(float cell_x, float cell_y) {
 
 TileRelief::Split TileRelief::split(int corner) const {
   const std::array<int, 4> cells = cells_about(corner);
-  // Links along the way round: A-B, B-C, C-D, D-A.
-  const std::array<bool, 4> link{linked_x(cells[0]), linked_y(cells[1]), linked_x(cells[3]),
-                                 linked_y(cells[0])};
+  const std::array<bool, 4> link = links_about(cells);
   Split out;
   out.group = {0, 1, 2, 3};
   for (int round = 0; round < 2; ++round) {
@@ -192,20 +191,35 @@ TileRelief::Split TileRelief::split(int corner) const {
   return out;
 }
 
-WallCourse TileRelief::wall_course(int i, int j, bool across_x) const {
-  const float middle =
-      0.5f * (height(slot(i, j)) + height(across_x ? slot(i - 1, j) : slot(i, j - 1)));
+template <class With>
+auto TileRelief::with_surroundings(const With& with) const {
   const auto height_of = [this](int x, int y) { return height(slot(x, y)); };
   const int reach = wall_reach_;
   if (std::max(grid_begin_.x, grid_begin_.y) <= -reach && nx_ + reach <= grid_end_.x &&
-      ny_ + reach <= grid_end_.y) [[likely]] {
-    const auto everywhere = [](int, int) { return true; };
-    return WallCourse(i, j, across_x, middle, reach, height_of, everywhere);
-  }
-  const auto in_grid = [this](int x, int y) {
+      ny_ + reach <= grid_end_.y) [[likely]]
+    return with(height_of, [](int, int) { return true; });
+  return with(height_of, [this](int x, int y) {
     return x >= grid_begin_.x && y >= grid_begin_.y && x < grid_end_.x && y < grid_end_.y;
-  };
-  return WallCourse(i, j, across_x, middle, reach, height_of, in_grid);
+  });
+}
+
+WallCourse TileRelief::wall_course(int i, int j, bool across_x) const {
+  const float middle =
+      0.5f * (height(slot(i, j)) + height(across_x ? slot(i - 1, j) : slot(i, j - 1)));
+  return with_surroundings([&](const auto& height_of, const auto& in_grid) {
+    return WallCourse(i, j, across_x, middle, wall_reach_, height_of, in_grid);
+  });
+}
+
+glm::vec2 TileRelief::shift_mm(int i, int j) const {
+  const std::array<int, 4> cells = cells_about(slot(i, j));
+  const std::array<float, 4> heights{height(cells[0]), height(cells[1]), height(cells[2]),
+                                     height(cells[3])};
+  const std::array<bool, 4> links = links_about(cells);
+  const glm::vec2 shift = with_surroundings([&](const auto& height_of, const auto& in_grid) {
+    return wall_shift(i, j, heights, links, wall_reach_, height_of, in_grid);
+  });
+  return to_mm(shift, i, j);
 }
 
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include "base/wall_course.h"
+#include "base/wall_shift.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/tile_grid.h"
 
@@ -69,14 +70,24 @@ class TileRelief {
   bool all_linked_y(int cell, int count) const { return all_set(link_y_, cell, count); }
   float x(int i) const { return x_[index(i)]; }  ///< of corner line i, mm
   float y(int j) const { return y_[index(j)]; }
+  /// Edges of a cell. The last ones of the grid may be narrower than the others.
+  glm::vec2 size_mm(int i, int j) const { return {x(i + 1) - x(i), y(j + 1) - y(j)}; }
 
   bool is_split(int corner) const { return link_count_[index(corner)] < 2.5f; }
   /// Where is_split() is false: the one height and packed normal of the corner.
   float corner_z(int corner) const { return corner_z_[index(corner)]; }
   std::uint32_t corner_normal(int corner) const { return corner_normal_[index(corner)]; }
   Split split(int corner) const;
+  /// Where is_split(): how far to move the corner to the wall's course, mm. Elsewhere corners stay.
+  glm::vec2 shift_mm(int i, int j) const;
+  /// A shift in cells; less beside a narrow cell.
+  glm::vec2 to_mm(const glm::vec2& shift, int i, int j) const {
+    const glm::vec2 share(i + 1 == grid_end_.x ? last_share_.x : 1,
+                          j + 1 == grid_end_.y ? last_share_.y : 1);
+    return shift * share * cell_mm_;
+  }
   /// Course of the wall between a cell and the one before it in x, or in y. With it a round or
-  /// oblique wall looks as it is, not as its cells are.
+  /// oblique wall is lit as it is, not as its cells are.
   WallCourse wall_course(int i, int j, bool across_x) const;
   /// Cells beyond the tile that are looked at. Less at coarse levels, so that the next tiles are
   /// enough.
@@ -101,10 +112,20 @@ class TileRelief {
   void find_links(float cell_x, float cell_y);
   void find_corners(float cell_x, float cell_y);
 
+  /// Along the way round: A-B, B-C, C-D, D-A.
+  std::array<bool, 4> links_about(const std::array<int, 4>& cells) const {
+    return {linked_x(cells[0]), linked_y(cells[1]), linked_x(cells[3]), linked_y(cells[0])};
+  }
+  /// Calls `with(height, inside)` as WallCourse and wall_shift() take them.
+  template <class With>
+  auto with_surroundings(const With& with) const;
+
   int nx_ = 0, ny_ = 0;
   int wall_reach_;
   glm::ivec2 grid_begin_, grid_end_;  ///< of the grid, as cells are counted here
   float floor_ = 0;
+  glm::vec2 cell_mm_;        ///< edges of a whole cell
+  glm::vec2 last_share_{1};  ///< what of it the last cells of the grid have
   std::array<float, kTileCells + 1> x_, y_;
   alignas(64) Field<float> height_;
   alignas(64) Field<float> step_x_, step_y_;    ///< to the next cell; 0 where one has no material

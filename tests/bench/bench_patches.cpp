@@ -100,7 +100,8 @@ std::vector<double> deviations_mm(const ZMap& map) {
       const Vec3 b(patch.vertices[indices[n + 1]].position_mm);
       const Vec3 c(patch.vertices[indices[n + 2]].position_mm);
       const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-      if (area < 0.5 * cell * cell || area > 1.5 * cell * cell) continue;  // a wall, or a fan's
+      const double off_cells = area / (cell * cell) - 1;
+      if (std::abs(off_cells) > 1e-3) continue;  // a wall, a fan's, or moved to a wall's course
       // The longest edge is the cell's diagonal; its middle is over the cell's centre.
       const auto xy = [](const Vec3& p, const Vec3& q) { return std::hypot(p.x - q.x, p.y - q.y); };
       const double ab = xy(a, b), bc = xy(b, c), ca = xy(c, a);

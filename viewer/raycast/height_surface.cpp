@@ -34,6 +34,9 @@ constexpr double kStill = 1e-30;
 /// A ray that meets a cell's top no lower than this below it has met the top, not a wall (share of
 /// a cell): between tops that hang together there is no wall, but rounding.
 constexpr double kLeastWall = 1e-4;
+/// A ray straight down that misses the edge of a moved top by no more (in cells) is over both tops
+/// at that edge: rounding must leave no gap between them.
+constexpr double kOnEdge = 1e-9;
 
 /// Walks over squares of `size` x `size` cells within squares [i0, i1) x [j0, j1), counted in
 /// squares, from t0 to t1, and calls visit(i, j, from_t, to_t) until it returns true. Where lines
@@ -115,6 +118,67 @@ inline bool meet_cell(const CellTop& top, const GridRay& ray, int i, int j, doub
   return true;
 }
 
+double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// A cell's top where its corners are moved: x and y in cells from the grid's corner.
+struct MovedTop {
+  struct Triangle {
+    std::array<std::size_t, 3> corner;  ///< counter-clockwise from above
+  };
+  std::array<Vec2, 4> at;
+  std::array<double, 4> z;
+  std::array<Triangle, 2> triangles;  ///< `below` the diagonal (height_in) and above it
+
+  MovedTop(const CellTop& top, int i, int j)
+      : at{Vec2(i, j), Vec2(i + 1, j), Vec2(i + 1, j + 1), Vec2(i, j + 1)},
+        z{static_cast<double>(top.a), static_cast<double>(top.b), static_cast<double>(top.c),
+          static_cast<double>(top.d)} {
+    triangles[0] = {{0, 1, top.is_rising ? 2u : 3u}};
+    triangles[1] = {{top.is_rising ? 0u : 1u, 2, 3}};
+    for (std::size_t k = 0; top.moved != nullptr && k < 4; ++k) at[k] += Vec2(top.moved->shift[k]);
+  }
+  /// What share each corner of the triangle has in the point.
+  std::array<double, 3> shares(const Triangle& triangle, const Vec2& point) const {
+    const auto& [a, b, c] = triangle.corner;
+    const double area = cross(at[b] - at[a], at[c] - at[a]);
+    const double in_b = cross(point - at[a], at[c] - at[a]) / area;
+    const double in_c = cross(at[b] - at[a], point - at[a]) / area;
+    return {1 - in_b - in_c, in_b, in_c};
+  }
+  double height(const Triangle& triangle, const Vec2& point) const {
+    const std::array<double, 3> share = shares(triangle, point);
+    const auto& [a, b, c] = triangle.corner;
+    return share[0] * z[a] + share[1] * z[b] + share[2] * z[c];
+  }
+  /// That in which a point of the top lies.
+  const Triangle& triangle_at(const Vec2& point) const {
+    const bool is_rising = triangles[0].corner[2] == 2;
+    const Vec2 from = at[is_rising ? 0 : 1], to = at[is_rising ? 2 : 3];
+    const bool is_left = cross(to - from, point - from) > 0;
+    return triangles[is_left == is_rising ? 1 : 0];
+  }
+};
+
+/// Cuts t0 .. t1 to where the ray is over the triangle; false if it never is.
+template <class GridRay>
+bool clip(const MovedTop& top, const MovedTop::Triangle& triangle, const GridRay& ray, double* t0,
+          double* t1) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& from = top.at[triangle.corner[k]];
+    const Vec2 way = top.at[triangle.corner[(k + 1) % 3]] - from;
+    const double inside = cross(way, Vec2(ray.x, ray.y) - from);
+    const double change = cross(way, Vec2(ray.dx, ray.dy));
+    if (change == 0) {
+      if (inside < -kOnEdge) return false;
+    } else if (change > 0) {
+      *t0 = std::max(*t0, -inside / change);
+    } else {
+      *t1 = std::min(*t1, -inside / change);
+    }
+  }
+  return *t0 <= *t1;
+}
+
 /// Least and greatest height of the grid's cells [i0, i1) x [j0, j1).
 void extend_heights(const HeightGrid& grid, int i0, int j0, int i1, int j1, double* low,
                     double* high) {
@@ -125,6 +189,15 @@ void extend_heights(const HeightGrid& grid, int i0, int j0, int i1, int j1, doub
       *high = std::max(*high, z);
     }
   }
+}
+
+/// Not brought to unit length, as OpenGL does before it mixes them.
+glm::vec3 unpacked(std::uint32_t bits) {
+  const auto value = [bits](int shift) {
+    // The sign is bit 9 of ten.
+    return static_cast<float>(static_cast<std::int32_t>(bits << (22 - shift)) >> 22);
+  };
+  return {value(0), value(10), value(20)};
 }
 
 /// Have cells of this block of the tile changed? Cells beyond the grid are never written.
@@ -255,6 +328,64 @@ CellTop HeightSurface::cell(int i, int j) const {
   return cell_top(*at.detail, i % kCells, j % kCells);
 }
 
+template <class Visit>
+void HeightSurface::visit_about(int i, int j, const Visit& visit) const {
+  for (int y = std::max(0, j - 1); y <= std::min(grid_->ny() - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(grid_->nx() - 1, i + 1); ++x) {
+      const CellTop top = cell(x, y);
+      if (top.is_solid) visit(x, y, top);
+    }
+  }
+}
+
+/// As meet_cell, between where the ray comes into the square of a cell with moved corners and where
+/// it leaves it.
+bool HeightSurface::meet_moved(const GridRay& ray, int i, int j, double t0, double t1,
+                               SurfaceHit* hit) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto meet = [&](int x, int y, double t) {
+    if (t < nearest) *hit = {nearest = t, x, y, false};
+  };
+  visit_about(i, j, [&](int x, int y, const CellTop& cell_top) {
+    const MovedTop top(cell_top, x, y);
+    for (const MovedTop::Triangle& triangle : top.triangles) {
+      double from = t0, to = t1;
+      if (!clip(top, triangle, ray, &from, &to)) continue;
+      const auto above = [&](double t) {
+        return ray.z_at(t) - top.height(triangle, Vec2(ray.x + t * ray.dx, ray.y + t * ray.dy));
+      };
+      const double above0 = above(from), above1 = above(to);
+      if (above0 < 0) {
+        meet(x, y, from);
+      } else if (above1 < 0) {
+        meet(x, y, from + (to - from) * (above0 / (above0 - above1)));
+      }
+    }
+  });
+  return nearest < std::numeric_limits<double>::infinity();
+}
+
+/// Whether a point of the floor is below a cell with material, and below which.
+bool HeightSurface::is_over_material(const Vec2& at, int* i, int* j) const {
+  *i = std::clamp(static_cast<int>(at.x), 0, grid_->nx() - 1);
+  *j = std::clamp(static_cast<int>(at.y), 0, grid_->ny() - 1);
+  const CellTop own = cell(*i, *j);
+  if (own.moved == nullptr) return own.is_solid;
+  bool is_found = false;
+  visit_about(*i, *j, [&](int x, int y, const CellTop& cell_top) {
+    const MovedTop top(cell_top, x, y);
+    const auto is_over = [&](const MovedTop::Triangle& triangle) {
+      const std::array<double, 3> share = top.shares(triangle, at);
+      return std::min({share[0], share[1], share[2]}) >= -kOnEdge;
+    };
+    if (is_found || !(is_over(top.triangles[0]) || is_over(top.triangles[1]))) return;
+    is_found = true;
+    *i = x;
+    *j = y;
+  });
+  return is_found;
+}
+
 bool HeightSurface::trace(const Ray& world_ray, SurfaceHit* hit) const {
   if (!grid_) return false;
   const GridRay ray = to_grid(world_ray);
@@ -262,9 +393,8 @@ bool HeightSurface::trace(const Ray& world_ray, SurfaceHit* hit) const {
   bool through_floor = false;
   if (!enter(ray, &t0, &t1, &through_floor)) return false;
   if (through_floor) {
-    const int i = std::clamp(static_cast<int>(ray.x + t0 * ray.dx), 0, grid_->nx() - 1);
-    const int j = std::clamp(static_cast<int>(ray.y + t0 * ray.dy), 0, grid_->ny() - 1);
-    if (cell(i, j).is_solid) {
+    int i, j;
+    if (is_over_material(Vec2(ray.x + t0 * ray.dx, ray.y + t0 * ray.dy), &i, &j)) {
       *hit = {t0, i, j, true};
       return true;
     }
@@ -282,6 +412,8 @@ bool HeightSurface::trace(const Ray& world_ray, SurfaceHit* hit) const {
       if (passes_above(block_from, block_to, tops[y * SurfaceTile::kBlocks + x])) return false;
       const auto in_cell = [&](int i, int j, double cell_from, double cell_to) {
         const CellTop top = detail ? cell_top(*detail, i % kCells, j % kCells) : cell(i, j);
+        if (top.moved != nullptr) [[unlikely]]
+          return meet_moved(ray, i, j, cell_from, cell_to, hit);
         if (!top.is_solid) return false;
         const float high = std::max(std::max(top.a, top.b), std::max(top.c, top.d));
         if (passes_above(cell_from, cell_to, high)) return false;
@@ -310,6 +442,7 @@ glm::vec3 HeightSurface::normal(const Ray& world_ray, const SurfaceHit& hit) con
   const double u = std::clamp(ray.x + hit.t * ray.dx - hit.i, 0.0, 1.0);
   const double v = std::clamp(ray.y + hit.t * ray.dy - hit.j, 0.0, 1.0);
   const CellTop top = cell(hit.i, hit.j);
+  if (top.moved != nullptr) return moved_normal(ray, hit, top);
   const bool is_below = side_of_diagonal(top, u, v) <= 0;
   const double z = ray.z_at(hit.t);
   if (height_in(top, is_below, u, v) - z > kLeastWall * std::min(cell_mm_.x, cell_mm_.y)) {
@@ -330,14 +463,6 @@ glm::vec3 HeightSurface::normal(const Ray& world_ray, const SurfaceHit& hit) con
         at.detail->normal.data() + static_cast<std::size_t>(y * (kCells + 1) + x);
     packed = {low[0], low[1], low[kCells + 2], low[kCells + 1]};
   }
-  // Not brought to unit length before they are mixed; as OpenGL does.
-  const auto unpacked = [](std::uint32_t bits) {
-    const auto value = [bits](int shift) {
-      // The sign is bit 9 of ten.
-      return static_cast<float>(static_cast<std::int32_t>(bits << (22 - shift)) >> 22);
-    };
-    return glm::vec3(value(0), value(10), value(20));
-  };
   const glm::vec3 a = unpacked(packed[0]), b = unpacked(packed[1]);
   const glm::vec3 c = unpacked(packed[2]), d = unpacked(packed[3]);
   const auto p = static_cast<float>(u), q = static_cast<float>(v);
@@ -348,6 +473,37 @@ glm::vec3 HeightSurface::normal(const Ray& world_ray, const SurfaceHit& hit) con
     sum = is_below ? a + p * (b - a) + q * (d - a) : c + (1 - p) * (d - c) + (1 - q) * (b - c);
   }
   return glm::normalize(sum);
+}
+
+glm::vec3 HeightSurface::moved_normal(const GridRay& ray, const SurfaceHit& hit,
+                                      const CellTop& cell_top) const {
+  const MovedTop top(cell_top, hit.i, hit.j);
+  const Vec2 point(ray.x + hit.t * ray.dx, ray.y + hit.t * ray.dy);
+  const MovedTop::Triangle& triangle = top.triangle_at(point);
+  if (top.height(triangle, point) - ray.z_at(hit.t) <=
+      kLeastWall * std::min(cell_mm_.x, cell_mm_.y)) {
+    const std::array<double, 3> share = top.shares(triangle, point);
+    glm::vec3 sum(0);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += static_cast<float>(share[k]) * unpacked(cell_top.moved->normal[triangle.corner[k]]);
+    return glm::normalize(sum);
+  }
+  // By the side that the point lies on, of those by which the ray can come in.
+  std::size_t side = 4;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec2 way = top.at[(k + 1) % 4] - top.at[k];
+    const double off = std::abs(cross(way, point - top.at[k])) / glm::length(way);
+    if (cross(way, Vec2(ray.dx, ray.dy)) <= 0 || off >= nearest) continue;
+    nearest = off;
+    side = k;
+  }
+  if (side == 4) return {0, 0, 1};  // straight down
+  const Vec2 way = top.at[(side + 1) % 4] - top.at[side];
+  const double along = std::clamp(glm::dot(point - top.at[side], way) / glm::dot(way, way), 0., 1.);
+  const bool across_x = side % 2 == 1;
+  return wall_normal(hit.i, hit.j, across_x, side == 0 || side == 3 ? 1 : -1,
+                     side < 2 ? along : 1 - along);
 }
 
 /// Of the wall by which a ray came into cell (i, j) across x (or y), in direction `step`, at

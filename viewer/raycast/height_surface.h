@@ -15,7 +15,7 @@ namespace kerf {
 /// Where a ray meets the workpiece.
 struct SurfaceHit {
   double t = 0.0;      ///< on the ray
-  int i = 0, j = 0;    ///< of the cell
+  int i = 0, j = 0;    ///< of the cell whose top it is; its corners may be moved
   bool floor = false;  ///< from below
 };
 
@@ -56,6 +56,12 @@ class HeightSurface {
     return tiles_[static_cast<std::size_t>(ty * tiles_x_ + tx)];
   }
   CellTop cell(int i, int j) const;
+  /// Calls visit(i, j, top) for the cell and those about it that have material.
+  template <class Visit>
+  void visit_about(int i, int j, const Visit& visit) const;
+  bool meet_moved(const GridRay& ray, int i, int j, double t0, double t1, SurfaceHit* hit) const;
+  bool is_over_material(const Vec2& at, int* i, int* j) const;
+  glm::vec3 moved_normal(const GridRay& ray, const SurfaceHit& hit, const CellTop& top) const;
   std::vector<Box> changes(const HeightGrid& next, std::vector<int>* tiles) const;
   void make_tiles(const std::vector<int>& tiles, int threads);
   glm::vec3 wall_normal(int i, int j, bool across_x, int step, double along) const;

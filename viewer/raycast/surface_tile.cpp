@@ -37,7 +37,10 @@ constexpr std::array<int, 4> kQuadrantOffset{-kStride - 1, -kStride, 0, -1};
 class Relief {
  public:
   Relief(const HeightGrid& grid, int tx, int ty)
-      : floor_(grid.floor_mm()),
+      : grid_(grid),
+        i0_(tx * kCells),
+        j0_(ty * kCells),
+        floor_(grid.floor_mm()),
         nx_(std::min(kCells, grid.nx() - tx * kCells)),
         ny_(std::min(kCells, grid.ny() - ty * kCells)) {
     load(grid, tx * kCells, ty * kCells);
@@ -66,14 +69,27 @@ class Relief {
   };
   /// The corner as the cell in this quadrant has it.
   Vertex vertex(int corner, std::size_t quadrant) const;
+  /// How far corner (i, j) is moved, in cells.
+  glm::vec2 shift(int i, int j) const;
+  /// Of the surface over the cell, if corners are moved: no less than any cell's whose corners are
+  /// the cell's neighbours'.
+  float highest_about(int cell) const;
 
  private:
   using Field = std::array<float, kSlots>;
+  /// Along the way round: A-B, B-C, C-D, D-A.
+  std::array<bool, 4> links_about(int corner) const {
+    const auto cell = [corner](std::size_t q) { return index(corner + kQuadrantOffset[q]); };
+    return {link_x_[cell(0)] > 0.5f, link_y_[cell(1)] > 0.5f, link_x_[cell(3)] > 0.5f,
+            link_y_[cell(0)] > 0.5f};
+  }
 
   void load(const HeightGrid& grid, int i0, int j0);
   void find_links(float cell_x, float cell_y);
   void find_corners(float cell_x, float cell_y);
 
+  const HeightGrid& grid_;
+  int i0_, j0_;  // first cell of the tile
   float floor_;
   int nx_, ny_;
   alignas(64) Field height_;
@@ -185,9 +201,7 @@ void Relief::find_corners(float cell_x, float cell_y) {
 Relief::Vertex Relief::vertex(int corner, std::size_t quadrant) const {
   if (!is_split(corner)) return {corner_z(corner), corner_normal(corner)};
   const auto cell = [corner](std::size_t q) { return index(corner + kQuadrantOffset[q]); };
-  // Links along the way round: A-B, B-C, C-D, D-A. At most two of the four are there.
-  const std::array<bool, 4> link{link_x_[cell(0)] > 0.5f, link_y_[cell(1)] > 0.5f,
-                                 link_x_[cell(3)] > 0.5f, link_y_[cell(0)] > 0.5f};
+  const std::array<bool, 4> link = links_about(corner);  // at most two of the four
   unsigned group = 1u << quadrant;
   for (int round = 0; round < 2; ++round) {
     for (std::size_t q = 0; q < 4; ++q) {
@@ -212,13 +226,42 @@ Relief::Vertex Relief::vertex(int corner, std::size_t quadrant) const {
           pack_normal(glm::normalize(glm::vec3(-slope.x, -slope.y, 1)))};
 }
 
-/// Fills in one cell and returns the greatest height of its corners.
-float add_cell(const Relief& relief, int i, int j, SurfaceTile::Detail* detail) {
+glm::vec2 Relief::shift(int i, int j) const {
+  const int corner = slot(i, j);
+  if (!is_split(corner)) return glm::vec2(0);
+  const auto about = [&](std::size_t q) { return height(corner + kQuadrantOffset[q]); };
+  return wall_shift(
+      i0_ + i, j0_ + j, {about(0), about(1), about(2), about(3)}, links_about(corner),
+      WallShift::kMaxReach, [this](int x, int y) { return std::max(grid_.height(x, y), floor_); },
+      [this](int x, int y) { return grid_.contains(x, y); });
+}
+
+float Relief::highest_about(int cell) const {
+  float highest = floor_;
+  for (int row = -2; row <= 2; ++row)
+    for (int k = -2; k <= 2; ++k) highest = std::max(highest, height(cell + row * kStride + k));
+  return highest;
+}
+
+/// By corner, row by row.
+using Shifts = std::array<glm::vec2, (kCells + 1) * (kCells + 1)>;
+
+/// Fills in one cell and returns the greatest height of the surface over it, or more.
+float add_cell(const Relief& relief, const Shifts& shifts, int i, int j,
+               SurfaceTile::Detail* detail) {
   const int cell = slot(i, j);
   std::uint16_t& code = detail->code[index(j * kCells + i)];
+  const std::size_t low = index(j * (kCells + 1) + i), high = low + kCells + 1;
+  const std::array<glm::vec2, 4> shift{shifts[low], shifts[low + 1], shifts[high + 1],
+                                       shifts[high]};
+  const bool is_moved = std::any_of(shift.begin(), shift.end(),
+                                    [](const glm::vec2& by) { return by != glm::vec2(0); });
   if (!relief.solid(cell)) {
     code = 0;
-    return SurfaceTile::kNothing;
+    if (!is_moved) return SurfaceTile::kNothing;
+    detail->splits.push_back({{}, {}, shift, true});
+    code = static_cast<std::uint16_t>(detail->splits.size() << 2);
+    return relief.highest_about(cell);
   }
   const std::array<int, 4> corner{slot(i, j), slot(i + 1, j), slot(i + 1, j + 1), slot(i, j + 1)};
   std::array<float, 4> z;
@@ -227,6 +270,8 @@ float add_cell(const Relief& relief, int i, int j, SurfaceTile::Detail* detail) 
                         relief.is_split(corner[2]) || relief.is_split(corner[3]);
   if (is_split) [[unlikely]] {
     SurfaceTile::SplitCell& at = detail->splits.emplace_back();
+    at.shift = shift;
+    at.is_moved = is_moved;
     split = static_cast<unsigned>(detail->splits.size());
     for (std::size_t k = 0; k < 4; ++k) {
       // The cell is the C of its corner a, the D of b, the A of c, the B of d.
@@ -238,8 +283,10 @@ float add_cell(const Relief& relief, int i, int j, SurfaceTile::Detail* detail) 
     for (std::size_t k = 0; k < 4; ++k) z[k] = relief.corner_z(corner[k]);
   }
   const float twice = 2 * relief.height(cell);
-  const bool rising = std::abs(z[0] + z[2] - twice) <= std::abs(z[1] + z[3] - twice);
+  const bool rising =
+      is_moved ? has_rising_diagonal(z, twice, shift) : has_rising_diagonal(z, twice);
   code = static_cast<std::uint16_t>(1u | (rising ? 2u : 0u) | split << 2);
+  if (is_moved) return relief.highest_about(cell);
   return std::max(std::max(z[0], z[1]), std::max(z[2], z[3]));
 }
 
@@ -257,15 +304,18 @@ SurfaceTile make_surface_tile(const HeightGrid& grid, int tx, int ty) {
   relief.find_surface(static_cast<float>(grid.cell_x_mm()), static_cast<float>(grid.cell_y_mm()));
   auto detail = std::make_unique<SurfaceTile::Detail>();
   detail->code.fill(0);
+  Shifts shifts;
+  shifts.fill(glm::vec2(0));
   for (int j = 0; j <= relief.ny(); ++j) {
     for (int i = 0; i <= relief.nx(); ++i) {
+      shifts[index(j * (kCells + 1) + i)] = relief.shift(i, j);
       detail->z[index(j * (kCells + 1) + i)] = relief.corner_z(slot(i, j));
       detail->normal[index(j * (kCells + 1) + i)] = relief.corner_normal(slot(i, j));
     }
   }
   for (int j = 0; j < relief.ny(); ++j) {
     for (int i = 0; i < relief.nx(); ++i) {
-      const float top = add_cell(relief, i, j, detail.get());
+      const float top = add_cell(relief, shifts, i, j, detail.get());
       float& of_block = tile.block_top[index(j / SurfaceTile::kBlockCells * SurfaceTile::kBlocks +
                                              i / SurfaceTile::kBlockCells)];
       of_block = std::max(of_block, top);

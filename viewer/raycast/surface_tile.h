@@ -3,21 +3,23 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <vector>
 
 #include "base/height_grid.h"
-#include "base/wall_course.h"
+#include "base/wall_shift.h"
 
 namespace kerf {
 
 /// The same surface as the workpiece's patches of level 0 show: its corners lie at the corners of
 /// the cells, at the mean height of those of the four cells about it that are linked to each other
 /// (which are: SurfaceSlopes); where not all four are, each group of cells has a height of its own,
-/// and between groups there is a wall. A cell's top is two triangles:
+/// and between groups there is a wall; corners of walls are moved to the wall's course
+/// (wall_shift()). A cell's top is two triangles:
 ///
-///      d---c       d---c     Of the two diagonals the one whose middle is nearer to the height
-///      |  /|  or   |\  |     of the cell.
+///      d---c       d---c     Of the two diagonals that of has_rising_diagonal().
+///      |  /|  or   |\  |
 ///      | / |       | \ |
 ///      a---b       a---b
 ///
@@ -30,6 +32,8 @@ struct SurfaceTile {
   struct SplitCell {
     std::array<float, 4> z;
     std::array<std::uint32_t, 4> normal;
+    std::array<glm::vec2, 4> shift;  ///< in cells
+    bool is_moved;                   ///< one of them is; then the cell need not be solid
   };
   struct Detail {
     /// By corner, of those where all four cells hang together; row by row.
@@ -41,7 +45,8 @@ struct SurfaceTile {
     std::vector<SplitCell> splits;
   };
 
-  /// Greatest height of the surface, of the tile and of each block; kNothing without material.
+  /// No less than any height of the surface over the tile and over each block; kNothing without
+  /// material.
   float top = kNothing;
   std::array<float, kBlocks * kBlocks> block_top;
   /// None where the tile is level all over, at `top`, or has no material.
@@ -55,14 +60,18 @@ struct CellTop {
   float a, b, c, d;
   bool is_solid;
   bool is_rising;  ///< diagonal a-c
+  /// Where corners are moved, else null: the top is not over the cell's square then, and those of
+  /// the cells about it may reach into that.
+  const SurfaceTile::SplitCell* moved = nullptr;
 };
 
 inline CellTop cell_top(const SurfaceTile::Detail& detail, int x, int y) {
   const unsigned code = detail.code[static_cast<std::size_t>(y * SurfaceTile::kCells + x)];
   const bool is_solid = (code & 1u) != 0, is_rising = (code & 2u) != 0;
   if (const unsigned split = code >> 2; split != 0) {
-    const std::array<float, 4>& z = detail.splits[split - 1].z;
-    return {z[0], z[1], z[2], z[3], is_solid, is_rising};
+    const SurfaceTile::SplitCell& at = detail.splits[split - 1];
+    const std::array<float, 4>& z = at.z;
+    return {z[0], z[1], z[2], z[3], is_solid, is_rising, at.is_moved ? &at : nullptr};
   }
   const float* const low =
       detail.z.data() + static_cast<std::size_t>(y * (SurfaceTile::kCells + 1) + x);
@@ -73,7 +82,8 @@ inline CellTop cell_top(const SurfaceTile::Detail& detail, int x, int y) {
 /// O(cells), some tens of microseconds; much less for a level tile.
 SurfaceTile make_surface_tile(const HeightGrid& grid, int tx, int ty);
 
-/// Cells beyond a cell up to which its change can change the surface or how it is lit.
-inline constexpr int kSurfaceReach = WallCourse::kMaxReach;
+/// Cells beyond a cell up to which its change can change the surface or how it is lit: corners so
+/// far away, and the cells about them reach a part of a cell farther.
+inline constexpr int kSurfaceReach = WallShift::kMaxReach + 1;
 
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/wall_shift.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/mmap/column_relief.h"
 
@@ -27,6 +28,9 @@ class ColumnPatchBuilder {
       : r_(relief), patch_(patch), group_of_(4 * relief.face_count()) {}
 
   void add_surface() {
+    places_.reserve(static_cast<std::size_t>((r_.nx() + 1) * (r_.ny() + 1)));
+    for (int j = 0; j <= r_.ny(); ++j)
+      for (int i = 0; i <= r_.nx(); ++i) places_.push_back(unmoved(i, j) + shift_mm(i, j));
     for (int j = 0; j <= r_.ny(); ++j)
       for (int i = 0; i <= r_.nx(); ++i) find_corner(i, j);
     add_square(0, 0, kTileCells >> r_.level());
@@ -49,7 +53,7 @@ class ColumnPatchBuilder {
   };
   /// Faces that meet at a corner. Becomes a vertex when one is asked for.
   struct Group {
-    int i, j;
+    glm::vec2 xy;
     float z;
     std::uint32_t normal, cut_by;
     std::uint32_t vertex = kNoVertex;
@@ -63,13 +67,20 @@ class ColumnPatchBuilder {
   float z_at(FaceIndex face, std::size_t corner) const { return group_at(face, corner).z; }
   std::uint32_t vertex_at(FaceIndex face, std::size_t corner) {
     Group& g = groups_[group_of_[at(face, corner)]];
-    if (g.vertex == kNoVertex) g.vertex = add_vertex(g.i, g.j, g.z, g.normal, g.cut_by);
+    if (g.vertex == kNoVertex) g.vertex = add_vertex(g.xy, g.z, g.normal, g.cut_by);
     return g.vertex;
   }
   bool owns(int i, int j) const { return i >= 0 && j >= 0 && i < r_.nx() && j < r_.ny(); }
 
-  std::uint32_t add_vertex(int i, int j, float z, std::uint32_t normal, std::uint32_t cut_by) {
-    patch_.vertices.push_back({{r_.tops().x(i), r_.tops().y(j), z}, normal});
+  glm::vec2 unmoved(int i, int j) const { return {r_.tops().x(i), r_.tops().y(j)}; }
+  glm::vec2 shift_mm(int i, int j);
+  /// Of all that stands above each other at a corner.
+  const glm::vec2& place_of(int i, int j) const {
+    return places_[static_cast<std::size_t>(j * (r_.nx() + 1) + i)];
+  }
+  std::uint32_t add_vertex(const glm::vec2& xy, float z, std::uint32_t normal,
+                           std::uint32_t cut_by) {
+    patch_.vertices.push_back({{xy, z}, normal});
     if (r_.keeps_cut_ids()) patch_.cut_by.push_back(cut_by);
     return static_cast<std::uint32_t>(patch_.vertices.size() - 1);
   }
@@ -88,7 +99,18 @@ class ColumnPatchBuilder {
   void add_square(int i, int j, int size);
   void add_fan(int i, int j, int width, int height, FaceIndex number, bool from_end);
   void add_ground();
-  void add_face(FaceIndex f);
+  void add_face(int i, int j, FaceIndex f);
+  /// How far that corner of the cell's face is moved.
+  glm::vec2 moved_mm(int i, int j, FaceIndex f, std::size_t corner) const {
+    const int corner_i = i + (corner == 1 || corner == 2), corner_j = j + (corner > 1);
+    return group_at(f, corner).xy - unmoved(corner_i, corner_j);
+  }
+  bool is_square(int i, int j, FaceIndex f) const {
+    bool is_square = true;
+    for (std::size_t k = 0; k < 4; ++k)
+      is_square = is_square && moved_mm(i, j, f, k) == glm::vec2(0);
+    return is_square;
+  }
 
   /// A face that ends at the border of two cells, seen from the top downward.
   struct Event {
@@ -106,6 +128,11 @@ class ColumnPatchBuilder {
     std::vector<float> z;
     std::vector<std::uint32_t> vertex;
   };
+  bool is_before_solid(const Event& upper) const {
+    return upper.in_before == r_.face(upper.face).up;
+  }
+  template <class Visit>
+  void each_wall(int before, bool along_y, const Visit& visit);
   void add_walls(int i, int j, bool along_y);
   void add_wall(int i, int j, bool along_y, const Event& upper, const Event& lower,
                 bool before_is_solid);
@@ -114,6 +141,7 @@ class ColumnPatchBuilder {
 
   const ColumnRelief& r_;
   MeshPatch& patch_;
+  std::vector<glm::vec2> places_;        ///< by corner
   std::vector<std::uint32_t> group_of_;  ///< by face, four corners each
   std::vector<Group> groups_;
   std::vector<Meeting> meetings_, group_;
@@ -159,7 +187,9 @@ void ColumnPatchBuilder::settle_group(int i, int j, std::size_t group) {
   for (const Meeting& m : group_)
     if (r_.face(m.face).z < r_.face(lowest->face).z) lowest = &m;
   const auto number = static_cast<std::uint32_t>(groups_.size());
-  groups_.push_back({i, j, place.z, place.normal, r_.face(lowest->face).cut_by});
+  const bool is_moved = !r_.face(group_[0].face).is_ground || group_.size() < 4;
+  groups_.push_back({is_moved ? place_of(i, j) : unmoved(i, j), place.z, place.normal,
+                     r_.face(lowest->face).cut_by});
   for (const Meeting& m : group_) group_of_[at(m.face, m.corner)] = number;
 }
 
@@ -238,7 +268,7 @@ void ColumnPatchBuilder::add_square(int i, int j, int size) {
     for (int x = i; x < std::min(i + size, r_.nx()); ++x) {
       const int cell = TileRelief::slot(x, y);
       for (FaceIndex f = r_.first_face(cell); f < r_.end_face(cell); ++f)
-        if (!r_.face(f).is_ground) add_face(f);
+        if (!r_.face(f).is_ground) add_face(x, y, f);
     }
   }
 }
@@ -272,30 +302,33 @@ void ColumnPatchBuilder::add_ground() {
   };
   bool whole = r_.nx() > 1 && r_.ny() > 1;
   for (int j = 0; j < r_.ny(); ++j)
-    for (int i = 0; i < r_.nx(); ++i) whole = whole && ground_of(i, j) != kNone;
+    for (int i = 0; i < r_.nx(); ++i)
+      whole = whole && ground_of(i, j) != kNone && is_square(i, j, ground_of(i, j));
+  // A corner on the border that is moved might not be seen from the middle.
   if (whole) return add_fan(0, 0, r_.nx(), r_.ny(), 0, true);
   for (int j = 0; j < r_.ny(); ++j) {
     for (int i = 0; i < r_.nx(); ++i)
-      if (const FaceIndex f = ground_of(i, j); f != kNone) add_face(f);
+      if (const FaceIndex f = ground_of(i, j); f != kNone) add_face(i, j, f);
   }
 }
 
-void ColumnPatchBuilder::add_face(FaceIndex f) {
+void ColumnPatchBuilder::add_face(int i, int j, FaceIndex f) {
   const auto v = [&](std::size_t corner) { return vertex_at(f, corner); };
-  const auto z = [&](std::size_t corner) { return z_at(f, corner); };
-  // Of the two diagonals the one whose middle is nearer to the cell's height.
-  const float twice = 2 * r_.face(f).z;
-  const bool rising = std::abs(z(0) + z(2) - twice) <= std::abs(z(1) + z(3) - twice);
+  const std::array<float, 4> z{z_at(f, 0), z_at(f, 1), z_at(f, 2), z_at(f, 3)};
+  std::array<glm::vec2, 4> shift;
+  for (std::size_t k = 0; k < 4; ++k) shift[k] = moved_mm(i, j, f, k) / r_.tops().size_mm(i, j);
+  const bool rising = has_rising_diagonal(z, 2 * r_.face(f).z, shift);
   const std::size_t last = rising ? 2 : 3, first = rising ? 0 : 1;
   const bool up = r_.face(f).up;
   add_triangle(v(0), up ? v(1) : v(last), up ? v(last) : v(1));
   add_triangle(v(first), up ? v(2) : v(3), up ? v(3) : v(2));
 }
 
-/// The walls between cell (i, j) and the one before it in x (along_y) or in y.
-void ColumnPatchBuilder::add_walls(int i, int j, bool along_y) {
-  const int cell = TileRelief::slot(i, j);
-  const int before = along_y ? cell - 1 : cell - TileRelief::kStride;
+/// Calls visit(upper, lower) with the ends of the walls between a cell and the next one in x
+/// (along_y) or in y.
+template <class Visit>
+void ColumnPatchBuilder::each_wall(int before, bool along_y, const Visit& visit) {
+  const int cell = before + (along_y ? 1 : TileRelief::kStride);
   FaceIndex f = r_.first_face(before), g = r_.first_face(cell);
   const FaceIndex f_end = r_.end_face(before), g_end = r_.end_face(cell);
   // From one pair of linked faces to the next: there both cells are solid or neither is, and below
@@ -310,13 +343,57 @@ void ColumnPatchBuilder::add_walls(int i, int j, bool along_y) {
     ++f;
     ++g;
     std::sort(events_.begin(), events_.end());
-    for (std::size_t n = 0; n + 1 < events_.size(); n += 2) {
-      const bool before_is_solid = events_[n].in_before == r_.face(events_[n].face).up;
-      const bool is_ours =
-          before_is_solid ? owns(i - (along_y ? 1 : 0), j - (along_y ? 0 : 1)) : owns(i, j);
-      if (is_ours) add_wall(i, j, along_y, events_[n], events_[n + 1], before_is_solid);
-    }
+    for (std::size_t n = 0; n + 1 < events_.size(); n += 2) visit(events_[n], events_[n + 1]);
   }
+}
+
+/// The walls between cell (i, j) and the one before it in x (along_y) or in y.
+void ColumnPatchBuilder::add_walls(int i, int j, bool along_y) {
+  const int cell = TileRelief::slot(i, j);
+  const int before = along_y ? cell - 1 : cell - TileRelief::kStride;
+  each_wall(before, along_y, [&](const Event& upper, const Event& lower) {
+    const bool before_is_solid = is_before_solid(upper);
+    const bool is_ours =
+        before_is_solid ? owns(i - (along_y ? 1 : 0), j - (along_y ? 0 : 1)) : owns(i, j);
+    if (is_ours) add_wall(i, j, along_y, upper, lower, before_is_solid);
+  });
+}
+
+/// How far to move corner (i, j) to the course of its walls. Where all tops about it are one level
+/// face, that of the highest wall below; the others go with it.
+glm::vec2 ColumnPatchBuilder::shift_mm(int i, int j) {
+  const TileRelief& tops = r_.tops();
+  const int corner = TileRelief::slot(i, j);
+  if (tops.is_split(corner)) return tops.shift_mm(i, j);
+  const std::array<int, 4> cells = TileRelief::cells_about(corner);
+  const auto is_plain = [&](int cell) { return r_.end_face(cell) - r_.first_face(cell) <= 2; };
+  const auto is_level = [&](int cell) { return tops.height(cell) == tops.height(cells[0]); };
+  if (std::all_of(cells.begin(), cells.end(), is_plain) ||
+      !std::all_of(cells.begin(), cells.end(), is_level))
+    return glm::vec2(0);
+  // By edge, each between a cell and the next one about the corner; of the two that which is first
+  // in x or y is the `before`.
+  float highest = 0, middle = 0;
+  std::size_t edge = 4;
+  bool is_high_left = false;
+  for (std::size_t q = 0; q < 4; ++q) {
+    const bool along_y = q % 2 == 0, is_before_first = q < 2;
+    const int before = cells[q == 0 ? 0 : q == 1 ? 1 : q == 2 ? 3 : 0];
+    each_wall(before, along_y, [&](const Event& upper, const Event& lower) {
+      if (!(upper.z - lower.z > highest)) return;
+      highest = upper.z - lower.z;
+      middle = 0.5f * (upper.z + lower.z);
+      edge = q;
+      is_high_left = is_before_solid(upper) != is_before_first;  // the next one about the corner
+    });
+  }
+  if (edge == 4) return glm::vec2(0);
+  const auto solid = [&](int x, int y) { return r_.is_solid(x, y, middle) ? 1.0f : 0.0f; };
+  const auto in_grid = [&](int x, int y) { return r_.is_in_grid(x, y); };
+  const WallShift wall({i, j}, WallShift::kWays[edge], is_high_left, 0.5f,
+                       TileRelief::wall_reach(r_.level()), solid, in_grid);
+  const bool is_on_border = !(in_grid(i - 1, j - 1) && in_grid(i, j));
+  return is_on_border ? glm::vec2(0) : tops.to_mm(wall.shift(glm::vec2(1)), i, j);
 }
 
 /// Heights from the one to the other; between them those of the other faces at this corner, since
@@ -369,7 +446,7 @@ void ColumnPatchBuilder::add_wall(int i, int j, bool along_y, const Event& upper
   for (WallEnd* end : {&low, &high}) {
     const std::uint32_t normal = pack_normal(glm::vec3(facing[end == &high ? 1 : 0], 0));
     for (const float at_z : end->z)
-      end->vertex.push_back(add_vertex(end->i, end->j, at_z, normal, made_by));
+      end->vertex.push_back(add_vertex(place_of(end->i, end->j), at_z, normal, made_by));
   }
   // From outside, the end with the higher y is at the right of a wall that faces +x, and the one
   // with the higher x at the left of a wall that faces +y.
@@ -396,13 +473,16 @@ void ColumnPatchBuilder::zip(const WallEnd& low, const WallEnd& high, bool low_i
 /// Each piece of material that reaches a border with another tile is closed there.
 void ColumnPatchBuilder::add_skirts() {
   const auto add = [&](int i, int j, std::size_t from, std::size_t to) {
+    // On the tile's border, wherever corners were moved (see make_tile_patch()).
+    const auto at = [&](std::size_t k) { return unmoved(i + (k == 1 || k == 2), j + (k > 1)); };
+    const std::array<glm::vec2, 2> border{at(from), at(to)};
     const int cell = TileRelief::slot(i, j);
     for (FaceIndex f = r_.first_face(cell); f < r_.end_face(cell); f += 2) {
       const std::uint32_t a = vertex_at(f, from), b = vertex_at(f, to);
       // With the normals above: where a skirt fills a crack it must not be seen.
       const auto below = [&](std::uint32_t top, std::size_t corner) {
         MeshVertex vertex = patch_.vertices[top];
-        vertex.position_mm.z = z_at(f + 1, corner);
+        vertex.position_mm = {border[corner == from ? 0 : 1], z_at(f + 1, corner)};
         patch_.vertices.push_back(vertex);
         if (r_.keeps_cut_ids()) patch_.cut_by.push_back(patch_.cut_by[top]);
         return static_cast<std::uint32_t>(patch_.vertices.size() - 1);

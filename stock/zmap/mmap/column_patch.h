@@ -22,7 +22,9 @@ bool gaps_near(const TileGrid& grid, const GapGrid& gaps, std::uint32_t tile);
 ///           |        where nothing but tops meets, so that the patches of both fit together. The
 ///   ________|        floor of a gap is linked to the top beside it that goes on level (where the
 ///  |  floor of gap   gap opens), floors to floors and ceilings to ceilings. Between surfaces that
-///  |________         are not linked stands a wall at the border of the cells.
+///  |________         are not linked stands a wall at the border of the cells; corners of walls are
+///                    moved to the walls' course as there, also below a top that is level about
+///                    them.
 ///
 /// A cell of level n is as low as the lowest of its cells, and hollow where any of them is. A wall
 /// belongs to the tile that has the material. Over all tiles of one level each edge is in two

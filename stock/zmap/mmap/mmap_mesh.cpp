@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "stock/zmap/mmap/column_patch.h"
-#include "stock/zmap/mmap/wall_smoothing.h"
 #include "stock/zmap/tile_patch.h"
 
 namespace kerf {
@@ -317,7 +316,6 @@ TriangleMesh mesh_columns(const TileGrid& grid, const GapGrid& gaps) {
                                            : make_tile_patch(grid, tile, 0));
   }
   TriangleMesh mesh = welder.take();
-  smooth_walls(grid, mesh);
   const double cell = std::min(grid.cell_x_mm(), grid.cell_y_mm());
   return separate_touching(std::move(mesh), static_cast<float>(0.01 * cell));
 }

@@ -10,17 +10,13 @@
 
 namespace kerf {
 
-/// The surface of all patches of level 0, in one piece, heights to 1/4096 mm. Differs from them in
-/// this:
-///   - Oblique and round walls are not staircases: their corners are moved in x and y to the middle
-///     of the way between the corners next to them, by no more than a quarter of a cell. Walls stay
-///     vertical; straight ones along x or y and corners of a part stay where they are.
-///   - Where pieces of material touch at an edge or a point only, each has corners of its own, a
-///     hundredth of a cell inside.
+/// The surface of all patches of level 0, in one piece, heights to 1/4096 mm; walls where their
+/// course is (wall_shift()). Differs from the patches in this: where pieces of material touch at an
+/// edge or a point only, each has corners of its own, a hundredth of a cell inside.
 /// Result: closed, every edge in exactly two triangles, once in each direction, normals outward;
-/// no two edges in the same place. The volume differs from that of the columns by no more than a
-/// quarter of a cell times the area of the walls, plus half the step between linked cells times the
-/// area of the surfaces that are not level (in practice both cancel out but for some 0.1 %).
+/// no two edges in the same place. The volume differs from that of the columns by no more than half
+/// a cell times the area of the walls, plus half the step between linked cells times the area of
+/// the surfaces that are not level (in practice both cancel out but for some 0.1 %).
 /// O(n log n) of the triangles.
 TriangleMesh mesh_columns(const TileGrid& grid, const GapGrid& gaps);
 

@@ -27,14 +27,14 @@ const Box kBlock{Vec3(0, 0, -8), Vec3(20, 20, 0)};
 constexpr double kSameSurface_mm = 1e-3;
 /// Pixels whose centre passes an edge so closely that rounding decides.
 constexpr double kMostSilhouette = 0.01;
-// The Z-map puts walls on cells, and slopes of them half a cell aside.
+// The Z-map puts walls on the course of cells, and slopes half a cell aside of walls.
 constexpr double kOneAndAHalfCells_mm = 1.5 * kCell_mm;
 /// Of pixels that differ by more along the view: edges that lie part of a cell apart, and walls
-/// seen so flatly that part of a cell aside is more than that along the view. At most 4.4 % (front,
+/// seen so flatly that part of a cell aside is more than that along the view. At most 3.6 % (front,
 /// a slot nearly along the view); shrinks with the cell, not with the tolerance of the prisms.
-constexpr double kMostEdgeOn = 0.05;
+constexpr double kMostEdgeOn = 0.04;
 /// Of those, pixels that do not lie between the depths beside them, either: slivers of walls and
-/// ridges that one road shows and the other does not. At most 0.04 %.
+/// ridges that one road shows and the other does not. At most 0.05 %.
 constexpr double kMostSliver = 0.001;
 
 /// Of the pixels of lines: ends of those that a surface hides, which lies part of a cell elsewhere.
