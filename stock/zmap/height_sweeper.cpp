@@ -17,9 +17,9 @@ constexpr std::size_t kMovesAtOnce = 1024;
 SweepKernels pick_kernels(ZMapKernel kernel) {
 #if defined(__x86_64__)
   if (kernel != ZMapKernel::kScalar && zmap_has_avx2())
-    return {zmap_avx2::run_sweeps, zmap_avx2_ids::run_sweeps};
+    return {zmap_avx2::run_sweeps, zmap_avx2_ids::run_sweeps, zmap_avx2_gaps::run_sweeps};
 #endif
-  return {zmap_scalar::run_sweeps, zmap_scalar_ids::run_sweeps};
+  return {zmap_scalar::run_sweeps, zmap_scalar_ids::run_sweeps, zmap_scalar_gaps::run_sweeps};
 }
 
 std::uint32_t cut_id_of(std::uint64_t move_id) {
@@ -48,14 +48,7 @@ GridView HeightSweeper::view_without_tiles() const {
   return view;
 }
 
-/// A sweep over a tile of others goes to a tile that is empty: it lowers nothing and counts
-/// nothing.
 GridView HeightSweeper::view() {
-  dumps_.clear();
-  if (others_ != nullptr) {
-    dumps_.resize(static_cast<std::size_t>(pool->threads()));
-    for (Dump& dump : dumps_) std::fill(dump.cells, std::end(dump.cells), grid.floor_mm());
-  }
   pointers_.assign(grid.tile_count(), nullptr);
   GridView view = view_without_tiles();
   view.tiles = pointers_.data();
@@ -63,12 +56,9 @@ GridView HeightSweeper::view() {
   view.make_writable = [](void* owner, int tile) {
     HeightSweeper& self = *static_cast<HeightSweeper*>(owner);
     const std::size_t index = static_cast<std::size_t>(tile);
-    if (self.others_ == nullptr || !self.others_->holds(index))
-      return self.pointers_[index] = self.grid.make_writable(index);
-    const std::size_t band = index / static_cast<std::size_t>(self.grid.tiles_x());
-    return self.pointers_[index] = self.dumps_[band % self.dumps_.size()].cells;
+    return self.pointers_[index] = self.grid.make_writable(index);
   };
-  view.cut_ids = cut_ids_.data();
+  if (grid.keeps_cut_ids()) view.cut_ids = cut_ids_.data();
   return view;
 }
 
@@ -97,32 +87,29 @@ void HeightSweeper::share_out(std::size_t report_count, const GridView& view, co
 }
 
 /// Works off `ops_`; totals_[0 .. report_count) receive the sums.
-void HeightSweeper::run(OtherTiles* others, std::size_t report_count) {
+void HeightSweeper::run(HollowColumns* hollows, std::size_t report_count) {
   if (ops_.empty()) return;
   grid.begin_change();
-  const SweepBatch batch{ops_, tools_, cut_ids_.data()};
-  others_ = others != nullptr && others->take(batch) ? others : nullptr;
-  sweep_own_tiles(report_count);
-  if (others_ != nullptr) others_->cut(batch, totals_);
+  const std::optional<GapView> gaps =
+      hollows != nullptr ? hollows->begin({ops_, tools_, cut_ids_.data()}) : std::nullopt;
+  GridView whole = view();
+  SweepKernel* kernel = grid.keeps_cut_ids() ? kernels.with_ids : kernels.plain;
+  if (gaps) {
+    whole.gaps = *gaps;
+    kernel = kernels.with_gaps;
+  }
+  // Of two moves that cut equally deep with different parts of the cutter, the earlier would be
+  // found by how they are divided into calls; and whose the material is that they share.
+  if (tools_.size() > 1 && (grid.keeps_cut_ids() || gaps)) {
+    sweep_by_moves(whole, kernel, report_count);
+  } else {
+    sweep(whole, kernel, report_count);
+  }
+  if (gaps) hollows->end();
   ops_.clear();
 }
 
-void HeightSweeper::sweep_own_tiles(std::size_t report_count) {
-  const GridView whole = view();
-  if (grid.keeps_cut_ids() && tools_.size() > 1) {
-    // Move by move, or of two that cut equally deep with different parts of the cutter, the
-    // earlier would be found by how they are divided into calls.
-    return share_out(report_count, whole,
-                     [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
-                       for (SweepOp op : ops_) {
-                         for (const ConvexTool& tool : tools_) {
-                           op.use_double |= tool.needs_double;
-                           kernels.with_ids(mine, tool, &op, 1, thread, threads, sums);
-                         }
-                       }
-                     });
-  }
-  SweepKernel* const kernel = grid.keeps_cut_ids() ? kernels.with_ids : kernels.plain;
+void HeightSweeper::sweep(const GridView& whole, SweepKernel* kernel, std::size_t report_count) {
   for (const ConvexTool& tool : tools_) {
     if (tool.needs_double)
       for (SweepOp& op : ops_) op.use_double = true;
@@ -132,38 +119,50 @@ void HeightSweeper::sweep_own_tiles(std::size_t report_count) {
   }
 }
 
-void HeightSweeper::finish(OtherTiles* others, std::vector<CutReport>& reports) {
+void HeightSweeper::sweep_by_moves(const GridView& whole, SweepKernel* kernel,
+                                   std::size_t report_count) {
+  share_out(report_count, whole, [&](GridView& mine, int thread, int threads, SweepTotals* sums) {
+    for (SweepOp op : ops_) {
+      for (const ConvexTool& tool : tools_) {
+        op.use_double |= tool.needs_double;
+        kernel(mine, tool, &op, 1, thread, threads, sums);
+      }
+    }
+  });
+}
+
+void HeightSweeper::finish(HollowColumns* hollows, std::vector<CutReport>& reports) {
   if (!path_.holds_back()) return;
   totals_.assign(1, pending_totals_);
   cut_ids_.assign(1, cut_id_of(pending_id_));
   path_.set_pending_report(0);
   path_.finish(ops_);
-  run(others, 1);
+  run(hollows, 1);
   reports.push_back(report(pending_id_, totals_[0]));
 }
 
-void HeightSweeper::end_path(OtherTiles* others, std::vector<CutReport>& reports) {
-  finish(others, reports);
+void HeightSweeper::end_path(HollowColumns* hollows, std::vector<CutReport>& reports) {
+  finish(hollows, reports);
   path_.restart();
 }
 
-void HeightSweeper::use_cutter(const Cutter& cutter, OtherTiles* others,
+void HeightSweeper::use_cutter(const Cutter& cutter, HollowColumns* hollows,
                                std::vector<CutReport>& reports) {
   if (cutter.spec() == cutter_spec_ && !tools_.empty()) return;
-  end_path(others, reports);
+  end_path(hollows, reports);
   cutter_spec_ = cutter.spec();
   tools_ = convex_components(cutter.profile());
 }
 
-void HeightSweeper::cut(const Cutter& cutter, std::span<const CutMove> moves, OtherTiles* others,
-                        std::vector<CutReport>& reports) {
-  use_cutter(cutter, others, reports);
+void HeightSweeper::cut(const Cutter& cutter, std::span<const CutMove> moves,
+                        HollowColumns* hollows, std::vector<CutReport>& reports) {
+  use_cutter(cutter, hollows, reports);
   for (std::size_t first = 0; first < moves.size(); first += kMovesAtOnce) {
-    cut_some(moves.subspan(first, std::min(kMovesAtOnce, moves.size() - first)), others, reports);
+    cut_some(moves.subspan(first, std::min(kMovesAtOnce, moves.size() - first)), hollows, reports);
   }
 }
 
-void HeightSweeper::cut_some(std::span<const CutMove> moves, OtherTiles* others,
+void HeightSweeper::cut_some(std::span<const CutMove> moves, HollowColumns* hollows,
                              std::vector<CutReport>& reports) {
   // totals_[0] is the move held back before, if any; the others follow in order.
   const bool carried = path_.holds_back();
@@ -180,7 +179,7 @@ void HeightSweeper::cut_some(std::span<const CutMove> moves, OtherTiles* others,
     if (carried) cut_ids_.push_back(cut_id_of(pending_id_));
     for (const CutMove& move : moves) cut_ids_.push_back(cut_id_of(move.id));
   }
-  run(others, totals_.size());
+  run(hollows, totals_.size());
 
   const bool holding = path_.holds_back();
   if (carried) reports.push_back(report(pending_id_, totals_[0]));

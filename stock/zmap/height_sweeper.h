@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ namespace kerf {
 struct SweepKernels {
   SweepKernel* plain = nullptr;
   SweepKernel* with_ids = nullptr;
+  SweepKernel* with_gaps = nullptr;  ///< and with ids, where the grid keeps them
 };
 SweepKernels pick_kernels(ZMapKernel kernel);
 
@@ -33,17 +35,13 @@ struct SweepBatch {
   const std::uint32_t* cut_ids = nullptr;  ///< by report; only where the grid keeps them
 };
 
-/// Tiles of the grid that somebody else cuts, because heights are not all that they hold.
-class OtherTiles {
+/// What is hollow below the heights of the grid.
+class HollowColumns {
  public:
-  virtual ~OtherTiles() = default;
-  /// Chooses the tiles for a batch. False: there are none.
-  virtual bool take(const SweepBatch& batch) = 0;
-  /// The tile is one of those.
-  virtual bool holds(std::size_t tile) const = 0;
-  /// Lowers them, after the others have been. Adds what was removed to totals[report]. `batch`:
-  /// that of take().
-  virtual void cut(const SweepBatch& batch, std::span<SweepTotals> totals) = 0;
+  virtual ~HollowColumns() = default;
+  /// Null: the batch comes near to nothing hollow. Else how the kernels are to see it, until end().
+  virtual std::optional<GapView> begin(const SweepBatch& batch) = 0;
+  virtual void end() = 0;
 };
 
 /// Lowers the heights of a grid by moves of cutters without undercut: StockModel::cut() and
@@ -56,13 +54,13 @@ class HeightSweeper {
         kernels(pick_kernels(kernel)),
         pool(std::make_shared<WorkerPool>(threads < 1 ? 1 : threads)) {}
 
-  /// `others` may be null. The cutter must be one of convex_components() without undercut.
-  void cut(const Cutter& cutter, std::span<const CutMove> moves, OtherTiles* others,
+  /// `hollows` may be null. The cutter must be one of convex_components() without undercut.
+  void cut(const Cutter& cutter, std::span<const CutMove> moves, HollowColumns* hollows,
            std::vector<CutReport>& reports);
-  void finish(OtherTiles* others, std::vector<CutReport>& reports);
+  void finish(HollowColumns* hollows, std::vector<CutReport>& reports);
   bool holds_back() const { return path_.holds_back(); }
   /// Finishes, and lets the next move begin with the tool's own shape.
-  void end_path(OtherTiles* others, std::vector<CutReport>& reports);
+  void end_path(HollowColumns* hollows, std::vector<CutReport>& reports);
 
   CutReport report(std::uint64_t id, const SweepTotals& sum) const;
   /// The grid as kernels see it, without tiles: no tile may be written before its first sweep has
@@ -75,11 +73,12 @@ class HeightSweeper {
   std::shared_ptr<WorkerPool> pool;
 
  private:
-  void use_cutter(const Cutter& cutter, OtherTiles* others, std::vector<CutReport>& reports);
-  void cut_some(std::span<const CutMove> moves, OtherTiles* others,
+  void use_cutter(const Cutter& cutter, HollowColumns* hollows, std::vector<CutReport>& reports);
+  void cut_some(std::span<const CutMove> moves, HollowColumns* hollows,
                 std::vector<CutReport>& reports);
-  void run(OtherTiles* others, std::size_t report_count);
-  void sweep_own_tiles(std::size_t report_count);
+  void run(HollowColumns* hollows, std::size_t report_count);
+  void sweep(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
+  void sweep_by_moves(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
   GridView view();
   template <class Work>
   void share_out(std::size_t report_count, const GridView& view, const Work& work);
@@ -94,12 +93,6 @@ class HeightSweeper {
   std::vector<SweepTotals> totals_;
   std::vector<float*> pointers_;
   std::vector<std::uint32_t> cut_ids_;  ///< by report; unused where they are not kept
-  /// Takes sweeps over tiles of others.
-  struct alignas(64) Dump {
-    float cells[2 * kTileFloats];
-  };
-  std::vector<Dump> dumps_;       ///< by thread
-  OtherTiles* others_ = nullptr;  ///< during run()
 };
 
 }  // namespace kerf

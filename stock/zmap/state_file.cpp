@@ -48,11 +48,10 @@ void put_heights(StateWriter& file, const std::string& model, const TileGrid& gr
 
 Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& name,
                                    const std::string& model, bool goes_on) {
-  Result<StateHead> reader = head_of_state(bytes, name, model);
-  if (!reader) return Error{reader.error()};
   Head head;
-  if (!read_head(*reader, head))
-    return Error{fmt::format("{}: the head is damaged near byte {}", name, reader->position())};
+  const Result<StateHead> reader = head_of_state(
+      bytes, name, model, [&head](StateHead& lines) { return read_head(lines, head); });
+  if (!reader) return Error{reader.error()};
   const std::size_t count =
       static_cast<std::size_t>(head.cells[0]) * static_cast<std::size_t>(head.cells[1]);
   const std::size_t expected = reader->position() + count * sizeof(float) + kStateHashBytes;
@@ -61,22 +60,23 @@ Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& 
                              bytes.size(), head.cells[0], head.cells[1], goes_on ? "at least " : "",
                              expected, bytes.size() < expected ? "cut short" : "too long")};
   }
-  if (!has_right_checksum(bytes))
-    return Error{fmt::format("{}: the checksum does not match: the file is damaged", name)};
+  const Result<std::string_view> data = data_of_state(*reader, name);
+  if (!data) return Error{data.error()};
 
   const Box box{Vec3(head.bounds[0], head.bounds[1], head.bounds[2]),
                 Vec3(head.bounds[3], head.bounds[4], head.bounds[5])};
   TileGrid grid(box, static_cast<int>(head.cells[0]), static_cast<int>(head.cells[1]));
   std::vector<float> row(static_cast<std::size_t>(grid.nx()));
-  const char* data = bytes.data() + reader->position();
-  for (int j = 0; j < grid.ny(); ++j, data += row.size() * sizeof(float)) {
-    std::memcpy(row.data(), data, row.size() * sizeof(float));
+  const std::size_t row_bytes = row.size() * sizeof(float);
+  std::string_view rest = *data;
+  for (int j = 0; j < grid.ny(); ++j, rest.remove_prefix(row_bytes)) {
+    std::memcpy(row.data(), rest.data(), row_bytes);
     for (const float height : row)
       if (!std::isfinite(height))
         return Error{fmt::format("{}: row {} holds a height that is not a number", name, j)};
     grid.set_row(j, row.data());
   }
-  return SavedHeights{{std::move(grid), head.blank_mm3}, expected - kStateHashBytes};
+  return SavedHeights{{std::move(grid), head.blank_mm3}, rest};
 }
 
 Done write_state(const std::string& path, const TileGrid& grid, double blank_mm3) {

@@ -9,8 +9,8 @@
 // Then nx * ny IEEE float32, row by row (y outer): height in mm.
 #pragma once
 
-#include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "base/result.h"
 #include "stock/state_bytes.h"
@@ -28,9 +28,9 @@ void put_heights(StateWriter& file, const std::string& model, const TileGrid& gr
                  double blank_mm3);
 struct SavedHeights {
   SavedState state;
-  std::size_t end = 0;  ///< of the heights in the file
+  std::string_view rest;  ///< of the bytes, between the heights and the checksum
 };
-/// `goes_on`: there may be more between the heights and the checksum, which is checked.
+/// `goes_on`: there may be such a rest. The checksum is checked.
 Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& name,
                                    const std::string& model, bool goes_on);
 

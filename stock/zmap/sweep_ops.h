@@ -30,6 +30,20 @@ inline const std::uint32_t* cut_ids_of(const float* cells) {
   return reinterpret_cast<const std::uint32_t*>(cells + kTileFloats);
 }
 
+/// What is hollow below the heights of a grid, as the kernels see it.
+struct GapView {
+  /// By tile, null where it has no gaps: the upper end of the topmost gap of each cell, -infinity
+  /// where there is none. May change with each call of open().
+  const float* const* tops = nullptr;
+  float thinnest = 0;  ///< material that is no thicker over a gap is not kept, mm
+  void* owner = nullptr;
+  /// Cells `first` + n of the tile, for each bit n of `lanes`, have been lowered from before[n] to
+  /// heights[n], which leaves nothing over their topmost gaps. Lowers heights[n] to where there is
+  /// material, and sets gone[n], mm, to how much was removed. Called by the band's thread.
+  void (*open)(void* owner, int tile, int first, unsigned lanes, float* heights,
+               const float* before, float* gone, std::uint32_t report) = nullptr;
+};
+
 /// A grid as the kernels see it. Row `band` of tiles is written by one thread only.
 struct GridView {
   float** tiles =
@@ -43,7 +57,8 @@ struct GridView {
   double cell_x = 0, cell_y = 0;            ///< mm
   double per_block_x = 0, per_block_y = 0;  ///< blocks per mm
   float floor = 0;                          ///< nothing is cut below
-  const std::uint32_t* cut_ids = nullptr;   ///< by SweepOp::report; only for kernels that keep them
+  const std::uint32_t* cut_ids = nullptr;   ///< by SweepOp::report; null where nobody keeps them
+  GapView gaps;                             ///< only for kernels that know of gaps
 };
 
 /// One piece of a convex profile: height over the tip at distance d from the axis, r0 <= d <= r1.
@@ -116,7 +131,8 @@ using SweepKernel = void(GridView& grid, const ConvexTool& tool, const SweepOp* 
                          std::size_t count, int first_band, int band_step, SweepTotals* totals);
 
 /// All lower the heights to the same bits; those of the "_ids" also write GridView::cut_ids to
-/// every cell that they lower. A tie leaves the earlier move's.
+/// every cell that they lower. A tie leaves the earlier move's. Those of the "_gaps" look at
+/// GridView::gaps, and write the numbers if there are any.
 namespace zmap_scalar {
 SweepKernel run_sweeps;
 }
@@ -127,6 +143,12 @@ namespace zmap_avx2 {
 SweepKernel run_sweeps;
 }
 namespace zmap_avx2_ids {
+SweepKernel run_sweeps;
+}
+namespace zmap_scalar_gaps {
+SweepKernel run_sweeps;
+}
+namespace zmap_avx2_gaps {
 SweepKernel run_sweeps;
 }
 

@@ -59,10 +59,13 @@ inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b,
 
 /// Notes which move lowered a cell, in kernels that keep it.
 struct CutIdWriter {
-#if defined(KERF_LANES_CUT_IDS)
+#if defined(KERF_LANES_CUT_IDS) || defined(KERF_LANES_GAPS)
+  bool keeps;
   std::uint32_t id;
-  explicit CutIdWriter(const SweepContext& c) : id(c.grid.cut_ids[c.op.report]) {}
+  explicit CutIdWriter(const SweepContext& c)
+      : keeps(c.grid.cut_ids != nullptr), id(keeps ? c.grid.cut_ids[c.op.report] : 0) {}
   void note(F8 old, F8 now, float* cells) const {
+    if (!keeps) return;
     const MaskF lower = now < old;
     if (any(lower)) store_where(lower, id, cut_ids_of(cells));
   }
@@ -72,18 +75,57 @@ struct CutIdWriter {
 #endif
 };
 
+/// Finds the cells that a sweep lowers into a gap, in kernels that know of gaps.
+struct GapOpener {
+#if defined(KERF_LANES_GAPS)
+  const GridView& grid;
+  std::uint32_t report;
+  F8 thinnest;
+  explicit GapOpener(const SweepContext& c)
+      : grid(c.grid), report(c.op.report), thinnest(F8::all(c.grid.gaps.thinnest)) {}
+  /// Of a block that has been lowered from `old` to `now`: what was removed of each cell.
+  F8 removed(const Block& b, F8 old, F8 now) const {
+    const unsigned column = static_cast<unsigned>(b.column()), row = static_cast<unsigned>(b.bj);
+    const unsigned tile =
+        row / kTileBlocksY * static_cast<unsigned>(grid.tiles_x) + column / kTileBlocksX;
+    const float* const tops = grid.gaps.tops[tile];
+    if (tops == nullptr) return old - now;
+    const unsigned first =
+        (row % kTileBlocksY * kTileBlocksX + column % kTileBlocksX) * kBlockFloats;
+    const MaskF into = (now - thinnest <= F8::load(tops + first)) & (now < old);
+    if (!any(into)) [[likely]]
+      return old - now;
+    return open(b, bits(into), static_cast<int>(tile), static_cast<int>(first), old, now);
+  }
+
+ private:
+  [[gnu::noinline]] F8 open(const Block& b, unsigned into, int tile, int first, F8 old,
+                            F8 now) const {
+    alignas(32) float before[kBlockFloats], gone[kBlockFloats];
+    store(before, old);
+    store(gone, old - now);
+    grid.gaps.open(grid.gaps.owner, tile, first, into, b.cells, before, gone, report);
+    return F8::load(gone);
+  }
+#else
+  explicit GapOpener(const SweepContext&) {}
+  F8 removed(const Block&, F8 old, F8 now) const { return old - now; }
+#endif
+};
+
 /// Lowers a block to z (kNowhere where the sweep does not come).
 struct Lowering {
   F8 floor, deepest = F8::all(0), unit = F8::all(static_cast<float>(1 / kRemovedUnit_mm));
   I8 removed = I8::zero();
   [[no_unique_address]] CutIdWriter cut_ids;
-  explicit Lowering(const SweepContext& c) : floor(F8::all(c.grid.floor)), cut_ids(c) {}
-  void apply(float* cells, F8 z) {
-    const F8 old = F8::load(cells);
+  [[no_unique_address]] GapOpener gaps;
+  explicit Lowering(const SweepContext& c) : floor(F8::all(c.grid.floor)), cut_ids(c), gaps(c) {}
+  void apply(const Block& b, F8 z) {
+    const F8 old = F8::load(b.cells);
     const F8 now = min(max(z, floor), old);
-    store(cells, now);
-    cut_ids.note(old, now, cells);
-    const F8 gone = old - now;
+    store(b.cells, now);
+    cut_ids.note(old, now, b.cells);
+    const F8 gone = gaps.removed(b, old, now);
     removed = removed + round_to_int(gone * unit);
     deepest = max(deepest, gone);
   }
@@ -103,7 +145,7 @@ template <class EvalD>
   Lowering lowering(c);
   for (int n = 0; n < count; ++n) {
     const Block& b = list.blocks[blocks[n]];
-    lowering.apply(b.cells, evaluate_double(c, f, b, eval, offsets));
+    lowering.apply(b, evaluate_double(c, f, b, eval, offsets));
   }
   lowering.add_to(c);
 }
@@ -128,7 +170,7 @@ void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval
         continue;
       }
     }
-    lowering.apply(b.cells, z);
+    lowering.apply(b, z);
   }
   lowering.add_to(c);
   if (unsettled_count > 0) settle<EvalD>(c, list, f, unsettled, unsettled_count);
@@ -140,7 +182,7 @@ void work_off_double(SweepContext& c, WorkList& list, const Frame& f, const Eval
   const BlockOffsets<D8> offsets(c.grid, f);
   Lowering lowering(c);
   for (int n = 0; n < list.count; ++n)
-    lowering.apply(list.blocks[n].cells, evaluate_double(c, f, list.blocks[n], eval, offsets));
+    lowering.apply(list.blocks[n], evaluate_double(c, f, list.blocks[n], eval, offsets));
   lowering.add_to(c);
   list.count = 0;
 }

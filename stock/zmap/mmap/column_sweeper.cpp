@@ -1,6 +1,7 @@
 #include "stock/zmap/mmap/column_sweeper.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -62,9 +63,7 @@ struct Layer {
 /// The scratch memory of one thread.
 class ScratchTiles {
  public:
-  /// `wanted` is null (every tile) or one flag a tile: sweeps over others are not kept.
-  ScratchTiles(const HeightSweeper& heights, const std::vector<char>* wanted)
-      : heights_(heights), wanted_(wanted) {
+  explicit ScratchTiles(const HeightSweeper& heights) : heights_(heights) {
     const float floor = heights.grid.floor_mm();
     const float top = static_cast<float>(heights.grid.bounds_mm().max.z);
     // Above what any sweep can have to do with the material, and not much: the kernels add up what
@@ -72,9 +71,6 @@ class ScratchTiles {
     start(lower, floor, top + 1);
     start(upper, -top, 1 - floor);
     start(ray, floor, top + 1);
-    if (wanted == nullptr) return;
-    dump_ = std::make_unique<Tile>();
-    std::fill_n(dump_->heights, kTileFloats, floor);
   }
   ScratchTiles(const ScratchTiles&) = delete;
   ScratchTiles& operator=(const ScratchTiles&) = delete;
@@ -125,7 +121,6 @@ class ScratchTiles {
     };
   }
   float* give(Layer& layer, std::size_t tile) {
-    if (wanted_ != nullptr && (*wanted_)[tile] == 0) return layer.pointers[tile] = dump_->heights;
     layer.touched.push_back(tile);
     for (auto free = free_.rbegin(); free != free_.rend(); ++free) {
       if (free->clear != layer.clear) continue;
@@ -142,8 +137,6 @@ class ScratchTiles {
     float heights[kTileFloats];
   };
   const HeightSweeper& heights_;
-  const std::vector<char>* wanted_;
-  std::unique_ptr<Tile> dump_;
   std::vector<std::unique_ptr<Tile>> all_;
   std::vector<Free> free_;
   std::vector<SweepOp> scaled_;
@@ -250,9 +243,8 @@ void ColumnSweeper::share_out(std::span<SweepTotals> totals, const Work& work) {
   }
 }
 
-bool ColumnSweeper::take(const SweepBatch& batch) {
-  taken_.clear();
-  if (!gaps_.any()) return false;
+/// Whether one of its sweeps may come as low as the gaps of a tile that it passes.
+bool ColumnSweeper::comes_near_gaps(const SweepBatch& batch) const {
   const double radius = radius_of(batch);
   Bounds all;
   double lowest = std::numeric_limits<double>::infinity();
@@ -260,50 +252,83 @@ bool ColumnSweeper::take(const SweepBatch& batch) {
     all.extend(op, radius);
     lowest = std::min(lowest, lowest_mm(op));
   }
-  taken_.assign(heights_.grid.tile_count(), 0);
-  taken_mm_ = {};
-  for (std::size_t i = 0; i < taken_.size(); ++i) {
+  for (std::size_t i = 0; i < heights_.grid.tile_count(); ++i) {
     const GapTile* const tile = gaps_.tile(i);
     if (tile == nullptr) continue;
     const double top = static_cast<double>(tile->below_mm()) + kSlack_mm;
     const Box box = heights_.grid.tile_box(i);
     if (lowest > top || !all.meets(box)) continue;
-    taken_[i] = std::any_of(batch.ops.begin(), batch.ops.end(), [&](const SweepOp& op) {
+    const bool near = std::any_of(batch.ops.begin(), batch.ops.end(), [&](const SweepOp& op) {
       Bounds bounds;
       bounds.extend(op, radius);
       return lowest_mm(op) <= top && bounds.meets(box);
     });
-    if (taken_[i] != 0) taken_mm_.extend(box);
+    if (near) return true;
   }
-  return !taken_mm_.empty();
+  return false;
 }
 
-void ColumnSweeper::cut(const SweepBatch& batch, std::span<SweepTotals> totals) {
-  const double radius = radius_of(batch);
-  // A tile may lose its last gap on the way; it is cut here to the end of the batch all the same.
-  share_out(totals, [&](int thread, int threads, std::span<SweepTotals> sums) {
-    ScratchTiles scratch(heights_, &taken_);
-    Merger merger(heights_, gaps_, scratch);
-    for (std::size_t first = 0, last; first < batch.ops.size(); first = last) {
-      const std::uint32_t report = batch.ops[first].report;
-      Bounds bounds;
-      for (last = first; last < batch.ops.size() && batch.ops[last].report == report; ++last)
-        bounds.extend(batch.ops[last], radius);
-      if (!bounds.meets(taken_mm_)) continue;
-      scratch.sweep(scratch.ray, batch.tools, batch.ops.subspan(first, last - first), thread,
-                    threads);
-      const std::uint32_t id =
-          heights_.grid.keeps_cut_ids() ? batch.cut_ids[report] : MeshPatch::kNotCut;
-      merger.merge(bounds, id, sums[report]);
+std::optional<GapView> ColumnSweeper::begin(const SweepBatch& batch) {
+  if (!gaps_.any() || !comes_near_gaps(batch)) return std::nullopt;
+  tops_.assign(heights_.grid.tile_count(), nullptr);
+  for (std::size_t i = 0; i < tops_.size(); ++i) {
+    if (const GapTile* const tile = gaps_.tile(i)) tops_[i] = tile->tops();
+  }
+  cut_ids_ = heights_.grid.keeps_cut_ids() ? batch.cut_ids : nullptr;
+  GapView view;
+  view.tops = tops_.data();
+  view.thinnest = kThinnest_mm;
+  view.owner = this;
+  view.open = [](void* owner, int tile, int first, unsigned lanes, float* heights,
+                 const float* before, float* gone, std::uint32_t report) {
+    ColumnSweeper& self = *static_cast<ColumnSweeper*>(owner);
+    GapTile& gaps = self.writable_gaps(static_cast<std::size_t>(tile));
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int n = std::countr_zero(lanes);
+      gone[n] =
+          self.open(gaps, static_cast<std::size_t>(first + n), heights + n, before[n], report);
     }
-  });
+  };
+  return view;
+}
+
+GapTile& ColumnSweeper::writable_gaps(std::size_t tile) {
+  GapTile& gaps = gaps_.make_writable(tile);
+  tops_[tile] = gaps.tops();
+  return gaps;
+}
+
+/// What lies over a gap that the new height reaches is gone, and the gap is open: as
+/// ColumnEditor::remove() has it.
+float ColumnSweeper::open(GapTile& gaps, std::size_t cell, float* height, float before,
+                          std::uint32_t report) {
+  std::uint32_t id = cut_ids_ != nullptr ? cut_ids_[report] : MeshPatch::kNotCut;
+  float low = *height;
+  double hollow = 0;
+  while (gaps.has(cell) && gaps.tops()[cell] >= low - kThinnest_mm) {
+    const Gap gap = gaps.pop(cell);
+    hollow += static_cast<double>(gap.high) - static_cast<double>(gap.low);
+    if (gap.low > low) continue;
+    low = gap.low;
+    id = gap.low_id;
+  }
+  const float floor = heights_.grid.floor_mm();
+  if (low - floor <= kThinnest_mm) low = floor;
+  *height = low;
+  if (cut_ids_ != nullptr) cut_ids_of(height)[0] = id;
+  return static_cast<float>((static_cast<double>(before) - hollow) - static_cast<double>(low));
+}
+
+void ColumnSweeper::end() {
+  for (std::size_t i = 0; i < tops_.size(); ++i)
+    if (tops_[i] != nullptr) gaps_.drop_if_empty(i);
 }
 
 void ColumnSweeper::cut_headed(const HeadedTool& tool, std::span<const CutMove> moves,
                                std::span<SweepTotals> totals) {
   heights_.grid.begin_change();
   share_out(totals, [&](int thread, int threads, std::span<SweepTotals> sums) {
-    ScratchTiles scratch(heights_, nullptr);
+    ScratchTiles scratch(heights_);
     Merger merger(heights_, gaps_, scratch);
     std::vector<SweepOp> ops;
     const auto sweep = [&](Layer& layer, std::span<const ConvexTool> tools, const CutMove& part) {

@@ -1,6 +1,7 @@
 // stock/zmap/mmap/column_sweeper.h - moves cut into columns of several intervals.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,30 +11,33 @@
 
 namespace kerf {
 
-/// Cuts heights and gaps together. The Z-map's kernels sweep each move into tiles of scratch
-/// heights (the upper sides of heads turned over), and what they find over a cell is taken from its
-/// column. Made for one call; both grids must outlive it.
-class ColumnSweeper final : public OtherTiles {
+/// Cuts heights and gaps together. Made for one call; both grids must outlive it.
+///
+/// Cutters without undercut lower the heights as in a Z-map, to the same bits; a kernel that knows
+/// of gaps sees where that breaks into one, and open() then lowers the cell through it. Of cutters
+/// with a head the Z-map's kernels sweep each move into tiles of scratch heights (the upper sides
+/// of heads turned over), and what they find over a cell is taken from its column.
+class ColumnSweeper final : public HollowColumns {
  public:
   ColumnSweeper(HeightSweeper& heights, GapGrid& gaps) : heights_(heights), gaps_(gaps) {}
 
-  /// Cutters without undercut: the tiles that have gaps at heights that the batch may reach. Above
-  /// all gaps of a tile its heights are lowered as those of a Z-map, to the same bits.
-  bool take(const SweepBatch& batch) override;
-  bool holds(std::size_t tile) const override { return taken_[tile] != 0; }
-  void cut(const SweepBatch& batch, std::span<SweepTotals> totals) override;
+  std::optional<GapView> begin(const SweepBatch& batch) override;
+  void end() override;
   /// A cutter with a head, everywhere. totals[i] receives what moves[i] removes.
   void cut_headed(const HeadedTool& tool, std::span<const CutMove> moves,
                   std::span<SweepTotals> totals);
 
  private:
+  bool comes_near_gaps(const SweepBatch& batch) const;
+  GapTile& writable_gaps(std::size_t tile);
+  float open(GapTile& gaps, std::size_t cell, float* height, float before, std::uint32_t report);
   template <class Work>
   void share_out(std::span<SweepTotals> totals, const Work& work);
 
   HeightSweeper& heights_;
   GapGrid& gaps_;
-  std::vector<char> taken_;  ///< by tile
-  Box taken_mm_;
+  std::vector<const float*> tops_;  ///< GapView::tops
+  const std::uint32_t* cut_ids_ = nullptr;
 };
 
 }  // namespace kerf

@@ -34,11 +34,19 @@ void GapTile::write(std::size_t cell, std::span<const Gap> gaps) {
   link() = kNone;
   while (rest != kNone) {
     const std::int32_t next = nodes_[index(rest)].next;
-    nodes_[index(rest)].next = free_;
-    free_ = rest;
+    free_node(rest);
     rest = next;
-    --count_;
   }
+  set_top(cell);
+}
+
+Gap GapTile::pop(std::size_t cell) {
+  const std::int32_t node = first_[cell];
+  const Gap gap = nodes_[index(node)].gap;
+  first_[cell] = nodes_[index(node)].next;
+  free_node(node);
+  set_top(cell);
+  return gap;
 }
 
 bool GapTile::equals(const GapTile& other, bool ids) const {

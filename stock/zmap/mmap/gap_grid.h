@@ -28,12 +28,19 @@ inline constexpr float kThinnest_mm = 1e-4f;
 /// The gaps of one tile: for each cell a list from the top downward, with material between them.
 class GapTile {
  public:
-  GapTile() { first_.fill(kNone); }
+  static constexpr float kNoTop = -std::numeric_limits<float>::infinity();
+
+  GapTile() {
+    first_.fill(kNone);
+    tops_.fill(kNoTop);
+  }
   bool empty() const { return count_ == 0; }
   std::size_t gap_count() const { return count_; }
   bool has(std::size_t cell) const { return first_[cell] != kNone; }
-  /// All gaps lie below this: the highest that there has been. -infinity: there was none.
+  /// All gaps lie below this: the highest that there has been. kNoTop: there was none.
   float below_mm() const { return below_mm_; }
+  /// Upper ends of the topmost gaps by cell, kNoTop where there is none. Stays where it is.
+  const float* tops() const { return tops_.data(); }
   /// Calls see(gap) for each of a cell's gaps, the topmost first.
   template <class See>
   void each(std::size_t cell, const See& see) const {
@@ -45,6 +52,8 @@ class GapTile {
     each(cell, [&](const Gap& gap) { out.push_back(gap); });
   }
   void write(std::size_t cell, std::span<const Gap> gaps);
+  /// Takes the topmost gap out of a cell that has one.
+  Gap pop(std::size_t cell);
   std::size_t bytes() const { return sizeof *this + nodes_.capacity() * sizeof(Node); }
   /// `ids`: numbers of moves count as well.
   bool equals(const GapTile& other, bool ids) const;
@@ -58,11 +67,21 @@ class GapTile {
   };
   static std::size_t index(std::int32_t n) { return static_cast<std::size_t>(n); }
 
+  void free_node(std::int32_t node) {
+    nodes_[index(node)].next = free_;
+    free_ = node;
+    --count_;
+  }
+  void set_top(std::size_t cell) {
+    tops_[cell] = first_[cell] == kNone ? kNoTop : nodes_[index(first_[cell])].gap.high;
+  }
+
+  alignas(64) std::array<float, kTileFloats> tops_;
   std::array<std::int32_t, kTileFloats> first_;
   std::vector<Node> nodes_;
   std::int32_t free_ = kNone;
   std::size_t count_ = 0;
-  float below_mm_ = -std::numeric_limits<float>::infinity();
+  float below_mm_ = kNoTop;
 };
 
 /// A tile without gaps is a null pointer. Copies share tiles until one of them writes; they may be

@@ -24,10 +24,11 @@ namespace kerf {
 ///
 /// Gaps lie beside the heights, in tiles of their own that exist only where there is an undercut. A
 /// tile without costs and cuts what it does in the Z-map, by the same kernels: with cutters that do
-/// not undercut the result is the Z-map's, bit for bit. Cutters with a head (Cutter::undercuts) are
-/// swept from below and from above by those kernels too; above the head the neck cuts, however far
-/// up: its radius is that at the end of Cutter::upper_profile(), shank and holder are none of the
-/// model's business.
+/// not undercut the result is the Z-map's, bit for bit. Among gaps such cutters take up to twice
+/// the time, to open those that they reach. Cutters with a head (Cutter::undercuts) are swept from
+/// below and from above by those kernels too; above the head the neck cuts, however far up: its
+/// radius is that at the end of Cutter::upper_profile(), shank and holder are none of the model's
+/// business.
 ///
 /// The spindle stands upright: cut() and first_contact() must not be given a move that
 /// is_vertical() denies. Reads no files, knows no GL.

@@ -67,7 +67,7 @@ Done write_columns(const std::string& path, const SavedColumns& saved) {
 Result<SavedColumns> parse_columns(const std::string& bytes, const std::string& name) {
   Result<SavedHeights> heights = parse_heights(bytes, name, "mmap", true);
   if (!heights) return Error{heights.error()};
-  const std::size_t size = bytes.size() - kStateHashBytes - heights->end;
+  const std::size_t size = heights->rest.size();
   if (size % sizeof(Record) != 0)
     return Error{fmt::format("{}: {} bytes of gaps are no whole number of them", name, size)};
   const std::size_t tiles = heights->state.grid.tile_count();
@@ -75,7 +75,7 @@ Result<SavedColumns> parse_columns(const std::string& bytes, const std::string& 
   const std::size_t count = size / sizeof(Record);
   const auto record = [&](std::size_t n) {
     Record r;
-    std::memcpy(&r, bytes.data() + heights->end + n * sizeof r, sizeof r);
+    std::memcpy(&r, heights->rest.data() + n * sizeof r, sizeof r);
     return r;
   };
   std::vector<Gap> gaps;

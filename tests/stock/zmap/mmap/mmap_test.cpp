@@ -146,6 +146,65 @@ TEST(MMap, HeightsOfMonotoneToolsAreTheZMapsInTilesWithGapsToo) {
   EXPECT_GT(with_gaps, 1000);
 }
 
+/// Several convex parts in one cutter: steep, then less so.
+Cutter stepped() {
+  std::vector<ProfilePiece> pieces(2);
+  pieces[0].r1 = 1;
+  pieces[0].z1 = 2;
+  pieces[1].r0 = 1;
+  pieces[1].z0 = 2;
+  pieces[1].r1 = 3;
+  pieces[1].z1 = 2.5;
+  return Cutter::from_profile("stepped", pieces).value();
+}
+
+/// A cut from above that ends in a gap, or as good as on it, opens it; what it leaves over a gap
+/// stays.
+TEST(MMap, CutsFromAboveOpenTheGapsThatTheyReach) {
+  for (const ZMapKernel kernel : {ZMapKernel::kAuto, ZMapKernel::kScalar}) {
+    const auto zmap = make_map("box:0,0,-20:24,18,0", 0.1);
+    const auto mmap = make_mmap("box:0,0,-20:24,18,0", 0.1, 1, kernel);
+    const auto before = make_mmap("box:0,0,-20:24,18,0", 0.1);
+    for (const double z : {-4.5, -6.0, -7.0}) {
+      for (MMap* const map : {mmap.get(), before.get()}) {
+        removed_mm3(*map, shape("tslot:9:0.5:1"), {line(Vec3(-9, 9, z), Vec3(33, 9, z))});
+      }
+    }
+    const double hollow = mmap->blank_mm3() - mmap->remaining_mm3();
+    std::mt19937 random(11);
+    double removed = 0;
+    for (const Cutter& cutter : {shape("ball:5"), shape("vee:8:90"), stepped()}) {
+      const auto moves = test::random_path(random, {Vec3(-1, -1, -8), Vec3(25, 19, -3)}, 40);
+      removed_mm3(*zmap, cutter, moves);
+      removed += removed_mm3(*mmap, cutter, moves);
+    }
+    // In the material over the uppermost gap, but for what is too thin to be kept; and in a gap.
+    for (const double z : {-4.0 + 5e-5, -6.5}) {
+      const CutMove along = line(Vec3(5, -9, z), Vec3(5, 30, z));
+      removed_mm3(*zmap, shape("flat:2"), {along});
+      removed += removed_mm3(*mmap, shape("flat:2"), {along});
+    }
+    int opened = 0, left = 0;
+    for (int j = 0; j < mmap->ny(); ++j) {
+      for (int i = 0; i < mmap->nx(); ++i) {
+        float height = std::min(before->height_mm(i, j), zmap->height_mm(i, j));
+        std::vector<Gap> gaps = before->gaps(i, j);
+        while (!gaps.empty() && gaps.front().high >= height - kThinnest_mm) {
+          height = std::min(height, gaps.front().low);
+          gaps.erase(gaps.begin());
+          ++opened;
+        }
+        left += static_cast<int>(gaps.size());
+        ASSERT_EQ(mmap->height_mm(i, j), height) << i << ' ' << j;
+        ASSERT_EQ(mmap->gaps(i, j), gaps) << i << ' ' << j;
+      }
+    }
+    EXPECT_GT(opened, 1000);
+    EXPECT_GT(left, 1000);
+    EXPECT_NEAR(removed, mmap->blank_mm3() - mmap->remaining_mm3() - hollow, 1e-5 * removed);
+  }
+}
+
 TEST(MMap, DivisionIntoCallsThreadsAndKernelChangeNoBit) {
   std::string digest;
   double remaining = 0;

@@ -1,0 +1,15 @@
+// Kernel for machines with AVX2 that also knows what is hollow below the heights (sweep_avx2.cpp
+// does not).
+#define KERF_LANES_NAMESPACE zmap_avx2_gaps
+#define KERF_LANES_AVX2 1
+#define KERF_LANES_GAPS 1
+#include "stock/zmap/sweep_walk.h"
+
+namespace kerf::zmap_avx2_gaps {
+
+void run_sweeps(GridView& grid, const ConvexTool& tool, const SweepOp* ops, std::size_t count,
+                int first_band, int band_step, SweepTotals* totals) {
+  run_all(grid, tool, ops, count, first_band, band_step, totals);
+}
+
+}  // namespace kerf::zmap_avx2_gaps
