@@ -33,6 +33,19 @@ bool read_numbers(std::optional<std::string_view> line, T* out, int count) {
   return value.empty();
 }
 
+Error damaged_head(const StateHead& head, const std::string& name) {
+  return Error{fmt::format("{}: the head is damaged near byte {}", name, head.position())};
+}
+
+/// False for bytes that are shorter than a checksum.
+bool has_right_checksum(std::string_view bytes) {
+  if (bytes.size() < kStateHashBytes) return false;
+  const std::size_t end = bytes.size() - kStateHashBytes;
+  XXH128_canonical_t sum;
+  std::memcpy(&sum, bytes.data() + end, kStateHashBytes);
+  return XXH128_isEqual(XXH128_hashFromCanonical(&sum), XXH3_128bits(bytes.data(), end)) != 0;
+}
+
 }  // namespace
 
 struct StateWriter::Impl {
@@ -89,14 +102,6 @@ Result<std::string> read_state_bytes(const std::string& path) {
   return bytes;
 }
 
-bool has_right_checksum(std::string_view bytes) {
-  if (bytes.size() < kStateHashBytes) return false;
-  const std::size_t end = bytes.size() - kStateHashBytes;
-  XXH128_canonical_t sum;
-  std::memcpy(&sum, bytes.data() + end, kStateHashBytes);
-  return XXH128_isEqual(XXH128_hashFromCanonical(&sum), XXH3_128bits(bytes.data(), end)) != 0;
-}
-
 Result<std::string> model_of_state(std::string_view bytes, const std::string& name) {
   if (bytes.substr(0, kStateMagic.size()) != kStateMagic)
     return Error{
@@ -104,13 +109,13 @@ Result<std::string> model_of_state(std::string_view bytes, const std::string& na
   StateHead head(bytes);
   head.line("kerf-state/1");
   const auto model = head.line("model");
-  if (!model)
-    return Error{fmt::format("{}: the head is damaged near byte {}", name, head.position())};
+  if (!model) return damaged_head(head, name);
   return std::string(*model);
 }
 
 Result<StateHead> head_of_state(std::string_view bytes, const std::string& name,
-                                std::string_view model) {
+                                std::string_view model,
+                                const std::function<bool(StateHead&)>& read) {
   const Result<std::string> found = model_of_state(bytes, name);
   if (!found) return Error{found.error()};
   if (*found != model)
@@ -118,7 +123,18 @@ Result<StateHead> head_of_state(std::string_view bytes, const std::string& name,
   StateHead head(bytes);
   head.line("kerf-state/1");
   head.line("model");
+  if (!read(head)) return damaged_head(head, name);
   return head;
+}
+
+Result<std::string_view> data_of_state(const StateHead& head, const std::string& name) {
+  const std::string_view bytes = head.bytes();
+  // The checksum may overlap the head of a file that is made up.
+  if (!has_right_checksum(bytes) || bytes.size() < head.position() + kStateHashBytes) {
+    return Error{
+        fmt::format("{}: the checksum does not match: the file is damaged or cut short", name)};
+  }
+  return bytes.substr(head.position(), bytes.size() - head.position() - kStateHashBytes);
 }
 
 }  // namespace kerf

@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,8 @@ class StateWriter {
 class StateHead {
  public:
   explicit StateHead(std::string_view bytes) : bytes_(bytes) {}
+  /// Of the file; behind what has been taken.
+  std::string_view bytes() const { return bytes_; }
   std::size_t position() const { return position_; }
   /// The rest of a line that begins with `key`; none if the next line is another one.
   std::optional<std::string_view> line(std::string_view key);
@@ -60,14 +63,17 @@ class StateHead {
 /// The whole file. Error: cannot be read ("part.state: No such file or directory").
 Result<std::string> read_state_bytes(const std::string& path);
 
-/// Does the checksum at the end agree? False for bytes that are shorter than one.
-bool has_right_checksum(std::string_view bytes);
-
 /// The model that saved these bytes: "zmap", "octree". Error: no such file; `name` is the file's.
 Result<std::string> model_of_state(std::string_view bytes, const std::string& name);
 
-/// The head behind the line of the model. Error: no such file, or that of another model.
+/// A file's head, of which `read` takes the lines behind the model's, up to `data`. Error: no such
+/// file, that of another model, or a head with which `read` is not content.
 Result<StateHead> head_of_state(std::string_view bytes, const std::string& name,
-                                std::string_view model);
+                                std::string_view model,
+                                const std::function<bool(StateHead&)>& read);
+
+/// The bytes between the head and the checksum, a part of the file's. Error: the checksum does not
+/// agree, or there is none behind the head.
+Result<std::string_view> data_of_state(const StateHead& head, const std::string& name);
 
 }  // namespace kerf

@@ -208,25 +208,19 @@ Done write_tree(const std::string& path, const SavedTree& saved) {
 }
 
 Result<SavedTree> parse_tree(const std::string& bytes, const std::string& name) {
-  Result<StateHead> reader = head_of_state(bytes, name, "octree");
-  if (!reader) return Error{reader.error()};
   Head head;
-  if (!read_head(*reader, head))
-    return Error{fmt::format("{}: the head is damaged near byte {}", name, reader->position())};
-  if (!has_right_checksum(bytes))
-    return Error{
-        fmt::format("{}: the checksum does not match: the file is damaged or cut short", name)};
+  const Result<StateHead> reader = head_of_state(
+      bytes, name, "octree", [&head](StateHead& lines) { return read_head(lines, head); });
+  if (!reader) return Error{reader.error()};
+  const Result<std::string_view> data = data_of_state(*reader, name);
+  if (!data) return Error{data.error()};
   const std::string damaged = fmt::format("{}: the tiles are damaged", name);
-  // The checksum may overlap the head of a file that is made up.
-  const std::size_t end = bytes.size() - kStateHashBytes;
-  if (end < reader->position()) return Error{damaged};
   const Lattice lattice = lattice_of(head);
-  const std::size_t data = end - reader->position();
   const double tiles = static_cast<double>(lattice.tiles[0]) * lattice.tiles[1] * lattice.tiles[2];
-  if (tiles > static_cast<double>(data)) return Error{damaged};
+  if (tiles > static_cast<double>(data->size())) return Error{damaged};
 
   SavedTree saved{BrickTree(lattice), head.additive == 1, head.blank_mm3, head.removed};
-  TileReader tile_reader(std::string_view(bytes).substr(reader->position(), data));
+  TileReader tile_reader(*data);
   const std::uint64_t version = next_version();
   const int columns = lattice.column_count();
   for (std::uint32_t number = 0; number < saved.tree.tile_count(); ++number) {

@@ -8,6 +8,8 @@ namespace kerf::sheet {
 namespace {
 
 constexpr double kMaxChords = 100'000;
+/// Of half a chord's angle: eight chords a turn at least.
+constexpr double kLeastCosine = 0.924;
 
 int chords_for(double wanted) {
   return static_cast<int>(std::clamp(std::ceil(wanted), 1.0, kMaxChords));
@@ -17,12 +19,16 @@ int chords_for(double wanted) {
 
 void append_arc(const Vec2& center, double radius_mm, double from_rad, double sweep_rad,
                 double tolerance_mm, std::vector<Vec2>& points, double ratio, double turned_rad) {
-  const double step = 2 * std::acos(std::max(1 - tolerance_mm / std::abs(radius_mm), 0.5));
+  const double step = 2 * std::acos(std::max(1 - tolerance_mm / std::abs(radius_mm), kLeastCosine));
   const int chords = chords_for(std::abs(sweep_rad) / std::max(step, 1e-9));
+  const double chord_rad = std::abs(sweep_rad) / chords;
+  const double corner_mm = radius_mm * std::sqrt(chord_rad / std::sin(chord_rad));
+  const bool is_full = std::abs(sweep_rad) > 2 * kPi * (1 - 1e-12);
   const double cosine = std::cos(turned_rad), sine = std::sin(turned_rad);
   for (int i = 1; i <= chords; ++i) {
     const double angle = from_rad + sweep_rad * i / chords;
-    const double x = radius_mm * std::cos(angle), y = ratio * radius_mm * std::sin(angle);
+    const double r = i < chords || is_full ? corner_mm : radius_mm;
+    const double x = r * std::cos(angle), y = ratio * r * std::sin(angle);
     points.push_back(center + Vec2(cosine * x - sine * y, sine * x + cosine * y));
   }
 }

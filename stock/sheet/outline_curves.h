@@ -8,8 +8,9 @@
 namespace kerf::sheet {
 
 /// Points of an arc about `center` from angle `from_rad` on, by `sweep_rad` (counter-clockwise if
-/// positive), without the first one. Chords are off by `tolerance_mm` at most. `ratio`: the circle
-/// squeezed to an ellipse with its second axis so much shorter, and turned by `turned_rad`.
+/// positive), without the first one. Chords are off by `tolerance_mm` at most, and so far out
+/// between the ends - everywhere, of a full circle - that the arc keeps its area. `ratio`: the
+/// circle squeezed to an ellipse with its second axis so much shorter, and turned by `turned_rad`.
 void append_arc(const Vec2& center, double radius_mm, double from_rad, double sweep_rad,
                 double tolerance_mm, std::vector<Vec2>& points, double ratio = 1,
                 double turned_rad = 0);

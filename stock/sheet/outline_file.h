@@ -34,11 +34,15 @@ Result<SheetOutline> parse_dxf_outline(std::string_view text, const std::string&
 Result<SheetOutline> parse_svg_outline(std::string_view text, const std::string& name,
                                        double tolerance_mm);
 
-/// Files for other programs: closed polylines, mm. DXF is R12 (POLYLINE on the layer "0"). SVG is
-/// one path, filled even-odd, y turned round, moved to have its lower left corner at 0, 0. Appear
-/// whole or not at all. Error: what could not be written and why.
-Done write_outline_dxf(const SheetOutline& outline, const std::string& path);
-Done write_outline_svg(const SheetOutline& outline, const std::string& path);
+/// Files for other programs, mm. Chains of chords of arcs that were cut or drawn with
+/// `arc_tolerance_mm` are written as arcs (curves_of(), outline_arcs.h), full circles with their
+/// exact diameter. DXF is R12: CIRCLE, or closed POLYLINE with bulges, on the layer "0". SVG is one
+/// path (M L A Z), filled even-odd, y turned round, moved to have its lower left corner at 0, 0.
+/// Appear whole or not at all. Error: what could not be written and why.
+Done write_outline_dxf(const SheetOutline& outline, double arc_tolerance_mm,
+                       const std::string& path);
+Done write_outline_svg(const SheetOutline& outline, double arc_tolerance_mm,
+                       const std::string& path);
 
 inline constexpr std::size_t kMaxOutlineBytes = std::size_t{64} << 20;
 inline constexpr double kJoin_mm = 0.01;

@@ -172,15 +172,60 @@ PieceLabels::PieceLabels(SheetGrid& grid) {
       }
     }
   }
-  for (std::size_t t = 0; t < pieces.size(); ++t) grid.set_pieces(t, std::move(pieces[t]));
+  for (std::size_t t = 0; t < pieces.size(); ++t) grid.pieces(t) = std::move(pieces[t]);
+  blank_pieces_ = static_cast<std::uint32_t>(records_.size());
+}
+
+std::vector<PieceSeat> PieceLabels::seats(const SheetGrid& grid) const {
+  std::vector<PieceSeat> seats(records_.size());
+  for (std::uint32_t t = 0; t < grid.tile_count(); ++t) {
+    const Tile& tile = grid.tile(t);
+    for (std::uint32_t ring = 0; ring < tile.rings.size(); ++ring) {
+      if (tile.pieces[ring] == kNoPiece) continue;
+      const PieceRecord& record = records_[tile.pieces[ring]];
+      PieceSeat& seat = seats[record.number];
+      if (seat.tile == kNoPiece) seat = {t, ring, record.box, record.freed_by.value_or(0)};
+    }
+  }
+  return seats;
+}
+
+bool PieceLabels::restore(SheetGrid& grid, std::span<const PieceSeat> seats,
+                          std::uint32_t blank_pieces) {
+  if (blank_pieces > seats.size()) return false;
+  std::vector<PieceRecord> records(seats.size());
+  std::vector<std::uint32_t> number_of(records_.size(), kNoPiece);
+  for (std::uint32_t number = 0; number < seats.size(); ++number) {
+    const PieceSeat& seat = seats[number];
+    records[number] = {number, std::nullopt, seat.box};
+    if (number >= blank_pieces) records[number].freed_by = seat.freed_by;
+    if (seat.tile == kNoPiece) continue;
+    if (seat.tile >= grid.tile_count() || seat.ring >= grid.tile(seat.tile).rings.size())
+      return false;
+    const std::uint32_t piece = grid.tile(seat.tile).pieces[seat.ring];
+    if (piece == kNoPiece || number_of[piece] != kNoPiece) return false;
+    const Rect& box = records_[piece].box;
+    if (!seat.box.holds({box.min_x, box.min_y}) || !seat.box.holds({box.max_x, box.max_y}))
+      return false;
+    number_of[piece] = number;
+  }
+  if (std::find(number_of.begin(), number_of.end(), kNoPiece) != number_of.end()) return false;
+  for (std::size_t t = 0; t < grid.tile_count(); ++t) {
+    for (std::uint32_t& piece : grid.pieces(t)) {
+      if (piece != kNoPiece) piece = number_of[piece];
+    }
+  }
+  records_ = std::move(records);
+  blank_pieces_ = blank_pieces;
+  return true;
 }
 
 void PieceLabels::append_neighbours(const SheetGrid& grid, std::size_t index, const Tile& tile,
                                     std::uint32_t ring, std::vector<Node>& found) {
+  const std::array<std::int64_t, 4> beyond = grid.neighbours(index);
   for (const BorderRun& run : tile.runs) {
-    if (run.ring != ring) continue;
-    const std::int64_t next = grid.neighbour(index, run.side);
-    if (next < 0) continue;
+    const std::int64_t next = beyond[run.side];
+    if (run.ring != ring || next < 0) continue;
     const auto opposite = static_cast<BorderSide>((run.side + 2) % 4);
     const std::span<const BorderRun> others =
         runs_of(grid.tile(static_cast<std::size_t>(next)), opposite);
@@ -224,7 +269,7 @@ void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Su
   if (suspects.size() < 2) return;
   bool reaches = false;
   const std::size_t first = records_.size();
-  for (std::vector<Node>& nodes : Search(grid, suspects).run()) {
+  for (const std::vector<Node>& nodes : Search(grid, suspects).run()) {
     const auto fresh = static_cast<std::uint32_t>(records_.size());
     records_.push_back({fresh, move_id, relabel(grid, nodes, fresh)});
     reaches |= reaches_out(records_.back().box, records_[piece].box);
@@ -242,18 +287,11 @@ void PieceLabels::check(SheetGrid& grid, std::uint32_t piece, std::span<const Su
   std::swap(rest.number, largest->number);
 }
 
-Rect PieceLabels::relabel(SheetGrid& grid, std::vector<Node>& nodes, std::uint32_t piece) {
+Rect PieceLabels::relabel(SheetGrid& grid, std::span<const Node> nodes, std::uint32_t piece) {
   Rect box;
-  std::sort(nodes.begin(), nodes.end());  // each tile once
-  for (std::size_t i = 0; i < nodes.size();) {
-    const std::uint32_t index = nodes[i].tile;
-    const Tile& tile = grid.tile(index);
-    std::vector<std::uint32_t> pieces = tile.pieces;
-    for (; i < nodes.size() && nodes[i].tile == index; ++i) {
-      box.extend(tile.rings[nodes[i].ring]->box);
-      pieces[nodes[i].ring] = piece;
-    }
-    grid.set_pieces(index, std::move(pieces));
+  for (const Node& node : nodes) {
+    grid.pieces(node.tile)[node.ring] = piece;
+    box.extend(grid.tile(node.tile).rings[node.ring]->box);
   }
   return box;
 }

@@ -20,6 +20,13 @@ struct PieceRecord {
   Rect box;  ///< of what it was when it became a piece of its own; cutting may have made it smaller
 };
 
+/// Where a piece is in a grid, to find it again in an equal one.
+struct PieceSeat {
+  std::uint32_t tile = kNoPiece, ring = 0;  ///< one of its outer rings; kNoPiece: nothing is left
+  Rect box;                                 ///< PieceRecord::box
+  std::uint64_t freed_by = 0;               ///< of no meaning for pieces of the blank
+};
+
 /// Keeps the pieces of a grid (Tile::pieces are indices into records()) while it is cut.
 ///
 /// After each cut only the rings that it broke and their former neighbours are looked at. If these
@@ -36,6 +43,14 @@ class PieceLabels {
   void update(SheetGrid& grid, std::span<const TileChange> changes, std::uint64_t move_id);
 
   const std::vector<PieceRecord>& records() const { return records_; }
+  /// Pieces of the blank have the numbers below.
+  std::uint32_t blank_pieces() const { return blank_pieces_; }
+
+  /// By number. O(rings).
+  std::vector<PieceSeat> seats(const SheetGrid& grid) const;
+  /// Numbers the pieces of `grid`, all of which are new, as they were when `seats` was made. False
+  /// if these are of another grid: then it is left half done.
+  bool restore(SheetGrid& grid, std::span<const PieceSeat> seats, std::uint32_t blank_pieces);
 
  private:
   struct Node {
@@ -55,10 +70,11 @@ class PieceLabels {
                                 std::uint32_t ring, std::vector<Node>& found);
   void check(SheetGrid& grid, std::uint32_t piece, std::span<const Suspect> suspects,
              std::uint64_t move_id);
-  static Rect relabel(SheetGrid& grid, std::vector<Node>& nodes, std::uint32_t piece);
+  static Rect relabel(SheetGrid& grid, std::span<const Node> nodes, std::uint32_t piece);
   static Rect box_of_piece(const SheetGrid& grid, std::uint32_t piece, const Rect& within);
 
   std::vector<PieceRecord> records_;
+  std::uint32_t blank_pieces_ = 0;
   std::vector<Suspect> suspects_;  // kept for its memory
 };
 

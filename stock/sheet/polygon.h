@@ -37,6 +37,8 @@ Unit to_units(double mm);
 Point to_units(const Vec2& mm);
 inline double to_mm(Unit units) { return static_cast<double>(units) / kUnitsPerMm; }
 inline Vec2 to_mm(const Point& p) { return {to_mm(p.X), to_mm(p.Y)}; }
+/// Closed chains; corners that fall together are one.
+Rings to_rings(const std::vector<std::vector<Vec2>>& chains_mm);
 /// Of twice an area in square units.
 double twice_area_to_mm2(std::int64_t twice_area);
 

@@ -13,19 +13,6 @@ constexpr double kPunchLength_mm = 40, kHolder_mm = 40;
 /// Beyond it, units do not fit into 64 bits.
 constexpr double kFarthest_mm = 1e13;
 
-sheet::Rings to_rings(const std::vector<std::vector<Vec2>>& chains) {
-  sheet::Rings rings;
-  for (const std::vector<Vec2>& chain : chains) {
-    sheet::Ring& ring = rings.emplace_back();
-    for (const Vec2& p : chain) {
-      const sheet::Point point = sheet::to_units(p);
-      if (ring.empty() || ring.back() != point) ring.push_back(point);
-    }
-    while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  }
-  return rings;
-}
-
 /// Whole turns of right angles are exact: square punches keep their corners.
 Vec2 direction_of(double turn_rad) {
   const double quarters = turn_rad / (kPi / 2);
@@ -53,7 +40,7 @@ Result<Cutter> punch_cutter(std::string spec, const SheetOutline& shape) {
   if (const Done fit = check_outline(shape); !fit) return Error{fit.error()};
   // Outlines counter-clockwise, holes clockwise: turned and moved, they need no more looking at.
   ClipperLib::Clipper clipper;
-  clipper.AddPaths(to_rings(shape.rings), ClipperLib::ptSubject, true);
+  clipper.AddPaths(sheet::to_rings(shape.rings), ClipperLib::ptSubject, true);
   sheet::Rings rings;
   clipper.Execute(ClipperLib::ctUnion, rings, ClipperLib::pftEvenOdd, ClipperLib::pftEvenOdd);
   Cutter::Footprint footprint = shape.rings;
@@ -63,7 +50,7 @@ Result<Cutter> punch_cutter(std::string spec, const SheetOutline& shape) {
       std::vector<Vec2>& chain = footprint.emplace_back();
       for (const sheet::Point& p : ring) chain.push_back(sheet::to_mm(p));
     }
-  } else if (sheet::twice_area(to_rings(footprint)[0]) < 0) {
+  } else if (sheet::twice_area(sheet::to_rings(footprint)[0]) < 0) {
     std::reverse(footprint[0].begin(), footprint[0].end());
   }
   double radius = 0;
@@ -109,8 +96,8 @@ SheetOutline footprint_at(const Cutter& punch, const CutMove& stroke) {
 
 double overlap_mm2(const SheetOutline& a, const SheetOutline& b) {
   ClipperLib::Clipper clipper;
-  clipper.AddPaths(to_rings(a.rings), ClipperLib::ptSubject, true);
-  clipper.AddPaths(to_rings(b.rings), ClipperLib::ptClip, true);
+  clipper.AddPaths(sheet::to_rings(a.rings), ClipperLib::ptSubject, true);
+  clipper.AddPaths(sheet::to_rings(b.rings), ClipperLib::ptClip, true);
   sheet::Rings common;
   clipper.Execute(ClipperLib::ctIntersection, common, ClipperLib::pftEvenOdd,
                   ClipperLib::pftEvenOdd);
@@ -119,7 +106,7 @@ double overlap_mm2(const SheetOutline& a, const SheetOutline& b) {
 
 double area_mm2(const SheetOutline& shape) {
   ClipperLib::Clipper clipper;
-  clipper.AddPaths(to_rings(shape.rings), ClipperLib::ptSubject, true);
+  clipper.AddPaths(sheet::to_rings(shape.rings), ClipperLib::ptSubject, true);
   sheet::Rings rings;
   clipper.Execute(ClipperLib::ctUnion, rings, ClipperLib::pftEvenOdd, ClipperLib::pftEvenOdd);
   return area_of(rings);

@@ -60,20 +60,6 @@ sheet::Rings oriented(sheet::Rings rings) {
   return united;
 }
 
-template <class Map>
-sheet::Rings to_rings(const SheetOutline& outline, Map&& map) {
-  sheet::Rings rings;
-  for (const std::vector<Vec2>& ring : outline.rings) {
-    sheet::Ring& points = rings.emplace_back();
-    for (const Vec2& p : ring) {
-      const sheet::Point point = sheet::to_units(map(p));
-      if (points.empty() || points.back() != point) points.push_back(point);
-    }
-    while (points.size() > 1 && points.front() == points.back()) points.pop_back();
-  }
-  return rings;
-}
-
 SheetOutline to_outline(const sheet::Rings& rings) {
   SheetOutline outline;
   for (const sheet::Ring& ring : rings) {
@@ -94,7 +80,8 @@ Done check_range(std::string_view name, double value, double low, double high) {
 struct Sheet::Impl {
   explicit Impl(sheet::SavedSheet sheet)
       : grid(std::move(sheet.grid)),
-        labels(grid),
+        labels(std::move(sheet.labels)),
+        origins(std::make_shared<const sheet::PieceOrigins>(std::move(sheet.origins))),
         bottom_mm(sheet.bottom_mm),
         top_mm(sheet.top_mm),
         tolerance_mm(sheet.arc_tolerance_mm),
@@ -116,6 +103,7 @@ struct Sheet::Impl {
 
   sheet::SheetGrid grid;
   sheet::PieceLabels labels;
+  std::shared_ptr<const sheet::PieceOrigins> origins;  // of pieces that were free when loaded
   double bottom_mm, top_mm, tolerance_mm;
   std::int64_t blank_area2;
   sheet::CircleTables tables;
@@ -133,19 +121,25 @@ Result<std::unique_ptr<Sheet>> Sheet::create(const SheetOptions& options) {
                            check_outline(options.outline)}) {
     if (!done) return Error{done.error()};
   }
-  const sheet::Rings rings = oriented(to_rings(options.outline, [](const Vec2& p) { return p; }));
+  const sheet::Rings rings = oriented(sheet::to_rings(options.outline.rings));
   sheet::Rect box;
   for (const sheet::Ring& ring : rings) box.extend(sheet::bounds_of(ring));
   const Tiling tiling = tiling_for(options, box);
-  sheet::SavedSheet uncut{sheet::SheetGrid(rings, tiling.columns, tiling.rows), options.bottom_mm,
-                          options.top_mm, options.arc_tolerance_mm};
-  uncut.blank_area2 = uncut.grid.area2();
+  sheet::SheetGrid grid(rings, tiling.columns, tiling.rows);
+  const std::int64_t area2 = grid.area2();
+  sheet::PieceLabels labels(grid);
+  sheet::SavedSheet uncut{std::move(grid), std::move(labels),        {},   options.bottom_mm,
+                          options.top_mm,  options.arc_tolerance_mm, area2};
   return std::unique_ptr<Sheet>(new Sheet(std::make_unique<Impl>(std::move(uncut))));
 }
 
-Done Sheet::save(const std::string& path) const {
+Done Sheet::save(const std::string& path,
+                 const std::map<std::uint32_t, PieceOrigin>& origins) const {
   const Impl& m = *impl_;
-  return sheet::write_sheet(path, {m.grid, m.bottom_mm, m.top_mm, m.tolerance_mm, m.blank_area2});
+  sheet::PieceOrigins all = origins;
+  all.insert(m.origins->begin(), m.origins->end());
+  return sheet::write_sheet(path, {m.grid, m.labels, std::move(all), m.bottom_mm, m.top_mm,
+                                   m.tolerance_mm, m.blank_area2});
 }
 
 Result<std::unique_ptr<Sheet>> Sheet::load(const std::string& path) {
@@ -192,9 +186,12 @@ CutReport Sheet::punch(const SheetOutline& shape, const Vec2& position_mm, doubl
   if (!(sum < kMaxPunchCoordinate_mm)) return {id, 0, 0};
   const double cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
   sheet::Kerf kerf;
-  kerf.rings = oriented(to_rings(shape, [&](const Vec2& p) {
-    return position_mm + Vec2(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
-  }));
+  std::vector<std::vector<Vec2>> placed = shape.rings;
+  for (std::vector<Vec2>& ring : placed) {
+    for (Vec2& p : ring)
+      p = position_mm + Vec2(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+  }
+  kerf.rings = oriented(sheet::to_rings(placed));
   for (const sheet::Ring& ring : kerf.rings) kerf.box.extend(sheet::bounds_of(ring));
   return impl_->subtract(kerf, id);
 }
@@ -251,6 +248,8 @@ std::vector<SheetPiece> Sheet::pieces() const {
     piece.min_mm = {sheet::to_mm(boxes[i].min_x), sheet::to_mm(boxes[i].min_y)};
     piece.max_mm = {sheet::to_mm(boxes[i].max_x), sheet::to_mm(boxes[i].max_y)};
     piece.volume_mm3 = piece.area_mm2 * thickness_mm();
+    if (const auto origin = impl_->origins->find(piece.number); origin != impl_->origins->end())
+      piece.origin = origin->second;
   }
   std::sort(pieces.begin(), pieces.end(),
             [](const SheetPiece& a, const SheetPiece& b) { return a.number < b.number; });
@@ -258,6 +257,7 @@ std::vector<SheetPiece> Sheet::pieces() const {
 }
 
 std::size_t Sheet::piece_numbers() const { return impl_->labels.records().size(); }
+std::size_t Sheet::blank_piece_numbers() const { return impl_->labels.blank_pieces(); }
 
 SheetOutline Sheet::outline_of(std::uint32_t piece) const {
   const std::vector<sheet::PieceRecord>& records = impl_->labels.records();
@@ -278,7 +278,7 @@ std::unique_ptr<StockModel> Sheet::snapshot() const {
 std::size_t Sheet::unique_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t t = 0; t < impl_->grid.tile_count(); ++t) {
-    if (impl_->grid.tile_pointer(t).use_count() > 1) continue;
+    if (impl_->grid.is_shared(t)) continue;
     const sheet::Tile& tile = impl_->grid.tile(t);
     bytes += sizeof tile + tile.runs.capacity() * sizeof(sheet::BorderRun);
     for (const sheet::TileRingPointer& ring : tile.rings) {
@@ -306,6 +306,7 @@ Box Sheet::bounds_mm() const {
 double Sheet::cell_mm() const { return 1 / sheet::kUnitsPerMm; }
 std::size_t Sheet::cell_count() const { return impl_->grid.corner_count(); }
 double Sheet::thickness_mm() const { return impl_->top_mm - impl_->bottom_mm; }
+double Sheet::arc_tolerance_mm() const { return impl_->tolerance_mm; }
 double Sheet::blank_mm3() const {
   return sheet::twice_area_to_mm2(impl_->blank_area2) * thickness_mm();
 }

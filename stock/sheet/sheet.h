@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +25,13 @@ struct SheetOptions {
   int tiles_each_way = 0;
 };
 
+/// A line of a program.
+struct PieceOrigin {
+  std::string file;
+  std::uint32_t line = 0;  ///< 0: not known
+  bool operator==(const PieceOrigin&) const = default;
+};
+
 /// A part of the sheet that hangs together.
 struct SheetPiece {
   std::uint32_t number = 0;  ///< stays the same as long as the piece does
@@ -32,6 +40,8 @@ struct SheetPiece {
   double area_mm2 = 0;
   Vec2 min_mm{0}, max_mm{0};  ///< bounding box
   double volume_mm3 = 0;
+  /// What freed it, of a piece that was free when the sheet was saved; nothing of others.
+  std::optional<PieceOrigin> origin;
   double weight_kg(double density_kg_per_m3) const { return volume_mm3 * 1e-9 * density_kg_per_m3; }
   bool is_main() const { return !freed_by; }
 };
@@ -81,15 +91,19 @@ class Sheet final : public StockModel {
   /// How many there have been so far; a change tells that something has come free, with the numbers
   /// from the former count to the new one.
   std::size_t piece_numbers() const;
+  /// Numbers below this are those of the blank's pieces; the others have been cut free, by this
+  /// sheet or by the one that was saved.
+  std::size_t blank_piece_numbers() const;
   /// Rings round one piece, holes clockwise, across tiles. Empty for a number that is none.
   SheetOutline outline_of(std::uint32_t piece) const;
   /// Of all of them.
   SheetOutline outline() const;
 
-  /// Saves and loads the sheet (stock/sheet/sheet_state.h). All that lies apart in a loaded one
-  /// counts as a blank of its own: who freed it is not told. A damaged file is an error that says
-  /// what is wrong with it.
-  Done save(const std::string& path) const override;
+  /// Saves and loads the sheet (stock/sheet/sheet_state.h); it is cut on, its pieces and their
+  /// numbers are, as if it had never been saved. `origins`: by number, what freed those that are
+  /// free since it was loaded or made. A damaged file is an error that says what is wrong with it.
+  Done save(const std::string& path, const std::map<std::uint32_t, PieceOrigin>& origins) const;
+  Done save(const std::string& path) const override { return save(path, {}); }
   static Result<std::unique_ptr<Sheet>> load(const std::string& path);
 
   std::unique_ptr<StockModel> snapshot() const override;
@@ -105,6 +119,7 @@ class Sheet final : public StockModel {
   double blank_mm3() const override;
   double remaining_mm3() const override;
   double thickness_mm() const;
+  double arc_tolerance_mm() const;
   double remaining_mm2() const;
   std::string digest() const override;
 

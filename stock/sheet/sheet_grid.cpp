@@ -68,7 +68,7 @@ SheetGrid::SheetGrid(const Rings& outline, int columns, int rows) : columns_(col
                       ClipperLib::pftNonZero);
       for (Ring& ring : cut) rings.push_back(make_tile_ring(std::move(ring)));
     }
-    tiles_.push_back(std::make_shared<const Tile>(make_tile(rect, std::move(rings))));
+    tiles_.push_back(std::make_shared<Tile>(make_tile(rect, std::move(rings))));
     area2_ += tiles_.back()->area2;
   }
 }
@@ -76,14 +76,14 @@ SheetGrid::SheetGrid(const Rings& outline, int columns, int rows) : columns_(col
 SheetGrid::SheetGrid(const Rect& bounds, int columns, int rows)
     : bounds_(bounds), columns_(columns), rows_(rows) {
   const std::size_t count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  tiles_.assign(count, std::make_shared<const Tile>(make_tile({}, {})));
+  tiles_.assign(count, std::make_shared<Tile>(make_tile({}, {})));
 }
 
 void SheetGrid::set_rings(std::size_t index, std::vector<Ring> rings) {
   std::vector<TileRingPointer> shared;
   shared.reserve(rings.size());
   for (Ring& ring : rings) shared.push_back(make_tile_ring(std::move(ring)));
-  tiles_[index] = std::make_shared<const Tile>(make_tile(tile_rect(index), std::move(shared)));
+  tiles_[index] = std::make_shared<Tile>(make_tile(tile_rect(index), std::move(shared)));
   area2_ += tiles_[index]->area2;
 }
 
@@ -96,10 +96,18 @@ Rect SheetGrid::tile_rect(std::size_t index) const {
 }
 
 std::int64_t SheetGrid::neighbour(std::size_t index, BorderSide side) const {
-  const int column = static_cast<int>(index) % columns_ + (side == kRight) - (side == kLeft);
-  const int row = static_cast<int>(index) / columns_ + (side == kTop) - (side == kBottom);
-  if (column < 0 || column >= columns_ || row < 0 || row >= rows_) return -1;
-  return static_cast<std::int64_t>(index_of(column, row));
+  return neighbours(index)[side];
+}
+
+std::array<std::int64_t, 4> SheetGrid::neighbours(std::size_t index) const {
+  const auto at = static_cast<std::int64_t>(index);
+  const int column = static_cast<int>(index) % columns_, row = static_cast<int>(index) / columns_;
+  std::array<std::int64_t, 4> next;
+  next[kLeft] = column > 0 ? at - 1 : -1;
+  next[kBottom] = row > 0 ? at - columns_ : -1;
+  next[kRight] = column + 1 < columns_ ? at + 1 : -1;
+  next[kTop] = row + 1 < rows_ ? at + columns_ : -1;
+  return next;
 }
 
 SheetGrid::TileRange SheetGrid::tiles_meeting(const Rect& rect) const {
@@ -208,19 +216,25 @@ void SheetGrid::replace(std::size_t index, Tile tile, TileChange change,
   area2_ += tile.area2 - tiles_[index]->area2;
   change.tile = static_cast<std::uint32_t>(index);
   change.before = std::move(tiles_[index]);
-  tiles_[index] = std::make_shared<const Tile>(std::move(tile));
+  tiles_[index] = std::make_shared<Tile>(std::move(tile));
   changes.push_back(std::move(change));
 }
 
-void SheetGrid::set_pieces(std::size_t index, std::vector<std::uint32_t> pieces) {
-  Tile tile = *tiles_[index];
-  tile.pieces = std::move(pieces);
-  tiles_[index] = std::make_shared<const Tile>(std::move(tile));
+std::vector<std::uint32_t>& SheetGrid::pieces(std::size_t index) {
+  std::shared_ptr<Tile>& tile = tiles_[index];
+  if (is_shared(index)) {
+    tile = std::make_shared<Tile>(*tile);
+  } else {
+    // use_count() alone does not order the last reads of a grid that has let go of the tile before
+    // the writes of this one: letting go of it as well does.
+    std::shared_ptr<Tile>(tile).reset();
+  }
+  return tile->pieces;
 }
 
 std::size_t SheetGrid::corner_count() const {
   std::size_t corners = 0;
-  for (const TilePointer& tile : tiles_) {
+  for (const std::shared_ptr<Tile>& tile : tiles_) {
     for (const TileRingPointer& ring : tile->rings) corners += ring->points.size();
   }
   return corners;

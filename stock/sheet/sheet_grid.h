@@ -1,6 +1,7 @@
 // stock/sheet/sheet_grid.h - the sheet in copy-on-write tiles, and what is cut out of it.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -33,10 +34,13 @@ class SheetGrid {
   const Rect& bounds() const { return bounds_; }
   std::size_t tile_count() const { return tiles_.size(); }
   const Tile& tile(std::size_t index) const { return *tiles_[index]; }
-  const TilePointer& tile_pointer(std::size_t index) const { return tiles_[index]; }
+  /// Is it another grid's as well?
+  bool is_shared(std::size_t index) const { return tiles_[index].use_count() > 1; }
   Rect tile_rect(std::size_t index) const;
   /// Beyond `side` of the tile; -1 where the sheet ends.
   std::int64_t neighbour(std::size_t index, BorderSide side) const;
+  /// By side.
+  std::array<std::int64_t, 4> neighbours(std::size_t index) const;
   /// Tiles that the rectangle meets: columns and rows from first to last; empty if first > last.
   struct TileRange {
     int first_column, last_column, first_row, last_row;
@@ -55,8 +59,9 @@ class SheetGrid {
 
   /// Material of an empty tile: a region within it.
   void set_rings(std::size_t index, std::vector<Ring> rings);
-  /// Assigns pieces; the tile keeps its version, which tells of its rings alone.
-  void set_pieces(std::size_t index, std::vector<std::uint32_t> pieces);
+  /// Tile::pieces, to be assigned; the tile keeps its version, which tells of its rings alone. Made
+  /// this grid's own first where it is shared.
+  std::vector<std::uint32_t>& pieces(std::size_t index);
 
   /// Twice the area of the material, in square units. Exact.
   std::int64_t area2() const { return area2_; }
@@ -76,7 +81,7 @@ class SheetGrid {
 
   Rect bounds_;
   int columns_ = 1, rows_ = 1;
-  std::vector<TilePointer> tiles_;
+  std::vector<std::shared_ptr<Tile>> tiles_;
   std::int64_t area2_ = 0;
   std::uint64_t operations_ = 0;
   // Kept for their memory:

@@ -12,7 +12,10 @@
 namespace kerf::sheet {
 namespace {
 
+constexpr std::int64_t kLayout = 2;
+
 struct Head {
+  std::int64_t layout = 1;
   std::int64_t bounds[4] = {};
   std::int64_t tiles[2] = {};
   double z_mm[2] = {};
@@ -20,7 +23,17 @@ struct Head {
   std::int64_t blank_area2 = 0;
 
   Rect rect() const { return {bounds[0], bounds[1], bounds[2], bounds[3]}; }
+  bool is_known() const { return layout == 1 || layout == kLayout; }
 };
+
+/// As it lies in the file.
+struct PieceEntry {
+  std::uint64_t freed_by = 0;
+  std::uint32_t tile = 0, ring = 0;
+  std::int32_t box[4] = {};
+  std::uint32_t name = 0, line = 0;
+};
+static_assert(sizeof(PieceEntry) == 40);
 
 bool sane(const Head& h) {
   constexpr auto kMost = static_cast<Unit>(kMaxCoordinate_mm * kUnitsPerMm);
@@ -42,16 +55,19 @@ bool sane(const Head& h) {
 }
 
 bool read_head(StateHead& reader, Head& h) {
+  StateHead ahead = reader;
+  if (ahead.line("layout") && !reader.numbers("layout", &h.layout, 1)) return false;
+  if (!h.is_known()) return h.layout > 0;  // what follows is not known either
   return reader.numbers("bounds", h.bounds, 4) && reader.numbers("tiles", h.tiles, 2) &&
          reader.numbers("z_mm", h.z_mm, 2) &&
          reader.numbers("arc_tolerance_mm", &h.arc_tolerance_mm, 1) &&
          reader.numbers("blank_area2", &h.blank_area2, 1) && reader.line("data") && sane(h);
 }
 
-/// Takes tiles off the bytes behind the head.
-class TileReader {
+/// Takes tiles and pieces off the bytes behind the head.
+class DataReader {
  public:
-  explicit TileReader(std::string_view bytes) : bytes_(bytes) {}
+  explicit DataReader(std::string_view bytes) : bytes_(bytes) {}
   bool is_at_end() const { return bytes_.empty(); }
 
   bool read_tile(const Rect& rect, std::vector<Ring>& rings) {
@@ -66,7 +82,37 @@ class TileReader {
     return area2 >= 0 && holes_have_owners(rings);
   }
 
+  bool read_pieces(SavedSheet& saved) {
+    std::vector<std::string> names;
+    std::uint32_t blank_pieces = 0, count = 0;
+    if (!read_names(names) || !take(&blank_pieces, sizeof blank_pieces) ||
+        !take(&count, sizeof count) || count > bytes_.size() / sizeof(PieceEntry))
+      return false;
+    std::vector<PieceSeat> seats;
+    for (std::uint32_t number = 0; number < count; ++number) {
+      PieceEntry e;
+      if (!take(&e, sizeof e) || e.name > names.size()) return false;
+      seats.push_back({e.tile, e.ring, {e.box[0], e.box[1], e.box[2], e.box[3]}, e.freed_by});
+      if (number >= blank_pieces && (e.name > 0 || e.line > 0))
+        saved.origins[number] = {e.name > 0 ? names[e.name - 1] : std::string(), e.line};
+    }
+    return saved.labels.restore(saved.grid, seats, blank_pieces);
+  }
+
  private:
+  bool read_names(std::vector<std::string>& names) {
+    std::uint32_t count = 0;
+    if (!take(&count, sizeof count) || count > bytes_.size() / sizeof count) return false;
+    names.resize(count);
+    for (std::string& name : names) {
+      std::uint32_t length = 0;
+      if (!take(&length, sizeof length) || length > bytes_.size()) return false;
+      name = bytes_.substr(0, length);
+      bytes_.remove_prefix(length);
+    }
+    return true;
+  }
+
   bool take(void* out, std::size_t bytes) {
     if (bytes_.size() < bytes) return false;
     std::memcpy(out, bytes_.data(), bytes);
@@ -119,6 +165,41 @@ void put_ring(const Ring& ring, StateWriter& file) {
   file.put(numbers.data(), numbers.size() * sizeof(std::int32_t));
 }
 
+void put_number(std::size_t number, StateWriter& file) {
+  const auto bits = static_cast<std::uint32_t>(number);
+  file.put(&bits, sizeof bits);
+}
+
+void put_pieces(const SavedSheet& saved, StateWriter& file) {
+  std::map<std::string_view, std::uint32_t> names;  // from 1 on, in the order of the map
+  for (const auto& [number, origin] : saved.origins) {
+    if (!origin.file.empty()) names[origin.file] = 0;
+  }
+  put_number(names.size(), file);
+  std::uint32_t last = 0;
+  for (auto& [name, place] : names) {
+    place = ++last;
+    put_number(name.size(), file);
+    file.put(name.data(), name.size());
+  }
+  const std::vector<PieceSeat> seats = saved.labels.seats(saved.grid);
+  put_number(saved.labels.blank_pieces(), file);
+  put_number(seats.size(), file);
+  for (std::uint32_t number = 0; number < seats.size(); ++number) {
+    const PieceSeat& seat = seats[number];
+    PieceEntry entry{seat.freed_by, seat.tile, seat.ring, {}, 0, 0};
+    if (seat.tile != kNoPiece) {
+      const Unit box[4] = {seat.box.min_x, seat.box.min_y, seat.box.max_x, seat.box.max_y};
+      std::copy(box, box + 4, entry.box);
+    }
+    if (const auto origin = saved.origins.find(number); origin != saved.origins.end()) {
+      entry.line = origin->second.line;
+      if (!origin->second.file.empty()) entry.name = names[origin->second.file];
+    }
+    file.put(&entry, sizeof entry);
+  }
+}
+
 }  // namespace
 
 Done write_sheet(const std::string& path, const SavedSheet& saved) {
@@ -126,10 +207,10 @@ Done write_sheet(const std::string& path, const SavedSheet& saved) {
   if (!file) return Error{file.error()};
   const Rect& b = saved.grid.bounds();
   const std::string head = fmt::format(
-      "{}model sheet\nbounds {} {} {} {}\ntiles {} {}\nz_mm {} {}\narc_tolerance_mm {}\n"
+      "{}model sheet\nlayout {}\nbounds {} {} {} {}\ntiles {} {}\nz_mm {} {}\narc_tolerance_mm {}\n"
       "blank_area2 {}\ndata\n",
-      kStateMagic, b.min_x, b.min_y, b.max_x, b.max_y, saved.grid.columns(), saved.grid.rows(),
-      saved.bottom_mm, saved.top_mm, saved.arc_tolerance_mm, saved.blank_area2);
+      kStateMagic, kLayout, b.min_x, b.min_y, b.max_x, b.max_y, saved.grid.columns(),
+      saved.grid.rows(), saved.bottom_mm, saved.top_mm, saved.arc_tolerance_mm, saved.blank_area2);
   file->put(head.data(), head.size());
   for (std::size_t i = 0; i < saved.grid.tile_count(); ++i) {
     const Tile& tile = saved.grid.tile(i);
@@ -137,37 +218,40 @@ Done write_sheet(const std::string& path, const SavedSheet& saved) {
     file->put(&count, sizeof count);
     for (const TileRingPointer& ring : tile.rings) put_ring(ring->points, *file);
   }
+  put_pieces(saved, *file);
   return file->commit();
 }
 
 Result<SavedSheet> parse_sheet(const std::string& bytes, const std::string& name) {
-  Result<StateHead> reader = head_of_state(bytes, name, "sheet");
-  if (!reader) return Error{reader.error()};
   Head head;
-  if (!read_head(*reader, head))
-    return Error{fmt::format("{}: the head is damaged near byte {}", name, reader->position())};
-  if (!has_right_checksum(bytes))
-    return Error{
-        fmt::format("{}: the checksum does not match: the file is damaged or cut short", name)};
+  const Result<StateHead> reader = head_of_state(
+      bytes, name, "sheet", [&head](StateHead& lines) { return read_head(lines, head); });
+  if (!reader) return Error{reader.error()};
+  if (!head.is_known()) {
+    return Error{fmt::format("{}: a sheet of layout {}; layouts 1 to {} can be read", name,
+                             head.layout, kLayout)};
+  }
+  const Result<std::string_view> data = data_of_state(*reader, name);
+  if (!data) return Error{data.error()};
   const std::string damaged = fmt::format("{}: the tiles are damaged", name);
-  // The checksum may overlap the head of a file that is made up.
-  const std::size_t end = bytes.size() - kStateHashBytes;
-  if (end < reader->position()) return Error{damaged};
-  const std::size_t data = end - reader->position();
   const auto count = static_cast<std::size_t>(head.tiles[0] * head.tiles[1]);
-  if (count > data / sizeof(std::uint32_t)) return Error{damaged};
+  if (count > data->size() / sizeof(std::uint32_t)) return Error{damaged};
 
-  SavedSheet saved{
-      SheetGrid(head.rect(), static_cast<int>(head.tiles[0]), static_cast<int>(head.tiles[1])),
-      head.z_mm[0], head.z_mm[1], head.arc_tolerance_mm, head.blank_area2};
-  TileReader tiles(std::string_view(bytes).substr(reader->position(), data));
+  SheetGrid grid(head.rect(), static_cast<int>(head.tiles[0]), static_cast<int>(head.tiles[1]));
+  DataReader rest(*data);
   std::vector<Ring> rings;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!tiles.read_tile(saved.grid.tile_rect(i), rings)) return Error{damaged};
-    saved.grid.set_rings(i, std::move(rings));
+    if (!rest.read_tile(grid.tile_rect(i), rings)) return Error{damaged};
+    grid.set_rings(i, std::move(rings));
     rings.clear();
   }
-  if (!tiles.is_at_end() || saved.grid.area2() > saved.blank_area2) return Error{damaged};
+  if (grid.area2() > head.blank_area2) return Error{damaged};
+  PieceLabels labels(grid);
+  SavedSheet saved{std::move(grid),       std::move(labels), {}, head.z_mm[0], head.z_mm[1],
+                   head.arc_tolerance_mm, head.blank_area2};
+  const bool has_pieces = head.layout > 1;
+  if ((has_pieces && !rest.read_pieces(saved)) || !rest.is_at_end())
+    return Error{has_pieces ? fmt::format("{}: the pieces are damaged", name) : damaged};
   return saved;
 }
 

@@ -41,7 +41,7 @@ inline bool bridges(const BorderRun& a, const BorderRun& b) {
 
 inline constexpr std::uint32_t kNoPiece = 0xffff'ffff;
 
-/// Immutable. Copying one copies pointers.
+/// Never changed while copies of a sheet share it. Copying one copies pointers.
 struct Tile {
   std::vector<TileRingPointer> rings;
   /// Of each ring: the piece of the sheet that it belongs to (pieces.h); kNoPiece for holes.

@@ -103,6 +103,22 @@ TEST(SheetConnectivity, a_sheet_cut_in_two) {
   for (const SheetPiece& piece : pieces) EXPECT_EQ(piece.is_main(), piece.min_mm.x < 1);
 }
 
+// Tiles are shared, and pieces are marked in them.
+TEST(SheetConnectivity, a_snapshot_keeps_its_pieces) {
+  const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 8);
+  test::cut(*sheet, 1, {test::line({40, -1}, {40, 41}, 3)});
+  const std::unique_ptr<StockModel> snapshot = sheet->snapshot();
+  auto& before = dynamic_cast<Sheet&>(*snapshot);
+  test::cut(*sheet, 1, {test::line({20, -1}, {20, 41}, 4)});
+  EXPECT_EQ(sheet->pieces().size(), 3u);
+  EXPECT_NE(sheet->piece_at({10, 20}), sheet->piece_at({30, 20}));
+  EXPECT_EQ(before.pieces().size(), 2u);
+  EXPECT_EQ(before.piece_at({10, 20}), before.piece_at({30, 20}));
+  test::cut(before, 1, {test::line({-1, 20}, {39, 20}, 5)});
+  EXPECT_EQ(before.pieces().size(), 3u);
+  EXPECT_EQ(sheet->piece_at({10, 10}), sheet->piece_at({10, 30}));
+}
+
 TEST(SheetConnectivity, along_a_border_of_tiles) {
   // Kerfs that run along borders part tiles without parting any tile's own material.
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 4);

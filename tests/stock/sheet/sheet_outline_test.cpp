@@ -159,18 +159,17 @@ TEST(SheetOutline, written_and_read_again) {
   const std::string folder = ::testing::TempDir();
   for (const SheetPiece& piece : sheet->pieces()) {
     const SheetOutline outline = sheet->outline_of(piece.number);
-    ASSERT_TRUE(write_outline_dxf(outline, folder + "piece.dxf"));
-    ASSERT_TRUE(write_outline_svg(outline, folder + "piece.svg"));
+    ASSERT_TRUE(write_outline_dxf(outline, 0.005, folder + "piece.dxf"));
+    ASSERT_TRUE(write_outline_svg(outline, 0.005, folder + "piece.svg"));
     for (const auto format : {OutlineFormat::kDxf, OutlineFormat::kSvg}) {
       const bool dxf_format = format == OutlineFormat::kDxf;
       const Result<SheetOutline> again =
-          read_outline_file(folder + (dxf_format ? "piece.dxf" : "piece.svg"), format, 0.01);
+          read_outline_file(folder + (dxf_format ? "piece.dxf" : "piece.svg"), format, 0.001);
       ASSERT_TRUE(again) << again.error();
-      EXPECT_NEAR(even_odd_area(*again), piece.area_mm2, 1e-3 + 1e-6 * piece.area_mm2);
-      EXPECT_TRUE(!dxf_format || again->rings == outline.rings);
+      EXPECT_NEAR(even_odd_area(*again), piece.area_mm2, 5e-3 + 1e-6 * piece.area_mm2);
     }
   }
-  EXPECT_FALSE(write_outline_svg(sheet->outline(), folder + "no/such/folder.svg"));
+  EXPECT_FALSE(write_outline_svg(sheet->outline(), 0.005, folder + "no/such/folder.svg"));
   EXPECT_FALSE(read_outline_file(folder + "no_such.dxf", OutlineFormat::kDxf, 0.01));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "stock/sheet/blank_area.h"
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
 #include "tests/stock/sheet/sheet_samples.h"
@@ -200,6 +201,46 @@ TEST(SheetPunch, AgreesWithEveryPointByItself) {
     EXPECT_EQ(wrong, 0) << kind;
     EXPECT_GT(seen, 79000);
   }
+}
+
+TEST(BlankArea, SharesOfStrokesAtTheEdgeByClosedForms) {
+  const BlankArea blank(plate()->outline());
+  const auto share = [&](const std::string& shape, const Vec2& place, double turn_deg = 0) {
+    return blank.share_of(
+        footprint_at(punch(shape), punch_stroke(Vec3(place, 0), degrees(turn_deg), 0)));
+  };
+  EXPECT_EQ(share("round:10", {100, 50}), 1);
+  EXPECT_EQ(share("rectangle:200:100", {100, 50}), 1) << "the whole of it";
+  EXPECT_EQ(share("round:10", {-5.01, 50}), 0);
+  EXPECT_EQ(share("round:10", {300, 300}), 0);
+  EXPECT_EQ(share("round:10", {1e15, 0}), 0) << "no shape there";
+  EXPECT_NEAR(share("square:10", {200, 50}), 0.5, 1e-9);
+  EXPECT_NEAR(share("square:10", {198, 1}), 0.7 * 0.6, 1e-9) << "a corner";
+  EXPECT_NEAR(share("round:10", {200, 0}), 0.25, 1e-6);
+  EXPECT_NEAR(share("square:10", {0, 50}, 45), 0.5, 1e-6);
+  // A segment of a circle, d beyond its centre.
+  const double d = 2, segment = 25 * std::acos(d / 5) - d * std::sqrt(25 - d * d);
+  EXPECT_NEAR(share("round:10", {100, 102}), segment / (25 * kPi), 1e-4);
+  EXPECT_EQ(blank.share_of({}), 0);
+}
+
+TEST(BlankArea, HolesAreNoEdgesAndIslandsAreSheet) {
+  // An L, a hole in it, a plate in the hole and one apart.
+  SheetOutline outline;
+  outline.rings = {{{0, 0}, {90, 0}, {90, 40}, {40, 40}, {40, 90}, {0, 90}},
+                   {{5, 5}, {35, 5}, {35, 35}, {5, 35}},
+                   {{10, 10}, {20, 10}, {20, 20}, {10, 20}},
+                   {{60, 60}, {80, 60}, {80, 80}, {60, 80}}};
+  const std::unique_ptr<Sheet> sheet = make_sheet(outline, 5);
+  const BlankArea blank(sheet->outline());
+  const auto share = [&](const Vec2& place) {
+    return blank.share_of(footprint_at(punch("square:10"), punch_stroke(Vec3(place, 0), 0, 0)));
+  };
+  EXPECT_EQ(share({28, 28}), 1) << "over nothing but the hole";
+  EXPECT_EQ(share({12, 12}), 1);
+  EXPECT_NEAR(share({40, 40}), 0.75, 1e-9);
+  EXPECT_EQ(share({50, 50}), 0);
+  EXPECT_NEAR(share({60, 70}), 0.5, 1e-9);
 }
 
 }  // namespace

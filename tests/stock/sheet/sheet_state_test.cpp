@@ -81,6 +81,26 @@ class SheetState : public testing::Test {
     other.replace(at, bytes.find('\n', at) - at, key + " " + value);
     return with_checksum(other);
   }
+  /// As layout 1 has it: tiles alone.
+  static std::string without_pieces(std::string bytes, std::size_t numbers) {
+    const std::string layout = "layout 2\n";
+    bytes.erase(bytes.find(layout), layout.size());
+    const std::size_t pieces = (3 + 10 * numbers) * sizeof(std::uint32_t);  // no names
+    bytes.erase(bytes.size() - kStateHashBytes - pieces, pieces);
+    return with_checksum(bytes);
+  }
+  static void expect_same_pieces(const Sheet& a, const Sheet& b) {
+    EXPECT_EQ(a.piece_numbers(), b.piece_numbers());
+    EXPECT_EQ(a.blank_piece_numbers(), b.blank_piece_numbers());
+    const std::vector<SheetPiece> of_a = a.pieces(), of_b = b.pieces();
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+      EXPECT_EQ(of_a[i].number, of_b[i].number);
+      EXPECT_EQ(of_a[i].freed_by, of_b[i].freed_by);
+      EXPECT_EQ(of_a[i].area_mm2, of_b[i].area_mm2);
+      EXPECT_EQ(of_a[i].min_mm, of_b[i].min_mm);
+    }
+  }
   std::string error_of(const std::string& bytes) {
     const Result<sheet::SavedSheet> parsed = sheet::parse_sheet(bytes, "part.state");
     return parsed ? "none" : parsed.error();
@@ -102,12 +122,75 @@ TEST_F(SheetState, comes_back_the_same_and_is_cut_on_as_if_never_saved) {
     EXPECT_EQ((*loaded)->blank_mm3(), first->blank_mm3());
     EXPECT_EQ((*loaded)->remaining_mm3(), first->remaining_mm3());
     EXPECT_EQ((*loaded)->bounds_mm(), first->bounds_mm());
-    EXPECT_EQ((*loaded)->pieces().size(), first->pieces().size());
-    for (const SheetPiece& piece : (*loaded)->pieces()) EXPECT_TRUE(piece.is_main());
+    EXPECT_GT(first->pieces().size(), 15u);
+    expect_same_pieces(**loaded, *first);
     cut(**loaded, some_moves(31, 60));
     EXPECT_EQ((*loaded)->digest(), whole->digest());
-    EXPECT_EQ((*loaded)->pieces().size(), whole->pieces().size());
+    expect_same_pieces(**loaded, *whole);
   }
+}
+
+TEST_F(SheetState, the_lines_that_freed_pieces_come_back) {
+  const std::unique_ptr<Sheet> first = uncut(3);
+  cut(*first, some_moves(0, 3));
+  ASSERT_EQ(first->piece_numbers(), 3u);
+  ASSERT_TRUE(first->save(path_, {{1, {"a.ngc", 12}}, {2, {"sub/b.ngc", 7}}}));
+  Result<std::unique_ptr<Sheet>> second = Sheet::load(path_);
+  ASSERT_TRUE(second) << second.error();
+  cut(**second, some_moves(4, 5));
+  ASSERT_EQ((*second)->piece_numbers(), 4u);
+  // Saved again, with what has been freed since.
+  ASSERT_TRUE((*second)->snapshot()->save(path_));
+  ASSERT_TRUE((*second)->save(path_, {{3, {"", 99}}}));
+  const Result<std::unique_ptr<Sheet>> third = Sheet::load(path_);
+  ASSERT_TRUE(third) << third.error();
+  const std::vector<SheetPiece> pieces = (*third)->pieces();
+  ASSERT_EQ(pieces.size(), 4u);
+  EXPECT_TRUE(pieces[0].is_main());
+  EXPECT_EQ(pieces[0].origin, std::nullopt);
+  EXPECT_EQ(pieces[1].origin, (PieceOrigin{"a.ngc", 12}));
+  EXPECT_EQ(pieces[2].origin, (PieceOrigin{"sub/b.ngc", 7}));
+  EXPECT_EQ(pieces[3].origin, (PieceOrigin{"", 99}));
+}
+
+TEST_F(SheetState, in_files_of_layout_1_every_piece_is_of_the_blank) {
+  const std::unique_ptr<Sheet> sheet = uncut(2);
+  cut(*sheet, some_moves(0, 5));
+  const std::string bytes = saved_bytes(*sheet);
+  std::ofstream(path_, std::ios::binary) << without_pieces(bytes, sheet->piece_numbers());
+  const Result<std::unique_ptr<Sheet>> loaded = Sheet::load(path_);
+  ASSERT_TRUE(loaded) << loaded.error();
+  EXPECT_EQ((*loaded)->digest(), sheet->digest());
+  EXPECT_EQ((*loaded)->pieces().size(), sheet->pieces().size());
+  EXPECT_EQ((*loaded)->blank_piece_numbers(), sheet->pieces().size());
+  for (const SheetPiece& piece : (*loaded)->pieces()) EXPECT_TRUE(piece.is_main());
+}
+
+// A number for a piece that there is not, two for one, none, names beyond the list.
+TEST_F(SheetState, pieces_that_do_not_fit_the_tiles_are_refused) {
+  const std::unique_ptr<Sheet> sheet = uncut(2);
+  cut(*sheet, some_moves(0, 3));
+  ASSERT_EQ(sheet->piece_numbers(), 3u);
+  const std::string bytes = saved_bytes(*sheet);
+  constexpr std::size_t kEntry = 40;
+  const std::size_t first = bytes.size() - kStateHashBytes - 3 * kEntry;
+  const auto changed = [&](std::size_t at, std::uint32_t value) {
+    std::string other = bytes;
+    other.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
+    return error_of(with_checksum(other));
+  };
+  ASSERT_EQ(changed(first - 4, 3), "none");
+  const std::string damaged = "part.state: the pieces are damaged";
+  EXPECT_EQ(changed(first - 4, 2), damaged) << "fewer numbers than there are";
+  EXPECT_EQ(changed(first - 8, 4), damaged) << "more pieces of the blank than numbers";
+  EXPECT_EQ(changed(first + 8, 4), damaged) << "a tile beyond the last";
+  EXPECT_EQ(changed(first + 12, 1000), damaged) << "a ring beyond the last";
+  EXPECT_EQ(changed(first + kEntry + 8, 0xffff'ffff), damaged) << "a piece without a number";
+  EXPECT_EQ(changed(first + kEntry + 16, 0x7fff'ffff), damaged) << "a box beside its piece";
+  EXPECT_EQ(changed(first + 32, 1), damaged) << "a name beyond the last";
+  std::string twice = bytes;
+  twice.replace(first + kEntry, kEntry, bytes.substr(first + 2 * kEntry, kEntry));
+  EXPECT_EQ(error_of(with_checksum(twice)), damaged);
 }
 
 TEST_F(SheetState, a_file_that_ends_anywhere_is_refused) {
@@ -120,8 +203,11 @@ TEST_F(SheetState, a_file_that_ends_anywhere_is_refused) {
   EXPECT_NE(error_of(bytes + "x"), "none");
   // Also if the checksum says that it is whole.
   const std::size_t data = bytes.find("data\n") + 5;
+  const std::size_t pieces = bytes.size() - (3 + 10 * sheet->piece_numbers()) * 4;
   for (std::size_t n = data + kStateHashBytes; n < bytes.size(); ++n)
-    EXPECT_EQ(error_of(with_checksum(bytes.substr(0, n))), "part.state: the tiles are damaged");
+    EXPECT_EQ(
+        error_of(with_checksum(bytes.substr(0, n))),
+        n < pieces ? "part.state: the tiles are damaged" : "part.state: the pieces are damaged");
 }
 
 TEST_F(SheetState, says_what_is_wrong) {
@@ -136,9 +222,13 @@ TEST_F(SheetState, says_what_is_wrong) {
   flipped[bytes.size() - 40] ^= 1;
   EXPECT_EQ(error_of(flipped),
             "part.state: the checksum does not match: the file is damaged or cut short");
+  EXPECT_EQ(error_of(with_line(bytes, "layout", "3")),
+            "part.state: a sheet of layout 3; layouts 1 to 2 can be read");
   const std::string damaged_head = "part.state: the head is damaged near byte";
   for (const auto& [key, value] :
-       std::vector<std::pair<std::string, std::string>>{{"bounds", "0 0 800000"},
+       std::vector<std::pair<std::string, std::string>>{{"layout", "0"},
+                                                        {"layout", "two"},
+                                                        {"bounds", "0 0 800000"},
                                                         {"bounds", "0 0 0 600000"},
                                                         {"bounds", "0 0 800000 1600000000000"},
                                                         {"tiles", "0 2"},
