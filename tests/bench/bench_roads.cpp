@@ -6,8 +6,9 @@
 //
 // Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. For each road
 // 1280x800 pixels, sixty times a second: first the program plays, then the eye turns as well. A
-// line for each of them: frames a second, how long a frame took (p50, p99, longest). By rays a new
-// picture of the workpiece may come later than the frame: how many came a second is told, too. Ends
+// line for each of them: frames a second, how long a frame took (p50, p99, longest). By rays and by
+// CSG a new picture of the workpiece may come later than the frame: how many came a second is told,
+// too. While the eye turns the pictures may have fewer pixels, as in the window. Ends
 // with 1 if a frame in a hundred took longer than kMostStall_ms.
 #include <fmt/format.h>
 
@@ -85,6 +86,7 @@ class Run {
                   commands_);
     thread_ = std::jthread([this](const std::stop_token& stop) { view_->run(stop); });
     options_.road = road;
+    renderer_.keep_pace();
     commands_.push(RoadCommand{road});
     camera_.fit(Box{Vec3(-1), Vec3(1)}, kSize_px);
     for (int quiet = 0; quiet < 100 || renderer_.drawn_road() != road;) {

@@ -43,6 +43,14 @@ int chords_of(const ArcGeometry& arc, const Vec3& from_mm) {
   return std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep_rad) / allowed)));
 }
 
+/// As large as it gets: grown by doubling, a full one would hold twice its memory.
+std::shared_ptr<PathChunk> new_chunk(std::uint32_t index) {
+  auto chunk = std::make_shared<PathChunk>();
+  chunk->index = index;
+  chunk->vertices.reserve(kPathChunkSegments + 1);
+  return chunk;
+}
+
 }  // namespace
 
 TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned, MotionMoves moves)
@@ -105,12 +113,11 @@ bool TrackPath::add_tilted(std::size_t motion, PathKind kind) {
 
 void TrackPath::push(const Vec3& at, PathKind kind) {
   const PathVertex vertex{glm::vec3(at), kind};
-  if (!open_) open_ = std::make_shared<PathChunk>();
+  if (!open_) open_ = new_chunk(0);
   open_->vertices.push_back(vertex);
   ++vertices_;
   if (open_->vertices.size() <= kPathChunkSegments) return;
-  auto next = std::make_shared<PathChunk>();
-  next->index = open_->index + 1;
+  auto next = new_chunk(open_->index + 1);
   next->vertices.push_back(vertex);
   made_.push_back(std::exchange(open_, std::move(next)));
 }

@@ -15,6 +15,7 @@
 
 #include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/csg_store.h"
+#include "viewer/csg/depth_layer.h"
 #include "viewer/csg/query_pool.h"
 #include "viewer/gl_objects.h"
 #include "viewer/shaders/shaders.h"
@@ -35,6 +36,11 @@ constexpr GLint kLastMark = 255;
 constexpr int kGround_steps = 2048;
 /// Solids that are taken at once at the beginning of a draw with a time limit.
 constexpr std::size_t kFirstGroup = 2;
+/// With a time limit the card is waited for after so much work, which a software renderer does in
+/// about 2 ms: the clock says nothing of what is only queued. In pixels; a triangle counts for
+/// kTriangle_px of them.
+constexpr std::int64_t kLook_px = 300'000;
+constexpr std::int64_t kTriangle_px = 40;
 
 using Clock = std::chrono::steady_clock;
 
@@ -43,31 +49,12 @@ constexpr glm::vec3 kSection{0.45f, 0.43f, 0.41f};
 
 /// Colour and depth of what is left of one layer of the blank.
 struct Layer {
-  GlFramebuffer framebuffer;
-  GlTexture colors;
-  GlTexture depths;                      // and stencil
+  DepthLayer pixels;
   TileClock clock;                       // of the picture
   TileClock ground;                      // of the blank seen from above
   std::vector<std::uint64_t> looked_at;  // by solid: when it was subtracted last
   bool is_settled = true;                // no solid has to be looked at again
 };
-
-/// Texture-backed, so that layers can be laid over each other.
-Done allocate(glm::ivec2 size_px, Layer* layer) {
-  allocate_texture(layer->colors, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, size_px, GL_NEAREST);
-  allocate_texture(layer->depths, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
-                   size_px, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, layer->framebuffer.name());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, layer->colors.name(),
-                         0);
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D,
-                         layer->depths.name(), 0);
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    return Error{
-        fmt::format("OpenGL cannot draw a picture of {} x {} pixels", size_px.x, size_px.y)};
-  }
-  return std::monostate{};
-}
 
 struct Solid {
   StoredSolid stored;
@@ -81,6 +68,7 @@ struct Solid {
 struct Batch {
   std::vector<StoredSolid> solids;
   bool is_around_eye = false;  // of the only one then
+  std::int64_t work_px = 0;    // see kLook_px
 };
 
 struct Tool {
@@ -124,10 +112,7 @@ class CsgRenderer::Impl {
   void clear_moves();
   Done draw(const Projection& projection, double longest_ms, bool shows);
   bool has_waiting() const { return !waiting_.empty() || !is_settled(); }
-  void bind_picture(int color_unit, int depth_unit) const;
-  void show_in(GLuint framebuffer, glm::ivec2 corner_px) const;
-  Picture read() const;
-  DepthPicture read_depth() const;
+  const DepthLayer& shown() const { return shown_; }
 
   CsgCounters counters;
   std::size_t move_count = 0;
@@ -146,11 +131,13 @@ class CsgRenderer::Impl {
   }
   void use_solid_program() const;
   void begin_layer(const Layer& layer, int number);
+  std::size_t gpu_bytes() const;
   PixelRect settle(Layer* layer, std::vector<std::uint32_t> pending);
+  std::size_t subtract_in_time(const std::vector<Batch>& batches);
   void subtract(const Batch& batch, std::size_t query);
   std::vector<std::uint32_t> to_look_at_again(const Layer& layer) const;
   void mark_inside(const Layer& layer);
-  void compose(const PixelRect& rect);
+  Done compose(const PixelRect& rect);
 
   Programs programs_;
   CsgOptions options_;
@@ -160,7 +147,7 @@ class CsgRenderer::Impl {
   BlankStore blank_store_;
   QueryPool queries_;
   std::vector<Layer> layers_;
-  Layer shown_;
+  DepthLayer shown_;  // may be of another size still
 
   std::vector<Tool> tools_;
   Box blank_mm_;
@@ -174,8 +161,8 @@ class CsgRenderer::Impl {
   std::uint64_t time_ = 1;                                 // counts batches; 0 is before all
   GLint mark_ = kLastMark;  // of the batch last drawn, in the stencil
   Projection projection_;
-  glm::ivec2 size_px_{0};
-  bool is_old_ = true;  // the layers, all of them
+  glm::ivec2 size_px_{0};  // of the layers
+  bool is_old_ = true;     // the layers, all of them
 };
 
 Done CsgRenderer::Impl::set_blank(const CsgBlank& blank) {
@@ -253,9 +240,8 @@ Done CsgRenderer::Impl::resize(const Projection& projection) {
                              max_size_px_, max_size_px_, size_px.x, size_px.y)};
   }
   layers_.resize(static_cast<std::size_t>(layers));
-  if (Done done = allocate(size_px, &shown_); !done) return done;
   for (Layer& layer : layers_) {
-    if (Done done = allocate(size_px, &layer); !done) return done;
+    if (Done done = layer.pixels.allocate(size_px); !done) return done;
   }
   size_px_ = size_px;
   is_old_ = true;
@@ -286,6 +272,7 @@ void CsgRenderer::Impl::begin_anew(const Projection& projection) {
     glEnable(GL_CULL_FACE);
     begin_layer(layers_[i], static_cast<int>(i));
     layers_[i].is_settled = true;
+    layers_[i].looked_at.clear();
     layers_[i].clock = TileClock(size_px_);
     layers_[i].ground = TileClock(glm::ivec2(kGround_steps));
   }
@@ -340,7 +327,7 @@ void CsgRenderer::Impl::use_solid_program() const {
 /// with the layer's number. Every front gets into one layer, whatever the order of triangles. The
 /// layer after those begins at the near plane, for an eye inside of the blank.
 void CsgRenderer::Impl::begin_layer(const Layer& layer, int number) {
-  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.pixels.framebuffer());
   glClearDepth(number < convexity_ ? 1.0 : 0.0);
   glClearStencil(0);
   glClearColor(kSection.r, kSection.g, kSection.b, 0.0f);
@@ -358,7 +345,7 @@ void CsgRenderer::Impl::begin_layer(const Layer& layer, int number) {
 /// Subtracts the solids, and again what may have to, until the layer stays as it is or the time is
 /// over. Gives the pixels that changed.
 PixelRect CsgRenderer::Impl::settle(Layer* layer, std::vector<std::uint32_t> pending) {
-  glBindFramebuffer(GL_FRAMEBUFFER, layer->framebuffer.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, layer->pixels.framebuffer());
   glEnable(GL_STENCIL_TEST);
   if (layers_.size() > 1) mark_ = kLastMark;  // each has a stencil of its own
   store_.bind();
@@ -366,32 +353,50 @@ PixelRect CsgRenderer::Impl::settle(Layer* layer, std::vector<std::uint32_t> pen
   layer->is_settled = pending.empty();
   while (!pending.empty()) {
     ++counters.sweeps;
-    counters.subtractions += pending.size();
     std::vector<PixelRect> rects;
     for (const std::uint32_t solid : pending) rects.push_back(solids_[solid].area.rect);
     const std::vector<std::uint32_t> batch_of = layer->clock.batches(rects);
     const std::size_t count = 1 + *std::max_element(batch_of.begin(), batch_of.end());
     std::vector<Batch> batches(count);
     for (std::size_t i = 0; i < pending.size(); ++i) {
+      const Solid& solid = solids_[pending[i]];
       Batch& batch = batches[batch_of[i]];
-      batch.solids.push_back(solids_[pending[i]].stored);
-      batch.is_around_eye = solids_[pending[i]].area.is_around_eye;
-      layer->looked_at[pending[i]] = time_ + batch_of[i];
+      batch.solids.push_back(solid.stored);
+      batch.is_around_eye = solid.area.is_around_eye;
+      batch.work_px += solid.area.rect.pixels() + kTriangle_px * (solid.stored.index_count / 3);
     }
-    for (std::size_t batch = 0; batch < count; ++batch) subtract(batches[batch], batch);
+    const std::size_t done = subtract_in_time(batches);
     for (std::size_t i = 0; i < pending.size(); ++i) {
+      if (batch_of[i] >= done) continue;
+      ++counters.subtractions;
+      layer->looked_at[pending[i]] = time_ + batch_of[i];
       if (!queries_.has_passed(batch_of[i])) continue;
       layer->clock.mark(rects[i], time_ + batch_of[i]);
       layer->ground.mark(solids_[pending[i]].ground, time_ + batch_of[i]);
       changed.extend(rects[i]);
     }
-    counters.batches += count;
-    time_ += count;
+    counters.batches += done;
+    time_ += done;
     pending = to_look_at_again(*layer);
     layer->is_settled = pending.empty();
     if (Clock::now() >= deadline_) break;
   }
   return changed;
+}
+
+/// As many of the batches as there is time for, at least one; those before are done when one is.
+std::size_t CsgRenderer::Impl::subtract_in_time(const std::vector<Batch>& batches) {
+  const bool is_limited = deadline_ != Clock::time_point::max();
+  std::int64_t queued_px = 0;
+  for (std::size_t batch = 0; batch < batches.size(); ++batch) {
+    subtract(batches[batch], batch);
+    queued_px += batches[batch].work_px;
+    if (!is_limited || queued_px < kLook_px) continue;
+    queued_px = 0;
+    queries_.wait(batch);
+    if (Clock::now() >= deadline_) return batch + 1;
+  }
+  return batches.size();
 }
 
 /// Solids side by side, or a single one that reaches around the eye. Its fronts may be missing
@@ -424,14 +429,15 @@ void CsgRenderer::Impl::subtract(const Batch& batch, std::size_t query) {
   QueryPool::end();
 }
 
-/// Solids under which a pixel moved after they were subtracted last. It moved to a point of the
-/// solid that moved it, so they must overlap in space too.
+/// Solids that there was no time for, and those under which a pixel moved after they were
+/// subtracted last. It moved to a point of the solid that moved it, so they must overlap in space
+/// too.
 std::vector<std::uint32_t> CsgRenderer::Impl::to_look_at_again(const Layer& layer) const {
   std::vector<std::uint32_t> again;
   for (const std::uint32_t solid : order_) {
     const std::uint64_t looked_at = layer.looked_at[solid];
-    if (layer.clock.newest(solids_[solid].area.rect) > looked_at &&
-        layer.ground.newest(solids_[solid].ground) > looked_at) {
+    if (looked_at == 0 || (layer.clock.newest(solids_[solid].area.rect) > looked_at &&
+                           layer.ground.newest(solids_[solid].ground) > looked_at)) {
       again.push_back(solid);
     }
   }
@@ -441,7 +447,7 @@ std::vector<std::uint32_t> CsgRenderer::Impl::to_look_at_again(const Layer& laye
 /// Sets alpha to 1 where the kept point is inside the blank: more backs than fronts behind it
 /// (those before it may be behind the eye). Within the scissor rectangle.
 void CsgRenderer::Impl::mark_inside(const Layer& layer) {
-  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.pixels.framebuffer());
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
   glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   mark_ = kLastMark;
@@ -470,8 +476,10 @@ void CsgRenderer::Impl::mark_inside(const Layer& layer) {
 }
 
 /// Background, and over it what is left of the layers, within the rectangle.
-void CsgRenderer::Impl::compose(const PixelRect& rect) {
-  if (rect.empty()) return;
+Done CsgRenderer::Impl::compose(const PixelRect& rect) {
+  if (rect.empty()) return std::monostate{};
+  // Of another size the layers are new, and the rectangle is all of it.
+  if (Done done = shown_.allocate(size_px_); !done) return done;
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.min.x, rect.min.y, rect.max.x - rect.min.x, rect.max.y - rect.min.y);
   glEnable(GL_STENCIL_TEST);
@@ -481,7 +489,7 @@ void CsgRenderer::Impl::compose(const PixelRect& rect) {
   }
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_CULL_FACE);
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_.framebuffer.name());
+  glBindFramebuffer(GL_FRAMEBUFFER, shown_.framebuffer());
   glClear(GL_DEPTH_BUFFER_BIT);
   glBindVertexArray(no_vertices_.name());
   glDepthFunc(GL_ALWAYS);
@@ -494,11 +502,17 @@ void CsgRenderer::Impl::compose(const PixelRect& rect) {
   programs_.layer.set("colors", 0);
   programs_.layer.set("depths", 1);
   for (const Layer& layer : layers_) {
-    bind_texture(1, layer.depths);
-    bind_texture(0, layer.colors);
+    layer.pixels.bind_textures(0, 1);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   glDisable(GL_SCISSOR_TEST);
+  return std::monostate{};
+}
+
+std::size_t CsgRenderer::Impl::gpu_bytes() const {
+  std::size_t bytes = store_.gpu_bytes() + blank_store_.gpu_bytes() + shown_.gpu_bytes();
+  for (const Layer& layer : layers_) bytes += layer.pixels.gpu_bytes();
+  return bytes;
 }
 
 Done CsgRenderer::Impl::draw(const Projection& projection, double longest_ms, bool shows) {
@@ -518,60 +532,18 @@ Done CsgRenderer::Impl::draw(const Projection& projection, double longest_ms, bo
   if (is_full) begin_anew(projection);
   take_waiting(longest_ms);
   last_changed = {};
+  Done done = std::monostate{};
   if (shows) {
     last_changed = std::exchange(unshown_, {});
-    compose(last_changed);
+    done = compose(last_changed);
   }
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_STENCIL_TEST);
   glDisable(GL_CULL_FACE);
   glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
-  counters.gpu_bytes = store_.gpu_bytes() + blank_store_.gpu_bytes();
-  return std::monostate{};
-}
-
-void CsgRenderer::Impl::bind_picture(int color_unit, int depth_unit) const {
-  bind_texture(depth_unit, shown_.depths);
-  bind_texture(color_unit, shown_.colors);
-}
-
-void CsgRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px) const {
-  const glm::ivec2 end_px = corner_px + size_px_;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glBlitFramebuffer(0, 0, size_px_.x, size_px_.y, corner_px.x, corner_px.y, end_px.x, end_px.y,
-                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-}
-
-Picture CsgRenderer::Impl::read() const {
-  Picture picture{size_px_.x, size_px_.y, {}};
-  const auto rows = static_cast<std::size_t>(size_px_.y);
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(size_px_.x);
-  std::vector<std::uint8_t> upward(rows * row_bytes);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, size_px_.x, size_px_.y, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
-  for (std::size_t row = rows; row-- > 0;) {
-    const std::uint8_t* begin = upward.data() + row * row_bytes;
-    picture.rgb.insert(picture.rgb.end(), begin, begin + row_bytes);
-  }
-  return picture;
-}
-
-DepthPicture CsgRenderer::Impl::read_depth() const {
-  DepthPicture picture{size_px_.x, size_px_.y, {}};
-  const auto rows = static_cast<std::size_t>(size_px_.y);
-  const auto columns = static_cast<std::size_t>(size_px_.x);
-  std::vector<float> upward(rows * columns);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer.name());
-  glReadPixels(0, 0, size_px_.x, size_px_.y, GL_DEPTH_COMPONENT, GL_FLOAT, upward.data());
-  for (std::size_t row = rows; row-- > 0;) {
-    const float* begin = upward.data() + row * columns;
-    picture.depths.insert(picture.depths.end(), begin, begin + columns);
-  }
-  return picture;
+  counters.gpu_bytes = gpu_bytes();
+  return done;
 }
 
 Result<CsgRenderer> CsgRenderer::create(const CsgOptions& options) {
@@ -607,14 +579,14 @@ Done CsgRenderer::draw(const Projection& projection, double longest_ms, bool sho
 bool CsgRenderer::has_waiting() const { return impl_->has_waiting(); }
 PixelRect CsgRenderer::changed() const { return impl_->last_changed; }
 void CsgRenderer::bind_picture(int color_unit, int depth_unit) const {
-  impl_->bind_picture(color_unit, depth_unit);
+  impl_->shown().bind_textures(color_unit, depth_unit);
 }
 void CsgRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px) const {
-  impl_->show_in(framebuffer, corner_px);
+  impl_->shown().show_in(framebuffer, corner_px);
 }
 void CsgRenderer::finish() const { glFinish(); }
-Picture CsgRenderer::read() const { return impl_->read(); }
-DepthPicture CsgRenderer::read_depth() const { return impl_->read_depth(); }
+Picture CsgRenderer::read() const { return impl_->shown().read(); }
+DepthPicture CsgRenderer::read_depth() const { return impl_->shown().read_depth(); }
 std::size_t CsgRenderer::move_count() const { return impl_->move_count; }
 const CsgCounters& CsgRenderer::counters() const { return impl_->counters; }
 

@@ -38,7 +38,7 @@ struct CsgOptions {
 struct CsgCounters {
   std::size_t solids = 0;  ///< convex pieces of the moves that reach the blank
   std::size_t triangles = 0;
-  std::size_t gpu_bytes = 0;
+  std::size_t gpu_bytes = 0;     ///< solids, blank, pictures
   bool was_full = false;         ///< the last draw() began from the blank; all below are its own
   std::size_t sweeps = 0;        ///< until nothing changed any more
   std::size_t batches = 0;       ///< of solids side by side, two passes each
@@ -93,9 +93,10 @@ class CsgRenderer {
   /// is more than this OpenGL can do.
   ///
   /// With a time limit moves are taken in small groups, the newest first, until it has passed; the
-  /// others wait for the next draw() (has_waiting()). At least one group is taken, so that the end
-  /// comes. What is drawn until then has too much material, nowhere too little. `shows` false: the
-  /// moves are taken, but the picture stays as it is until a draw() that shows.
+  /// others wait for the next draw() (has_waiting()). So do those of a group that there was no time
+  /// for; some of it is always done, so that the end comes. What is drawn until then has too much
+  /// material, nowhere too little. `shows` false: the moves are taken, but the picture stays as it
+  /// is until a draw() that shows.
   Done draw(const Projection& projection,
             double longest_ms = std::numeric_limits<double>::infinity(), bool shows = true);
   /// Moves are not yet subtracted from the picture of the last draw().

@@ -16,6 +16,10 @@ constexpr float kMinW = 1e-4f;
 
 }  // namespace
 
+std::int64_t PixelRect::pixels() const {
+  return empty() ? 0 : static_cast<std::int64_t>(max.x - min.x) * (max.y - min.y);
+}
+
 void PixelRect::extend(const PixelRect& other) {
   if (other.empty()) return;
   if (empty()) {

@@ -18,6 +18,7 @@ struct PixelRect {
   glm::ivec2 min{0, 0};
   glm::ivec2 max{0, 0};
   bool empty() const { return min.x >= max.x || min.y >= max.y; }
+  std::int64_t pixels() const;
   void extend(const PixelRect& other);
 };
 

@@ -10,8 +10,8 @@
 namespace kerf {
 
 /// Immutable once handed over. A later one may have more moves at its end, or longer ones, or quite
-/// others: the window finds out what is new (csg_view.h), so that what plays on costs no more than
-/// its new moves.
+/// others: the window finds out what is new (csg_picture.h), so that what plays on costs no more
+/// than its new moves.
 struct CutMoves {
   Box blank_mm;  ///< The uncut workpiece is this box.
   /// SweptMove::tool indexes them. The same pointer means the same tools.

@@ -22,6 +22,8 @@ class QueryPool {
     glBeginQuery(GL_ANY_SAMPLES_PASSED, names_[index]);
   }
   static void end() { glEndQuery(GL_ANY_SAMPLES_PASSED); }
+  /// Until the card has come so far.
+  void wait(std::size_t index) const { static_cast<void>(has_passed(index)); }
   /// Waits for the card.
   bool has_passed(std::size_t index) const {
     GLuint any = GL_FALSE;

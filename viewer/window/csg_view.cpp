@@ -1,115 +1,88 @@
 #include "viewer/window/csg_view.h"
 
 #include <algorithm>
-#include <limits>
-#include <span>
 #include <utility>
 
 namespace kerf {
 namespace {
 
-/// As the pictures of the program are made.
-constexpr double kTolerance_mm = 0.02;
-
-/// More new moves than this are not made into solids in one frame.
-constexpr std::size_t kMostAtOnce = 64;
-
-bool is_same(const SweptMove& a, const SweptMove& b) {
-  return a.from_mm == b.from_mm && a.to_mm == b.to_mm && a.tool == b.tool;
-}
-
-/// The same move, gone on.
-bool has_grown(const SweptMove& before, const SweptMove& now) {
-  if (before.from_mm != now.from_mm || before.tool != now.tool) return false;
-  const Vec3 was = before.to_mm - before.from_mm, is = now.to_mm - now.from_mm;
-  const double along = glm::dot(was, is);
-  constexpr double kSameWay = 1e-12;
-  return along >= glm::dot(was, was) * (1.0 - kSameWay) &&
-         glm::dot(was, was) * glm::dot(is, is) - along * along <=
-             kSameWay * glm::dot(is, is) * glm::dot(is, is);
+/// Of a coarse picture, in pixels of the full one.
+ScreenRect scaled(const PixelRect& rect, glm::ivec2 from_px, glm::ivec2 to_px) {
+  if (rect.empty()) return {};
+  const glm::ivec2 last = from_px - 1;
+  return {rect.min * to_px / from_px, (rect.max * to_px + last) / from_px};
 }
 
 }  // namespace
 
-Done CsgView::begin() {
-  if (!renderer_) {
-    CsgOptions options;
-    options.tolerance_mm = kTolerance_mm;
-    Result<CsgRenderer> renderer = CsgRenderer::create(options);
-    if (!renderer) return Error{renderer.error()};
-    renderer_.emplace(std::move(*renderer));
+void CsgView::set(std::shared_ptr<const CutMoves> moves) {
+  if (moves_ && (moves_->tools != moves->tools || !(moves_->blank_mm == moves->blank_mm))) {
+    release();
   }
-  if (begun_ && begun_->tools == wanted_->tools && begun_->blank_mm == wanted_->blank_mm) {
-    return std::monostate{};
-  }
-  begun_ = wanted_;
-  taken_.clear();
-  unfed_ = 0;
-  grown_ = 0;
-  if (Done done = renderer_->set_blank(box_blank(wanted_->blank_mm)); !done) return done;
-  return renderer_->set_tools(*wanted_->tools);
-}
-
-/// True if all moves have to be subtracted anew.
-bool CsgView::take_moves() {
-  const std::vector<SweptMove>& moves = wanted_->moves;
-  const auto same = static_cast<std::size_t>(
-      std::mismatch(taken_.begin(), taken_.end(), moves.begin(), moves.end(), is_same).first -
-      taken_.begin());
-  const bool grows =
-      same + 1 == taken_.size() && same < moves.size() && has_grown(taken_.back(), moves[same]);
-  if (grows) ++grown_;
-  const bool goes_on = (same == taken_.size() || grows) && grown_ <= kMostGrown &&
-                       moves.size() - same <= kMostAtOnce;
-  if (goes_on) {
-    renderer_->append(std::span(moves).subspan(same));
-  } else {
-    renderer_->clear_moves();
-    grown_ = 0;
-    unfed_ = moves.size();
-  }
-  taken_ = moves;
-  return !goes_on;
-}
-
-/// The newest first, as they are drawn.
-void CsgView::feed() {
-  constexpr std::size_t kAtOnce = 16;
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double, std::milli>(kFeed_ms));
-  while (unfed_ > 0) {
-    const std::size_t count = std::min(kAtOnce, unfed_);
-    unfed_ -= count;
-    renderer_->append(std::span(taken_).subspan(unfed_, count));
-    if (Clock::now() >= end) return;
-  }
+  moves_ = std::move(moves);
 }
 
 Done CsgView::draw(const Projection& projection) {
-  if (Done done = begin(); !done) return done;
   const auto now = Clock::now();
-  if (take_moves() && projection == projection_ && !quiet_until_) {
-    quiet_until_ = now + std::chrono::milliseconds(kPatience_ms);
+  changed_ = {};
+  is_all_new_ = false;
+  if (projection != wanted_) {
+    // The first one is not awaited.
+    if (shown_) still_from_ = now + std::chrono::milliseconds(kStill_ms);
+    wanted_ = projection;
   }
-  if (projection != projection_ || (quiet_until_ && now > *quiet_until_)) quiet_until_.reset();
-  projection_ = projection;
-  feed();
-  if (Done done = renderer_->draw(projection, kFrame_ms, !quiet_until_); !done) return done;
-  if (!quiet_until_ || has_waiting()) return std::monostate{};
-  quiet_until_.reset();
-  return renderer_->draw(projection, kFrame_ms, true);
+  for (CsgPicture* picture : {&full_, &coarse_}) {
+    if (Done done = picture->follow(moves_, kFeed_ms); !done) return done;
+  }
+  const bool is_full_begun = full_.shows(wanted_);
+  if (!is_full_begun) {
+    if (Done done = draw_coarse(); !done) return done;
+  }
+  const bool is_coarse_there = eye_ == wanted_ && coarse_.shows(coarse_projection_);
+  if (is_full_begun || (is_coarse_there && now >= still_from_)) {
+    if (Done done = full_.draw(wanted_, kFrame_ms); !done) return done;
+    if (full_.shows(wanted_)) show(full_, wanted_);
+  }
+  return std::monostate{};
 }
 
-std::size_t CsgView::gpu_bytes() const { return renderer_ ? renderer_->counters().gpu_bytes : 0; }
-
-void CsgView::release() {
-  renderer_.reset();
-  begun_.reset();
-  taken_.clear();
-  unfed_ = 0;
-  grown_ = 0;
-  quiet_until_.reset();
-  projection_ = {};
+void CsgView::begin_coarse(Clock::time_point now) {
+  eye_ = wanted_;
+  coarse_projection_ = wanted_;
+  coarse_projection_.size_px = (wanted_.size_px + divisor_ - 1) / divisor_;
+  coarse_begin_ = now;
+  is_timed_ = true;
 }
+
+/// Goes on with the coarse picture, or begins one for where the eye is now.
+Done CsgView::draw_coarse() {
+  const auto now = Clock::now();
+  const std::chrono::duration<double, std::milli> took = now - coarse_begin_;
+  const bool is_there = eye_ && coarse_.shows(coarse_projection_);
+  if (!eye_ || (is_there && *eye_ != wanted_)) {
+    begin_coarse(now);
+  } else if (!is_there && took.count() > 2 * kSlow_ms && divisor_ < kCoarsest) {
+    divisor_ *= 2;
+    begin_coarse(now);
+  }
+  if (Done done = coarse_.draw(coarse_projection_, kFrame_ms); !done) return done;
+  if (!coarse_.shows(coarse_projection_)) return std::monostate{};
+  show(coarse_, *eye_);
+  if (!std::exchange(is_timed_, false)) return std::monostate{};
+  const std::chrono::duration<double, std::milli> whole = Clock::now() - coarse_begin_;
+  if (whole.count() > kSlow_ms) divisor_ = std::min(2 * divisor_, kCoarsest);
+  if (whole.count() < kQuick_ms) divisor_ = std::max(divisor_ / 2, 1);
+  return std::monostate{};
+}
+
+void CsgView::show(const CsgPicture& picture, const Projection& eye) {
+  const bool is_full = &picture == &full_;
+  is_all_new_ = is_all_new_ || is_full != shows_full_ || shown_ != eye;
+  shows_full_ = is_full;
+  shown_ = eye;
+  changed_ = scaled(picture.changed(), picture.shown()->size_px, eye.size_px);
+}
+
+void CsgView::release() { *this = CsgView(); }
 
 }  // namespace kerf

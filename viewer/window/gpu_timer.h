@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include <optional>
+
 namespace kerf {
 
 /// Times what the card does without waiting for it: the answer comes some frames later.
@@ -15,10 +17,10 @@ class GpuTimer {
 
   void begin();
   /// `sink_ms` gets the time added when it is known; frames of its kind that pass meanwhile count
-  /// like this one.
-  void end(double* sink_ms);
-  /// Takes a time that is known by now.
-  void collect();
+  /// like this one. True if this one is timed.
+  bool end(double* sink_ms);
+  /// Takes a time that is known by now: that of the one frame that was timed last, once.
+  std::optional<double> collect();
 
  private:
   GLuint query_ = 0;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace kerf {
 namespace {
 
@@ -50,6 +52,21 @@ void Layer::copy(const Layer& from, const ScreenRect& rect) {
 std::size_t Layer::gpu_bytes() const {
   return kBytesPerPixel * static_cast<std::size_t>(size_px_.x) *
          static_cast<std::size_t>(size_px_.y);
+}
+
+Picture read_framebuffer(unsigned framebuffer, glm::ivec2 size_px) {
+  Picture picture{size_px.x, size_px.y, {}};
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(size_px.x);
+  const auto rows = static_cast<std::size_t>(size_px.y);
+  picture.rgb.resize(row_bytes * rows);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size_px.x, size_px.y, GL_RGB, GL_UNSIGNED_BYTE, picture.rgb.data());
+  for (std::size_t y = 0; y < rows / 2; ++y) {
+    std::swap_ranges(&picture.rgb[y * row_bytes], &picture.rgb[y * row_bytes] + row_bytes,
+                     &picture.rgb[(rows - 1 - y) * row_bytes]);
+  }
+  return picture;
 }
 
 }  // namespace kerf

@@ -7,6 +7,7 @@
 
 #include "base/result.h"
 #include "viewer/gl_objects.h"
+#include "viewer/picture.h"
 #include "viewer/window/screen_rect.h"
 
 namespace kerf {
@@ -37,5 +38,8 @@ class Layer {
   GlTexture color_;
   GlTexture depth_;
 };
+
+/// Colour of a framebuffer of the current context, rows from the top.
+Picture read_framebuffer(unsigned framebuffer, glm::ivec2 size_px);
 
 }  // namespace kerf

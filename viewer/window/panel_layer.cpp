@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "viewer/window/scene_renderer.h"
+#include "viewer/window/layer.h"
 
 namespace kerf {
+namespace {
+
+constexpr std::size_t kBytesPerPixel = 4;  // RGBA8
+
+}  // namespace
 
 Done PanelLayer::resize(glm::ivec2 size_px) {
   if (size_px == size_px_) return std::monostate{};
@@ -29,5 +34,10 @@ void PanelLayer::show(const ScreenRect& rect) const {
 }
 
 Picture PanelLayer::read() const { return read_framebuffer(framebuffer_.name(), size_px_); }
+
+std::size_t PanelLayer::gpu_bytes() const {
+  return kBytesPerPixel * static_cast<std::size_t>(size_px_.x) *
+         static_cast<std::size_t>(size_px_.y);
+}
 
 }  // namespace kerf

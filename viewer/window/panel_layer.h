@@ -2,6 +2,7 @@
 // sources of viewer/ only: includes the GL header.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 
 #include "viewer/gl_objects.h"
@@ -24,6 +25,7 @@ class PanelLayer {
   void show(const ScreenRect& rect) const;
   /// What is shown.
   Picture read() const;
+  std::size_t gpu_bytes() const;
 
  private:
   GlFramebuffer framebuffer_;

@@ -18,7 +18,9 @@
 #include "viewer/window/marker_store.h"
 #include "viewer/window/patch_store.h"
 #include "viewer/window/path_store.h"
+#include "viewer/window/scene_pace.h"
 #include "viewer/window/scene_programs.h"
+#include "viewer/window/section_face.h"
 #include "viewer/window/surface_colors.h"
 #include "viewer/window/tool_store.h"
 #include "viewer/window/workpiece_roads.h"
@@ -46,17 +48,6 @@ glm::vec4 line_rgba(const glm::vec3& color, const ObjectLook& look, bool is_past
   return {is_past ? seen : glm::mix(ground, seen, kFutureShare), look.opacity};
 }
 
-/// The plane in the frame of the workpiece, of unit normal: dot(plane, (p, 1)) >= 0 is kept. None
-/// where there is no direction.
-std::optional<glm::dvec4> kept_side(const std::optional<SectionPlane>& section) {
-  if (!section) return std::nullopt;
-  const double length = glm::length(section->normal);
-  if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(section->offset_mm)) {
-    return std::nullopt;
-  }
-  return glm::dvec4(-section->normal, section->offset_mm) / length;
-}
-
 }  // namespace
 
 class SceneRenderer::Impl {
@@ -71,11 +62,15 @@ class SceneRenderer::Impl {
 
   void apply(const SceneUpdate& update);
   Done draw(const Projection& projection, const DrawOptions& options);
+  void keep_pace() { pace_.emplace(); }
   bool has_waiting() const {
-    return patches_.waiting_bytes() > 0 || path_.has_waiting() || machine_.has_waiting() ||
-           roads_.has_waiting();
+    return (pace_ && pace_->has_waiting()) || patches_.waiting_bytes() > 0 || path_.has_waiting() ||
+           machine_.has_waiting() || roads_.has_waiting();
   }
-  ScreenRect take_changed() { return std::exchange(changed_, {}); }
+  bool is_full() const { return divisor_ == 1 && roads_.is_full(); }
+  ScreenRect take_changed() {
+    return std::exchange(changed_, {}).times(divisor_).common(ScreenRect::whole(full_px_));
+  }
   void show_in(GLuint framebuffer, glm::ivec2 corner_px, const ScreenRect& rect) const;
   Picture read() const { return read_framebuffer(shown_.framebuffer(), size_px_); }
   std::optional<Vec3> pick(glm::ivec2 px) const;
@@ -86,7 +81,7 @@ class SceneRenderer::Impl {
     return colors_.legend(shown_by_, scale_);
   }
   DrawRoad drawn_road() const { return road_; }
-  const Projection& projection() const { return projection_; }
+  const Projection& projection() const { return full_projection_; }
 
   DrawCounters counters;
 
@@ -95,11 +90,12 @@ class SceneRenderer::Impl {
   void grow_depth_box(const Box& box);
   Done resize(glm::ivec2 size_px);
   Done take_options(const Projection& projection, const DrawOptions& options);
+  void set_divisor(int divisor);
   std::size_t upload(std::size_t budget_bytes);
   ScreenRect changed_rect(std::span<const Box> changed_mm) const;
   std::size_t draw_kept(const ScreenRect& rect);
   std::size_t draw_workpiece(const ScreenRect& rect);
-  void draw_section_face();
+  void draw_section_face(const glm::dvec4& kept);
   void draw_lines(const ScreenRect& rect) const;
   void draw_shown(ScreenRect rect);
   void draw_moving(const ScreenRect& rect, ScenePrograms::Variant variant, bool opaque_parts) const;
@@ -129,12 +125,17 @@ class SceneRenderer::Impl {
   Layer glass_;
   Layer shown_;
   GpuTimer timer_;
+  bool is_full_timed_ = false;  // what is timed is a whole picture
 
   std::shared_ptr<const SceneSetup> setup_;
   Box path_box_;
   Box depth_box_{Vec3(-kSmallestScene_mm), Vec3(kSmallestScene_mm)};
   bool has_content_ = false;
-  Projection projection_;
+  std::optional<ScenePace> pace_;
+  int divisor_ = 1;             // of the picture last drawn
+  glm::ivec2 full_px_{1};       // its size as asked for
+  Projection full_projection_;  // for that size
+  Projection projection_;       // for its own
   DrawOptions options_;
   ColorBy shown_by_ = ColorBy::kPlain;
   ColorScale scale_;
@@ -250,6 +251,13 @@ Done SceneRenderer::Impl::take_options(const Projection& projection, const DrawO
   return std::monostate{};
 }
 
+/// What is in another size is no picture any more.
+void SceneRenderer::Impl::set_divisor(int divisor) {
+  if (divisor == divisor_) return;
+  changed_ = {};
+  divisor_ = divisor;
+}
+
 std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
   const bool drew_skirts = patches_.draws_skirts();
   std::size_t bytes = patches_.upload(budget_bytes, &changed_mm_);
@@ -263,8 +271,14 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   const Result<WorkpieceRoads::Step> step = roads_.prepare(projection, options.road);
   if (!step) return Error{step.error()};
   if (std::exchange(road_, step->road) != step->road || step->is_all_new) is_kept_old_ = true;
-  if (Done done = take_options(step->projection, options); !done) return done;
-  timer_.collect();
+  const std::optional<double> whole_ms = timer_.collect();
+  if (pace_ && whole_ms && is_full_timed_) pace_->took(*whole_ms);
+  set_divisor(pace_ ? pace_->divisor(projection, ScenePace::Clock::now()) : 1);
+  full_projection_ = step->projection;
+  full_px_ = projection.size_px;
+  Projection drawn = step->projection;
+  drawn.size_px = ScreenRect::whole(full_px_).divided(divisor_).max;
+  if (Done done = take_options(drawn, options); !done) return done;
   timer_.begin();
   const std::size_t bytes = upload(options.upload_bytes_per_frame);
   const Box heights = setup_ && !setup_->bounds_mm.empty() ? setup_->bounds_mm
@@ -277,7 +291,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   }
   scale_ = scale;
   shown_by_ = shown_by;
-  ScreenRect rect = step->changed;
+  ScreenRect rect = step->changed.divided(divisor_);
   rect.extend(changed_rect(changed_mm_));
   if (is_kept_old_) rect = ScreenRect::whole(size_px_);
   DrawCounters::Kind& kind = is_kept_old_   ? counters.full
@@ -286,7 +300,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   glCullFace(GL_BACK);  // others that draw in this context may have chosen otherwise
   if (!rect.empty()) kind.triangles += draw_kept(rect);
   draw_shown(rect);
-  timer_.end(&kind.ms);
+  if (timer_.end(&kind.ms)) is_full_timed_ = is_kept_old_;
   ++kind.frames;
   kind.pixels += static_cast<std::uint64_t>(rect.pixels());
   if (!rect.empty()) counters.last_rect = rect;
@@ -376,27 +390,21 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_CLIP_DISTANCE0);
-  if (section) draw_section_face();
+  if (section) draw_section_face(*section);
   glDisable(GL_STENCIL_TEST);
   return triangles;
 }
 
-void SceneRenderer::Impl::draw_section_face() {
-  const glm::dvec4 plane = glm::transpose(glm::inverse(glm::dmat4(projection_.clip_from_world))) *
-                           *kept_side(options_.section);
-  if (plane.z == 0.0) return;  // seen from its edge
-  // On the plane the depth is affine in the picture. Pixels are counted from its middle, for the
-  // shader's 32-bit numbers.
-  const glm::dvec2 half_px = 0.5 * glm::dvec2(size_px_);
-  const glm::dvec3 depth(-0.5 * plane.x / (plane.z * half_px.x),
-                         -0.5 * plane.y / (plane.z * half_px.y), 0.5 - 0.5 * plane.w / plane.z);
+void SceneRenderer::Impl::draw_section_face(const glm::dvec4& kept) {
+  const std::optional<glm::dvec3> depths = section_depths(kept, projection_);
+  if (!depths) return;
   glStencilFunc(GL_EQUAL, 1, 0xff);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   glDepthFunc(GL_ALWAYS);
   const GlProgram& program = programs_.section_face();
   program.use();
-  program.set("depth_plane", glm::vec3(depth));
-  program.set("middle_px", glm::vec2(half_px));
+  program.set("depth_plane", glm::vec3(*depths));
+  program.set("middle_px", glm::vec2(0.5 * glm::dvec2(size_px_)));
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthFunc(GL_LESS);
@@ -507,27 +515,33 @@ void SceneRenderer::Impl::draw_glass() {
 
 void SceneRenderer::Impl::show_in(GLuint framebuffer, glm::ivec2 corner_px,
                                   const ScreenRect& rect) const {
-  const ScreenRect to = rect.moved(corner_px);
+  const ScreenRect from = rect.divided(divisor_);
+  const ScreenRect to = from.times(divisor_).moved(corner_px);
+  const ScreenRect within = rect.moved(corner_px);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, shown_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glDisable(GL_SCISSOR_TEST);
-  glBlitFramebuffer(rect.min.x, rect.min.y, rect.max.x, rect.max.y, to.min.x, to.min.y, to.max.x,
+  // Of pixels that are blown up, some reach beyond the rectangle.
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(within.min.x, within.min.y, within.max.x - within.min.x, within.max.y - within.min.y);
+  glBlitFramebuffer(from.min.x, from.min.y, from.max.x, from.max.y, to.min.x, to.min.y, to.max.x,
                     to.max.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
 std::optional<Vec3> SceneRenderer::Impl::pick(glm::ivec2 px) const {
-  if (px.x < 0 || px.y < 0 || px.x >= size_px_.x || px.y >= size_px_.y) return std::nullopt;
+  if (px.x < 0 || px.y < 0 || px.x >= full_px_.x || px.y >= full_px_.y) return std::nullopt;
+  const glm::ivec2 at = glm::ivec2(px.x, full_px_.y - 1 - px.y) / divisor_;
   float depth = 1.0f;
   for (const Layer* layer : {&kept_, &glass_}) {
     if (!layer->is_allocated()) continue;
     float found = 1.0f;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, layer->framebuffer());
-    glReadPixels(px.x, size_px_.y - 1 - px.y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &found);
+    glReadPixels(at.x, at.y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &found);
     depth = std::min(depth, found);
   }
   if (depth >= 1.0f) return std::nullopt;
-  const glm::dvec2 uv((px.x + 0.5) / size_px_.x, 1.0 - (px.y + 0.5) / size_px_.y);
+  const glm::dvec2 uv = (glm::dvec2(at) + 0.5) / glm::dvec2(size_px_);
   const glm::dvec4 ndc(uv * 2.0 - 1.0, 2.0 * static_cast<double>(depth) - 1.0, 1.0);
   const glm::dvec4 world = glm::inverse(glm::dmat4(projection_.clip_from_world)) * ndc;
   return Vec3(world) / world.w;
@@ -564,7 +578,9 @@ void SceneRenderer::apply(const SceneUpdate& update) { impl_->apply(update); }
 Done SceneRenderer::draw(const Projection& projection, const DrawOptions& options) {
   return impl_->draw(projection, options);
 }
+void SceneRenderer::keep_pace() { impl_->keep_pace(); }
 bool SceneRenderer::has_waiting() const { return impl_->has_waiting(); }
+bool SceneRenderer::is_full() const { return impl_->is_full(); }
 DrawRoad SceneRenderer::drawn_road() const { return impl_->drawn_road(); }
 const Projection& SceneRenderer::projection() const { return impl_->projection(); }
 ScreenRect SceneRenderer::take_changed() { return impl_->take_changed(); }
@@ -593,20 +609,5 @@ std::vector<ColorLegendEntry> SceneRenderer::legend() const { return impl_->lege
 const Box& SceneRenderer::depth_box() const { return impl_->depth_box(); }
 const DrawCounters& SceneRenderer::counters() const { return impl_->counters; }
 void SceneRenderer::reset_counters() { impl_->counters = {}; }
-
-Picture read_framebuffer(unsigned framebuffer, glm::ivec2 size_px) {
-  Picture picture{size_px.x, size_px.y, {}};
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(size_px.x);
-  const auto rows = static_cast<std::size_t>(size_px.y);
-  picture.rgb.resize(row_bytes * rows);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, size_px.x, size_px.y, GL_RGB, GL_UNSIGNED_BYTE, picture.rgb.data());
-  for (std::size_t y = 0; y < rows / 2; ++y) {
-    std::swap_ranges(&picture.rgb[y * row_bytes], &picture.rgb[y * row_bytes] + row_bytes,
-                     &picture.rgb[(rows - 1 - y) * row_bytes]);
-  }
-  return picture;
-}
 
 }  // namespace kerf

@@ -108,6 +108,10 @@ class SceneRenderer {
   /// Takes over the values; what is for the card waits there for its turn in draw().
   void apply(const SceneUpdate& update);
 
+  /// From now on fewer pixels may be drawn while the eye moves (ScenePace), the full picture when
+  /// it stands still: has_waiting() until then. For a window; without, every draw() is in full.
+  void keep_pace();
+
   /// Draws as the scene is now. Error: the size is more than this OpenGL can do, the memory of the
   /// card is full, or the context is lost (the driver was reset); the message says which.
   Done draw(const Projection& projection, const DrawOptions& options);
@@ -115,6 +119,8 @@ class SceneRenderer {
   /// Patches, path or a picture of the workpiece wait for the next frame: draw again although
   /// nothing new came.
   bool has_waiting() const;
+  /// The picture last drawn is that of the eye last asked for, in all of its pixels.
+  bool is_full() const;
   /// By which road the workpiece was drawn last, and as seen how: by rays that may be as it was
   /// asked for some frames before.
   DrawRoad drawn_road() const;
@@ -126,7 +132,8 @@ class SceneRenderer {
   /// The pixels that draw() may have changed since the last call.
   ScreenRect take_changed();
   /// Copies a rectangle of the picture last drawn to a framebuffer, in which the lower left corner
-  /// of the picture is at the pixel `corner_px` (counted from the lower left).
+  /// of the picture is at the pixel `corner_px` (counted from the lower left). One of fewer pixels
+  /// is blown up.
   void show_in(unsigned framebuffer, glm::ivec2 corner_px, const ScreenRect& rect) const;
   /// Waits until the card has drawn everything; for measuring.
   void finish() const;
@@ -135,7 +142,7 @@ class SceneRenderer {
   /// Pixels that the smallest detail of the workpiece need have: 1, or 2 where the processor draws,
   /// which has a quarter of the triangles to draw then.
   static double detail_px();
-  /// The picture last drawn.
+  /// The picture last drawn, of the pixels that it has.
   Picture read() const;
   /// The point of the scene (not of the tool) at a pixel from the upper left; none on background.
   std::optional<Vec3> pick(glm::ivec2 px) const;
@@ -153,8 +160,5 @@ class SceneRenderer {
   explicit SceneRenderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// Colour of a framebuffer of the current context, rows from the top.
-Picture read_framebuffer(unsigned framebuffer, glm::ivec2 size_px);
 
 }  // namespace kerf

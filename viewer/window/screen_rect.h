@@ -23,6 +23,9 @@ struct ScreenRect {
   /// What lies in both; maybe empty.
   ScreenRect common(const ScreenRect& other) const;
   ScreenRect moved(glm::ivec2 by_px) const { return {min + by_px, max + by_px}; }
+  /// The pixels that it touches in a picture whose edges are so many times as long, or such a part.
+  ScreenRect times(int factor) const { return {min * factor, max * factor}; }
+  ScreenRect divided(int divisor) const { return {min / divisor, (max + divisor - 1) / divisor}; }
   bool operator==(const ScreenRect&) const = default;
 };
 

@@ -88,6 +88,7 @@ Done Window::Impl::open() {
   Result<SceneRenderer> renderer = SceneRenderer::create(Platform::wake);
   if (!renderer) return Error{renderer.error()};
   renderer_ = std::move(*renderer);
+  renderer_->keep_pace();
   detail_px_ = SceneRenderer::detail_px();
   layer_.emplace();
   start_panels();

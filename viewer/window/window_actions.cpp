@@ -138,7 +138,7 @@ void Window::Impl::act_on_panels(Action action) {
       break;
     }
     case Action::kScreenshot:
-      if (has_drawn()) save_picture(renderer_->read());
+      wants_picture_ = has_drawn();
       break;
     case Action::kWindowPicture:
       if (has_drawn()) save_picture(layer_->read());

@@ -27,6 +27,14 @@ constexpr Seconds kPanelInterval{0.05};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
+/// Graphics memory of the letters.
+std::size_t letter_bytes() {
+  constexpr std::size_t kBytesPerPixel = 4;  // RGBA8, as Dear ImGui's OpenGL part makes it
+  const ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  return kBytesPerPixel * static_cast<std::size_t>(atlas.TexWidth) *
+         static_cast<std::size_t>(atlas.TexHeight);
+}
+
 }  // namespace
 
 void FrameCounter::count(Clock::time_point now) {
@@ -233,6 +241,11 @@ Done Window::Impl::draw() {
   settings_.drawing.section = section_plane(settings_.section);
   const Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
   if (Done done = renderer_->draw(wanted, settings_.drawing); !done) return done;
+  if (wants_picture_ && renderer_->is_full()) {
+    wants_picture_ = false;
+    save_picture(renderer_->read());
+    panels_are_old_ = true;  // the notice
+  }
   // Marks over a picture that came late go with it.
   if (renderer_->projection() != projection_ && !draws_panels) panels_are_old_ = true;
   projection_ = renderer_->projection();
@@ -270,8 +283,10 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   state_.frames_per_s = frame_counter_.frames_per_s();
   state_.action.reset();
   legend_ = renderer_->legend();
+  DrawCounters counters = renderer_->counters();
+  counters.gpu_bytes += layer_->gpu_bytes() + letter_bytes();
   const PanelContext context{.shown = shown_,
-                             .counters = renderer_->counters(),
+                             .counters = counters,
                              .legend = legend_,
                              .drawn_road = renderer_->drawn_road(),
                              .bounds_mm = renderer_->fit_box(),

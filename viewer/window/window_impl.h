@@ -161,6 +161,7 @@ class Window::Impl {
   std::set<int> fresh_keys_;
   std::vector<std::pair<int, int>> late_releases_;  // key, scancode
 
+  bool wants_picture_ = false;  // of the scene, when it is there in full
   std::string saving_path_;
   std::future<Done> saving_;
 };

@@ -33,7 +33,7 @@ void WorkpieceRoads::apply(const SceneUpdate& update) {
   if (update.clears) {
     answer_.reset();
     heights_.reset();
-    csg_.set(nullptr);
+    csg_.release();
   }
   if (update.road) answer_ = update.road;
   if (update.heights) heights_ = update.heights;
@@ -52,23 +52,25 @@ void WorkpieceRoads::release_others(DrawRoad road) {
     ray_projection_.reset();
     if (worker_) worker_->begin_anew();
   }
-  if (road != DrawRoad::kCsg) {
-    csg_.set(nullptr);
-    csg_.release();
-  }
+  if (road != DrawRoad::kCsg) csg_.release();
 }
 
 Result<WorkpieceRoads::Step> WorkpieceRoads::prepare(const Projection& wanted, DrawRoad road) {
   release_others(road);
+  is_full_ = true;
   Step step;
   step.projection = wanted;
   if (!answer_ || answer_->road != road || !answer_->is_drawn()) return step;
   if (road == DrawRoad::kRaycast && heights_) cast(wanted, &step);
   if (road == DrawRoad::kCsg && csg_.has_moves()) {
     if (Done done = csg_.draw(wanted); !done) return Error{done.error()};
+    if (!csg_.shown()) return step;
     step.road = DrawRoad::kCsg;
-    const PixelRect changed = csg_.picture().changed();
-    step.changed = {changed.min, changed.max};
+    step.projection = *csg_.shown();
+    step.projection.size_px = wanted.size_px;
+    step.is_all_new = csg_.is_all_new();
+    step.changed = csg_.changed();
+    is_full_ = csg_.is_full();
   }
   return step;
 }
@@ -94,6 +96,7 @@ void WorkpieceRoads::cast(const Projection& wanted, Step* step) {
     upload(*picture);
   }
   if (!ray_projection_) return;
+  is_full_ = *ray_projection_ == wanted && ray_size_px_ == wanted.size_px;
   step->road = DrawRoad::kRaycast;
   step->projection = *ray_projection_;
   step->projection.size_px = wanted.size_px;
@@ -125,7 +128,7 @@ void WorkpieceRoads::draw() const {
     bind_texture(1, ray_depths_);
     bind_texture(0, ray_colors_);
   } else {
-    csg_.picture().bind_picture(0, 1);
+    csg_.bind(0, 1);
   }
   glBindVertexArray(no_vertices_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);

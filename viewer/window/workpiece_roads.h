@@ -22,7 +22,7 @@ namespace kerf {
 ///
 ///     raycast   made in another thread (RayWorker) and some frames late: until the picture for
 ///               this eye is there, the whole scene is drawn as the last picture saw it
-///     csg       made by the card, as much of it in a frame as fits (CsgView)
+///     csg       made by the card, as much of it in a frame as fits (CsgView), and likewise late
 ///
 /// Whatever is missing for a road (its values have not come, the answer was no), the mesh is drawn.
 class WorkpieceRoads {
@@ -47,6 +47,8 @@ class WorkpieceRoads {
 
   /// There is a picture to be taken, or moves wait: prepare() again.
   bool has_waiting() const;
+  /// The picture is that of the eye that prepare() was given last, in all of its pixels.
+  bool is_full() const { return is_full_; }
   std::size_t gpu_bytes() const;
 
  private:
@@ -61,6 +63,7 @@ class WorkpieceRoads {
   std::shared_ptr<const RoadAnswer> answer_;
   std::shared_ptr<const HeightGrid> heights_;
   DrawRoad road_ = DrawRoad::kMesh;  ///< asked for last
+  bool is_full_ = true;
 
   GlTexture ray_colors_;
   GlTexture ray_depths_;

@@ -1,0 +1,174 @@
+// Blank minus moves in the scene: an eye that turns sees whole pictures, one that stands the full
+// one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include "viewer/csg/cut_moves.h"
+#include "viewer/gl_context.h"
+#include "viewer/window/orbit_camera.h"
+#include "viewer/window/scene_renderer.h"
+
+namespace kerf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr glm::ivec2 kSize_px{400, 300};
+const Box kBlank{Vec3(0, 0, -20), Vec3(100, 100, 0)};
+/// Pixels along edges: a coarse picture has them elsewhere. The moves are a quarter of the picture.
+constexpr double kMostAtEdges = 0.08;
+constexpr int kRows = 160;
+
+ToolShape flat_6() {
+  ToolShape shape;
+  shape.cutter = {{0, 0}, {3, 0}, {3, 20}};
+  return shape;
+}
+
+/// Row by row to and fro, 8 mm deep, all of the blank.
+std::shared_ptr<const CutMoves> rows(int count) {
+  static const auto kTools = std::make_shared<const std::vector<CsgTool>>(1, CsgTool{flat_6()});
+  auto moves = std::make_shared<CutMoves>();
+  moves->blank_mm = kBlank;
+  moves->tools = kTools;
+  for (int row = 0; row < count; ++row) {
+    const double y = 100.0 * row / kRows;
+    moves->moves.push_back({Vec3(-5, y, -8), Vec3(105, y, -8), 0});
+  }
+  return moves;
+}
+
+class CsgViewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    unsetenv("DISPLAY");
+    Result<GlContext> context = GlContext::create_offscreen();
+    ASSERT_TRUE(context) << context.error();
+    context_.emplace(std::move(*context));
+    scene_.emplace(std::move(SceneRenderer::create().value()));
+    reference_.emplace(std::move(SceneRenderer::create().value()));
+    options_.road = DrawRoad::kCsg;
+    SceneUpdate update;
+    auto answer = std::make_shared<RoadAnswer>();
+    answer->road = DrawRoad::kCsg;
+    update.road = std::move(answer);
+    auto setup = std::make_shared<SceneSetup>();
+    setup->bounds_mm = kBlank;
+    update.setup = std::move(setup);
+    for (SceneRenderer* renderer : {&*scene_, &*reference_}) renderer->apply(update);
+    camera_.fit(kBlank, kSize_px);
+  }
+
+  static void cut(SceneRenderer* renderer, std::shared_ptr<const CutMoves> moves) {
+    SceneUpdate update;
+    update.cut_moves = std::move(moves);
+    renderer->apply(update);
+  }
+  Projection projection() const { return camera_.projection(scene_->depth_box(), kSize_px); }
+  void draw(SceneRenderer* renderer, const Projection& projection) {
+    const Done done = renderer->draw(projection, options_);
+    ASSERT_TRUE(done) << done.error();
+  }
+  /// The full picture.
+  Picture settled(SceneRenderer* renderer, const Projection& projection) {
+    const auto end = Clock::now() + std::chrono::seconds(60);
+    do {
+      draw(renderer, projection);
+    } while ((renderer->has_waiting() || renderer->drawn_road() != DrawRoad::kCsg) &&
+             Clock::now() < end);
+    EXPECT_TRUE(renderer->is_full());
+    EXPECT_EQ(renderer->projection(), projection);
+    return renderer->read();
+  }
+  static double share_apart(const Picture& a, const Picture& b) {
+    EXPECT_EQ(a.rgb.size(), b.rgb.size());
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i + 2 < std::min(a.rgb.size(), b.rgb.size()); i += 3) {
+      int most = 0;
+      for (std::size_t k = i; k < i + 3; ++k) most = std::max(most, std::abs(a.rgb[k] - b.rgb[k]));
+      apart += most > 24 ? 1 : 0;
+    }
+    return 3.0 * static_cast<double>(apart) / static_cast<double>(a.rgb.size());
+  }
+
+  std::optional<GlContext> context_;
+  std::optional<SceneRenderer> scene_;
+  std::optional<SceneRenderer> reference_;
+  OrbitCamera camera_;
+  DrawOptions options_;
+};
+
+TEST_F(CsgViewTest, AnEyeThatTurnsSeesWholePictures) {
+  cut(&*scene_, rows(kRows));
+  cut(&*reference_, rows(kRows));
+  settled(&*scene_, projection());
+  const Projection begin = scene_->projection();
+  Projection seen = begin;
+  int pictures = 0;
+  for (int turn = 0; turn < 1000 && pictures < 3; ++turn) {
+    camera_.orbit({6, 1}, kSize_px);
+    draw(&*scene_, projection());
+    ASSERT_EQ(scene_->drawn_road(), DrawRoad::kCsg);
+    if (scene_->projection() == seen) continue;
+    seen = scene_->projection();
+    ++pictures;
+    EXPECT_LT(share_apart(scene_->read(), settled(&*reference_, seen)), kMostAtEdges) << turn;
+  }
+  EXPECT_EQ(pictures, 3);
+  // With the newest moves missing it is another picture, and that would have been noticed.
+  cut(&*reference_, rows(kRows / 8));
+  EXPECT_GT(share_apart(scene_->read(), settled(&*reference_, seen)), 2 * kMostAtEdges);
+  // At rest nothing is left of it.
+  cut(&*reference_, rows(kRows));
+  const Projection rest = projection();
+  EXPECT_EQ(settled(&*scene_, rest).rgb, settled(&*reference_, rest).rgb);
+}
+
+TEST_F(CsgViewTest, MovesThatComeWhileTheEyeTurnsAreInTheNextPicture) {
+  cut(&*scene_, rows(60));
+  settled(&*scene_, projection());
+  int count = 60;
+  std::optional<Projection> seen;
+  // Each picture shows at least what was there when it was begun: when the one before was shown.
+  int begun_with = count;
+  for (int turn = 0, pictures = 0; turn < 1000 && pictures < 3; ++turn) {
+    camera_.orbit({6, 1}, kSize_px);
+    cut(&*scene_, rows(++count));
+    draw(&*scene_, projection());
+    if (scene_->projection() == seen) continue;
+    if (seen) {
+      cut(&*reference_, rows(begun_with));
+      const Picture least = settled(&*reference_, scene_->projection());
+      cut(&*reference_, rows(count));
+      const Picture most = settled(&*reference_, scene_->projection());
+      const Picture now = scene_->read();
+      EXPECT_LT(std::min(share_apart(now, least), share_apart(now, most)), kMostAtEdges) << turn;
+      ++pictures;
+    }
+    seen = scene_->projection();
+    begun_with = count;
+  }
+  cut(&*reference_, rows(count));
+  const Projection rest = projection();
+  EXPECT_EQ(settled(&*scene_, rest).rgb, settled(&*reference_, rest).rgb);
+}
+
+TEST_F(CsgViewTest, AtRestANewMoveIsThereAtOnce) {
+  cut(&*scene_, rows(60));
+  const Picture before = settled(&*scene_, projection());
+  cut(&*scene_, rows(61));
+  draw(&*scene_, projection());
+  EXPECT_NE(scene_->read().rgb, before.rgb);
+  settled(&*scene_, projection());
+  cut(&*reference_, rows(61));
+  EXPECT_EQ(scene_->read().rgb, settled(&*reference_, projection()).rgb);
+}
+
+}  // namespace
+}  // namespace kerf
