@@ -55,6 +55,7 @@ struct WorkpieceFrame {
   Vec3 g92_mm{0};
   double rotation_deg = 0;
   std::array<double, 3> offset_abc_deg{};  ///< added to A, B, C
+  Vec3 offset_uvw_mm{0};                   ///< added to U, V, W; these do not turn
   bool operator==(const WorkpieceFrame&) const = default;
 };
 
@@ -123,11 +124,16 @@ struct Motion {
   Vec3 to_mm{0};
   std::array<double, 3> from_abc_deg{};
   std::array<double, 3> to_abc_deg{};
+  /// U, V, W, as the program has them under its first work offset. What they slide is the machine's
+  /// business (MachineKinematics): from_mm and to_mm are X Y Z alone. rs274 knows no U, V, W.
+  Vec3 from_uvw_mm{0};
+  Vec3 to_uvw_mm{0};
   ArcGeometry arc;  ///< kArc only
   /// In force (G43): the machine's own coordinates are those of the tip plus this, along its axes.
   Vec3 tool_offset_mm{0};
-  /// Programmed; 0 for traverses. mm per revolution if feed_per_rev (of a thread: its pitch), and
-  /// degrees/min where only A, B or C move.
+  Vec3 tool_offset_uvw_mm{0};  ///< the same of U, V, W
+  /// Programmed; 0 for traverses. Of X Y Z, or of U V W where those stand. mm per revolution if
+  /// feed_per_rev (of a thread: its pitch), and degrees/min where only A, B or C move.
   double feed_mm_per_min = 0;
   double spindle_rpm = 0;  ///< programmed S; under G96, that at the end of the step
   double duration_s = 0;   ///< kDwell only

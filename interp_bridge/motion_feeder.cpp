@@ -113,10 +113,6 @@ void MotionFeeder::remark(FoldRemark said) {
         at_source(Severity::kWarning,
                   "an arc in a plane other than XY, YZ and XZ (G17, G19, G18) is not cut"));
   }
-  if (said == FoldRemark::kSecondaryAxes && !std::exchange(secondary_reported_, true)) {
-    diagnostics_.push_back(at_source(
-        Severity::kWarning, "the program moves U, V or W; the cut is that of X, Y, Z alone"));
-  }
 }
 
 void MotionFeeder::remark_on_text(const CanonicalCommand& command) {

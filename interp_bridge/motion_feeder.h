@@ -93,7 +93,6 @@ class MotionFeeder {
   std::uint64_t commands_ = 0;
   std::uint64_t splines_lost_ = 0;
   bool plane_reported_ = false;
-  bool secondary_reported_ = false;
   bool compensation_reported_ = false;
   bool too_many_ = false;
   bool sink_done_ = false;

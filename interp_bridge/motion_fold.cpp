@@ -111,6 +111,17 @@ std::array<double, 3> MotionFold::work_abc(const double* program_abc_deg) const 
   return abc;
 }
 
+Vec3 MotionFold::work_uvw(const CanonicalCommand& command, std::size_t first) const {
+  const Vec3 uvw_mm = scaled_if_there(command, first);
+  if (same_frame_) return uvw_mm;
+  return uvw_mm + frame_.g5x_uvw_mm + frame_.g92_uvw_mm - work_.g5x_uvw_mm - work_.g92_uvw_mm;
+}
+
+/// U, V, W follow the other numbers, where the interpreter gives them.
+Vec3 MotionFold::scaled_if_there(const CanonicalCommand& command, std::size_t first) const {
+  return command.argument_count < first + 3 ? Vec3{0} : scaled(command, first);
+}
+
 Vec3 MotionFold::scaled(const CanonicalCommand& command, std::size_t first) const {
   return {without_sign_of_zero(command.number(first) * unit_mm_),
           without_sign_of_zero(command.number(first + 1) * unit_mm_),
@@ -143,6 +154,7 @@ void MotionFold::fix_workpiece_frame() {
     abc_deg_[i] = at[3 + i] - tool_offset_abc_deg_[i] - work_.g5x_abc_deg[i] - work_.g92_abc_deg[i];
   }
   has_rotary_motion_ |= abc_deg_ != std::array<double, 3>{};
+  uvw_mm_ = Vec3{at[6], at[7], at[8]} - tool_offset_uvw_mm_ - work_.g5x_uvw_mm - work_.g92_uvw_mm;
   position_known_ = true;
   position_as_printed_ = false;
 }
@@ -155,6 +167,7 @@ WorkpieceFrame MotionFold::workpiece_frame() const {
   for (std::size_t i = 0; i < 3; ++i) {
     frame.offset_abc_deg[i] = work_.g5x_abc_deg[i] + work_.g92_abc_deg[i];
   }
+  frame.offset_uvw_mm = work_.g5x_uvw_mm + work_.g92_uvw_mm;
   return frame;
 }
 
@@ -170,9 +183,12 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.to_mm = position_mm_;
   motion.from_abc_deg = abc_deg_;
   motion.to_abc_deg = abc_deg_;
+  motion.from_uvw_mm = uvw_mm_;
+  motion.to_uvw_mm = uvw_mm_;
   motion.spindle = spindles_[spindle_].state;
   motion.spindle_rpm = rpm_;
   motion.tool_offset_mm = tool_offset_mm_;
+  motion.tool_offset_uvw_mm = tool_offset_uvw_mm_;
   motion.path_mode = path_mode_;
   motion.blend_tolerance_mm = blend_tolerance_mm_;
   motion.merge_tolerance_mm = merge_tolerance_mm_;
@@ -190,18 +206,21 @@ void MotionFold::update_rpm() {
   rpm_ = std::min(rpm_, spindle.surface_max_rpm);
 }
 
-void MotionFold::move_to(Motion& motion, const Vec3& to_mm,
-                         const std::array<double, 3>& to_abc_deg) {
+void MotionFold::move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg,
+                         const Vec3& to_uvw_mm) {
   motion.to_mm = to_mm;
   motion.to_abc_deg = to_abc_deg;
+  motion.to_uvw_mm = to_uvw_mm;
   if (!position_known_) {
     motion.from_mm = to_mm;
     motion.from_abc_deg = to_abc_deg;
+    motion.from_uvw_mm = to_uvw_mm;
     has_rotary_motion_ |= to_abc_deg != std::array<double, 3>{};
   }
   has_rotary_motion_ |= motion.from_abc_deg != motion.to_abc_deg;
   position_mm_ = to_mm;
   abc_deg_ = to_abc_deg;
+  uvw_mm_ = to_uvw_mm;
   position_known_ = true;
   position_as_printed_ = true;
   if (spindles_[spindle_].surface_max_rpm > 0) {
@@ -217,17 +236,10 @@ void MotionFold::set_feed(Motion& motion) const {
     return;
   }
   motion.feed_per_rev = feed_per_rev_;
-  const bool only_turns =
-      motion.from_mm == motion.to_mm && motion.from_abc_deg != motion.to_abc_deg;
+  const bool only_turns = motion.from_mm == motion.to_mm &&
+                          motion.from_uvw_mm == motion.to_uvw_mm &&
+                          motion.from_abc_deg != motion.to_abc_deg;
   motion.feed_mm_per_min = only_turns ? feed_ : feed_mm_;
-}
-
-/// U, V, W follow the other numbers, where the interpreter gives them.
-bool MotionFold::secondary_axes_moved(const CanonicalCommand& command, std::size_t first) {
-  if (command.argument_count < first + 3) return false;
-  const std::array<double, 3> uvw = {command.number(first), command.number(first + 1),
-                                     command.number(first + 2)};
-  return std::exchange(uvw_, uvw) != uvw;
 }
 
 FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& command,
@@ -238,9 +250,10 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
   if (kind == MotionKind::kFeed && only_pierces(source, out)) return FoldRemark::kNone;
   overburn_from_mm_.reset();
   Motion& motion = append(kind, source, out);
-  move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]));
+  move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]),
+          work_uvw(command, 6));
   if (kind != MotionKind::kTraverse) set_feed(motion);
-  return secondary_axes_moved(command, 6) ? FoldRemark::kSecondaryAxes : FoldRemark::kNone;
+  return FoldRemark::kNone;
 }
 
 FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef source,
@@ -286,15 +299,14 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
                            glm::length(end - start) <= 3 * resolution_mm;
   begin_arc(straight ? 0.0 : 2 * glm::length(start), full_circle);
   Motion& motion = append(straight ? MotionKind::kFeed : MotionKind::kArc, source, out);
-  move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]));
+  move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]), work_uvw(command, 9));
   set_feed(motion);
   if (straight) return FoldRemark::kNone;
-  const bool secondary = secondary_axes_moved(command, 9);
   motion.arc.center_mm = work_from_program(center_mm);
   motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
   motion.arc.sweep_rad = sweep_rad;
   if (full_circle && hole_active_ && modes_.overburn) append_overburn(Motion(motion), out);
-  return secondary ? FoldRemark::kSecondaryAxes : FoldRemark::kNone;
+  return FoldRemark::kNone;
 }
 
 void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef source,
@@ -307,7 +319,7 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   const Vec3 top_mm = position_mm_;
   const auto abc_deg = abc_deg_;
   Motion& down = append(MotionKind::kThread, source, out);
-  move_to(down, bottom_mm, abc_deg);
+  move_to(down, bottom_mm, abc_deg, uvw_mm_);
   set_feed(down);
   if (!top_known) {
     // Back to where it came from, which nobody has said.
@@ -315,22 +327,28 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
     return;
   }
   Motion& up = append(MotionKind::kThread, source, out);
-  move_to(up, top_mm, abc_deg);
+  move_to(up, top_mm, abc_deg, uvw_mm_);
   set_feed(up);
 }
 
 void MotionFold::change_tool_length(const CanonicalCommand& command) {
   const Vec3 offset_mm = scaled(command, 0);
   const std::array<double, 3> abc_deg = {command.number(3), command.number(4), command.number(5)};
-  if (offset_mm == tool_offset_mm_ && abc_deg == tool_offset_abc_deg_) return;
+  const Vec3 uvw_mm = scaled_if_there(command, 6);
+  if (offset_mm == tool_offset_mm_ && abc_deg == tool_offset_abc_deg_ &&
+      uvw_mm == tool_offset_uvw_mm_) {
+    return;
+  }
   if (position_known_) {
     const auto [work_cos, work_sin] = cos_sin(work_.rotation_deg);
     position_mm_ += turned(tool_offset_mm_ - offset_mm, work_cos, -work_sin);
     for (std::size_t i = 0; i < 3; ++i) abc_deg_[i] += tool_offset_abc_deg_[i] - abc_deg[i];
+    uvw_mm_ += tool_offset_uvw_mm_ - uvw_mm;
     position_as_printed_ = false;
   }
   tool_offset_mm_ = offset_mm;
   tool_offset_abc_deg_ = abc_deg;
+  tool_offset_uvw_mm_ = uvw_mm;
 }
 
 bool MotionFold::fold_frame(const CanonicalCommand& command) {
@@ -345,11 +363,13 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
     case CanonicalName::kSetG5xOffset:
       frame_.g5x_mm = scaled(command, 1);
       for (std::size_t i = 0; i < 3; ++i) frame_.g5x_abc_deg[i] = command.number(4 + i);
+      frame_.g5x_uvw_mm = scaled_if_there(command, 7);
       frame_changed();
       return true;
     case CanonicalName::kSetG92Offset:
       frame_.g92_mm = scaled(command, 0);
       for (std::size_t i = 0; i < 3; ++i) frame_.g92_abc_deg[i] = command.number(3 + i);
+      frame_.g92_uvw_mm = scaled_if_there(command, 6);
       frame_changed();
       return true;
     case CanonicalName::kSetXyRotation:

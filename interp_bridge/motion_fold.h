@@ -22,7 +22,6 @@ enum class FoldRemark : std::uint8_t {
   kSplineLost,  ///< G5, G5.2, G6: the listing holds no control points; where the tip is now is not
                 ///< known
   kArcPlaneUnknown,  ///< an arc in a plane of U, V, W; its end is not known
-  kSecondaryAxes,    ///< U, V or W moved; the motion is that of the other axes
 };
 
 /// What QtPlasmaC's filter does to a program before LinuxCNC sees it, as far as the motions show
@@ -71,6 +70,8 @@ inline constexpr double kSplineChord_mm = 1e-3;
 /// length offset that changes under a standing machine moves the tip (the new tool's, or the newly
 /// measured one) by the difference; that is the only case in which a step does not begin where the
 /// one before ended.
+///
+/// U, V and W add their offsets as a, b and c do, in mm.
 ///
 /// Feed: in mm/min, or mm per revolution with `feed_per_rev`; degrees/min where a step only turns
 /// A, B or C. A thread's feed is its pitch, per revolution. Rpm under G96 (constant surface speed)
@@ -127,6 +128,8 @@ class MotionFold {
     Vec3 g92_mm{0};
     std::array<double, 3> g5x_abc_deg{};
     std::array<double, 3> g92_abc_deg{};
+    Vec3 g5x_uvw_mm{0};  ///< 0 in listings, which do not hold them
+    Vec3 g92_uvw_mm{0};
     double rotation_deg = 0;
     bool operator==(const Frame&) const = default;
   };
@@ -152,16 +155,18 @@ class MotionFold {
   Vec3 work_from_program(const Vec3& p_mm) const;
   Vec3 program_from_work(const Vec3& w_mm) const;
   std::array<double, 3> work_abc(const double* program_abc_deg) const;
+  Vec3 work_uvw(const CanonicalCommand& command, std::size_t first) const;
   Vec3 scaled(const CanonicalCommand& command, std::size_t first) const;
+  Vec3 scaled_if_there(const CanonicalCommand& command, std::size_t first) const;
   void frame_changed();
   void fix_workpiece_frame();
   Motion& append(MotionKind kind, SourceRef source, std::vector<Motion>& out);
-  void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg);
+  void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg,
+               const Vec3& to_uvw_mm);
   void set_feed(Motion& motion) const;
   void update_rpm();
   FoldRemark fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
                            std::vector<Motion>& out);
-  bool secondary_axes_moved(const CanonicalCommand& command, std::size_t first);
   FoldRemark fold_arc(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void fold_rigid_tap(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   bool fold_frame(const CanonicalCommand& command);
@@ -194,12 +199,13 @@ class MotionFold {
   Vec3 shift_mm_{0};  ///< w = turn * p + shift
   Vec3 tool_offset_mm_{0};
   std::array<double, 3> tool_offset_abc_deg_{};
+  Vec3 tool_offset_uvw_mm_{0};
   double unit_mm_ = 1;
   CanonicalPlane plane_ = CanonicalPlane::kXy;
 
   Vec3 position_mm_{0};  ///< tip, workpiece frame
   std::array<double, 3> abc_deg_{};
-  std::array<double, 3> uvw_{};  ///< as commanded last; listings do not hold them
+  Vec3 uvw_mm_{0};  ///< listings do not hold them
   bool position_known_ = false;
   std::optional<std::array<double, 9>> stands_at_;  ///< until the workpiece frame is fixed
   bool position_as_printed_ =

@@ -120,7 +120,7 @@ FoldRemark MotionFold::fold_spline(const Spline& spline, SourceRef source,
   const double z = program_from_work(position_mm_).z;
   for (const Vec2& p : points) {
     Motion& motion = append(MotionKind::kFeed, source, out);
-    move_to(motion, work_from_program({p.x * unit_mm_, p.y * unit_mm_, z}), abc_deg_);
+    move_to(motion, work_from_program({p.x * unit_mm_, p.y * unit_mm_, z}), abc_deg_, uvw_mm_);
     set_feed(motion);
   }
   position_as_printed_ = false;

@@ -144,7 +144,7 @@ void MotionFold::return_from_overburn(SourceRef source, std::vector<Motion>& out
   const Vec3 end_mm = *overburn_from_mm_;
   overburn_from_mm_.reset();
   Motion& back = append(MotionKind::kFeed, source, out);
-  move_to(back, end_mm, abc_deg_);
+  move_to(back, end_mm, abc_deg_, uvw_mm_);
   set_feed(back);
 }
 
@@ -165,7 +165,7 @@ void MotionFold::append_overburn(const Motion& hole, std::vector<Motion>& out) {
   Motion& more = append(MotionKind::kArc, hole.source, out);
   more.torch.overburn = true;
   more.arc = {hole.arc.center_mm, hole.arc.axis, angle_rad};
-  move_to(more, hole.to_mm - radius_mm + turned_mm, abc_deg_);
+  move_to(more, hole.to_mm - radius_mm + turned_mm, abc_deg_, uvw_mm_);
   set_feed(more);
   position_as_printed_ = false;
   overburn_from_mm_ = hole.to_mm;

@@ -66,6 +66,8 @@ WorkpieceFrame ParameterFile::frame(int index, double unit_mm) const {
     if (shifted) frame.g92_mm[i] = value(kG92First + i) * unit_mm;
     frame.offset_abc_deg[static_cast<std::size_t>(i)] =
         value(first + 3 + i) + (shifted ? value(kG92First + 3 + i) : 0.0);
+    frame.offset_uvw_mm[i] =
+        (value(first + 6 + i) + (shifted ? value(kG92First + 6 + i) : 0.0)) * unit_mm;
   }
   frame.rotation_deg = value(first + kRotation);
   return frame;

@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{4} << 20;
 constexpr std::size_t kExcerptBytes = 200;
 constexpr double kInchMm = 25.4;
+/// No torch pierces from so near, and none from so far: inches that are taken for mm, and the
+/// reverse. Handbooks have 1.5 to 10 mm.
+constexpr double kNearestPierce_mm = 0.5;
+constexpr double kFarthestPierce_mm = 30;
 
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -145,7 +149,8 @@ class KeyLines {
 /// One section of a material file.
 class MaterialSection {
  public:
-  MaterialSection(int number, KeyLines& lines) : lines_(lines) {
+  /// `doubted`: it has been asked already whether the file's unit is the machine's.
+  MaterialSection(int number, KeyLines& lines, bool& doubted) : lines_(lines), doubted_(doubted) {
     row_.number = number;
     row_.name.clear();
     for (const MaterialKey& key : kMaterialKeys) row_.*key.value = 0;
@@ -158,7 +163,9 @@ class MaterialSection {
       has_[i] = true;
       double number = 0;
       if (lines_.value().empty() && !key.mandatory) continue;
-      if (lines_.number(number)) row_.*key.value = key.is_length ? number * unit_mm : number;
+      if (!lines_.number(number)) continue;
+      row_.*key.value = key.is_length ? number * unit_mm : number;
+      if (key.value == &TorchMaterial::pierce_height_mm) doubt_unit(unit_mm);
     }
   }
   void finish(std::vector<TorchMaterial>& rows) {
@@ -175,7 +182,23 @@ class MaterialSection {
   }
 
  private:
+  /// Once a file.
+  void doubt_unit(double unit_mm) {
+    const double height_mm = row_.pierce_height_mm;
+    const bool is_inch = unit_mm != 1;
+    const bool wrong =
+        is_inch ? height_mm > kFarthestPierce_mm : height_mm > 0 && height_mm < kNearestPierce_mm;
+    if (!wrong || std::exchange(doubted_, true)) return;
+    lines_.warn(
+        fmt::format("material {} is pierced from {:.3g} mm: this looks like {} in a file that is "
+                    "read in {}, the unit of the machine ([TRAJ]LINEAR_UNITS of its INI; mm "
+                    "without one)",
+                    row_.number, height_mm, is_inch ? "mm" : "inches", is_inch ? "inches" : "mm"),
+        1);
+  }
+
   KeyLines& lines_;
+  bool& doubted_;
   TorchMaterial row_;
   std::array<bool, kMaterialKeys.size()> has_{};
 };
@@ -204,6 +227,7 @@ void parse_material_file(std::string_view text, const std::string& path, double 
   constexpr std::string_view kSection = "MATERIAL_NUMBER_";
   if (rows.empty()) rows.emplace_back();
   KeyLines lines(text, path, diagnostics);
+  bool doubted = false;
   std::vector<MaterialSection> open;  // none, or the one that is being read
   const auto close = [&] {
     if (!open.empty()) open.front().finish(rows);
@@ -220,7 +244,7 @@ void parse_material_file(std::string_view text, const std::string& path, double 
                        read_material_number(lines.key().substr(kSection.size()), number);
     if (named && number == std::floor(number) && number >= 0 &&
         number < MaterialTable::kFirstTemporary) {
-      open.emplace_back(static_cast<int>(number), lines);
+      open.emplace_back(static_cast<int>(number), lines, doubted);
     } else {
       lines.warn(
           fmt::format("[{}] is passed over; a material is [MATERIAL_NUMBER_0] to "

@@ -59,7 +59,8 @@ struct TorchRun {
 /// The materials of a *_material.cfg as QtPlasmaC writes and reads it: `[MATERIAL_NUMBER_n]` and
 /// lines `KEY = value`; lengths in the machine's unit. Behind the number 0 default `rows[0]`; a row
 /// of number 0 replaces it. Keys that are missing are 0, with a warning where QtPlasmaC insists on
-/// them (PIERCE_HEIGHT, PIERCE_DELAY, CUT_HEIGHT, CUT_SPEED). Any bytes are accepted.
+/// them (PIERCE_HEIGHT, PIERCE_DELAY, CUT_HEIGHT, CUT_SPEED), and one where the heights are those
+/// of the other unit. Any bytes are accepted.
 void parse_material_file(std::string_view text, const std::string& path, double unit_mm,
                          std::vector<TorchMaterial>& rows, Diagnostics& diagnostics);
 

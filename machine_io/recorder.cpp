@@ -111,7 +111,11 @@ struct Recorder::Writer {
   };
 
   Writer(std::string file_path, int file, int event, const RecordingHead& head, std::size_t slots)
-      : path(std::move(file_path)), fd(file), wake_fd(event), ring(slots), lines(head.axes) {}
+      : path(std::move(file_path)),
+        fd(file),
+        wake_fd(event),
+        ring(slots),
+        lines(head.axes, head.trigger) {}
   ~Writer() {
     if (fd >= 0) ::close(fd);
     ::close(wake_fd);

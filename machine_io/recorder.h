@@ -30,6 +30,7 @@ struct RecordingHead {
   CoordinateKind kind = CoordinateKind::kJoints;
   CoordinateFrame frame = CoordinateFrame::kMachine;
   std::uint16_t axes = 0b111;  ///< bit i: position[i] gets a column; others are not recorded
+  bool trigger = false;        ///< AxisSample::trigger gets one, too
   /// CLOCK_REALTIME, ns; kNoTime: the recorder takes the time at which it creates the file.
   std::int64_t start_ns = AxisSample::kNoTime;
   /// Further `# key: value` lines, in this order: "map", "program", "ini", .. A key is of letters,

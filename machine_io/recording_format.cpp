@@ -138,7 +138,8 @@ std::string recording_head_text(const RecordingHead& head) {
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     if ((head.axes >> i & 1U) != 0) text += fmt::format(",{}", position_column(head.kind, i));
   }
-  text += ",tool,line,tool_offset_z,spindle_rpm\n";
+  text += ",tool,line,tool_offset_z,spindle_rpm";
+  text += head.trigger ? ",trigger\n" : "\n";
   return text;
 }
 
@@ -200,6 +201,10 @@ char* RecordingLines::append(const AxisSample& sample, char* out) {
   out = append_known(sample.tool_offset_z_mm, out);
   *out++ = ',';
   out = append_known(sample.spindle_rpm, out);
+  if (trigger_) {
+    *out++ = ',';
+    out = append_known(sample.trigger, out);
+  }
   *out++ = '\n';
   return out;
 }

@@ -37,7 +37,8 @@ class RecordingLines {
  public:
   static constexpr std::size_t kLongestLine_bytes = 512;
 
-  explicit RecordingLines(std::uint16_t axes) : axes_(axes) {}
+  explicit RecordingLines(std::uint16_t axes, bool trigger = false)
+      : axes_(axes), trigger_(trigger) {}
 
   /// Puts the line with its LF at `out`, which has room for kLongestLine_bytes; returns its end.
   char* append(const AxisSample& sample, char* out);
@@ -46,6 +47,7 @@ class RecordingLines {
   char* append_position(const AxisSample& sample, std::size_t index, char* out);
 
   std::uint16_t axes_;
+  bool trigger_;
   std::uint16_t written_ = 0;  // bit i: last_[i] is what an empty cell would mean
   std::array<double, kMaxPositions> last_{};
 };

@@ -17,7 +17,7 @@ constexpr double kArcStep_rad = 2 * kPi / 180;
 }  // namespace
 
 AxisLimitCheck::AxisLimitCheck(const MachineLimits& limits, FindingLog& log) : log_(log) {
-  for (std::size_t i = 0; i < kAxes; ++i) {
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
     limits_[i] = limits.axes[i];
     any_ |= limits_[i].present && (std::isfinite(limits_[i].min) || std::isfinite(limits_[i].max));
   }
@@ -49,6 +49,12 @@ AxisLimitCheck::Reach AxisLimitCheck::reach_of(const Motion& m) const {
     const double to = m.to_abc_deg[i] + frame_.offset_abc_deg[i];
     reach.min[3 + i] = m.start_known ? std::min(from, to) : to;
     reach.max[3 + i] = m.start_known ? std::max(from, to) : to;
+    const auto axis = static_cast<int>(i);
+    const double offset_mm = frame_.offset_uvw_mm[axis] + m.tool_offset_uvw_mm[axis];
+    const double from_mm = m.from_uvw_mm[axis] + offset_mm;
+    const double to_mm = m.to_uvw_mm[axis] + offset_mm;
+    reach.min[6 + i] = m.start_known ? std::min(from_mm, to_mm) : to_mm;
+    reach.max[6 + i] = m.start_known ? std::max(from_mm, to_mm) : to_mm;
   }
   if (!m.start_known) return reach;
   extend(reach, m.from_mm, m, false);
@@ -84,7 +90,7 @@ void AxisLimitCheck::check(const Motion& m, const TimedStep& step) {
       return;
   }
   const Reach reach = reach_of(m);
-  for (std::size_t axis = 0; axis < kAxes; ++axis) check_axis(axis, reach, m, step);
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) check_axis(axis, reach, m, step);
 }
 
 void AxisLimitCheck::check_axis(std::size_t axis, const Reach& reach, const Motion& m,

@@ -17,7 +17,7 @@ namespace kerf {
 /// at steps of 2 degrees. Motions whose start is not known count with their end.
 class AxisLimitCheck {
  public:
-  /// Takes its limits from `limits`: of the axes that are present, X Y Z A B C.
+  /// Takes its limits from `limits`: of the axes that are present.
   AxisLimitCheck(const MachineLimits& limits, FindingLog& log);
 
   /// Before the first motion: where the workpiece lies.
@@ -26,28 +26,27 @@ class AxisLimitCheck {
   void forget_events() { events_ = {}; }
 
  private:
-  static constexpr std::size_t kAxes = 6;
   struct Event {
     FindingLog::Handle finding = 0;
     double beyond = 0;  ///< mm or degrees
   };
   /// Least and greatest machine position of each axis during a motion.
   struct Reach {
-    std::array<double, kAxes> min{};
-    std::array<double, kAxes> max{};
+    std::array<double, kAxisCount> min{};
+    std::array<double, kAxisCount> max{};
   };
   Reach reach_of(const Motion& motion) const;
   void extend(Reach& reach, const Vec3& tip_mm, const Motion& motion, bool first) const;
   void check_axis(std::size_t axis, const Reach& reach, const Motion& motion,
                   const TimedStep& step);
 
-  std::array<AxisLimits, kAxes> limits_;
+  std::array<AxisLimits, kAxisCount> limits_;
   bool any_ = false;
   FindingLog& log_;
   WorkpieceFrame frame_;
   double cos_ = 1;
   double sin_ = 0;
-  std::array<std::optional<Event>, kAxes> events_;
+  std::array<std::optional<Event>, kAxisCount> events_;
 };
 
 }  // namespace kerf

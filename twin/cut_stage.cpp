@@ -43,8 +43,19 @@ void CutStage::set_frame(const WorkpieceFrame& frame) {
   const Result<bool> follows = machine_moves_.follow(kinematics_, frame, stock_.cell_mm());
   assert(follows);  // who made the machine has tried it
   if (before != nullptr && !follows.value()) return;
-  if (stock_.takes_tilted_tools()) motion_moves_ = machine_moves_;
+  motion_moves_ =
+      stock_.takes_tilted_tools() ? machine_moves_ : MotionMoves::of(stock_, kinematics_, frame);
   if (!rotary_check_) rotary_check_.emplace(*machine_moves_.path(), joint_limits_);
+}
+
+void CutStage::set_materials(std::span<const TorchMaterial> materials) {
+  timeline_.set_materials(materials);
+  if (torch_) torch_->set_materials(materials);
+}
+
+void CutStage::go_on_from(const CutStage& other) {
+  if (torch_) torch_->go_on_from(*other.torch_);
+  if (punch_) punch_->go_on_from(*other.punch_);
 }
 
 void CutStage::take(std::span<const Motion> motions) {
@@ -113,6 +124,7 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
+  if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (punch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
     punch_->take(m, step);
@@ -251,11 +263,34 @@ void CutStage::check_turns(const Motion& m, const TimedStep& step) {
     rotary_check_->check(m, timed_ ? 0 : step.duration_s, rotary_faults_);
     if (!rotary_faults_.empty()) report_rotary_faults(step);
   }
-  if (turn_reported_) return;
-  if (stock_.takes_tilted_tools()) {
-    if (!motion_moves_.is_upright(m)) report_assumptions(m);
-  } else if (m.from_abc_deg != m.to_abc_deg) {
-    report_ignored_turn(m, step);
+  if (!assumptions_told_ && !motion_moves_.is_upright(m)) report_assumptions(m);
+  if (turn_reported_ || stock_.takes_tilted_tools()) return;
+  if (m.from_abc_deg != m.to_abc_deg) report_ignored_turn(m, step);
+}
+
+/// U, V or W move. Once for each that moves nothing that is known.
+void CutStage::check_slides(const Motion& m, const TimedStep& step) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<int>(i);
+    const bool known = kinematics_ && kinematics_->slides_uvw() &&
+                       kinematics_->chain.is_driven_by(6 + i) && !torch_ && !punch_;
+    if (known || slide_reported_[i] || m.from_uvw_mm[axis] == m.to_uvw_mm[axis]) continue;
+    slide_reported_[i] = true;
+    const char letter = kAxisLetters[6 + i];
+    Finding finding;
+    finding.id = FindingId::kSecondaryIgnored;
+    finding.source = m.source;
+    finding.time_s = step.start_s;
+    finding.tool = m.tool;
+    finding.text = fmt::format(
+        "{} moves, and nothing says what it slides: it is cut as if {} stood still (a second "
+        "carriage, the slide of a facing head, and the wire between XY and UV of a foam cutter are "
+        "not modelled)",
+        letter, letter);
+    finding.hint =
+        "with W among the axes (--ini, machine.joints) it is a quill along Z; machine.kinematics: "
+        "links says what U, V and W slide on another machine";
+    log_.add(std::move(finding));
   }
 }
 
@@ -267,7 +302,7 @@ void CutStage::check_whole(const Motion& m, const TimedStep& step) {
 
 /// Once: what the machine is taken to be, where nothing says it.
 void CutStage::report_assumptions(const Motion& m) {
-  turn_reported_ = true;
+  assumptions_told_ = true;
   for (const std::string& note : kinematics_->notes) {
     Finding finding;
     finding.id = FindingId::kKinematics;

@@ -51,7 +51,13 @@ class CutStage : private StepSink {
   /// The same of a sheet under a punch: what cuts is PunchStage's.
   void punch(TurretPointer turret) { punch_.emplace(stock_, log_, std::move(turret)); }
   /// Null: it is none that punches.
+  PunchStage* punch() { return punch_ ? &*punch_ : nullptr; }
   const PunchStage* punch() const { return punch_ ? &*punch_ : nullptr; }
+  /// Of a torch program, all that the motions name from here on.
+  void set_materials(std::span<const TorchMaterial> materials);
+  /// A sheet's troubles are looked for as if this stage had done what the other one has: what is
+  /// free, pierced, gripped. `other` is of the same kind.
+  void go_on_from(const CutStage& other);
   /// Of a program that burns; null: it mills.
   TorchStage* torch() { return torch_ ? &*torch_ : nullptr; }
   const TorchStage* torch() const { return torch_ ? &*torch_ : nullptr; }
@@ -78,6 +84,9 @@ class CutStage : private StepSink {
 
   /// How the machine turns tool and workpiece; null: it does not.
   const ToolPath* machine_path() const { return machine_moves_.path(); }
+  /// The same as the model cuts: while nothing turns if it does not take tilted tools. Null: the
+  /// tip is where X Y Z are.
+  const ToolPath* model_path() const { return motion_moves_.path(); }
   /// The motion is cut by an upright tool.
   bool is_upright(const Motion& motion) const { return motion_moves_.is_upright(motion); }
 
@@ -111,6 +120,7 @@ class CutStage : private StepSink {
   bool comes_near(const Motion& motion) const;
   void note_reach(const Motion& motion);
   void check_turns(const Motion& motion, const TimedStep& step);
+  void check_slides(const Motion& motion, const TimedStep& step);
   void report_ignored_turn(const Motion& motion, const TimedStep& step);
   void report_assumptions(const Motion& motion);
   void report_rotary_faults(const TimedStep& step);
@@ -165,8 +175,10 @@ class CutStage : private StepSink {
   int spindle_tool_ = 0;
   bool feed_missing_reported_ = false;
   bool turn_reported_ = false;
-  bool reached_stock_ = false;  ///< a feed move came near the blank, in boxes
-  Box feed_bounds_mm_;          ///< of all feed moves, until then
+  bool assumptions_told_ = false;
+  std::array<bool, 3> slide_reported_{};  ///< U, V, W
+  bool reached_stock_ = false;            ///< a feed move came near the blank, in boxes
+  Box feed_bounds_mm_;                    ///< of all feed moves, until then
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;

@@ -73,6 +73,8 @@ const char* to_string(FindingId id) {
       return "kinematics";
     case FindingId::kNoRotaryAxis:
       return "no-rotary-axis";
+    case FindingId::kSecondaryIgnored:
+      return "secondary-ignored";
     case FindingId::kSingularPose:
       return "singular-pose";
     case FindingId::kToolTooLong:
@@ -99,6 +101,8 @@ const char* to_string(FindingId id) {
       return "hit-on-clamp";
     case FindingId::kHitOffSheet:
       return "hit-off-sheet";
+    case FindingId::kHitOverEdge:
+      return "hit-over-edge";
     case FindingId::kHitInAir:
       return "hit-in-air";
     case FindingId::kHitOnPart:

@@ -27,38 +27,40 @@ enum class FindingId : std::uint8_t {
   kFeedMissing,        ///< feed moves without a feed rate
   kInterpreterError,   ///< the interpreter refused a block
   kInterpreterWarning,
-  kInterrupted,     ///< the run was stopped by the user
-  kAxisLimit,       ///< a motion leaves the soft limits of the machine
-  kOverFeed,        ///< feed moves ask for more than the axes can do
-  kOutsideStock,    ///< no feed move comes near the blank: offset or blank is wrong
-  kNotSimulated,    ///< user M-codes, M66: what a machine would do there is not known
-  kSourceGap,       ///< positions were missing while the machine moved: that move is not cut
-  kOffPath,         ///< the machine's tip is not on the path of the program
-  kToolMismatch,    ///< the machine has another tool in the spindle than the program
-  kLengthUnknown,   ///< a tool whose length nothing tells; it counts as 0
-  kLateStart,       ///< the machine was running its program when it was first seen
-  kLineNotReached,  ///< no move of the line where the report was to begin
-  kKinematics,      ///< what is taken for known of a machine that turns tool or workpiece
-  kNoRotaryAxis,    ///< A, B or C of a machine that has none
-  kSingularPose,    ///< an axis turns far while the spindle hardly does
-  kToolTooLong,     ///< longer than the way to the pivot that the controller reckons with
-  kTorchLeftOn,     ///< the program ends with the beam on
-  kNoBeam,          ///< the program never turns the beam on
-  kKerfZero,        ///< a kerf of no width
-  kPierceInPart,    ///< pierces a part that has come free
-  kCrossesPart,     ///< the head goes over a part that has come free, and may have tipped
-  kBeamOff,         ///< feed moves over the sheet at cut height with the beam off
-  kSmallPart,       ///< a part came free that may tilt or fall between the slats
-  kStationEmpty,    ///< the punch strikes with a tool that has no station in the turret
-  kNoPunch,         ///< it strikes with no tool
-  kHitOnClamp,      ///< it comes down on a clamp
-  kHitOffSheet,     ///< beside the sheet
-  kHitInAir,        ///< where all has been punched out already
-  kHitOnPart,       ///< on a piece that has come free
-  kWebLeft,         ///< nibbling leaves webs between strokes: the slug stays attached
-  kPunchDown,       ///< the sheet moves while the punch is down
-  kGripLost,        ///< a clamp holds nothing of the sheet
-  kNoHit,           ///< the program never makes the punch strike
+  kInterrupted,       ///< the run was stopped by the user
+  kAxisLimit,         ///< a motion leaves the soft limits of the machine
+  kOverFeed,          ///< feed moves ask for more than the axes can do
+  kOutsideStock,      ///< no feed move comes near the blank: offset or blank is wrong
+  kNotSimulated,      ///< user M-codes, M66: what a machine would do there is not known
+  kSourceGap,         ///< positions were missing while the machine moved: that move is not cut
+  kOffPath,           ///< the machine's tip is not on the path of the program
+  kToolMismatch,      ///< the machine has another tool in the spindle than the program
+  kLengthUnknown,     ///< a tool whose length nothing tells; it counts as 0
+  kLateStart,         ///< the machine was running its program when it was first seen
+  kLineNotReached,    ///< no move of the line where the report was to begin
+  kKinematics,        ///< what is taken for known of a machine that turns tool or workpiece
+  kNoRotaryAxis,      ///< A, B or C of a machine that has none
+  kSecondaryIgnored,  ///< U, V or W move, and what they slide is not known
+  kSingularPose,      ///< an axis turns far while the spindle hardly does
+  kToolTooLong,       ///< longer than the way to the pivot that the controller reckons with
+  kTorchLeftOn,       ///< the program ends with the beam on
+  kNoBeam,            ///< the program never turns the beam on
+  kKerfZero,          ///< a kerf of no width
+  kPierceInPart,      ///< pierces a part that has come free
+  kCrossesPart,       ///< the head goes over a part that has come free, and may have tipped
+  kBeamOff,           ///< feed moves over the sheet at cut height with the beam off
+  kSmallPart,         ///< a part came free that may tilt or fall between the slats
+  kStationEmpty,      ///< the punch strikes with a tool that has no station in the turret
+  kNoPunch,           ///< it strikes with no tool
+  kHitOnClamp,        ///< it comes down on a clamp
+  kHitOffSheet,       ///< beside the sheet
+  kHitOverEdge,       ///< partly beside the sheet
+  kHitInAir,          ///< where all has been punched out already
+  kHitOnPart,         ///< on a piece that has come free
+  kWebLeft,           ///< nibbling leaves webs between strokes: the slug stays attached
+  kPunchDown,         ///< the sheet moves while the punch is down
+  kGripLost,          ///< a clamp holds nothing of the sheet
+  kNoHit,             ///< the program never makes the punch strike
 };
 
 /// "rapid-contact", ...: the `id` of the report.

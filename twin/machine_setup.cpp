@@ -31,7 +31,7 @@ class IniReader {
   IniReader(IniFile& ini, Diagnostics& diagnostics) : ini_(ini), diagnostics_(diagnostics) {}
   Diagnostics& diagnostics() { return diagnostics_; }
 
-  std::string text(const char* section, const char* key) {
+  std::string text(const std::string& section, const char* key) {
     const IniEntry* const entry = ini_.find(section, key);
     return entry != nullptr ? entry->value : std::string();
   }
@@ -117,9 +117,17 @@ std::string read_joint_letters(IniReader& reader, std::string& kinematics) {
   return letters.empty() ? "XYZ" : letters;
 }
 
+/// [JOINT_n]TYPE; `otherwise`: of a joint whose type the INI does not say.
+bool joint_turns(IniReader& reader, std::size_t joint, bool otherwise) {
+  const IniEntry* const type = reader.file().find(fmt::format("JOINT_{}", joint), "TYPE");
+  return type != nullptr ? type->value == "ANGULAR" : otherwise;
+}
+
+/// `joint` < 0: it says nothing of the axis.
 std::optional<double> axis_number(IniReader& reader, char letter, int joint, const char* key,
                                   std::optional<double> above = {}) {
   if (auto value = reader.number(fmt::format("AXIS_{}", letter), key, above)) return value;
+  if (joint < 0) return std::nullopt;
   return reader.number(fmt::format("JOINT_{}", joint), key, above);
 }
 
@@ -131,8 +139,9 @@ void read_axes(IniReader& reader, const std::string& letters, double unit_mm, Ma
     const char letter = kAxisLetters[axis];
     const std::size_t joint = letters.find(letter);
     if (joint == letters.npos) continue;
-    const int n = static_cast<int>(joint);
-    const double unit = is_rotary_axis(axis) ? 1 : unit_mm;
+    const bool turns = is_rotary_axis(axis);
+    const int n = joint_turns(reader, joint, turns) == turns ? static_cast<int>(joint) : -1;
+    const double unit = turns ? 1 : unit_mm;
     AxisLimits& out = limits.axes[axis];
     out.present = true;
     setup.interpreter.axis_mask |= 1 << axis;
@@ -142,7 +151,7 @@ void read_axes(IniReader& reader, const std::string& letters, double unit_mm, Ma
     out.max_velocity = axis_number(reader, letter, n, "MAX_VELOCITY", 0.0).value_or(1) * unit;
     out.max_acceleration =
         axis_number(reader, letter, n, "MAX_ACCELERATION", 0.0).value_or(1) * unit;
-    const auto home = reader.number(fmt::format("JOINT_{}", n), "HOME");
+    const auto home = reader.number(fmt::format("JOINT_{}", joint), "HOME");
     setup.interpreter.start[axis] = home.value_or(0) * unit;
   }
 }
@@ -291,13 +300,24 @@ void start_at_home(IniReader& reader, const MachineKinematics& machine, double u
   if (machine.type(0).mode == KinematicsMode::kAxes) return;
   AxisValues joints{};
   for (std::size_t i = 0; i < std::min(machine.joint_letters.size(), joints.size()); ++i) {
-    const std::string section = fmt::format("JOINT_{}", i);
-    const IniEntry* const type = reader.file().find(section, "TYPE");
-    const bool turns = type != nullptr ? type->value == "ANGULAR" : machine.turns_joint(i);
-    joints[i] = reader.number(section, "HOME").value_or(0) * (turns ? 1.0 : unit_mm);
+    const bool turns = joint_turns(reader, i, machine.turns_joint(i));
+    const double home = reader.number(fmt::format("JOINT_{}", i), "HOME").value_or(0);
+    joints[i] = home * (turns ? 1.0 : unit_mm);
   }
   const AxisValues axes = machine.axes_of(joints, 0);
   std::copy(axes.begin(), axes.end(), interpreter.start.begin());
+}
+
+void find_turning_joints(IniReader& reader, MachineSetup& setup) {
+  const MachineKinematics* const machine = setup.timeline.kinematics.get();
+  const std::string& letters = machine != nullptr ? machine->joint_letters : setup.joint_letters;
+  for (std::size_t joint = 0; joint < std::min(letters.size(), kAxisCount); ++joint) {
+    const auto letter = std::find(kAxisLetters.begin(), kAxisLetters.end(), letters[joint]);
+    const bool by_letter = is_rotary_axis(static_cast<std::size_t>(letter - kAxisLetters.begin()));
+    const bool otherwise = machine != nullptr ? machine->turns_joint(joint) : by_letter;
+    if (!joint_turns(reader, joint, otherwise)) continue;
+    setup.turning_joints = static_cast<std::uint16_t>(setup.turning_joints | 1U << joint);
+  }
 }
 
 /// `entry` null: the INI has none, and the configuration says what they are.
@@ -332,7 +352,9 @@ void read_kinematics(IniReader& reader, const IniEntry* entry, double unit_mm,
   start_at_home(reader, *machine, unit_mm, setup.interpreter);
   setup.timeline.kinematics = std::make_shared<const MachineKinematics>(std::move(machine.value()));
   setup.timeline.kinematics_known = true;
-  setup.timeline.joint_limits = joint_limits_of_ini(reader.file(), setup.joint_letters, unit_mm);
+  // Of a module that has a joint for every axis, whether the INI names that or not (maxkins).
+  setup.timeline.joint_limits =
+      joint_limits_of_ini(reader.file(), setup.timeline.kinematics->joint_letters, unit_mm);
 }
 
 }  // namespace
@@ -379,6 +401,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   if (kins != nullptr || (kinematics != nullptr && kinematics->is_given())) {
     read_kinematics(reader, kins, unit_mm, kinematics, setup);
   }
+  find_turning_joints(reader, setup);
   list_what_is_not_understood(reader);
   return !has_error(diagnostics);
 }

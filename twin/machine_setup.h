@@ -1,6 +1,7 @@
 // twin/machine_setup.h - the user's machine as its LinuxCNC INI describes it (--ini).
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "base/diagnostic.h"
@@ -18,12 +19,16 @@ struct MachineSetup {
   TimelineOptions timeline;     ///< limits, their origin, servo and I/O periods
   std::string kinematics;       ///< [KINS]KINEMATICS: "trivkins"
   std::string joint_letters;    ///< axis that each joint moves: "XYZ", "XYYZ"
+  /// Bit n: joint n counts degrees. [JOINT_n]TYPE says so, else the machine's kinematics (of a
+  /// robot joints turn that have the letters of X, Y and Z), else the letter.
+  std::uint16_t turning_joints = 0;
 };
 
 /// Reads the INI at `path`. Relative paths in it are relative to its folder, as LinuxCNC (which
 /// runs there) takes them. Limits of an axis come from [AXIS_L], else from [JOINT_n] of the joint
-/// that moves it. All faults at once, with line and column; false if there was an error. Keys of
-/// [TRAJ], [KINS], [EMCIO] and [RS274NGC] that are not understood are notes.
+/// that moves it, unless that turns where the axis is a length (robots). All faults at once, with
+/// line and column; false if there was an error. Keys of [TRAJ], [KINS], [EMCIO] and [RS274NGC]
+/// that are not understood are notes.
 ///
 /// Not read: [HAL], [APPLICATIONS] and all else that says how the machine is driven and shown. The
 /// interpreter reads [RS274NGC], [EMCIO], [AXIS_*] and [PYTHON] itself (remaps, subroutine paths,

@@ -39,6 +39,11 @@ double path_length_mm(const Motion& m) {
   return std::sqrt(around * around + along * along + outward * outward);
 }
 
+double fed_length_mm(const Motion& m) {
+  const double way_mm = path_length_mm(m);
+  return way_mm > 0 ? way_mm : glm::length(m.to_uvw_mm - m.from_uvw_mm);
+}
+
 Vec3 point_at(const Motion& m, double t) {
   if (m.kind != MotionKind::kArc) return m.from_mm + t * (m.to_mm - m.from_mm);
   const ArcEnds ends = arc_ends(m);

@@ -13,6 +13,9 @@ struct PathPiece;
 /// mean radius, which is right to second order in the change. 0 for motions that do not move.
 double path_length_mm(const Motion& motion);
 
+/// What the feed is for: the way of X Y Z, or where these stand that of U V W.
+double fed_length_mm(const Motion& motion);
+
 /// The tip at fraction t in [0, 1] of the way (of the angle, for arcs).
 Vec3 point_at(const Motion& motion, double t);
 

@@ -70,6 +70,10 @@ void append_way(const Motion& m, std::string& out) {
     append_vector("from_abc", m.from_abc_deg, out);
     append_vector("to_abc", m.to_abc_deg, out);
   }
+  if (m.from_uvw_mm != Vec3(0) || m.to_uvw_mm != Vec3(0)) {
+    append_vector("from_uvw", m.from_uvw_mm, out);
+    append_vector("to_uvw", m.to_uvw_mm, out);
+  }
   if (m.kind == MotionKind::kArc && m.start_known) {
     append_vector("center", m.arc.center_mm, out);
     append_vector("axis", m.arc.axis, out);

@@ -8,6 +8,7 @@
 //     "from": null           where the motion begins is not known (the first one)
 //     "center", "axis", "sweep_deg"   arcs: the tip turns about the axis by the right-hand rule
 //     "from_abc", "to_abc"   A, B or C are not at 0
+//     "from_uvw", "to_uvw"   U, V or W are not at 0
 //     "feed_per_rev": true   "feed" is mm a revolution (G95, G33)
 //     "spindle": "cw" | "ccw", "rpm"  the spindle turns
 //     "coolant": ["flood", "mist"]    which of them run

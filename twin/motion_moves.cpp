@@ -15,6 +15,7 @@ Result<bool> MotionMoves::follow(std::shared_ptr<const MachineKinematics> machin
   machine_ = std::move(machine);
   frame_ = frame;
   path_ = std::move(path.value());
+  tilts_ = true;
   return true;
 }
 
@@ -22,10 +23,13 @@ MotionMoves MotionMoves::of(const StockModel& stock,
                             std::shared_ptr<const MachineKinematics> machine,
                             const WorkpieceFrame& frame) {
   MotionMoves moves;
-  if (!machine || !stock.takes_tilted_tools()) return moves;
+  const bool tilts = stock.takes_tilted_tools();
+  if (!machine || !(tilts || machine->slides_uvw())) return moves;
+  if (!tilts) machine = std::make_shared<const MachineKinematics>(machine->standing());
   const Result<bool> follows = moves.follow(std::move(machine), frame, stock.cell_mm());
   assert(follows);
   static_cast<void>(follows);
+  moves.tilts_ = tilts;
   return moves;
 }
 

@@ -17,7 +17,7 @@
 namespace kerf {
 
 /// Until follow() every motion is that of an upright tool over a workpiece that lies still,
-/// whatever A, B and C do. Values; const calls from any number of threads.
+/// whatever A, B, C, U, V and W do. Values; const calls from any number of threads.
 class MotionMoves {
  public:
   MotionMoves() = default;
@@ -30,6 +30,8 @@ class MotionMoves {
 
   /// Null: every motion is upright.
   const ToolPath* path() const { return path_ ? &*path_ : nullptr; }
+  /// The model takes tilted tools; false: A, B and C turn nothing.
+  bool tilts() const { return tilts_; }
   /// The motion is one move of an upright tool: cut_move_from().
   bool is_upright(const Motion& motion) const { return !path_ || path_->is_upright(motion); }
   /// From now on the moves are those of a torch.
@@ -45,8 +47,8 @@ class MotionMoves {
   void append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
               std::vector<CutMove>& out) const;
 
-  /// Of a machine over this model: if it takes tilted tools, as the machine moves (null: every
-  /// motion is upright). The machine can have that frame.
+  /// Of a machine over this model: as the machine moves, while nothing turns if the model does not
+  /// take tilted tools (null: every motion is upright). The machine can have that frame.
   static MotionMoves of(const StockModel& stock, std::shared_ptr<const MachineKinematics> machine,
                         const WorkpieceFrame& frame);
 
@@ -58,6 +60,7 @@ class MotionMoves {
   std::shared_ptr<const MachineKinematics> machine_;
   WorkpieceFrame frame_;
   std::optional<ToolPath> path_;
+  bool tilts_ = false;
   std::optional<TorchMoves> torch_;
   std::optional<PunchMoves> punch_;
 };

@@ -117,29 +117,40 @@ struct TurnedWay {
       off[axis] = mm_per_deg * (turned.abc_deg[i] - m.from_abc_deg[i]);
       way[axis] = mm_per_deg * (m.to_abc_deg[i] - m.from_abc_deg[i]);
     }
+    for (int i = 0; i < 3; ++i) {
+      if (!turned.uvw_counts[static_cast<std::size_t>(i)]) continue;
+      slide_off[i] = turned.uvw_mm[i] - m.from_uvw_mm[i];
+      slide_way[i] = m.to_uvw_mm[i] - m.from_uvw_mm[i];
+    }
+  }
+  bool stands() const { return way == Vec3(0) && slide_way == Vec3(0); }
+  double distance(double t) const {
+    return std::hypot(glm::length(off - t * way), glm::length(slide_off - t * slide_way));
   }
   Vec3 off{0}, way{0};
+  Vec3 slide_off{0}, slide_way{0};
 };
 
 PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const TurnedWay& turned,
                                    double from_t) {
   const Vec3 way = m.to_mm - m.from_mm;
-  const double square = glm::dot(way, way) + glm::dot(turned.way, turned.way);
+  const double square = glm::dot(way, way) + glm::dot(turned.way, turned.way) +
+                        glm::dot(turned.slide_way, turned.slide_way);
   double t = from_t;
   if (square > 0) {
-    const double along = glm::dot(place - m.from_mm, way) + glm::dot(turned.off, turned.way);
+    const double along = glm::dot(place - m.from_mm, way) + glm::dot(turned.off, turned.way) +
+                         glm::dot(turned.slide_off, turned.slide_way);
     t = std::clamp(along / square, from_t, 1.0);
   }
   const double tip_mm = glm::length(place - (m.from_mm + t * way));
-  return {t, std::hypot(tip_mm, glm::length(turned.off - t * turned.way))};
+  return {t, std::hypot(tip_mm, turned.distance(t))};
 }
 
 /// By trials, and by thirds about the best of them.
 PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const TurnedWay& turned,
                                   double from_t) {
   const auto distance = [&](double t) {
-    return std::hypot(glm::length(place - point_at(m, t)),
-                      glm::length(turned.off - t * turned.way));
+    return std::hypot(glm::length(place - point_at(m, t)), turned.distance(t));
   };
   const int trials = 16 + static_cast<int>(8 * std::abs(m.arc.sweep_rad));
   const double step = (1 - from_t) / trials;
@@ -168,11 +179,10 @@ PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const Turn
 PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, const TurnedAxes& turned,
                       double from_t) {
   const TurnedWay axes(m, turned);
-  if (axes.way == Vec3(0)) {
+  if (axes.stands()) {
     PointOnWay point = nearest_on(m, place_mm, from_t);
-    if (axes.off != Vec3(0)) {
-      point.distance_mm = std::hypot(point.distance_mm, glm::length(axes.off));
-    }
+    const double off_mm = axes.distance(0);
+    if (off_mm > 0) point.distance_mm = std::hypot(point.distance_mm, off_mm);
     return point;
   }
   return m.kind == MotionKind::kArc ? nearest_on_turning_arc(m, place_mm, axes, from_t)
@@ -191,12 +201,14 @@ Motion part_of(const Motion& m, double from_t, double to_t) {
     for (std::size_t i = 0; i < 3; ++i) {
       part.from_abc_deg[i] += from_t * (m.to_abc_deg[i] - m.from_abc_deg[i]);
     }
+    part.from_uvw_mm += from_t * (m.to_uvw_mm - m.from_uvw_mm);
   }
   if (to_t < 1) {
     part.to_mm = point_at(m, to_t);
     for (std::size_t i = 0; i < 3; ++i) {
       part.to_abc_deg[i] = m.from_abc_deg[i] + to_t * (m.to_abc_deg[i] - m.from_abc_deg[i]);
     }
+    part.to_uvw_mm = m.from_uvw_mm + to_t * (m.to_uvw_mm - m.from_uvw_mm);
   }
   if (from_t > 0 || to_t < 1) part.arc.sweep_rad = (to_t - from_t) * m.arc.sweep_rad;
   return part;

@@ -19,17 +19,19 @@ struct PointOnWay {
 /// spirals to within 0.1 um as long as they rise or grow by less than a radius a turn.
 PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, double from_t);
 
-/// Axes that turn, as a place has them.
+/// Axes A B C, which turn, and U V W, as a place has them.
 struct TurnedAxes {
   std::array<double, 3> abc_deg{};
   std::array<bool, 3> counts{};  ///< false: not known, or not to be compared
   /// An axis that is off by an angle is off by the way of a point so far from its line. mm.
   double lever_mm = 0;
+  Vec3 uvw_mm{0};
+  std::array<bool, 3> uvw_counts{};
 };
 
-/// The same where A, B and C count, too: the distance is that of a place in six dimensions. Exact
-/// for lines, and for arcs on which none of them turns; else to within 1 um, as long as the place
-/// is less than a radius from the way.
+/// The same where these count, too: the distance is that of a place in nine dimensions. Exact for
+/// lines, and for arcs on which none of them goes; else to within 1 um, as long as the place is
+/// less than a radius from the way.
 PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, const TurnedAxes& turned,
                       double from_t);
 

@@ -25,6 +25,7 @@ void for_each_piece(const Motion& motion, const TimedStep& timed, std::span<cons
                                    : timed.duration_s / static_cast<double>(path.size());
     take(moved, std::as_const(part));
     part.start_s += part.duration_s;
+    part.held_before_s = 0;
     // A programmed feed that the axes cannot do is told once.
     part.allowed_mm_per_min = part.programmed_mm_per_min;
   }

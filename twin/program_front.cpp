@@ -46,14 +46,7 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
     outcome = Outcome::kUsageError;
     return false;
   }
-  if (options.turret && !(found.blank && is_sheet(*found.blank))) {
-    diagnostics.push_back(
-        general_error(fmt::format("--turret: only a sheet can be punched; the blank is {}",
-                                  found.blank ? describe(*found.blank) : "not given"),
-                      "--stock sheet:x0,y0:x1,y1:THICKNESS gives a sheet"));
-    outcome = Outcome::kUsageError;
-    return false;
-  }
+  if (options.turret && !can_be_punched(found.blank, diagnostics, outcome)) return false;
   if (!found.blank) return true;
   front.blank = std::move(found.blank);
   front.blank_origin = std::move(found.origin);
@@ -62,6 +55,16 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
 }
 
 }  // namespace
+
+bool can_be_punched(const std::optional<Blank>& blank, Diagnostics& diagnostics, Outcome& outcome) {
+  if (blank && is_sheet(*blank)) return true;
+  diagnostics.push_back(
+      general_error(fmt::format("--turret: only a sheet can be punched; the blank is {}",
+                                blank ? describe(*blank) : "not given"),
+                    "--stock sheet:x0,y0:x1,y1:THICKNESS gives a sheet"));
+  outcome = Outcome::kUsageError;
+  return false;
+}
 
 bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics& diagnostics,
                 Outcome& outcome) {

@@ -50,6 +50,9 @@ struct ProgramFront {
   bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };
 
+/// False with a diagnostic: it is no sheet.
+bool can_be_punched(const std::optional<Blank>& blank, Diagnostics& diagnostics, Outcome& outcome);
+
 /// Checks everything that can be checked before the program is interpreted: files, comments, tool
 /// table, blank, cell size, memory. Nothing on error, with diagnostics, and `outcome` says of which
 /// kind.

@@ -18,6 +18,9 @@ namespace {
 constexpr double kLeastOverlap_mm2 = 1e-4;
 /// Of a stroke: less is what rounding and the chords of arcs leave at its edge.
 constexpr double kLeastShare = 1e-3;
+/// A punch with so much of it on the sheet is held by what it cuts: notches of the edge are made
+/// so.
+constexpr double kSteadyShare = 0.5;
 /// A clamp is looked at in so many places each way.
 constexpr int kGripPoints = 9;
 
@@ -36,20 +39,8 @@ Extent extent_of(const SheetOutline& shape) {
   return extent;
 }
 
-double signed_area_mm2(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    twice += ring[j].x * ring[i].y - ring[i].x * ring[j].y;
-  }
-  return twice / 2;
-}
-
 bool meet(const Extent& a, const Vec2& min, const Vec2& max) {
   return a.min.x < max.x && a.max.x > min.x && a.min.y < max.y && a.max.y > min.y;
-}
-
-bool is_within(const Extent& a, const Vec2& min, const Vec2& max) {
-  return a.min.x >= min.x && a.max.x <= max.x && a.min.y >= min.y && a.max.y <= max.y;
 }
 
 /// How far the shape reaches along a direction.
@@ -70,16 +61,10 @@ PunchChecks::PunchChecks(const Sheet& sheet, FindingLog& log, TurretPointer turr
     : sheet_(sheet),
       log_(log),
       turret_(std::move(turret)),
+      blank_(sheet.outline()),
       place_(turret_),
-      uncut_pieces_(sheet.piece_numbers()) {
-  SheetOutline whole = sheet.outline();
-  for (std::vector<Vec2>& ring : whole.rings) {
-    if (signed_area_mm2(ring) > 0) blank_.emplace_back().rings.push_back(std::move(ring));
-  }
-  const Vec3 size = sheet.bounds_mm().size();
-  blank_is_rectangle_ = blank_.size() == 1 && blank_[0].rings[0].size() == 4 &&
-                        std::abs(sheet.remaining_mm2() - size.x * size.y) < kLeastOverlap_mm2;
-}
+      uncut_pieces_(sheet.blank_piece_numbers()),
+      freed_(freed_before(sheet)) {}
 
 void PunchChecks::tell(FindingId id, Severity severity, const Motion& m, const TimedStep& step,
                        const Vec3& place, std::string text) {
@@ -98,6 +83,14 @@ void PunchChecks::tell(FindingId id, Severity severity, const Motion& m, const T
   out.text = text;
   told.text = std::move(text);
   told.last = log_.add(std::move(out));
+}
+
+void PunchChecks::go_on_from(const PunchChecks& other) {
+  blank_ = other.blank_;
+  place_ = other.place_;
+  grip_checked_ = other.grip_checked_;
+  uncut_pieces_ = other.uncut_pieces_;
+  freed_ = other.freed_;
 }
 
 void PunchChecks::follow(const Motion& m, const TimedStep& step, bool drags) {
@@ -139,15 +132,20 @@ void PunchChecks::no_station(const Motion& m, const TimedStep& step, const Vec3&
   }
 }
 
-bool PunchChecks::is_off_sheet(const CutMove& stroke, const SheetOutline& shape) const {
-  const Box box = sheet_.bounds_mm();
-  const Extent extent = extent_of(shape);
-  if (!meet(extent, Vec2(box.min), Vec2(box.max))) return true;
-  if (sheet_.has_material(Vec2(stroke.to_mm))) return false;
-  if (blank_is_rectangle_ && is_within(extent, Vec2(box.min), Vec2(box.max))) return false;
-  return std::none_of(blank_.begin(), blank_.end(), [&](const SheetOutline& outer) {
-    return overlap_mm2(shape, outer) >= kLeastOverlap_mm2;
-  });
+void PunchChecks::check_edge(const Motion& m, const TimedStep& step, const CutMove& stroke,
+                             const SheetOutline& shape) {
+  const double share = blank_.share_of(shape);
+  if (share < kLeastShare) {
+    off_sheet_ = true;
+    tell(FindingId::kHitOffSheet, Severity::kError, m, step, stroke.to_mm,
+         "the punch strikes beside the sheet");
+  } else if (share < 1 - kLeastShare) {
+    const bool pushes = share < kSteadyShare;
+    tell(FindingId::kHitOverEdge, pushes ? Severity::kWarning : Severity::kNote, m, step,
+         stroke.to_mm,
+         fmt::format("{:.1f} % of the punch hangs over the edge of the sheet{}", 100 * (1 - share),
+                     pushes ? ", which pushes it aside" : ""));
+  }
 }
 
 void PunchChecks::check_clamps(const Motion& m, const TimedStep& step, const CutMove& stroke,
@@ -167,21 +165,16 @@ void PunchChecks::check_clamps(const Motion& m, const TimedStep& step, const Cut
 
 void PunchChecks::strikes(const Motion& m, const TimedStep& step, const Cutter& punch,
                           std::span<const CutMove> strokes) {
-  off_sheet_ = false;
   for (const CutMove& stroke : strokes) {
     const SheetOutline shape = footprint_at(punch, stroke);
     if (!turret_->clamps.empty()) check_clamps(m, step, stroke, shape);
-    if (is_off_sheet(stroke, shape)) {
-      off_sheet_ = true;
-      tell(FindingId::kHitOffSheet, Severity::kError, m, step, stroke.to_mm,
-           "the punch strikes beside the sheet");
-    }
+    check_edge(m, step, stroke, shape);
     if (freed_.empty()) continue;
     const std::optional<std::uint32_t> number = sheet_.piece_at(Vec2(stroke.to_mm));
     if (!number || *number < uncut_pieces_) continue;
     tell(FindingId::kHitOnPart, Severity::kError, m, step, stroke.to_mm,
-         fmt::format("the punch strikes piece {}, which is free since line {} and may have moved",
-                     *number, freed_[*number - uncut_pieces_].source.line));
+         fmt::format("the punch strikes piece {}, which is {} and may have moved", *number,
+                     free_since(freed_[*number - uncut_pieces_])));
   }
 }
 
@@ -225,10 +218,14 @@ void PunchChecks::struck(const Motion& m, const TimedStep& step, const Cutter& p
   } else if (nibbled) {
     check_webs(m, step, punch, strokes);
   }
+  off_sheet_ = false;
+}
+
+void PunchChecks::note_freed(const Motion& m, const TimedStep& step) {
   const std::size_t numbers = sheet_.piece_numbers();
   while (uncut_pieces_ + freed_.size() < numbers) {
     const auto number = static_cast<std::uint32_t>(uncut_pieces_ + freed_.size());
-    freed_.push_back({number, m.source, step.start_s + step.duration_s});
+    freed_.push_back({number, m.source, step.start_s + step.duration_s, std::nullopt});
   }
 }
 

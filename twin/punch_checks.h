@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interp_bridge/motion.h"
+#include "stock/sheet/blank_area.h"
 #include "stock/sheet/sheet.h"
 #include "twin/finding.h"
 #include "twin/punch_moves.h"
@@ -19,7 +20,7 @@
 
 namespace kerf {
 
-/// Follows the clamps, and is asked before and after a motion's strokes are cut. Of each kind of
+/// Follows the clamps, and is asked before and after strokes are cut. Of each kind of
 /// trouble the first kTold are told one by one, the others with the last of these. One thread.
 class PunchChecks {
  public:
@@ -31,12 +32,17 @@ class PunchChecks {
   void follow(const Motion& motion, const TimedStep& step, bool drags);
   /// no-punch, station-empty.
   void no_station(const Motion& motion, const TimedStep& step, const Vec3& place_mm);
-  /// Strokes of one motion that are about to be cut: hit-on-clamp, hit-off-sheet, hit-on-part.
+  /// Strokes of one motion that are about to be cut: hit-on-clamp, hit-off-sheet, hit-over-edge,
+  /// hit-on-part.
   void strikes(const Motion& motion, const TimedStep& step, const Cutter& punch,
                std::span<const CutMove> strokes);
-  /// They have been cut: hit-in-air, web-left (`nibbled`), pieces that are free now.
+  /// They have been cut: pieces that are free now.
+  void note_freed(const Motion& motion, const TimedStep& step);
+  /// Once a motion, `strokes` are all of them: hit-in-air, web-left (`nibbled`).
   void struck(const Motion& motion, const TimedStep& step, const Cutter& punch,
               std::span<const CutMove> strokes, double removed_mm3, bool nibbled);
+  /// Those of another one that looks at the same sheet are known.
+  void go_on_from(const PunchChecks& other);
   /// The program is over.
   void never_struck();
   /// What went on before is not reported on.
@@ -57,7 +63,8 @@ class PunchChecks {
   void check_grip(const Motion& motion, const TimedStep& step);
   void check_clamps(const Motion& motion, const TimedStep& step, const CutMove& stroke,
                     const SheetOutline& shape);
-  bool is_off_sheet(const CutMove& stroke, const SheetOutline& shape) const;
+  void check_edge(const Motion& motion, const TimedStep& step, const CutMove& stroke,
+                  const SheetOutline& shape);
   void check_webs(const Motion& motion, const TimedStep& step, const Cutter& punch,
                   std::span<const CutMove> strokes);
   bool web_between(const Cutter& punch, const CutMove& a, const CutMove& b) const;
@@ -65,8 +72,7 @@ class PunchChecks {
   const Sheet& sheet_;
   FindingLog& log_;
   TurretPointer turret_;
-  std::vector<SheetOutline> blank_;  ///< the outer ring of each piece: holes are no edge
-  bool blank_is_rectangle_ = false;
+  BlankArea blank_;
   ClampPlace place_;
   std::uint64_t regrips_ = 0;
   bool grip_checked_ = false;

@@ -43,7 +43,7 @@ bool PunchMoves::holds(const Motion& m, double share) const {
   if (turret_->trigger.kind() == Kind::kState) {
     return is_on_at(m, share <= 0 ? m.from_mm : share >= 1 ? m.to_mm : point_at(m, share));
   }
-  return share >= 1 && strikes_at_end(m);
+  return (share >= 1 || m.kind == MotionKind::kSignal) && strikes_at_end(m);
 }
 
 bool PunchMoves::moves_sideways(const Motion& m) {

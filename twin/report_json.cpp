@@ -33,6 +33,13 @@ Json motion_json(const Report& report) {
   out["feed_mm"] = rounded(m.feed_mm);
   out["traverse_mm"] = rounded(m.traverse_mm);
   out["duration_s"] = rounded(m.duration_s);
+  if (m.held) {
+    out["held_s"] = {{"strokes", rounded(m.held->strokes_s)},
+                     {"turret", rounded(m.held->turret_s)},
+                     {"regrip", rounded(m.held->regrip_s)},
+                     {"pierces", rounded(m.held->pierces_s)},
+                     {"pauses", rounded(m.held->pauses_s)}};
+  }
   out["time_model"] = report.time_model;
   return out;
 }

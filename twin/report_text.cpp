@@ -124,6 +124,21 @@ void add_live(std::string& out, const LiveReport& live) {
   }
 }
 
+/// ", of that strokes 3.6 s, turret 4.1 s"; empty where nothing was held.
+std::string held_text(const HeldTime& held) {
+  const std::pair<const char*, double> causes[] = {{"strokes", held.strokes_s},
+                                                   {"turret", held.turret_s},
+                                                   {"re-gripping", held.regrip_s},
+                                                   {"piercing", held.pierces_s},
+                                                   {"pauses at the ends of cuts", held.pauses_s}};
+  std::string out;
+  for (const auto& [cause, seconds] : causes) {
+    if (seconds <= 0) continue;
+    out += fmt::format("{} {} {:.1f} s", out.empty() ? ", of that" : ",", cause, seconds);
+  }
+  return out;
+}
+
 std::string summary_text(const Report& report, const LiveReport& live) {
   std::string out;
   if (!report.program_path.empty()) {
@@ -154,8 +169,8 @@ std::string summary_text(const Report& report) {
   if (report.stock) add_stock(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
-  out +=
-      fmt::format("time      {}\n          {}\n", duration_text(m.duration_s), report.time_model);
+  out += fmt::format("time      {}{}\n          {}\n", duration_text(m.duration_s),
+                     m.held ? held_text(*m.held) : "", report.time_model);
   out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
                      distance_text(m.traverse_mm));
   out += fmt::format("findings  {}\n", count_text(report.findings));

@@ -106,9 +106,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   tilt_.look_at(motions, frame);
   if (must_begin_again()) return false;
   stage.set_frame(frame);
-  if (TorchStage* const torch = stage.torch()) {
-    if (materials_.take(taken_materials_)) torch->set_materials(taken_materials_);
-  }
+  if (materials_.take(taken_materials_)) stage.set_materials(taken_materials_);
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
@@ -202,11 +200,15 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
 std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics& diagnostics) {
   if (observer_) observer_->on_start(*stock());
   ToolBook book(front_.tools, row_of(*stock()).can_cut);
-  CutStage stage(*front_.stock.stock, book, report_.findings, options_.timeline);
-  if (front_.is_sheet() && options_.turret) {
+  std::optional<BeamSettings> beam;
+  if (front_.is_sheet()) beam = beam_settings(options_.beam, front_.program->is_qtplasmac());
+  TimelineOptions timing = options_.timeline;
+  if (beam) timing.holds = holds_of(options_.turret, beam);
+  CutStage stage(*front_.stock.stock, book, report_.findings, timing);
+  if (beam && options_.turret) {
     stage.punch(options_.turret);
-  } else if (front_.is_sheet()) {
-    stage.burn(beam_settings(options_.beam, front_.program->is_qtplasmac()));
+  } else if (beam) {
+    stage.burn(*beam);
   }
   const double cpu_before = thread_cpu_s();
   const Pass pass = cut_program(stage, stop, diagnostics);

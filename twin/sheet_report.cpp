@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -60,6 +61,12 @@ std::vector<int> depths_of(const Sheet& sheet, const std::vector<SheetPiece>& pi
   return depths;
 }
 
+PieceOrigin origin_of(const SourceRef& source, const std::optional<PieceOrigin>& before,
+                      const std::vector<std::string>& files) {
+  if (before) return *before;
+  return {source.file < files.size() ? files[source.file] : std::string(), source.line};
+}
+
 SheetPart part_of(const SheetPiece& piece, const std::vector<FreedPiece>& freed, double density) {
   SheetPart part;
   part.number = piece.number;
@@ -70,7 +77,10 @@ SheetPart part_of(const SheetPiece& piece, const std::vector<FreedPiece>& freed,
   const auto by = std::lower_bound(
       freed.begin(), freed.end(), piece.number,
       [](const FreedPiece& entry, std::uint32_t number) { return entry.number < number; });
-  if (by != freed.end() && by->number == piece.number) part.freed_by = by->source;
+  if (by != freed.end() && by->number == piece.number) {
+    part.freed_by = by->source;
+    part.freed_before = by->before;
+  }
   return part;
 }
 
@@ -83,8 +93,9 @@ Json parts_json(const std::vector<SheetPart>& parts, const std::vector<std::stri
     item["bounds_mm"] = Json::array({{rounded(part.min_mm.x), rounded(part.min_mm.y)},
                                      {rounded(part.max_mm.x), rounded(part.max_mm.y)}});
     item["weight_kg"] = rounded(part.weight_kg);
-    item["file"] = part.freed_by.file < files.size() ? files[part.freed_by.file] : std::string();
-    item["line"] = part.freed_by.line;
+    const PieceOrigin origin = origin_of(part.freed_by, part.freed_before, files);
+    item["file"] = origin.file;
+    item["line"] = origin.line;
     out.push_back(std::move(item));
   }
   return out;
@@ -109,6 +120,7 @@ namespace {
 SheetReport report_of(const Sheet& sheet, const std::vector<FreedPiece>& freed_pieces,
                       double density) {
   SheetReport report;
+  report.freed = freed_pieces;
   report.thickness_mm = sheet.thickness_mm();
   report.density_kg_per_m3 = density;
   report.blank_mm2 = sheet.blank_mm3() / sheet.thickness_mm();
@@ -204,16 +216,23 @@ std::string sheet_text(const SheetReport& report) {
   for (std::size_t i = 0; i < std::min(report.parts.size(), kPartsShown); ++i) {
     const SheetPart& part = report.parts[i];
     const Vec2 size = part.max_mm - part.min_mm;
-    out += fmt::format("          part {:<4} {}, {:.1f} x {:.1f} mm, {:.3f} kg, free", part.number,
-                       area_text(part.area_mm2), size.x, size.y, part.weight_kg);
-    // A machine without a program is on no line.
-    if (part.freed_by.line > 0) out += fmt::format(" at line {}", part.freed_by.line);
-    out += '\n';
+    out += fmt::format("          part {:<4} {}, {:.1f} x {:.1f} mm, {:.3f} kg, {}\n", part.number,
+                       area_text(part.area_mm2), size.x, size.y, part.weight_kg,
+                       free_since({part.number, part.freed_by, 0, part.freed_before}));
   }
   if (report.parts.size() > kPartsShown) {
     out += fmt::format("          and {} more\n", report.parts.size() - kPartsShown);
   }
   return out;
+}
+
+Done save_sheet(const Sheet& sheet, const SheetReport& report,
+                const std::vector<std::string>& files, const std::string& path) {
+  std::map<std::uint32_t, PieceOrigin> origins;
+  for (const FreedPiece& piece : report.freed) {
+    if (!piece.before) origins[piece.number] = origin_of(piece.source, piece.before, files);
+  }
+  return sheet.save(path, origins);
 }
 
 std::string part_path(const std::string& path, std::uint32_t part) {
@@ -231,16 +250,17 @@ void write_outlines(const Sheet& sheet, const SheetReport& report, const std::st
     SheetOutline outline = sheet.outline_of(piece.number);
     std::move(outline.rings.begin(), outline.rings.end(), std::back_inserter(rest.rings));
   }
-  using Writer = Done (*)(const SheetOutline&, const std::string&);
+  using Writer = Done (*)(const SheetOutline&, double, const std::string&);
+  const double tolerance_mm = sheet.arc_tolerance_mm();
   const auto write = [&](Writer writer, const std::string& path) {
     if (path.empty()) return;
     const auto note = [&errors](const Done& done) {
       if (!done) errors.push_back(done.error());
     };
-    note(writer(rest, path));
+    note(writer(rest, tolerance_mm, path));
     if (written_as_it_comes(path)) return;
     for (const SheetPart& part : report.parts) {
-      note(writer(sheet.outline_of(part.number), part_path(path, part.number)));
+      note(writer(sheet.outline_of(part.number), tolerance_mm, part_path(path, part.number)));
     }
   };
   write(write_outline_dxf, dxf_path);

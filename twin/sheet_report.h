@@ -21,6 +21,7 @@ struct SheetPart {
   Vec2 min_mm{0}, max_mm{0};  ///< bounding box
   double weight_kg = 0;
   SourceRef freed_by;
+  std::optional<PieceOrigin> freed_before;  ///< in its place, before the sheet was saved
 };
 
 struct SheetReport {
@@ -34,6 +35,7 @@ struct SheetReport {
   std::vector<SheetPart> parts;
   /// Pieces within the holes of parts: scrap. (What lies within their holes in turn are parts.)
   std::vector<SheetPart> slugs;
+  std::vector<FreedPiece> freed;  ///< all of them, by number
 
   double parts_mm2() const;
   /// Nesting yield: area of the parts, of the area of the blank.
@@ -60,6 +62,10 @@ inline constexpr std::size_t kPartsShown = 20;
 /// are written. Errors are appended.
 void write_outlines(const Sheet& sheet, const SheetReport& report, const std::string& dxf_path,
                     const std::string& svg_path, std::vector<std::string>& errors);
+/// Into a file from which it can be cut on, with the lines that freed its pieces. `files` as for
+/// sheet_json(). Error: what could not be written and why.
+Done save_sheet(const Sheet& sheet, const SheetReport& report,
+                const std::vector<std::string>& files, const std::string& path);
 /// "out/rest.dxf" and 3: "out/rest-part-3.dxf".
 std::string part_path(const std::string& path, std::uint32_t part);
 

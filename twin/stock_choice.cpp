@@ -165,7 +165,7 @@ void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& f
   // when the machine was set up.
   if (!moves_.follow(machine_, frame, 1.0)) return;
   for (const Motion& m : motions) {
-    if (moves_.is_upright(m)) continue;
+    if (moves_.path()->stays_upright(m)) continue;
     std::string turned;
     for (std::size_t i = 0; i < 3; ++i) {
       if (m.to_abc_deg[i] == 0 && m.from_abc_deg[i] == m.to_abc_deg[i]) continue;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "interp_bridge/machine_limits.h"
 #include "interp_bridge/motion.h"
 #include "interp_bridge/timing/planner.h"
+#include "twin/program_holds.h"
 
 namespace kerf {
 
@@ -24,6 +26,8 @@ struct TimelineOptions {
   bool kinematics_known = false;  ///< those of the user's machine; false: assumed
   /// By the letter of the axis that the joint moves; no limits without an INI.
   std::array<AxisLimits, kAxisCount> joint_limits{};
+  /// Of sheets: what the machine stands for beyond its program's words.
+  HoldOptions holds;
 };
 
 /// Sums over the motions of a program.
@@ -37,12 +41,15 @@ struct MotionTotals {
   double feed_mm = 0;
   double traverse_mm = 0;
   double duration_s = 0;
+  std::optional<HeldTime>
+      held;  ///< of that; absent: nothing was asked for (TimelineOptions::holds)
 };
 
 /// One motion in time.
 struct TimedStep {
   double start_s = 0;
   double duration_s = 0;
+  double held_before_s = 0;          ///< the machine stood so long before (HoldOptions)
   double length_mm = 0;              ///< as programmed
   double programmed_mm_per_min = 0;  ///< of a feed move; 0: no feed rate in force
   double allowed_mm_per_min = 0;     ///< by the axes, along this motion
@@ -67,7 +74,11 @@ class Timeline : private MotionPlanSink {
   Timeline(const TimelineOptions& options, StepSink& sink);
 
   void push(const Motion& motion);
-  void finish() { planner_.finish(); }
+  void finish();
+  /// Of a torch program, all that the motions name from here on.
+  void set_materials(std::span<const TorchMaterial> materials) {
+    if (holds_) holds_->set_materials(materials);
+  }
 
   /// Of the steps that have come out.
   const MotionTotals& totals() const { return totals_; }
@@ -78,10 +89,22 @@ class Timeline : private MotionPlanSink {
   }
   double clock_s() const { return clock_s_; }  ///< program time after the last step
   /// For the report, one sentence.
-  std::string time_model() const { return planner_.time_model(); }
+  std::string time_model() const {
+    return planner_.time_model() + (holds_ ? holds_->text() : std::string());
+  }
 
  private:
+  struct Waiting {
+    Motion motion;
+    HeldTime before, held;  ///< before its time, and else
+    bool open = false;      ///< its end is not the planner's: the machine stands, it goes on
+  };
   void timed(const MotionTiming& timing) override;
+  Waiting& wait(const Motion& motion);
+  void push_held(Waiting& waiting);
+  void push_row(Waiting& waiting, std::span<const double> row);
+  void close(double start_s);
+  void emit(const MotionTiming& timing);
   void path(const PathPiece& piece) override { path_.push_back(piece); }
   void count(const Motion& motion, const TimedStep& step);
 
@@ -89,11 +112,13 @@ class Timeline : private MotionPlanSink {
   TrajectoryPlanner planner_;
   MotionTotals totals_;
   double clock_s_ = 0;
-  double totals_from_s_ = 0;     ///< where the sums begin; negative: with the next step
-  std::vector<Motion> waiting_;  ///< ring; its size is a power of two
+  double totals_from_s_ = 0;      ///< where the sums begin; negative: with the next step
+  std::vector<Waiting> waiting_;  ///< ring; its size is a power of two
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   std::vector<PathPiece> path_;
+  std::optional<ProgramHolds> holds_;
+  std::optional<MotionTiming> open_timing_;  ///< of the open one's first part
 };
 
 }  // namespace kerf

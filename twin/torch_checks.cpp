@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stock/cutter/scan.h"
 #include "twin/motion_geometry.h"
 
 namespace kerf {
@@ -30,12 +31,6 @@ bool is_dark_on_purpose(const Motion& m) {
   return m.torch.overburn || !m.torch.torch_enabled() || torch_tool(m.torch) != TorchTool::kNone;
 }
 
-/// A machine without a program is on no line.
-std::string free_since(const FreedPiece& piece) {
-  return piece.source.line > 0 ? fmt::format("free since line {}", piece.source.line)
-                               : std::string("free");
-}
-
 /// QtPlasmaC's machine lifts a torch that M5 has put out. One that output 3 holds off stays down,
 /// and goes on at cut height.
 bool stays_down(const Motion& m) {
@@ -43,6 +38,33 @@ bool stays_down(const Motion& m) {
 }
 
 }  // namespace
+
+std::vector<FreedPiece> freed_before(const Sheet& sheet) {
+  std::vector<FreedPiece> freed(sheet.piece_numbers() - sheet.blank_piece_numbers());
+  for (std::size_t i = 0; i < freed.size(); ++i) {
+    freed[i].number = static_cast<std::uint32_t>(sheet.blank_piece_numbers() + i);
+    freed[i].before = PieceOrigin();
+  }
+  for (SheetPiece& piece : sheet.pieces()) {
+    if (piece.origin) freed[piece.number - sheet.blank_piece_numbers()].before = piece.origin;
+  }
+  return freed;
+}
+
+std::string free_since(const FreedPiece& piece) {
+  // A machine without a program is on no line.
+  const std::uint32_t line = piece.before ? piece.before->line : piece.source.line;
+  if (line == 0) return "free";
+  if (!piece.before || piece.before->file.empty()) return fmt::format("free since line {}", line);
+  return fmt::format("free since line {} of {}", line, shown(piece.before->file));
+}
+
+void TorchChecks::go_on_from(const TorchChecks& other) {
+  uncut_pieces_ = other.uncut_pieces_;
+  freed_ = other.freed_;
+  cut_z_mm_ = other.cut_z_mm_;
+  crossed_ = other.crossed_;
+}
 
 bool TorchChecks::is_low(const Vec3& place) const {
   return cut_z_mm_ && place.z <= *cut_z_mm_ + kLow_mm;
@@ -153,7 +175,7 @@ void TorchChecks::note_freed(const Motion& m, const TimedStep& step) {
   const std::size_t numbers = sheet_.piece_numbers();
   while (uncut_pieces_ + freed_.size() < numbers) {
     const auto number = static_cast<std::uint32_t>(uncut_pieces_ + freed_.size());
-    freed_.push_back({number, m.source, step.start_s + step.duration_s});
+    freed_.push_back({number, m.source, step.start_s + step.duration_s, std::nullopt});
   }
 }
 

@@ -15,12 +15,19 @@
 
 namespace kerf {
 
-/// A piece that the program has cut free, and what did it.
+/// A piece that has been cut free, and what did it.
 struct FreedPiece {
   std::uint32_t number = 0;  ///< SheetPiece::number
   SourceRef source;
   double time_s = 0;
+  /// In its place, of a piece that was free already when the sheet was saved.
+  std::optional<PieceOrigin> before;
 };
+
+/// Those of a sheet that has been loaded, by number from Sheet::blank_piece_numbers() on.
+std::vector<FreedPiece> freed_before(const Sheet& sheet);
+/// "free since line 12", for messages; "free" where no line is known.
+std::string free_since(const FreedPiece& piece);
 
 /// What the checks have to know of the machine.
 struct TorchCheckOptions {
@@ -43,8 +50,15 @@ class TorchChecks {
   static constexpr std::uint64_t kTravelsTold = 10;
 
   TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options)
-      : sheet_(sheet), log_(log), options_(options), uncut_pieces_(sheet.piece_numbers()) {}
+      : sheet_(sheet),
+        log_(log),
+        options_(options),
+        uncut_pieces_(sheet.blank_piece_numbers()),
+        freed_(freed_before(sheet)),
+        report_from_(freed_.size()) {}
 
+  /// Those of another one that looks at the same sheet are known, and are not told again.
+  void go_on_from(const TorchChecks& other);
   /// pierce-in-part.
   void pierces(const Motion& motion, const TimedStep& step);
   /// crosses-part, of a motion with the beam on.
@@ -89,7 +103,7 @@ class TorchChecks {
   std::uint64_t travels_ = 0;                  ///< over pieces, since reports began
   FindingLog::Handle last_travel_ = 0;         ///< the last that is told, and its text
   std::string last_travel_text_;
-  std::size_t report_from_ = 0;  ///< index into freed_
+  std::size_t report_from_;  ///< index into freed_
   Dark dark_;
 };
 

@@ -30,6 +30,14 @@ void TorchStage::set_materials(std::span<const TorchMaterial> materials) {
   settings_.materials.assign(materials.begin(), materials.end());
 }
 
+void TorchStage::go_on_from(const TorchStage& other) {
+  pierced_ = other.pierced_;
+  has_fed_ = other.has_fed_;
+  has_burnt_ = other.has_burnt_;
+  has_removed_ = other.has_removed_;
+  checks_.go_on_from(other.checks_);
+}
+
 /// The programmed motion, or what the machine makes of it.
 void TorchStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   for_each_piece(m, step, path,
@@ -39,12 +47,12 @@ void TorchStage::take(const Motion& m, const TimedStep& step, std::span<const Pa
 void TorchStage::take_piece(const Motion& m, const TimedStep& step) {
   has_fed_ = has_fed_ || is_feed(m);
   if (!moves_.is_lit(m)) {
-    pierced_ = false;
+    if (std::exchange(pierced_, false)) totals_.beam_s += step.held_before_s;
     checks_.travels(m, step);
     return;
   }
   if (m.kind == MotionKind::kProgramEnd) checks_.stays_on(m.source, step.start_s);
-  totals_.beam_s += step.duration_s;
+  totals_.beam_s += step.held_before_s + step.duration_s;
   if (moves_.burns(m)) burn(m, step);
 }
 
@@ -60,12 +68,7 @@ void TorchStage::burn(const Motion& m, const TimedStep& step) {
     totals_.cut_mm += step.length_mm;
     uses_[use_].feed_mm += step.length_mm;
   }
-  if (pierces) {
-    ++totals_.pierces;
-    if (settings_.is_qtplasmac && m.torch.material < settings_.materials.size()) {
-      totals_.beam_s += settings_.materials[m.torch.material].pierce_delay_s;
-    }
-  }
+  if (pierces) ++totals_.pierces;
   if (!kerf.cutter) {
     report_no_kerf(kerf, m, step);
     return;

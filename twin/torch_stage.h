@@ -25,8 +25,8 @@ namespace kerf {
 struct TorchTotals {
   double cut_mm = 0;  ///< way with the beam on, in X and Y
   std::uint64_t pierces = 0;
-  /// Time with the beam on. Of a QtPlasmaC machine with the pierce delays of its materials, which
-  /// the program does not hold and the program's time does not have.
+  /// Time with the beam on; of a QtPlasmaC machine with what its materials have it hold
+  /// (ProgramHolds).
   double beam_s = 0;
 };
 
@@ -40,6 +40,8 @@ class TorchStage {
 
   /// More of them are known now (BeamSettings::materials).
   void set_materials(std::span<const TorchMaterial> materials);
+  /// Goes on where another one is, whose sheet is the same.
+  void go_on_from(const TorchStage& other);
   /// In program order. `path`: of the machine where it is planned, else empty.
   void take(const Motion& motion, const TimedStep& step, std::span<const PathPiece> path);
   /// Findings, tool uses and sums begin anew with the motion that is taken next.

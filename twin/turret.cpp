@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+
 #include "stock/cutter/scan.h"
 
 namespace kerf {
@@ -45,6 +49,23 @@ Result<PunchTrigger> PunchTrigger::parse(std::string_view text) {
   }
   trigger.state_ = std::move(*state);
   return trigger;
+}
+
+double PunchTimes::period_s(double pitch_mm) const {
+  if (period_by_pitch_s.empty()) return 0;
+  const auto above = period_by_pitch_s.lower_bound(pitch_mm);
+  if (above == period_by_pitch_s.begin()) return above->second;
+  const auto below = std::prev(above);
+  if (above == period_by_pitch_s.end()) return below->second;
+  const double share = (pitch_mm - below->first) / (above->first - below->first);
+  return below->second + share * (above->second - below->second);
+}
+
+double PunchTimes::change_s(int from, int to) const {
+  if (from == to) return 0;
+  int steps = from > 0 ? std::abs(to - from) : 0;
+  if (places > 0) steps = std::min(steps, places - steps);
+  return lock_s + steps * step_s;
 }
 
 std::vector<int> Turret::user_codes() const {

@@ -71,6 +71,28 @@ struct Regrip {
   Vec2 shift_mm{0};
 };
 
+/// How long a press takes for what its program has no words for, s. 0: no time.
+struct PunchTimes {
+  double stroke_s = 0;  ///< the punch down and up again, while the sheet stands
+  /// Of nibbling: from stroke to stroke at least, by the pitch in mm.
+  std::map<double, double> period_by_pitch_s;
+  int places = 0;       ///< round the turret, numbered as the stations: it goes the shorter way. 0:
+                        ///< it turns back, from its last station to its first
+  double step_s = 0;    ///< the turret from a place to the next one
+  double lock_s = 0;    ///< beside that, for each change of station
+  double regrip_s = 0;  ///< each re-gripping
+
+  bool any() const {
+    return stroke_s > 0 || !period_by_pitch_s.empty() || step_s > 0 || lock_s > 0 || regrip_s > 0;
+  }
+  /// From stroke to stroke at least. Straight between two pitches; beyond the first and the last as
+  /// at these.
+  double period_s(double pitch_mm) const;
+  /// A change of station; `from` 0: it is not known where the turret stood, and its way is not
+  /// counted.
+  double change_s(int from, int to) const;
+};
+
 /// Values; shared by all that look at the program.
 struct Turret {
   std::string path;  ///< of the file, for messages
@@ -84,6 +106,7 @@ struct Turret {
   std::vector<SheetClamp> clamps;
   std::vector<Regrip> regrips;
   bool sheet_moves = true;  ///< else the head
+  PunchTimes times;
 
   const TurretStation* station(int tool) const {
     const auto found = stations.find(tool);

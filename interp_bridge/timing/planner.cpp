@@ -14,11 +14,6 @@
 namespace kerf {
 namespace {
 
-std::array<double, 3> turned_deg(const Motion& m) {
-  return {m.to_abc_deg[0] - m.from_abc_deg[0], m.to_abc_deg[1] - m.from_abc_deg[1],
-          m.to_abc_deg[2] - m.from_abc_deg[2]};
-}
-
 double programmed_per_minute(const Motion& m) {
   if (m.kind == MotionKind::kTraverse) return 0;
   const bool per_revolution = m.feed_per_rev || m.kind == MotionKind::kThread;
@@ -139,7 +134,8 @@ void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
 void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
   const bool spindle = m.spindle != last.spindle ||
                        (m.spindle != SpindleState::kStopped && m.spindle_rpm != last.spindle_rpm);
-  const bool offset = m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg;
+  const bool offset = m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
+                      m.from_uvw_mm != last.to_uvw_mm;
   const int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
   if (!spindle && !offset && coolant == 0) return;
   halt();
@@ -186,7 +182,7 @@ void TrajectoryPlanner::Impl::stand(const Motion& m, double seconds) {
 void TrajectoryPlanner::Impl::move(const Motion& m) {
   MotionTiming timing;
   timing.programmed_mm_per_min = programmed_per_minute(m);
-  const StraightRates way = straight_rates(rates, m.to_mm - m.from_mm, turned_deg(m));
+  const StraightRates way = straight_rates(rates, m.to_mm - m.from_mm, extra_way(m));
   const bool arc = m.kind == MotionKind::kArc && has_radius(m);
   const bool traverse = m.kind == MotionKind::kTraverse;
   const bool moves = arc ? m.arc.sweep_rad != 0 : way.length > 0;
@@ -214,7 +210,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   Segment segment = make_arc(rates, m, speed);
   timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
   Vec3 middle;
-  if (!segment.rotary && flat_arc(m, middle)) {
+  if (!segment.extra && flat_arc(m, middle)) {
     schedule.open_motion(timing, 2);
     add_to_chain(m.from_mm, middle, speed, m);
     add_to_chain(middle, m.to_mm, speed, m);
@@ -230,7 +226,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
 }
 
 void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way, double speed) {
-  const bool mergeable = m.kind == MotionKind::kFeed && !way.rotary &&
+  const bool mergeable = m.kind == MotionKind::kFeed && !way.extra &&
                          m.path_mode == PathMode::kContinuous && m.merge_tolerance_mm > 0;
   if (mergeable) {
     add_to_chain(m.from_mm, m.to_mm, speed, m);
@@ -281,6 +277,11 @@ TrajectoryPlanner::~TrajectoryPlanner() = default;
 
 void TrajectoryPlanner::push(const Motion& motion) { impl_->push(motion); }
 
+void TrajectoryPlanner::hold(double seconds) {
+  impl_->halt();
+  impl_->schedule.pause(seconds);
+}
+
 void TrajectoryPlanner::finish() { impl_->halt(); }
 
 double TrajectoryPlanner::clock_s() const { return impl_->schedule.clock_s(); }
@@ -289,7 +290,7 @@ std::uint64_t TrajectoryPlanner::stops() const { return impl_->stops; }
 
 std::string TrajectoryPlanner::time_model() const {
   std::string axes;
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
     const AxisLimits& axis = impl_->limits.axes[i];
     if (!axis.present) continue;
     const char* const unit = is_rotary_axis(i) ? "deg" : "mm";

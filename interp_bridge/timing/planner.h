@@ -90,11 +90,13 @@ class MotionPlanSink {
 /// half to the motion before, half to the one after.
 ///
 /// Axis limits apply along the axes of the workpiece frame: exact unless that is rotated against
-/// the machine (G10 L2 R). U, V, W take no part. Of the limits, max_linear_acceleration,
-/// arc_blend_fallback and arc_blend_ramp_hz are not used: what was measured depends on none of
-/// them. Corners that the planner blends by overlapping two segments in time (rotary moves, corners
-/// that no arc fits) are drawn sharp in the path; the real tool passes inside. Steps that take no
-/// time have no path. Overrides, pauses and jerk limits (2.10) are not modelled.
+/// the machine (G10 L2 R). A feed is that of X Y Z; where these stand that of U V W, and last that
+/// of A B C (degrees); the other axes are only seen to it that they keep up. Of the limits,
+/// max_linear_acceleration, arc_blend_fallback and arc_blend_ramp_hz are not used: what was
+/// measured depends on none of them. Corners that the planner blends by overlapping two segments in
+/// time (moves of A to W, corners that no arc fits) are drawn sharp in the path; the real tool
+/// passes inside. Steps that take no time have no path. Overrides, pauses and jerk limits (2.10)
+/// are not modelled.
 ///
 /// Threads (G33, G76, and the way in of a rigid tap, G33.1) run at pitch times speed and wait for
 /// the spindle's index: half a revolution on average. Nothing is known of moves without a start
@@ -111,10 +113,13 @@ class TrajectoryPlanner {
   TrajectoryPlanner& operator=(const TrajectoryPlanner&) = delete;
 
   void push(const Motion& motion);
+  /// The machine comes to a stop, all that was pushed is reported, and it stands for so long: what
+  /// neither program nor INI tells, as the stroke of a punch. It is in no motion's time.
+  void hold(double seconds);
   /// Brings the machine to a stop and reports what is left. More may be pushed afterwards.
   void finish();
 
-  double clock_s() const;       ///< end of the last motion that was reported
+  double clock_s() const;  ///< end of the last motion that was reported, or of the hold() after
   std::uint64_t stops() const;  ///< M0, M1, M60: their waiting is not counted
   /// One sentence for the report: what was modelled, with which limits, and where they are from.
   std::string time_model() const;

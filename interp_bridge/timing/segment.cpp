@@ -51,7 +51,7 @@ AxisRates::AxisRates(const MachineLimits& limits)
       gap_s(limits.arc_blend_gap_cycles * limits.servo_period_s),
       arc_blend(limits.arc_blend),
       depth(std::max(limits.arc_blend_depth, 2)) {
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
     const AxisLimits& axis = limits.axes[i];
     if (!axis.present) continue;
     slowness[i] = inverse(axis.max_velocity);
@@ -63,8 +63,14 @@ AxisRates::AxisRates(const MachineLimits& limits)
   }
 }
 
-StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
-                             const std::array<double, 3>& delta_deg) {
+ExtraWay extra_way(const Motion& m) {
+  ExtraWay way;
+  for (std::size_t i = 0; i < 3; ++i) way.abc_deg[i] = m.to_abc_deg[i] - m.from_abc_deg[i];
+  way.uvw_mm = m.to_uvw_mm - m.from_uvw_mm;
+  return way;
+}
+
+StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm, const ExtraWay& extra) {
   StraightRates result;
   double time = 0;
   double time2 = 0;
@@ -74,17 +80,22 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
     time2 = std::max(time2, way * rates.inertia[i]);
   }
   const double linear = glm::length(delta_mm);
+  const auto add = [&](double way, std::size_t axis, double& square) {
+    if (way == 0) return;
+    square += way * way;
+    time = std::max(time, std::abs(way) * rates.slowness[axis]);
+    time2 = std::max(time2, std::abs(way) * rates.inertia[axis]);
+  };
   double turned = 0;
+  double slid = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double way = std::abs(delta_deg[i]);
-    if (way == 0) continue;
-    turned += way * way;
-    time = std::max(time, way * rates.slowness[i + 3]);
-    time2 = std::max(time2, way * rates.inertia[i + 3]);
+    add(extra.abc_deg[i], i + 3, turned);
+    add(extra.uvw_mm[static_cast<int>(i)], i + 6, slid);
   }
-  result.linear = linear > 0;
-  result.rotary = turned > 0;
-  result.length = result.linear ? linear : std::sqrt(turned);
+  result.tip = linear > 0;
+  result.linear = result.tip || slid > 0;
+  result.extra = turned > 0 || slid > 0;
+  result.length = result.tip ? linear : std::sqrt(slid > 0 ? slid : turned);
   result.speed = time > 0 ? std::min(result.length / time, kUnlimited) : kUnlimited;
   result.accel = time2 > 0 ? std::min(result.length / time2, kUnlimited) : kUnlimited;
   return result;
@@ -92,7 +103,7 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
 
 Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straight, double speed) {
   Segment segment;
-  segment.rotary = straight.rotary;
+  segment.extra = straight.extra;
   segment.linear = straight.linear;
   segment.from = from;
   segment.to = to;
@@ -101,10 +112,10 @@ Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straigh
   segment.max_speed = straight.speed;
   segment.request = std::min(speed, straight.speed);
   segment.max_accel = straight.accel;
-  if (straight.linear) {
+  if (straight.tip) {
     segment.tangent_from = (to - from) / straight.length;
   } else {
-    // LinuxCNC gives moves of A, B, C alone the direction of X where it measures corners.
+    // LinuxCNC gives moves of the other axes alone the direction of X where it measures corners.
     segment.tangent_from = {1, 0, 0};
   }
   segment.tangent_to = segment.tangent_from;
@@ -131,10 +142,9 @@ Segment make_arc(const AxisRates& rates, const Motion& motion, double speed) {
   segment.length_mm = std::hypot(planar, parts.rise);
   segment.nominal_mm = segment.length_mm;
 
-  std::array<double, 3> turned{};
-  for (std::size_t i = 0; i < 3; ++i) turned[i] = motion.to_abc_deg[i] - motion.from_abc_deg[i];
-  const StraightRates chord = straight_rates(rates, motion.to_mm - motion.from_mm, turned);
-  segment.rotary = chord.rotary;
+  const StraightRates chord =
+      straight_rates(rates, motion.to_mm - motion.from_mm, extra_way(motion));
+  segment.extra = chord.extra;
   const double accel = least_across(motion.arc.axis, rates.acceleration);
   const double across = std::sqrt(accel * kAcrossShare * segment.radius_mm);
   const double planar_speed = std::min(across, least_across(motion.arc.axis, rates.velocity));

@@ -11,15 +11,15 @@
 
 namespace kerf {
 
-/// Limits of X, Y, Z, A, B, C in the form that is needed per segment: seconds per mm (degree) and
+/// Limits of the axes in the form that is needed per segment: seconds per mm (degree) and
 /// seconds squared per mm; 0 where an axis is absent or has no limit.
 struct AxisRates {
-  std::array<double, 6> slowness{};  ///< 1 / max_velocity
-  std::array<double, 6> inertia{};   ///< 1 / max_acceleration
-  Vec3 velocity{0};                  ///< of X, Y, Z; 0 = no limit
-  Vec3 acceleration{0};              ///< of X, Y, Z; 0 = no limit
-  double linear_cap = 0;             ///< mm/s
-  double angular_cap = 0;            ///< deg/s
+  std::array<double, kAxisCount> slowness{};  ///< 1 / max_velocity
+  std::array<double, kAxisCount> inertia{};   ///< 1 / max_acceleration
+  Vec3 velocity{0};                           ///< of X, Y, Z; 0 = no limit
+  Vec3 acceleration{0};                       ///< of X, Y, Z; 0 = no limit
+  double linear_cap = 0;                      ///< mm/s
+  double angular_cap = 0;                     ///< deg/s
   double cycle_s = 0.001;
   double kink_ratio = 0.1;
   double gap_s = 0.004;  ///< a line shorter than this between two corners is swallowed by one
@@ -56,8 +56,8 @@ struct Segment {
   SegmentShape shape = SegmentShape::kLine;
   SegmentEnd end = SegmentEnd::kStop;
   bool traverse = false;
-  bool rotary = false;            ///< moves A, B or C
-  bool linear = true;             ///< moves X, Y or Z
+  bool extra = false;             ///< moves A, B, C, U, V or W: no arc blends its corners
+  bool linear = true;             ///< moves X, Y, Z, U, V or W
   bool begins_parabolic = false;  ///< starts while the one before slows down
   bool finalized = false;         ///< its length does not change any more
   double length_mm = 0;           ///< what is left of it; degrees if only A, B, C move
@@ -96,17 +96,25 @@ struct Segment {
   Vec3 arc_point(double angle) const;
 };
 
-/// What the axes allow along a straight move: speed and acceleration along the path, its length
-/// (mm; degrees if only A, B, C move). length 0: no move.
+/// How far a move takes A B C and U V W.
+struct ExtraWay {
+  std::array<double, 3> abc_deg{};
+  Vec3 uvw_mm{0};
+};
+ExtraWay extra_way(const Motion& motion);
+
+/// What the axes allow along a straight move: speed and acceleration along the path, and its
+/// length: that of X Y Z; where these stand that of U V W; where those stand too that of A B C,
+/// degrees. length 0: no move.
 struct StraightRates {
   double length = 0;
   double speed = 0;
   double accel = 0;
-  bool linear = false;
-  bool rotary = false;
+  bool tip = false;     ///< X, Y or Z move
+  bool linear = false;  ///< they, or U, V, W
+  bool extra = false;   ///< A, B, C, U, V or W move
 };
-StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm,
-                             const std::array<double, 3>& delta_deg);
+StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm, const ExtraWay& extra);
 
 /// A straight segment; `speed` is the programmed speed in mm/s (degrees/s), infinite for traverses.
 Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straight, double speed);

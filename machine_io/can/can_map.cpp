@@ -36,6 +36,7 @@ std::vector<std::pair<std::string, const CanSignal*>> mapped_signals(const CanMa
   if (map.line) all.emplace_back("line", &*map.line);
   if (map.spindle) all.emplace_back("spindle", &*map.spindle);
   if (map.tool_offset_z) all.emplace_back("tool_offset_z", &*map.tool_offset_z);
+  if (map.trigger) all.emplace_back("trigger", &*map.trigger);
   return all;
 }
 
@@ -99,10 +100,12 @@ CanAssembler::CanAssembler(const CanMap& map) : gather_ns_(nanoseconds(map.gathe
   names_[kLine] = "line";
   names_[kSpindle] = "spindle";
   names_[kToolOffsetZ] = "tool_offset_z";
+  names_[kTrigger] = "trigger";
   if (map.tool) add(kTool, *map.tool);
   if (map.line) add(kLine, *map.line);
   if (map.spindle) add(kSpindle, *map.spindle);
   if (map.tool_offset_z) add(kToolOffsetZ, *map.tool_offset_z);
+  if (map.trigger) add(kTrigger, *map.trigger);
 }
 
 void CanAssembler::add(std::size_t slot, const CanSignal& signal) {
@@ -121,7 +124,7 @@ void CanAssembler::forget() {
 bool CanAssembler::note_unfit(std::size_t slot, const CanFrame& frame, CanFit fit, double value) {
   if (fit == CanFit::kValue) {
     // Tools and lines are counts; anything else is a wrong map or a damaged frame.
-    if (slot != kTool && slot != kLine) return false;
+    if (slot != kTool && slot != kLine && slot != kTrigger) return false;
     if (std::round(value) >= 0.0 &&
         std::round(value) <= static_cast<double>(std::numeric_limits<std::int32_t>::max())) {
       return false;
@@ -200,6 +203,9 @@ void CanAssembler::flush() {
         break;
       case kToolOffsetZ:
         sample.tool_offset_z_mm = slot.value;
+        break;
+      case kTrigger:
+        sample.trigger = static_cast<std::int32_t>(std::lround(slot.value));
         break;
       default:
         sample.position[used_[i]] = slot.value;

@@ -20,6 +20,7 @@ struct CanMap {
   std::optional<CanSignal> line;           ///< program line, 0 = idle
   std::optional<CanSignal> spindle;        ///< rpm, signed
   std::optional<CanSignal> tool_offset_z;  ///< mm
+  std::optional<CanSignal> trigger;        ///< of a punch: 0 off, else on
 
   /// The drives of one machine answer one after the other. What comes within this time makes one
   /// sample; ms, 0.1 to 10 000. Longer than the bus needs for one cycle; when drives send only
@@ -95,7 +96,8 @@ class CanAssembler {
   static constexpr std::size_t kLine = kTool + 1;
   static constexpr std::size_t kSpindle = kLine + 1;
   static constexpr std::size_t kToolOffsetZ = kSpindle + 1;
-  static constexpr std::size_t kSlots = kToolOffsetZ + 1;
+  static constexpr std::size_t kTrigger = kToolOffsetZ + 1;
+  static constexpr std::size_t kSlots = kTrigger + 1;
 
   struct Slot {
     CanSignal signal;

@@ -92,6 +92,7 @@ std::vector<can_filter> filters_of(const CanMap& map) {
   add(map.line);
   add(map.spindle);
   add(map.tool_offset_z);
+  add(map.trigger);
   return filters;
 }
 

@@ -21,6 +21,7 @@ enum class ColumnRole : std::uint8_t {
   kLine,
   kToolOffsetZ,
   kSpindle,
+  kTrigger,
 };
 
 /// One column, ready for reading its cells.

@@ -58,6 +58,9 @@ bool read_unknown(const LogColumn& column, AxisSample& sample) {
     case ColumnRole::kSpindle:
       sample.spindle_rpm = std::numeric_limits<double>::quiet_NaN();
       return true;
+    case ColumnRole::kTrigger:
+      sample.trigger = AxisSample::kUnknown;
+      return true;
     default:
       return column.role == ColumnRole::kIgnored;
   }
@@ -72,6 +75,8 @@ const char* wanted(ColumnRole role) {
       return "a tool number";
     case ColumnRole::kLine:
       return "a line number";
+    case ColumnRole::kTrigger:
+      return "0 or 1";
     default:
       return "a number";
   }
@@ -321,6 +326,8 @@ bool read_cell(std::string_view text, const LogColumn& column, AxisSample& sampl
       return read_finite(text, column.factor, sample.tool_offset_z_mm);
     case ColumnRole::kSpindle:
       return read_finite(text, column.factor, sample.spindle_rpm);
+    case ColumnRole::kTrigger:
+      return read_count(text, sample.trigger);
   }
   return false;
 }

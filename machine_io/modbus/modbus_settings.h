@@ -71,6 +71,7 @@ struct ModbusSettings {
   std::optional<ModbusRegister> line;           ///< program line, 0 = idle
   std::optional<ModbusRegister> spindle;        ///< rpm, signed
   std::optional<ModbusRegister> tool_offset_z;  ///< mm
+  std::optional<ModbusRegister> trigger;        ///< of a punch: 0 off, else on
   /// An integer that the device changes at its every cycle. A reading in which it has not changed
   /// is not handed out: that tells a dead program behind a living server from a machine that
   /// stands.

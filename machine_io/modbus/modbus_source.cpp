@@ -38,9 +38,17 @@ std::unique_ptr<ModbusLink> make_link(const ModbusSettings& settings) {
   return settings.rtu ? make_rtu_link(settings) : make_tcp_link(settings);
 }
 
-enum class Extra : std::uint8_t { kTool, kLine, kSpindle, kToolOffset, kCounterBegun, kCounter };
-constexpr std::string_view kExtraKeys[] = {"tool",          "line",          "spindle",
-                                           "tool_offset_z", "counter_begun", "counter"};
+enum class Extra : std::uint8_t {
+  kTool,
+  kLine,
+  kSpindle,
+  kToolOffset,
+  kTrigger,
+  kCounterBegun,
+  kCounter
+};
+constexpr std::string_view kExtraKeys[] = {"tool",    "line",          "spindle", "tool_offset_z",
+                                           "trigger", "counter_begun", "counter"};
 /// Answers of two cycles in a row that are asked for again. A cycle takes the device microseconds.
 constexpr int kMostTornAnswers = 10;
 
@@ -52,6 +60,7 @@ bool is_plausible(Extra what, double value) {
   switch (what) {
     case Extra::kTool:
     case Extra::kLine:
+    case Extra::kTrigger:
       return is_whole(value);
     case Extra::kSpindle:
       return std::abs(value) <= kMaxRpm;
@@ -68,6 +77,7 @@ std::string_view allowed(Extra what) {
   switch (what) {
     case Extra::kTool:
     case Extra::kLine:
+    case Extra::kTrigger:
       return "a whole number, 0 or more";
     case Extra::kSpindle:
       return "-1e6 to 1e6 rpm";
@@ -132,11 +142,9 @@ ModbusSource::Poller::Poller(ModbusSettings given)
     wanted_.push_back(*settings_.axes[i]);
   }
   const std::pair<Extra, const std::optional<ModbusRegister>&> extras[] = {
-      {Extra::kTool, settings_.tool},
-      {Extra::kLine, settings_.line},
-      {Extra::kSpindle, settings_.spindle},
-      {Extra::kToolOffset, settings_.tool_offset_z},
-      {Extra::kCounterBegun, settings_.counter_begun},
+      {Extra::kTool, settings_.tool},       {Extra::kLine, settings_.line},
+      {Extra::kSpindle, settings_.spindle}, {Extra::kToolOffset, settings_.tool_offset_z},
+      {Extra::kTrigger, settings_.trigger}, {Extra::kCounterBegun, settings_.counter_begun},
       {Extra::kCounter, settings_.counter}};
   for (const auto& [what, wanted] : extras) {
     if (!wanted) continue;
@@ -267,6 +275,9 @@ bool ModbusSource::Poller::fill_extra(AxisSample& sample, Extra what, double val
       break;
     case Extra::kToolOffset:
       sample.tool_offset_z_mm = value;
+      break;
+    case Extra::kTrigger:
+      sample.trigger = static_cast<std::int32_t>(std::lround(value));
       break;
     case Extra::kCounterBegun:
     case Extra::kCounter:

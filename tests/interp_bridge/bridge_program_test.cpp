@@ -243,10 +243,11 @@ TEST_F(BridgeProgram, SplinesAreCutWithinTheirTolerance) {
 
 TEST_F(BridgeProgram, UvwAndRotaryAxes) {
   const ProgramRun run = this->run("G21 G90 F100\nG0 X1 U2\nG1 X2 V3 W4\nG1 A90\nM2\n");
-  EXPECT_EQ(
-      run.messages(),
-      part() + ":2: warning: the program moves U, V or W; the cut is that of X, Y, Z alone\n");
+  EXPECT_EQ(run.messages(), "");
   EXPECT_TRUE(run.summary.has_rotary_motion);
+  EXPECT_EQ(run.motions[1].from_uvw_mm, Vec3(2, 0, 0));
+  EXPECT_EQ(run.motions[1].to_uvw_mm, Vec3(2, 3, 4));
+  EXPECT_EQ(run.motions[2].from_uvw_mm, Vec3(2, 3, 4));
   EXPECT_EQ(run.motions[2].to_abc_deg[0], 90);
 }
 

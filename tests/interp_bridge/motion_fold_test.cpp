@@ -303,6 +303,52 @@ TEST(MotionFold, RotaryMoves) {
   EXPECT_EQ(folded.last().feed_mm_per_min, 1000) << "degrees a minute, not inches";
 }
 
+/// Calls as kerf-interp records them: with U, V, W, which listings do not hold.
+struct Recorded {
+  MotionFold fold;
+  std::vector<Motion> motions;
+  Recorded& call(CanonicalName name, std::initializer_list<double> numbers) {
+    CanonicalCommand command;
+    command.name = name;
+    for (const double number : numbers) command.arguments[command.argument_count++] = number;
+    fold.fold(command, {0, 1}, motions);
+    return *this;
+  }
+};
+
+TEST(MotionFold, SecondaryAxesAddTheirOffsetsInMm) {
+  using enum CanonicalName;
+  Recorded r;
+  r.call(kUseLengthUnits, {0})
+      .call(kSetG5xOffset, {1, 0, 0, 0, 0, 0, 0, 1, 2, 3})
+      .call(kSetG92Offset, {0, 0, 0, 0, 0, 0, 0, 0, 0.5})
+      .call(kSetFeedRate, {10})
+      .call(kStraightTraverse, {1, 0, 0, 0, 0, 0, 1, 2, -4})
+      .call(kStraightFeed, {1, 0, 0, 30, 0, 0, 1, 2, -3});
+  const Motion& feed = r.motions.back();
+  EXPECT_EQ(r.fold.workpiece_frame().offset_uvw_mm, Vec3(25.4, 50.8, 3.5 * 25.4));
+  EXPECT_EQ(feed.from_uvw_mm, Vec3(25.4, 50.8, -4 * 25.4)) << "under the first offset";
+  EXPECT_EQ(feed.to_uvw_mm, Vec3(25.4, 50.8, -3 * 25.4));
+  EXPECT_EQ(feed.feed_mm_per_min, 254) << "W moves: no degrees a minute";
+  // Another offset moves the program's numbers, not the slides; so does a tool's.
+  r.call(kSetG5xOffset, {2, 0, 0, 0, 0, 0, 0, 1, 2, 1});
+  r.call(kStraightFeed, {1, 0, 0, 30, 0, 0, 1, 2, -1});
+  expect_near(r.motions.back().from_uvw_mm, r.motions.back().to_uvw_mm);
+  r.call(kUseToolLengthOffset, {0, 0, 0, 0, 0, 0, 0, 0, 2});
+  r.call(kStraightFeed, {1, 0, 0, 30, 0, 0, 1, 2, -1});
+  EXPECT_EQ(r.motions.back().tool_offset_uvw_mm, Vec3(0, 0, 50.8));
+  expect_near(r.motions.back().to_uvw_mm - r.motions.back().from_uvw_mm, {0, 0, 50.8});
+}
+
+TEST(MotionFold, ArcsCarryTheSecondaryAxesAlong) {
+  using enum CanonicalName;
+  Recorded r;
+  r.call(kUseLengthUnits, {1}).call(kStraightTraverse, {10, 0, 0, 0, 0, 0, 0, 0, 5});
+  r.call(kArcFeed, {-10, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 8});
+  EXPECT_EQ(r.motions.back().from_uvw_mm, Vec3(0, 0, 5));
+  EXPECT_EQ(r.motions.back().to_uvw_mm, Vec3(0, 0, 8));
+}
+
 TEST(MotionFold, SpindleAndCoolant) {
   const Folded folded{"SET_SPINDLE_SPEED(0, 1200)",
                       "START_SPINDLE_COUNTERCLOCKWISE(0)",

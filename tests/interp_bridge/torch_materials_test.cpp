@@ -55,6 +55,34 @@ TEST(MaterialFile, InInches) {
   EXPECT_DOUBLE_EQ(rows[1].pierce_delay_s, 3);
 }
 
+TEST(MaterialFile, TheUnitOfAnotherMachineIsDoubtedOnce) {
+  const auto file = [](const char* height) {
+    std::string text;
+    for (int number = 1; number <= 2; ++number) {
+      text += "[MATERIAL_NUMBER_" + std::to_string(number) + "]\nPIERCE_HEIGHT = " + height +
+              "\nPIERCE_DELAY=0.4\nCUT_HEIGHT=0.06\nCUT_SPEED=100\n";
+    }
+    return text;
+  };
+  const auto said = [&](const char* height, double unit_mm) {
+    Diagnostics diagnostics;
+    read(file(height), diagnostics, unit_mm);
+    return all_of(diagnostics);
+  };
+  EXPECT_EQ(said("0.15", 1),
+            "mill_material.cfg:2:1: warning: material 1 is pierced from 0.15 mm: this looks like "
+            "inches in a file that is read in mm, the unit of the machine ([TRAJ]LINEAR_UNITS of "
+            "its INI; mm without one)\n"
+            "PIERCE_HEIGHT = 0.15\n^\n");
+  EXPECT_NE(said("3.8", 25.4)
+                .find("material 1 is pierced from 96.5 mm: this looks like mm in a "
+                      "file that is read in inches"),
+            std::string::npos);
+  EXPECT_EQ(said("0.15", 25.4), "");
+  EXPECT_EQ(said("3.8", 1), "");
+  EXPECT_EQ(said("0", 1), "") << "not entered";
+}
+
 TEST(MaterialFile, FaultsAreSaidWithTheirPlace) {
   Diagnostics diagnostics;
   const auto rows = read(

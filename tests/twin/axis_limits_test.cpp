@@ -71,6 +71,28 @@ TEST(AxisLimits, OffsetsRotationAndToolLengthCount) {
                   "coordinates)"});
 }
 
+TEST(AxisLimits, ASecondaryAxisHasItsOffsets) {
+  MachineLimits limits = box_limits();
+  limits.axes[8] = {.present = true, .min = -50, .max = 5};
+  FindingLog log;
+  AxisLimitCheck check(limits, log);
+  WorkpieceFrame frame = kMiddle;
+  frame.offset_uvw_mm = {0, 0, -30};
+  check.set_frame(frame);
+  MotionList program;
+  program.feed({0, 0, 0});
+  program.last().from_uvw_mm = {0, 0, 5};
+  program.last().to_uvw_mm = {0, 0, -20};
+  check.check(program.last(), {});
+  EXPECT_TRUE(log.kept().empty());
+  program.last().tool_offset_uvw_mm = {0, 0, -2};
+  check.check(program.last(), {});
+  ASSERT_EQ(log.kept().size(), 1u);
+  EXPECT_EQ(
+      log.kept()[0].text,
+      "axis W is sent to -52.000 mm, 2.000 beyond its limit of -50.000 (machine coordinates)");
+}
+
 TEST(AxisLimits, AnArcReachesFartherThanItsEnds) {
   MotionList program;
   program.at({195, 10, 0}).arc({195, -10, 0}, {195, 0, 0}, {0, 0, 1}, -kPi);

@@ -11,8 +11,8 @@ namespace {
 /// A block 40 x 40 x 10 mm with its top at Z0, cut by tool 1, a flat cutter of 4 mm.
 class Shop {
  public:
-  explicit Shop(const MotionList& program, std::size_t batch = 4096,
-                const char* tool = "1=flat:4") {
+  explicit Shop(const MotionList& program, std::size_t batch = 4096, const char* tool = "1=flat:4",
+                const TimelineOptions& timeline = {}) {
     ZMapOptions options;
     options.blank = parse_blank("box:0,0,-10:40,40,0").value();
     options.cell_mm = 0.1;
@@ -25,7 +25,8 @@ class Shop {
     row.line = 2;
     sources.table.push_back(row);
     book_ = std::make_unique<ToolBook>(sources, ZMap::can_cut);
-    stage_ = std::make_unique<CutStage>(*stock_, *book_, log_, TimelineOptions{});
+    stage_ = std::make_unique<CutStage>(*stock_, *book_, log_, timeline);
+    stage_->set_frame({});
     std::span<const Motion> left(program.list());
     while (!left.empty()) {
       const std::size_t count = std::min(batch, left.size());
@@ -72,6 +73,49 @@ TEST(CutStage, SlotRemovesItsVolumeAndFindsNothing) {
   EXPECT_NEAR(use.feed_mm, 7 + 50, 1e-9);
   EXPECT_NEAR(use.cut_s, 5, 0.03) << "50 mm at 600 mm/min, and braking";
   EXPECT_NEAR(use.peak_mm3_per_s, use.removed_mm3 / use.cut_s, 1e-6);
+}
+
+/// W of a mill that has it among its axes is a quill along Z, also under a model for upright tools.
+TEST(CutStage, AQuillCutsAsZDoes) {
+  MotionList by_z = started();
+  by_z.feed({10, 20, 1})
+      .feed({10, 20, -3})
+      .feed({30, 20, -2})
+      .arc({20, 30, -2}, {20, 20, -2}, {0, 0, 1}, kPi / 2);
+  MotionList by_w = started();
+  by_w.feed({10, 20, 1}).feed({10, 20, 1});
+  by_w.last().to_uvw_mm.z = -4;
+  by_w.feed({30, 20, 1});
+  by_w.last().from_uvw_mm.z = -4;
+  by_w.last().to_uvw_mm.z = -3;
+  by_w.arc({20, 30, 1}, {20, 20, 1}, {0, 0, 1}, kPi / 2);
+  by_w.last().from_uvw_mm.z = by_w.last().to_uvw_mm.z = -3;
+  TimelineOptions timeline;
+  timeline.kinematics =
+      std::make_shared<const MachineKinematics>(known_machine("trivkins", "XYZW", {}, {}).value());
+  const Shop quill(by_w, 4096, "1=flat:4", timeline);
+  EXPECT_EQ(quill.stock().digest(), Shop(by_z).stock().digest());
+  EXPECT_EQ(quill.ids(), Ids{});
+  EXPECT_NEAR(quill.stage().tools().at(0).feed_mm, Shop(by_z).stage().tools().at(0).feed_mm, 0.1);
+  // Of a machine that has no W nothing is known.
+  timeline.kinematics =
+      std::make_shared<const MachineKinematics>(known_machine("trivkins", "XYZ", {}, {}).value());
+  const Shop unknown(by_w, 4096, "1=flat:4", timeline);
+  EXPECT_EQ(unknown.removed_mm3(), 0);
+  EXPECT_EQ(unknown.ids().at(0), FindingId::kSecondaryIgnored);
+}
+
+TEST(CutStage, WhatUSlidesNobodySays) {
+  MotionList program = started();
+  program.feed({10, 20, -1}).feed({30, 20, -1});
+  program.last().to_uvw_mm = {20, 0, 0};
+  program.feed({35, 20, -1});
+  program.last().from_uvw_mm = {20, 0, 0};
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), Ids{FindingId::kSecondaryIgnored}) << "told once";
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kError);
+  EXPECT_EQ(shop.findings()[0].source.line, 3U);
+  EXPECT_EQ(shop.findings()[0].text.rfind("U moves, and nothing says what it slides", 0), 0U);
 }
 
 TEST(CutStage, TraversesThroughMaterialAreOneFinding) {

@@ -247,5 +247,29 @@ TEST_F(MachineSetupTest, AHomedRobotStandsWhereItsKinematicsSay) {
   EXPECT_NEAR(start[4], -90, 1e-4);
 }
 
+/// Joints of a robot are called X Y Z and turn: on an inch machine they stay degrees.
+TEST_F(MachineSetupTest, JointsThatTurnCountDegreesWhateverTheirLetters) {
+  write("p.var", "5220 1\n");
+  const std::string head =
+      "[RS274NGC]\nPARAMETER_FILE = p.var\n[TRAJ]\nLINEAR_UNITS = inch\nCOORDINATES = ";
+  std::string ini = head + "XYZABC\n[KINS]\nKINEMATICS = pumakins\nJOINTS = 6\n";
+  for (int i = 0; i < 6; ++i) ini += "[JOINT_" + std::to_string(i) + "]\nTYPE = ANGULAR\n";
+  ini += "MAX_LIMIT = 100\n[JOINT_0]\nMAX_LIMIT = 160\n[AXIS_Y]\nMAX_LIMIT = 10\n";
+  read(ini);
+  EXPECT_EQ(setup_.turning_joints, 0b111111) << messages();
+  EXPECT_TRUE(std::isinf(axis('X').max)) << "160 degrees of its joint are no inches of X";
+  EXPECT_EQ(axis('Y').max, 254);
+  EXPECT_EQ(axis('C').max, 100);
+  // Without TYPE the kinematics know, and without those the letters.
+  read(head + "XYZABC\n[KINS]\nKINEMATICS = scarakins\nJOINTS = 6\n");
+  EXPECT_EQ(setup_.turning_joints & 0b1111, 0b1011) << "its third joint slides";
+  read(head + "XYYZA\n[KINS]\nKINEMATICS = trivkins coordinates=xyyza\nJOINTS = 5\n");
+  EXPECT_EQ(setup_.turning_joints, 0b10000);
+  // maxkins has a joint for every axis, also for those that the INI does not name.
+  read(head + "XYZBC\n[KINS]\nKINEMATICS = maxkins\nJOINTS = 6\n[JOINT_5]\nMAX_LIMIT = 7\n");
+  EXPECT_EQ(setup_.turning_joints, 0b111000);
+  EXPECT_EQ(setup_.timeline.joint_limits[5].max, 7) << "of C";
+}
+
 }  // namespace
 }  // namespace kerf

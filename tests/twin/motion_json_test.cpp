@@ -71,6 +71,10 @@ TEST(MotionJson, RotaryCoolantAndPathMode) {
   const Json json = Json::parse(line_of(m));
   EXPECT_EQ(json["from_abc"], Json({0, 0, 0}));
   EXPECT_EQ(json["to_abc"], Json({90, 0, -1}));
+  EXPECT_FALSE(json.contains("to_uvw"));
+  m.from_uvw_mm = {0, 0, -10.5};
+  EXPECT_EQ(Json::parse(line_of(m))["from_uvw"], Json({0, 0, -10.5}));
+  EXPECT_EQ(Json::parse(line_of(m))["to_uvw"], Json({0, 0, 0}));
   EXPECT_EQ(json["coolant"], Json({"flood", "mist"}));
   EXPECT_EQ(json["feed_per_rev"], true);
   EXPECT_EQ(json["blend_mm"], 0.5);

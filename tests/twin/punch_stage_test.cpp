@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/sheet/punch_hits.h"
-#include "stock/sheet/punch_shape.h"
+#include "tests/twin/punch_shop.h"
 #include "tests/twin/torch_shop.h"
 #include "twin/playback/frontier.h"
 #include "twin/playback/stock_cursor.h"
@@ -14,30 +13,12 @@
 namespace kerf {
 namespace {
 
+using test::add_station;
+using test::turret;
 using Ids = std::vector<std::string>;
 
 /// Arcs keep their area; corners are rounded to tenths of a micrometre.
 constexpr double kClose_mm2 = 0.02;
-
-void add_station(Turret& turret, int number, const std::string& shape, double angle_deg = 0,
-                 bool turns = false) {
-  Cutter punch = std::move(*punch_cutter("punch:" + shape, *parse_punch_shape(shape, 0.002)));
-  turret.stations.emplace(number,
-                          TurretStation{number, "", shape, std::move(punch), angle_deg, turns, 0});
-}
-
-/// 1: round 10, 2: square 10, 3: slit 30 x 5 that turns, 4: round 4.
-std::shared_ptr<Turret> turret(const std::string& trigger, double pitch_mm = 0) {
-  auto out = std::make_shared<Turret>();
-  out->path = "press.yaml";
-  add_station(*out, 1, "round:10");
-  add_station(*out, 2, "square:10");
-  add_station(*out, 3, "rectangle:30:5", 0, true);
-  add_station(*out, 4, "round:4");
-  out->trigger = std::move(*PunchTrigger::parse(trigger));
-  out->nibble_pitch_mm = pitch_mm;
-  return out;
-}
 
 /// 200 x 100 x 3 mm from 0, 0, punched as a dry run does.
 class PunchShop {
@@ -261,9 +242,24 @@ TEST(PunchStage, StrokesBesideTheSheetAndIntoTheAir) {
   program.traverse({-4.9, 50, 5}).signal(101);  // a notch of the edge
   program.traverse({50, 50, 5}).signal(101).signal(101);
   const PunchShop shop(program.list(), turret("m101"));
-  EXPECT_EQ(shop.ids(), (Ids{"hit-off-sheet", "hit-in-air"}));
+  ASSERT_EQ(shop.ids(), (Ids{"hit-off-sheet", "hit-over-edge", "hit-in-air"}));
   EXPECT_EQ(shop.findings()[0].source.line, 3U);
-  EXPECT_EQ(shop.findings()[1].source.line, 8U);
+  EXPECT_EQ(shop.findings()[1].source.line, 5U);
+  EXPECT_EQ(shop.findings()[2].source.line, 8U);
+}
+
+TEST(PunchStage, StrokesThatHangOverTheEdgeAreTold) {
+  MotionList program = start(2);
+  program.traverse({0, 50, 5}).signal(101);   // half of it
+  program.traverse({-1, 70, 5}).signal(101);  // more
+  program.traverse({20, 50, 5}).signal(101);
+  const PunchShop shop(program.list(), turret("m101"));
+  ASSERT_EQ(shop.ids(), (Ids{"hit-over-edge", "hit-over-edge"}));
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kNote);
+  EXPECT_EQ(shop.findings()[0].text, "50.0 % of the punch hangs over the edge of the sheet");
+  EXPECT_EQ(shop.findings()[1].severity, Severity::kWarning);
+  EXPECT_TRUE(shop.findings()[1].text.ends_with(", which pushes it aside"))
+      << shop.findings()[1].text;
 }
 
 /// A pitch is never made wider without a word.

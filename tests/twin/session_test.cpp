@@ -93,6 +93,21 @@ TEST_F(SessionTest, TakesBlankAndToolFromComments) {
   EXPECT_EQ(report.findings.total(), 0U);
 }
 
+TEST_F(SessionTest, SaysWhyItIsNoZmap) {
+  write_listing("");
+  options_.blank = parse_blank("box:-5,-9,-5:25,9,0").value();
+  options_.tools.push_back(std::move(parse_tool_argument("1=tslot:8:1:4").value()));
+  ASSERT_EQ(run(), Outcome::kFinished);
+  const Report& report = session_->report();
+  EXPECT_EQ(report.stock->model, "mmap");
+  EXPECT_NE(
+      summary_text(report).find("          mmap because tool 1 (tslot:8:1:4) cuts undercuts\n"),
+      std::string::npos)
+      << summary_text(report);
+  EXPECT_NE(json_text(report).find("\"model_reason\": \"tool 1 (tslot:8:1:4) cuts undercuts\""),
+            std::string::npos);
+}
+
 /// A bar along X, 20 mm thick, on a table that turns about X: four flats, 8 mm from the middle.
 class SessionOnATurningTable : public SessionTest {
  protected:

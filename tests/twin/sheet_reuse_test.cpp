@@ -68,9 +68,32 @@ TEST_F(SheetReuse, ASavedSheetIsCutOnAsIfItHadNeverBeenSaved) {
   EXPECT_EQ(report("second.json")["stock"]["digest"], report("both.json")["stock"]["digest"]);
   EXPECT_EQ(report("second.json")["stock"]["removed_mm3"],
             report("both.json")["stock"]["removed_mm3"]);
-  // The lower half was a blank already; those above come free.
-  EXPECT_EQ(report("second.json")["sheet"]["parts"].size(), 2U);
-  EXPECT_EQ(report("both.json")["sheet"]["parts"].size(), 3U);
+  const Json parts = report("second.json")["sheet"]["parts"];
+  const Json all = report("both.json")["sheet"]["parts"];
+  ASSERT_EQ(all.size(), 3U);
+  ASSERT_EQ(parts.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(parts[i]["number"], all[i]["number"]);
+    EXPECT_EQ(parts[i]["area_mm2"], all[i]["area_mm2"]);
+    EXPECT_EQ(parts[i]["file"], i == 0 ? "first.canon" : "second.canon");
+  }
+  EXPECT_EQ(parts[0]["line"], all[0]["line"]);
+  EXPECT_NE(second.out.find("free since line 4 of first.canon"), std::string::npos) << second.out;
+}
+
+TEST_F(SheetReuse, WhatWasFreeWhenItWasSavedIsInTheWayStill) {
+  folder_.write("first.canon", slots({10}));
+  folder_.write("second.canon", slots({5}));
+  ASSERT_EQ(run({"run", "first.canon", "--stock", "sheet:0,0:50,50:2", "--tool", "1=kerf:2",
+                 "--state", "a.state"})
+                .exit_code,
+            0);
+  const KerfResult second =
+      run({"run", "second.canon", "--stock", "state:a.state", "--tool", "1=kerf:2"});
+  EXPECT_NE(second.err.find("crosses-part: cuts into piece 1, which is free since line 4 of "
+                            "first.canon and may have tipped"),
+            std::string::npos)
+      << second.err;
 }
 
 TEST_F(SheetReuse, AStateThatCannotBeUsedIsOneError) {

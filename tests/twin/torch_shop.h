@@ -50,12 +50,13 @@ inline MotionList& square(MotionList& program, Vec2 corner, double edge, double 
 /// A program cut as a dry run does.
 class TorchShop {
  public:
-  explicit TorchShop(std::span<const Motion> motions, BeamSettings settings = {},
+  explicit TorchShop(std::span<const Motion> motions, const BeamSettings& settings = {},
                      ToolSources tools = torch_of("kerf:2"))
       : sheet_(sheet_200()),
         book_(std::move(tools), stock_model(StockKind::kSheet).can_cut),
-        stage_(*sheet_, book_, log_, TimelineOptions{}) {
-    stage_.burn(std::move(settings));
+        stage_(*sheet_, book_, log_, timing_of(settings)) {
+    stage_.burn(settings);
+    stage_.set_materials(settings.materials);
     stage_.take(motions);
     stage_.finish();
   }
@@ -72,6 +73,12 @@ class TorchShop {
   double kerf_mm2() const { return 200 * 100 - sheet_->remaining_mm2(); }
 
  private:
+  static TimelineOptions timing_of(const BeamSettings& settings) {
+    TimelineOptions timing;
+    timing.holds = holds_of(nullptr, settings);
+    return timing;
+  }
+
   std::unique_ptr<Sheet> sheet_;
   FindingLog log_;
   ToolBook book_;

@@ -232,6 +232,7 @@ TEST(TorchStage, KerfIsThatOfTheMaterial) {
   TorchMaterial thin, thick;
   thin.kerf_width_mm = 1;
   thin.pierce_delay_s = 0.5;
+  thin.pause_at_end_s = 0.2;
   thick.number = 7;
   thick.kerf_width_mm = 4;
   settings.materials = {thin, thick};
@@ -243,7 +244,10 @@ TEST(TorchStage, KerfIsThatOfTheMaterial) {
   EXPECT_EQ(shop.ids(), Ids{});
   ASSERT_EQ(shop.stage().tools().size(), 2U);
   EXPECT_EQ(shop.stage().tools()[1].origin, "material 7 DEFAULT");
-  EXPECT_NEAR(shop.report().cuts.beam_s, 2 * 40 / 10.0 + 0.5, 1);
+  EXPECT_NEAR(shop.report().cuts.beam_s, 2 * 40 / 10.0 + 0.7, 1);
+  settings.materials[0].pierce_delay_s = settings.materials[0].pause_at_end_s = 0;
+  const TorchShop quick(program.list(), settings, {});
+  EXPECT_NEAR(shop.report().cuts.beam_s - quick.report().cuts.beam_s, 0.7, 1e-9);
   settings.materials[1].kerf_width_mm = 0;
   const TorchShop zero(program.list(), settings, {});
   ASSERT_EQ(zero.ids(), Ids{"kerf-zero"});

@@ -87,6 +87,16 @@ TEST_F(ViewFiles, WithoutADisplayItSaysSoAndNamesTheWayWithoutOne) {
   EXPECT_NE(run.err.find("--view: no window"), std::string::npos) << run.err;
 }
 
+TEST_F(ViewFiles, RoadsOfTheWindowAfterARunAreNamedAndNeedTheWindow) {
+  const KerfResult wrong = run_kerf(call_of({"run", program_, "--view", "--draw", "voxels"}));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.err,
+            "kerf: error: --draw: 'voxels' is not allowed; must be mesh | raycast | csg\n");
+  const KerfResult alone = run_kerf(call_of({"run", program_, "--draw", "csg"}));
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_EQ(alone.err, "kerf: error: --draw: is for the window; there is no --view\n");
+}
+
 TEST_F(ViewFiles, FaultsOfTheCommandLineComeAtOnce) {
   EXPECT_EQ(
       err_of({program_, "--speed", "0"}, 2),
@@ -448,6 +458,20 @@ TEST_F(ViewWindow, RunShowsTheResult) {
   kerf_->key("Q");
   expect_end(0);
   EXPECT_NE(result_.out.find("removed"), std::string::npos) << result_.out;
+}
+
+TEST_F(ViewWindow, RunShowsTheResultByTheRoadAskedFor) {
+  open({"run", program_, "--view", "--draw", "csg"});
+  const Picture first = settled();
+  kerf_->key("r");
+  ASSERT_TRUE(changes_from(first)) << "it was not the mesh, which comes after CSG";
+  settled();
+  kerf_->key("r");
+  kerf_->key("r");
+  EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return different_pixels(now, first) < 30; }))
+      << "CSG again";
+  kerf_->key("Q");
+  expect_end(0);
 }
 
 TEST_F(ViewWindow, ALogIsHeldAndGoesOn) {

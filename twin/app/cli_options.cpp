@@ -189,6 +189,9 @@ void add_run_options(CLI::App& run, RunArguments& a) {
   add_output_options(run, a.outputs, a.mesh_tolerance);
   add_outline_options(run, a.outputs);
   run.add_flag("--view", a.view, "then show it in a window, at its end");
+  run.add_option("--draw", a.draw,
+                 "the window's workpiece by mesh | raycast | csg (default as it remembers it)")
+      ->type_name("NAME");
   run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
 }
 
@@ -258,6 +261,7 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
   add_program_options(live, a.source);
   add_work_options(live, a.work);
   add_torch_options(live, a.torch);
+  add_turret_option(live, a.torch);
   if (command == LiveCommand::kShadow) add_shadow_options(live, a);
   live.add_flag("--no-view", a.no_view,
                 "no window (there is one where there is a display, but for --speed max)");

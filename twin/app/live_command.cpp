@@ -55,6 +55,11 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
   head.frame = request.options.cutting.frame.workpiece_frame ? CoordinateFrame::kWorkpiece
                                                              : CoordinateFrame::kMachine;
   head.axes = positions_of(request.config.source);
+  if (const auto* modbus = std::get_if<ModbusSettings>(&request.config.source)) {
+    head.trigger = modbus->trigger.has_value();
+  } else if (const auto* can = std::get_if<CanSourceOptions>(&request.config.source)) {
+    head.trigger = can->map.trigger.has_value();
+  }
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
     head.extra.emplace_back("joints", request.config.machine.joints);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "interp_bridge/parameter_file.h"
-#include "twin/app/view_options.h"
+#include "twin/app/draw_option.h"
 #include "twin/config/make_source.h"
 
 namespace kerf {
@@ -22,7 +22,6 @@ constexpr OptionRange kLookAhead{0, 3600, false, "s; 0 is off"};
 constexpr OptionRange kOffPath{0, 1000, true, "mm"};
 constexpr OptionRange kCpuLimit{0, 100, true, "% of one CPU"};
 constexpr OptionRange kMemoryLimit{16, 1e6, false, "MB"};
-constexpr const char* kRotaryLetters = "ABC";
 
 void understand_gap(const std::string& text, OptionReader& reader, GapPolicy& policy) {
   if (text.empty()) return;
@@ -74,19 +73,11 @@ double fastest_mm_per_s(const MachineLimits& limits) {
 
 /// The INI of a running machine says more of it than its pins do.
 void adapt_source(const LiveRequest& request, ConfigSource& source) {
-  std::uint16_t rotary = 0;
-  for (std::size_t i = 0; i < request.joint_letters.size() && i < kMaxPositions; ++i) {
-    if (std::string_view(kRotaryLetters).find(request.joint_letters[i]) != std::string_view::npos) {
-      rotary = static_cast<std::uint16_t>(rotary | 1U << i);
-    }
-  }
   if (auto* hal = std::get_if<HalSettings>(&source)) {
     if (request.inch_machine) hal->mm_per_unit = 25.4;
-    hal->rotary_joints = rotary;
   }
   if (auto* log = std::get_if<LogSettings>(&source)) {
     if (request.inch_machine) log->unit = LogUnit::kInch;
-    log->rotary_joints = rotary;
   }
 }
 
@@ -173,12 +164,14 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   WorkRequest work = understand_work(a.work, reader);
   LiveOptions& options = request.options;
   TorchArguments torch = a.torch;
-  complete_torch(request.config.beam, torch);
+  complete_torch(request.config, torch);
   options.beam = understand_torch(torch, reader, program.program.torch);
+  options.turret = understand_turret(torch, reader, program.program);
   // Where the machine stands when it starts the program is seen, not read from its INI.
   program.program.machine.start_known = false;
   request.inch_machine = program.program.machine.inch_machine;
   request.joint_letters = program.joint_letters;
+  request.config.machine.turning_joints = program.turning_joints;
   request.parameter_path = program.program.machine.parameter_path;
   options.tool_table_path = program.program.tool_table_path;
   options.inch_table = request.inch_machine;
@@ -196,6 +189,15 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   options.stale_after_s = request.config.common.stale_after_s;
   options.lost_after_s = request.config.common.lost_after_s;
   understand_cutting(a, program, work, reader, request);
+  if (options.turret) {
+    constexpr const char* kNot = "planned is for cutting; a punch strikes where the program says";
+    if (work.planned_path.value_or(false)) {
+      reader.fault("--path", kNot);
+    } else if (!work.planned_path && request.config.follow.planned_path.value_or(false)) {
+      reader.fault("follow.path", kNot);
+    }
+    options.cutting.timeline.planner.with_path = false;
+  }
   options.for_s = reader.number("--for", a.for_s, kSeconds, 0);
   if (command == LiveCommand::kReplay) {
     options.speed = understand_speed(a.speed, reader);

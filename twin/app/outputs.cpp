@@ -127,8 +127,13 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
   }
-  if (stock && !paths.state.empty()) note_failure(stock->save(paths.state), diagnostics);
-  if (const Sheet* const sheet = stock ? as_sheet(*stock) : nullptr; sheet && report.sheet) {
+  const Sheet* const sheet = stock && report.sheet ? as_sheet(*stock) : nullptr;
+  if (stock && !paths.state.empty()) {
+    note_failure(sheet ? save_sheet(*sheet, *report.sheet, report.program.files, paths.state)
+                       : stock->save(paths.state),
+                 diagnostics);
+  }
+  if (sheet) {
     std::vector<std::string> errors;
     write_outlines(*sheet, *report.sheet, paths.dxf, paths.svg, errors);
     for (std::string& error : errors) fault(diagnostics, std::move(error));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -13,6 +14,14 @@ namespace {
 
 constexpr OptionRange kMaxCommands{1, 1e12, false, "commands"};
 constexpr OptionRange kMaxSeconds{0, 1e6, true, "s"};
+
+std::uint16_t turning_joints_of(const MachineKinematics& machine) {
+  std::uint16_t joints = 0;
+  for (std::size_t i = 0; i < std::min(machine.joint_letters.size(), kAxisCount); ++i) {
+    if (machine.turns_joint(i)) joints = static_cast<std::uint16_t>(joints | 1U << i);
+  }
+  return joints;
+}
 
 }  // namespace
 
@@ -29,6 +38,7 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
     options.tool_table_path = std::move(setup.tool_table_path);
     request.timeline = std::move(setup.timeline);
     request.joint_letters = std::move(setup.joint_letters);
+    request.turning_joints = setup.turning_joints;
   }
   if (a.ini.empty()) {
     // Where nobody says how: the machine that most people have who turn a part. It lies on a table.
@@ -40,6 +50,9 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
       request.timeline.kinematics =
           std::make_shared<const MachineKinematics>(std::move(machine.value()));
       request.timeline.kinematics_known = a.kinematics.has_value();
+      if (a.kinematics) {
+        request.turning_joints = turning_joints_of(*request.timeline.kinematics);
+      }
     } else {
       reader.fault("machine.kinematics", machine.error());
     }

@@ -1,6 +1,7 @@
 // twin/app/program_options.h - the options about the program itself, which several commands share.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct ProgramRequest {
   ProgramOptions program;
   TimelineOptions timeline;
   std::string joint_letters;  ///< of the INI; empty: there is none
+  /// Bits of the joints that count degrees, where INI or configuration say what the machine is.
+  std::optional<std::uint16_t> turning_joints;
 };
 
 /// Reads the INI, if one is given. Faults go to the reader.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "twin/app/draw_option.h"
 #include "twin/app/option_reader.h"
 
 namespace kerf {
@@ -31,7 +32,7 @@ void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
   if (source.tool_table.empty()) source.tool_table = config.machine.tool_table.value_or("");
   source.kinematics = config.machine.kinematics;
   source.joints = config.machine.joints;
-  if (arguments.torch.turret.empty()) complete_torch(config.beam, arguments.torch);
+  complete_torch(config, arguments.torch);
 }
 
 void complete_session(const LiveConfig& config, const RunArguments& a, SessionOptions& session) {
@@ -75,6 +76,8 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   check_outline_wishes(request.session.blank, request.outputs, reader);
   request.quiet = a.quiet;
   request.view = a.view;
+  request.draw = understand_draw(a.draw, reader);
+  if (request.draw && !a.view) reader.fault("--draw", "is for the window; there is no --view");
   if (a.view && a.source.program == "-") {
     reader.fault("--view", "the program comes from standard input, which cannot be read again");
   }

@@ -1,6 +1,7 @@
 // twin/app/run_options.h - the command line of `kerf run`, from text to checked values.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "twin/app/work_options.h"
 #include "twin/config/live_config.h"
 #include "twin/session.h"
+#include "viewer/scene.h"
 
 namespace kerf {
 
@@ -26,6 +28,7 @@ struct RunArguments {
   std::string until_line;
   OutputPaths outputs;
   bool view = false;
+  std::string draw;  ///< of `kerf run`; `kerf view` has its own
   bool quiet = false;
 };
 
@@ -34,7 +37,8 @@ struct RunRequest {
   SessionOptions session;
   OutputPaths outputs;
   double mesh_tolerance_mm = 0.01;
-  bool view = false;  ///< in a window, when it is done
+  bool view = false;             ///< in a window, when it is done
+  std::optional<DrawRoad> draw;  ///< in that window; none: as it remembers it
   bool quiet = false;
 };
 

@@ -45,18 +45,23 @@ void read_pin(const std::string& text, OptionReader& reader, TorchOptions& torch
 
 }  // namespace
 
-void complete_torch(const ConfigBeam& config, TorchArguments& arguments) {
+void complete_torch(const LiveConfig& whole, TorchArguments& arguments) {
+  const ConfigBeam& config = whole.beam;
   const auto text = [](std::string& given, const std::optional<std::string>& configured) {
     if (given.empty() && configured) given = *configured;
   };
   const auto number = [](std::string& given, const std::optional<double>& configured) {
     if (given.empty() && configured) given = fmt::format("{}", *configured);
   };
+  number(arguments.density, config.density_kg_per_m3);
+  const bool burns = !arguments.beam.empty() || !arguments.kerf.empty() ||
+                     !arguments.pierce.empty() || !arguments.slats.empty();
+  if (!burns) text(arguments.turret, whole.turret);
+  if (!arguments.turret.empty()) return;
   text(arguments.beam, config.trigger);
   number(arguments.kerf, config.kerf_mm);
   number(arguments.pierce, config.pierce_mm);
   number(arguments.slats, config.slats_mm);
-  number(arguments.density, config.density_kg_per_m3);
   text(arguments.qtplasmac, config.qtplasmac);
   text(arguments.materials, config.materials);
 }

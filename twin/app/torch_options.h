@@ -28,8 +28,9 @@ struct TorchArguments {
   std::string turret;
 };
 
-/// What is not given, as the configuration has it.
-void complete_torch(const ConfigBeam& config, TorchArguments& arguments);
+/// What is not given, as the configuration has it. Whoever asks for a punch wants no beam, and the
+/// reverse: of those the command line's alone counts.
+void complete_torch(const LiveConfig& config, TorchArguments& arguments);
 
 /// The same, understood: what is cut with into the result, what the program is told of its machine
 /// into `torch`. Faults go to the reader.

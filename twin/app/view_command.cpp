@@ -322,6 +322,7 @@ int view_log(const ViewArguments& arguments) {
   live.source = arguments.run.source;
   live.source.program.clear();
   live.work = arguments.run.work;
+  live.torch = arguments.run.torch;
   live.speed = arguments.speed;
   live.draw = arguments.draw;
   live.quiet = arguments.run.quiet;
@@ -336,6 +337,7 @@ int show_program(const RunRequest& run, std::stop_source& stop) {
   request.run = run;
   request.run.quiet = true;  // the dry run has said it
   request.at_end = true;
+  request.window_road = run.draw;
   if (run.session.turret) request.machine.kind = MachineKind::kPunch;
   return in_window(request, Kind::kProgram, stop);
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "twin/app/draw_option.h"
 #include "twin/app/live_options.h"
 #include "twin/app/option_reader.h"
 #include "viewer/window/settings.h"
@@ -34,13 +35,6 @@ constexpr std::array<NamedView, 7> kViews{{{"iso", StandardView::kIsometric},
                                            {"back", StandardView::kBack},
                                            {"left", StandardView::kLeft},
                                            {"right", StandardView::kRight}}};
-
-struct NamedRoad {
-  const char* name;
-  DrawRoad road;
-};
-constexpr std::array<NamedRoad, 3> kRoads{
-    {{"mesh", DrawRoad::kMesh}, {"raycast", DrawRoad::kRaycast}, {"csg", DrawRoad::kCsg}}};
 
 /// "1280x720".
 std::optional<glm::ivec2> size_from(const std::string& text) {
@@ -118,15 +112,6 @@ void read_road(const ViewArguments& a, OptionReader& reader, ViewRequest& reques
 }
 
 }  // namespace
-
-std::optional<DrawRoad> understand_draw(const std::string& text, OptionReader& reader) {
-  if (text.empty()) return std::nullopt;
-  for (const NamedRoad& road : kRoads) {
-    if (text == road.name) return road.road;
-  }
-  reader.fault("--draw", fmt::format("'{}' is not allowed; must be mesh | raycast | csg", text));
-  return std::nullopt;
-}
 
 ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   ViewRequest request;

@@ -58,9 +58,6 @@ struct ViewRequest {
   bool wants_window() const { return png.empty() && film.folder.empty(); }
 };
 
-/// The road that --draw names; none if it is not given, or wrong.
-std::optional<DrawRoad> understand_draw(const std::string& text, OptionReader& reader);
-
 /// Reads every option, so that all faults are told at once; with an error among the diagnostics the
 /// request is not to be used. The command line goes before the configuration. Opens no file but the
 /// configuration.

@@ -260,6 +260,7 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
     if (item.name == "line") map.line = signal;
     if (item.name == "spindle") map.spindle = signal;
     if (item.name == "tool_offset_z") map.tool_offset_z = signal;
+    if (item.name == "trigger") map.trigger = signal;
   }
   shelf.finish(all_found);
 }

@@ -137,6 +137,10 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
       constexpr std::array kNames{"a", "b", "c"};
       printer.put(kNames[i], machine.work_offset->offset_abc_deg[i]);
     }
+    for (int i = 0; i < 3; ++i) {
+      constexpr std::array kNames{"u", "v", "w"};
+      printer.put(kNames[static_cast<std::size_t>(i)], machine.work_offset->offset_uvw_mm[i]);
+    }
     printer.close();
   }
   printer.put("tool_length", name_of(machine.tool_length));
@@ -180,6 +184,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
   printer.put("margin_mm", config.stock.margin_mm);
   printer.close();
   print_beam(printer, config.beam);
+  printer.text("turret", config.turret);
   printer.open("follow");
   printer.text("program", config.follow.program);
   if (config.follow.planned_path) {
@@ -236,6 +241,7 @@ void print_can_map(Printer& printer, const CanMap& map, CoordinateKind kind) {
   other("line", map.line);
   other("spindle", map.spindle);
   other("tool_offset_z", map.tool_offset_z);
+  other("trigger", map.trigger);
   printer.close();
 }
 
@@ -279,6 +285,7 @@ struct SourcePrinter {
     other("line", s.line);
     other("spindle", s.spindle);
     other("tool_offset_z", s.tool_offset_z);
+    other("trigger", s.trigger);
     other("counter", s.counter);
     other("counter_begun", s.counter_begun);
     printer.close();

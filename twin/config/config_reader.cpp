@@ -21,6 +21,9 @@ void read_work_offset(const GroupReader& offset, ConfigMachine& machine) {
   offset.number("a", frame.offset_abc_deg[0]);
   offset.number("b", frame.offset_abc_deg[1]);
   offset.number("c", frame.offset_abc_deg[2]);
+  offset.number("u", frame.offset_uvw_mm.x);
+  offset.number("v", frame.offset_uvw_mm.y);
+  offset.number("w", frame.offset_uvw_mm.z);
   machine.work_offset = frame;
 }
 
@@ -125,6 +128,17 @@ void read_beam(const GroupReader& beam, ConfigBeam& out) {
   }
 }
 
+/// What a torch is told has no place beside a punch.
+void read_turret_key(const GroupReader& root, LiveConfig& config) {
+  config.turret = root.path("turret");
+  const GroupReader beam = root.group("beam");
+  if (!config.turret || !beam.is_there()) return;
+  for (const auto& child : beam.node()->children) {
+    if (child->faulty || child->key == "density_kg_per_m3") continue;
+    root.faults().at_key(*child, "is for torches, lasers and jets; turret punches");
+  }
+}
+
 void read_follow(const GroupReader& follow, ConfigFollow& out) {
   out.program = follow.path("program");
   if (const int word = follow.word("path"); word >= 0) out.planned_path = word == 1;
@@ -190,6 +204,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_stock(root.group("stock"), config.stock);
   read_tools(root.group("tools"), config.stock.model, config.tools);
   read_beam(root.group("beam"), config.beam);
+  read_turret_key(root, config);
   read_follow(root.group("follow"), config.follow);
   const GroupReader view = root.group("view");
   view.number("window", config.view.window);

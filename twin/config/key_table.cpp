@@ -112,6 +112,27 @@ constexpr std::array kKeys{
             .most = kFar_mm,
             .fallback = "0",
             .purpose = "the same in C"},
+    KeySpec{.path = "machine.work_offset.u",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "machine position of the work's U0"},
+    KeySpec{.path = "machine.work_offset.v",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "the same in V"},
+    KeySpec{.path = "machine.work_offset.w",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = -kFar_mm,
+            .most = kFar_mm,
+            .fallback = "0",
+            .purpose = "the same in W"},
     KeySpec{.path = "machine.tool_length",
             .type = T::kWord,
             .words = "auto|source|program|table|none",
@@ -131,7 +152,7 @@ constexpr std::array kKeys{
             .purpose = "no faster: positions that need more have a gap between them"},
     KeySpec{.path = "machine.model",
             .type = T::kWord,
-            .words = "none|knee-mill|gantry|lathe|trunnion|plasma|punch",
+            .words = "none|knee-mill|gantry|lathe|trunnion|plasma|punch|bridge-mill|swivel-mill",
             .purpose = "the machine that is drawn; else by the INI's axes, travels and kinematics"},
     KeySpec{.path = "machine.links",
             .type = T::kGroups,
@@ -256,6 +277,10 @@ constexpr std::array kKeys{
     KeySpec{.path = "beam.materials",
             .type = T::kFile,
             .purpose = "material file of QtPlasmaC: kerf widths by number"},
+
+    KeySpec{.path = "turret",
+            .type = T::kFile,
+            .purpose = "sheets: the punch press instead of a beam, as --turret has it"},
 
     KeySpec{.path = "follow", .purpose = "the program that the machine runs"},
     KeySpec{.path = "follow.program", .type = T::kFile, .purpose = "NC program"},
@@ -475,9 +500,12 @@ constexpr std::array kKeys{
 
     KeySpec{
         .path = "source.map", .sources = kMapped, .purpose = "which numbers are which positions"},
-    KeySpec{.path = "source.map.ITEM",
-            .sources = kMapped,
-            .purpose = "ITEM: X Y Z A B C U V W or J0 .. J8, tool, line, spindle, tool_offset_z"},
+    KeySpec{
+        .path = "source.map.ITEM",
+        .sources = kMapped,
+        .purpose =
+            "ITEM: X Y Z A B C U V W or J0 .. J8, tool, line, spindle, tool_offset_z, or trigger "
+            "(a punch's: 0 is off)"},
     KeySpec{.path = "source.map.ITEM.register",
             .type = T::kWhole,
             .sources = kForModbus,
@@ -651,8 +679,8 @@ constexpr std::array kKeys{
             .axes_only = true},
 };
 
-constexpr std::string_view kSmallItems[] = {"tool",          "line",    "spindle",
-                                            "tool_offset_z", "counter", "counter_begun"};
+constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",      "tool_offset_z",
+                                            "trigger", "counter", "counter_begun"};
 
 }  // namespace
 

@@ -32,6 +32,9 @@ struct ConfigMachine {
   std::optional<std::string> tool_table;  ///< path
   /// The axis that each joint moves, of XYZABCUVW: "XYZ", "XYYZ". Empty: not given.
   std::string joints;
+  /// Bits of the joints that count degrees, by the INI or the kinematics; not given: those that
+  /// move A, B, C. No key: understand_live() fills it in.
+  std::optional<std::uint16_t> turning_joints;
   /// Where the work zero lies in the machine, mm and degrees: g5x_mm and rotation_deg are set.
   std::optional<WorkpieceFrame> work_offset;
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;
@@ -97,6 +100,7 @@ struct LiveConfig {
   std::vector<ToolShapeArgument> tools;
   ConfigStock stock;
   ConfigBeam beam;
+  std::optional<std::string> turret;  ///< `turret:`, path; then beam has no more than a density
   ConfigFollow follow;
   ConfigView view;
   ConfigSourceCommon common;

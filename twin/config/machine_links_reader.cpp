@@ -156,9 +156,10 @@ void read_vector(const GroupReader& group, std::string_view key, Vec3& out) {
 
 void read_drawn_machine(const GroupReader& machine, MachineChoice& out) {
   // In the order of the key table.
-  constexpr std::array kWords{MachineKind::kNone,  MachineKind::kKneeMill, MachineKind::kGantry,
-                              MachineKind::kLathe, MachineKind::kTrunnion, MachineKind::kPlasma,
-                              MachineKind::kPunch};
+  constexpr std::array kWords{
+      MachineKind::kNone,  MachineKind::kKneeMill,   MachineKind::kGantry,
+      MachineKind::kLathe, MachineKind::kTrunnion,   MachineKind::kPlasma,
+      MachineKind::kPunch, MachineKind::kBridgeMill, MachineKind::kSwivelMill};
   if (const int word = machine.word("model"); word >= 0)
     out.kind = kWords[static_cast<std::size_t>(word)];
   ConfigNode* const links = machine.find("links");

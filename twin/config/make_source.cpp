@@ -11,8 +11,10 @@ namespace kerf {
 namespace {
 
 /// The joints that count degrees.
-std::uint16_t rotary_joints(const std::string& joints) {
-  const std::string_view letters = joints.empty() ? kAllAxes : std::string_view(joints);
+std::uint16_t rotary_joints(const ConfigMachine& machine) {
+  if (machine.turning_joints) return *machine.turning_joints;
+  const std::string_view letters =
+      machine.joints.empty() ? kAllAxes : std::string_view(machine.joints);
   std::uint16_t mask = 0;
   for (std::size_t i = 0; i < letters.size() && i < kMaxPositions; ++i) {
     if (letters[i] >= 'A' && letters[i] <= 'C') {
@@ -43,14 +45,14 @@ struct Maker {
     return std::make_unique<CanSource>(options);
   }
   std::unique_ptr<PositionSource> operator()(HalSettings settings) const {
-    settings.rotary_joints = rotary_joints(config.machine.joints);
+    settings.rotary_joints = rotary_joints(config.machine);
     const std::vector<std::string> faults = validate(settings);
     for (const std::string& fault : faults) diagnostics.push_back(general(fault));
     if (!faults.empty()) return nullptr;
     return std::make_unique<HalSource>(settings);
   }
   std::unique_ptr<PositionSource> operator()(LogSettings settings) const {
-    settings.rotary_joints = rotary_joints(config.machine.joints);
+    settings.rotary_joints = rotary_joints(config.machine);
     std::unique_ptr<LogSource> log = LogSource::open(std::move(settings), diagnostics);
     if (log == nullptr) return nullptr;
     const std::optional<CoordinateKind> columns = log->contents().kind;

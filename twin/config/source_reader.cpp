@@ -224,6 +224,7 @@ void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSet
     if (item.name == "line") settings.line = wanted;
     if (item.name == "spindle") settings.spindle = wanted;
     if (item.name == "tool_offset_z") settings.tool_offset_z = wanted;
+    if (item.name == "trigger") settings.trigger = wanted;
     if (item.name == "counter") settings.counter = wanted;
     if (item.name == "counter_begun") settings.counter_begun = wanted;
   }

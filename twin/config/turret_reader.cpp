@@ -26,6 +26,10 @@ constexpr double kLastStation = 99999;
 constexpr double kFarthest_mm = 1e5;
 constexpr double kLeastPitch_mm = 0.01;
 constexpr double kMostLines = 4e9;
+constexpr double kLongest_s = 3600;
+/// Strokes a minute; presses that mark reach a few thousand.
+constexpr double kLeastRate = 0.1;
+constexpr double kMostRate = 100'000;
 
 struct Range {
   double least, most;
@@ -37,7 +41,7 @@ class TurretReader {
   TurretReader(ConfigFaults& faults, Turret& out) : faults_(faults), out_(out) {}
 
   void read(ConfigNode& root) {
-    check_names(root, {"stations", "index", "punch", "frame", "clamps", "regrip"});
+    check_names(root, {"stations", "index", "punch", "frame", "clamps", "regrip", "times"});
     read_index(root);
     read_stations(root);
     if (ConfigNode* const punch = group(root, "punch")) read_punch(*punch);
@@ -47,6 +51,7 @@ class TurretReader {
     }
     read_clamps(root);
     read_regrips(root);
+    if (ConfigNode* const times = group(root, "times")) read_times(*times);
     if (root.child("punch") == nullptr) {
       about_file("punch.trigger is missing; it says what makes the punch strike",
                  "m3, m62:0, m100 .. m199, g81, z<-1");
@@ -312,6 +317,51 @@ class TurretReader {
         faults_.at_value(*child, "x and y are missing: how far the clamps move, in mm");
       }
       out_.regrips.push_back(regrip);
+    }
+  }
+
+  void read_times(ConfigNode& node) {
+    check_names(node, {"stroke", "rate", "turret", "regrip"});
+    const Range seconds{0, kLongest_s, "s"};
+    PunchTimes& times = out_.times;
+    times.stroke_s = number(node, "stroke", seconds).value_or(0);
+    times.regrip_s = number(node, "regrip", seconds).value_or(0);
+    if (ConfigNode* const rates = group(node, "rate")) read_rates(*rates);
+    ConfigNode* const turret = group(node, "turret");
+    if (turret == nullptr) return;
+    check_names(*turret, {"places", "step", "lock"});
+    times.step_s = number(*turret, "step", seconds).value_or(0);
+    times.lock_s = number(*turret, "lock", seconds).value_or(0);
+    const auto places = number(*turret, "places", {1, kLastStation, "places"});
+    if (!places) return;
+    times.places = static_cast<int>(*places);
+    const int last = out_.stations.empty() ? 0 : out_.stations.rbegin()->first;
+    if (*places != std::floor(*places)) {
+      refuse(*turret->child("places"), "a whole number");
+    } else if (last > times.places) {
+      faults_.at_value(*turret->child("places"),
+                       fmt::format("{} are too few: there is a station {}", times.places, last));
+    }
+  }
+
+  /// Strokes a minute, by the pitch.
+  void read_rates(ConfigNode& rates) {
+    if (rates.children.empty()) {
+      faults_.at_value(rates, "there are none; must be PITCH: STROKES a minute for each",
+                       "as in 4: 600");
+    }
+    for (const auto& child : rates.children) {
+      const std::optional<double> pitch = parse_decimal(child->key);
+      if (!pitch || *pitch < kLeastPitch_mm || *pitch > kFarthest_mm) {
+        faults_.at_key(*child,
+                       fmt::format("'{}' is no pitch; must be {} to {} (mm)", shown(child->key),
+                                   number_text(kLeastPitch_mm), number_text(kFarthest_mm)));
+        continue;
+      }
+      const auto rate = number(rates, child->key, {kLeastRate, kMostRate, "strokes a minute"});
+      if (rate && !out_.times.period_by_pitch_s.emplace(*pitch, 60 / *rate).second) {
+        faults_.at_key(*child, "this pitch is given twice");
+      }
     }
   }
 

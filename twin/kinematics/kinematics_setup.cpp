@@ -156,10 +156,20 @@ void find_tool(const HalFacts& hal, MachineKinematics& machine) {
       machine.module, pin));
 }
 
+void tell_quill(MachineKinematics& machine) {
+  const bool simple = machine.types.front().mode == KinematicsMode::kAxes;
+  // corexykins has all nine joints, whether there is a W or not.
+  if (!simple || machine.belts || !machine.chain.is_driven_by(8)) return;
+  machine.notes.push_back(
+      fmt::format("{} does not say what W slides: taken for a quill that carries the tool along Z",
+                  machine.module));
+}
+
 void tell_side(const KinematicsRequest& request, const RotaryPlacement& placement,
                MachineKinematics& machine) {
   const bool open = machine.types.front().mode == KinematicsMode::kAxes &&
                     !machine.is_switchable() && machine.turns();
+  tell_quill(machine);
   if (!open || request.rotary_side) return;
   const Vec3& c = placement.center_mm;
   machine.notes.push_back(

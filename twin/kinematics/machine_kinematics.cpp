@@ -136,9 +136,11 @@ void set_chain(MachineKinematics& machine, Module module, const Geometry& geomet
       return;
     case Module::kBridge:
       machine.chain = bridge_5axis_chain(geometry["pivot-length"]);
+      machine.uvw_by_xyz = true;
       return;
     case Module::kMax:
       machine.chain = max_chain(geometry["pivot-length"]);
+      machine.uvw_by_xyz = true;
       return;
     case Module::kScara:
       machine.chain = scara_chain({geometry["D1"], geometry["D2"], geometry["D3"], geometry["D4"],
@@ -325,6 +327,22 @@ bool MachineKinematics::turns_joint(std::size_t joint) const {
 bool MachineKinematics::turns() const {
   if (is_arm()) return true;
   return chain.is_driven_by(3) || chain.is_driven_by(4) || chain.is_driven_by(5);
+}
+
+bool MachineKinematics::slides_uvw() const {
+  return !is_arm() && (chain.is_driven_by(6) || chain.is_driven_by(7) || chain.is_driven_by(8));
+}
+
+MachineKinematics MachineKinematics::standing() const {
+  MachineKinematics still = *this;
+  std::vector<ChainLink> links = chain.links();
+  for (ChainLink& link : links) {
+    if (link.joint == JointKind::kRotary) link.joint = JointKind::kFixed;
+  }
+  const std::string workpiece = links[chain.workpiece_link()].name;
+  const std::string tool = links[chain.tool_link()].name;
+  still.chain = std::move(KinematicChain::create(std::move(links), workpiece, tool).value());
+  return still;
 }
 
 AxisValues MachineKinematics::axes_of(const AxisValues& joints, int type_number,

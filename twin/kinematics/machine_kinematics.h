@@ -1,4 +1,4 @@
-// twin/kinematics/machine_kinematics.h - what a controller makes of X Y Z A B C: the kinematics
+// twin/kinematics/machine_kinematics.h - what a controller makes of the axes: the kinematics
 // that [KINS]KINEMATICS names, its types, and the chain of links that it moves.
 #pragma once
 
@@ -79,6 +79,11 @@ struct MachineKinematics {
   glm::dmat3 flange_at_rest{1.0};
   std::string arm_turns = "CBA";
   double pivot_length_mm = 0;  ///< from the controlled point up to it; 0: no such pin
+  /// The chain's slides of U, V and W are in the module's mind only (5axiskins, maxkins): their
+  /// joints have no motors, and X Y Z go in their place, so that the tool moves along its own axes.
+  /// W-10 is 10 mm deeper along a tool that leans. False: such slides are there, and what they
+  /// carry moves; where the module follows the tip the tool stays where it is.
+  bool uvw_by_xyz = false;
   /// Length of the tool as the module is told: not given = that of G43, whatever it is (HAL nets
   /// motion.tooloffset.z to it). Matters in kTip alone.
   std::optional<double> told_tool_mm;
@@ -91,6 +96,10 @@ struct MachineKinematics {
   bool is_switchable() const { return types.size() > 1; }
   /// Does any type turn the tool or the workpiece? (Does A, B or C exist?)
   bool turns() const;
+  /// Does U, V or W move the tool, or the workpiece under it?
+  bool slides_uvw() const;
+  /// The same machine while nothing turns: A, B and C stand at 0. Not of robots.
+  MachineKinematics standing() const;
   /// A robot: some type is kArm. Its chain is driven by joints.
   bool is_arm() const;
   /// The joint counts degrees: it turns a link of the chain, or its axis is A, B or C.

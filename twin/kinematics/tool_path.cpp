@@ -17,6 +17,9 @@ constexpr double kStill_mm = 1e-9;
 constexpr double kMostTilt_rad = 2.5;
 /// No piece is shorter, in t: 1000 turns to 5 um at 100 mm need 1e6 of them.
 constexpr double kLeastPiece = 1e-8;
+/// Inputs of a chain behind its slides X Y Z: A B C, and U V W from kFirstSlide on.
+constexpr std::size_t kFirstTurn = 3;
+constexpr std::size_t kFirstSlide = 6;
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -92,6 +95,15 @@ bool moves_tip(const Motion& m) {
   return false;
 }
 
+/// Where X Y Z go in the place of U V W: in the frame that the step has there, against it.
+ToolChain::Step in_place_of(const ToolChain::Step& slide) {
+  return {slide.kind, slide.input, -slide.vector};
+}
+
+bool is_uvw(const ToolChain::Step& step) {
+  return step.kind == ToolChain::Kind::kSlide && step.input >= kFirstSlide;
+}
+
 /// Missing slides (a lathe has no Y) are filled in; false if the rest is not at right angles.
 bool complete_rotation(glm::dmat3& r) {
   for (int i = 0; i < 3; ++i) {
@@ -116,9 +128,9 @@ struct ToolPath::Run {
   Vec3 end_mm{0};           ///< tip in the chain's last frame
   Vec3 axis{0, 0, 1};       ///< spindle in it, before last_turn
   Vec3 shift_mm{0};         ///< of the slides
-  AxisValues from{}, to{};  ///< inputs of what turns
+  AxisValues from{}, to{};  ///< inputs, but for those of X Y Z
   InputBounds bounds;
-  bool turns = false;
+  bool bends = false;        ///< the tip's way is another one than the motion's
   bool single_turn = false;  ///< one joint of them all
 
   Vec3 slides_at(double t) const {
@@ -128,7 +140,7 @@ struct ToolPath::Run {
 
   AxisValues inputs_at(double t) const {
     AxisValues out{};
-    for (std::size_t i = 3; i < 6; ++i) {
+    for (std::size_t i = kFirstTurn; i < kAxisCount; ++i) {
       out[i] = t >= 1 ? to[i] : from[i] + t * (to[i] - from[i]);
     }
     const Vec3 slides = slides_at(t);
@@ -146,7 +158,7 @@ struct ToolPath::Run {
       jet.rate[static_cast<std::size_t>(i)] = rate[i];
       jet.acceleration[static_cast<std::size_t>(i)] = bend[i];
     }
-    for (std::size_t i = 3; i < 6; ++i) jet.rate[i] = to[i] - from[i];
+    for (std::size_t i = kFirstTurn; i < kAxisCount; ++i) jet.rate[i] = to[i] - from[i];
     return jet;
   }
 
@@ -185,17 +197,34 @@ Result<ToolPath> ToolPath::create(MachineKinematics machine, const WorkpieceFram
     path.tracks_.push_back(path.track_of(type));
     for (const ToolChain::Step& step : path.tracks_.back().chain.steps()) {
       const bool turns = step.kind == ToolChain::Kind::kTurn && is_rotary_axis(step.input);
-      if (turns) path.tracks_.back().turned_by[step.input - 3u] = true;
+      if (turns) path.tracks_.back().turned_by[step.input - kFirstTurn] = true;
+      if (is_uvw(step)) path.tracks_.back().slid_by[step.input - kFirstSlide] = true;
     }
     path.tracks_.back().upright_at_zero = path.is_upright_at_zero(path.tracks_.back());
   }
   return path;
 }
 
-/// Where the program's frame lies on the workpiece link when the program's A, B, C are 0.
+/// By how far the tool is aside of X Y Z where the program's A, B, C, U, V, W are 0.
+Vec3 ToolPath::shift_of_offset() const {
+  Pose at;
+  if (!machine_.uvw_by_xyz || frame_.offset_uvw_mm == Vec3(0.0)) return at.origin_mm;
+  const ToolChain whole(machine_.chain, machine_.joint_letters);
+  for (const ToolChain::Step& step : whole.steps()) {
+    if (is_uvw(step)) {
+      const double offset_mm = frame_.offset_uvw_mm[static_cast<int>(step.input - kFirstSlide)];
+      at.origin_mm += at.direction(in_place_of(step).vector) * offset_mm;
+    } else if (step.kind == ToolChain::Kind::kTurn) {
+      at = at * turn(step.vector, frame_.offset_abc_deg[step.input - kFirstTurn]);
+    }
+  }
+  return at.origin_mm;
+}
+
+/// Where the program's frame lies on the workpiece link when the program's A, B, C, U, V, W are 0.
 Result<Pose> ToolPath::place_workpiece() {
   const KinematicsType& type = machine_.type(0);
-  if (type.mode != KinematicsMode::kAxes) return machine_from_workpiece_;
+  if (type.mode != KinematicsMode::kAxes) return shift(shift_of_offset()) * machine_from_workpiece_;
   MachinePosition position;
   const auto place = [&](const Vec3& program) {
     AxisValues axes{program.x,
@@ -203,7 +232,10 @@ Result<Pose> ToolPath::place_workpiece() {
                     program.z,
                     frame_.offset_abc_deg[0],
                     frame_.offset_abc_deg[1],
-                    frame_.offset_abc_deg[2]};
+                    frame_.offset_abc_deg[2],
+                    frame_.offset_uvw_mm.x,
+                    frame_.offset_uvw_mm.y,
+                    frame_.offset_uvw_mm.z};
     for (std::size_t i = 0; i < kAxisCount; ++i) {
       position.axes[i] = type.sign[i] * axes[type.source[i]];
     }
@@ -229,6 +261,7 @@ ToolPath::Track ToolPath::track_of(const KinematicsType& type) const {
   Track track;
   if (type.mode == KinematicsMode::kAxes) {
     track.chain = ToolChain(machine_.chain, machine_.joint_letters);
+    if (machine_.uvw_by_xyz) std::erase_if(track.chain.steps(), is_uvw);
     glm::dmat3 order(0.0);
     for (int i = 0; i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);
@@ -261,8 +294,10 @@ ToolPath::Track ToolPath::track_of(const KinematicsType& type) const {
   } else {
     const ToolChain whole(machine_.chain, machine_.joint_letters);
     for (const ToolChain::Step& step : whole.steps()) {
-      if (step.kind != Kind::kTurn) continue;
-      steps.push_back({step.kind, step.input, work_from_machine * step.vector});
+      const bool slides = machine_.uvw_by_xyz && is_uvw(step);
+      if (step.kind != Kind::kTurn && !slides) continue;
+      const Vec3 vector = slides ? in_place_of(step).vector : step.vector;
+      steps.push_back({step.kind, step.input, work_from_machine * vector});
     }
   }
   track.chain = ToolChain(std::move(steps));
@@ -274,7 +309,8 @@ ToolPath::Track ToolPath::track_of(const KinematicsType& type) const {
   return track;
 }
 
-/// With the program's A, B, C at 0: is the tip where the program says, and the spindle upright?
+/// With the program's A, B, C, U, V, W at 0: is the tip where the program says, and the spindle
+/// upright?
 bool ToolPath::is_upright_at_zero(const Track& track) const {
   Motion probe;
   probe.from_mm = probe.to_mm = {17.0, -29.0, 41.0};
@@ -327,18 +363,22 @@ ToolPath::Run ToolPath::run_of(const Motion& motion) const {
       break;
     }
   }
+  bool slides = false;
   for (std::size_t i = 0; i < 3; ++i) {
-    run.from[3 + i] = motion.from_abc_deg[i] + frame_.offset_abc_deg[i];
-    run.to[3 + i] = motion.to_abc_deg[i] + frame_.offset_abc_deg[i];
+    const auto axis = static_cast<int>(i);
+    run.from[kFirstTurn + i] = motion.from_abc_deg[i] + frame_.offset_abc_deg[i];
+    run.to[kFirstTurn + i] = motion.to_abc_deg[i] + frame_.offset_abc_deg[i];
+    run.from[kFirstSlide + i] = motion.from_uvw_mm[axis] + frame_.offset_uvw_mm[axis];
+    run.to[kFirstSlide + i] = motion.to_uvw_mm[axis] + frame_.offset_uvw_mm[axis];
+    slides |= run.track->slid_by[i] && motion.from_uvw_mm[axis] != motion.to_uvw_mm[axis];
   }
   AxisValues rate{};
-  for (std::size_t i = 3; i < 6; ++i) rate[i] = run.to[i] - run.from[i];
+  for (std::size_t i = kFirstTurn; i < kAxisCount; ++i) rate[i] = run.to[i] - run.from[i];
   const int turning = run.chain.turning_steps(rate);
-  run.turns = turning > 0;
+  run.bends = turning > 0 || (slides && is_arc(motion));
   run.single_turn = turning == 1;
-  if (!run.turns) return run;
-  run.bounds.rate = rate;
-  for (std::size_t i = 3; i < 6; ++i) run.bounds.rate[i] = std::abs(rate[i]);
+  if (!run.bends) return run;
+  for (std::size_t i = kFirstTurn; i < kAxisCount; ++i) run.bounds.rate[i] = std::abs(rate[i]);
   if (is_arc(motion)) {
     const ArcBounds arc = arc_bounds(motion);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -360,6 +400,15 @@ ToolPath::End ToolPath::end_of(const Run& run, double t) {
 
 bool ToolPath::is_upright(const Motion& motion) const {
   const Track& now = track(motion);
+  for (int i = 0; i < 3; ++i) {
+    if (!now.slid_by[static_cast<std::size_t>(i)]) continue;
+    if (motion.to_uvw_mm[i] != 0 || motion.from_uvw_mm[i] != 0) return false;
+  }
+  return stays_upright(motion);
+}
+
+bool ToolPath::stays_upright(const Motion& motion) const {
+  const Track& now = track(motion);
   if (!now.upright_at_zero) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!now.turned_by[i]) continue;
@@ -368,7 +417,7 @@ bool ToolPath::is_upright(const Motion& motion) const {
   return true;
 }
 
-/// Nothing turns: the whole motion is one move, somewhere else.
+/// Nothing bends the way: the whole motion is one move, somewhere else.
 void ToolPath::rigid_move(const Run& run, const Motion& motion, CutMove& move) const {
   const End from = end_of(run, 0);
   const End to = end_of(run, 1);
@@ -434,7 +483,7 @@ void ToolPath::moves_of(const Motion& motion, double reach_mm, std::uint64_t id,
     return;
   }
   const Run run = run_of(motion);
-  if (!run.turns) {
+  if (!run.bends) {
     CutMove move;
     move.id = id;
     rigid_move(run, motion, move);
@@ -491,8 +540,12 @@ AxisValues ToolPath::axes_at(const Motion& motion, double fraction) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const double from = motion.from_abc_deg[i];
     const double to = motion.to_abc_deg[i];
-    axes[3 + i] = (t >= 1 ? to : from + t * (to - from)) + frame_.offset_abc_deg[i];
+    axes[kFirstTurn + i] = (t >= 1 ? to : from + t * (to - from)) + frame_.offset_abc_deg[i];
   }
+  const Vec3 uvw =
+      t >= 1 ? motion.to_uvw_mm : motion.from_uvw_mm + t * (motion.to_uvw_mm - motion.from_uvw_mm);
+  const Vec3 machine_uvw = uvw + frame_.offset_uvw_mm + motion.tool_offset_uvw_mm;
+  for (int i = 0; i < 3; ++i) axes[kFirstSlide + static_cast<std::size_t>(i)] = machine_uvw[i];
   return axes;
 }
 

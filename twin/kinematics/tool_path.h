@@ -39,7 +39,9 @@ struct ToolPathTolerance {
 /// bound on the third), not sampled. Motions on which nothing turns stay one move, bit for bit what
 /// cut_move_from() gives where the spindle is upright, else moved rigidly (arcs stay arcs).
 ///
-/// The tool is as long as the tool length offset in force says. U, V, W count as 0.
+/// The tool is as long as the tool length offset in force says. U, V and W move what the chain has
+/// for them, or the tool along its own axes (MachineKinematics::uvw_by_xyz); the workpiece frame is
+/// that of the program with U, V, W at 0. Axes that the chain does not have count as 0.
 ///
 /// Owns all it needs; const calls from any number of threads.
 class ToolPath {
@@ -52,8 +54,11 @@ class ToolPath {
   const MachineKinematics& machine() const { return machine_; }
   const ToolPathTolerance& tolerance() const { return tolerance_; }
 
-  /// Is the spindle upright along the whole motion, and the motion what cut_move_from() makes of
-  /// it? No other motions need a model for tilted tools.
+  /// Is the spindle upright along the whole motion, and the workpiece as it lay? No other motions
+  /// need a model for tilted tools.
+  bool stays_upright(const Motion& motion) const;
+  /// Stays it upright, and is the motion what cut_move_from() makes of it? Not where U, V or W have
+  /// taken the tool aside.
   bool is_upright(const Motion& motion) const;
 
   /// Appends the moves of a motion that moves the tip, in order; each begins where the one before
@@ -73,9 +78,9 @@ class ToolPath {
   Pose pose_at(const Motion& motion, double fraction) const;
   Vec3 spindle_at(const Motion& motion, double fraction) const;
 
-  /// Machine coordinates commanded there (X Y Z with the tool length offset, A B C with theirs),
-  /// and where the machine stands for it: what axis limits and pictures want. No position of
-  /// robots.
+  /// Machine coordinates commanded there (X Y Z and U V W with the tool length offset, A B C with
+  /// theirs), and where the machine stands for it: what axis limits and pictures want. No position
+  /// of robots.
   AxisValues axes_at(const Motion& motion, double fraction) const;
   std::optional<MachinePosition> machine_at(const Motion& motion, double fraction) const;
   /// Where the workpiece frame lies on the chain's workpiece link, to draw the part on it.
@@ -97,6 +102,7 @@ class ToolPath {
     std::size_t offset_step = 0;  ///< kTip, kArm: step that shifts by what the tool is longer than
                                   ///< the controller is told
     std::array<bool, 3> turned_by{};  ///< A, B, C take part
+    std::array<bool, 3> slid_by{};    ///< U, V, W do
     bool upright_at_zero = false;
   };
   /// A motion's inputs, ready to be evaluated.
@@ -105,6 +111,7 @@ class ToolPath {
 
   ToolPath() = default;
   Result<Pose> place_workpiece();
+  Vec3 shift_of_offset() const;
   Track track_of(const KinematicsType& type) const;
   bool is_upright_at_zero(const Track& track) const;
   const Track& track(const Motion& motion) const;

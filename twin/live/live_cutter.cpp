@@ -55,15 +55,22 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       book_(tools, row_of(stock).can_cut),
       stage_(stock, book_, log, options_.timeline),
       follower_(options_.follow),
+      run_(ToolPathTolerance::of_cell(stock.cell_mm()).tip_mm, options_.follow.lever_mm),
       join_after_s_(kJoin_s) {
   if (program) {
     ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
     adopt_program_frame();
-    if (options_.guard_s > 0 && !options_.beam) {
-      guard_ = std::make_unique<LookAheadGuard>(tools, options_.timeline, options_.guard_s);
+    if (options_.guard_s > 0) {
+      guard_ = std::make_unique<LookAheadGuard>(tools, options_.timeline, options_.guard_s,
+                                                options_.beam, options_.turret);
     }
   }
-  if (options_.beam) stage_.burn(*options_.beam);
+  if (options_.turret) {
+    stage_.punch(options_.turret);
+    strokes_.emplace(options_.turret);
+  } else if (options_.beam) {
+    stage_.burn(*options_.beam);
+  }
   stage_.set_frame(work());
 }
 
@@ -102,13 +109,15 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
     place_.missing_axes = frame_.missing_axes(sample);
     return std::nullopt;
   }
-  if (!pose->length_known) note_length(frame_.tool_of(sample), t_s);
+  // A punch has no length that could matter.
+  if (!pose->length_known && !options_.turret) note_length(frame_.tool_of(sample), t_s);
   if (!options_.frame.workpiece_frame) note_limits(pose->machine_mm, t_s);
   place_.machine_mm = pose->machine_mm;
   place_.spindle_rpm = sample.spindle_rpm;
   Sighting now;
-  now.place = {pose->tip_mm, pose->abc_deg, pose->along_tool};
+  now.place = {pose->tip_mm, pose->abc_deg, pose->along_tool, pose->uvw_mm};
   now.abc_known = pose->abc_known;
+  now.uvw_known = pose->uvw_known;
   now.t_s = t_s;
   now.tool_length_mm = pose->tool_length_mm;
   now.sample = sample;
@@ -122,12 +131,13 @@ FollowedPlace LiveCutter::place_of(const Sighting& now, double elapsed_s) const 
   FollowedPlace place;
   place.here = now.place;
   place.abc_known = now.abc_known;
+  place.uvw_known = now.uvw_known;
   const AxisSample& sample = now.sample;
   place.machine = switched_machine();
   if (place.machine) {
     for (std::size_t i = 0; i < place.machine->types.size(); ++i) {
       const auto pose = frame_.pose_of(sample, assumed_length_mm(), static_cast<int>(i));
-      place.by_type[i] = {pose->tip_mm, pose->abc_deg, pose->along_tool};
+      place.by_type[i] = {pose->tip_mm, pose->abc_deg, pose->along_tool, pose->uvw_mm};
     }
   }
   const ToolLengthFrom from = options_.frame.tool_length;
@@ -148,8 +158,8 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
   ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
                      options_.wait_for_program);
   const FollowedPlace place = place_of(now, elapsed_s);
-  const PathFollower::Drive drive = [this](const Motion& motion, double duration_s) {
-    driven_.emplace_back(motion, duration_s);
+  const PathFollower::Drive drive = [this](const PathFollower::DrivenPart& part) {
+    driven_.push_back(part);
   };
   point = follower_.follow(place, drive);
   if (!point.on_path && !follower_.found() && lost_sight_s_ >= join_after_s_ && join(place)) {
@@ -164,7 +174,8 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
     now.place.tip_mm -= point.tool_length_mm * now.place.along_tool;
   }
   check_passed(follower_.program_s());
-  ahead_->forget_before(follower_.program_s());
+  // Strokes hang on motions that do not move, too: punch() forgets them.
+  if (!options_.turret) ahead_->forget_before(follower_.program_s());
   return point;
 }
 
@@ -181,10 +192,11 @@ void LiveCutter::check_passed(double until_s) {
 
 /// The machine stands where it stood, in other numbers. `without_length`: FollowedPlace's.
 void LiveCutter::take_kinematics(int type, bool without_length, Sighting& now) {
+  cut_run();
   kinematics_type_ = type;
   const auto again = [&](Sighting& at) {
     const auto pose = frame_.pose_of(at.sample, assumed_length_mm(), type);
-    at.place = {pose->tip_mm, pose->abc_deg, pose->along_tool};
+    at.place = {pose->tip_mm, pose->abc_deg, pose->along_tool, pose->uvw_mm};
   };
   again(now);
   if (!before_) return;
@@ -197,12 +209,13 @@ void LiveCutter::take_kinematics(int type, bool without_length, Sighting& now) {
 
 /// Where the tool is, with all that has turned.
 Pose LiveCutter::pose_in_workpiece(const Sighting& at) const {
-  const ToolPath* const path = stage_.machine_path();
-  if (!path || !stock_.takes_tilted_tools()) return shift(at.place.tip_mm);
+  const ToolPath* const path = stage_.model_path();
+  if (!path) return shift(at.place.tip_mm);
   Motion here;
   here.start_known = false;
   here.to_mm = at.place.tip_mm;
   here.to_abc_deg = here.from_abc_deg = at.place.abc_deg;
+  here.to_uvw_mm = here.from_uvw_mm = at.place.uvw_mm;
   here.tool_offset_mm = {0, 0, at.tool_length_mm};
   set_type(path->machine(), kinematics_type_, here);
   return path->pose_at(here, 1);
@@ -241,8 +254,9 @@ std::optional<std::uint64_t> LiveCutter::motion_at(const FollowedPlace& place) c
                             m.source.line == static_cast<std::uint32_t>(place.line) &&
                             (m.kind == MotionKind::kTraverse || is_feed(m));
           const ProgramPlace at = here ? place_on(m, place) : ProgramPlace{};
-          const TurnedAxes turned{at.abc_deg, place.abc_known, options_.follow.lever_mm};
-          const bool turns = m.from_abc_deg != m.to_abc_deg;
+          const TurnedAxes turned{at.abc_deg, place.abc_known, options_.follow.lever_mm, at.uvw_mm,
+                                  place.uvw_known};
+          const bool turns = m.from_abc_deg != m.to_abc_deg || m.from_uvw_mm != m.to_uvw_mm;
           if (here && nearest_on(m, at.tip_mm, turns ? turned : TurnedAxes{}, 0).distance_mm <=
                           options_.follow.tolerance_mm) {
             found = number;
@@ -258,6 +272,7 @@ std::optional<std::uint64_t> LiveCutter::motion_at(const FollowedPlace& place) c
 
 /// Without a word.
 void LiveCutter::cut_before(std::uint64_t motion) {
+  cut_run();
   stage_.hold_reports();
   double begin_s = 0;
   while (ahead_->forgotten() + ahead_->motions().size() <= motion) {
@@ -277,8 +292,9 @@ void LiveCutter::cut_before(std::uint64_t motion) {
 
 /// The first `count` motions that have been planned, as the program has them.
 void LiveCutter::cut_planned(std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) cut(ahead_->motions()[i].motion, 0);
+  for (std::size_t i = 0; i < count; ++i) cut_now(ahead_->motions()[i].motion, 0, t_s_);
   ahead_->forget(count);
+  punched_ = ahead_->forgotten();
 }
 
 /// As far as the tip has gone on the part, or what the axes have turned at the lever.
@@ -324,22 +340,40 @@ bool LiveCutter::near_stock(const Vec3& from_mm, const Vec3& to_mm, double radiu
          way.max.y + radius_mm > blank.min.y;
 }
 
-void LiveCutter::cut(const Motion& motion, double duration_s) {
+/// Together with the ways before and behind it, where a move costs much however short it is. When
+/// that is cut depends on the samples alone, or a workpiece would depend on who looks at it when.
+void LiveCutter::cut(const Motion& motion, DrivenRun::Way way, double duration_s) {
+  if (!stock_.takes_tilted_tools()) return cut_now(motion, duration_s, t_s_);
+  const double begin_s = t_s_ - duration_s;
+  if (!run_.add(motion, way, duration_s, begin_s)) {
+    cut_run();
+    run_.add(motion, way, duration_s, begin_s);
+  }
+  if (run_.is_long(t_s_)) cut_run();
+}
+
+void LiveCutter::cut_run() {
+  if (const auto run = run_.take()) cut_now(run->motion, run->duration_s, run->t_s);
+}
+
+void LiveCutter::cut_now(const Motion& motion, double duration_s, double t_s) {
   TimedStep step;
-  step.start_s = t_s_;
+  step.start_s = t_s;
   step.duration_s = duration_s;
   step.length_mm = path_length_mm(motion);
   step.programmed_mm_per_min = duration_s > 0 ? 60 * step.length_mm / duration_s : 0;
   step.allowed_mm_per_min = step.programmed_mm_per_min;
-  TorchStage* const torch = stage_.torch();
-  if (torch && ahead_ && ahead_->take_materials(materials_)) torch->set_materials(materials_);
+  if (stage_.torch() && ahead_ && ahead_->take_materials(materials_)) {
+    stage_.set_materials(materials_);
+  }
   stage_.take_timed(motion, step);
 }
 
 /// The way from where the cutter is to where the tool is: see LivePlace.
 void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double duration_s,
                            bool off_path) {
-  const double length_mm = glm::length(now.place.tip_mm - from.tip_mm);
+  const double length_mm = std::max(glm::length(now.place.tip_mm - from.tip_mm),
+                                    glm::length(now.place.uvw_mm - from.uvw_mm));
   const bool turns = stock_.takes_tilted_tools() && from.abc_deg != now.place.abc_deg;
   if (length_mm < kStill_mm && !turns) return;
   Motion motion;
@@ -356,6 +390,8 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   // A model of upright tools is not asked about turns: note_turn() has told.
   motion.from_abc_deg = turns ? from.abc_deg : now.place.abc_deg;
   motion.to_abc_deg = now.place.abc_deg;
+  motion.from_uvw_mm = from.uvw_mm;
+  motion.to_uvw_mm = now.place.uvw_mm;
   if (const ToolPath* const path = stage_.machine_path()) {
     set_type(path->machine(), kinematics_type_, motion);
   }
@@ -370,7 +406,7 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   // Jogging in the air needs no tool that is known.
   if (stage_.is_upright(motion) && !near_stock(from.tip_mm, now.place.tip_mm, radius_mm)) return;
   note_unseen_beam(now);
-  cut(motion, duration_s);
+  cut(motion, DrivenRun::Way::kStraight, duration_s);
   // The workpiece is no longer what the program makes of it.
   guard_stale_ |= off_path;
 }
@@ -380,9 +416,9 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
 /// between two samples, at places that only the program knows.
 void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, double duration_s) {
   double planned_s = 0;
-  for (const auto& [motion, share_s] : driven_) planned_s += share_s;
+  for (const PathFollower::DrivenPart& part : driven_) planned_s += part.duration_s;
   const bool spindle_told = !std::isnan(sample_.spindle_rpm);
-  for (auto& [motion, share_s] : driven_) {
+  for (auto& [motion, share_s, of_same_piece] : driven_) {
     if (sample_.tool >= 0) motion.tool = sample_.tool;
     if (spindle_told && !options_.beam) motion.spindle = spindle();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -391,8 +427,14 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
       if (point.turned[i] || !now.abc_known[i] || !elsewhere) continue;
       motion.from_abc_deg[i] = motion.to_abc_deg[i] = stands_deg;
     }
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      if (point.slid[axis] || !now.uvw_known[axis]) continue;
+      motion.from_uvw_mm[i] = motion.to_uvw_mm[i] = now.place.uvw_mm[i];
+    }
     facts_.path_mm += path_length_mm(motion);
-    cut(motion, planned_s > 0 ? duration_s * share_s / planned_s : 0);
+    cut(motion, of_same_piece ? DrivenRun::Way::kNextPart : DrivenRun::Way::kPart,
+        planned_s > 0 ? duration_s * share_s / planned_s : 0);
   }
 }
 
@@ -401,6 +443,8 @@ ProgramPlace LiveCutter::place_on_path(const Sighting& now, const FollowedPoint&
   ProgramPlace place = point.place;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!point.turned[i] && now.abc_known[i]) place.abc_deg[i] = now.place.abc_deg[i];
+    const auto axis = static_cast<int>(i);
+    if (!point.slid[i] && now.uvw_known[i]) place.uvw_mm[axis] = now.place.uvw_mm[axis];
   }
   return place;
 }
@@ -409,6 +453,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   ++facts_.samples;
   sample_ = sample;
   t_s_ = t_s;
+  if (run_.is_long(t_s_)) cut_run();
   std::optional<Sighting> seen = see(sample, t_s);
   if (!seen) return;
   Sighting& now = *seen;
@@ -428,6 +473,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     place_.spindle = now.pose.direction(path->machine().nose_from_tip);
   }
   place_.abc_deg = now.place.abc_deg;
+  place_.uvw_mm = now.place.uvw_mm;
   place_.tool = now.tool >= 0 ? now.tool : point.on_path ? point.tool : program_tool_;
   place_.followed = point.on_path;
   place_.distance_mm = point.distance_mm;
@@ -440,13 +486,14 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     facts_.following_sum_mm += point.distance_mm;
   }
   double driven_mm = 0;
-  for (const auto& [motion, share_s] : driven_) driven_mm += path_length_mm(motion);
-  note_turn(now);
+  for (const PathFollower::DrivenPart& part : driven_) driven_mm += path_length_mm(part.motion);
+  if (!options_.turret) note_turn(now);  // what turns there is the punch
   note_unseen_axes(now);
   note_tool(now, point, driven_mm);
   note_off_path(now, point);
   place_.off_path = off_path_event_.has_value();
   const bool first = !before_;
+  bool way_seen = false;  ///< from the sample before
   if (before_) {
     // A machine that stands while its tool length changes: the new tip is elsewhere, and has moved
     // through nothing.
@@ -458,8 +505,12 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     was_fast_ = too_fast(*before_, now);
     period_s_ += kPeriodShare * (std::min(elapsed_s, options_.gap_s) - period_s_);
     if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump);
-    if (gap != Break::kNone && options_.gap != GapPolicy::kCut) {
+    way_seen = gap == Break::kNone || options_.gap == GapPolicy::kCut;
+    if (!way_seen) {
       guard_stale_ = true;
+    } else if (options_.turret) {
+      (point.on_path && was_on_path_ ? facts_.path_mm : facts_.chord_mm) +=
+          glm::length(now.place.tip_mm - before_->place.tip_mm);
     } else if (point.on_path && was_on_path_) {
       cut_path(now, point, elapsed_s);
     } else {
@@ -468,6 +519,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
       cut_chord(cut_to_, to, elapsed_s, true);
     }
   }
+  if (options_.turret) punch(now, point, way_seen);
   cut_to_ = point.on_path ? place_on_path(now, point) : now.place;
   was_on_path_ = point.on_path;
   before_ = now;
@@ -477,12 +529,18 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
 void LiveCutter::look() {
   stage_.complete();
   if (!guard_ || !follower_.found() || follower_.passed_all()) return;
-  if (std::exchange(guard_stale_, false)) guard_->restart(stock_, work());
+  if (std::exchange(guard_stale_, false)) guard_->restart(stock_, stage_, work());
+  if (stage_.torch()) {
+    if (ahead_->take_materials(materials_)) stage_.set_materials(materials_);
+    guard_->set_materials(materials_);
+  }
   guard_->look(*ahead_, follower_.program_s(), program_tool_, place_.tool, warnings_);
 }
 
 void LiveCutter::finish() {
+  cut_run();
   if (ahead_) check_passed(std::numeric_limits<double>::infinity());
+  if (ahead_ && options_.turret) punch_rest();
   stage_.finish(false);
   if (ahead_) ahead_->stop();
 }

@@ -16,12 +16,15 @@
 #include "twin/beam_settings.h"
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
+#include "twin/live/driven_run.h"
 #include "twin/live/live_facts.h"
 #include "twin/live/live_frame.h"
 #include "twin/live/look_ahead_guard.h"
 #include "twin/live/path_follower.h"
 #include "twin/live/program_ahead.h"
+#include "twin/live/seen_strokes.h"
 #include "twin/tools.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -49,8 +52,13 @@ struct LiveCutOptions {
   bool wait_for_program = false;  ///< a log waits for the interpreter, a machine does not
   /// Of a sheet; such a workpiece needs it. On the path of a program the beam is on where the
   /// program has it on. Elsewhere it is on while the spindle turns, as the source tells it: M3 of
-  /// cutting tables. Where nothing tells it, it is off. There is no look-ahead.
+  /// cutting tables. Where nothing tells it, it is off.
   std::optional<BeamSettings> beam;
+  /// Of a sheet that is punched, instead. On the path of a program the strokes are the program's,
+  /// at its places; each counts as soon as the machine goes on from there, those of a nibbled move
+  /// when it is done. Elsewhere they are as the source shows them (SeenStrokes), where the machine
+  /// is.
+  TurretPointer turret;
 };
 
 /// The machine now.
@@ -67,7 +75,8 @@ struct LivePlace {
   Vec3 spindle{0, 0, 1};            ///< there, from the tip to the nose
   Vec3 machine_mm{0};               ///< X Y Z as the machine has them
   std::array<double, 3> abc_deg{};  ///< as the program has them
-  double spindle_rpm = 0;           ///< signed; NaN: not known
+  Vec3 uvw_mm{0};
+  double spindle_rpm = 0;  ///< signed; NaN: not known
   int tool = -1;
   bool followed = false;     ///< there is a program, and the tip is on its path
   bool off_path = false;     ///< it should be, and is not
@@ -78,7 +87,8 @@ struct LivePlace {
 };
 
 /// One thread. Deterministic: the same samples with the same times give the same workpiece, as
-/// long as the program is waited for.
+/// long as the program is waited for. In a model that takes tilted tools a way is cut when it has
+/// lasted for DrivenRun::kLongest_s, ends or turns off; in others at once.
 class LiveCutter {
  public:
   /// `program` may be null. The references must outlive the cutter.
@@ -90,10 +100,11 @@ class LiveCutter {
   /// The next sample, `t_s` after the first by one clock. `lost`: others are known to be missing
   /// before it.
   void take(const AxisSample& sample, double t_s, bool lost);
-  /// The workpiece is up to date with the samples, and the program ahead has been looked at.
+  /// The workpiece is up to date with the samples but for a way that is still short, and the
+  /// program ahead has been looked at.
   void look();
-  /// The workpiece's snapshots are up to date with the samples. When it is called makes no
-  /// difference to the workpiece in the end, as that of look() does.
+  /// So are the workpiece's snapshots. When it or look() is called makes no difference to the
+  /// workpiece in the end.
   void hand_over() { stage_.hand_over(); }
   void finish();
 
@@ -114,6 +125,7 @@ class LiveCutter {
     double tool_length_mm = 0;
     int tool = -1;
     std::array<bool, 3> abc_known{};
+    std::array<bool, 3> uvw_known{};
     AxisSample sample;
   };
   void adopt_program_frame();
@@ -147,8 +159,17 @@ class LiveCutter {
   void note_off_path(const Sighting& now, const FollowedPoint& point);
   void cut_chord(const ProgramPlace& from, const Sighting& now, double duration_s, bool off_path);
   void cut_path(const Sighting& now, const FollowedPoint& point, double duration_s);
-  void cut(const Motion& motion, double duration_s);
+  void cut(const Motion& motion, DrivenRun::Way way, double duration_s);
+  void cut_run();
+  void cut_now(const Motion& motion, double duration_s, double t_s);
   SpindleState spindle() const;
+  void punch(const Sighting& now, const FollowedPoint& point, bool seen);
+  void punch_program(const FollowedPoint& point, bool along);
+  void punch_motion(Motion motion, double share, bool seen);
+  std::uint64_t seen_from(const FollowedPoint& point) const;
+  void punch_seen_part();
+  void punch_rest();
+  void note_unseen_trigger(const Sighting& now);
 
   StockModel& stock_;
   FindingLog& log_;
@@ -169,7 +190,8 @@ class LiveCutter {
   bool was_on_path_ = false;
   double period_s_ = 0;    ///< usual time between samples
   bool was_fast_ = false;  ///< between the last two samples, faster than the machine can be
-  std::vector<std::pair<Motion, double>> driven_;  ///< along the path since the sample before
+  std::vector<PathFollower::DrivenPart> driven_;  ///< along the path since the sample before
+  DrivenRun run_;                                 ///< not yet cut
   double t_s_ = 0;
   LiveFacts facts_;
   LivePlace place_;
@@ -179,14 +201,19 @@ class LiveCutter {
   std::optional<std::array<double, 3>> first_abc_deg_;
   bool turn_told_ = false;
   bool unseen_told_ = false;
-  bool beam_told_ = false;
+  bool beam_told_ = false;  ///< or that of the trigger
   std::vector<TorchMaterial> materials_;
   int length_told_ = 0;  ///< tool whose length is not known
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
   int program_tool_ = -1;    ///< where the machine was last on the path
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
-  double join_after_s_;      ///< lost_sight_s_ at which the whole program is searched
+  std::optional<SeenStrokes> strokes_;
+  std::uint64_t punched_ = 0;   ///< motions of the program that have been; the next is under way
+  double seen_share_ = 0;       ///< of that one, since strokes of it were last cut
+  int real_tool_ = -1;          ///< in the spindle, when the machine was last between two places ..
+  int real_program_tool_ = -1;  ///< .. where the program has this one
+  double join_after_s_;         ///< lost_sight_s_ at which the whole program is searched
 };
 
 }  // namespace kerf

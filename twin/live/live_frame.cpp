@@ -9,7 +9,6 @@ namespace kerf {
 namespace {
 
 constexpr unsigned kTipAxes = 0b111;
-constexpr unsigned kTurningAxes = 0b111000;
 
 unsigned bit(std::size_t index) { return 1U << index; }
 
@@ -43,7 +42,9 @@ unsigned needed_joints(const MachineKinematics& machine) {
     // Of several joints on one axis the first counts.
     if (machine.joint_letters.find(letter) != i) continue;
     const bool slides = (bit(axis) & kTipAxes) != 0;
-    if (slides || (follows && machine.chain.is_driven_by(axis))) needed |= bit(i);
+    // A machine whose U, V, W have no motors may have no joints for them either.
+    const bool in_mind = machine.uvw_by_xyz && axis >= 6;
+    if (slides || (follows && !in_mind && machine.chain.is_driven_by(axis))) needed |= bit(i);
   }
   return needed;
 }
@@ -75,7 +76,9 @@ LiveFrame::Axes LiveFrame::axes_of(const AxisSample& sample, int type, double to
     if ((known & needed) == needed) out.known = kTipAxes;
     for (std::size_t i = 0; i < machine->joint_letters.size(); ++i) {
       const std::size_t axis = axis_of(machine->joint_letters[i]);
-      if ((bit(axis) & kTurningAxes) != 0 && (known & bit(i)) != 0) out.known |= bit(axis);
+      if (axis < kAxisCount && (bit(axis) & kTipAxes) == 0 && (known & bit(i)) != 0) {
+        out.known |= bit(axis);
+      }
     }
     return out;
   }
@@ -157,6 +160,8 @@ std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
   for (std::size_t i = 0; i < 3; ++i) {
     pose.abc_deg[i] = axes.value[3 + i];
     pose.abc_known[i] = (axes.known & bit(3 + i)) != 0;
+    pose.uvw_mm[static_cast<int>(i)] = axes.value[6 + i];
+    pose.uvw_known[i] = (axes.known & bit(6 + i)) != 0;
   }
   if (options_.workpiece_frame) {
     pose.tip_mm = pose.machine_mm;
@@ -168,7 +173,11 @@ std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
     const double longer_mm = pose.tool_length_mm + 1;
     pose.along_tool = pose.tip_mm - tip_of(axes_of(sample, type, longer_mm), longer_mm);
   }
-  for (std::size_t i = 0; i < 3; ++i) pose.abc_deg[i] -= options_.work.offset_abc_deg[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    pose.abc_deg[i] -= options_.work.offset_abc_deg[i];
+    const auto axis = static_cast<int>(i);
+    if (pose.uvw_known[i]) pose.uvw_mm[axis] -= options_.work.offset_uvw_mm[axis];
+  }
   return pose;
 }
 

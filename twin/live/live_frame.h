@@ -54,6 +54,8 @@ struct LivePose {
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};  ///< of kArm roll, pitch and yaw, in -180 .. 180
   std::array<bool, 3> abc_known{};  ///< false: no position of that axis has come, 0 is assumed
+  Vec3 uvw_mm{0};                   ///< Motion::to_uvw_mm; a tool's offset in them is not known
+  std::array<bool, 3> uvw_known{};  ///< false: none has come, 0 is assumed
   /// tip_mm of a tool that is 1 mm longer is tip_mm less this: (0, 0, 1), but where the controller
   /// follows the tip of a tool whose length it is told.
   Vec3 along_tool{0, 0, 1};

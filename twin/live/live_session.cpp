@@ -110,6 +110,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   } else if (program_ && !find_comment_blank(*program_, program.path, found, diagnostics)) {
     return false;
   }
+  if (options_.turret && !can_be_punched(found.blank, diagnostics, outcome)) return false;
   Survey survey;
   survey.guesses = !found.blank;
   if (!survey_program(tools, survey, diagnostics)) return false;
@@ -130,22 +131,33 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
       return Program::open(again, ignored);
     };
   }
-  if (as_sheet(*stock_)) {
-    options_.cutting.beam = beam_settings(options_.beam, program_ && program_->is_qtplasmac());
-    if (!program_) options_.cutting.beam->trigger = BeamTrigger();
-    if (!program_ && options_.beam.trigger) {
-      Diagnostic note = general_error(
-          "--beam: without a program (--program) the beam is on while the source's spindle turns, "
-          "whatever the trigger");
-      note.severity = Severity::kWarning;
-      diagnostics.push_back(std::move(note));
-    }
-  }
+  if (as_sheet(*stock_)) choose_trade(diagnostics);
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
   cutter_ = std::make_unique<LiveCutter>(*stock_, tools, report_.findings, options_.cutting,
                                          std::move(program_));
   return true;
+}
+
+/// Of a sheet: it is punched, or cut by a beam.
+void LiveSession::choose_trade(Diagnostics& diagnostics) {
+  LiveCutOptions& cutting = options_.cutting;
+  const auto warn = [&](std::string message) {
+    Diagnostic note = general_error(std::move(message));
+    note.severity = Severity::kWarning;
+    diagnostics.push_back(std::move(note));
+  };
+  cutting.turret = options_.turret;
+  if (!options_.turret) {
+    cutting.beam = beam_settings(options_.beam, program_ && program_->is_qtplasmac());
+    if (!program_) cutting.beam->trigger = BeamTrigger();
+    if (!program_ && options_.beam.trigger) {
+      warn(
+          "--beam: without a program (--program) the beam is on while the source's spindle turns, "
+          "whatever the trigger");
+    }
+  }
+  cutting.timeline.holds = holds_of(cutting.turret, cutting.beam);
 }
 
 void LiveSession::keep_cut_ids() {
@@ -285,8 +297,13 @@ void LiveSession::measure_program(std::stop_token stop) {
   TimelineOptions timing = options_.cutting.timeline;
   timing.planner.with_path = false;
   Timeline timeline(timing, sink);
+  std::size_t materials = 0;
   program->run(
       [&](std::span<const Motion> motions) {
+        if (program->materials().size() != materials) {
+          materials = program->materials().size();
+          timeline.set_materials(program->materials());
+        }
         for (const Motion& m : motions) timeline.push(m);
         return true;
       },
@@ -523,6 +540,9 @@ void LiveSession::conclude(bool stopped) {
   report_.stock = stock_report(*stock_, stock_facts_);
   if (const TorchStage* const torch = cutter_->stage().torch()) {
     report_.sheet = sheet_report(*as_sheet(*stock_), *torch, options_.beam.density_kg_per_m3);
+  }
+  if (const PunchStage* const punch = cutter_->stage().punch()) {
+    report_.sheet = sheet_report(*as_sheet(*stock_), *punch, options_.beam.density_kg_per_m3);
   }
   report_.timing.total_s = seconds(Clock::now() - start_);
   report_.peak_rss_mb = peak_rss_mb();

@@ -50,6 +50,7 @@ struct LiveOptions {
   /// For a sheet. Without a program there is nothing to look for the trigger in, and a warning says
   /// so (LiveCutOptions::beam).
   BeamOptions beam;
+  TurretPointer turret;  ///< for a sheet that is punched, instead
   LiveCutOptions cutting;
   double stale_after_s = 0.5;
   double lost_after_s = 2.0;
@@ -150,6 +151,7 @@ class LiveSession {
   /// What the program is found to need before it is followed.
   struct Survey;
   bool survey_program(const ToolSources& tools, Survey& survey, Diagnostics& diagnostics);
+  void choose_trade(Diagnostics& diagnostics);
   bool guess_blank(const Survey& survey, Diagnostics& diagnostics, Outcome& outcome);
   std::string need_of_tilt(const Survey& survey) const;
   void read_source(std::stop_token stop);

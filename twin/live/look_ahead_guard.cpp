@@ -13,20 +13,37 @@ constexpr double kSameEvent_s = 1.0;
 
 }  // namespace
 
-LookAheadGuard::LookAheadGuard(ToolSources tools, TimelineOptions timeline, double horizon_s)
-    : tools_(std::move(tools)), timeline_(std::move(timeline)), horizon_s_(horizon_s) {}
+LookAheadGuard::LookAheadGuard(ToolSources tools, TimelineOptions timeline, double horizon_s,
+                               std::optional<BeamSettings> beam, TurretPointer turret)
+    : tools_(std::move(tools)),
+      timeline_(std::move(timeline)),
+      horizon_s_(horizon_s),
+      beam_(std::move(beam)),
+      turret_(std::move(turret)) {}
 
 LookAheadGuard::~LookAheadGuard() = default;
 
-void LookAheadGuard::restart(const StockModel& stock, const WorkpieceFrame& frame) {
+void LookAheadGuard::restart(const StockModel& stock, const CutStage& stage,
+                             const WorkpieceFrame& frame) {
   stage_.reset();
   stock_ = stock.snapshot();
   book_ = std::make_unique<ToolBook>(tools_, row_of(stock).can_cut);
   log_ = std::make_unique<FindingLog>();
   stage_ = std::make_unique<CutStage>(*stock_, *book_, *log_, timeline_);
+  if (turret_) {
+    stage_->punch(turret_);
+  } else if (beam_) {
+    stage_->burn(*beam_);
+  }
+  stage_->go_on_from(stage);
   stage_->set_frame(frame);
   begun_ = finished_ = false;
   collected_ = 0;
+}
+
+void LookAheadGuard::set_materials(std::span<const TorchMaterial> materials) {
+  if (beam_) beam_->materials.assign(materials.begin(), materials.end());
+  if (stage_) stage_->set_materials(materials);
 }
 
 void LookAheadGuard::look(const ProgramAhead& program, double now_s, int program_tool,
@@ -61,7 +78,9 @@ void LookAheadGuard::look(const ProgramAhead& program, double now_s, int program
 void LookAheadGuard::collect(double now_s, std::vector<AheadWarning>& out) {
   for (; collected_ < log_->kept().size(); ++collected_) {
     const Finding& finding = log_->kept()[collected_];
-    if (finding.severity != Severity::kError) continue;
+    // A head that meets a part which has tipped is a collision, as far as anybody can tell.
+    const bool hits = finding.severity == Severity::kError || finding.id == FindingId::kCrossesPart;
+    if (!hits) continue;
     const auto place = static_cast<std::uint64_t>(finding.source.file) << 32 | finding.source.line;
     const double at_s = base_s_ + finding.time_s.value_or(now_s - base_s_);
     const auto [told, first] = told_.insert({{static_cast<int>(finding.id), place}, at_s});

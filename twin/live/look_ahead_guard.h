@@ -5,14 +5,18 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "twin/beam_settings.h"
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
 #include "twin/live/program_ahead.h"
 #include "twin/tools.h"
+#include "twin/turret.h"
 
 namespace kerf {
 
@@ -27,12 +31,15 @@ struct AheadWarning {
 /// the copy only needs what comes next; when it has done something else, the owner calls restart().
 class LookAheadGuard {
  public:
-  /// `horizon_s`: how far it looks.
-  LookAheadGuard(ToolSources tools, TimelineOptions timeline, double horizon_s);
+  /// `horizon_s`: how far it looks. `beam`, `turret`: of a sheet, as LiveCutOptions has them.
+  LookAheadGuard(ToolSources tools, TimelineOptions timeline, double horizon_s,
+                 std::optional<BeamSettings> beam = {}, TurretPointer turret = {});
   ~LookAheadGuard();
 
-  /// Begins anew from the workpiece as it is.
-  void restart(const StockModel& stock, const WorkpieceFrame& frame);
+  /// Begins anew from the workpiece as it is. `stage`: what has cut it.
+  void restart(const StockModel& stock, const CutStage& stage, const WorkpieceFrame& frame);
+  /// Of a torch program, all that the motions name so far.
+  void set_materials(std::span<const TorchMaterial> materials);
   bool started() const { return stage_ != nullptr; }
 
   /// Brings the copy to `now_s` + horizon of program time, and appends what it would bring;
@@ -49,6 +56,8 @@ class LookAheadGuard {
   ToolSources tools_;
   TimelineOptions timeline_;
   double horizon_s_;
+  std::optional<BeamSettings> beam_;
+  TurretPointer turret_;
   std::unique_ptr<StockModel> stock_;
   std::unique_ptr<ToolBook> book_;
   std::unique_ptr<FindingLog> log_;

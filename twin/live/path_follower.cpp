@@ -62,12 +62,16 @@ void PathFollower::begin_at(double program_s) {
 void PathFollower::append(const Motion& motion, const TimedStep& timed,
                           std::span<const PathPiece> path) {
   end_s_ = timed.start_s + timed.duration_s;
+  ++appended_;
   if (!moves(motion) || !motion.start_known) return;
-  const bool turns = motion.from_abc_deg != motion.to_abc_deg;
+  const bool turns =
+      motion.from_abc_deg != motion.to_abc_deg || motion.from_uvw_mm != motion.to_uvw_mm;
   for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<int>(i);
+    slid_[i] = slid_[i] || motion.from_uvw_mm[axis] != motion.to_uvw_mm[axis];
     turned_[i] = turned_[i] || motion.from_abc_deg[i] != motion.to_abc_deg[i];
   }
-  // Where something turns the planned path is the motion itself.
+  // Where something turns, or U, V, W move, the planned path is the motion itself.
   if (path.empty() || turns) {
     const bool is_arc = motion.kind == MotionKind::kArc && motion.arc.sweep_rad != 0;
     if (motion.from_mm == motion.to_mm && !turns && !is_arc) return;
@@ -83,7 +87,7 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
 }
 
 void PathFollower::add(const Motion& motion, double start_s, double duration_s) {
-  pieces_.push_back({motion, start_s, duration_s, moved_s_, turned_});
+  pieces_.push_back({motion, start_s, duration_s, moved_s_, appended_ - 1, turned_, slid_});
   moved_s_ += duration_s;
 }
 
@@ -99,8 +103,11 @@ bool PathFollower::passed_all() const {
 PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place,
                                     double from_t) const {
   const ProgramPlace here = place_on(piece.motion, place);
-  TurnedAxes turned{here.abc_deg, place.abc_known, options_.lever_mm};
-  for (std::size_t i = 0; i < 3; ++i) turned.counts[i] = turned.counts[i] && piece.turned[i];
+  TurnedAxes turned{here.abc_deg, place.abc_known, options_.lever_mm, here.uvw_mm, place.uvw_known};
+  for (std::size_t i = 0; i < 3; ++i) {
+    turned.counts[i] = turned.counts[i] && piece.turned[i];
+    turned.uvw_counts[i] = turned.uvw_counts[i] && piece.slid[i];
+  }
   return nearest_on(piece.motion, here.tip_mm, turned, from_t);
 }
 
@@ -151,12 +158,12 @@ std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace&
 void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   for (std::size_t i = 0; i < to.piece; ++i) {
     const Piece& piece = pieces_.front();
-    if (t_ < 1) drive(part_of(piece.motion, t_, 1), (1 - t_) * piece.duration_s);
+    if (t_ < 1) drive({part_of(piece.motion, t_, 1), (1 - t_) * piece.duration_s, t_ > 0});
     pieces_.pop_front();
     t_ = 0;
   }
   const Piece& piece = pieces_.front();
-  if (to.t > t_) drive(part_of(piece.motion, t_, to.t), (to.t - t_) * piece.duration_s);
+  if (to.t > t_) drive({part_of(piece.motion, t_, to.t), (to.t - t_) * piece.duration_s, t_ > 0});
   t_ = to.t;
 }
 
@@ -188,12 +195,17 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
     point.place.abc_deg[i] = at->t >= 1 ? to : from + at->t * (to - from);
   }
   point.place.along_tool = place_on(piece.motion, place).along_tool;
+  point.place.uvw_mm =
+      piece.motion.from_uvw_mm + at->t * (piece.motion.to_uvw_mm - piece.motion.from_uvw_mm);
   point.turned = piece.turned;
+  point.slid = piece.slid;
   if (place.machine) point.kinematics_type = place.machine->type_of(piece.motion);
   point.source = piece.motion.source;
   point.tool = piece.motion.tool;
   point.tool_length_mm = piece.motion.tool_offset_mm.z;
   point.program_s = piece.time_at(at->t);
+  point.motion = piece.number;
+  point.share = at->t;
   if (at->distance_mm > options_.tolerance_mm) return point;
   point.on_path = true;
   if (!found_) {

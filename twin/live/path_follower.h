@@ -36,12 +36,14 @@ struct ProgramPlace {
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};
   Vec3 along_tool{0, 0, 1};  ///< the tip of a tool that is 1 mm longer is at tip_mm less this
+  Vec3 uvw_mm{0};
 };
 
 /// What of the machine is needed to find it on the path.
 struct FollowedPlace {
   ProgramPlace here;
   std::array<bool, 3> abc_known{};  ///< those that are not are not compared
+  std::array<bool, 3> uvw_known{};
   /// Of a machine that may switch its kinematics, or of a robot: the same place in the numbers of
   /// each type. Null: `here` is one for all.
   const MachineKinematics* machine = nullptr;
@@ -70,10 +72,15 @@ struct FollowedPoint {
   ProgramPlace place;      ///< on the path
   int kinematics_type = 0;       ///< in force there, by the program
   std::array<bool, 3> turned{};  ///< A, B, C: the program has turned it, up to there
+  std::array<bool, 3> slid{};    ///< U, V, W: the program has moved it
   double tool_length_mm = 0;     ///< in force there, by the program
   int tool = 0;                  ///< in the spindle there, by the program
   SourceRef source;              ///< of the motion there
   double program_s = 0;          ///< program time there, by the plan
+  /// Number of the motion there, of all that have been appended; and how far on it: a share of its
+  /// way, or of that of the planned piece.
+  std::uint64_t motion = 0;
+  double share = 0;
 };
 
 /// Follows a machine along a program, forward only. In the numbers of the program, X Y Z A B C:
@@ -97,8 +104,13 @@ class PathFollower {
   void append(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path);
 
   /// Looks for the tip. If it is on the path, the path up to there has been `driven`: each call one
-  /// motion or part of one, in order, without gaps from where the last one ended.
-  using Drive = std::function<void(const Motion& part, double duration_s)>;
+  /// piece of it or part of one, in order, without gaps from where the last one ended.
+  struct DrivenPart {
+    Motion motion;
+    double duration_s = 0;       ///< by the plan
+    bool of_same_piece = false;  ///< of which the part before was one
+  };
+  using Drive = std::function<void(const DrivenPart& part)>;
   FollowedPoint follow(const FollowedPlace& place, const Drive& drive);
 
   /// The machine is at or behind `program_s`: what lies before is passed without being driven.
@@ -117,7 +129,9 @@ class PathFollower {
     double start_s = 0;  ///< program time
     double duration_s = 0;
     double moved_s = 0;            ///< time in motion before it: without dwells and tool changes
+    std::uint64_t number = 0;      ///< of its motion
     std::array<bool, 3> turned{};  ///< the program has turned the axis by its end
+    std::array<bool, 3> slid{};    ///< or moved U, V, W
     double time_at(double t) const { return start_s + t * duration_s; }
   };
   struct Candidate {
@@ -137,9 +151,11 @@ class PathFollower {
   double t_ = 0;         ///< on pieces_[0]
   double unseen_s_ = 0;  ///< since the machine was last found on the path
   double end_s_ = 0;
-  double moved_s_ = 0;  ///< time in motion of all that was appended
+  double moved_s_ = 0;          ///< time in motion of all that was appended
+  std::uint64_t appended_ = 0;  ///< motions
   bool found_ = false;
   std::array<bool, 3> turned_{};  ///< by what has been appended
+  std::array<bool, 3> slid_{};
 };
 
 }  // namespace kerf

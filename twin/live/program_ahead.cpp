@@ -67,6 +67,7 @@ bool ProgramAhead::plan_one_batch(bool wait) {
   if (complete_) return false;
   const bool got = wait ? queue_.pop(batch_) : queue_.try_pop(batch_);
   if (got) {
+    if (materials_.take(planned_materials_)) timeline_.set_materials(planned_materials_);
     for (const Motion& motion : batch_) timeline_.push(motion);
     return true;
   }

@@ -78,6 +78,7 @@ class ProgramAhead : private StepSink {
   SwitchedMotions switched_;  ///< of thread_
   BatchQueue queue_;
   MaterialMail materials_;
+  std::vector<TorchMaterial> planned_materials_;  ///< that the timeline knows
   std::vector<Motion> batch_;
   std::deque<PlannedMotion> motions_;
   std::uint64_t forgotten_ = 0;

@@ -1,4 +1,6 @@
 // The gantry router, and the plasma table that is built like it.
+#include "twin/machine_model/builtin_gantry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,25 +8,6 @@
 
 namespace kerf {
 namespace {
-
-/// Machine coordinates at rest: what is said of the gantry is relative to the nose.
-struct GantrySizes {
-  double top = 0;        // of the table: where the blank lies
-  double unit = 0;       // what thicknesses are measured by
-  double inner_min = 0;  // x: inner faces of the gantry's sides
-  double inner_max = 0;
-  double side = 0;  // their thickness
-  double table_min_y = 0;
-  double table_max_y = 0;
-  double rail = 0;  // z: the gantry runs on it
-  double beam_low = 0;
-  double beam_high = 0;
-  double body = 0;    // radius of spindle or torch holder
-  double plate = 0;   // y: front face of the Z plate, from the nose
-  double beam_y = 0;  // y: front face of the beam
-  double beam_depth = 0;
-  double half_carriage = 0;  // x
-};
 
 GantrySizes gantry_sizes(const FittedRoom& room, bool torch) {
   GantrySizes s;
@@ -47,74 +30,6 @@ GantrySizes gantry_sizes(const FittedRoom& room, bool torch) {
   s.beam_low = std::max(room.blank_mm.max.z + 25, room.nose_max_mm.z - 0.3 * height);
   s.beam_high = s.beam_low + height;
   return s;
-}
-
-/// The frame under router and plasma table: rails along Y, legs, cross members.
-void add_frame(MeshBuilder& mesh, const GantrySizes& s, double low, double high) {
-  const double u = s.unit;
-  const double back = s.table_max_y + s.beam_y + s.beam_depth;
-  for (const double x : {s.inner_min - s.side, s.inner_max}) {
-    mesh.block({x, s.table_min_y - 0.4 * u, low}, {x + s.side, back, high}, 1, 0.04 * u);
-    // The rail itself, on which the gantry's shoes run.
-    mesh.box({x + 0.3 * s.side, s.table_min_y - 0.38 * u, high},
-             {x + 0.7 * s.side, back - 0.02 * u, high + 0.12 * u});
-  }
-  for (const double y : {s.table_min_y - 0.3 * u, back - 0.3 * u}) {
-    mesh.box({s.inner_min, y, low + 0.02 * u}, {s.inner_max, y + 0.2 * u, high - 0.3 * u});
-  }
-  const double floor = low - 4.0 * u;
-  for (const double x : {s.inner_min - s.side, s.inner_max}) {
-    for (const double y : {s.table_min_y - 0.3 * u, back - 0.4 * u}) {
-      mesh.box({x + 0.1 * s.side, y, floor}, {x + 0.9 * s.side, y + 0.3 * u, low});
-      mesh.cylinder({x + 0.5 * s.side, y + 0.15 * u, floor - 0.1 * u}, 2, 0.2 * u, 0.1 * u);
-    }
-  }
-}
-
-/// What runs along Y. Frame: y of the nose at 0.
-MeshBuilder gantry_bridge(const GantrySizes& s) {
-  const double u = s.unit;
-  MeshBuilder bridge;
-  const double low = s.rail + 0.14 * u;
-  for (const double side : {-1.0, 1.0}) {
-    const double inner = side < 0 ? s.inner_min : s.inner_max;
-    const double outer = inner + side * s.side;
-    // A foot on the rail, a cheek that leans back to the beam; (u, v) = (y, z).
-    const double back = s.beam_y + s.beam_depth;
-    const std::vector<Vec2> cheek{{s.beam_y - 0.5 * u, low},
-                                  {back + 0.3 * u, low},
-                                  {back + 0.3 * u, low + 0.4 * u},
-                                  {back, low + 0.7 * u},
-                                  {back, s.beam_high},
-                                  {s.beam_y, s.beam_high},
-                                  {s.beam_y, low + 0.9 * u},
-                                  {s.beam_y - 0.5 * u, low + 0.4 * u}};
-    bridge.prism(cheek, 0, std::min(inner, outer), std::max(inner, outer));
-  }
-  bridge.block({s.inner_min - 1, s.beam_y + 2, s.beam_low},
-               {s.inner_max + 1, s.beam_y + s.beam_depth - 2, s.beam_high}, 0, 0.08 * u);
-  const double height = s.beam_high - s.beam_low;
-  for (const double part : {0.15, 0.75}) {
-    bridge.box({s.inner_min, s.beam_y - 0.1 * u, s.beam_low + part * height},
-               {s.inner_max, s.beam_y + 3, s.beam_low + (part + 0.1) * height});
-  }
-  return bridge;
-}
-
-MeshBuilder gantry_carriage(const GantrySizes& s) {
-  const double u = s.unit;
-  MeshBuilder carriage;
-  carriage.block({-s.half_carriage, s.beam_y - 0.32 * u, s.beam_low - 0.05 * u},
-                 {s.half_carriage, s.beam_y - 0.11 * u, s.beam_high + 0.05 * u}, 1, 0.1 * u);
-  for (const double side : {-1.0, 1.0}) {
-    const double x = side * 0.7 * s.half_carriage;
-    carriage.box({x - 0.07 * u, s.plate + 0.16 * u, s.beam_low},
-                 {x + 0.07 * u, s.beam_y - 0.32 * u, s.beam_high});
-  }
-  // Motor of Z, on a bracket above everything that rises.
-  carriage.box({-0.3 * u, s.beam_y - 0.3 * u, s.beam_high + 0.05 * u},
-               {0.3 * u, s.beam_y - 0.11 * u, s.beam_high + 0.5 * u});
-  return carriage;
 }
 
 /// The plate that goes up and down behind spindle or torch. Frame: nose at 0. Its rails stay in the
@@ -181,6 +96,72 @@ MachineModel assembled(const char* name, const char* tool, const MachineRoom& ro
 
 }  // namespace
 
+void add_gantry_frame(MeshBuilder& mesh, const GantrySizes& s, double low, double high) {
+  const double u = s.unit;
+  const double back = s.table_max_y + s.beam_y + s.beam_depth;
+  for (const double x : {s.inner_min - s.side, s.inner_max}) {
+    mesh.block({x, s.table_min_y - 0.4 * u, low}, {x + s.side, back, high}, 1, 0.04 * u);
+    // The rail itself, on which the gantry's shoes run.
+    mesh.box({x + 0.3 * s.side, s.table_min_y - 0.38 * u, high},
+             {x + 0.7 * s.side, back - 0.02 * u, high + 0.12 * u});
+  }
+  for (const double y : {s.table_min_y - 0.3 * u, back - 0.3 * u}) {
+    mesh.box({s.inner_min, y, low + 0.02 * u}, {s.inner_max, y + 0.2 * u, high - 0.3 * u});
+  }
+  const double floor = low - 4.0 * u;
+  for (const double x : {s.inner_min - s.side, s.inner_max}) {
+    for (const double y : {s.table_min_y - 0.3 * u, back - 0.4 * u}) {
+      mesh.box({x + 0.1 * s.side, y, floor}, {x + 0.9 * s.side, y + 0.3 * u, low});
+      mesh.cylinder({x + 0.5 * s.side, y + 0.15 * u, floor - 0.1 * u}, 2, 0.2 * u, 0.1 * u);
+    }
+  }
+}
+
+MeshBuilder gantry_bridge(const GantrySizes& s) {
+  const double u = s.unit;
+  MeshBuilder bridge;
+  const double low = s.rail + 0.14 * u;
+  for (const double side : {-1.0, 1.0}) {
+    const double inner = side < 0 ? s.inner_min : s.inner_max;
+    const double outer = inner + side * s.side;
+    // A foot on the rail, a cheek that leans back to the beam; (u, v) = (y, z).
+    const double back = s.beam_y + s.beam_depth;
+    const std::vector<Vec2> cheek{{s.beam_y - 0.5 * u, low},
+                                  {back + 0.3 * u, low},
+                                  {back + 0.3 * u, low + 0.4 * u},
+                                  {back, low + 0.7 * u},
+                                  {back, s.beam_high},
+                                  {s.beam_y, s.beam_high},
+                                  {s.beam_y, low + 0.9 * u},
+                                  {s.beam_y - 0.5 * u, low + 0.4 * u}};
+    bridge.prism(cheek, 0, std::min(inner, outer), std::max(inner, outer));
+  }
+  bridge.block({s.inner_min - 1, s.beam_y + 2, s.beam_low},
+               {s.inner_max + 1, s.beam_y + s.beam_depth - 2, s.beam_high}, 0, 0.08 * u);
+  const double height = s.beam_high - s.beam_low;
+  for (const double part : {0.15, 0.75}) {
+    bridge.box({s.inner_min, s.beam_y - 0.1 * u, s.beam_low + part * height},
+               {s.inner_max, s.beam_y + 3, s.beam_low + (part + 0.1) * height});
+  }
+  return bridge;
+}
+
+MeshBuilder gantry_carriage(const GantrySizes& s) {
+  const double u = s.unit;
+  MeshBuilder carriage;
+  carriage.block({-s.half_carriage, s.beam_y - 0.32 * u, s.beam_low - 0.05 * u},
+                 {s.half_carriage, s.beam_y - 0.11 * u, s.beam_high + 0.05 * u}, 1, 0.1 * u);
+  for (const double side : {-1.0, 1.0}) {
+    const double x = side * 0.7 * s.half_carriage;
+    carriage.box({x - 0.07 * u, s.plate + 0.16 * u, s.beam_low},
+                 {x + 0.07 * u, s.beam_y - 0.32 * u, s.beam_high});
+  }
+  // Motor of Z, on a bracket above everything that rises.
+  carriage.box({-0.3 * u, s.beam_y - 0.3 * u, s.beam_high + 0.05 * u},
+               {0.3 * u, s.beam_y - 0.11 * u, s.beam_high + 0.5 * u});
+  return carriage;
+}
+
 MachineModel build_gantry(const MachineRoom& room) {
   const FittedRoom fitted = fit(room, {0, 0, 1});
   const GantrySizes s = gantry_sizes(fitted, false);
@@ -189,7 +170,7 @@ MachineModel build_gantry(const MachineRoom& room) {
   add_slotted_table(table, {{s.inner_min + 2, s.table_min_y, s.top - 0.35 * u},
                             {s.inner_max - 2, s.table_max_y, s.top}});
   MeshBuilder frame;
-  add_frame(frame, s, s.rail - 1.0 * u, s.rail);
+  add_gantry_frame(frame, s, s.rail - 1.0 * u, s.rail);
   const int members = 4;
   for (int i = 0; i < members; ++i) {
     const double y = s.table_min_y + (i + 0.5) / members * (s.table_max_y - s.table_min_y);
@@ -224,7 +205,7 @@ MachineModel build_plasma(const MachineRoom& room) {
     table.box({s.inner_min + 7, y, s.top - 1.25 * u}, {s.inner_max - 7, y + 6, s.top - 8});
   }
   MeshBuilder frame;
-  add_frame(frame, s, s.rail - 1.2 * u, s.rail);
+  add_gantry_frame(frame, s, s.rail - 1.2 * u, s.rail);
   return assembled("plasma table", "torch", room, s, {std::move(table), paint::kDarkSteel},
                    std::move(frame), plasma_torch(s, fitted));
 }

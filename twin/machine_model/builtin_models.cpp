@@ -7,8 +7,9 @@
 namespace kerf {
 
 std::string_view name_of(MachineKind kind) {
-  constexpr std::array<std::string_view, 7> kNames{"none",     "knee-mill", "gantry", "lathe",
-                                                   "trunnion", "plasma",    "punch"};
+  constexpr std::array<std::string_view, 9> kNames{"none",  "knee-mill",   "gantry",
+                                                   "lathe", "trunnion",    "plasma",
+                                                   "punch", "bridge-mill", "swivel-mill"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -24,6 +25,10 @@ MachineModel builtin_machine(MachineKind kind, const MachineRoom& room) {
       return build_plasma(room);
     case MachineKind::kPunch:
       return build_punch(room);
+    case MachineKind::kBridgeMill:
+      return build_bridge_mill(room);
+    case MachineKind::kSwivelMill:
+      return build_swivel_mill(room);
     case MachineKind::kNone:
       assert(false);
       [[fallthrough]];

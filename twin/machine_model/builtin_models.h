@@ -20,9 +20,11 @@ enum class MachineKind : std::uint8_t {
   kTrunnion,
   kPlasma,
   kPunch,
+  kBridgeMill,
+  kSwivelMill,
 };
 /// As configurations have it: "none", "knee-mill", "gantry", "lathe", "trunnion", "plasma",
-/// "punch".
+/// "punch", "bridge-mill", "swivel-mill".
 std::string_view name_of(MachineKind kind);
 
 /// Joints of a punch press that has a turret; no program names them.
@@ -62,6 +64,8 @@ struct MachineRoom {
   double tool_length_mm = 100.0;  ///< From tip to nose, of the longest tool.
   bool has_c_axis = false;        ///< Lathe: the chuck turns with C.
   TrunnionGeometry trunnion;
+  /// Of a head that tilts: from the nose up to the pivot. Not given: as is usual.
+  std::optional<double> head_pivot_mm;
   TurretPointer turret;  ///< Punch: its stations and clamps, and what moves; null: as is usual.
 };
 
@@ -79,6 +83,8 @@ struct MachineRoom {
 ///     plasma      the same over slats, with a torch
 ///     lathe       spindle along Z, X to the turret, Y up; chuck, carriage Z, cross slide X
 ///     trunnion    saddle Y, table X, cradle A or B, platter C; head Z
+///     bridge mill  table stands; bridge Y, carriage X, ram Z, fork C, swivel B with the spindle
+///     swivel mill  saddle Y, table X, platter C about X0 Y0; head Z, swivel B with the spindle
 ///     punch       frame and turret stand (translucent); carriage Y, clamps X, ram Z. With a turret
 ///                 beside these: PunchJoint, punch_link(); and where the head moves, rails Y and
 ///                 frame X

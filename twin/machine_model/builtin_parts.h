@@ -76,6 +76,8 @@ MachineModel build_gantry(const MachineRoom& room);
 MachineModel build_plasma(const MachineRoom& room);
 MachineModel build_lathe(const MachineRoom& room);
 MachineModel build_trunnion(const MachineRoom& room);
+MachineModel build_bridge_mill(const MachineRoom& room);
+MachineModel build_swivel_mill(const MachineRoom& room);
 MachineModel build_punch(const MachineRoom& room);
 
 }  // namespace kerf

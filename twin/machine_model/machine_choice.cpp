@@ -44,6 +44,8 @@ MachineFacts machine_facts(const MachineSetup& setup) {
 
 MachineKind usual_machine_kind(const MachineFacts& facts) {
   if (facts.is_plasma) return MachineKind::kPlasma;
+  if (facts.kinematics == "5axiskins") return MachineKind::kBridgeMill;
+  if (facts.kinematics == "maxkins") return MachineKind::kSwivelMill;
   const bool trivial = facts.kinematics.empty() || facts.kinematics == "trivkins";
   const bool tilting = facts.kinematics.find("trt") != std::string::npos;
   if (!trivial && !tilting) return MachineKind::kNone;
@@ -68,6 +70,10 @@ MachineRoom machine_room(const MachineSetup* setup, const WorkpieceFrame& frame,
     const AxisLimits& limits = setup->timeline.limits.axes[axis];
     if (!limits.present || !std::isfinite(limits.min) || !std::isfinite(limits.max)) continue;
     if (limits.min < limits.max) room.travel[axis] = AxisTravel{limits.min, limits.max};
+  }
+  const MachineKinematics* const machine = setup->timeline.kinematics.get();
+  if (machine != nullptr && machine->pivot_length_mm > 0) {
+    room.head_pivot_mm = machine->pivot_length_mm;
   }
   room.has_c_axis = setup->joint_letters.find('C') != std::string::npos;
   room.trunnion.tilts_about_y = setup->joint_letters.find('A') == std::string::npos &&

@@ -32,7 +32,9 @@ inline constexpr double kLongestTableTravel_mm = 600.0;
 ///   C with A or B, trivkins or kinematics with "trt"  trunnion
 ///   two joints on one axis, or more than
 ///   kLongestTableTravel_mm of travel in X or Y        gantry
-///   kinematics whose slides are no X, Y, Z (robots, hexapods, 5axiskins, ..)   none
+///   5axiskins                                         bridge-mill
+///   maxkins                                           swivel-mill
+///   other kinematics whose slides are no X, Y, Z (robots, hexapods, ..)   none
 ///   else                                              knee-mill
 MachineKind usual_machine_kind(const MachineFacts& facts);
 

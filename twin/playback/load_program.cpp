@@ -45,6 +45,12 @@ std::optional<BeamSettings> beam_of(const SessionOptions& options, const Program
   return beam_settings(options.beam, front.program->is_qtplasmac());
 }
 
+TimelineOptions timing_of(const SessionOptions& options, const ProgramFront& front) {
+  TimelineOptions timing = options.timeline;
+  if (front.is_sheet()) timing.holds = holds_of(options.turret, beam_of(options, front));
+  return timing;
+}
+
 /// The tools of a program, each once. Of a torch (`beam`) each kerf, of a punch each station.
 class ToolList {
  public:
@@ -117,7 +123,7 @@ class Loading {
       : control_(control),
         program_(*front.program),
         window_(options.lines),
-        timeline_(options.timeline, planned_),
+        timeline_(timing_of(options, front), planned_),
         tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front),
                options.turret),
         tilt_(options.timeline.kinematics),
@@ -149,6 +155,10 @@ class Loading {
   bool take(std::span<const Motion> motions) {
     motions = switched_.follow(motions, program_.workpiece_frame());
     tilt_.look_at(motions, program_.workpiece_frame());
+    if (const auto& materials = program_.materials(); materials.size() != materials_) {
+      materials_ = materials.size();
+      timeline_.set_materials(materials);
+    }
     if (survey_) survey_->add(motions, tilt_.moves());
     if (!window_.over()) {
       const LineWindow::Split split = window_.split(motions);
@@ -175,6 +185,7 @@ class Loading {
   std::optional<BlankSurvey> survey_;
   std::size_t motions_ = 0;
   std::size_t before_window_ = 0;
+  std::size_t materials_ = 0;  ///< that the timeline knows
 };
 
 /// Faults of the file are those of the interpreter, which reads it too: they are told once.

@@ -80,6 +80,7 @@ struct PlayerState {
   Motion motion;  ///< that runs there; at the end of the program the last one
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};
+  Vec3 uvw_mm{0};
   double elapsed_s = 0;
   double remaining_s = 0;
   /// Cutter of `motion`; null: none that is known, or the motion cuts nothing and none did before.

@@ -367,6 +367,7 @@ void PlayerEngine::describe_place(PlayerState& state) const {
   for (std::size_t i = 0; i < 3; ++i) {
     state.abc_deg[i] = m.from_abc_deg[i] + t * (m.to_abc_deg[i] - m.from_abc_deg[i]);
   }
+  state.uvw_mm = m.from_uvw_mm + t * (m.to_uvw_mm - m.from_uvw_mm);
   state.cutter = frontier_.record().cutter_of_tool(m.tool, place_.motion);
 }
 

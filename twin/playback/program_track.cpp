@@ -29,6 +29,7 @@ bool continues(const Motion& motion, const Motion& previous) {
     const auto index = static_cast<std::size_t>(axis);
     if (!same_bits(motion.from_mm[axis], previous.to_mm[axis])) return false;
     if (!same_bits(motion.from_abc_deg[index], previous.to_abc_deg[index])) return false;
+    if (!same_bits(motion.from_uvw_mm[axis], previous.to_uvw_mm[axis])) return false;
   }
   return true;
 }
@@ -60,12 +61,15 @@ Motion ProgramTrack::motion(std::size_t i) const {
   m.source.line = static_cast<std::uint32_t>(line_.at(i));
   m.to_mm = to_mm(i);
   m.to_abc_deg = read_angles(to_abc_deg_, i);
+  m.to_uvw_mm = read(to_uvw_mm_, i);
   if (const Jump* jump = jump_at(i)) {
     m.from_mm = jump->from_mm;
     m.from_abc_deg = jump->from_abc_deg;
+    m.from_uvw_mm = jump->from_uvw_mm;
   } else if (i > 0) {
     m.from_mm = to_mm(i - 1);
     m.from_abc_deg = read_angles(to_abc_deg_, i - 1);
+    m.from_uvw_mm = read(to_uvw_mm_, i - 1);
   }
   m.arc.center_mm = read(arc_center_mm_, i);
   m.arc.sweep_rad = arc_sweep_rad_.real_at(i);
@@ -127,7 +131,7 @@ TimedStep ProgramTrack::step(std::size_t i) const {
   step.allowed_mm_per_min = allowed_.real_at(i);
   const Motion m = motion(i);
   const bool moves = kerf::is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m);
-  if (moves && m.start_known) step.length_mm = path_length_mm(m);
+  if (moves && m.start_known) step.length_mm = fed_length_mm(m);
   return step;
 }
 
@@ -218,7 +222,7 @@ std::optional<std::size_t> ProgramTrack::previous_tool_change(std::size_t i) con
 
 std::size_t ProgramTrack::bytes() const {
   std::size_t sum = sizeof *this;
-  for (const auto* columns : {&to_mm_, &to_abc_deg_, &arc_center_mm_}) {
+  for (const auto* columns : {&to_mm_, &to_abc_deg_, &to_uvw_mm_, &arc_center_mm_}) {
     for (const PackedColumn& column : *columns) sum += column.bytes() - sizeof column;
   }
   for (const PackedColumn* column : {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_,
@@ -251,6 +255,9 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
           bits(m.tool_offset_mm.x),
           bits(m.tool_offset_mm.y),
           bits(m.tool_offset_mm.z),
+          bits(m.tool_offset_uvw_mm.x),
+          bits(m.tool_offset_uvw_mm.y),
+          bits(m.tool_offset_uvw_mm.z),
           bits(m.arc.axis.x),
           bits(m.arc.axis.y),
           bits(m.arc.axis.z),
@@ -269,7 +276,7 @@ std::uint64_t ProgramTrackBuilder::mode_of(const Motion& m) {
   if (fresh) {
     Motion mode = m;
     mode.source.line = 0;
-    mode.from_mm = mode.to_mm = Vec3{0};
+    mode.from_mm = mode.to_mm = mode.from_uvw_mm = mode.to_uvw_mm = Vec3{0};
     mode.from_abc_deg = mode.to_abc_deg = {};
     mode.arc.center_mm = Vec3{0};
     mode.arc.sweep_rad = mode.feed_mm_per_min = mode.spindle_rpm = 0;
@@ -288,7 +295,9 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
     return;
   }
   const auto number = static_cast<std::uint32_t>(i);
-  if (!continues(m, previous_)) t.jumps_.push_back({number, m.from_mm, m.from_abc_deg});
+  if (!continues(m, previous_)) {
+    t.jumps_.push_back({number, m.from_mm, m.from_abc_deg, m.from_uvw_mm});
+  }
   const bool starts = i == 0 || !(m.source == previous_.source);
   if (i % 64 == 0) t.block_start_.push_back(0);
   if (starts) {
@@ -301,6 +310,7 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
     const auto index = static_cast<std::size_t>(axis);
     t.to_mm_[index].push_real(m.to_mm[axis]);
     t.to_abc_deg_[index].push_real(m.to_abc_deg[index]);
+    t.to_uvw_mm_[index].push_real(m.to_uvw_mm[axis]);
     t.arc_center_mm_[index].push_real(m.arc.center_mm[axis]);
   }
   t.arc_sweep_rad_.push_real(m.arc.sweep_rad);
@@ -334,7 +344,7 @@ std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::
   ProgramTrack& t = *track_;
   t.files_ = std::move(files);
   t.frame_ = frame;
-  for (auto* columns : {&t.to_mm_, &t.to_abc_deg_, &t.arc_center_mm_}) {
+  for (auto* columns : {&t.to_mm_, &t.to_abc_deg_, &t.to_uvw_mm_, &t.arc_center_mm_}) {
     for (PackedColumn& column : *columns) column.shrink();
   }
   for (PackedColumn* column : {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_,

@@ -102,6 +102,7 @@ class ProgramTrack {
     std::uint32_t motion = 0;
     Vec3 from_mm{0};
     std::array<double, 3> from_abc_deg{};
+    Vec3 from_uvw_mm{0};
   };
   ProgramTrack() = default;
   const Motion& mode_of(std::size_t i) const {
@@ -117,6 +118,8 @@ class ProgramTrack {
                                      PackedColumn(Of::kReals)};
   std::array<PackedColumn, 3> to_abc_deg_{PackedColumn(Of::kReals), PackedColumn(Of::kReals),
                                           PackedColumn(Of::kReals)};
+  std::array<PackedColumn, 3> to_uvw_mm_{PackedColumn(Of::kReals), PackedColumn(Of::kReals),
+                                         PackedColumn(Of::kReals)};
   std::array<PackedColumn, 3> arc_center_mm_{PackedColumn(Of::kReals), PackedColumn(Of::kReals),
                                              PackedColumn(Of::kReals)};
   PackedColumn arc_sweep_rad_{Of::kReals};
@@ -152,7 +155,7 @@ class ProgramTrackBuilder final : public StepSink {
 
  private:
   /// The bits of what motions share.
-  using ModeKey = std::array<std::uint64_t, 14>;
+  using ModeKey = std::array<std::uint64_t, 17>;
   static ModeKey key_of(const Motion& motion);
   std::uint64_t mode_of(const Motion& motion);
   void sort_lines();

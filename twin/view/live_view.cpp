@@ -393,8 +393,11 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
             : drawn_poses(*options_.machine, place.tip_mm, place.abc_deg, tool_length_mm_);
   }
   has_rotary_ = has_rotary_ || place.abc_deg != std::array<double, 3>{};
+  has_slides_ = has_slides_ || place.uvw_mm != Vec3(0);
+  const SlidePlace slides{place.uvw_mm + shown_work_.offset_uvw_mm, place.uvw_mm};
   moment->axes =
-      axis_readouts(place.machine_mm, place.tip_mm, has_rotary_ ? &place.abc_deg : nullptr);
+      axis_readouts(place.machine_mm, place.tip_mm, has_rotary_ ? &place.abc_deg : nullptr,
+                    has_slides_ ? &slides : nullptr);
   return moment;
 }
 

@@ -137,6 +137,7 @@ class LiveView final : public LiveObserver {
   WorkpieceFrame shown_work_;
   bool log_paused_ = false;
   bool has_rotary_ = false;
+  bool has_slides_ = false;
   bool closed_ = false;
   SceneUpdate update_;
 

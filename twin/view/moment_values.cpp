@@ -21,7 +21,8 @@ Vec3 machine_position(const WorkpieceFrame& frame, const Vec3& work_mm,
 }
 
 std::vector<AxisReadout> axis_readouts(const Vec3& machine_mm, const Vec3& work_mm,
-                                       const std::array<double, 3>* rotary_deg) {
+                                       const std::array<double, 3>* rotary_deg,
+                                       const SlidePlace* slides) {
   std::vector<AxisReadout> axes;
   for (int i = 0; i < 3; ++i) {
     AxisReadout axis;
@@ -35,6 +36,13 @@ std::vector<AxisReadout> axis_readouts(const Vec3& machine_mm, const Vec3& work_
     axis.name = "ABC"[i];
     axis.is_rotary = true;
     axis.machine = axis.work = (*rotary_deg)[i];
+    axes.push_back(axis);
+  }
+  for (int i = 0; slides && i < 3; ++i) {
+    AxisReadout axis;
+    axis.name = "UVW"[i];
+    axis.machine = slides->machine_mm[i];
+    axis.work = slides->work_mm[i];
     axes.push_back(axis);
   }
   return axes;

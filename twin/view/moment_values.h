@@ -16,9 +16,16 @@ namespace kerf {
 /// those of the tip plus the tool offset in force.
 Vec3 machine_position(const WorkpieceFrame& frame, const Vec3& work_mm, const Vec3& tool_offset_mm);
 
-/// X, Y, Z; with `rotary` A, B, C as well.
+/// Where U, V, W stand.
+struct SlidePlace {
+  Vec3 machine_mm{0};
+  Vec3 work_mm{0};
+};
+
+/// X, Y, Z; with `rotary` A, B, C as well, with `slides` U, V, W.
 std::vector<AxisReadout> axis_readouts(const Vec3& machine_mm, const Vec3& work_mm,
-                                       const std::array<double, 3>* rotary_deg);
+                                       const std::array<double, 3>* rotary_deg,
+                                       const SlidePlace* slides = nullptr);
 
 /// Machine zero as it lies in the workpiece frame, and the work offset, which is its origin.
 std::vector<SceneFrame> scene_frames(const WorkpieceFrame& frame, const std::string& work_offset);

@@ -233,6 +233,10 @@ std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) cons
     return poses;
   }
   const AxisValues axes = path->axes_at(state.motion, fraction(state));
+  if (!shown_.moves.tilts()) {
+    return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)).origin_mm,
+                       state.abc_deg, tool_length_mm_);
+  }
   return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)),
                      {axes[3], axes[4], axes[5]}, tool_length_mm_);
 }
@@ -270,9 +274,12 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
     moment->link_poses = machine_poses(state);
   }
   has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
-  moment->axes =
-      axis_readouts(machine_position(track_->frame(), state.tip_mm, motion.tool_offset_mm),
-                    state.tip_mm, has_rotary_ ? &state.abc_deg : nullptr);
+  has_slides_ = has_slides_ || state.uvw_mm != Vec3(0);
+  const SlidePlace slides{state.uvw_mm + track_->frame().offset_uvw_mm + motion.tool_offset_uvw_mm,
+                          state.uvw_mm};
+  moment->axes = axis_readouts(
+      machine_position(track_->frame(), state.tip_mm, motion.tool_offset_mm), state.tip_mm,
+      has_rotary_ ? &state.abc_deg : nullptr, has_slides_ ? &slides : nullptr);
   for (std::size_t i = 0; i < 3; ++i) {
     moment->axes[i].to_go = motion.to_mm[static_cast<int>(i)] - state.tip_mm[static_cast<int>(i)];
   }

@@ -91,6 +91,7 @@ class PlayerScene {
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;
   bool has_rotary_ = false;
+  bool has_slides_ = false;  ///< U, V, W have moved
   bool moment_stale_ = true;
   SceneUpdate waiting_;  ///< answers, for the next update
   std::shared_ptr<const PlayerState> state_;

@@ -344,6 +344,46 @@ TEST(Planner, OddMotionsAndMissingLimitsGiveFiniteTimes) {
   }
 }
 
+Motion slide(const Vec3& by_mm, const Vec3& by_uvw_mm, double a_deg = 0) {
+  Motion m;
+  m.kind = MotionKind::kFeed;
+  m.path_mode = PathMode::kExactStop;
+  m.feed_mm_per_min = 3000;
+  m.to_mm = by_mm;
+  m.to_uvw_mm = by_uvw_mm;
+  m.to_abc_deg[0] = a_deg;
+  return m;
+}
+
+MachineLimits mill_with_a_quill() {
+  MachineLimits limits = MachineLimits::small_mill();
+  limits.axes[8] = {.present = true, .max_velocity = 40, .max_acceleration = 200};
+  return limits;
+}
+
+TEST(Planner, AFeedIsOfUvwWhereXyzStandAndOfAbcLast) {
+  const MachineLimits limits = mill_with_a_quill();
+  const auto seconds = [&](const Motion& m) { return plan_of(std::span(&m, 1), limits).clock_s; };
+  // W alone: 3000 mm/min are 50 mm/s, and W does 40. t = L / v + v / a.
+  EXPECT_NEAR(seconds(slide({}, {0, 0, 20})), 20 / 40.0 + 40 / 200.0, kStop_s);
+  // W with A: still W's way, and A keeps up.
+  EXPECT_NEAR(seconds(slide({}, {0, 0, 20}, 10)), 20 / 40.0 + 40 / 200.0, kStop_s);
+  // A alone: 50 degrees a second.
+  EXPECT_NEAR(seconds(slide({}, {}, 100)), 100 / 50.0 + 50 / 360.0, kStop_s);
+  // X with W: the feed is that of X, as far as W can: 100 mm of X with 100 of W go at 40 mm/s.
+  EXPECT_NEAR(seconds(slide({100, 0, 0}, {0, 0, 100})), 100 / 40.0 + 40 / 200.0, kStop_s);
+  EXPECT_NEAR(seconds(slide({100, 0, 0}, {0, 0, 1})), 100 / 50.0 + 50 / 500.0, kStop_s);
+}
+
+TEST(Planner, CornersOfMovesOfWAreNotCut) {
+  PlannerOptions options;
+  options.with_path = true;
+  std::vector<Motion> motions = Path().feed(3000).line(20, 0).line(20, 20).motions;
+  EXPECT_LT(path_length(plan_of(motions, mill_with_a_quill(), options)), 39);
+  motions[0].to_uvw_mm.z = motions[1].from_uvw_mm.z = motions[1].to_uvw_mm.z = 1;
+  EXPECT_NEAR(path_length(plan_of(motions, mill_with_a_quill(), options)), 40, 1e-9);
+}
+
 TEST(Planner, SaysWhichLimitsItUsed) {
   Plan plan;
   const TrajectoryPlanner planner(MachineLimits::small_mill(), {}, plan);

@@ -161,7 +161,9 @@ TEST_P(ShadowOfLinuxCnc, ItWasFollowedOnThePath) {
 }
 
 TEST_P(ShadowOfLinuxCnc, NothingIsFoundThatIsNotThere) {
-  for (const Json& finding : the_run().report(GetParam())["findings"]) {
+  const Json report = the_run().report(GetParam());
+  ASSERT_TRUE(report.is_object()) << said();
+  for (const Json& finding : report["findings"]) {
     EXPECT_EQ(finding["severity"], "note") << finding;
   }
 }

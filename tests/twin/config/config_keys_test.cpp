@@ -103,6 +103,20 @@ TEST(ConfigKeys, TheBeamOfASheet) {
   EXPECT_EQ(effective_yaml(LiveConfig{}).find("beam"), std::string::npos);
 }
 
+TEST(ConfigKeys, ATurretInsteadOfABeam) {
+  const ReadText read("turret: press.yaml\nbeam: {density_kg_per_m3: 2700}\n");
+  ASSERT_TRUE(read.config) << read.said();
+  EXPECT_EQ(read.config->turret, "dir/press.yaml");
+  EXPECT_NE(effective_yaml(*read.config).find("\nturret: dir/press.yaml\n"), std::string::npos);
+  EXPECT_EQ(effective_yaml(LiveConfig{}).find("turret"), std::string::npos);
+  EXPECT_EQ(ReadText("", {"turret=p.yaml"}).config->turret, "p.yaml");
+  EXPECT_EQ(said_of("turret: press.yaml\nbeam:\n  trigger: m3\n  kerf_mm: 1\n"),
+            "3:3: beam.trigger: is for torches, lasers and jets; turret punches\n"
+            "4:3: beam.kerf_mm: is for torches, lasers and jets; turret punches\n");
+  EXPECT_EQ(said_of("turret: {stations: 3}\n"),
+            "1:9: turret: a group of keys is not allowed; must be a path\n");
+}
+
 TEST(ConfigKeys, WhatABeamIsNot) {
   const std::string said =
       said_of("beam:\n  trigger: m99\n  kerf_mm: 0\n  qtplasmac: maybe\n  kerf: 1\n");
@@ -145,8 +159,9 @@ TEST(ConfigKeys, UnknownKeys) {
   EXPECT_EQ(said_of("Stock: {}\n"), "1:1: Stock: unknown key (did you mean stock?)\n");
   EXPECT_EQ(said_of("stock:\n  zoom: 1\n"),
             "2:3: stock.zoom: unknown key (here may be: blank, cell_mm, margin_mm, model)\n");
-  EXPECT_EQ(said_of("machine:\n  work_offset: {x: 1, w: 2}\n"),
-            "2:23: machine.work_offset.w: unknown key (here may be: a, b, c, rotation, x, y, z)\n");
+  EXPECT_EQ(said_of("machine:\n  work_offset: {x: 1, p: 2}\n"),
+            "2:23: machine.work_offset.p: unknown key (here may be: a, b, c, rotation, u, v, w, x, "
+            "y, z)\n");
   EXPECT_EQ(said_of("tools: {one: flat:6}\n"),
             "1:9: tools.one: is no tool number; must be a whole number, 1 to 99999 (as in 3: "
             "flat:6)\n");

@@ -174,7 +174,8 @@ TEST(ConfigModbus, WhatDoesNotGoTogether) {
 TEST(ConfigModbus, ItemsOfTheMap) {
   EXPECT_EQ(said_of(kTcp + "  map:\n    X: {register: 0}\n    Q: {register: 0}\n"),
             "6:5: source.map.Q: unknown key (here may be: A, B, C, J0, J1, J2, J3, J4, J5, J6, J7, "
-            "J8, U, V, W, X, Y, Z, counter, counter_begun, line, spindle, tool, tool_offset_z)\n");
+            "J8, U, V, W, X, Y, Z, counter, counter_begun, line, spindle, tool, tool_offset_z, "
+            "trigger)\n");
   EXPECT_EQ(said_of(kTcp + "  map:\n    x: {register: 0}\n"),
             "5:5: source.map.x: unknown key (did you mean X?)\n");
   EXPECT_EQ(said_of(kTcp + "  map:\n    X: {regster: 0}\n"),

@@ -68,6 +68,26 @@ TEST(MakeSource, HalsamplerInInchesWithARotaryJoint) {
   EXPECT_EQ(frame.axis, (std::array<int, kMaxPositions>{0, 3, -1, -1, -1, -1, -1, -1, -1}));
 }
 
+/// The INI or the kinematics know better than the letters: a robot's joints turn.
+TEST(MakeSource, JointsOfAnInchRobotStayDegrees) {
+  const ConfigFolder folder;
+  const std::string file = folder.write("a.log", "10 20 30\n11 21 31\n");
+  Diagnostics diagnostics;
+  std::optional<LiveConfig> config =
+      parse_config("machine: {joints: XYZABC}\nsource: {type: log, units: inch, file: " + file +
+                       ", pins: [joint.0.pos-fb, joint.1.pos-fb, joint.2.pos-fb]}\n",
+                   "", {}, diagnostics);
+  ASSERT_TRUE(config);
+  config->machine.turning_joints = 0b011;
+  const auto source = make_source(*config, diagnostics);
+  ASSERT_TRUE(source);
+  AxisSample sample;
+  ASSERT_EQ(source->next(sample, milliseconds(0)), PositionSource::Next::kSample);
+  EXPECT_EQ(sample.position[0], 10);
+  EXPECT_EQ(sample.position[1], 20);
+  EXPECT_DOUBLE_EQ(sample.position[2], 30 * 25.4);
+}
+
 TEST(MakeSource, ColumnsOfALogDecideWhatPositionsAre) {
   const ConfigFolder folder;
   const std::string file = folder.write("a.csv", "t,x,y,z\n0,1,2,3\n0.1,1,2,3\n");

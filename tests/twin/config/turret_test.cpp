@@ -90,6 +90,52 @@ TEST(Turret, EveryKeyMeansWhatItSays) {
   EXPECT_EQ(turret.regrips[1].shift_mm, Vec2(7, 0));
 }
 
+TEST(Turret, Times) {
+  const ReadTurret read(std::string(kStations) + kPunch +
+                        "times:\n"
+                        "  stroke: 0.08\n"
+                        "  rate: {1: 600, 2.5: 240}\n"
+                        "  turret: {places: 22, step: 0.12, lock: 0.5}\n"
+                        "  regrip: 4\n");
+  ASSERT_NE(read.turret, nullptr) << read.said();
+  const PunchTimes& times = read.turret->times;
+  EXPECT_TRUE(times.any());
+  EXPECT_EQ(times.stroke_s, 0.08);
+  EXPECT_EQ(times.period_by_pitch_s, (std::map<double, double>{{1, 0.1}, {2.5, 0.25}}));
+  EXPECT_EQ(times.places, 22);
+  EXPECT_EQ(times.step_s, 0.12);
+  EXPECT_EQ(times.lock_s, 0.5);
+  EXPECT_EQ(times.regrip_s, 4);
+  EXPECT_FALSE(ReadTurret(std::string(kStations) + kPunch).turret->times.any()) << "no times";
+}
+
+TEST(Turret, FaultsOfTimes) {
+  const auto said = [](const std::string& times) {
+    return said_of_turret(std::string(kStations) + kPunch + "times: " + times + "\n");
+  };
+  EXPECT_EQ(said("{stroke: -1}"),
+            "4:17: times.stroke: '-1' is not allowed; must be 0 to 3600 (s)\n");
+  EXPECT_EQ(said("{stroke: nan}"),
+            "4:17: times.stroke: 'nan' is not allowed; must be 0 to 3600 (s)\n");
+  EXPECT_EQ(said("{strokes: 1}"), "4:9: times.strokes: unknown key (did you mean stroke?)\n");
+  EXPECT_EQ(said("{rate: {}}"),
+            "4:15: times.rate: there are none; must be PITCH: STROKES a minute for each (as in 4: "
+            "600)\n");
+  EXPECT_EQ(said("{rate: 600}"),
+            "4:15: times.rate: '600' is not allowed; must be a group of keys\n");
+  EXPECT_EQ(said("{rate: {1 mm: 600}}"),
+            "4:16: times.rate.1 mm: '1 mm' is no pitch; must be 0.01 to 100000 (mm)\n");
+  EXPECT_EQ(said("{rate: {4: 0}}"),
+            "4:19: times.rate.4: '0' is not allowed; must be 0.1 to 100000 (strokes a minute)\n");
+  EXPECT_EQ(said("{rate: {4: 600, 4.0: 500}}"),
+            "4:24: times.rate.4.0: this pitch is given twice\n");
+  EXPECT_EQ(said("{turret: {places: 1.5}}"),
+            "4:26: times.turret.places: '1.5' is not allowed; must be a whole number\n");
+  EXPECT_EQ(said_of_turret("stations: {1: round:3, 30: round:4}\npunch: {trigger: m101}\n"
+                           "times: {turret: {places: 22}}\n"),
+            "3:26: times.turret.places: 22 are too few: there is a station 30\n");
+}
+
 TEST(Turret, FaultsOfStations) {
   const auto said = [](const std::string& station) {
     return said_of_turret("stations:\n  3: " + station + "\n" + kPunch);

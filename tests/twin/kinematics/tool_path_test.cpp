@@ -189,6 +189,65 @@ TEST(ToolPath, AToolThatTheModuleIsNotToldOfLagsBehind) {
   EXPECT_LT(glm::distance(path.pose_at(m, 1).origin_mm, Vec3(50, 0, 50)), kExact);
 }
 
+TEST(ToolPath, AQuillCarriesTheToolAlongZ) {
+  WorkpieceFrame frame;
+  frame.offset_uvw_mm = {0, 0, 40};
+  const ToolPath path = path_of(machine_of("trivkins", "XYZW"), frame);
+  Motion m = feed({1, 2, 3}, {5, 2, 3});
+  EXPECT_TRUE(path.is_upright(m)) << "its zero is that of the work offset";
+  m.to_uvw_mm.z = -10;
+  EXPECT_FALSE(path.is_upright(m));
+  EXPECT_TRUE(path.stays_upright(m));
+  std::vector<CutMove> moves = moves_of(path, m);
+  ASSERT_EQ(moves.size(), 1u) << "straight is straight";
+  EXPECT_EQ(moves[0].from_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(moves[0].to_mm, Vec3(5, 2, -7));
+  EXPECT_TRUE(moves[0].is_vertical());
+  EXPECT_EQ(path.axes_at(m, 1)[8], 30);
+  EXPECT_EQ(path.machine_at(m, 1)->joints[3], 30);
+  // An arc on which the quill goes is a helix, in chords; one beside which it stands is an arc.
+  m.kind = MotionKind::kArc;
+  m.to_mm = {-1, 2, 3};
+  m.arc = {{0, 2, 3}, {0, 0, 1}, kPi};
+  moves = moves_of(path, m);
+  EXPECT_GT(moves.size(), 5u);
+  EXPECT_EQ(moves.back().to_mm, Vec3(-1, 2, -7));
+  for (const CutMove& move : moves) {
+    EXPECT_NEAR(std::hypot(move.to_mm.x, move.to_mm.y - 2), 1, kExact);
+    EXPECT_TRUE(move.is_vertical());
+  }
+  m.from_uvw_mm.z = -10;
+  moves = moves_of(path, m);
+  ASSERT_EQ(moves.size(), 1u);
+  ASSERT_TRUE(moves[0].arc);
+  EXPECT_EQ(moves[0].arc->center_mm, Vec3(0, 2, -7));
+}
+
+TEST(ToolPath, WDrillsAlongATiltedTool) {
+  // 5axiskins: B90 C0 points the tool to +X. W has no slide: X Y Z go, and the tip with them.
+  const ToolPath path = path_of(machine_of("5axiskins", "", {{"pivot-length", 200}}));
+  Motion m = feed({0, 0, 0}, {0, 0, 0}, {0, 90, 0}, {0, 90, 0});
+  m.to_uvw_mm = {0, 0, -10};
+  std::vector<CutMove> moves = moves_of(path, m);
+  ASSERT_EQ(moves.size(), 1u);
+  EXPECT_LT(glm::distance(moves[0].to_mm, Vec3(10, 0, 0)), kExact);
+  EXPECT_LT(glm::distance(moves[0].axis_to, Vec3(-1, 0, 0)), kExact);
+  // Under identity kinematics W is a number that moves nothing.
+  m.torch.analog[3] = 1;
+  EXPECT_EQ(path.pose_at(m, 0).origin_mm, path.pose_at(m, 1).origin_mm);
+}
+
+/// Links of the user's own: a slide that is there, under kinematics that follow the tip.
+TEST(ToolPath, ARealSlideLeavesAFollowedTipWhereItIs) {
+  MachineKinematics machine = machine_of("5axiskins", "", {{"pivot-length", 200}});
+  machine.uvw_by_xyz = false;
+  const ToolPath path = path_of(std::move(machine));
+  Motion m = feed({1, 2, 3}, {1, 2, 3}, {0, 40, 0}, {0, 40, 0});
+  m.to_uvw_mm = {0, 0, -10};
+  EXPECT_LT(glm::distance(path.pose_at(m, 1).origin_mm, Vec3(1, 2, 3)), kExact);
+  EXPECT_NE(path.machine_at(m, 0)->axes[2], path.machine_at(m, 1)->axes[2]);
+}
+
 TEST(ToolPath, SwitchedKinematicsAreInForceMotionByMotion) {
   const ToolPath path = path_of(machine_of("xyzac-trt-kins sparm=identityfirst", ""));
   Motion m = feed({10, 0, 0}, {10, 0, 0}, {0, 0, 0}, {0, 0, 90});
@@ -253,15 +312,16 @@ struct RandomCase {
 
 RandomCase random_case(std::mt19937& random) {
   std::uniform_real_distribution<double> draw(-1, 1);
-  const std::array<const char*, 9> kinematics{"trivkins coordinates=xyzabc",
-                                              "trivkins coordinates=xyza",
-                                              "xyzac-trt-kins",
-                                              "xyzbc-trt-kins sparm=identityfirst",
-                                              "5axiskins",
-                                              "maxkins",
-                                              "xyzab_tdr_kins",
-                                              "pumakins",
-                                              "rotatekins"};
+  const std::array<const char*, 10> kinematics{"trivkins coordinates=xyzabc",
+                                               "trivkins coordinates=xyza",
+                                               "xyzac-trt-kins",
+                                               "xyzbc-trt-kins sparm=identityfirst",
+                                               "5axiskins",
+                                               "maxkins",
+                                               "xyzab_tdr_kins",
+                                               "pumakins",
+                                               "rotatekins",
+                                               "trivkins coordinates=xyzacw"};
   const KinematicsGeometry geometry{{"x-rot-point", 20 * draw(random)},
                                     {"z-rot-point", 20 * draw(random)},
                                     {"y-offset", 20 * draw(random)},
@@ -275,6 +335,7 @@ RandomCase random_case(std::mt19937& random) {
   out.frame.g5x_mm = {100 * draw(random), 100 * draw(random), 50 * draw(random)};
   out.frame.rotation_deg = random() % 2 == 0 ? 0 : 40 * draw(random);
   out.frame.offset_abc_deg = {20 * draw(random), 0, 30 * draw(random)};
+  out.frame.offset_uvw_mm = {5 * draw(random), 9 * draw(random), 20 * draw(random)};
   const double turn = std::pow(10.0, 1.2 * draw(random) + 1);  // 0.6 to 160 degrees
   Motion& m = out.motion;
   m = feed({60 * draw(random), 60 * draw(random), 30 * draw(random)}, Vec3(0));
@@ -282,6 +343,10 @@ RandomCase random_case(std::mt19937& random) {
   for (std::size_t i = 0; i < 3; ++i) {
     m.from_abc_deg[i] = 90 * draw(random);
     m.to_abc_deg[i] = m.from_abc_deg[i] + (random() % 2 == 0 ? turn * draw(random) : 0);
+  }
+  if (random() % 2 == 0) {
+    m.from_uvw_mm = {9 * draw(random), 9 * draw(random), 20 * draw(random)};
+    m.to_uvw_mm = {9 * draw(random), 9 * draw(random), 20 * draw(random)};
   }
   if (random() % 4 == 0) {  // an arc, of which the end follows from centre and sweep
     m.kind = MotionKind::kArc;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/twin/live/live_shop.h"
@@ -58,6 +59,15 @@ class TorchWatch {
       sample.spindle_rpm = on ? on_rpm : off_rpm;
       cutter_->take(sample, i / rate_hz, false);
       cutter_->look();
+    }
+    cutter_->finish();
+  }
+  void run_edited(const RunningMachine& machine, double rate_hz,
+                  const std::function<void(AxisSample&)>& edit) {
+    for (int i = 0; i <= static_cast<int>(machine.duration_s() * rate_hz); ++i) {
+      AxisSample sample = machine.sample(i / rate_hz);
+      edit(sample);
+      cutter_->take(sample, i / rate_hz, false);
     }
     cutter_->finish();
   }
@@ -139,6 +149,39 @@ TEST(LiveSheet, WhereNothingTellsOfTheBeamNothingIsCutAndItIsTold) {
   EXPECT_EQ(watch.findings()[0].text,
             "nothing tells when the beam is on: the source has no spindle speed, and no program is "
             "followed (--program); nothing is cut until it does");
+}
+
+/// A log may hold "nan": the position, or whether the spindle turns, is not known for a while.
+TEST(LiveSheet, WhatIsNotKnownForAWhileIsNotCutAcross) {
+  MotionList program = torch_program();
+  program.spindle(true).feed({105, 50, 1});
+  const RunningMachine machine(program.list());
+  for (const bool position : {true, false}) {
+    TorchWatch watch(nullptr);
+    double first = 0, last = 0;
+    watch.run_edited(machine, 100, [&](AxisSample& sample) {
+      const double x = sample.position[0];
+      sample.spindle_rpm = 1000;
+      if (x < 50 || x > 80) return;
+      if (first == 0) first = x;
+      last = x;
+      if (position) {
+        sample.known = 0b110;
+        sample.position[0] = kUntold;
+      } else {
+        sample.spindle_rpm = kUntold;
+      }
+    });
+    EXPECT_GT(last - first, 25);
+    const double length = std::hypot(100, 48) * (last - first) / 100;
+    if (position) {
+      EXPECT_GT(watch.cutter().facts().incomplete, 100U);
+      EXPECT_EQ(watch.count(FindingId::kSourceGap), 1U);
+      EXPECT_TRUE(std::isfinite(watch.sheet().remaining_mm2()));
+    }
+    const double whole_mm2 = 2 * std::hypot(100, 48) + kPi;
+    EXPECT_NEAR(20000 - watch.sheet().remaining_mm2(), whole_mm2 - 2 * length, 8);
+  }
 }
 
 TEST(LiveSheet, BesideItsPathTheMachineCutsOnlyIfItsSpindleTurns) {

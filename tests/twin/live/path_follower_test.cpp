@@ -99,12 +99,15 @@ class Chase {
     place.tool = machine_.at(t_s).motion.tool;
     if (with_line) place.line = static_cast<int>(machine_.at(t_s).motion.source.line);
     t_s_ = t_s;
-    return follower_.follow(place, [&](const Motion& m, double) {
+    return follower_.follow(place, [&](const PathFollower::DrivenPart& part) {
       if (!driven.empty()) {
-        EXPECT_EQ(driven.back().to_mm, m.from_mm);
+        EXPECT_EQ(driven.back().to_mm, part.motion.from_mm);
       }
-      driven.push_back(m);
+      driven.push_back(part.motion);
     });
+  }
+  PathFollower::Drive note() {
+    return [this](const PathFollower::DrivenPart& part) { driven.push_back(part.motion); };
   }
   double driven_mm() const {
     double sum = 0;
@@ -192,7 +195,7 @@ TEST(PathFollower, AMachineThatPausesOrRunsAtHalfSpeedIsFollowed) {
   still.here.tip_mm = chase.machine().tip(0.99);
   still.elapsed_s = 0.1;
   for (int i = 0; i < 6000; ++i) {
-    point = follower.follow(still, [&](const Motion& m, double) { chase.driven.push_back(m); });
+    point = follower.follow(still, chase.note());
   }
   EXPECT_TRUE(point.on_path);
   EXPECT_NEAR(chase.driven_mm(), mm, 1e-6);
@@ -201,7 +204,7 @@ TEST(PathFollower, AMachineThatPausesOrRunsAtHalfSpeedIsFollowed) {
   for (double t = 1; t < end_s; t += 0.005) {
     still.here.tip_mm = chase.machine().tip(t);
     still.elapsed_s = 0.01;
-    point = follower.follow(still, [&](const Motion& m, double) { chase.driven.push_back(m); });
+    point = follower.follow(still, chase.note());
     ASSERT_TRUE(point.on_path) << t;
   }
   EXPECT_LT(end_s - point.program_s, 0.1);
@@ -229,8 +232,7 @@ TEST(PathFollower, StandsBeforeAToolChangeUntilTheMachineHasChanged) {
     place.here.tip_mm = tip;
     place.elapsed_s = 0.5;
     place.tool = tool;
-    return chase.follower().follow(place,
-                                   [&](const Motion& m, double) { chase.driven.push_back(m); });
+    return chase.follower().follow(place, chase.note());
   };
   see({0, 0, 5}, 1);
   see({5, 0, 5}, 1);
@@ -247,9 +249,9 @@ TEST(PathFollower, AnIdleMachineIsNotYetOnThePath) {
   FollowedPlace place;
   place.here.tip_mm = {0, 0, 5};
   place.line = 0;
-  EXPECT_FALSE(chase.follower().follow(place, [](const Motion&, double) {}).on_path);
+  EXPECT_FALSE(chase.follower().follow(place, [](const PathFollower::DrivenPart&) {}).on_path);
   place.line = 1;
-  EXPECT_TRUE(chase.follower().follow(place, [](const Motion&, double) {}).on_path);
+  EXPECT_TRUE(chase.follower().follow(place, [](const PathFollower::DrivenPart&) {}).on_path);
 }
 
 }  // namespace

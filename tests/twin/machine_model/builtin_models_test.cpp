@@ -9,8 +9,9 @@
 namespace kerf {
 namespace {
 
-constexpr std::array kKinds{MachineKind::kKneeMill, MachineKind::kGantry, MachineKind::kLathe,
-                            MachineKind::kTrunnion, MachineKind::kPlasma, MachineKind::kPunch};
+constexpr std::array kKinds{MachineKind::kKneeMill,   MachineKind::kGantry,    MachineKind::kLathe,
+                            MachineKind::kTrunnion,   MachineKind::kPlasma,    MachineKind::kPunch,
+                            MachineKind::kBridgeMill, MachineKind::kSwivelMill};
 
 struct Case {
   MachineKind kind;
@@ -122,7 +123,8 @@ TEST(BuiltinModels, TheBlankLiesOnTheTable) {
     const MachinePosition position = position_of_axes(model, {}, one.room.tool_length_mm);
     std::vector<glm::mat4> poses;
     link_poses(model, position, poses);
-    const char* const table = one.kind == MachineKind::kTrunnion ? "platter" : "table";
+    const bool turns = one.kind == MachineKind::kTrunnion || one.kind == MachineKind::kSwivelMill;
+    const char* const table = turns ? "platter" : "table";
     const std::size_t at = *model.chain.find(table);
     double top = -1e9;
     for (const glm::vec3& p : model.links[at].mesh->positions_mm) {
@@ -214,6 +216,36 @@ TEST(BuiltinModels, TheTrunnionTiltsFreely) {
       EXPECT_FALSE(surfaces_cross(triangles_at(*model.links[cradle].mesh, poses[cradle]),
                                   triangles_at(*model.links[platter].mesh, poses[platter])))
           << tilt;
+    }
+  }
+}
+
+/// A head that tilts runs into nothing that carries it, as far as such heads tilt.
+TEST(BuiltinModels, TheHeadsTiltFreely) {
+  for (const MachineKind kind : {MachineKind::kBridgeMill, MachineKind::kSwivelMill}) {
+    MachineRoom room;
+    room.blank_mm = {{-40, -40, -60}, {40, 40, 0}};
+    for (const double pivot_mm : {0.5, 120.0, 300.0}) {
+      room.head_pivot_mm = pivot_mm;
+      const MachineModel model = builtin_machine(kind, room);
+      const std::size_t spindle = model.chain.tool_link();
+      for (const double tilt : {-120.0, -90.0, -30.0, 0.0, 45.0, 120.0}) {
+        AxisValues program{0, 0, 20, 0, tilt, kind == MachineKind::kBridgeMill ? 70.0 : 0.0};
+        const auto position = position_of_tip(model, program, room.tool_length_mm);
+        ASSERT_TRUE(position);
+        const std::vector<Pose> poses = poses_at(model, *position);
+        const auto& links = model.chain.links();
+        for (std::size_t i = 0; i < links.size(); ++i) {
+          // The swivel holds the spindle; tables are under it.
+          const bool carries_tool = links[i].name == "fork" || links[i].name == "ram" ||
+                                    links[i].name == "head" || links[i].name == "carriage" ||
+                                    links[i].name == "bridge";
+          if (!carries_tool) continue;
+          EXPECT_FALSE(surfaces_cross(triangles_at(*model.links[i].mesh, poses[i]),
+                                      triangles_at(*model.links[spindle].mesh, poses[spindle])))
+              << links[i].name << " at B" << tilt << ", pivot " << pivot_mm;
+        }
+      }
     }
   }
 }

@@ -33,6 +33,10 @@ TEST(MachineChoice, TheUsualMachineOfAxesAndTravels) {
   MachineFacts other = facts("XYZAC");
   other.kinematics = "xyzac-trt-kins";
   EXPECT_EQ(usual_machine_kind(other), MachineKind::kTrunnion);
+  other.kinematics = "5axiskins";
+  EXPECT_EQ(usual_machine_kind(other), MachineKind::kBridgeMill);
+  other.kinematics = "maxkins";
+  EXPECT_EQ(usual_machine_kind(other), MachineKind::kSwivelMill);
   other.kinematics = "genhexkins";
   EXPECT_EQ(usual_machine_kind(other), MachineKind::kNone);
   MachineFacts plasma = facts("XYYZ");
@@ -84,6 +88,10 @@ TEST(MachineChoice, RoomsTakeTheLimitsThatAreKnown) {
   EXPECT_EQ(room.travel[0]->max, 300);
   EXPECT_FALSE(room.travel[1]);
   EXPECT_TRUE(room.trunnion.tilts_about_y);
+  EXPECT_FALSE(room.head_pivot_mm);
+  setup.timeline.kinematics = std::make_shared<const MachineKinematics>(
+      known_machine("5axiskins", "", {{"pivot-length", 150}}, {}).value());
+  EXPECT_EQ(machine_room(&setup, {}, {{0, 0, 0}, {1, 1, 1}}, {}, 80).head_pivot_mm, 150);
 }
 
 TEST(MachineChoice, LinksWinAndNoneIsNone) {

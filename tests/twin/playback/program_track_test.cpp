@@ -22,7 +22,8 @@ std::vector<std::uint64_t> bits_of(const Motion& m) {
         static_cast<std::int64_t>(m.source.file), static_cast<std::int64_t>(m.source.line)}) {
     bits.push_back(static_cast<std::uint64_t>(integer));
   }
-  for (const Vec3& v : {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm}) {
+  for (const Vec3& v : {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm,
+                        m.from_uvw_mm, m.to_uvw_mm, m.tool_offset_uvw_mm}) {
     for (int axis = 0; axis < 3; ++axis) add(v[axis]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,6 +64,9 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.from_abc_deg = random() % 50 == 0 ? std::array{number(), 0.0, number()} : m.to_abc_deg;
     m.to_mm = vector();
     if (random() % 20 == 0) m.to_abc_deg = {number(), number(), number()};
+    m.from_uvw_mm = random() % 50 == 0 ? vector() : m.to_uvw_mm;
+    if (random() % 20 == 0) m.to_uvw_mm = vector();
+    m.tool_offset_uvw_mm = random() % 9 == 0 ? Vec3{0, 0, 2.5} : Vec3{0};
     m.kind = static_cast<MotionKind>(random() % 9);
     m.spindle = static_cast<SpindleState>(random() % 3);
     m.path_mode = static_cast<PathMode>(random() % 3);

@@ -66,6 +66,39 @@ TEST(RotaryPictures, BlockUnderABridgeMillsHead) {
                           "2=ball:5", "--tool", "3=flat:10", "--cell", "1"}));
 }
 
+TEST(RotaryPictures, BlockOnATableThatTurnsUnderASwivellingHead) {
+  expect_looks_as_it_did(
+      own("swivel_mill", {"--stock", "box:-20,-20,-20:20,20,0", "--tool", "1=flat:16", "--tool",
+                          "2=drill:4:118", "--cell", "0.5"}));
+}
+
+/// The machines around them, the head tilted in a cut.
+TEST(RotaryPictures, MachinesWhoseHeadsTilt) {
+  const std::pair<const char*, std::vector<std::string>> views[] = {
+      {"bridge_mill", {"--at-line", "21", "--stock", "box:-36,-36,-30:36,36,0"}},
+      {"swivel_mill", {"--at-line", "29", "--stock", "box:-20,-20,-20:20,20,0"}}};
+  for (const auto& [name, what] : views) {
+    SCOPED_TRACE(name);
+    const TestFolder folder;
+    const std::string start = std::string(ROTARY_FOLDER) + "/" + name;
+    KerfCall call;
+    call.arguments = {"view",     start + ".ngc",
+                      "--ini",    start + ".ini",
+                      "--interp", "bridge",
+                      "--cell",   "1",
+                      "--tool",   "1=flat:16:flute=20:shank=16:holder=40x40",
+                      "--tool",   "2=ball:5:flute=20:shank=5:holder=40x40",
+                      "--tool",   "3=flat:10",
+                      "--size",   "1280x720",
+                      "--png",    folder.file("view.png")};
+    call.arguments.insert(call.arguments.end(), what.begin(), what.end());
+    const KerfResult result = run_kerf(call);
+    ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
+    test::expect_golden(test::shrunk(read_png_file(folder.file("view.png")), kShrink),
+                        std::string(KERF_GOLDEN_FOLDER) + "/" + name + "_machine.png", 1.5, 4);
+  }
+}
+
 TEST(RotaryPictures, SlotsOfARobot) {
   expect_looks_as_it_did(own(
       "robot", {"--stock", "box:-60,-60,-40:60,60,0", "--tool", "1=bull:14:3", "--cell", "1.5"}));

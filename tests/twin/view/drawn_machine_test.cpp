@@ -56,6 +56,27 @@ TEST(DrawnMachine, StandsWhereTheKinematicsHaveTheTool) {
   }
 }
 
+/// Heads that tilt: B and C are those of LinuxCNC's kinematics for such machines, and W goes along
+/// the tool.
+TEST(DrawnMachine, HeadsTiltAsTheKinematicsHaveThem) {
+  const std::pair<const char*, MachineKind> machines[] = {{"5axiskins", MachineKind::kBridgeMill},
+                                                          {"maxkins", MachineKind::kSwivelMill}};
+  for (const auto& [kinematics, kind] : machines) {
+    SCOPED_TRACE(kinematics);
+    const MachineModel machine = machine_around_a_block(kind);
+    const ToolPath path = path_of(kinematics, "");
+    for (const auto& abc : {std::array{0.0, 0.0, 0.0}, std::array{0.0, -40.0, 0.0},
+                            std::array{0.0, 0.0, 75.0}, std::array{0.0, 30.0, -110.0}}) {
+      Motion m = feed_to({10, -20, 40}, abc);
+      expect_nose_at_the_tool(machine, path, m);
+      m.from_uvw_mm = m.to_uvw_mm = {0, 0, 7};
+      expect_nose_at_the_tool(machine, path, m);
+      EXPECT_LT(glm::length(path.pose_at(m, 1).origin_mm - (m.to_mm + 7.0 * path.spindle_at(m, 1))),
+                1e-9);
+    }
+  }
+}
+
 TEST(DrawnMachine, IsNotThereWhileItCannotTurnAsTheProgramDoes) {
   const MachineModel mill = machine_around_a_block(MachineKind::kKneeMill);
   const ToolPath path = path_of("trivkins", "XYZA");
