@@ -53,8 +53,8 @@ struct SheetPiece {
 /// are off by arc_tolerance_mm at most, and keep their area.
 ///
 /// Each move takes one polygon operation for each tile that its contour passes through. Nothing is
-/// held back: finish() has nothing to do, and every division into calls gives the same bits. One
-/// thread.
+/// held back: finish() has nothing to do, and every division into calls gives the same bits, if the
+/// strokes of one nibbled move stay in one call. One thread.
 ///
 /// Source of the idea of tiles and of direct contours for arcs: A. Moreno et al., "Real time 3D
 /// simulation tool for NC sheet metal cutting and punching processes", 2012.
