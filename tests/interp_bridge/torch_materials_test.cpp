@@ -73,7 +73,7 @@ TEST(MaterialFile, TheUnitOfAnotherMachineIsDoubtedOnce) {
             "mill_material.cfg:2:1: warning: material 1 is pierced from 0.15 mm: this looks like "
             "inches in a file that is read in mm, the unit of the machine ([TRAJ]LINEAR_UNITS of "
             "its INI; mm without one)\n"
-            "PIERCE_HEIGHT = 0.15\n^\n");
+            "     2 | PIERCE_HEIGHT = 0.15\n       | ^\n");
   EXPECT_NE(said("3.8", 25.4)
                 .find("material 1 is pierced from 96.5 mm: this looks like mm in a "
                       "file that is read in inches"),

@@ -138,6 +138,8 @@ bool RunningKerf::wait_until(const std::function<bool()>& ready) const {
 
 void RunningKerf::send(int signal) const { kill(pid_, signal); }
 
+std::string RunningKerf::err() const { return read_file(scratch_.file("err")); }
+
 KerfResult RunningKerf::finish() {
   KerfResult result;
   int status = 0;
@@ -147,7 +149,7 @@ KerfResult RunningKerf::finish() {
   input_fd_ = -1;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.out = read_file(scratch_.file("out"));
-  result.err = read_file(scratch_.file("err"));
+  result.err = err();
   return result;
 }
 

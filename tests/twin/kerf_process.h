@@ -55,6 +55,8 @@ class RunningKerf {
   bool has_read_its_input() const;
   bool catches_interrupts() const;
   void send(int signal) const;
+  /// What it has said there so far.
+  std::string err() const;
   KerfResult finish();
 
  private:

@@ -228,13 +228,17 @@ TEST_F(Shadow, ADiskThatIsFullEndsTheRecordingNotTheWatch) {
                           "--wait-for-reader", "--start-delay", "1"});
   KerfCall call;
   config_ = folder_.write("machine.yaml", with_port(kConfig, machine.wait_line("listening")));
-  call.arguments = {"shadow", "-c", config_, "--record", folder_.file("run.csv"), "--for", "3"};
+  call.arguments = {"shadow", "-c", config_, "--record", folder_.file("run.csv")};
   const std::vector<std::string> work = work_of(program_);
   call.arguments.insert(call.arguments.end(), work.begin(), work.end());
   call.file_size_limit = 8192;
-  const KerfResult result = run_kerf(call);
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_NE(result.err.find("run.csv: File too large"), std::string::npos) << result.err;
+  RunningKerf kerf(call);
+  EXPECT_TRUE(kerf.wait_until([&] {
+    return kerf.err().find("run.csv: File too large") != std::string::npos;
+  })) << kerf.err();
+  kerf.send(SIGINT);
+  const KerfResult result = kerf.finish();
+  EXPECT_EQ(result.exit_code, 4) << result.err;
   EXPECT_NE(result.out.find(" samples in "), std::string::npos) << result.out;
   const std::string recorded = read_file(folder_.file("run.csv"));
   EXPECT_LE(recorded.size(), 8192U);

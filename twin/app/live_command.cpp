@@ -240,6 +240,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   CpuBudget budget(request.cpu_limit_percent);
   session->set_rest([&] { return budget.rest(); });
   LiveConsole console(request.quiet, events.file);
+  if (recorder) console.watch(*recorder);
   std::optional<HalObserver> pins;
   if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;

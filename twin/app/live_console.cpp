@@ -82,8 +82,18 @@ void LiveConsole::send(const std::string& line) {
   events_error_ = errno != 0 ? errno : EIO;
 }
 
+/// At the end of the watch, which may be hours away, it is told as an error.
+void LiveConsole::look_at_recorder() {
+  if (recorder_ == nullptr) return;
+  const std::string trouble = recorder_->status().trouble;
+  if (trouble.empty()) return;
+  say(fmt::format("kerf: {}; the machine is watched on\n", trouble));
+  recorder_ = nullptr;
+}
+
 void LiveConsole::on_status(const LiveStatus& status) {
   send(status_json(status));
+  look_at_recorder();
   const bool changed = !state_told_ || status.state != state_;
   // What goes wrong is worth a line when it begins, not each time that it is tried again.
   const bool counts = status.source.errors > errors_ || status.state == LiveState::kWaiting;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "machine_io/recorder.h"
 #include "twin/live/live_session.h"
 
 namespace kerf {
@@ -22,6 +23,8 @@ class LiveConsole final : public LiveObserver {
   /// `quiet`: errors and warnings of collisions only. `events` may be null; not closed here.
   LiveConsole(bool quiet, std::FILE* events);
   ~LiveConsole() override;
+  /// Tells when this recording stops, as soon as it does. It outlives the calls of on_status().
+  void watch(const Recorder& recorder) { recorder_ = &recorder; }
 
   void on_status(const LiveStatus& status) override;
   void on_finding(const Finding& finding, const std::vector<std::string>& files) override;
@@ -36,10 +39,12 @@ class LiveConsole final : public LiveObserver {
   void say(const std::string& text);
   void send(const std::string& line);
   void wipe();
+  void look_at_recorder();
 
   bool quiet_;
   bool terminal_;
   std::FILE* events_;
+  const Recorder* recorder_ = nullptr;  ///< null: none, or its end is told
   int events_error_ = 0;
   bool drawn_ = false;
   LiveState state_ = LiveState::kWaiting;

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 
 namespace kerf {
 namespace {

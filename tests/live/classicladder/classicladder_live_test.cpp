@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 
 namespace kerf {
 namespace {
@@ -64,16 +64,16 @@ constexpr const char* kSampler =
 class ClassicLadderLive : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    missing_ = LiveSession::missing();
+    missing_ = LinuxCncSession::missing();
     if (!missing_.empty()) return;
-    LiveSession::Plan plan;
+    LinuxCncSession::Plan plan;
     plan.program = long_program();
     plan.before = kBusyMachine;
     plan.after = kSampler;
     plan.at_ready =
         "halsampler -t -c 0 samples.txt </dev/null >/dev/null 2>&1 & echo $! >sampler.pid";
     plan.at_end = "halcmd -s show sig >sigs.txt; kill $(cat sampler.pid)";
-    session_ = std::make_unique<LiveSession>(plan);
+    session_ = std::make_unique<LinuxCncSession>(plan);
     polls_ = session_->polls();
     cycles_ = session_->cycles(lost_);
     // 65 s until the counter comes round: longer than the session.
@@ -92,7 +92,7 @@ class ClassicLadderLive : public testing::Test {
   }
 
   static inline std::string missing_;
-  static inline std::unique_ptr<LiveSession> session_;
+  static inline std::unique_ptr<LinuxCncSession> session_;
   static inline std::vector<ServedRegisters> polls_;
   static inline std::vector<LoggedCycle> cycles_;
   static inline int lost_ = 0;
@@ -216,9 +216,9 @@ constexpr const char* kShortProgram =
 /// Nothing of the HAL that is read here is in use already; and the second start finds no port, lock
 /// or display left over from the first.
 TEST(ClassicLadderStart, InchesAndTwice) {
-  const std::string missing = LiveSession::missing();
+  const std::string missing = LinuxCncSession::missing();
   if (!missing.empty()) GTEST_SKIP() << missing;
-  LiveSession::Plan plan;
+  LinuxCncSession::Plan plan;
   plan.program = kShortProgram;
   plan.before = "set ::TRAJ(LINEAR_UNITS) inch";
   plan.sessions = 2;
@@ -228,7 +228,7 @@ TEST(ClassicLadderStart, InchesAndTwice) {
       // Until positions have been polled while the machine stands.
       "n=$(wc -l <polls.txt); "
       "timeout 20 bash -c \"until [ \\$(wc -l <polls.txt) -gt $((n + 3)) ]; do sleep 0.02; done\"";
-  const LiveSession session(plan);
+  const LinuxCncSession session(plan);
   ASSERT_EQ(session.status(), 0) << session.said();
   EXPECT_EQ(session.times("connected"), 2) << session.said();
   const std::vector<ServedRegisters> polls = session.polls();
@@ -247,12 +247,12 @@ TEST(ClassicLadderStart, InchesAndTwice) {
 }
 
 TEST(ClassicLadderStart, AMachineWithALadderOfItsOwnIsToldSo) {
-  const std::string missing = LiveSession::missing();
+  const std::string missing = LinuxCncSession::missing();
   if (!missing.empty()) GTEST_SKIP() << missing;
-  LiveSession::Plan plan;
+  LinuxCncSession::Plan plan;
   plan.program = kShortProgram;
   plan.before = "hal loadrt classicladder_rt";
-  const LiveSession session(plan);
+  const LinuxCncSession session(plan);
   EXPECT_NE(session.status(), 0);
   EXPECT_NE(session.said().find("kerf_positions.tcl: this machine runs ClassicLadder already"),
             std::string::npos)

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 
 namespace kerf {
 namespace {

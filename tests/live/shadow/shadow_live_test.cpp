@@ -11,7 +11,7 @@
 #include <string>
 
 #include "stock/zmap/zmap.h"
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 
 namespace kerf {
 namespace {
@@ -95,7 +95,7 @@ double share_of_differences(const ZMap& a, const ZMap& b, double by_mm) {
 class ShadowOfLinuxCnc : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const std::string missing = LiveSession::missing();
+    const std::string missing = LinuxCncSession::missing();
     if (!missing.empty()) GTEST_SKIP() << missing;
     ASSERT_EQ(the_run().status, 0)
         << the_run().output << text_of(the_run().folder / "run" / "linuxcnc.log") << said();

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "stock/octree/octree.h"
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 #include "tests/twin/live/surface_deviation.h"
 
 namespace kerf {

@@ -1,5 +1,5 @@
-// tests/live/classicladder/live_session.h - a LinuxCNC that serves its registers, and what was seen
-// of it.
+// tests/live/classicladder/linuxcnc_session.h - a LinuxCNC that serves its registers, and what was
+// seen of it.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct LoggedCycle {
 
 /// One run of tests/live/linuxcnc/run_linuxcnc with the files of configs/linuxcnc, in a folder of
 /// its own that goes with it. Its registers are polled 50 times a second meanwhile.
-class LiveSession {
+class LinuxCncSession {
  public:
   /// `before` and `after` are Tcl around the reading of kerf_positions.tcl. `at_ready`, `at_end`:
   /// shell commands, before the program and behind it. `sessions`: LinuxCNC is started so often.
@@ -51,10 +51,10 @@ class LiveSession {
   /// Why no such session is possible here; empty if it is.
   static std::string missing();
 
-  explicit LiveSession(const Plan& plan);
-  ~LiveSession();
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
+  explicit LinuxCncSession(const Plan& plan);
+  ~LinuxCncSession();
+  LinuxCncSession(const LinuxCncSession&) = delete;
+  LinuxCncSession& operator=(const LinuxCncSession&) = delete;
 
   int status() const { return status_; }
   /// What run_linuxcnc said, and LinuxCNC's own log.

@@ -1,4 +1,4 @@
-#include "tests/live/classicladder/live_session.h"
+#include "tests/live/classicladder/linuxcnc_session.h"
 
 #include <sys/wait.h>
 
@@ -48,14 +48,14 @@ int shell(const std::string& command, std::string& output) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-std::string LiveSession::missing() {
+std::string LinuxCncSession::missing() {
   std::string reason;
   if (shell(RUN_LINUXCNC " --check", reason) != 0) return reason;
   if (shell("command -v Xvfb", reason) != 0) return "package xvfb is not installed";
   return {};
 }
 
-LiveSession::LiveSession(const Plan& plan) {
+LinuxCncSession::LinuxCncSession(const Plan& plan) {
   std::string pattern = (std::filesystem::temp_directory_path() / "classicladder.XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) return;
   folder_ = pattern;
@@ -78,18 +78,18 @@ LiveSession::LiveSession(const Plan& plan) {
                   output_);
 }
 
-LiveSession::~LiveSession() {
+LinuxCncSession::~LinuxCncSession() {
   std::error_code ignored;
   if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
 }
 
-std::string LiveSession::said() const { return output_ + file("linuxcnc.log"); }
+std::string LinuxCncSession::said() const { return output_ + file("linuxcnc.log"); }
 
-std::string LiveSession::file(const std::string& name) const {
+std::string LinuxCncSession::file(const std::string& name) const {
   return text_of(folder_ / "run" / name);
 }
 
-int LiveSession::times(const std::string& event) const {
+int LinuxCncSession::times(const std::string& event) const {
   std::istringstream lines(file("polls.txt"));
   std::string line;
   int count = 0;
@@ -97,7 +97,7 @@ int LiveSession::times(const std::string& event) const {
   return count;
 }
 
-std::vector<ServedRegisters> LiveSession::polls() const {
+std::vector<ServedRegisters> LinuxCncSession::polls() const {
   std::istringstream lines(file("polls.txt"));
   std::string line;
   std::vector<ServedRegisters> polls;
@@ -111,7 +111,7 @@ std::vector<ServedRegisters> LiveSession::polls() const {
   return polls;
 }
 
-std::vector<LoggedCycle> LiveSession::cycles(int& lost) const {
+std::vector<LoggedCycle> LinuxCncSession::cycles(int& lost) const {
   std::istringstream lines(file("samples.txt"));
   std::string line;
   std::vector<LoggedCycle> cycles;
