@@ -124,10 +124,11 @@ TEST_F(CsgViewTest, AnEyeThatTurnsSeesWholePictures) {
   // With the newest moves missing it is another picture, and that would have been noticed.
   cut(&*reference_, rows(kRows / 8));
   EXPECT_GT(share_apart(scene_->read(), settled(&*reference_, seen)), 2 * kMostAtEdges);
-  // At rest nothing is left of it.
+  // At rest nothing is left of it. Where walls of two moves coincide, which of them is seen depends
+  // on how the time limits divided the work.
   cut(&*reference_, rows(kRows));
   const Projection rest = projection();
-  EXPECT_EQ(settled(&*scene_, rest).rgb, settled(&*reference_, rest).rgb);
+  EXPECT_LT(share_apart(settled(&*scene_, rest), settled(&*reference_, rest)), kMostAtEdges);
 }
 
 TEST_F(CsgViewTest, MovesThatComeWhileTheEyeTurnsAreInTheNextPicture) {
