@@ -18,8 +18,9 @@ namespace {
 constexpr double kStill_mm = 1e-6;
 /// What happens across a gap in which a machine moved less is nothing. mm.
 constexpr double kGapMove_mm = 0.02;
-/// Lost samples leave a gap if it is longer than this, and than so many usual periods.
-constexpr double kShortGap_s = 0.05;
+/// Lost samples leave a gap if it is longer than this, and than so many usual periods: sources of
+/// ten readings a second are believed.
+constexpr double kShortGap_s = 0.1;
 constexpr double kShortGapPeriods = 4;
 /// Share of a new interval in the usual period.
 constexpr double kPeriodShare = 0.05;
@@ -28,6 +29,10 @@ constexpr double kPlannedAhead_s = 6.0;
 /// A jump is faster than the machine by this factor, and longer than this.
 constexpr double kJumpFactor = 1.5;
 constexpr double kJump_mm = 1.0;
+/// Times are not exacter than this. What was held up on a busy computer follows in a burst: cycles
+/// of a LinuxCNC without a real-time kernel, answers of a network, readings of a process that had
+/// to wait between its stamp and its positions.
+constexpr double kBurst_s = 0.05;
 /// A spindle slower than this stands. rpm.
 constexpr double kStanding_rpm = 1.0;
 /// A machine that says it runs, and is not seen at the program's beginning, is looked for in all of
@@ -314,7 +319,7 @@ double LiveCutter::way_between(const Sighting& before, const Sighting& now) cons
 bool LiveCutter::too_fast(const Sighting& before, const Sighting& now) const {
   const double way_mm = glm::length(now.place.tip_mm - before.place.tip_mm);
   return way_mm > kJump_mm &&
-         way_mm > kJumpFactor * options_.most_mm_per_s * (now.t_s - before.t_s);
+         way_mm > kJumpFactor * options_.most_mm_per_s * (now.t_s - before.t_s + kBurst_s);
 }
 
 LiveCutter::Break LiveCutter::break_between(const Sighting& before, const Sighting& now,
@@ -361,7 +366,9 @@ void LiveCutter::cut_now(const Motion& motion, double duration_s, double t_s) {
   step.start_s = t_s;
   step.duration_s = duration_s;
   step.length_mm = path_length_mm(motion);
-  step.programmed_mm_per_min = duration_s > 0 ? 60 * step.length_mm / duration_s : 0;
+  // Readings in a burst may have one stamp. A machine that moves has a feed.
+  step.programmed_mm_per_min =
+      duration_s > 0 ? 60 * step.length_mm / duration_s : std::numeric_limits<double>::infinity();
   step.allowed_mm_per_min = step.programmed_mm_per_min;
   if (stage_.torch() && ahead_ && ahead_->take_materials(materials_)) {
     stage_.set_materials(materials_);

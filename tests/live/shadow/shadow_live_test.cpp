@@ -12,6 +12,7 @@
 
 #include "stock/zmap/zmap.h"
 #include "tests/live/classicladder/linuxcnc_session.h"
+#include "tests/live/quiet_run.h"
 
 namespace kerf {
 namespace {
@@ -70,16 +71,22 @@ struct WatchedRun {
   Json report(const std::string& name) const {
     return Json::parse(text_of(folder / "run" / (name + ".json")), nullptr, false);
   }
+  /// That either of the two has told of.
+  int gaps() const {
+    int all = 0;
+    for (const char* source : {"hal", "modbus"}) {
+      const Json live = report(source);
+      if (live.is_object()) all += live["live"].value("gaps", 0);
+    }
+    return all;
+  }
   std::unique_ptr<ZMap> workpiece(const std::string& name) const {
     auto loaded = ZMap::load((folder / "run" / (name + ".state")).string());
     return loaded ? std::move(loaded.value()) : nullptr;
   }
 };
 
-WatchedRun& the_run() {
-  static WatchedRun run;
-  return run;
-}
+WatchedRun& the_run() { return quiet_run<WatchedRun>(); }
 
 /// Share of the cells whose heights differ by more than `by_mm`.
 double share_of_differences(const ZMap& a, const ZMap& b, double by_mm) {

@@ -12,6 +12,7 @@
 
 #include "stock/octree/octree.h"
 #include "tests/live/classicladder/linuxcnc_session.h"
+#include "tests/live/quiet_run.h"
 #include "tests/twin/live/surface_deviation.h"
 
 namespace kerf {
@@ -79,6 +80,10 @@ struct TurningRun {
   Json report(const std::string& name) const {
     return Json::parse(text_of(folder / (name + ".json")), nullptr, false);
   }
+  int gaps() const {
+    const Json live = report("live");
+    return live.is_object() ? live["live"].value("gaps", 0) : 0;
+  }
   double removed_mm3(const std::string& name) const {
     const Json all = report(name);
     return all.is_object() ? all["stock"].value("removed_mm3", -1.0) : -1.0;
@@ -89,10 +94,7 @@ struct TurningRun {
   }
 };
 
-TurningRun& the_run() {
-  static TurningRun run;
-  return run;
-}
+TurningRun& the_run() { return quiet_run<TurningRun>(); }
 
 class ShadowOfTurningLinuxCnc : public ::testing::Test {
  protected:

@@ -202,13 +202,31 @@ TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
   EXPECT_EQ(watch.log().kept()[0].severity, Severity::kWarning);
   watch.see({21.5, 20, -1}, 0.03, 1, true);
   EXPECT_EQ(watch.ids().size(), 1U) << "one sample in a quick row is no gap";
-  watch.see({22.5, 20, -1}, 0.13, 1, true);
+  watch.see({22.5, 20, -1}, 0.14, 1, true);
   EXPECT_EQ(watch.ids().size(), 2U);
   // A machine that keeps its speed is only faster than was said: it is cut after the first jump.
   const double before = watch.removed_mm3();
-  for (int i = 0; i < 5; ++i) watch.see({22.5 - 3.0 * i, 24, -1}, 0.14 + 0.01 * i);
+  for (int i = 0; i < 5; ++i) watch.see({22.5 - 12.0 * i, 24, -1}, 0.15 + 0.01 * i);
   EXPECT_EQ(watch.ids().size(), 3U);
   EXPECT_GT(watch.removed_mm3(), before + 20);
+}
+
+TEST(LiveCutter, WhatWasHeldUpAndComesInABurstIsNoJump) {
+  LiveCutOptions options;
+  options.most_mm_per_s = 60;
+  Watch watch(options);
+  // 60 mm/s. For 48 ms the thread of the machine stands, then it catches up.
+  double x = 10;
+  for (int i = 0; i < 10; ++i) watch.see({x += 0.3, 20, -1}, 0.005 * i);
+  for (int i = 10; i < 19; ++i) watch.see({x, 20, -1}, 0.005 * i);
+  watch.see({x += 2.9, 20, -1}, 0.0951);
+  // The same of who reads it: stamped, held up, read, and stamped again at once.
+  watch.see({x += 1.7, 20, -1}, 0.1);
+  watch.see({x += 1.2, 20, -1}, 0.1);
+  EXPECT_TRUE(watch.ids().empty());
+  EXPECT_EQ(watch.cutter().facts().gaps, 0U);
+  watch.see({x += 4.7, 20, -1}, 0.101);  // 51 ms times 60 mm/s times 1.5 are 4.59 mm
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSourceGap});
 }
 
 TEST(LiveCutter, AJumpFarFromTheWorkpieceIsHomingAndOnlyANote) {
