@@ -130,6 +130,13 @@ struct ProgramText {
   std::vector<SourceFile> files;
 };
 
+/// A line of one of ProgramText::files.
+struct CodeLine {
+  int file = 0;
+  int line = 1;
+  auto operator<=>(const CodeLine&) const = default;
+};
+
 /// Where tools change, for the time slider.
 struct ToolMark {
   double time_s = 0.0;
@@ -269,9 +276,9 @@ struct Moment {
   std::vector<AxisReadout> axes;
   double removed_mm3 = 0.0;
   SourceFreshness source = SourceFreshness::kNone;
-  std::string source_name;       ///< "modbus 192.168.0.10", "" without a source.
-  double source_age_s = 0.0;     ///< Of the newest sample when this value was made.
-  std::vector<int> breakpoints;  ///< Lines of the main program, ascending.
+  std::string source_name;            ///< "modbus 192.168.0.10", "" without a source.
+  double source_age_s = 0.0;          ///< Of the newest sample when this value was made.
+  std::vector<CodeLine> breakpoints;  ///< Ascending.
   std::string notice;  ///< A sentence for the status line: why it stopped, what is missing.
 };
 

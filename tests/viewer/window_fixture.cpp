@@ -85,7 +85,7 @@ Moment test_moment() {
   moment.axes = {{.name = 'X', .machine = 180.0, .work = 80.0, .to_go = 12.5},
                  {.name = 'Y', .machine = 190.0, .work = 90.0, .to_go = std::nullopt},
                  {.name = 'Z', .machine = -103.0, .work = -3.0, .to_go = 0.0}};
-  moment.breakpoints = {44};
+  moment.breakpoints = {{0, 44}};
   return moment;
 }
 

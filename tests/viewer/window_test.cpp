@@ -199,7 +199,7 @@ TEST_F(WindowTest, ClickOnALineNumberSetsABreakpoint) {
   EXPECT_EQ(set->file, "test.ngc");
   EXPECT_TRUE(set->set);
   Moment moment = test_moment();
-  moment.breakpoints = {44, set->line};
+  moment.breakpoints = {{0, 44}, {0, set->line}};
   publish(moment);
   const PixelBox dot{8, 390, 26, 410};
   EXPECT_TRUE(turn_until([&] { return count_pixels(window_->read(), dot, kBreakpoint) > 20; }));
@@ -208,6 +208,36 @@ TEST_F(WindowTest, ClickOnALineNumberSetsABreakpoint) {
   ASSERT_TRUE(cleared);
   EXPECT_EQ(cleared->line, set->line);
   EXPECT_FALSE(cleared->set);
+}
+
+TEST_F(WindowTest, SubroutinesHaveBreakpointsOfTheirOwn) {
+  open();
+  const PixelBox dots{8, 60, 26, 700};
+  EXPECT_TRUE(turn_until([&] { return count_pixels(window_->read(), dots, kBreakpoint) > 20; }));
+  const Picture main = window_->read();
+  Moment moment = test_moment();  // its breakpoint is in the main program
+  moment.file = 1;
+  moment.line = 7;
+  publish(moment);
+  ASSERT_TRUE(turn_until_changed(main, kCode));
+  EXPECT_TRUE(turn_until([&] { return count_pixels(window_->read(), dots, kBreakpoint) == 0; }));
+  key("b");
+  const auto of_key = next<BreakpointCommand>();
+  ASSERT_TRUE(of_key);
+  EXPECT_EQ(of_key->file, "subroutines/pocket.ngc");
+  EXPECT_EQ(of_key->line, 7);
+  EXPECT_TRUE(of_key->set);
+  moment.breakpoints = {{0, 44}, {1, 7}};
+  publish(moment);
+  ASSERT_TRUE(turn_until([&] { return count_pixels(window_->read(), dots, kBreakpoint) > 20; }));
+  const std::optional<glm::ivec2> row = find_pixel(window_->read(), dots, kBreakpoint);
+  ASSERT_TRUE(row);
+  click(30, row->y + 3);
+  const auto of_click = next<BreakpointCommand>();
+  ASSERT_TRUE(of_click);
+  EXPECT_EQ(of_click->file, "subroutines/pocket.ngc");
+  EXPECT_EQ(of_click->line, 7);
+  EXPECT_FALSE(of_click->set);
 }
 
 TEST_F(WindowTest, SubroutineComesToTheFrontWhileItRuns) {

@@ -284,7 +284,8 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
     moment->axes[i].to_go = motion.to_mm[static_cast<int>(i)] - state.tip_mm[static_cast<int>(i)];
   }
   for (const SourceRef& breakpoint : breakpoints_) {
-    if (breakpoint.file == 0) moment->breakpoints.push_back(static_cast<int>(breakpoint.line));
+    moment->breakpoints.push_back(
+        {static_cast<int>(breakpoint.file), static_cast<int>(breakpoint.line)});
   }
   std::sort(moment->breakpoints.begin(), moment->breakpoints.end());
   moment->removed_mm3 = removed_mm3(state);

@@ -55,8 +55,8 @@ class FileView {
  private:
   bool is_main() const { return index_ == 0; }
   bool has_breakpoint(int line) const {
-    return is_main() &&
-           std::binary_search(moment_.breakpoints.begin(), moment_.breakpoints.end(), line);
+    return std::binary_search(moment_.breakpoints.begin(), moment_.breakpoints.end(),
+                              CodeLine{index_, line});
   }
   void toggle_breakpoint(int line) const {
     context_.commands->push(BreakpointCommand{file_.path(), line, !has_breakpoint(line)});
@@ -104,7 +104,7 @@ class FileView {
     if (hovered_ == 0) return;
     in_gutter_ = io.MousePos.x < corner_.x + gutter_px_;
     if (ImGui::IsItemClicked(ImGuiMouseButton_Left)) {
-      if (in_gutter_ && is_main()) {
+      if (in_gutter_) {
         toggle_breakpoint(hovered_);
       } else {
         seek(hovered_);
@@ -141,7 +141,7 @@ class FileView {
     const float x = corner_.x + 0.5f * kDotRoom_px * context_.scale;
     if (has_breakpoint(number)) {
       list->AddCircleFilled({x, middle}, 0.30f * row_px_, theme::kBreakpoint);
-    } else if (is_main() && in_gutter_ && number == hovered_) {
+    } else if (in_gutter_ && number == hovered_) {
       list->AddCircle({x, middle}, 0.28f * row_px_, theme::kBreakpoint);
     }
     const std::string label = std::to_string(number);
@@ -207,10 +207,8 @@ class FileView {
       scroll_.follows = true;
       context_.commands->push(RunToLineCommand{is_main() ? "" : file_.path(), line});
     }
-    if (is_main()) {
-      const Text text = has_breakpoint(line) ? Text::kClearBreakpoint : Text::kSetBreakpoint;
-      if (ImGui::MenuItem(context_.word(text))) toggle_breakpoint(line);
-    }
+    const Text text = has_breakpoint(line) ? Text::kClearBreakpoint : Text::kSetBreakpoint;
+    if (ImGui::MenuItem(context_.word(text))) toggle_breakpoint(line);
     ImGui::EndPopup();
   }
 

@@ -224,10 +224,12 @@ void Window::Impl::act_on_player(Action action) {
 void Window::Impl::set_breakpoint() {
   const Moment& moment = *shown_.moment;
   const auto& files = shown_.program->files;
-  if (moment.line < 1 || moment.file != 0 || files.empty()) return;
+  const auto file = static_cast<std::size_t>(moment.file);
+  if (moment.line < 1 || file >= files.size()) return;
   const auto& set = moment.breakpoints;
-  const bool is_set = std::binary_search(set.begin(), set.end(), moment.line);
-  commands_.push(BreakpointCommand{files.front().path(), moment.line, !is_set});
+  const CodeLine here{moment.file, moment.line};
+  const bool is_set = std::binary_search(set.begin(), set.end(), here);
+  commands_.push(BreakpointCommand{files[file].path(), moment.line, !is_set});
 }
 
 void Window::Impl::act_on_view(Action action) {

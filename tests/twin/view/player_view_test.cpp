@@ -13,14 +13,14 @@ namespace {
 /// A window without a screen: takes what the view publishes, says what a user would.
 class PlayerViewTest : public testing::Test {
  protected:
-  void open(const MotionList& program) {
+  void open(const MotionList& program, std::vector<std::string> files = {"/nc/part.ngc"}) {
     PlayerProgram played;
     played.track = test::track_of(program.list());
     played.blank = test::block_40(0.2);
     played.tools = test::two_tools();
     ViewedProgram shown;
     shown.title = "part.ngc";
-    shown.files = {"/nc/part.ngc"};
+    shown.files = std::move(files);
     shown.work_offset = "G54";
     shown.tools = {{1, "ball 6"}, {2, "bull 4 1"}};
     shown.cuts = std::make_shared<const CutQuery>(played.track, test::two_tools());
@@ -122,13 +122,40 @@ TEST_F(PlayerViewTest, StopsAtABreakpointAndSaysSo) {
   commands_.push(SpeedCommand{1000});
   commands_.push(PlayCommand{});
   ASSERT_TRUE(at_line(7));
-  EXPECT_EQ(known_.moment->breakpoints, std::vector<int>{7});
+  EXPECT_EQ(known_.moment->breakpoints, (std::vector<CodeLine>{{0, 7}}));
   EXPECT_EQ(known_.moment->speed, 1000);
   EXPECT_FALSE(known_.moment->notice.empty());
   commands_.push(BreakpointCommand{"/nc/part.ngc", 7, false});
   commands_.push(PlayCommand{});
   ASSERT_TRUE(until([&] { return known_.moment->state == PlayState::kEnded; }));
   EXPECT_TRUE(known_.moment->breakpoints.empty());
+}
+
+TEST_F(PlayerViewTest, StopsInASubroutineEachTimeItIsCalled) {
+  // Two calls from the main program of a file with the lines 2 and 3.
+  MotionList program;
+  program.at({-5, 10, 5}).tool(1).spindle(true);
+  for (const double y : {10.0, 30.0}) {
+    program.traverse({-5, y, 5});
+    program.feed({-5, y, -2}).last().source = {1, 2};
+    program.feed({45, y, -2}).last().source = {1, 3};
+    program.traverse({45, y, 5});
+  }
+  open(program, {"/nc/part.ngc", "/nc/slot.ngc"});
+  commands_.push(BreakpointCommand{"/nc/slot.ngc", 3, true});
+  commands_.push(SpeedCommand{1000});
+  for (const double y : {10.0, 30.0}) {
+    commands_.push(PlayCommand{});
+    ASSERT_TRUE(at_line(3) && until([&] {
+                  const auto& pose = known_.moment->tool_pose;
+                  return pose && pose->tip_mm == Vec3(-5, y, -2);
+                }))
+        << y;
+    EXPECT_EQ(known_.moment->file, 1);
+    EXPECT_EQ(known_.moment->breakpoints, (std::vector<CodeLine>{{1, 3}}));
+  }
+  commands_.push(PlayCommand{});
+  ASSERT_TRUE(until([&] { return known_.moment->state == PlayState::kEnded; }));
 }
 
 TEST_F(PlayerViewTest, RunsToALine) {
