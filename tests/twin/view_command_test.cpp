@@ -219,7 +219,7 @@ TEST_F(ViewFiles, TheMachineOfAConfigurationIsAroundThePart) {
       100U);
 }
 
-TEST_F(ViewFiles, ALinkThatCannotBeReadIsNamedAndTheProgramShown) {
+TEST_F(ViewFiles, LinksThatCannotBeReadAreAllNamedAndNothingIsBegun) {
   folder_.write("broken.stl", "solid nothing\nfacet whatever\n");
   const std::string config = folder_.write("machine.yaml",
                                            "machine:\n"
@@ -228,10 +228,14 @@ TEST_F(ViewFiles, ALinkThatCannotBeReadIsNamedAndTheProgramShown) {
                                            "    - {name: head, stl: none.stl}\n"
                                            "  workpiece_on: table\n"
                                            "  tool_on: head\n");
-  const Picture found = picture({program_, "-c", config}, 0);
-  EXPECT_NE(last_.err.find("broken.stl"), std::string::npos) << last_.err;
-  EXPECT_NE(last_.err.find("none.stl"), std::string::npos) << last_.err;
-  EXPECT_EQ(different_pixels(found, picture({program_})), 0U);
+  EXPECT_EQ(picture({program_, "-c", config}, 4).width_px, 0);
+  EXPECT_NE(last_.err.find("broken.stl:2: 'whatever' found where 'normal' is due"),
+            std::string::npos)
+      << last_.err;
+  EXPECT_NE(last_.err.find("none.stl: No such file or directory"), std::string::npos) << last_.err;
+  // Who draws no machine does not ask for them.
+  const KerfResult run = run_kerf(call_of({"run", program_, "-c", config, "--quiet"}, kWork));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
 TEST_F(ViewFiles, ALogWantsAWindowOrReplay) {
@@ -458,6 +462,17 @@ TEST_F(ViewWindow, RunShowsTheResult) {
   kerf_->key("Q");
   expect_end(0);
   EXPECT_NE(result_.out.find("removed"), std::string::npos) << result_.out;
+}
+
+TEST_F(ViewWindow, RunShowsTheMachineOfItsConfiguration) {
+  open({"run", program_, "--view"});
+  const Picture bare = settled();
+  kerf_->key("Q");
+  expect_end(0);
+  open({"run", program_, "--view", "-c", std::string(KERF_CONFIGS) + "/machine_model.yaml"});
+  EXPECT_GT(different_pixels(bare, settled()), 3000U);
+  kerf_->key("Q");
+  expect_end(0);
 }
 
 TEST_F(ViewWindow, RunShowsTheResultByTheRoadAskedFor) {

@@ -320,6 +320,9 @@ int live_command(const LiveArguments& arguments, LiveCommand command) {
     return kExitUsage;
   }
   check_output_places(request.outputs, diagnostics);
+  if (request.window && (has_display() || request.needs_window)) {
+    check_shapes(request.config.machine.drawn, diagnostics);
+  }
   if (command == LiveCommand::kShadow) {
     for (const std::string& refused : make_room()) {
       Diagnostic d = fault(refused);

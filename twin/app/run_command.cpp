@@ -72,6 +72,7 @@ int run_command(const RunArguments& arguments) {
     d.hint = "pictures need no display: --png FILE";
     diagnostics.push_back(std::move(d));
   }
+  if (request.view) check_shapes(request.machine, diagnostics);
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
   // Before the session is opened: filling a large blank takes its time, too.

@@ -76,6 +76,10 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   check_outline_wishes(request.session.blank, request.outputs, reader);
   request.quiet = a.quiet;
   request.view = a.view;
+  request.ini = a.source.ini;
+  if (config) request.machine = config->machine.drawn;
+  // A turret is a machine's: it is drawn, unless another one is asked for.
+  if (session.turret && !request.machine.is_chosen()) request.machine.kind = MachineKind::kPunch;
   request.draw = understand_draw(a.draw, reader);
   if (request.draw && !a.view) reader.fault("--draw", "is for the window; there is no --view");
   if (a.view && a.source.program == "-") {

@@ -11,6 +11,7 @@
 #include "twin/app/torch_options.h"
 #include "twin/app/work_options.h"
 #include "twin/config/live_config.h"
+#include "twin/machine_model/machine_choice.h"
 #include "twin/session.h"
 #include "viewer/scene.h"
 
@@ -39,6 +40,8 @@ struct RunRequest {
   double mesh_tolerance_mm = 0.01;
   bool view = false;             ///< in a window, when it is done
   std::optional<DrawRoad> draw;  ///< in that window; none: as it remembers it
+  MachineChoice machine;         ///< drawn there, around the workpiece
+  std::string ini;               ///< of that machine; empty: none is given
   bool quiet = false;
 };
 

@@ -141,7 +141,8 @@ ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
     shown.tolerance_mm = request.tolerance_mm;
     print(comparison_doubts(request, *loaded.player.blank), request.run.quiet);
   }
-  const bool wanted = !request.ini.empty() || request.machine.kind || request.machine.links;
+  const RunRequest& run = request.run;
+  const bool wanted = !run.ini.empty() || run.machine.is_chosen();
   if (!wanted || !loaded.player.blank) return shown;
   double longest_mm = 0;
   for (const ProgramTool& tool : loaded.tools) {
@@ -158,7 +159,7 @@ ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
   Diagnostics diagnostics;
   WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
   room.turret = loaded.player.turret;
-  shown.machine = drawn_machine(request.machine, request.ini, room, diagnostics);
+  shown.machine = drawn_machine(run.machine, run.ini, room, diagnostics);
   print(diagnostics, request.run.quiet);
   return shown;
 }
@@ -338,7 +339,6 @@ int show_program(const RunRequest& run, std::stop_source& stop) {
   request.run.quiet = true;  // the dry run has said it
   request.at_end = true;
   request.window_road = run.draw;
-  if (run.session.turret) request.machine.kind = MachineKind::kPunch;
   return in_window(request, Kind::kProgram, stop);
 }
 
@@ -367,6 +367,7 @@ int view_command(const ViewArguments& arguments) {
   places.png = request.png;
   check_output_places(places, diagnostics);
   if (!request.compare.empty()) request.design = DesignPart::read(request.compare, diagnostics);
+  check_shapes(request.run.machine, diagnostics);
   print(diagnostics, request.run.quiet);
   if (has_error(diagnostics)) return kExitFailure;
   std::stop_source stop;

@@ -117,13 +117,12 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   ViewRequest request;
   const std::optional<LiveConfig> config = read_config(a.config, a.sets, diagnostics);
   RunArguments run = a.run;
-  if (config) {
-    complete_arguments(*config, run);
-    request.machine = config->machine.drawn;
-  }
-  request.ini = run.source.ini;
+  if (config) complete_arguments(*config, run);
   request.run = understand(run, diagnostics);
-  if (config) complete_session(*config, run, request.run.session);
+  if (config) {
+    complete_session(*config, run, request.run.session);
+    if (config->machine.drawn.is_chosen()) request.run.machine = config->machine.drawn;
+  }
   OptionReader reader(diagnostics);
   if (a.speed == "max") {
     request.speed = std::numeric_limits<double>::infinity();
@@ -145,10 +144,6 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   if (request.frame.road != DrawRoad::kMesh && !request.wants_window() && blank &&
       is_sheet(*blank)) {
     reader.fault("--draw", "a sheet is drawn by mesh alone");
-  }
-  // A turret is a machine's: it is drawn, unless another one is asked for.
-  if (request.run.session.turret && !request.machine.kind && !request.machine.links) {
-    request.machine.kind = MachineKind::kPunch;
   }
   request.film.speed = request.speed.value_or(1);
   if (!std::isfinite(request.film.speed)) {

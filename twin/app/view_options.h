@@ -44,11 +44,9 @@ struct ViewRequest {
   std::uint32_t at_line = 0;    ///< shown first; 0: the beginning (of a picture: the end)
   PlayerOptions player;
   std::string png;
-  FilmOptions film;                     ///< no folder: none is wanted
-  FrameOptions frame;                   ///< for files
-  std::optional<DrawRoad> window_road;  ///< none: as the window remembers it
-  MachineChoice machine;                ///< drawn around the workpiece
-  std::string ini;
+  FilmOptions film;                          ///< no folder: none is wanted
+  FrameOptions frame;                        ///< for files
+  std::optional<DrawRoad> window_road;       ///< none: as the window remembers it
   std::string compare;                       ///< file of the design part
   std::shared_ptr<const DesignPart> design;  ///< read by the command, not here
   double tolerance_mm = 0.05;

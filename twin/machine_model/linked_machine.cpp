@@ -58,6 +58,10 @@ std::vector<ChainLink> LinkedMachine::links_of_chain() const {
   return chain;
 }
 
+void check_shapes(const LinkedMachine& description, Diagnostics& diagnostics) {
+  for (const LinkSpec& link : description.links) shape_of(link, diagnostics);
+}
+
 std::optional<MachineModel> linked_machine(const LinkedMachine& description,
                                            const Pose& machine_from_workpiece,
                                            Diagnostics& diagnostics) {

@@ -35,6 +35,10 @@ struct LinkedMachine {
 /// Box, cylinder or tube as a closed mesh.
 TriangleMesh mesh_of(const BlankBody& body);
 
+/// Reads the STL files and forgets them again: each that is missing or broken is an error that
+/// names link, file and reason. For a command that shows a machine, before it begins.
+void check_shapes(const LinkedMachine& description, Diagnostics& diagnostics);
+
 /// Reads the STL files. Nothing if one is missing or broken (each is an error that names file and
 /// reason), or if the chain is none (KinematicChain::faults_of; whoever read the description has
 /// told where). A link without shape is not drawn but moves what hangs on it.

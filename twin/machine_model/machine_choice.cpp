@@ -58,6 +58,10 @@ MachineKind usual_machine_kind(const MachineFacts& facts) {
   return MachineKind::kKneeMill;
 }
 
+void check_shapes(const MachineChoice& choice, Diagnostics& diagnostics) {
+  if (choice.links) check_shapes(*choice.links, diagnostics);
+}
+
 MachineRoom machine_room(const MachineSetup* setup, const WorkpieceFrame& frame,
                          const Box& blank_mm, const Box& reach_mm, double tool_length_mm) {
   MachineRoom room;

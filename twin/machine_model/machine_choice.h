@@ -42,7 +42,12 @@ MachineKind usual_machine_kind(const MachineFacts& facts);
 struct MachineChoice {
   std::optional<MachineKind> kind;
   std::optional<LinkedMachine> links;
+
+  bool is_chosen() const { return kind || links; }
 };
+
+/// check_shapes() of its links, if it has any.
+void check_shapes(const MachineChoice& choice, Diagnostics& diagnostics);
 
 /// A room with the machine's travels and its tilting axis. `setup` null: no INI.
 MachineRoom machine_room(const MachineSetup* setup, const WorkpieceFrame& frame,
