@@ -344,6 +344,24 @@ TEST_F(ViewWindow, PlaysStepsAndCloses) {
   EXPECT_EQ(result_.err, "");
 }
 
+TEST_F(ViewWindow, PlaysAtOnceAtTheSpeedAskedFor) {
+  open({"view", program_});
+  const Picture start = settled();
+  kerf_->key("End");
+  ASSERT_TRUE(changes_from(start, 2000));
+  const Picture end = settled();
+  kerf_->key("Q");
+  expect_end(0);
+  for (const char* speed : {"1000", "max"}) {
+    open({"view", program_, "--speed", speed});
+    EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return different_pixels(now, end) < 300; }))
+        << speed;
+    kerf_->key("Q");
+    expect_end(0);
+    EXPECT_EQ(result_.err, "");
+  }
+}
+
 TEST_F(ViewWindow, ADestroyedWindowIsAClosedOne) {
   open({"view", program_});
   settled();

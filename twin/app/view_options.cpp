@@ -146,7 +146,7 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
     reader.fault("--draw", "a sheet is drawn by mesh alone");
   }
   request.film.speed = request.speed.value_or(1);
-  if (!std::isfinite(request.film.speed)) {
+  if (!request.film.folder.empty() && !std::isfinite(request.film.speed)) {
     reader.fault("--speed", "max has no frames a second; --frames wants a number");
   }
   return request;
