@@ -2,14 +2,14 @@
 // while the eye moves, by the software renderer and without a window.
 //
 //   bench_roads [--program FILE] [--stock SPEC] [--tool N=SHAPE] [--cell MM] [--speed X]
-//               [--seconds N]
+//               [--seconds N] [--road mesh|raycast|csg]
 //
-// Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. For each road
-// 1280x800 pixels, sixty times a second: first the program plays, then the eye turns as well. A
-// line for each of them: frames a second, how long a frame took (p50, p99, longest). By rays and by
-// CSG a new picture of the workpiece may come later than the frame: how many came a second is told,
-// too. While the eye turns the pictures may have fewer pixels, as in the window. Ends
-// with 1 if a frame in a hundred took longer than kMostStall_ms.
+// Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. For each road, or
+// the one named, 1280x800 pixels, sixty times a second: first the program plays, then the eye turns
+// as well. A line for each of them: frames a second, how long a frame took (p50, p99, longest). By
+// rays and by CSG a new picture of the workpiece may come later than the frame: how many came a
+// second is told, too. While the eye turns the pictures may have fewer pixels, as in the window.
+// Ends with 1 if a frame in a hundred took longer than kMostStall_ms.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,6 +46,7 @@ struct Arguments {
   double cell_mm = 0.05;
   double speed = 50;
   double seconds = 10;
+  std::string road;  ///< Empty: all.
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -175,6 +176,11 @@ Arguments read(int count, char** words) {
       arguments.speed = std::stod(value);
     } else if (name == "--seconds") {
       arguments.seconds = std::stod(value);
+    } else if (name == "--road") {
+      if (value != "mesh" && value != "raycast" && value != "csg") {
+        fail(fmt::format("'{}' is no road: mesh, raycast or csg", value));
+      }
+      arguments.road = value;
     } else {
       fail(fmt::format("'{}' is no option; see the source", name));
     }
@@ -192,6 +198,7 @@ int run(int count, char** words) {
   for (const auto& [name, road] :
        {std::pair("mesh", DrawRoad::kMesh), std::pair("raycast", DrawRoad::kRaycast),
         std::pair("csg", DrawRoad::kCsg)}) {
+    if (!arguments.road.empty() && arguments.road != name) continue;
     Run run(arguments, road);
     is_good = run.measure(name, false) && is_good;
     is_good = run.measure(name, true) && is_good;

@@ -122,6 +122,7 @@ void RoadFeeder::collect(std::size_t motion, std::size_t most) {
     shown_.moves.insert(shown_.moves.end(), moves->begin(), moves->end());
   }
   whole_ = shown_.moves.size();
+  shown_.left_out = first_motion_;
 }
 
 /// Of the motion that is under way the chords of the whole of it are taken as far as they go, so

@@ -15,7 +15,7 @@
 
 #include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/csg_store.h"
-#include "viewer/csg/depth_layer.h"
+#include "viewer/csg/layer_composer.h"
 #include "viewer/csg/query_pool.h"
 #include "viewer/gl_objects.h"
 #include "viewer/shaders/shaders.h"
@@ -26,10 +26,6 @@ namespace {
 /// Solids end this share of the blank's size above it: enough for the depth buffer to tell both
 /// apart, as little as possible to draw.
 constexpr double kAboveBlank = 0.02;
-/// Walls thinner than this, in steps of the depth buffer and in shares of the slope per pixel, are
-/// none: a cut exactly through the floor opens it.
-constexpr float kFilm_steps = 8.0f;
-constexpr float kFilm_slope = 0.02f;
 /// Batches mark the stencil with their number, so it is cleared only when the numbers run out.
 constexpr GLint kLastMark = 255;
 /// The blank seen from above, in steps along its longer side: finds solids that overlap in space.
@@ -94,15 +90,10 @@ bool overlaps(const Box& a, const Box& b) {
 
 class CsgRenderer::Impl {
  public:
-  struct Programs {
-    GlProgram background;
-    GlProgram solid;
-    GlProgram inside;
-    GlProgram layer;
-  };
-
-  Impl(Programs programs, const CsgOptions& options)
-      : programs_(std::move(programs)), options_(options) {
+  Impl(GlProgram solid_program, LayerComposer composer, const CsgOptions& options)
+      : solid_program_(std::move(solid_program)),
+        composer_(std::move(composer)),
+        options_(options) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px_);
   }
 
@@ -112,7 +103,8 @@ class CsgRenderer::Impl {
   void clear_moves();
   Done draw(const Projection& projection, double longest_ms, bool shows);
   bool has_waiting() const { return !waiting_.empty() || !is_settled(); }
-  const DepthLayer& shown() const { return shown_; }
+  const PixelRect& unshown() const { return unshown_; }
+  const DepthLayer& shown() const { return composer_.shown(); }
 
   CsgCounters counters;
   std::size_t move_count = 0;
@@ -131,23 +123,22 @@ class CsgRenderer::Impl {
   }
   void use_solid_program() const;
   void begin_layer(const Layer& layer, int number);
+  PixelRect whole_picture() const { return {{0, 0}, size_px_}; }
   std::size_t gpu_bytes() const;
   PixelRect settle(Layer* layer, std::vector<std::uint32_t> pending);
   std::size_t subtract_in_time(const std::vector<Batch>& batches);
   void subtract(const Batch& batch, std::size_t query);
   std::vector<std::uint32_t> to_look_at_again(const Layer& layer) const;
-  void mark_inside(const Layer& layer);
   Done compose(const PixelRect& rect);
 
-  Programs programs_;
+  GlProgram solid_program_;
+  LayerComposer composer_;
   CsgOptions options_;
   GLint max_size_px_ = 1;
-  GlVertexArray no_vertices_;
   SolidStore store_;
   BlankStore blank_store_;
   QueryPool queries_;
   std::vector<Layer> layers_;
-  DepthLayer shown_;  // may be of another size still
 
   std::vector<Tool> tools_;
   Box blank_mm_;
@@ -156,7 +147,8 @@ class CsgRenderer::Impl {
   std::vector<Solid> solids_;
   std::vector<std::uint32_t> order_;    // of solids_ that the layers know, about front to back
   std::vector<std::uint32_t> waiting_;  // the others, the newest at the end
-  PixelRect unshown_;                   // of the layers, not in shown_ yet
+  PixelRect touched_;                   // of the layers: all else is as they were begun
+  PixelRect unshown_;                   // of the layers, not in shown() yet
   Clock::time_point deadline_ = Clock::time_point::max();  // of the draw()
   std::uint64_t time_ = 1;                                 // counts batches; 0 is before all
   GLint mark_ = kLastMark;  // of the batch last drawn, in the stencil
@@ -172,6 +164,7 @@ Done CsgRenderer::Impl::set_blank(const CsgBlank& blank) {
   blank_mm_ = {};
   for (const glm::vec3& p : blank.mesh.positions_mm) blank_mm_.extend(Vec3(p));
   convexity_ = blank.convexity;
+  touched_ = whole_picture();
   const Vec3 size = blank_mm_.size();
   const double top = blank_mm_.max.z;
   builder_.emplace(options_.tolerance_mm, top,
@@ -244,6 +237,7 @@ Done CsgRenderer::Impl::resize(const Projection& projection) {
     if (Done done = layer.pixels.allocate(size_px); !done) return done;
   }
   size_px_ = size_px;
+  touched_ = whole_picture();
   is_old_ = true;
   return std::monostate{};
 }
@@ -263,6 +257,7 @@ void CsgRenderer::Impl::place(std::vector<std::uint32_t>* solids) {
 
 /// No solid is subtracted from the layers any more.
 void CsgRenderer::Impl::begin_anew(const Projection& projection) {
+  if (projection != projection_ || !options_.is_local) touched_ = whole_picture();
   projection_ = projection;
   order_.clear();
   waiting_.resize(solids_.size());
@@ -276,7 +271,7 @@ void CsgRenderer::Impl::begin_anew(const Projection& projection) {
     layers_[i].clock = TileClock(size_px_);
     layers_[i].ground = TileClock(glm::ivec2(kGround_steps));
   }
-  unshown_ = PixelRect{{0, 0}, size_px_};
+  unshown_.extend(std::exchange(touched_, {}));
   is_old_ = false;
 }
 
@@ -288,7 +283,7 @@ std::vector<std::uint32_t> CsgRenderer::Impl::take_newest(std::size_t count) {
 }
 
 /// Groups grow as long as they are taken quickly: many solids side by side cost little more than
-/// one. What the last draw() had no time to look at again comes first.
+/// one. What the last draw() had no time to look at again comes first. No time at all: nothing.
 void CsgRenderer::Impl::take_waiting(double longest_ms) {
   const auto begin = Clock::now();
   const bool is_limited = std::isfinite(longest_ms);
@@ -300,8 +295,9 @@ void CsgRenderer::Impl::take_waiting(double longest_ms) {
       use_solid_program();
       glEnable(GL_CULL_FACE);
       layer.looked_at.resize(solids_.size());
-      unshown_.extend(settle(&layer, layer.is_settled ? added : to_look_at_again(layer)));
+      touched_.extend(settle(&layer, layer.is_settled ? added : to_look_at_again(layer)));
     }
+    unshown_.extend(touched_);
   };
   bool has_done = !is_settled();
   if (has_done) settle_all({});
@@ -318,9 +314,9 @@ void CsgRenderer::Impl::take_waiting(double longest_ms) {
 }
 
 void CsgRenderer::Impl::use_solid_program() const {
-  programs_.solid.use();
-  programs_.solid.set("clip_from_world", projection_.clip_from_world);
-  programs_.solid.set("view_from_world", projection_.view_from_world);
+  solid_program_.use();
+  solid_program_.set("clip_from_world", projection_.clip_from_world);
+  solid_program_.set("view_from_world", projection_.view_from_world);
 }
 
 /// Fills the layer with its front of the blank: of the fronts that are drawn at a pixel, the one
@@ -444,73 +440,19 @@ std::vector<std::uint32_t> CsgRenderer::Impl::to_look_at_again(const Layer& laye
   return again;
 }
 
-/// Sets alpha to 1 where the kept point is inside the blank: more backs than fronts behind it
-/// (those before it may be behind the eye). Within the scissor rectangle.
-void CsgRenderer::Impl::mark_inside(const Layer& layer) {
-  glBindFramebuffer(GL_FRAMEBUFFER, layer.pixels.framebuffer());
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-  mark_ = kLastMark;
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  glDepthMask(GL_FALSE);
-  glDepthFunc(GL_GREATER);
-  glStencilFunc(GL_ALWAYS, 0, 0xff);
-  glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
-  glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
-  glDisable(GL_CULL_FACE);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(-kFilm_slope, -kFilm_steps);
-  blank_store_.draw();
-  glDisable(GL_POLYGON_OFFSET_FILL);
-
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  glStencilFunc(GL_NOTEQUAL, 0, 0xff);
-  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  glDisable(GL_DEPTH_TEST);
-  programs_.inside.use();
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glDepthMask(GL_TRUE);
-}
-
 /// Background, and over it what is left of the layers, within the rectangle.
 Done CsgRenderer::Impl::compose(const PixelRect& rect) {
-  if (rect.empty()) return std::monostate{};
-  // Of another size the layers are new, and the rectangle is all of it.
-  if (Done done = shown_.allocate(size_px_); !done) return done;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(rect.min.x, rect.min.y, rect.max.x - rect.min.x, rect.max.y - rect.min.y);
-  glEnable(GL_STENCIL_TEST);
-  for (const Layer& layer : layers_) {
+  std::vector<const DepthLayer*> layers;
+  for (const Layer& layer : layers_) layers.push_back(&layer.pixels);
+  mark_ = kLastMark;  // it uses the stencil
+  return composer_.compose(layers, size_px_, rect, [this] {
     use_solid_program();
-    mark_inside(layer);
-  }
-  glDisable(GL_STENCIL_TEST);
-  glDisable(GL_CULL_FACE);
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_.framebuffer());
-  glClear(GL_DEPTH_BUFFER_BIT);
-  glBindVertexArray(no_vertices_.name());
-  glDepthFunc(GL_ALWAYS);
-  glDepthMask(GL_FALSE);
-  programs_.background.use();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
-  programs_.layer.use();
-  programs_.layer.set("colors", 0);
-  programs_.layer.set("depths", 1);
-  for (const Layer& layer : layers_) {
-    layer.pixels.bind_textures(0, 1);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-  }
-  glDisable(GL_SCISSOR_TEST);
-  return std::monostate{};
+    blank_store_.draw();
+  });
 }
 
 std::size_t CsgRenderer::Impl::gpu_bytes() const {
-  std::size_t bytes = store_.gpu_bytes() + blank_store_.gpu_bytes() + shown_.gpu_bytes();
+  std::size_t bytes = store_.gpu_bytes() + blank_store_.gpu_bytes() + shown().gpu_bytes();
   for (const Layer& layer : layers_) bytes += layer.pixels.gpu_bytes();
   return bytes;
 }
@@ -530,7 +472,7 @@ Done CsgRenderer::Impl::draw(const Projection& projection, double longest_ms, bo
   // What reaches beyond the clip planes keeps its front and its back.
   glEnable(GL_DEPTH_CLAMP);
   if (is_full) begin_anew(projection);
-  take_waiting(longest_ms);
+  if (longest_ms > 0.0) take_waiting(longest_ms);
   last_changed = {};
   Done done = std::monostate{};
   if (shows) {
@@ -552,17 +494,11 @@ Result<CsgRenderer> CsgRenderer::create(const CsgOptions& options) {
         fmt::format("a tolerance of {} mm is not allowed for the CSG view; must be above 0",
                     options.tolerance_mm)};
   }
-  Result<GlProgram> background = GlProgram::create(shaders::screen_vert, shaders::background_frag);
   Result<GlProgram> solid = GlProgram::create(shaders::csg_solid_vert, shaders::csg_solid_frag);
-  Result<GlProgram> inside = GlProgram::create(shaders::screen_vert, shaders::csg_inside_frag);
-  Result<GlProgram> layer = GlProgram::create(shaders::screen_vert, shaders::csg_layer_frag);
-  for (const auto* program : {&background, &solid, &inside, &layer}) {
-    if (!*program) return Error{program->error()};
-  }
-  return CsgRenderer(
-      std::make_unique<Impl>(Impl::Programs{std::move(*background), std::move(*solid),
-                                            std::move(*inside), std::move(*layer)},
-                             options));
+  if (!solid) return Error{solid.error()};
+  Result<LayerComposer> composer = LayerComposer::create();
+  if (!composer) return Error{composer.error()};
+  return CsgRenderer(std::make_unique<Impl>(std::move(*solid), std::move(*composer), options));
 }
 
 CsgRenderer::CsgRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -577,6 +513,7 @@ Done CsgRenderer::draw(const Projection& projection, double longest_ms, bool sho
   return impl_->draw(projection, longest_ms, shows);
 }
 bool CsgRenderer::has_waiting() const { return impl_->has_waiting(); }
+PixelRect CsgRenderer::unshown() const { return impl_->unshown(); }
 PixelRect CsgRenderer::changed() const { return impl_->last_changed; }
 void CsgRenderer::bind_picture(int color_unit, int depth_unit) const {
   impl_->shown().bind_textures(color_unit, depth_unit);

@@ -94,13 +94,17 @@ class CsgRenderer {
   ///
   /// With a time limit moves are taken in small groups, the newest first, until it has passed; the
   /// others wait for the next draw() (has_waiting()). So do those of a group that there was no time
-  /// for; some of it is always done, so that the end comes. What is drawn until then has too much
-  /// material, nowhere too little. `shows` false: the moves are taken, but the picture stays as it
-  /// is until a draw() that shows.
+  /// for; some of it is always done, so that the end comes, but for a limit of 0: nothing is done
+  /// then but to show what is there. What is drawn until the end has too much material, nowhere too
+  /// little. `shows` false: the moves are taken, but the picture stays as it is until a draw() that
+  /// shows.
   Done draw(const Projection& projection,
             double longest_ms = std::numeric_limits<double>::infinity(), bool shows = true);
   /// Moves are not yet subtracted from the picture of the last draw().
   bool has_waiting() const;
+  /// The pixels that a draw() that shows will change, beside those of moves that it takes. To show
+  /// them costs some 20 ns a pixel on a software renderer.
+  PixelRect unshown() const;
   /// The pixels that the last draw() can have changed.
   PixelRect changed() const;
   /// Binds colour and depth of the picture last drawn to these texture units, rows from below. The

@@ -36,8 +36,9 @@ class CsgView {
   /// the two the choice would go to and fro.
   static constexpr double kSlow_ms = 100.0, kQuick_ms = 15.0;
   static constexpr int kCoarsest = 8;
-  /// Round cutters of the coarse picture stay so far inside, in shares of the blank's longest edge:
-  /// half a pixel or less where the blank fills a window. A new view costs triangles first.
+  /// Round cutters of the coarse picture stay so far inside, and its moves are straightened by as
+  /// much, in shares of the blank's longest edge: half a pixel or less where the blank fills a
+  /// window. A new view costs moves and triangles first.
   static constexpr double kCoarseness = 0.002;
 
   /// Never null. Of another blank or other tools: begins anew.

@@ -164,11 +164,14 @@ TEST_F(RoadFeederTest, OfALongProgramTheNewestMovesAreShownAndTheAnswerSaysSince
   const std::size_t first = track.size() - RoadFeeder::kMostMoves;
   EXPECT_EQ(end.road->line, static_cast<int>(track.source(first).line));
   EXPECT_EQ(end.cut_moves->moves.front().to_mm, track.motion(first).to_mm);
+  EXPECT_EQ(end.cut_moves->left_out, first);
 
   // Back to where all of them are few enough.
   const SceneUpdate back = at(track.place_before(RoadFeeder::kMostMoves / 2));
   ASSERT_TRUE(back.road);
   EXPECT_EQ(back.road->limit, RoadLimit::kNone);
+  ASSERT_TRUE(back.cut_moves);
+  EXPECT_EQ(back.cut_moves->left_out, 0u);
   // And forward again: as they become too many, the older half goes.
   std::size_t most = 0;
   int answers = 0;

@@ -428,6 +428,44 @@ TEST_F(CsgRendererTest, WhatIsNotFinishedMayBeKeptBack) {
   EXPECT_EQ(renderer.read_depth().depths, fewer.read_depth().depths);
 }
 
+/// What is told as not shown is all that changes, also where all is subtracted anew.
+TEST_F(CsgRendererTest, OnlyWhatIsToldAsNotShownChanges) {
+  CsgRenderer renderer = this->renderer(box_blank(kBox));
+  const Projection view = view_from(StandardView::kTop, false);
+  draw(&renderer, view);
+  EXPECT_TRUE(renderer.unshown().empty());
+  const SweptMove places[] = {{Vec3(10, 10, -5), Vec3(20, 10, -5), kFlat},
+                              {Vec3(40, 30, -5), Vec3(45, 30, -5), kBull}};
+  for (const SweptMove& place : places) {
+    const DepthPicture before = renderer.read_depth();
+    renderer.clear_moves();
+    renderer.append(std::span(&place, 1));
+    ASSERT_TRUE(renderer.draw(view, 0.0, false));
+    EXPECT_TRUE(renderer.has_waiting()) << "no time, no work";
+    EXPECT_EQ(renderer.counters().subtractions, 0u);
+    while (renderer.has_waiting()) ASSERT_TRUE(renderer.draw(view, 1e-3, false));
+    const PixelRect told = renderer.unshown();
+    EXPECT_LT(told.pixels(), kSize_px.x * kSize_px.y / 2);
+    ASSERT_TRUE(renderer.draw(view, 0.0));
+    EXPECT_TRUE(renderer.unshown().empty());
+    const DepthPicture after = renderer.read_depth();
+    CsgRenderer fresh = this->renderer(box_blank(kBox));
+    fresh.append(std::span(&place, 1));
+    draw(&fresh, view);
+    EXPECT_EQ(after.depths, fresh.read_depth().depths);
+    int changed = 0;
+    for (int y = 0; y < kSize_px.y; ++y) {
+      for (int x = 0; x < kSize_px.x; ++x) {
+        const auto i = static_cast<std::size_t>((kSize_px.y - 1 - y) * kSize_px.x + x);
+        if (before.depths[i] == after.depths[i]) continue;
+        ++changed;
+        EXPECT_TRUE(x >= told.min.x && x < told.max.x && y >= told.min.y && y < told.max.y);
+      }
+    }
+    EXPECT_GT(changed, 100);
+  }
+}
+
 TEST_F(CsgRendererTest, ACutThroughTheFloorOpensIt) {
   CsgRenderer renderer = this->renderer(box_blank(kBox));
   const SweptMove slot{Vec3(20, 22, -20), Vec3(40, 22, -20),
