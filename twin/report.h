@@ -37,7 +37,7 @@ struct TimingReport {
   double interpret_s = 0;  ///< wall, until the interpreter was done
   double cut_s = 0;        ///< wall, spent in the cutting stage
   double cut_cpu_s = 0;    ///< CPU of the thread that cuts (its checks included)
-  double mesh_s = 0;       ///< wall, surface for picture and mesh files
+  double mesh_s = 0;       ///< wall, surface for mesh files; a picture makes its own as it is drawn
   double total_s = 0;      ///< wall, from the start of the run to the report
 };
 

@@ -32,12 +32,10 @@ void attach(GLenum attachment, const GlTexture& texture) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture.name(), 0);
 }
 
-/// Part of the picture that the mesh may cover, as x, y from the lower left, width, height.
+/// Part of the picture that the surface may cover, as x, y from the lower left, width, height.
 /// Software renderers shade every pixel they are given, so the passes are confined to it.
-glm::ivec4 covered_px(const ShadedMesh& mesh, const Camera& camera, glm::ivec2 picture_px) {
-  if (mesh.vertices.empty()) return glm::ivec4(0);
-  Box box;
-  for (const ShadedVertex& vertex : mesh.vertices) box.extend(Vec3(vertex.position_mm));
+glm::ivec4 covered_px(const Box& box, const Camera& camera, glm::ivec2 picture_px) {
+  if (box.empty()) return glm::ivec4(0);
   glm::vec2 low(1e9f);
   glm::vec2 high(-1e9f);
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -123,12 +121,12 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
   return std::monostate{};
 }
 
-void PartRenderer::draw(const ShadedMesh& mesh, const Camera& camera, GLuint target) const {
-  const glm::ivec4 covered = covered_px(mesh, camera, picture_px_);
+void PartRenderer::draw(const PartSurface& part, const Camera& camera, GLuint target) const {
+  const glm::ivec4 covered = covered_px(part.bounds_mm, camera, picture_px_);
   glEnable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   set_scissor(kSamples * covered);
-  draw_surface(mesh, camera);
+  draw_surface(part, camera);
 
   glBindVertexArray(no_vertices_.name());
   glViewport(0, 0, picture_px_.x, picture_px_.y);
@@ -152,7 +150,7 @@ void PartRenderer::draw(const ShadedMesh& mesh, const Camera& camera, GLuint tar
   glBindVertexArray(0);
 }
 
-void PartRenderer::draw_surface(const ShadedMesh& mesh, const Camera& camera) const {
+void PartRenderer::draw_surface(const PartSurface& part, const Camera& camera) const {
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
   glViewport(0, 0, kSamples * picture_px_.x, kSamples * picture_px_.y);
   glClearColor(0, 0, 0, 0);
@@ -161,34 +159,37 @@ void PartRenderer::draw_surface(const ShadedMesh& mesh, const Camera& camera) co
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  glEnable(GL_CULL_FACE);  // The mesh is closed; half the work.
-  if (!mesh.indices.empty()) draw_mesh(mesh, camera);
+  glEnable(GL_CULL_FACE);  // The surface is closed; half the work.
+  if (!part.bounds_mm.empty()) draw_pieces(part, camera);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
 }
 
-void PartRenderer::draw_mesh(const ShadedMesh& mesh, const Camera& camera) const {
+void PartRenderer::draw_pieces(const PartSurface& part, const Camera& camera) const {
   GlVertexArray array;
   GlBuffer vertices;
   GlBuffer indices;
   glBindVertexArray(array.name());
   glBindBuffer(GL_ARRAY_BUFFER, vertices.name());
-  glBufferData(GL_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(ShadedVertex)),
-               mesh.vertices.data(), GL_STATIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.name());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
-               mesh.indices.data(), GL_STATIC_DRAW);
   glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(ShadedVertex), nullptr);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), nullptr);
   glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 4, GL_INT_2_10_10_10_REV, GL_TRUE, sizeof(ShadedVertex),
-                        reinterpret_cast<const void*>(offsetof(ShadedVertex, normal)));
+  glVertexAttribPointer(1, 4, GL_INT_2_10_10_10_REV, GL_TRUE, sizeof(MeshVertex),
+                        reinterpret_cast<const void*>(offsetof(MeshVertex, normal)));
   programs_.part.use();
   programs_.part.set("clip_from_world", camera.clip_from_world());
   programs_.part.set("view_from_world", camera.view_from_world());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indices.size()), GL_UNSIGNED_INT, nullptr);
+  part.each_piece([](const SurfacePiece& piece) {
+    if (piece.indices.empty()) return;
+    // Fresh memory for each: what is drawn of the last one need not be waited for.
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(piece.vertices.size_bytes()),
+                 piece.vertices.data(), GL_STREAM_DRAW);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(piece.indices.size_bytes()),
+                 piece.indices.data(), GL_STREAM_DRAW);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.indices.size()), GL_UNSIGNED_INT,
+                   nullptr);
+  });
 }
 
 void PartRenderer::draw_resolved() const {

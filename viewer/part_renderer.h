@@ -1,23 +1,39 @@
 // viewer/part_renderer.h - draws a part with OpenGL 3.3.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 
+#include "base/mesh_patch.h"
 #include "viewer/camera.h"
 #include "viewer/gl_objects.h"
-#include "viewer/shaded_mesh.h"
 
 namespace kerf {
 
+/// Triangles as the card takes them, three indices each; counter-clockwise seen from outside.
+struct SurfacePiece {
+  std::span<const MeshVertex> vertices;
+  std::span<const std::uint32_t> indices;
+};
+
+/// A closed surface, one piece after the other.
+struct PartSurface {
+  Box bounds_mm;  ///< in which it lies; empty: there is none
+  /// Calls its argument with each piece, which need not outlive the call.
+  std::function<void(const std::function<void(const SurfacePiece&)>& draw)> each_piece;
+};
+
 /// For the sources of viewer/ only. Passes:
-///   1 normals and depth of the mesh, at twice the size of the picture
+///   1 normals and depth of the surface, at twice the size of the picture
 ///   2 resolve: the mean of 2 x 2 samples
 ///   3 background
 ///   4 ambient occlusion from the depth, at half the size
 ///   5 sharp edges and silhouettes
 ///   6 light, over the background
-/// Passes 2 to 6 cost the same whatever the mesh. Why not multisampling: with Mesa's software
+/// Passes 2 to 6 cost the same whatever the surface. Why not multisampling: with Mesa's software
 /// renderer and triangles of about a pixel it takes 1.6 times as long as the same number of plain
 /// samples, and hardware without it is served too.
 class PartRenderer {
@@ -26,7 +42,7 @@ class PartRenderer {
   static Result<PartRenderer> create(glm::ivec2 picture_px);
 
   /// Fills framebuffer `target` (of picture size, colour only) with background and part.
-  void draw(const ShadedMesh& mesh, const Camera& camera, GLuint target) const;
+  void draw(const PartSurface& part, const Camera& camera, GLuint target) const;
 
   /// Window depth of the part last drawn, 1 where there is none.
   const GlTexture& depths() const { return depths_; }
@@ -43,8 +59,8 @@ class PartRenderer {
 
   explicit PartRenderer(Programs programs) : programs_(std::move(programs)) {}
   Done allocate(glm::ivec2 picture_px);
-  void draw_mesh(const ShadedMesh& mesh, const Camera& camera) const;
-  void draw_surface(const ShadedMesh& mesh, const Camera& camera) const;
+  void draw_pieces(const PartSurface& part, const Camera& camera) const;
+  void draw_surface(const PartSurface& part, const Camera& camera) const;
   void draw_resolved() const;
   void draw_occlusion(const Camera& camera) const;
   void draw_edges(const Camera& camera) const;

@@ -11,8 +11,6 @@
 namespace kerf {
 namespace {
 
-/// Two triangles folded back this far onto each other are the sides of a thin wall, however small.
-constexpr float kKnifeCos = -0.3f;
 /// Fans up to this size search their neighbours directly, larger ones by bisection.
 constexpr std::size_t kSmallFan = 12;
 
@@ -30,13 +28,6 @@ struct Spoke {
   std::uint32_t group;  // union-find parent, an index into the fan
 };
 
-std::uint32_t pack_normal(const glm::vec3& n) {
-  const auto field = [](float v) {
-    return static_cast<std::uint32_t>(std::lround(std::clamp(v, -1.0f, 1.0f) * 511.0f)) & 0x3FFu;
-  };
-  return field(n.x) | (field(n.y) << 10) | (field(n.z) << 20);
-}
-
 std::uint32_t root(std::vector<Spoke>& fan, std::uint32_t i) {
   while (fan[i].group != i) i = fan[i].group = fan[fan[i].group].group;
   return i;
@@ -45,9 +36,7 @@ std::uint32_t root(std::vector<Spoke>& fan, std::uint32_t i) {
 class Shader {
  public:
   Shader(const TriangleMesh& mesh, const ShadingOptions& options)
-      : mesh_(mesh),
-        crease_cos_(static_cast<float>(std::cos(options.crease_deg * kPi / 180.0))),
-        smallest_mm_(static_cast<float>(options.smallest_visible_mm)) {}
+      : mesh_(mesh), crease_cos_(static_cast<float>(std::cos(options.crease_deg * kPi / 180.0))) {}
 
   ShadedMesh run() {
     find_faces();
@@ -115,48 +104,12 @@ class Shader {
     }
   }
 
-  float cosine(std::uint32_t i, std::uint32_t j) const {
-    return glm::dot(faces_[fan_[i].corner / 3].normal, faces_[fan_[j].corner / 3].normal);
-  }
-
-  /// Whether all triangles of a smooth group of the fan around v lie close to the segment from v to
-  /// w.
-  bool is_narrow(std::uint32_t group, std::uint32_t v, std::uint32_t w) const {
-    const glm::vec3 origin = mesh_.positions_mm[v];
-    const glm::vec3 along = mesh_.positions_mm[w] - origin;
-    const float length_squared = std::max(glm::dot(along, along), 1e-30f);
-    for (std::size_t i = 0; i < fan_.size(); ++i) {
-      if (smooth_groups_[i] != group) continue;
-      for (const std::uint32_t corner : {fan_[i].next, fan_[i].previous}) {
-        const glm::vec3 p = mesh_.positions_mm[corner] - origin;
-        const float t = std::clamp(glm::dot(p, along) / length_squared, 0.0f, 1.0f);
-        if (glm::length(p - t * along) >= smallest_mm_) return false;
-      }
-    }
-    return true;
-  }
-
-  /// Joins the triangles of the fan around v that share normals: first those that meet smoothly,
-  /// then whole smooth groups across creases that are too small to be seen. Group by group, because
-  /// a tiny triangle may well be the tip of a large face.
-  void group_fan(std::uint32_t v) {
-    bool has_crease = false;
+  /// Joins the triangles of the fan around v that share normals: those that meet smoothly.
+  void group_fan() {
     for_each_edge([&](std::uint32_t i, std::uint32_t j) {
-      if (cosine(i, j) > crease_cos_) {
-        fan_[root(fan_, i)].group = root(fan_, j);
-      } else {
-        has_crease = true;
-      }
-    });
-    if (!has_crease || smallest_mm_ <= 0.0f) return;
-    smooth_groups_.resize(fan_.size());
-    for (std::uint32_t i = 0; i < fan_.size(); ++i) smooth_groups_[i] = root(fan_, i);
-    for_each_edge([&](std::uint32_t i, std::uint32_t j) {
-      const float c = cosine(i, j);
-      if (c <= crease_cos_ && c > kKnifeCos && is_narrow(smooth_groups_[i], v, fan_[i].next) &&
-          is_narrow(smooth_groups_[j], v, fan_[i].next)) {
-        fan_[root(fan_, i)].group = root(fan_, j);
-      }
+      const float cosine =
+          glm::dot(faces_[fan_[i].corner / 3].normal, faces_[fan_[j].corner / 3].normal);
+      if (cosine > crease_cos_) fan_[root(fan_, i)].group = root(fan_, j);
     });
   }
 
@@ -170,7 +123,7 @@ class Shader {
       const std::uint32_t k = corner % 3;
       fan_.push_back({corner, triangle[(k + 1) % 3], triangle[(k + 2) % 3], i - first_[v]});
     }
-    group_fan(v);
+    group_fan();
     sums_.assign(fan_.size(), glm::vec3(0.0f));
     const glm::vec3 p = mesh_.positions_mm[v];
     for (std::uint32_t i = 0; i < fan_.size(); ++i) {
@@ -195,14 +148,12 @@ class Shader {
 
   const TriangleMesh& mesh_;
   const float crease_cos_;
-  const float smallest_mm_;
   std::vector<Face> faces_;
   std::vector<std::uint32_t> first_;
   std::vector<std::uint32_t> corners_;
   // Scratch of one vertex, kept to spare allocations.
   std::vector<Spoke> fan_;
   std::vector<std::uint32_t> by_previous_;
-  std::vector<std::uint32_t> smooth_groups_;  // smooth group of each spoke: a spoke of it
   std::vector<glm::vec3> sums_;
   std::vector<std::uint32_t> made_;
 };

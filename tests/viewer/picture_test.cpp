@@ -61,7 +61,7 @@ PictureOptions options_of(int width_px, int height_px) {
 }
 
 Picture draw(const TriangleMesh& mesh, const PictureOptions& options) {
-  Result<Picture> picture = draw_part(mesh, options);
+  Result<Picture> picture = draw_part(part_of(mesh), options);
   if (!picture) {
     ADD_FAILURE() << picture.error();
     return {};
@@ -124,7 +124,7 @@ TEST_F(PictureTest, EmptyMeshShowsTheOutlineOnly) {
 
 TEST_F(PictureTest, NothingToDrawIsAnError) {
   PictureOptions options;
-  const Result<Picture> picture = draw_part(TriangleMesh{}, options);
+  const Result<Picture> picture = draw_part(PartPatches{}, options);
   ASSERT_FALSE(picture);
   EXPECT_EQ(picture.error(), "nothing to draw: the part is empty and no blank is given");
 }
@@ -140,7 +140,7 @@ TEST_F(PictureTest, MeshWithoutBlankIsFittedByItself) {
 TEST_F(PictureTest, SizesOutOfRangeAreErrors) {
   for (const auto& [width, height] :
        {std::pair{0, 1200}, std::pair{1600, -1}, std::pair{8193, 100}}) {
-    const Result<Picture> picture = draw_part(box_mesh(kBlank), options_of(width, height));
+    const Result<Picture> picture = draw_part(part_of(box_mesh(kBlank)), options_of(width, height));
     ASSERT_FALSE(picture);
     EXPECT_EQ(picture.error(), "a picture of " + std::to_string(width) + " x " +
                                    std::to_string(height) +
@@ -204,7 +204,7 @@ TEST_F(PictureDeathTest, WithoutAnyDriverTheErrorSaysWhatToInstall) {
       {
         setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
         unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
-        const Result<Picture> picture = draw_part(box_mesh(kBlank), options_of(64, 64));
+        const Result<Picture> picture = draw_part(part_of(box_mesh(kBlank)), options_of(64, 64));
         if (!picture) fprintf(stderr, "[%s]\n", picture.error().c_str());
         exit(picture ? 0 : 7);
       },

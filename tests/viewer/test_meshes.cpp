@@ -3,6 +3,9 @@
 #include <png.h>
 
 #include <cmath>
+#include <utility>
+
+#include "viewer/shaded_mesh.h"
 
 namespace kerf {
 
@@ -65,6 +68,19 @@ TriangleMesh relief_mesh(int cells) {
     }
   }
   return mesh;
+}
+
+PartPatches part_of(const TriangleMesh& mesh) {
+  ShadedMesh shaded = shade_mesh(mesh, {});
+  MeshPatch patch;
+  patch.vertices = std::move(shaded.vertices);
+  patch.indices = std::move(shaded.indices);
+  patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
+  PartPatches part;
+  for (const glm::vec3& position : mesh.positions_mm) part.bounds_mm.extend(Vec3(position));
+  part.count = mesh.triangles.empty() ? 0 : 1;
+  part.make = [patch = std::move(patch)](std::size_t, double) { return patch; };
+  return part;
 }
 
 Picture read_png(const std::string& path) {

@@ -20,6 +20,9 @@ TriangleMesh prism_mesh(int sides, float radius_mm, float height_mm);
 /// deep, a ridge.
 TriangleMesh relief_mesh(int cells);
 
+/// One patch, shaded by shade_mesh().
+PartPatches part_of(const TriangleMesh& mesh);
+
 /// Empty picture if the file is not a PNG.
 Picture read_png(const std::string& path);
 

@@ -16,6 +16,7 @@
 #include "base/mesh_file.h"
 #include "twin/session_parts.h"
 #include "twin/view/frame_tool.h"
+#include "twin/view/part_patches.h"
 #include "viewer/picture.h"
 #include "viewer/raycast/height_picture.h"
 
@@ -54,13 +55,13 @@ std::string file_name(const std::string& path) {
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const std::string& path, const TriangleMesh& mesh, const StockModel& stock,
-                   const std::string& name, Diagnostics& diagnostics) {
+Done write_picture(const std::string& path, const StockModel& stock, const std::string& name,
+                   Diagnostics& diagnostics) {
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
   options.caption = fmt::format("{}  {}", file_name(name), stock.name());
   if (!as_sheet(stock)) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
-  Result<Picture> picture = draw_part(mesh, options);
+  Result<Picture> picture = draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
   const std::shared_ptr<const HeightGrid> heights = stock.height_grid();
@@ -117,13 +118,14 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   };
   const std::string& name =
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
-  const bool wants_mesh = !paths.png.empty() || !paths.stl.empty() || !paths.ply.empty();
+  const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
+  if (stock && !paths.png.empty()) {
+    note_failure(write_picture(paths.png, *stock, name, diagnostics), diagnostics);
+  }
   if (stock && wants_mesh) {
+    const Clock::time_point mesh_start = Clock::now();
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
-    report.timing.mesh_s = elapsed_s();
-    if (!paths.png.empty()) {
-      note_failure(write_picture(paths.png, mesh, *stock, name, diagnostics), diagnostics);
-    }
+    report.timing.mesh_s = std::chrono::duration<double>(Clock::now() - mesh_start).count();
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
   }
@@ -138,7 +140,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     write_outlines(*sheet, *report.sheet, paths.dxf, paths.svg, errors);
     for (std::string& error : errors) fault(diagnostics, std::move(error));
   }
-  if (!stock && (wants_mesh || !paths.state.empty())) {
+  if (!stock && (wants_mesh || !paths.png.empty() || !paths.state.empty())) {
     fault(diagnostics,
           "stopped before there was a workpiece; no picture, mesh or state is written");
   }

@@ -8,13 +8,11 @@
 #include <utility>
 
 #include "twin/compare/patch_deviation.h"
+#include "twin/view/part_patches.h"
 
 namespace kerf {
 namespace {
 
-/// Joined cells may be larger than a pixel by a quarter: then a workpiece that fills the picture is
-/// as fine at its near end as in its middle.
-constexpr double kCellsPerPixel = 1.6;
 /// Of a picture whose size is not known yet.
 constexpr double kUsualPixels = 800.0;
 
@@ -113,10 +111,7 @@ void PatchFeeder::choose_levels() {
 /// Goes by the point of the box that is nearest to the eye; what lies behind the eye is not seen.
 int PatchFeeder::level_for(const ViewDetail& detail, const Box& box) const {
   if (detail.largest_in(box) <= 0) return StockModel::kPatchLevels - 1;
-  const double joined = detail.smallest_in(box) / (stock_->cell_mm() * kCellsPerPixel);
-  if (!(joined >= 1)) return 0;
-  const int level = 1 + static_cast<int>(std::floor(std::log2(joined)));
-  return std::min(level, StockModel::kPatchLevels - 1);
+  return patch_level(detail.smallest_in(box), stock_->cell_mm());
 }
 
 std::shared_ptr<const MeshPatch> PatchFeeder::patch(std::uint32_t tile, int level) const {

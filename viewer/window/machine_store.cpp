@@ -48,7 +48,7 @@ std::size_t MachineStore::upload(std::size_t budget_bytes) {
     Link& link = links_[uploaded_];
     if (!link.mesh) continue;
     const ShadedMesh shaded = shade_mesh(*link.mesh, {});
-    link.buffers.load(shaded.vertices.data(), shaded.vertices.size() * sizeof(ShadedVertex),
+    link.buffers.load(shaded.vertices.data(), shaded.vertices.size() * sizeof(MeshVertex),
                       shaded.indices);
     link.has_changed = true;
     bytes += link.buffers.gpu_bytes();

@@ -1,12 +1,8 @@
 #include "viewer/window/mesh_buffers.h"
 
 #include "base/mesh_patch.h"
-#include "viewer/shaded_mesh.h"
 
 namespace kerf {
-
-static_assert(sizeof(ShadedVertex) == sizeof(MeshVertex));
-static_assert(offsetof(ShadedVertex, normal) == offsetof(MeshVertex, normal));
 
 void point_to_mesh_vertices() {
   glEnableVertexAttribArray(0);

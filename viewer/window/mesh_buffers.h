@@ -9,8 +9,8 @@
 
 namespace kerf {
 
-/// Attributes 0 and 1 of the vertex array bound now: position and normal as MeshVertex and
-/// ShadedVertex have them, 16 bytes a vertex, from the array buffer bound now.
+/// Attributes 0 and 1 of the vertex array bound now: position and normal as MeshVertex has them,
+/// from the array buffer bound now.
 void point_to_mesh_vertices();
 
 /// A mesh that is drawn whole or in ranges of its indices.

@@ -1,4 +1,4 @@
-// The picture of a part without OpenGL, against the one that OpenGL draws of its mesh.
+// The picture of a part without OpenGL, against the one that OpenGL draws of its patches.
 #include "viewer/raycast/height_picture.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ void show(const std::string& name, const Picture& picture) {
   EXPECT_TRUE(done) << done.error();
 }
 
-TEST(HeightPicture, LooksLikeTheOneOfTheMesh) {
+TEST(HeightPicture, LooksLikeTheOneOfThePatches) {
   unsetenv("DISPLAY");
   const std::unique_ptr<ZMap> part = test::random_part(3, 0.1);
   PictureOptions options;
@@ -31,13 +31,14 @@ TEST(HeightPicture, LooksLikeTheOneOfTheMesh) {
   options.caption = "part.ngc  zmap 0.1 mm";
   const Result<Picture> rays = draw_heights(part->height_grid(), options);
   ASSERT_TRUE(rays) << rays.error();
-  const Result<Picture> meshes = draw_part(part->mesh(0), options);
+  const auto patch = [&](std::size_t tile, double) {
+    return part->patch(static_cast<std::uint32_t>(tile), 0);
+  };
+  const Result<Picture> meshes = draw_part({part->bounds_mm(), part->tile_count(), patch}, options);
   ASSERT_TRUE(meshes) << meshes.error();
   show("rays.png", *rays);
   show("meshes.png", *meshes);
   ASSERT_EQ(rays->rgb.size(), meshes->rgb.size());
-  // The mesh's normals are smoothed in another way, so walls differ a little; lettering, outline
-  // and background do not.
   std::size_t alike = 0;
   double sum = 0;
   for (std::size_t n = 0; n < rays->rgb.size(); ++n) {
