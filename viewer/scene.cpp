@@ -1,7 +1,9 @@
 #include "viewer/scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -76,12 +78,14 @@ std::vector<LineSegment> cylinder_outline(const Vec3& base_mm, char axis, double
 
 SourceFile::SourceFile(std::string path, std::string text)
     : path_(std::move(path)), text_(std::move(text)) {
+  assert(text_.size() <= std::numeric_limits<std::uint32_t>::max());
   for (std::size_t start = 0; start < text_.size();) {
-    starts_.push_back(start);
+    starts_.push_back(static_cast<std::uint32_t>(start));
     const std::size_t end = text_.find('\n', start);
     if (end == std::string::npos) break;
     start = end + 1;
   }
+  starts_.shrink_to_fit();
 }
 
 std::string_view SourceFile::line(int number) const {

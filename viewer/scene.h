@@ -122,7 +122,7 @@ class SourceFile {
  private:
   std::string path_;
   std::string text_;
-  std::vector<std::size_t> starts_;
+  std::vector<std::uint32_t> starts_;  ///< of lines, in text_, which has less than 4 GB
 };
 
 /// The program and the subroutine files that it calls. The first is the main program.

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <thread>
 #include <vector>
 
 #include "tests/viewer/test_scene.h"
@@ -27,6 +28,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kProgramLines = 1'000'000;
 constexpr int kCells = 2000;
 constexpr double kDuration_s = 3600.0;
+/// After this long panels are drawn again with the next news.
+constexpr std::chrono::milliseconds kPanelsDue{60};
 
 std::shared_ptr<const ProgramText> long_program() {
   std::string text;
@@ -160,6 +163,10 @@ int run(int frames) {
   bench.time("only the tool moves", frames, [&](int frame) { bench.move_tool(frame); });
   bench.time("cutting", frames, [&](int frame) { bench.cut(frame); });
   bench.time("only the tool moves", frames, [&](int frame) { bench.move_tool(frame); });
+  bench.time("tool and panels, other lines of the program", std::min(frames, 60), [&](int frame) {
+    std::this_thread::sleep_for(kPanelsDue);
+    bench.move_tool(frame);
+  });
   bench.time_idle(5.0);
   return 0;
 }

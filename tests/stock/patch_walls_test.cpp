@@ -3,13 +3,20 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <numeric>
+#include <random>
 #include <set>
 #include <span>
+#include <string>
+#include <thread>
 #include <tuple>
+#include <vector>
 
+#include "stock/stock_model.h"
 #include "tests/stock/patch_samples.h"
 
 namespace kerf {
@@ -243,6 +250,69 @@ TEST(PatchWalls, WallsAreWhereTheyAreAndEncloseWhatIsThere) {
               << (of_cells - true_mm3) / area_mm2 / kCell << ")\n";
     EXPECT_NEAR((volume - of_cells) / area_mm2, 0, 0.03 * kCell);
     EXPECT_NEAR((volume - true_mm3) / area_mm2, 0, 0.03 * kCell);
+  }
+}
+
+/// All that a card or a file gets of it, byte for byte.
+std::string bytes_of(const MeshPatch& patch) {
+  std::string bytes;
+  const auto add = [&bytes](const auto& values) {
+    bytes += std::to_string(values.size()) + ":";
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  add(patch.vertices);
+  add(patch.indices);
+  add(patch.cut_by);
+  add(std::array{patch.tile, patch.skirt_begin, static_cast<std::uint32_t>(patch.level)});
+  return bytes;
+}
+
+/// The patches of these tiles at a level, by tile, each made by whichever of the threads is free.
+std::vector<std::string> patch_bytes(const TileGrid& grid, int level,
+                                     const std::vector<std::uint32_t>& order, int threads) {
+  std::vector<std::string> patches(order.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < order.size(); n = next++) {
+      patches[order[n]] = bytes_of(make_tile_patch(grid, order[n], level));
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int thread = 1; thread < threads; ++thread) others.emplace_back(work);
+    work();
+  }
+  return patches;
+}
+
+TEST(PatchWalls, AreTheSameBytesInAnyOrderAndByAnyNumberOfThreads) {
+  // Round, oblique and sharp walls that run through many tiles, as both sides of a border see them.
+  TileGrid grid = make_grid(400, 300, 0.1, [](double x, double y) {
+    const double from_center = std::hypot(x - 20.02, y - 14.9);
+    if (from_center < 11.3 && from_center > 4.1) return -4.0 - 0.05 * x;
+    if (std::abs(0.6 * (x - 33) + 0.8 * (y - 9)) < 1.3) return -6.5;
+    return x > 3 && x < 7.5 && y > 0.7 * x ? -2.5 : -0.5;
+  });
+  grid.keep_cut_ids(true);
+  grid.begin_change();
+  for (std::uint32_t tile = 0; tile < grid.tile_count(); ++tile) {
+    std::fill_n(cut_ids_of(grid.make_writable(tile)), kTileFloats, 7 * tile);
+  }
+  std::vector<std::uint32_t> order(grid.tile_count());
+  std::iota(order.begin(), order.end(), 0u);
+  ASSERT_GE(order.size(), 20u);
+  std::mt19937 random(5);
+  for (int level = 0; level < StockModel::kPatchLevels; ++level) {
+    SCOPED_TRACE(level);
+    const std::vector<std::string> wanted = patch_bytes(grid, level, order, 1);
+    EXPECT_EQ(std::set(wanted.begin(), wanted.end()).size(), order.size()) << "tiles are alike";
+    std::vector<std::uint32_t> other = order;
+    std::reverse(other.begin(), other.end());
+    EXPECT_TRUE(patch_bytes(grid, level, other, 1) == wanted);
+    for (const int threads : {2, 3, 8}) {
+      std::shuffle(other.begin(), other.end(), random);
+      EXPECT_TRUE(patch_bytes(grid, level, other, threads) == wanted) << threads << " threads";
+    }
   }
 }
 

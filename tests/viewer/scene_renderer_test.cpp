@@ -232,6 +232,50 @@ TEST_F(SceneRendererTest, OfALongPathThatPassesPartByPartTheSamePixelsAsAnew) {
   EXPECT_GE(scene.counters().local.frames, 7u);
 }
 
+TEST_F(SceneRendererTest, OfAPathThatGrowsAndIsReplacedTheSamePixelsAsAnew) {
+  SceneRenderer scene = renderer();
+  SceneUpdate first;
+  SceneSetup setup;
+  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
+  first.setup = std::make_shared<const SceneSetup>(setup);
+  scene.apply(first);
+  const Projection projection = view_of(scene);
+  DrawOptions anew = everything_;
+  anew.is_local = false;
+  const auto path_of = [](std::size_t vertices, float height_mm) {
+    std::vector<PathVertex> path;
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const auto row = static_cast<float>(i / 100), along = static_cast<float>(i % 100);
+      path.push_back({{along, row, height_mm}, PathKind::kFeed});
+    }
+    return path_chunks(path);
+  };
+  Picture last;
+  const auto expect_equal = [&](const SceneUpdate& update, const char* when) {
+    scene.apply(update);
+    draw(&scene, projection, everything_);
+    const Picture kept = scene.read();
+    EXPECT_TRUE(last.rgb.empty() || differing_pixels(kept, last) > 0) << when;
+    draw(&scene, projection, anew);
+    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << when;
+    draw(&scene, projection, everything_);
+    last = kept;
+  };
+  SceneUpdate update;
+  for (const std::size_t vertices : {2000u, 4050u, 4097u, 6000u}) {
+    update.path = path_of(vertices, 0.0f);
+    expect_equal(update, "it grows");
+  }
+  const std::size_t full_bytes = scene.counters().gpu_bytes;
+  update.path.clear();
+  update.path_chunk_count = 1;
+  expect_equal(update, "its end is dropped");
+  EXPECT_EQ(full_bytes - scene.counters().gpu_bytes, (6000u - 4096u) * sizeof(PathVertex));
+  update.path_chunk_count.reset();
+  update.path = path_of(4097, -8.0f);
+  expect_equal(update, "a full chunk comes again, with other values");
+}
+
 TEST_F(SceneRendererTest, ClearsForgetTheWorkpiece) {
   TestWorkpiece workpiece(64, 64);
   SceneRenderer scene = renderer();

@@ -13,6 +13,10 @@ namespace {
 
 /// Triangles that are nearer to each other share a rectangle: each costs a copy of its own.
 constexpr int kNear_px = 12;
+/// So do rectangles that then hold fewer pixels more: a draw call, a copy and a transfer of their
+/// own cost a software renderer about as much. Of a program that runs fast, each line that is shown
+/// has several words that change.
+constexpr std::int64_t kSpare_px = 4000;
 
 /// The scissor rectangle that the OpenGL back end of Dear ImGui makes of a clip rectangle: position
 /// and size are cut off to whole pixels separately.
@@ -33,6 +37,29 @@ bool same(const ImDrawVert& a, const ImDrawVert& b) {
          a.col == b.col;
 }
 
+/// All pixels that triangles with these corners can touch.
+ScreenRect rect_around(const ImVec2& low, const ImVec2& high, glm::ivec2 window_px) {
+  const auto floor_of = [](float value) { return static_cast<int>(std::floor(value)); };
+  return {{floor_of(low.x), window_px.y - floor_of(high.y) - 1},
+          {floor_of(high.x) + 1, window_px.y - floor_of(low.y)}};
+}
+
+void extend(ImVec2* low, ImVec2* high, const ImVec2& at) {
+  *low = {std::min(low->x, at.x), std::min(low->y, at.y)};
+  *high = {std::max(high->x, at.x), std::max(high->y, at.y)};
+}
+
+/// Where a command of the list draws at all: mostly far less than its clip rectangle. Lines of text
+/// have the whole panel for that.
+ScreenRect drawn_rect(const ImDrawList& list, const ImDrawCmd& command, glm::ivec2 window_px) {
+  if (command.ElemCount == 0) return {};
+  const ImDrawIdx* const index = list.IdxBuffer.Data + command.IdxOffset;
+  const ImDrawVert* const vertices = list.VtxBuffer.Data + command.VtxOffset;
+  ImVec2 low = vertices[index[0]].pos, high = low;
+  for (unsigned i = 1; i < command.ElemCount; ++i) extend(&low, &high, vertices[index[i]].pos);
+  return rect_around(low, high, window_px).common(scissor_of(command.ClipRect, window_px));
+}
+
 ScreenRect with_border(const ScreenRect& rect, int border_px) {
   return {rect.min - glm::ivec2(border_px), rect.max + glm::ivec2(border_px)};
 }
@@ -47,14 +74,10 @@ bool PanelChange::Triangle::operator==(const Triangle& other) const {
 
 ScreenRect PanelChange::Triangle::rect(glm::ivec2 window_px) const {
   ImVec2 low = corners[0].pos, high = corners[0].pos;
-  for (const ImDrawVert& corner : corners) {
-    low = {std::min(low.x, corner.pos.x), std::min(low.y, corner.pos.y)};
-    high = {std::max(high.x, corner.pos.x), std::max(high.y, corner.pos.y)};
-  }
-  const auto floor_of = [](float value) { return static_cast<int>(std::floor(value)); };
-  const ScreenRect drawn{{floor_of(low.x), window_px.y - floor_of(high.y) - 1},
-                         {floor_of(high.x) + 1, window_px.y - floor_of(low.y)}};
-  return drawn.common(scissor_of(clip, window_px)).common(ScreenRect::whole(window_px));
+  for (const ImDrawVert& corner : corners) extend(&low, &high, corner.pos);
+  return rect_around(low, high, window_px)
+      .common(scissor_of(clip, window_px))
+      .common(ScreenRect::whole(window_px));
 }
 
 PanelChange::Triangles PanelChange::triangles_of(const ImDrawList& list) {
@@ -86,7 +109,7 @@ void PanelChange::find(const ImDrawData& data, glm::ivec2 window_px,
     const ScreenRect rect = triangle.rect(window_px);
     if (rect.empty()) return;
     if (!with_border(run, kNear_px).intersects(rect)) {
-      add_apart(run, changed);
+      add_apart(run, changed, kSpare_px);
       run = {};
     }
     run.extend(rect);
@@ -109,7 +132,7 @@ void PanelChange::find(const ImDrawData& data, glm::ivec2 window_px,
     if (is_paired) continue;
     for (auto at = newer_begin; at != newer_end.base(); ++at) add(*at);
   }
-  add_apart(run, changed);
+  add_apart(run, changed, kSpare_px);
 }
 
 void draw_panels_in(const std::vector<ScreenRect>& rects, glm::ivec2 window_px, ImDrawData* data) {
@@ -120,8 +143,9 @@ void draw_panels_in(const std::vector<ScreenRect>& rects, glm::ivec2 window_px, 
     ImVector<ImDrawCmd>& commands = whole[static_cast<std::size_t>(i)];
     commands.swap(list.CmdBuffer);
     for (const ImDrawCmd& command : commands) {
+      const ScreenRect drawn = drawn_rect(list, command, window_px);
       for (const ScreenRect& rect : rects) {
-        const ScreenRect clip = scissor_of(command.ClipRect, window_px).common(rect);
+        const ScreenRect clip = drawn.common(rect);
         if (clip.empty()) continue;
         list.CmdBuffer.push_back(command);
         list.CmdBuffer.back().ClipRect = clip_of(clip, window_px);

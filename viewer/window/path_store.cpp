@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <string>
@@ -27,25 +28,30 @@ void point_to_vertices(std::size_t first, std::size_t stride) {
                          reinterpret_cast<const void*>(offset + offsetof(PathVertex, kind)));
 }
 
+/// Of a chunk's box in each direction.
+constexpr double kSteps = 65535.0;
+
+Box box_of(const std::vector<PathVertex>& vertices) {
+  Box box;
+  for (const PathVertex& vertex : vertices) box.extend(Vec3(vertex.position_mm));
+  return box;
+}
+
 /// Where the two differ. The path of a machine grows at its end: all before that is the same.
-Box change_between(const PathChunk* before, const PathChunk& after) {
+Box change_between(const std::vector<PathVertex>& before, const std::vector<PathVertex>& after) {
   const auto same = [](const PathVertex& a, const PathVertex& b) {
     return a.position_mm == b.position_mm && a.kind == b.kind;
   };
+  const auto [old_end, new_end] =
+      std::mismatch(before.begin(), before.end(), after.begin(), after.end(), same);
   Box box;
-  if (before == nullptr) {
-    for (const PathVertex& vertex : after.vertices) box.extend(Vec3(vertex.position_mm));
-    return box;
-  }
-  const auto [old_end, new_end] = std::mismatch(before->vertices.begin(), before->vertices.end(),
-                                                after.vertices.begin(), after.vertices.end(), same);
   // The segment that ends at the first vertex that differs begins at the one before.
-  for (auto v = old_end == before->vertices.begin() ? old_end : old_end - 1;
-       old_end != before->vertices.end() && v != before->vertices.end(); ++v) {
+  for (auto v = old_end == before.begin() ? old_end : old_end - 1;
+       old_end != before.end() && v != before.end(); ++v) {
     box.extend(Vec3(v->position_mm));
   }
-  for (auto v = new_end == after.vertices.begin() ? new_end : new_end - 1;
-       new_end != after.vertices.end() && v != after.vertices.end(); ++v) {
+  for (auto v = new_end == after.begin() ? new_end : new_end - 1;
+       new_end != after.end() && v != after.end(); ++v) {
     box.extend(Vec3(v->position_mm));
   }
   return box;
@@ -63,10 +69,8 @@ void PathStore::set_chunk_count(std::uint32_t count) {
   std::erase_if(waiting_, [count](const auto& chunk) { return chunk->index >= count; });
   while (chunks_.size() > count) {
     const Chunk& last = chunks_.back();
-    if (last.values) {
-      dropped_mm_.extend(last.box_mm);
-      gpu_bytes_ -= last.values->vertices.size() * sizeof(PathVertex);
-    }
+    dropped_mm_.extend(last.box_mm);
+    gpu_bytes_ -= last.count * sizeof(PathVertex);
     chunks_.pop_back();
   }
 }
@@ -91,14 +95,13 @@ void PathStore::choose_strides(std::vector<Box>* changed_mm) {
   std::size_t drawn = 0;
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const Chunk& chunk = chunks_[c];
-    if (!chunk.values) continue;
-    const std::size_t count = chunk.values->vertices.size();
-    const double segment_mm = chunk.length_mm / static_cast<double>(count);
+    if (chunk.count == 0) continue;
+    const double segment_mm = chunk.length_mm / static_cast<double>(chunk.count);
     while (strides[c] < kMaxStride &&
            2.0 * static_cast<double>(strides[c]) * segment_mm <= kSegment_px * chunk.pixel_mm) {
       strides[c] *= 2;
     }
-    drawn += count / strides[c] + 1;
+    drawn += chunk.count / strides[c] + 1;
   }
   std::size_t thinning = 1;
   while (thinning < kMaxStride && drawn / thinning > kDrawnVertices) thinning *= 2;
@@ -125,7 +128,7 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
     waiting_.pop_front();
     if (values->index >= chunks_.size()) chunks_.resize(values->index + 1);
     Chunk& chunk = chunks_[values->index];
-    const Box changed = change_between(chunk.values.get(), *values);
+    const Box changed = change_of(chunk, *values);
     if (!changed.empty()) changed_mm->push_back(changed);
     load(&chunk, std::move(values));
     bytes += size;
@@ -134,33 +137,67 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
   return bytes;
 }
 
+Box PathStore::change_of(const Chunk& chunk, const PathChunk& values) {
+  if (chunk.growing) return change_between(chunk.growing->vertices, values.vertices);
+  Box box = chunk.box_mm;
+  box.extend(box_of(values.vertices));
+  return box;
+}
+
 void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
+  const std::vector<PathVertex>& vertices = values->vertices;
   glBindVertexArray(chunk->array.name());
   glBindBuffer(GL_ARRAY_BUFFER, chunk->vertices.name());
-  glBufferData(GL_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(values->vertices.size() * sizeof(PathVertex)),
-               values->vertices.data(), GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(PathVertex)),
+               vertices.data(), GL_DYNAMIC_DRAW);
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
-  const std::size_t before = chunk->values ? chunk->values->vertices.size() : 0;
-  gpu_bytes_ += (values->vertices.size() - before) * sizeof(PathVertex);
-  chunk->box_mm = {};
+  gpu_bytes_ += (vertices.size() - chunk->count) * sizeof(PathVertex);
+  chunk->count = vertices.size();
+  measure(chunk, vertices);
+  project(chunk);
+  chunk->growing = vertices.size() <= kPathChunkSegments ? std::move(values) : nullptr;
+}
+
+void PathStore::measure(Chunk* chunk, const std::vector<PathVertex>& vertices) {
+  chunk->box_mm = box_of(vertices);
   chunk->run_boxes_mm.clear();
+  chunk->run_boxes_mm.reserve(vertices.size() / kRunSegments + 1);
   chunk->length_mm = 0.0;
-  const std::vector<PathVertex>& vertices = values->vertices;
+  chunk->places.clear();
+  chunk->places.reserve(vertices.size());
+  const Vec3 size = chunk->box_mm.size();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    chunk->box_mm.extend(Vec3(vertices[i].position_mm));
-    if (i > 0) {
-      if ((i - 1) % kRunSegments == 0) {
-        chunk->run_boxes_mm.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
-      }
-      chunk->run_boxes_mm.back().extend(Vec3(vertices[i].position_mm));
-      const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
-      chunk->length_mm += static_cast<double>(glm::length(step));
+    const Vec3 at(vertices[i].position_mm);
+    Steps& place = chunk->places.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = size[axis] > 0 ? (at[axis] - chunk->box_mm.min[axis]) / size[axis] : 0.0;
+      place[static_cast<std::size_t>(axis)] =
+          static_cast<std::uint16_t>(std::lround(share * kSteps));
+    }
+    if (i == 0) continue;
+    if ((i - 1) % kRunSegments == 0) {
+      chunk->run_boxes_mm.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
+    }
+    chunk->run_boxes_mm.back().extend(at);
+    const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
+    chunk->length_mm += static_cast<double>(glm::length(step));
+  }
+}
+
+Box PathStore::box_of_part(const Chunk& chunk, std::size_t begin, std::size_t end) {
+  Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
+  if (begin >= end) return {};
+  for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t axis = 0; axis < low.size(); ++axis) {
+      low[axis] = std::min(low[axis], chunk.places[i][axis]);
+      high[axis] = std::max(high[axis], chunk.places[i][axis]);
     }
   }
-  chunk->values = std::move(values);
-  project(chunk);
+  const Vec3 step_mm = chunk.box_mm.size() / kSteps;
+  // A place is rounded: it is less than a step off.
+  return {chunk.box_mm.min + (Vec3(low[0], low[1], low[2]) - 1.0) * step_mm,
+          chunk.box_mm.min + (Vec3(high[0], high[1], high[2]) + 1.0) * step_mm};
 }
 
 void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
@@ -176,17 +213,11 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
   for (std::uint64_t c = first / kPathChunkSegments;
        c < chunks_.size() && c * kPathChunkSegments <= last; ++c) {
     const Chunk& chunk = chunks_[c];
-    if (!chunk.values) continue;
     const std::uint64_t start = c * kPathChunkSegments;
-    if (first <= start && start + kPathChunkSegments <= last) {
-      box.extend(chunk.box_mm);
-      continue;
-    }
-    const auto& values = chunk.values->vertices;
-    const std::uint64_t end = std::min<std::uint64_t>(values.size(), last - start + 1);
-    for (std::uint64_t i = first > start ? first - start : 0; i < end; ++i) {
-      box.extend(Vec3(values[i].position_mm));
-    }
+    const std::uint64_t begin = first > start ? first - start : 0;
+    const std::uint64_t end = std::min<std::uint64_t>(chunk.count, last - start + 1);
+    const bool is_whole = begin == 0 && end == chunk.count;
+    box.extend(is_whole ? chunk.box_mm : box_of_part(chunk, begin, end));
   }
   if (!box.empty()) changed_mm->push_back(box);
 }
@@ -194,9 +225,6 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
 void PathStore::project(Chunk* chunk) const {
   chunk->rect = covered_rect(chunk->box_mm, projection_);
   chunk->run_rects.clear();
-  for (const Box& box : chunk->run_boxes_mm) {
-    chunk->run_rects.push_back(covered_rect(box, projection_));
-  }
   chunk->pixel_mm = smallest_pixel_mm(chunk->box_mm, projection_);
 }
 
@@ -207,23 +235,37 @@ void PathStore::project(const Projection& projection) {
   choose_strides(&all);
 }
 
-/// `segments` of `stride` vertices each, the first one from vertex `first` on: those that come near
-/// the rectangle, as strips.
-void PathStore::draw_segments(const Chunk& chunk, const ScreenRect& rect, std::size_t first,
-                              std::size_t segments, std::size_t stride) const {
+/// Of the chunks that a rectangle cuts only: to know them for all would cost more than drawing,
+/// whenever the eye moves.
+const std::vector<ScreenRect>& PathStore::run_rects(const Chunk& chunk) const {
+  if (chunk.run_rects.empty()) {
+    chunk.run_rects.reserve(chunk.run_boxes_mm.size());
+    for (const Box& box : chunk.run_boxes_mm) {
+      chunk.run_rects.push_back(covered_rect(box, projection_));
+    }
+  }
+  return chunk.run_rects;
+}
+
+/// The segments that come near the rectangle, as strips.
+void PathStore::draw_segments(const Chunk& chunk, std::size_t path_begin, const ScreenRect& rect,
+                              const DrawnPart& part) const {
+  const bool is_whole = chunk.rect.common(rect) == chunk.rect;
   const auto is_seen = [&](std::size_t begin, std::size_t end) {  // vertices
+    if (is_whole) return true;
+    const std::vector<ScreenRect>& rects = run_rects(chunk);
     for (std::size_t run = begin / kRunSegments; run * kRunSegments < end; ++run) {
-      if (chunk.run_rects[run].intersects(rect)) return true;
+      if (rects[run].intersects(rect)) return true;
     }
     return false;
   };
   std::vector<GLint> firsts;
   std::vector<GLsizei> counts;
-  const std::size_t at_once = std::max<std::size_t>(1, kRunSegments / stride);
+  const std::size_t at_once = std::max<std::size_t>(1, kRunSegments / part.stride);
   std::size_t strip_end = 0;
-  for (std::size_t begin = 0; begin < segments; begin += at_once) {
-    const std::size_t end = std::min(begin + at_once, segments);
-    if (!is_seen(first + begin * stride, first + end * stride)) continue;
+  for (std::size_t begin = 0; begin < part.segments; begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, part.segments);
+    if (!is_seen(part.first + begin * part.stride, part.first + end * part.stride)) continue;
     if (counts.empty() || strip_end != begin) {
       firsts.push_back(static_cast<GLint>(begin));
       counts.push_back(1);
@@ -232,9 +274,9 @@ void PathStore::draw_segments(const Chunk& chunk, const ScreenRect& rect, std::s
     strip_end = end;
   }
   if (counts.empty()) return;
-  point_to_vertices(first, stride);
-  program_.set("first_vertex", static_cast<int>(chunk.values->index * kPathChunkSegments + first));
-  program_.set("stride", static_cast<int>(stride));
+  point_to_vertices(part.first, part.stride);
+  program_.set("first_vertex", static_cast<int>(path_begin + part.first));
+  program_.set("stride", static_cast<int>(part.stride));
   glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
                     static_cast<GLsizei>(counts.size()));
 }
@@ -252,14 +294,17 @@ void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_
     program_.set(("rgba[" + std::to_string(2 * kind + 1) + "]").c_str(), colors.future[kind]);
   }
   if (may_smooth && is_smooth_) glEnable(GL_LINE_SMOOTH);
-  for (const Chunk& chunk : chunks_) {
-    if (!chunk.values || !chunk.rect.intersects(rect)) continue;
-    const std::size_t count = chunk.values->vertices.size();
-    const std::size_t coarse = (count - 1) / chunk.stride;  // segments
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    if (chunk.count == 0 || !chunk.rect.intersects(rect)) continue;
+    const std::size_t path_begin = c * kPathChunkSegments;
+    const std::size_t segments = chunk.count - 1;
+    const std::size_t coarse = segments / chunk.stride;
+    const std::size_t rest = coarse * chunk.stride;
     glBindVertexArray(chunk.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, chunk.vertices.name());
-    draw_segments(chunk, rect, 0, coarse, chunk.stride);
-    draw_segments(chunk, rect, coarse * chunk.stride, count - 1 - coarse * chunk.stride, 1);
+    draw_segments(chunk, path_begin, rect, {0, coarse, chunk.stride});
+    draw_segments(chunk, path_begin, rect, {rest, segments - rest, 1});
   }
   glDisable(GL_LINE_SMOOTH);
 }

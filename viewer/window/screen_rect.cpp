@@ -59,12 +59,17 @@ ScreenRect ScreenRect::common(const ScreenRect& other) const {
           {std::min(max.x, other.max.x), std::min(max.y, other.max.y)}};
 }
 
-void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects) {
+void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects, std::int64_t spare_px) {
   if (rect.empty()) return;
-  const auto overlaps = [&rect](const ScreenRect& other) { return rect.intersects(other); };
-  // What has grown may overlap others.
-  for (auto found = std::find_if(rects->begin(), rects->end(), overlaps); found != rects->end();
-       found = std::find_if(rects->begin(), rects->end(), overlaps)) {
+  const auto joins = [&](const ScreenRect& other) {
+    if (rect.intersects(other)) return true;
+    ScreenRect both = rect;
+    both.extend(other);
+    return both.pixels() - rect.pixels() - other.pixels() < spare_px;
+  };
+  // What has grown may join others.
+  for (auto found = std::find_if(rects->begin(), rects->end(), joins); found != rects->end();
+       found = std::find_if(rects->begin(), rects->end(), joins)) {
     rect.extend(*found);
     rects->erase(found);
   }

@@ -30,8 +30,9 @@ struct ScreenRect {
 };
 
 /// Adds a rectangle to some that do not overlap, so that they still do not: those that it overlaps
-/// grow together with it.
-void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects);
+/// grow together with it, and those with which it does not cover more than `spare_px` pixels that
+/// neither of the two does. O(rectangles), for each that it grows together with.
+void add_apart(ScreenRect rect, std::vector<ScreenRect>* rects, std::int64_t spare_px = 0);
 
 /// All pixels that something inside the box can touch, with a border for lines and markers. A box
 /// that reaches the plane of the eye may touch any pixel.

@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,9 @@ constexpr int kSettlingFrames = 3;
 /// While news alone come, panels are drawn again at most so often: nobody reads figures faster, and
 /// the picture is not held up.
 constexpr Seconds kPanelInterval{0.05};
+/// After this long without a frame what was needed for drawing alone is given back. Shorter, and a
+/// hand that pauses at the mouse would have it taken anew.
+constexpr Seconds kRest{2.0};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
@@ -148,13 +152,25 @@ void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
   }
 }
 
+/// A software renderer keeps every triangle of a frame for a while, and patches come and go: what
+/// is free in between stays with the process otherwise, tens of megabytes.
+void Window::Impl::rest() {
+  if (is_rested_ || !has_drawn() || Clock::now() - last_frame_ < kRest) return;
+  is_rested_ = true;
+  malloc_trim(0);
+}
+
 Result<bool> Window::Impl::frame(double longest_wait_s) {
   if (was_closed_) return false;
   wait(longest_wait_s);
   if (Done done = platform_.check(); !done) return give_up(done.error());
   if (glfwWindowShouldClose(window_) || Platform::is_gone(window_)) return end();
   find_reasons_to_draw();
-  if (is_hidden_ || frames_to_draw_ == 0) return true;
+  if (is_hidden_ || frames_to_draw_ == 0) {
+    rest();
+    return true;
+  }
+  is_rested_ = false;
   const Clock::duration shortest =
       std::chrono::nanoseconds(1'000'000'000 / std::max(1, options_.max_frames_per_s));
   if (const auto next = last_frame_ + shortest; next > Clock::now()) {

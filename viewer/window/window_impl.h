@@ -73,6 +73,8 @@ class Window::Impl {
   void uncovered();
   void wait(double longest_s);
   double longest_sleep_s() const;
+  /// Nothing is drawn: gives back memory, once.
+  void rest();
   void find_reasons_to_draw();
   bool take_news();
   void apply(const SceneUpdate& update);
@@ -143,6 +145,7 @@ class Window::Impl {
   std::string shown_age_;
   FrameCounter frame_counter_;
   bool is_hidden_ = false;  // minimized
+  bool is_rested_ = false;  // since the last frame
   bool was_closed_ = false;
 
   /// A click and the way to the next place may both happen within one slow frame: of what the mouse
