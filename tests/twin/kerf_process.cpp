@@ -120,6 +120,8 @@ bool RunningKerf::catches_interrupts() const {
   std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
   std::string line;
   while (std::getline(status, line)) {
+    // One that crashed, until somebody asks for its end, has its handlers still.
+    if (line.rfind("State:\tZ", 0) == 0) return false;
     if (line.rfind("SigCgt:", 0) == 0) {
       return ((std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1)) & 1U) != 0;
     }

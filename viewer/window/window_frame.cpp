@@ -236,6 +236,8 @@ Done Window::Impl::draw() {
     set_scale();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    // Of a window that was destroyed just now it has asked for the size, and got anything.
+    if (Platform::is_gone(window_)) return std::monostate{};
     feed_mouse();
     ImGui::NewFrame();
     const glm::vec2 display(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y);
