@@ -9,7 +9,8 @@
 namespace kerf {
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};
+// Much longer than anything takes: only what never comes is to be told from what comes late.
+constexpr std::chrono::seconds kPatience{60};
 /// On the background above the workpiece.
 constexpr glm::ivec2 kNowhere{320, 60};
 

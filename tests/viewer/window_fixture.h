@@ -38,7 +38,7 @@ Moment test_moment();
 /// A main program of 500 lines and a subroutine of 50.
 std::shared_ptr<const ProgramText> test_program();
 
-/// All wait for what they expect by turning the window, and give up after some seconds.
+/// All wait for what they expect by turning the window, and give up after a minute.
 class WindowTest : public testing::Test {
  protected:
   static constexpr int kWidth = 1280, kHeight = 800;
@@ -55,7 +55,7 @@ class WindowTest : public testing::Test {
   void publish(Moment moment);
   /// Turns until nothing is left to be drawn.
   void settle();
-  /// Turns until `is_done`; false after ten seconds.
+  /// Turns until `is_done`; false after a minute.
   bool turn_until(const std::function<bool()>& is_done);
   bool turn_until_changed(const Picture& before, const PixelBox& box);
 

@@ -247,6 +247,8 @@ void Window::close() { impl_->close(); }
 void Window::wake() { Platform::wake(); }
 Picture Window::read() const { return impl_->read(); }
 Picture Window::read_scene() const { return impl_->read_scene(); }
+bool Window::is_full() const { return impl_->is_full(); }
+DrawRoad Window::drawn_road() const { return impl_->drawn_road(); }
 const DrawCounters& Window::counters() const { return impl_->counters(); }
 const ViewSettings& Window::settings() const { return impl_->settings(); }
 const Diagnostics& Window::settings_faults() const { return impl_->settings_faults(); }

@@ -62,6 +62,11 @@ class Window {
   Picture read() const;
   /// Without panels.
   Picture read_scene() const;
+  /// The picture of the scene is that of the eye, in all of its pixels; none of fewer pixels, or of
+  /// where the eye was before.
+  bool is_full() const;
+  /// By which road the workpiece in it was drawn.
+  DrawRoad drawn_road() const;
   const DrawCounters& counters() const;
   const ViewSettings& settings() const;
   /// What was wrong with the settings file; empty if nothing.

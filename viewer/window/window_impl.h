@@ -50,6 +50,8 @@ class Window::Impl {
   void close();
   Picture read() const { return layer_->read(); }
   Picture read_scene() const { return renderer_->read(); }
+  bool is_full() const { return renderer_->is_full(); }
+  DrawRoad drawn_road() const { return renderer_->drawn_road(); }
   const DrawCounters& counters() const { return renderer_->counters(); }
   const ViewSettings& settings() const { return settings_; }
   const Diagnostics& settings_faults() const { return settings_faults_; }
