@@ -44,9 +44,9 @@ inline glm::vec3 unpack_normal(std::uint32_t packed) {
 ///
 ///   indices[0 .. skirt_begin)    what is seen: top, walls, and the tile's share of the workpiece's
 ///                                sides and floor. Over all tiles of one level this is closed.
-///   indices[skirt_begin .. end)  skirts: the tile's border carried down to the floor. To be drawn
-///                                as well where a neighbour is drawn at another level, whose border
-///                                lies elsewhere; they are inside the material otherwise.
+///   indices[skirt_begin .. end)  skirts: the tile's border carried down as far as a neighbour may
+///                                lie lower that is drawn at another level. To be drawn as well
+///                                where there is one; they are inside the material otherwise.
 struct MeshPatch {
   std::uint32_t tile = 0;
   std::uint64_t version = 0;  ///< StockModel::patch_version() of what it was made from

@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -28,6 +29,31 @@ float* allocate(std::size_t bytes, std::size_t alignment) {
 std::uint64_t next_version() {
   static std::atomic<std::uint64_t> last{0};
   return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+using BlockFloats = std::array<float, kBlockFloats>;
+
+void lower_to(const float* heights, BlockFloats* low) {
+  for (std::size_t k = 0; k < kBlockFloats; ++k)
+    (*low)[k] = heights[k] < (*low)[k] ? heights[k] : (*low)[k];
+}
+
+/// Of cells [x0, x1) x [y0, y1) of a tile.
+float lowest_in_tile(const float* heights, int x0, int y0, int x1, int y1) {
+  BlockFloats low;
+  low.fill(std::numeric_limits<float>::infinity());
+  const bool is_of_blocks = (x0 | x1) % kBlockX == 0 && (y0 | y1) % kBlockY == 0;
+  for (int y = y0; y < y1; y += is_of_blocks ? kBlockY : 1) {
+    for (int x = x0; x < x1; x += is_of_blocks ? kBlockX : 1) {
+      const float* const at = heights + TileGrid::offset(x, y);
+      if (is_of_blocks) {
+        lower_to(at, &low);
+      } else {
+        low[0] = std::min(low[0], *at);
+      }
+    }
+  }
+  return *std::min_element(low.begin(), low.end());
 }
 
 }  // namespace
@@ -112,6 +138,20 @@ TileGrid::~TileGrid() { meet_other_grids(); }
 /// the earlier one: it would have been seen, and the count read before it too, before the tile was
 /// let go. (A fence would do as well, but ThreadSanitizer does not know fences.)
 void TileGrid::meet_other_grids() const { meetings_->fetch_add(1, std::memory_order_acq_rel); }
+
+float TileGrid::lowest_mm(int x0, int y0, int x1, int y1) const {
+  x0 = std::max(x0, 0), y0 = std::max(y0, 0), x1 = std::min(x1, nx_), y1 = std::min(y1, ny_);
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int y = y0; y < y1; y = (y / kTileCells + 1) * kTileCells) {
+    for (int x = x0; x < x1; x = (x / kTileCells + 1) * kTileCells) {
+      const int left = x / kTileCells * kTileCells, low = y / kTileCells * kTileCells;
+      lowest = std::min(
+          lowest, lowest_in_tile(tile(x / kTileCells, y / kTileCells), x - left, y - low,
+                                 std::min(kTileCells, x1 - left), std::min(kTileCells, y1 - low)));
+    }
+  }
+  return std::max(lowest, floor_mm());
+}
 
 Box TileGrid::tile_box(std::size_t tile_index) const {
   const int i = static_cast<int>(tile_index) % tiles_x_ * kTileCells;

@@ -54,6 +54,9 @@ class TileGrid {
   /// Heights of row j, x = 0..nx-1.
   void copy_row(int j, float* out) const;
   void set_row(int j, const float* in);
+  /// The least height of cells x0 .. x1-1 of rows y0 .. y1-1, as far as they are in the grid, the
+  /// floor at least; infinite if none is. Where the borders are those of blocks, 0.1 ns a cell.
+  float lowest_mm(int x0, int y0, int x1, int y1) const;
 
   std::size_t tile_count() const { return tiles_.size(); }
   const float* tile(std::size_t tile_index) const { return tiles_[tile_index].get(); }

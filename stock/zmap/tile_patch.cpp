@@ -26,17 +26,21 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// Added to the number of a split corner where otherwise the number of a vertex is.
 constexpr std::uint32_t kSplitCorner = std::uint32_t{1} << 31;
 
-/// On which sides the tile has neighbours.
-struct Neighbors {
-  bool left, right, low, high;
+/// On which sides the tile has neighbours, and how far skirts go down there.
+struct Side {
+  bool has_neighbor = false;
+  float skirt_end_mm = 0;
+};
+struct Sides {
+  Side left, right, low, high;
 };
 
 class PatchBuilder {
  public:
   /// `cut_ids` is null where they are not kept.
-  PatchBuilder(const TileRelief& relief, const TileCutIds* cut_ids, const Neighbors& neighbors,
+  PatchBuilder(const TileRelief& relief, const TileCutIds* cut_ids, const Sides& sides,
                MeshPatch& patch)
-      : r_(relief), cut_ids_(cut_ids), neighbors_(neighbors), patch_(patch) {
+      : r_(relief), cut_ids_(cut_ids), sides_(sides), patch_(patch) {
     top_.fill(kNone);
     bottom_.fill(kNone);
     const std::size_t corners =
@@ -128,11 +132,12 @@ class PatchBuilder {
   void add_walls();
   void add_wall(int cell, bool along_y, int i, int j, bool owned_if_lower, bool owned_if_higher);
   WallEnd wall_end(int i, int j, Quadrant upper, Quadrant lower);
-  void add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1);
+  void add_skirt(const Side& side, std::uint32_t from, std::uint32_t to, int i0, int j0, int i1,
+                 int j1);
 
   const TileRelief& r_;
   const TileCutIds* cut_ids_;
-  Neighbors neighbors_;
+  Sides sides_;
   MeshPatch& patch_;
   std::array<std::uint32_t, TileRelief::kSlots> top_;  ///< or kSplitCorner + which
   std::array<std::uint32_t, TileRelief::kSlots> bottom_;
@@ -404,8 +409,10 @@ void PatchBuilder::add_wall(int cell, bool along_y, int i, int j, bool owned_if_
   const glm::vec2 axis(along_y ? 1 : 0, along_y ? 0 : 1);
   const glm::vec2 outward = first_is_higher ? axis : -axis;
   // A side of the blank is flat to its very end.
-  const bool side = along_y ? (i == 0 && !neighbors_.left) || (i == r_.nx() && !neighbors_.right)
-                            : (j == 0 && !neighbors_.low) || (j == r_.ny() && !neighbors_.high);
+  const bool side =
+      along_y
+          ? (i == 0 && !sides_.left.has_neighbor) || (i == r_.nx() && !sides_.right.has_neighbor)
+          : (j == 0 && !sides_.low.has_neighbor) || (j == r_.ny() && !sides_.high.has_neighbor);
   std::array<glm::vec2, 2> facing{outward, outward};
   if (!side) {
     const WallCourse course = r_.wall_course(i, j, along_y);
@@ -457,11 +464,17 @@ void PatchBuilder::add_surface() {
 
 /// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right. It
 /// ends on the tile's border, wherever the top's corners were moved, so that no gap is left between
-/// tiles seen from above.
-void PatchBuilder::add_skirt(std::uint32_t from, std::uint32_t to, int i0, int j0, int i1, int j1) {
+/// tiles seen from above. None where the surface is level all about.
+void PatchBuilder::add_skirt(const Side& side, std::uint32_t from, std::uint32_t to, int i0, int j0,
+                             int i1, int j1) {
+  const auto reaches_end = [&](std::uint32_t top) {
+    return patch_.vertices[top].position_mm.z <= side.skirt_end_mm;
+  };
+  if (reaches_end(from) && reaches_end(to)) return;
   // The top's own normals: where a skirt fills a crack it must not be seen.
   const auto below = [&](std::uint32_t top, int i, int j) {
-    const std::uint32_t vertex = add_vertex(unmoved(i, j), r_.floor(), patch_.vertices[top].normal);
+    const std::uint32_t vertex =
+        add_vertex(unmoved(i, j), side.skirt_end_mm, patch_.vertices[top].normal);
     if (cut_ids_) set_cut_by(vertex, patch_.cut_by[top]);
     return vertex;
   };
@@ -474,17 +487,35 @@ void PatchBuilder::add_skirts() {
   const int nx = r_.nx(), ny = r_.ny();
   const auto solid = [&](int i, int j) { return r_.solid(TileRelief::slot(i, j)); };
   for (int j = 0; j < ny; ++j) {
-    if (neighbors_.left && solid(0, j))
-      add_skirt(top_vertex(0, j + 1, kB), top_vertex(0, j, kC), 0, j + 1, 0, j);
-    if (neighbors_.right && solid(nx - 1, j))
-      add_skirt(top_vertex(nx, j, kD), top_vertex(nx, j + 1, kA), nx, j, nx, j + 1);
+    if (sides_.left.has_neighbor && solid(0, j))
+      add_skirt(sides_.left, top_vertex(0, j + 1, kB), top_vertex(0, j, kC), 0, j + 1, 0, j);
+    if (sides_.right.has_neighbor && solid(nx - 1, j))
+      add_skirt(sides_.right, top_vertex(nx, j, kD), top_vertex(nx, j + 1, kA), nx, j, nx, j + 1);
   }
   for (int i = 0; i < nx; ++i) {
-    if (neighbors_.low && solid(i, 0))
-      add_skirt(top_vertex(i, 0, kC), top_vertex(i + 1, 0, kD), i, 0, i + 1, 0);
-    if (neighbors_.high && solid(i, ny - 1))
-      add_skirt(top_vertex(i + 1, ny, kA), top_vertex(i, ny, kB), i + 1, ny, i, ny);
+    if (sides_.low.has_neighbor && solid(i, 0))
+      add_skirt(sides_.low, top_vertex(i, 0, kC), top_vertex(i + 1, 0, kD), i, 0, i + 1, 0);
+    if (sides_.high.has_neighbor && solid(i, ny - 1))
+      add_skirt(sides_.high, top_vertex(i + 1, ny, kA), top_vertex(i, ny, kB), i + 1, ny, i, ny);
   }
+}
+
+/// A neighbour's border lies, whatever its level, no lower than all cells that the coarsest level
+/// joins with those about the border.
+Sides sides_of(const TileGrid& grid, std::uint32_t tile) {
+  constexpr int kReach = 1 << (StockModel::kPatchLevels - 1);
+  const int tx = static_cast<int>(tile) % grid.tiles_x();
+  const int ty = static_cast<int>(tile) / grid.tiles_x();
+  const int x0 = tx * kTileCells, y0 = ty * kTileCells;
+  const int x1 = x0 + kTileCells, y1 = y0 + kTileCells;
+  const auto across_x = [&](bool has_neighbor, int x) {
+    return Side{has_neighbor, grid.lowest_mm(x - kReach, y0 - kReach, x + kReach, y1 + kReach)};
+  };
+  const auto across_y = [&](bool has_neighbor, int y) {
+    return Side{has_neighbor, grid.lowest_mm(x0 - kReach, y - kReach, x1 + kReach, y + kReach)};
+  };
+  return {across_x(tx > 0, x0), across_x(tx + 1 < grid.tiles_x(), x1), across_y(ty > 0, y0),
+          across_y(ty + 1 < grid.tiles_y(), y1)};
 }
 
 }  // namespace
@@ -495,12 +526,9 @@ MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level) {
   patch.tile = tile;
   patch.level = level;
   const TileRelief relief(grid, tile, level);
-  const int tx = static_cast<int>(tile) % grid.tiles_x();
-  const int ty = static_cast<int>(tile) / grid.tiles_x();
-  const Neighbors neighbors{tx > 0, tx + 1 < grid.tiles_x(), ty > 0, ty + 1 < grid.tiles_y()};
   std::optional<TileCutIds> cut_ids;
   if (grid.keeps_cut_ids()) cut_ids.emplace(grid, tile, level);
-  PatchBuilder builder(relief, cut_ids ? &*cut_ids : nullptr, neighbors, patch);
+  PatchBuilder builder(relief, cut_ids ? &*cut_ids : nullptr, sides_of(grid, tile), patch);
   builder.add_surface();
   builder.add_skirts();
   if (cut_ids) patch.cut_by.resize(patch.vertices.size(), MeshPatch::kNotCut);

@@ -31,8 +31,9 @@ namespace kerf {
 ///
 /// Each wall belongs to the tile of the higher side, so no tile shows a wall above its own surface
 /// whatever the level of its neighbour. Over all tiles at one level each edge is in two triangles,
-/// once in each direction; in four where two pieces of material touch at one corner only. Seen from
-/// above, skirts end at the tile's border, so there is no gap between tiles of several levels.
+/// once in each direction; in four where two pieces of material touch at one corner only. Skirts
+/// end at the tile's border, below all cells that any level joins with those beside it, so there is
+/// no gap between tiles of several levels.
 MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level);
 
 /// A number for the versions of the tile and of its eight neighbours, on which alone its patches

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "stock/zmap/sweep_ops.h"
+#include "stock/zmap/tile_cut_ids.h"
+#include "tests/stock/patch_samples.h"
 #include "tests/stock/stock_samples.h"
 #include "tests/stock/sweep_oracle.h"
 
@@ -239,7 +241,7 @@ TEST(CutIds, OfPatchesAreThoseOfTheCellsAtEachVertex) {
     const MeshPatch patch = map->patch(tile, 0);
     ASSERT_EQ(patch.cut_by.size(), patch.vertices.size());
     EXPECT_EQ(patch.bytes(), 20 * patch.vertices.size() + 4 * patch.indices.size());
-    for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
+    for (std::size_t n = 0; n < test::surface_vertices(patch).size(); ++n) {
       const Vec3 p(patch.vertices[n].position_mm);
       const float up = unpack_normal(patch.vertices[n].normal).z;
       const std::uint32_t id = patch.cut_by[n];
@@ -274,6 +276,48 @@ TEST(CutIds, OfPatchesAreThoseOfTheCellsAtEachVertex) {
   EXPECT_GT(seen.size(), 50u);
 }
 
+/// Heights with many equals among them, in a grid that ends within its last tiles.
+TEST(CutIds, OfJoinedCellsAreThoseOfTheFirstOfTheLowest) {
+  constexpr int kX = 150, kY = 131;
+  TileGrid grid({Vec3(0, 0, -10), Vec3(kX, kY, 0)}, kX, kY);
+  grid.keep_cut_ids(true);
+  std::mt19937 random(3);
+  grid.begin_change();
+  for (std::size_t tile = 0; tile < grid.tile_count(); ++tile) {
+    float* const heights = grid.make_writable(tile);
+    for (std::size_t k = 0; k < kTileFloats; ++k) {
+      heights[k] = -static_cast<float>(random() % 6);
+      cut_ids_of(heights)[k] = static_cast<std::uint32_t>(random());
+    }
+  }
+  const auto expected = [&](int i0, int j0, int span) {
+    std::uint32_t id = kNotCut;
+    float lowest = 1;
+    for (int j = std::max(0, j0); j < std::min(kY, j0 + span); ++j) {
+      for (int i = std::max(0, i0); i < std::min(kX, i0 + span); ++i) {
+        if (grid.height(i, j) >= lowest) continue;
+        lowest = grid.height(i, j);
+        id = grid.cut_id(i, j);
+      }
+    }
+    return id;
+  };
+  for (std::size_t tile = 0; tile < grid.tile_count(); ++tile) {
+    const int i0 = static_cast<int>(tile) % grid.tiles_x() * kTileCells;
+    const int j0 = static_cast<int>(tile) / grid.tiles_x() * kTileCells;
+    for (int level = 0; level < StockModel::kPatchLevels; ++level) {
+      const TileCutIds ids(grid, tile, level);
+      const int span = 1 << level, cells = kTileCells >> level;
+      for (int j = -1; j <= cells; ++j) {
+        for (int i = -1; i <= cells; ++i) {
+          ASSERT_EQ(ids.of(TileRelief::slot(i, j)), expected(i0 + i * span, j0 + j * span, span))
+              << "tile " << tile << " level " << level << " cell " << i << ' ' << j;
+        }
+      }
+    }
+  }
+}
+
 TEST(CutIds, OfPatchesAgreeAcrossTilesAndWithPoints) {
   const auto map = make_tracking("box:0,0,-10:30,25,0", 0.2);
   std::mt19937 random(15);
@@ -286,7 +330,7 @@ TEST(CutIds, OfPatchesAgreeAcrossTilesAndWithPoints) {
     for (std::uint32_t tile = 0; tile < map->tile_count(); ++tile) {
       const MeshPatch patch = map->patch(tile, level);
       std::set<std::array<float, 3>> mine;
-      for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
+      for (std::size_t n = 0; n < test::surface_vertices(patch).size(); ++n) {
         const glm::vec3 p = patch.vertices[n].position_mm;
         if (unpack_normal(patch.vertices[n].normal).z < 0.5f || p.z <= -10) continue;
         const std::array<float, 3> key{p.x, p.y, p.z};
@@ -325,7 +369,7 @@ TEST(CutIds, CoarseLevelsShowTheMoveOfTheirLowestCell) {
     std::set<float> deep, wall;
     for (const std::uint32_t tile : {2u, 3u}) {
       const MeshPatch patch = map->patch(tile, level);
-      for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
+      for (std::size_t n = 0; n < test::surface_vertices(patch).size(); ++n) {
         const MeshVertex& v = patch.vertices[n];
         const bool is_top = unpack_normal(v.normal).z > 0.5f;
         if (is_top && v.position_mm.z == -3) {

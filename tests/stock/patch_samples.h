@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,14 @@ using Edge = std::pair<Position, Position>;
 inline Position position(const MeshPatch& patch, std::uint32_t vertex) {
   const glm::vec3 p = patch.vertices[vertex].position_mm;
   return {p.x, p.y, p.z};
+}
+
+/// Those of skirts alone come behind them.
+inline std::span<const MeshVertex> surface_vertices(const MeshPatch& patch) {
+  const auto surface = patch.surface_indices();
+  const std::size_t count =
+      surface.empty() ? 0 : *std::max_element(surface.begin(), surface.end()) + std::size_t{1};
+  return std::span(patch.vertices).first(count);
 }
 
 /// A grid whose heights a function gives, NaN for none.
