@@ -51,6 +51,8 @@ struct MeshPatch {
   std::uint32_t tile = 0;
   std::uint64_t version = 0;  ///< StockModel::patch_version() of what it was made from
   int level = 0;              ///< 0: every cell; n: one of 2^n x 2^n cells
+  /// Tiles are counted row by row, so many in each; 0 where there are no skirts.
+  std::uint32_t tiles_in_row = 0;
   std::vector<MeshVertex> vertices;
   std::vector<std::uint32_t> indices;  ///< three a triangle
   std::uint32_t skirt_begin = 0;       ///< a multiple of three

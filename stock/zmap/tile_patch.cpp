@@ -525,6 +525,7 @@ MeshPatch make_tile_patch(const TileGrid& grid, std::uint32_t tile, int level) {
   MeshPatch patch;
   patch.tile = tile;
   patch.level = level;
+  patch.tiles_in_row = static_cast<std::uint32_t>(grid.tiles_x());
   const TileRelief relief(grid, tile, level);
   std::optional<TileCutIds> cut_ids;
   if (grid.keeps_cut_ids()) cut_ids.emplace(grid, tile, level);

@@ -34,27 +34,16 @@ Box box_of(const MeshPatch& patch) {
   return box;
 }
 
-std::size_t index_count(const MeshPatch& patch, bool with_skirts) {
-  return (with_skirts ? patch.indices.size() : patch.skirt_begin) / 3 * 3;
-}
-
-/// Triangles that follow each other in a patch lie near each other: of a tile that a rectangle
-/// cuts, only those runs of this many indices are drawn whose boxes it meets.
 constexpr std::size_t kRunIndices = 3 * 512;
 
-std::vector<Box> run_boxes_of(const MeshPatch& patch) {
-  std::vector<Box> boxes;
-  for (std::size_t begin = 0; begin < patch.indices.size(); begin += kRunIndices) {
-    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
-    const std::size_t end = std::min(begin + kRunIndices, patch.indices.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      const glm::vec3& at = patch.vertices[patch.indices[i]].position_mm;
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-    }
-    boxes.push_back({Vec3(low), Vec3(high)});
+Box box_of(const MeshPatch& patch, std::size_t begin, std::size_t end) {
+  glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+  for (std::size_t i = begin; i < end; ++i) {
+    const glm::vec3& at = patch.vertices[patch.indices[i]].position_mm;
+    low = glm::min(low, at);
+    high = glm::max(high, at);
   }
-  return boxes;
+  return {Vec3(low), Vec3(high)};
 }
 
 /// The card takes a triangle's move from its last corner. A wall belongs to the move that cut what
@@ -153,7 +142,6 @@ void PatchStore::clear() {
   waiting_order_.clear();
   waiting_bytes_ = 0;
   gpu_bytes_ = 0;
-  tiles_by_level_.clear();
   bounds_mm_ = {};
 }
 
@@ -166,17 +154,62 @@ std::size_t PatchStore::upload(std::size_t budget_bytes, std::vector<Box>* chang
     Tile& tile = tiles_[next->first];
     // First what the tile covers on the screen; only if there is anything, which part of it.
     const ScreenRect covered = covered_rect(box_of(*next->second), projection_);
+    const bool is_other_level = !tile.patch || tile.patch->level != next->second->level;
+    const bool will_draw_skirts = meets_other_level(*next->second);
     if (!tile.rect.empty() || !covered.empty()) {
-      const Box changed = changed_box(tile.patch.get(), *next->second, draws_skirts());
+      const Box changed =
+          changed_box(tile.patch.get(), *next->second, tile.draws_skirts || will_draw_skirts);
       if (!changed.empty()) changed_mm->push_back(changed);
     }
     load(&tile, std::move(next->second));
+    tile.draws_skirts = will_draw_skirts;
+    if (is_other_level) {
+      for_tiles_beside(*tile.patch, [&](Tile& beside) {
+        const bool did = std::exchange(beside.draws_skirts, meets_other_level(*beside.patch));
+        if (did != beside.draws_skirts) changed_mm->push_back(beside.box_mm);
+      });
+    }
     bytes += size;
     waiting_bytes_ -= size;
     waiting_.erase(next);
     waiting_order_.pop_front();
   }
   return bytes;
+}
+
+template <class With>
+void PatchStore::for_tiles_beside(const MeshPatch& patch, const With& with) {
+  const std::uint32_t row = patch.tiles_in_row;
+  if (row == 0) return;
+  const auto tell = [&](std::uint32_t number) {
+    const auto found = tiles_.find(number);
+    if (found != tiles_.end() && found->second.patch) with(found->second);
+  };
+  const std::uint32_t tile = patch.tile;
+  if (tile >= row) tell(tile - row);
+  if (tile % row > 0) tell(tile - 1);
+  if (tile % row + 1 < row) tell(tile + 1);
+  tell(tile + row);
+}
+
+bool PatchStore::meets_other_level(const MeshPatch& patch) {
+  bool does = false;
+  for_tiles_beside(patch, [&](const Tile& beside) { does |= beside.patch->level != patch.level; });
+  return does;
+}
+
+/// The last ones are those of the skirts alone.
+std::vector<PatchStore::Run> PatchStore::runs_of(const MeshPatch& patch) {
+  std::vector<Run> runs;
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (; begin < end; begin += kRunIndices) {
+      const std::size_t run_end = std::min(begin + kRunIndices, end);
+      runs.push_back({begin, run_end, box_of(patch, begin, run_end)});
+    }
+  };
+  add(0, patch.skirt_begin);
+  add(patch.skirt_begin, patch.indices.size());
+  return runs;
 }
 
 void PatchStore::load(Tile* tile, std::shared_ptr<const MeshPatch> patch) {
@@ -198,16 +231,12 @@ void PatchStore::load(Tile* tile, std::shared_ptr<const MeshPatch> patch) {
   } else if (!keeps_indices) {
     load_indices(tile->indices.name(), turned_indices(*patch), is_short);
   }
-  if (tile->patch && --tiles_by_level_[tile->patch->level] == 0) {
-    tiles_by_level_.erase(tile->patch->level);
-  }
-  ++tiles_by_level_[patch->level];
   gpu_bytes_ -= tile->gpu_bytes;
   tile->gpu_bytes = bytes_of(*patch);
   gpu_bytes_ += tile->gpu_bytes;
   tile->index_type = index_type;
   tile->box_mm = box_of(*patch);
-  tile->run_boxes_mm = run_boxes_of(*patch);
+  tile->runs = runs_of(*patch);
   tile->rect = covered_rect(tile->box_mm, projection_);
   tile->patch = std::move(patch);
   bounds_mm_.extend(tile->box_mm);
@@ -229,25 +258,24 @@ std::size_t PatchStore::draw(const ScreenRect& rect, VertexData data, bool havin
 }
 
 std::size_t PatchStore::draw_runs(const Tile& tile, const ScreenRect& rect) const {
-  const std::size_t end = index_count(*tile.patch, draws_skirts());
   const std::size_t index_bytes = tile.index_type == GL_UNSIGNED_SHORT ? 2 : 4;
   const bool is_whole = tile.rect.common(rect) == tile.rect;
   std::size_t triangles = 0;
-  std::size_t begin = 0, seen_end = 0;
+  std::size_t begin = 0, end = 0;
   const auto draw_seen = [&] {
-    if (seen_end <= begin) return;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(seen_end - begin), tile.index_type,
+    if (end <= begin) return;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - begin), tile.index_type,
                    reinterpret_cast<const void*>(begin * index_bytes));
-    triangles += (seen_end - begin) / 3;
+    triangles += (end - begin) / 3;
   };
-  for (std::size_t run = 0; run * kRunIndices < end; ++run) {
-    const std::size_t run_begin = run * kRunIndices;
-    if (!is_whole && !covered_rect(tile.run_boxes_mm[run], projection_).intersects(rect)) continue;
-    if (run_begin != seen_end) {
+  for (const Run& run : tile.runs) {
+    if (run.begin >= tile.patch->skirt_begin && !tile.draws_skirts) break;
+    if (!is_whole && !covered_rect(run.box_mm, projection_).intersects(rect)) continue;
+    if (run.begin != end) {
       draw_seen();
-      begin = run_begin;
+      begin = run.begin;
     }
-    seen_end = std::min(run_begin + kRunIndices, end);
+    end = run.end;
   }
   draw_seen();
   return triangles;

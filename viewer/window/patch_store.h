@@ -17,7 +17,8 @@
 namespace kerf {
 
 /// Patches wait here until upload() takes them within its budget, the tile that has waited longest
-/// first. Tiles are drawn in the order of their numbers, so that equal scenes give equal pictures.
+/// first. Tiles are drawn in the order of their numbers, so that equal scenes give equal pictures,
+/// with their skirts where one beside them is of another level.
 class PatchStore {
  public:
   /// Replaces what the tile shows, and what waits for it; costs nothing if it is shown already.
@@ -36,14 +37,17 @@ class PatchStore {
   /// have the data, or those that do not. Returns the triangles.
   std::size_t draw(const ScreenRect& rect, VertexData data, bool having) const;
 
-  /// Tiles of several levels meet: their skirts are drawn too. When this changes, so may any pixel.
-  bool draws_skirts() const { return tiles_by_level_.size() > 1; }
-
   std::size_t gpu_bytes() const { return gpu_bytes_; }
   /// Of what is uploaded; never shrinks until clear(), so that the depth range of the camera stays.
   const Box& bounds_mm() const { return bounds_mm_; }
 
  private:
+  /// Triangles that follow each other in a patch lie near each other: of a tile that a rectangle
+  /// cuts, only those runs are drawn whose boxes it meets.
+  struct Run {
+    std::size_t begin, end;  // of the indices
+    Box box_mm;
+  };
   struct Tile {
     std::shared_ptr<const MeshPatch> patch;
     GlVertexArray array;
@@ -54,11 +58,17 @@ class PatchStore {
     std::size_t gpu_bytes = 0;
     GLenum index_type = GL_UNSIGNED_INT;
     Box box_mm;
-    std::vector<Box> run_boxes_mm;  // of kRunIndices indices each
+    std::vector<Run> runs;
+    bool draws_skirts = false;  // a tile beside it is of another level
     ScreenRect rect;
   };
 
   void load(Tile* tile, std::shared_ptr<const MeshPatch> patch);
+  static std::vector<Run> runs_of(const MeshPatch& patch);
+  /// Calls `with(tile)` for the tiles that share a border with this one.
+  template <class With>
+  void for_tiles_beside(const MeshPatch& patch, const With& with);
+  bool meets_other_level(const MeshPatch& patch);
   /// Returns the triangles drawn.
   std::size_t draw_runs(const Tile& tile, const ScreenRect& rect) const;
 
@@ -67,7 +77,6 @@ class PatchStore {
   std::deque<std::uint32_t> waiting_order_;
   std::size_t waiting_bytes_ = 0;
   std::size_t gpu_bytes_ = 0;
-  std::map<int, std::size_t> tiles_by_level_;
   Box bounds_mm_;
   Projection projection_;
 };

@@ -259,11 +259,9 @@ void SceneRenderer::Impl::set_divisor(int divisor) {
 }
 
 std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
-  const bool drew_skirts = patches_.draws_skirts();
   std::size_t bytes = patches_.upload(budget_bytes, &changed_mm_);
   if (bytes < budget_bytes) bytes += path_.upload(budget_bytes - bytes, &changed_mm_);
   if (bytes < budget_bytes) bytes += machine_.upload(budget_bytes - bytes);
-  if (patches_.draws_skirts() != drew_skirts) is_kept_old_ = true;
   return bytes;
 }
 

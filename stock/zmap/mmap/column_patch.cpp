@@ -521,6 +521,7 @@ MeshPatch make_column_patch(const TileGrid& grid, const GapGrid& gaps, std::uint
   MeshPatch patch;
   patch.tile = tile;
   patch.level = level;
+  patch.tiles_in_row = static_cast<std::uint32_t>(grid.tiles_x());
   const ColumnRelief relief(grid, gaps, tile, level);
   ColumnPatchBuilder builder(relief, patch);
   builder.add_surface();
