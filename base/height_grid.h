@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -14,13 +15,29 @@ namespace kerf {
 /// When the surface between two neighbouring cells is smooth, else there is a wall. Whoever makes a
 /// surface from heights goes by these, so that all of them show the same one:
 ///   - the heights differ by no more than kSmooth says (a slope: height over the cell's edge), or
-///   - by no more than kSteepest says, and the surface goes on rising (falling) beyond one of the
-///     two, there at least 1 / kMostSteepening as fast.
-/// A cell with material and one without are never one surface.
+///   - the surface goes on rising (falling) beyond one of the two, there at least
+///     1 / kMostSteepening as fast, and either the step is no more than kSteepest says, or the
+///     surface goes on beyond both, there steeper than kFlank.
+/// So the foot of a flank and its top edge are sharp, and all that lies between them is alike,
+/// however steep. A cell with material and one without are never one surface.
 struct SurfaceSlopes {
-  static constexpr float kSmooth = 0.25f;
-  static constexpr float kSteepest = 6.0f;
+  static constexpr float kSmooth = 0.25f;   ///< about 14 degrees
+  static constexpr float kSteepest = 6.0f;  ///< about 80 degrees
   static constexpr float kMostSteepening = 2.5f;
+  /// 45 degrees: what is less steep on one side of a high step is its foot or its top edge.
+  static constexpr float kFlank = 1.0f;
+
+  /// `step`: the way up from one cell to the next; `before`, `after`: of the steps before and after
+  /// it; 0 where a cell has no material. `edge`: of a cell. Does not branch, so that compilers ask
+  /// about several at a time.
+  static bool is_smooth(float step, float before, float after, float edge) {
+    const float size = std::abs(step), with_before = step * before, with_after = step * after;
+    const float most = with_before > with_after ? with_before : with_after;
+    const float least = with_before < with_after ? with_before : with_after;
+    return (size <= kSmooth * edge) |
+           ((size * size <= kMostSteepening * most) &
+            ((size <= kSteepest * edge) | (least >= kFlank * edge * size)));
+  }
 };
 
 /// Heights of nx x ny cells in tiles, as a snapshot of a workpiece has them. Holds no heights of

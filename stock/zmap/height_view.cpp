@@ -1,15 +1,9 @@
 #include "stock/zmap/height_view.h"
 
-#include "stock/zmap/tile_relief.h"
-
 namespace kerf {
 
 static_assert(HeightGrid::kTileCells == kTileCells && HeightGrid::kBlockX == kBlockX &&
               HeightGrid::kBlockY == kBlockY);
-// Patches and views that make a surface of the heights must make the same one.
-static_assert(SurfaceSlopes::kSmooth == TileRelief::kSmoothSlope &&
-              SurfaceSlopes::kSteepest == TileRelief::kSteepestSlope &&
-              SurfaceSlopes::kMostSteepening == TileRelief::kMostSteepening);
 
 std::shared_ptr<const HeightGrid> height_view(const TileGrid& grid) {
   const auto shared = std::make_shared<const TileGrid>(grid);

@@ -21,11 +21,15 @@ namespace kerf {
 ///   - Above a cell the surface lies between the least and the greatest height of the nine cells
 ///     about it, counting only those that are linked to it about one of its corners.
 ///   - At its centre it misses the cell's height by no more than 1.5 x kSteepestSlope x cell (three
-///     steps to one side), and where the cells lie in a plane, by rounding.
+///     steps to one side; in flanks that are steeper 1.5 x the highest of those steps), and where
+///     the cells lie in a plane, by rounding.
 ///   - A step between cells that are not linked is a wall in full, on the same side of the cells'
 ///     centres as their common edge. It is 0.1 cells from the true wall in the mean, see WallShift;
 ///     along x or y it stands exactly at the cells' edges.
-/// Normals of walls are level and follow the course of the wall, too (WallCourse).
+/// Normals of walls are level and follow the course of the wall, too (WallCourse); so do, seen from
+/// above, those of flanks steeper than kSteepestSlope. Along a flank with arcs of 20 cells and more
+/// they are within 11 degrees of the true ones for 99 % of its area, however steep it is, see
+/// tests/stock/patch_flanks_test.cpp.
 /// Squares of 8 x 8, 16 x 16 .. cells that are level (and cut by one move) keep only the corners at
 /// their rim.
 ///

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <limits>
 
 namespace kerf {
@@ -60,6 +62,7 @@ TileRelief::TileRelief(const TileGrid& grid, std::size_t tile, int level)
   last_share_ = 1.0f - glm::vec2(beyond) / static_cast<float>(span);
   find_links(cell_mm_.x, cell_mm_.y);
   find_corners(cell_mm_.x, cell_mm_.y);
+  turn_steep_normals();
 }
 
 void TileRelief::load_heights(const TileGrid& grid, int tx, int ty, int level) {
@@ -106,15 +109,10 @@ void TileRelief::find_links(float cell_x, float cell_y) {
     const float* const h = height_.data();
     const float* const d = step.data();
     float* const out = link.data();
-    const float smooth = kSmoothSlope * cell, steepest = kSteepestSlope * cell;
     for (int k = first; k < last; ++k) {
-      const float size = std::abs(d[k]);
-      const float before = d[k] * d[k - next], after = d[k] * d[k + next];
-      const float goes_on = before > after ? before : after;
       const bool alike = (h[k] > floor) == (h[k + next] > floor);
-      const bool is_smooth =
-          (size <= smooth) | ((size <= steepest) & (size * size <= kMostSteepening * goes_on));
-      out[k] = (alike & is_smooth) ? 1.0f : 0.0f;
+      out[k] =
+          (alike & SurfaceSlopes::is_smooth(d[k], d[k - next], d[k + next], cell)) ? 1.0f : 0.0f;
     }
   };
   links(1, begin + 1, end - 2, cell_x, step_x_, link_x_);
@@ -162,6 +160,48 @@ void TileRelief::find_corners(float cell_x, float cell_y) {
   }
 }
 
+template <class With>
+auto TileRelief::with_surroundings(const With& with) const {
+  const auto height_of = [this](int x, int y) { return height(slot(x, y)); };
+  const int reach = wall_reach_;
+  if (std::max(grid_begin_.x, grid_begin_.y) <= -reach && nx_ + reach <= grid_end_.x &&
+      ny_ + reach <= grid_end_.y) [[likely]]
+    return with(height_of, [](int, int) { return true; });
+  return with(height_of, [this](int x, int y) {
+    return x >= grid_begin_.x && y >= grid_begin_.y && x < grid_end_.x && y < grid_end_.y;
+  });
+}
+
+/// Where corners are not split.
+void TileRelief::turn_steep_normals() {
+  constexpr std::uint32_t kZShift = 20;
+  const float scale = 1 / std::sqrt(1 + SurfaceSlopes::kSteepest * SurfaceSlopes::kSteepest);
+  const std::uint32_t steep = packed(0, 0, scale) >> kZShift;
+  for (int j = 0; j <= ny_; ++j) {
+    const std::uint32_t* const row = corner_normal_.data() + slot(0, j);
+    int count = 0;  // without a way out of the loop, so that several are looked at at a time
+    for (int i = 0; i <= nx_; ++i) count += row[i] >> kZShift < steep;
+    for (int i = 0; count > 0 && i <= nx_; ++i) {
+      const int corner = slot(i, j);
+      if (row[i] >> kZShift >= steep || is_split(corner)) continue;
+      glm::vec2 mean(0);
+      for (const int cell : cells_about(corner))
+        mean += 0.25f * glm::vec2(slope_x_[index(cell)], slope_y_[index(cell)]);
+      const glm::vec2 slope = turned_if_steep(corner, mean);
+      const glm::vec3 normal = glm::normalize(glm::vec3(-slope, 1));
+      corner_normal_[index(corner)] = packed(normal.x, normal.y, normal.z);
+    }
+  }
+}
+
+glm::vec2 TileRelief::turned_if_steep(int corner, const glm::vec2& slope) const {
+  if (glm::dot(slope, slope) <= SurfaceSlopes::kSteepest * SurfaceSlopes::kSteepest) return slope;
+  const int i = corner % kStride - kHalo, j = corner / kStride - kHalo;
+  return with_surroundings([&](const auto& height_of, const auto& in_grid) {
+    return slope_across_course(i, j, slope, wall_reach_ - 1, height_of, in_grid);
+  });
+}
+
 TileRelief::Split TileRelief::split(int corner) const {
   const std::array<int, 4> cells = cells_about(corner);
   const std::array<bool, 4> link = links_about(cells);
@@ -174,6 +214,11 @@ TileRelief::Split TileRelief::split(int corner) const {
     }
   }
   for (std::size_t q = 0; q < 4; ++q) {
+    if (const std::size_t first = out.group[q]; first != q) {
+      out.z[q] = out.z[first];
+      out.slope[q] = out.slope[first];
+      continue;
+    }
     float sum = 0, low = height(cells[q]), high = low, count = 0;
     glm::vec2 slope(0);
     for (std::size_t r = 0; r < 4; ++r) {
@@ -186,21 +231,9 @@ TileRelief::Split TileRelief::split(int corner) const {
       count += 1;
     }
     out.z[q] = std::clamp(sum / count, low, high);
-    out.slope[q] = slope / count;
+    out.slope[q] = turned_if_steep(corner, slope / count);
   }
   return out;
-}
-
-template <class With>
-auto TileRelief::with_surroundings(const With& with) const {
-  const auto height_of = [this](int x, int y) { return height(slot(x, y)); };
-  const int reach = wall_reach_;
-  if (std::max(grid_begin_.x, grid_begin_.y) <= -reach && nx_ + reach <= grid_end_.x &&
-      ny_ + reach <= grid_end_.y) [[likely]]
-    return with(height_of, [](int, int) { return true; });
-  return with(height_of, [this](int x, int y) {
-    return x >= grid_begin_.x && y >= grid_begin_.y && x < grid_end_.x && y < grid_end_.y;
-  });
 }
 
 WallCourse TileRelief::wall_course(int i, int j, bool across_x) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 
+#include "base/height_grid.h"
 #include "base/wall_course.h"
 #include "base/wall_shift.h"
 #include "stock/stock_model.h"
@@ -21,20 +22,19 @@ namespace kerf {
 ///     ---+---       order. Corner (i, j) has cell (i, j) for its C.
 ///      A | B
 ///
-/// Two neighbouring cells are linked if the surface between them is smooth, else there is a wall:
-///   - their heights differ by no more than kSmoothSlope says, or
-///   - by no more than kSteepestSlope says, and the surface goes on rising (falling) beyond one of
-///     them, there at least 1 / kMostSteepening as fast.
-/// So steep flanks of a ball or a chamfer are smooth, a step in a level floor is a step, and a slot
-/// one cell wide keeps its bottom. A cell with material and one without are never linked.
+/// Two neighbouring cells are linked if the surface between them is smooth, which
+/// SurfaceSlopes::is_smooth() tells; else there is a wall. So flanks of a ball or a chamfer are
+/// smooth, however steep, a step in a level floor is a step, and a slot one cell wide keeps its
+/// bottom. A cell with material and one without are never linked.
 /// At a corner those of the four cells that hang together by links meet in the mean of their
 /// heights. With three links or four that is all of them; else the corner is split.
 class TileRelief {
  public:
-  static constexpr float kSmoothSlope = 0.25f;   ///< about 14 degrees
-  static constexpr float kSteepestSlope = 6.0f;  ///< about 80 degrees
-  static constexpr float kMostSteepening = 2.5f;
-  /// Cells beyond the tile. A corner depends on three, the course of a wall on wall_reach().
+  static constexpr float kSmoothSlope = SurfaceSlopes::kSmooth;
+  static constexpr float kSteepestSlope = SurfaceSlopes::kSteepest;
+  /// Cells beyond the tile. A corner depends on three, the course of a wall on wall_reach(), and so
+  /// does the normal of what is steeper than kSteepestSlope: it faces as a wall there would
+  /// (slope_across_course()).
   static constexpr int kHalo = WallCourse::kMaxReach;
   static constexpr int kStride = kTileCells + 2 * kHalo;
   static constexpr int kSlots = kStride * kStride;
@@ -111,6 +111,9 @@ class TileRelief {
   void load_heights(const TileGrid& grid, int tx, int ty, int level);
   void find_links(float cell_x, float cell_y);
   void find_corners(float cell_x, float cell_y);
+  void turn_steep_normals();
+  /// The slope at a corner, of cells that hang together there.
+  glm::vec2 turned_if_steep(int corner, const glm::vec2& slope) const;
 
   /// Along the way round: A-B, B-C, C-D, D-A.
   std::array<bool, 4> links_about(const std::array<int, 4>& cells) const {

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "base/mesh_patch.h"
+#include "base/wall_course.h"
 
 namespace kerf {
 namespace {
@@ -58,6 +59,7 @@ class Relief {
   void find_surface(float cell_x, float cell_y) {
     find_links(cell_x, cell_y);
     find_corners(cell_x, cell_y);
+    turn_steep_normals();
   }
   bool is_split(int corner) const { return link_count_[index(corner)] < 2.5f; }
   float corner_z(int corner) const { return corner_z_[index(corner)]; }
@@ -87,6 +89,8 @@ class Relief {
   void load(const HeightGrid& grid, int i0, int j0);
   void find_links(float cell_x, float cell_y);
   void find_corners(float cell_x, float cell_y);
+  void turn_steep_normals();
+  glm::vec2 turned_if_steep(int corner, const glm::vec2& slope) const;
 
   const HeightGrid& grid_;
   int i0_, j0_;  // first cell of the tile
@@ -142,16 +146,10 @@ void Relief::find_links(float cell_x, float cell_y) {
     const float* const h = height_.data();
     const float* const d = step.data();
     float* const out = link.data();
-    const float smooth = SurfaceSlopes::kSmooth * cell, steepest = SurfaceSlopes::kSteepest * cell;
     for (int k = begin; k < end; ++k) {
-      const float size = std::abs(d[k]);
-      const float before = d[k] * d[k - next], after = d[k] * d[k + next];
-      const float goes_on = before > after ? before : after;
       const bool alike = (h[k] > floor) == (h[k + next] > floor);
-      const bool is_smooth =
-          (size <= smooth) |
-          ((size <= steepest) & (size * size <= SurfaceSlopes::kMostSteepening * goes_on));
-      out[k] = (alike & is_smooth) ? 1.0f : 0.0f;
+      out[k] =
+          (alike & SurfaceSlopes::is_smooth(d[k], d[k - next], d[k + next], cell)) ? 1.0f : 0.0f;
     }
   };
   links(1, 1, rows * kStride - 2, cell_x, step_x_, link_x_);
@@ -198,6 +196,35 @@ void Relief::find_corners(float cell_x, float cell_y) {
   }
 }
 
+/// Where corners are not split. As patches do it.
+void Relief::turn_steep_normals() {
+  constexpr std::uint32_t kZShift = 20;
+  const float scale = 1 / std::sqrt(1 + SurfaceSlopes::kSteepest * SurfaceSlopes::kSteepest);
+  const std::uint32_t steep = packed(0, 0, scale) >> kZShift;
+  for (int j = 0; j <= ny_; ++j) {
+    for (int i = 0; i <= nx_; ++i) {
+      const int corner = slot(i, j);
+      std::uint32_t& packed_normal = corner_normal_[index(corner)];
+      if (packed_normal >> kZShift >= steep || is_split(corner)) continue;
+      glm::vec2 mean(0);
+      for (const int offset : kQuadrantOffset)
+        mean +=
+            0.25f * glm::vec2(slope_x_[index(corner + offset)], slope_y_[index(corner + offset)]);
+      const glm::vec3 normal = glm::normalize(glm::vec3(-turned_if_steep(corner, mean), 1));
+      packed_normal = packed(normal.x, normal.y, normal.z);
+    }
+  }
+}
+
+glm::vec2 Relief::turned_if_steep(int corner, const glm::vec2& slope) const {
+  if (glm::dot(slope, slope) <= SurfaceSlopes::kSteepest * SurfaceSlopes::kSteepest) return slope;
+  const int i = i0_ + corner % kStride - kHalo, j = j0_ + corner / kStride - kHalo;
+  return slope_across_course(
+      i, j, slope, WallCourse::kMaxReach - 1,
+      [this](int x, int y) { return std::max(grid_.height(x, y), floor_); },
+      [this](int x, int y) { return grid_.contains(x, y); });
+}
+
 Relief::Vertex Relief::vertex(int corner, std::size_t quadrant) const {
   if (!is_split(corner)) return {corner_z(corner), corner_normal(corner)};
   const auto cell = [corner](std::size_t q) { return index(corner + kQuadrantOffset[q]); };
@@ -221,7 +248,7 @@ Relief::Vertex Relief::vertex(int corner, std::size_t quadrant) const {
     slope += glm::vec2(slope_x_[cell(q)], slope_y_[cell(q)]);
     count += 1;
   }
-  slope /= count;
+  slope = turned_if_steep(corner, slope / count);
   return {std::clamp(sum / count, low, high),
           pack_normal(glm::normalize(glm::vec3(-slope.x, -slope.y, 1)))};
 }

@@ -124,15 +124,13 @@ ColumnRelief::FaceIndex ColumnRelief::nearest(int cell, bool up, float z) const 
 bool ColumnRelief::is_smooth(int cell, bool in_y, FaceIndex a, FaceIndex b) const {
   const float edge = in_y ? cell_y_ : cell_x_;
   const int step = in_y ? kStride : 1;
-  const float d = face(b).z - face(a).z, size = std::abs(d);
-  if (size <= TileRelief::kSmoothSlope * edge) return true;
-  if (size > TileRelief::kSteepestSlope * edge) return false;
-  float goes_on = 0;
+  const float d = face(b).z - face(a).z;
+  float before = 0, after = 0;
   if (const FaceIndex f = nearest(cell - step, face(a).up, face(a).z - d); f != kNone)
-    goes_on = std::max(goes_on, d * (face(a).z - face(f).z));
+    before = face(a).z - face(f).z;
   if (const FaceIndex f = nearest(cell + 2 * step, face(b).up, face(b).z + d); f != kNone)
-    goes_on = std::max(goes_on, d * (face(f).z - face(b).z));
-  return d * d <= TileRelief::kMostSteepening * goes_on;
+    after = face(f).z - face(b).z;
+  return SurfaceSlopes::is_smooth(d, before, after, edge);
 }
 
 void ColumnRelief::link(int cell, bool in_y) {

@@ -21,8 +21,8 @@ namespace kerf {
 ///
 /// Faces of neighbouring cells are linked one to one where the surface between them is smooth: tops
 /// as in TileRelief; others that are nearest to each other, face the same way, and differ by no
-/// more than a smooth surface does (TileRelief::kSmoothSlope, or a steeper one that goes on
-/// rising). Links do not cross: of two faces of a cell the upper one is linked to the upper one.
+/// more than a smooth surface does (SurfaceSlopes). Links do not cross: of two faces of a cell the
+/// upper one is linked to the upper one.
 ///
 /// The four cells about a corner have it at their corner 2, 3, 0 and 1: counted from low x, y
 /// around a cell. Faces that hang together by links about a corner meet there at one height.

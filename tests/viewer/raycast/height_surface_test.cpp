@@ -224,6 +224,30 @@ class Triangles {
   std::vector<Triangle> triangles_;
 };
 
+struct Facing {
+  int met = 0, turned = 0;  ///< rays; those of them where the surface faces another way
+};
+
+/// Of rays from one box to another that meet triangles whose normal's z lies between these.
+Facing compare_facing(const ZMap& part, const Box& from, const Box& to, double least_z,
+                      double most_z) {
+  const Triangles triangles(part);
+  const HeightSurface surface = surface_of(part.height_grid());
+  std::mt19937 random(11);
+  Facing facing;
+  for (int n = 0; n < 1500; ++n) {
+    const Vec3 origin = random_point(random, from);
+    const Ray ray{origin, random_point(random, to) - origin, 0.0};
+    SurfaceHit hit;
+    const std::optional<Triangles::Met> wanted = triangles.first(ray);
+    if (!wanted || !surface.trace(ray, &hit)) continue;
+    if (const double z = std::abs(wanted->normal.z); z < least_z || z > most_z) continue;
+    ++facing.met;
+    facing.turned += glm::dot(wanted->normal, Vec3(surface.normal(ray, hit))) < 0.9999;
+  }
+  return facing;
+}
+
 TEST(HeightSurface, WallsFaceAsTheTrianglesDo) {
   const std::unique_ptr<ZMap> part = test::make_map("box:0,0,-8:24,18,0", 0.11);
   const Vec3 center(11.3, 9.2, -5);
@@ -244,21 +268,28 @@ TEST(HeightSurface, WallsFaceAsTheTrianglesDo) {
   cut_to(Vec3(2, 3, -4), Vec3(21, 6, -3));
   test::cut(*part, *parse_shape("flat:4"), moves);
   test::finish(*part);
-  const Triangles triangles(*part);
-  const HeightSurface surface = surface_of(part->height_grid());
-  std::mt19937 random(11);
-  int walls = 0, turned = 0;
-  for (int n = 0; n < 1500; ++n) {
-    const Vec3 from = random_point(random, {Vec3(5, 4, 1), Vec3(18, 15, 4)});
-    const Ray ray{from, random_point(random, {Vec3(3, 2, -5), Vec3(20, 17, -2)}) - from, 0.0};
-    SurfaceHit hit;
-    const std::optional<Triangles::Met> wanted = triangles.first(ray);
-    if (!wanted || std::abs(wanted->normal.z) > 1e-3 || !surface.trace(ray, &hit)) continue;
-    ++walls;
-    turned += glm::dot(wanted->normal, Vec3(surface.normal(ray, hit))) < 0.9999;
+  const Facing walls = compare_facing(*part, {Vec3(5, 4, 1), Vec3(18, 15, 4)},
+                                      {Vec3(3, 2, -5), Vec3(20, 17, -2)}, 0, 1e-3);
+  EXPECT_GT(walls.met, 300);
+  EXPECT_LE(walls.turned, 1);  // a ray through an edge, by rounding
+}
+
+TEST(HeightSurface, SteepFlanksFaceAsTheTrianglesDo) {
+  // A ball goes up by 84 degrees, several times beside each other.
+  const std::unique_ptr<ZMap> part = test::make_map("box:0,0,-12:12,18,0", 0.11);
+  std::vector<CutMove> moves;
+  for (int n = 0; n < 8; ++n) {
+    CutMove& move = moves.emplace_back();
+    move.from_mm = Vec3(1.5 * n, 8.3 + 0.1 * n, -10);
+    move.to_mm = move.from_mm + Vec3(0, 1.05, 10);
   }
-  EXPECT_GT(walls, 300);
-  EXPECT_LE(turned, 1);  // a ray through an edge, by rounding
+  test::cut(*part, *parse_shape("ball:6"), moves);
+  test::finish(*part);
+  const Facing steep =
+      compare_facing(*part, {Vec3(1, 2, 1), Vec3(11, 5, 4)}, {Vec3(1, 11, -9), Vec3(11, 13, -1)},
+                     1e-3, 1 / std::hypot(1.0, static_cast<double>(SurfaceSlopes::kSteepest)));
+  EXPECT_GT(steep.met, 300);
+  EXPECT_LE(steep.turned, 1);
 }
 
 class AgainstPatches : public testing::TestWithParam<int> {};
