@@ -57,6 +57,8 @@ struct BreakpointCommand {
 /// be made.
 struct DetailCommand {
   ViewDetail detail;
+  /// Of what changes in a frame, so many are drawn with ease; 0: any number.
+  std::size_t easy_triangles = 0;
 };
 /// Colours other than ColorBy::kPlain and kHeight are made by the owner of the workpiece.
 struct ColorCommand {

@@ -141,7 +141,8 @@ class Run {
     if (update) renderer_.apply(*update);
     if (update && update->setup) {
       camera_.fit(renderer_.fit_box(), kSize_px);
-      commands_.push(DetailCommand{camera_.detail(kSize_px).times(SceneRenderer::detail_px())});
+      commands_.push(DetailCommand{camera_.detail(kSize_px).times(SceneRenderer::detail_px()),
+                                   SceneRenderer::easy_triangles()});
     }
     const Done done = renderer_.draw(camera_.projection(renderer_.depth_box(), kSize_px), options_);
     if (!done) fail(done.error());

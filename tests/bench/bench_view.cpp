@@ -163,7 +163,10 @@ class Screen {
   }
 
   /// As the window asks for it.
-  ViewDetail detail() const { return camera_.detail(kSize).times(SceneRenderer::detail_px()); }
+  DetailCommand detail() const {
+    return {camera_.detail(kSize).times(SceneRenderer::detail_px()),
+            SceneRenderer::easy_triangles()};
+  }
 
   /// The picture as it has become, and as it is drawn anew.
   void check() {
@@ -255,7 +258,7 @@ class Stage {
       view_->run(stop);
     });
     screen_->settle([this] { return moment() != nullptr; });
-    send(DetailCommand{screen_->detail()});
+    send(screen_->detail());
     screen_->settle([this] { return moment() != nullptr; });
     screen_->reset();
   }
@@ -475,7 +478,7 @@ void follow(const Arguments& arguments, double rate_hz) {
     // The first picture of a whole blank is not what is measured.
     if (!warm && ms_since(begin) > 2e3) {
       warm = true;
-      commands.push(DetailCommand{screen.detail()});
+      commands.push(screen.detail());
       age_ms.clear();
     }
     std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(

@@ -236,7 +236,8 @@ bool LiveView::obey(const ViewerCommand& command) {
   std::visit(
       [&](const auto& c) {
         using Command = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<Command, DetailCommand>) feeder_.set_detail(c.detail);
+        if constexpr (std::is_same_v<Command, DetailCommand>)
+          feeder_.set_detail(c.detail, c.easy_triangles);
         if constexpr (std::is_same_v<Command, ColorCommand>) colors_.choose(c);
         if constexpr (std::is_same_v<Command, RoadCommand>) roads_.choose(c.road);
         if constexpr (std::is_same_v<Command, PickCommand>) update_.picked = who_cut(c.point_mm);

@@ -29,6 +29,7 @@ void PatchFeeder::follow(std::shared_ptr<const StockModel> stock) {
     }
   } else {
     shown_.assign(tiles, {});
+    hurried_.clear();
     triangles_ = 0;
     next_ = 0;
     if (stock) start_anew(*stock);
@@ -85,8 +86,9 @@ bool PatchFeeder::is_old(std::size_t tile) {
   return shown.is_old;
 }
 
-void PatchFeeder::set_detail(const ViewDetail& detail) {
+void PatchFeeder::set_detail(const ViewDetail& detail, std::size_t easy_triangles) {
   detail_ = detail;
+  easy_triangles_ = easy_triangles;
   behind_ = stock_ != nullptr;
   if (stock_) choose_levels();
 }
@@ -114,38 +116,84 @@ int PatchFeeder::level_for(const ViewDetail& detail, const Box& box) const {
   return patch_level(detail.smallest_in(box), stock_->cell_mm());
 }
 
-std::shared_ptr<const MeshPatch> PatchFeeder::patch(std::uint32_t tile, int level) const {
-  auto patch = std::make_shared<MeshPatch>(stock_->patch(tile, level));
+int PatchFeeder::wanted_level(std::size_t tile) const {
+  const int coarser = shown_[tile].is_hurried ? 1 : 0;
+  return std::min(levels_[tile] + coarser, StockModel::kPatchLevels - 1);
+}
+
+/// From where the last slice ended, so that a workpiece that changes faster than it can be drawn is
+/// drawn everywhere nevertheless.
+std::vector<std::uint32_t> PatchFeeder::old_tiles() {
+  std::vector<std::uint32_t> old;
+  const std::size_t tiles = shown_.size();
+  for (std::size_t i = 0; i < tiles; ++i) {
+    const std::size_t tile = (next_ + i) % tiles;
+    if (is_old(tile)) old.push_back(static_cast<std::uint32_t>(tile));
+  }
+  return old;
+}
+
+void PatchFeeder::hurry(const std::vector<std::uint32_t>& cut_ones, Clock::time_point now) {
+  if (easy_triangles_ == 0 || design_) return;
+  std::size_t triangles = 0;
+  for (const std::uint32_t tile : cut_ones) {
+    const Shown& shown = shown_[tile];
+    const int finer = std::max(0, shown.level - levels_[tile]);
+    triangles += std::size_t{shown.triangles} << (2 * finer);
+  }
+  if (triangles <= easy_triangles_) return;
+  last_hurry_ = now;
+  for (const std::uint32_t tile : cut_ones) {
+    Shown& shown = shown_[tile];
+    if (shown.level < 0 || std::exchange(shown.is_hurried, true)) continue;
+    hurried_.push_back(tile);
+  }
+}
+
+void PatchFeeder::calm_down(Clock::time_point now) {
+  if (hurried_.empty() || now - last_hurry_ < kCalm) return;
+  for (const std::uint32_t tile : hurried_) shown_[tile].is_hurried = false;
+  hurried_.clear();
+  behind_ = true;
+}
+
+std::shared_ptr<const MeshPatch> PatchFeeder::make(std::size_t tile) {
+  const int level = wanted_level(tile);
+  auto patch = std::make_shared<MeshPatch>(stock_->patch(static_cast<std::uint32_t>(tile), level));
   if (design_) add_deviation(*design_, {stock_->cell_mm(), tolerance_mm_}, patch.get());
+  Shown& shown = shown_[tile];
+  const auto triangles = static_cast<std::uint32_t>(patch->indices.size() / 3);
+  triangles_ = triangles_ - shown.triangles + triangles;
+  shown.version = patch->version;
+  shown.triangles = triangles;
+  shown.level = static_cast<std::int8_t>(level);
+  shown.is_old = false;
   return patch;
 }
 
 std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::time_point deadline) {
   std::vector<std::shared_ptr<const MeshPatch>> made;
+  const Clock::time_point now = Clock::now();
+  calm_down(now);
   if (!behind_) return made;
-  const auto make = [&](std::size_t tile) {
-    const std::int8_t level = levels_[tile];
-    auto made_patch = patch(static_cast<std::uint32_t>(tile), level);
-    Shown& shown = shown_[tile];
-    const auto triangles = static_cast<std::uint32_t>(made_patch->indices.size() / 3);
-    triangles_ = triangles_ - shown.triangles + triangles;
-    shown = {made_patch->version, triangles, level, false};
-    made.push_back(std::move(made_patch));
-  };
-  const auto late = [&] { return !made.empty() && Clock::now() >= deadline; };
-  // From where the last slice ended, so that a workpiece that changes faster than it can be drawn
-  // is drawn everywhere nevertheless.
+  const auto late = [&] { return Clock::now() >= deadline; };
   const std::size_t tiles = shown_.size();
-  for (const bool cut_ones : {true, false}) {
-    for (std::size_t i = 0; i < tiles; ++i) {
-      const std::size_t tile = (next_ + i) % tiles;
-      if (cut_ones ? !is_old(tile) : shown_[tile].level == levels_[tile]) continue;
-      make(tile);
-      if (late()) {
-        next_ = (tile + 1) % tiles;
-        return made;
-      }
-    }
+  const auto add = [&](std::size_t tile) {
+    made.push_back(make(tile));
+    next_ = (tile + 1) % tiles;
+  };
+  const std::vector<std::uint32_t> cut_ones = old_tiles();
+  hurry(cut_ones, now);
+  for (const std::uint32_t tile : cut_ones) {
+    add(tile);
+    if (late()) return made;
+  }
+  const std::size_t first = next_;
+  for (std::size_t i = 0; i < tiles; ++i) {
+    const std::size_t tile = (first + i) % tiles;
+    if (shown_[tile].level == wanted_level(tile)) continue;
+    add(tile);
+    if (late()) return made;
   }
   next_ = 0;
   behind_ = false;

@@ -58,7 +58,9 @@ class PlayerScene {
   /// Of a file and line as the window names them; nothing if there is no such file.
   std::optional<SourceRef> source_of(const std::string& file, int line) const;
 
-  void set_detail(const ViewDetail& detail) { feeder_.set_detail(detail); }
+  void set_detail(const ViewDetail& detail, std::size_t easy_triangles = 0) {
+    feeder_.set_detail(detail, easy_triangles);
+  }
   /// Patches are made for the mesh alone; the answer is in the next update.
   void set_road(DrawRoad road) { roads_.choose(road); }
   /// What the player does not know: speed asked for, breakpoints of the user.

@@ -83,7 +83,8 @@ bool PlayerView::obey(const ViewerCommand& command) {
           if (c.index >= 0) player_.seek_finding_number(static_cast<std::size_t>(c.index));
         }
         if constexpr (std::is_same_v<Command, BreakpointCommand>) set_breakpoint(c);
-        if constexpr (std::is_same_v<Command, DetailCommand>) scene_.set_detail(c.detail);
+        if constexpr (std::is_same_v<Command, DetailCommand>)
+          scene_.set_detail(c.detail, c.easy_triangles);
         if constexpr (std::is_same_v<Command, RoadCommand>) scene_.set_road(c.road);
         if constexpr (std::is_same_v<Command, ColorCommand>)
           scene_.set_colors(c, player_.removed_mm3());

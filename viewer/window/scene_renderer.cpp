@@ -48,6 +48,11 @@ glm::vec4 line_rgba(const glm::vec3& color, const ObjectLook& look, bool is_past
   return {is_past ? seen : glm::mix(ground, seen, kFutureShare), look.opacity};
 }
 
+bool is_software() {
+  const std::string name = SceneRenderer::gl_name();
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
+}
+
 }  // namespace
 
 class SceneRenderer::Impl {
@@ -594,12 +599,8 @@ std::string SceneRenderer::gl_name() {
   };
   return fmt::format("OpenGL {}, {}", string_of(GL_VERSION), string_of(GL_RENDERER));
 }
-double SceneRenderer::detail_px() {
-  const std::string name = gl_name();
-  const bool is_software =
-      name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos;
-  return is_software ? 2.0 : 1.0;
-}
+double SceneRenderer::detail_px() { return is_software() ? 2.0 : 1.0; }
+std::size_t SceneRenderer::easy_triangles() { return is_software() ? 12'000 : 0; }
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }

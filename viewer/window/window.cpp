@@ -90,6 +90,7 @@ Done Window::Impl::open() {
   renderer_ = std::move(*renderer);
   renderer_->keep_pace();
   detail_px_ = SceneRenderer::detail_px();
+  easy_triangles_ = SceneRenderer::easy_triangles();
   layer_.emplace();
   start_panels();
   install_callbacks();

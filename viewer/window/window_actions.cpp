@@ -97,7 +97,7 @@ void Window::Impl::tell_detail() {
   if (box.empty()) box.extend(Vec3(0.0));
   if (told_detail_ && !is_other_detail(*told_detail_, detail, box)) return;
   told_detail_ = detail;
-  commands_.push(DetailCommand{detail});
+  commands_.push(DetailCommand{detail, easy_triangles_});
 }
 
 void Window::Impl::act(Action action) {

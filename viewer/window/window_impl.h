@@ -137,6 +137,7 @@ class Window::Impl {
   bool wants_fit_ = true;
   bool pressed_in_picture_ = false;
   double detail_px_ = 1.0;
+  std::size_t easy_triangles_ = 0;
   std::optional<ViewDetail> told_detail_;
 
   int frames_to_draw_ = 1;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "tests/twin/playback/tracks.h"
@@ -144,6 +145,64 @@ TEST(PatchFeeder, FromAfarCellsAreJoined) {
   EXPECT_TRUE(feeder.behind());
   for (const auto& patch : feeder.make_until(Clock::time_point::max())) {
     EXPECT_EQ(patch->level, 3) << "0.9 mm a pixel: 0.8 mm is fine enough";
+  }
+}
+
+std::set<int> levels_of(const std::vector<std::shared_ptr<const MeshPatch>>& patches) {
+  std::set<int> levels;
+  for (const auto& patch : patches) levels.insert(patch->level);
+  return levels;
+}
+
+/// Rough ground, so that tiles have many triangles before they are cut again.
+std::unique_ptr<ZMap> rough_40() {
+  std::unique_ptr<ZMap> stock = test::block_40(0.1);
+  for (double y = 1; y < 40; y += 2) cut_line(*stock, {0, y, -1}, {40, y, -2});
+  return stock;
+}
+
+TEST(PatchFeeder, MuchThatIsCutComesCoarserUntilItIsCalm) {
+  const auto stock = rough_40();
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  feeder.set_detail({0.1}, 20'000);
+  const auto all = feeder.make_until(Clock::time_point::max());
+  EXPECT_EQ(levels_of(all), std::set{0}) << "what comes first is not hurried";
+  // 8192 triangles a tile: so much is fine in a tile or two, in nine it is too much.
+  const auto cut = [&](double z) {
+    cut_line(*stock, {9, 9, z}, {9.5, 9.5, z});
+    feeder.follow(stock->snapshot());
+    return feeder.make_until(Clock::time_point::max());
+  };
+  std::set<std::uint32_t> coarse;
+  for (const double z : {-3.0, -3.1, -3.2}) {
+    const auto made = cut(z);
+    EXPECT_EQ(levels_of(made), std::set{1});
+    EXPECT_GE(made.size(), 4u);
+    for (const auto& patch : made) coarse.insert(patch->tile);
+    EXPECT_FALSE(feeder.behind());
+  }
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty()) << "it may be cut again";
+  std::this_thread::sleep_for(PatchFeeder::kCalm);
+  const auto fine = feeder.make_until(Clock::time_point::max());
+  EXPECT_EQ(levels_of(fine), std::set{0});
+  EXPECT_EQ(tiles_of(fine), coarse);
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
+  for (const auto& patch : fine) {
+    EXPECT_EQ(patch->indices, stock->patch(patch->tile, 0).indices);
+  }
+}
+
+TEST(PatchFeeder, LittleThatIsCutIsNotMadeCoarser) {
+  for (const std::size_t easy_triangles : {std::size_t{0}, std::size_t{300'000}}) {
+    const auto stock = rough_40();
+    PatchFeeder feeder;
+    feeder.follow(stock->snapshot());
+    feeder.set_detail({0.1}, easy_triangles);
+    feeder.make_until(Clock::time_point::max());
+    cut_line(*stock, {9, 9, -3}, {9.5, 9.5, -3});
+    feeder.follow(stock->snapshot());
+    EXPECT_EQ(levels_of(feeder.make_until(Clock::time_point::max())), std::set{0});
   }
 }
 
