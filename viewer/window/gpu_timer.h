@@ -3,14 +3,17 @@
 
 #include <epoxy/gl.h>
 
+#include <chrono>
 #include <optional>
 
 namespace kerf {
 
-/// Times what the card does without waiting for it: the answer comes some frames later.
+/// Times what the card does without waiting for it: the answer comes some frames later. A software
+/// renderer is waited for: what Mesa's llvmpipe answers is the time of that part of the frame that
+/// it had not begun before it was asked, anything from a fiftieth to all.
 class GpuTimer {
  public:
-  GpuTimer();
+  explicit GpuTimer(bool is_software);
   GpuTimer(const GpuTimer&) = delete;
   GpuTimer& operator=(const GpuTimer&) = delete;
   ~GpuTimer();
@@ -23,6 +26,9 @@ class GpuTimer {
   std::optional<double> collect();
 
  private:
+  bool is_software_;
+  std::chrono::steady_clock::time_point start_{};
+  double elapsed_ms_ = 0.0;
   GLuint query_ = 0;
   bool is_running_ = false;
   int repeats_ = 0;

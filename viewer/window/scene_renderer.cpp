@@ -129,7 +129,7 @@ class SceneRenderer::Impl {
   Layer kept_;
   Layer glass_;
   Layer shown_;
-  GpuTimer timer_;
+  GpuTimer timer_{is_software()};
   bool is_full_timed_ = false;  // what is timed is a whole picture
 
   std::shared_ptr<const SceneSetup> setup_;
