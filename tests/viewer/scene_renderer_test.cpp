@@ -202,80 +202,6 @@ TEST_F(SceneRendererTest, EveryObjectCanBeHidden) {
   }
 }
 
-TEST_F(SceneRendererTest, OfALongPathThatPassesPartByPartTheSamePixelsAsAnew) {
-  TestWorkpiece workpiece(200, 170);
-  SceneRenderer scene = renderer();
-  SceneUpdate first = first_update(&workpiece);
-  std::vector<PathVertex> path;
-  for (int i = 0; i < 6000; ++i) {
-    const auto along = static_cast<float>(i % 100), row = static_cast<float>(i / 100);
-    path.push_back({{i / 100 % 2 == 0 ? along : 99 - along, 1.2f * row, 5}, PathKind::kFeed});
-  }
-  first.path = path_chunks(path);
-  scene.apply(first);
-  const Projection projection = view_of(scene);
-  draw(&scene, projection, everything_);
-  DrawOptions anew = everything_;
-  anew.is_local = false;
-  for (const std::uint64_t past : {30u, 70u, 1000u, 4090u, 4100u, 5990u, 500u}) {
-    Moment moment;
-    moment.past_vertices = past;
-    SceneUpdate update;
-    update.moment = std::make_shared<const Moment>(moment);
-    scene.apply(update);
-    draw(&scene, projection, everything_);
-    const Picture kept = scene.read();
-    draw(&scene, projection, anew);
-    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << past;
-    draw(&scene, projection, everything_);
-  }
-  EXPECT_GE(scene.counters().local.frames, 7u);
-}
-
-TEST_F(SceneRendererTest, OfAPathThatGrowsAndIsReplacedTheSamePixelsAsAnew) {
-  SceneRenderer scene = renderer();
-  SceneUpdate first;
-  SceneSetup setup;
-  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
-  first.setup = std::make_shared<const SceneSetup>(setup);
-  scene.apply(first);
-  const Projection projection = view_of(scene);
-  DrawOptions anew = everything_;
-  anew.is_local = false;
-  const auto path_of = [](std::size_t vertices, float height_mm) {
-    std::vector<PathVertex> path;
-    for (std::size_t i = 0; i < vertices; ++i) {
-      const auto row = static_cast<float>(i / 100), along = static_cast<float>(i % 100);
-      path.push_back({{along, row, height_mm}, PathKind::kFeed});
-    }
-    return path_chunks(path);
-  };
-  Picture last;
-  const auto expect_equal = [&](const SceneUpdate& update, const char* when) {
-    scene.apply(update);
-    draw(&scene, projection, everything_);
-    const Picture kept = scene.read();
-    EXPECT_TRUE(last.rgb.empty() || differing_pixels(kept, last) > 0) << when;
-    draw(&scene, projection, anew);
-    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << when;
-    draw(&scene, projection, everything_);
-    last = kept;
-  };
-  SceneUpdate update;
-  for (const std::size_t vertices : {2000u, 4050u, 4097u, 6000u}) {
-    update.path = path_of(vertices, 0.0f);
-    expect_equal(update, "it grows");
-  }
-  const std::size_t full_bytes = scene.counters().gpu_bytes;
-  update.path.clear();
-  update.path_chunk_count = 1;
-  expect_equal(update, "its end is dropped");
-  EXPECT_EQ(full_bytes - scene.counters().gpu_bytes, (6000u - 4096u) * sizeof(PathVertex));
-  update.path_chunk_count.reset();
-  update.path = path_of(4097, -8.0f);
-  expect_equal(update, "a full chunk comes again, with other values");
-}
-
 TEST_F(SceneRendererTest, ClearsForgetTheWorkpiece) {
   TestWorkpiece workpiece(64, 64);
   SceneRenderer scene = renderer();
@@ -324,29 +250,6 @@ TEST_F(SceneRendererTest, OnePixelAndTooManyPixels) {
   const Done done = scene.draw(camera_.projection(scene.depth_box(), {1'000'000, 2}), everything_);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().find("the window has 1000000 x 2"), std::string::npos) << done.error();
-}
-
-TEST_F(SceneRendererTest, TenMillionPathVerticesAreThinnedOut) {
-  constexpr std::size_t kVertices = 10'000'000;
-  SceneRenderer scene = renderer();
-  SceneUpdate update;
-  SceneSetup setup;
-  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
-  update.setup = std::make_shared<const SceneSetup>(setup);
-  std::vector<PathVertex> path(kVertices);
-  for (std::size_t i = 0; i < kVertices; ++i) {
-    path[i] = {{static_cast<float>(i % 1000) * 0.1f, static_cast<float>(i) * 1e-5f, 0.0f},
-               PathKind::kFeed};
-  }
-  update.path = path_chunks(path);
-  path.clear();
-  scene.apply(update);
-  draw(&scene, view_of(scene), everything_);
-  EXPECT_FALSE(scene.has_waiting());
-  EXPECT_GE(scene.counters().gpu_bytes, kVertices * sizeof(PathVertex));
-  // Blue where the path is.
-  const Color middle = at(scene.read(), kSize_px / 2);
-  EXPECT_GT(middle.b, middle.r + 20);
 }
 
 }  // namespace

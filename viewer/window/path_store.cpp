@@ -5,28 +5,25 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "viewer/shaders/shaders.h"
+#include "viewer/window/path_thinning.h"
 
 namespace kerf {
 namespace {
 
-constexpr std::size_t kMaxStride = kPathChunkSegments;
-/// A drawn segment is about this long, where the path has more vertices.
-constexpr double kSegment_px = 1.0;
 /// Lines are drawn this many pixels nearer to the eye than they are, so that those that lie in a
 /// surface are seen on it: enough for surfaces that are turned away by up to 70 degrees.
 constexpr double kNearer_px = 2.5;
 
-void point_to_vertices(std::size_t first, std::size_t stride) {
-  const auto bytes = static_cast<GLsizei>(stride * sizeof(PathVertex));
-  const std::size_t offset = first * sizeof(PathVertex);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, bytes, reinterpret_cast<const void*>(offset));
-  glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, bytes,
-                         reinterpret_cast<const void*>(offset + offsetof(PathVertex, kind)));
-}
+/// What is seen of a chunk that reaches an edge of the picture is found by about so many boxes.
+constexpr std::size_t kSeenBoxes = 8;
 
 /// Of a chunk's box in each direction.
 constexpr double kSteps = 65535.0;
@@ -57,7 +54,50 @@ Box change_between(const std::vector<PathVertex>& before, const std::vector<Path
   return box;
 }
 
+/// Whether what has this rectangle may go on outside the picture.
+bool reaches_edge(const ScreenRect& rect, glm::ivec2 size_px) {
+  return rect.min.x <= 0 || rect.min.y <= 0 || rect.max.x >= size_px.x || rect.max.y >= size_px.y;
+}
+
+/// Whether nothing of the box is in the picture: all of it is beyond one of its edges.
+bool is_outside(const Box& box, const Projection& projection) {
+  glm::bvec4 is_beyond(true);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Vec3 at((corner & 1u) ? box.max.x : box.min.x, (corner & 2u) ? box.max.y : box.min.y,
+                  (corner & 4u) ? box.max.z : box.min.z);
+    const glm::vec4 clip = projection.clip_from_world * glm::vec4(glm::vec3(at), 1.0f);
+    is_beyond.x = is_beyond.x && clip.x > clip.w;
+    is_beyond.y = is_beyond.y && clip.x < -clip.w;
+    is_beyond.z = is_beyond.z && clip.y > clip.w;
+    is_beyond.w = is_beyond.w && clip.y < -clip.w;
+  }
+  return glm::any(is_beyond);
+}
+
+/// Around the segments of a strip, so many at a time.
+std::vector<Box> boxes_of_runs(std::span<const PathVertex> vertices, std::size_t segments) {
+  std::vector<Box> boxes;
+  boxes.reserve(vertices.size() / segments + 1);
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    if ((i - 1) % segments == 0) {
+      boxes.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
+    }
+    boxes.back().extend(Vec3(vertices[i].position_mm));
+  }
+  return boxes;
+}
+
 }  // namespace
+
+std::size_t PathStore::Strip::at_number(std::size_t number) const {
+  if (kept.empty()) return number;
+  return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), number) -
+                                  kept.begin());
+}
+
+std::size_t PathStore::Chunk::gpu_bytes() const {
+  return strips.empty() ? 0 : (strips.back().first + strips.back().count) * sizeof(PathVertex);
+}
 
 Result<PathStore> PathStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::path_vert, shaders::path_frag);
@@ -70,7 +110,7 @@ void PathStore::set_chunk_count(std::uint32_t count) {
   while (chunks_.size() > count) {
     const Chunk& last = chunks_.back();
     dropped_mm_.extend(last.box_mm);
-    gpu_bytes_ -= last.count * sizeof(PathVertex);
+    gpu_bytes_ -= last.gpu_bytes();
     chunks_.pop_back();
   }
 }
@@ -90,31 +130,53 @@ void PathStore::clear() {
   past_vertices_ = 0;
 }
 
-void PathStore::choose_strides(std::vector<Box>* changed_mm) {
-  std::vector<std::size_t> strides(chunks_.size(), 1);
-  std::size_t drawn = 0;
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const Chunk& chunk = chunks_[c];
-    if (chunk.count == 0) continue;
-    const double segment_mm = chunk.length_mm / static_cast<double>(chunk.count);
-    while (strides[c] < kMaxStride &&
-           2.0 * static_cast<double>(strides[c]) * segment_mm <= kSegment_px * chunk.pixel_mm) {
-      strides[c] *= 2;
-    }
-    drawn += chunk.count / strides[c] + 1;
+std::size_t PathStore::level_for(const Chunk& chunk, double tolerance_px) {
+  std::size_t level = 0;
+  while (level + 1 < chunk.strips.size() &&
+         chunk.strips[level + 1].tolerance_mm <= tolerance_px * chunk.pixel_mm) {
+    ++level;
   }
-  std::size_t thinning = 1;
-  while (thinning < kMaxStride && drawn / thinning > kDrawnVertices) thinning *= 2;
-  const bool is_smooth = drawn / thinning <= kSmoothVertices;
-  largest_stride_ = 1;
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const std::size_t stride = std::min(thinning * strides[c], kMaxStride);
-    largest_stride_ = std::max(largest_stride_, stride);
-    if (stride == chunks_[c].stride && is_smooth == is_smooth_) continue;
-    chunks_[c].stride = stride;
-    if (!chunks_[c].box_mm.empty()) changed_mm->push_back(chunks_[c].box_mm);
+  return level;
+}
+
+std::size_t PathStore::drawn_vertices(double tolerance_px) const {
+  double drawn = 0.0;
+  for (const Chunk& chunk : chunks_) {
+    if (chunk.count() == 0) continue;
+    const Strip& strip = chunk.strips[level_for(chunk, tolerance_px)];
+    drawn += chunk.seen_share * static_cast<double>(strip.count);
   }
-  is_smooth_ = is_smooth;
+  return static_cast<std::size_t>(drawn);
+}
+
+double PathStore::drawn_px() const {
+  double length_px = 0.0;
+  for (const Chunk& chunk : chunks_) {
+    const double length_mm = chunk.seen_share * chunk.length_mm;
+    if (length_mm > 0.0) length_px += length_mm / chunk.pixel_mm;
+  }
+  return length_px;
+}
+
+void PathStore::choose_levels(std::vector<Box>* changed_mm) {
+  double tolerance_px = kTolerance_px;
+  std::size_t drawn = drawn_vertices(tolerance_px);
+  while (drawn > kDrawnVertices && tolerance_px < kMostTolerance_px) {
+    tolerance_px *= 2.0;
+    drawn = drawn_vertices(tolerance_px);
+  }
+  const bool is_smooth = drawn <= kSmoothVertices && drawn_px() <= kSmooth_px;
+  for (Chunk& chunk : chunks_) {
+    if (chunk.count() == 0) continue;
+    const std::size_t level = level_for(chunk, tolerance_px);
+    const auto vertices = static_cast<double>(chunk.strips[level].count);
+    const bool is_chunk_smooth =
+        is_smooth && chunk.length_mm >= kSmoothSegment_px * chunk.pixel_mm * vertices;
+    if (level == chunk.level && is_chunk_smooth == chunk.is_smooth) continue;
+    chunk.level = level;
+    chunk.is_smooth = is_chunk_smooth;
+    changed_mm->push_back(chunk.box_mm);
+  }
 }
 
 std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* changed_mm) {
@@ -131,9 +193,9 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
     const Box changed = change_of(chunk, *values);
     if (!changed.empty()) changed_mm->push_back(changed);
     load(&chunk, std::move(values));
-    bytes += size;
+    bytes += chunk.gpu_bytes();
   }
-  if (bytes > 0 || has_dropped) choose_strides(changed_mm);
+  if (bytes > 0 || has_dropped) choose_levels(changed_mm);
   return bytes;
 }
 
@@ -145,24 +207,40 @@ Box PathStore::change_of(const Chunk& chunk, const PathChunk& values) {
 }
 
 void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
-  const std::vector<PathVertex>& vertices = values->vertices;
+  std::vector<PathVertex> vertices = values->vertices;
+  const std::size_t count = vertices.size();
+  const bool is_full = count > kPathChunkSegments;
+  gpu_bytes_ -= chunk->gpu_bytes();
+  chunk->level = 0;
+  chunk->strips.clear();
+  chunk->strips.push_back({0.0, 0, count, {}, boxes_of_runs(vertices, kRunSegments), {}});
+  for (const PathLevel& level : is_full ? path_levels(vertices) : std::vector<PathLevel>{}) {
+    Strip& strip = chunk->strips.emplace_back();
+    strip.tolerance_mm = level.tolerance_mm;
+    strip.first = vertices.size();
+    strip.count = level.kept.size();
+    strip.kept.assign(level.kept.begin(), level.kept.end());
+    for (const std::uint32_t number : level.kept) vertices.push_back(values->vertices[number]);
+    strip.run_boxes_mm =
+        boxes_of_runs(std::span(vertices).subspan(strip.first), strip.run_segments());
+  }
+  gpu_bytes_ += chunk->gpu_bytes();
   glBindVertexArray(chunk->array.name());
   glBindBuffer(GL_ARRAY_BUFFER, chunk->vertices.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(PathVertex)),
-               vertices.data(), GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(chunk->gpu_bytes()), vertices.data(),
+               GL_DYNAMIC_DRAW);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(PathVertex), nullptr);
+  glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(PathVertex),
+                         reinterpret_cast<const void*>(offsetof(PathVertex, kind)));
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
-  gpu_bytes_ += (vertices.size() - chunk->count) * sizeof(PathVertex);
-  chunk->count = vertices.size();
-  measure(chunk, vertices);
+  measure(chunk, values->vertices);
   project(chunk);
-  chunk->growing = vertices.size() <= kPathChunkSegments ? std::move(values) : nullptr;
+  chunk->growing = is_full ? nullptr : std::move(values);
 }
 
 void PathStore::measure(Chunk* chunk, const std::vector<PathVertex>& vertices) {
   chunk->box_mm = box_of(vertices);
-  chunk->run_boxes_mm.clear();
-  chunk->run_boxes_mm.reserve(vertices.size() / kRunSegments + 1);
   chunk->length_mm = 0.0;
   chunk->places.clear();
   chunk->places.reserve(vertices.size());
@@ -176,10 +254,6 @@ void PathStore::measure(Chunk* chunk, const std::vector<PathVertex>& vertices) {
           static_cast<std::uint16_t>(std::lround(share * kSteps));
     }
     if (i == 0) continue;
-    if ((i - 1) % kRunSegments == 0) {
-      chunk->run_boxes_mm.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
-    }
-    chunk->run_boxes_mm.back().extend(at);
     const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
     chunk->length_mm += static_cast<double>(glm::length(step));
   }
@@ -200,113 +274,161 @@ Box PathStore::box_of_part(const Chunk& chunk, std::size_t begin, std::size_t en
           chunk.box_mm.min + (Vec3(high[0], high[1], high[2]) + 1.0) * step_mm};
 }
 
+std::size_t PathStore::past_of(std::size_t chunk, std::uint64_t past_vertices) const {
+  const std::uint64_t start = chunk * kPathChunkSegments;
+  const std::uint64_t past = past_vertices > start ? past_vertices - start : 0;
+  return static_cast<std::size_t>(std::min<std::uint64_t>(past, chunks_[chunk].count()));
+}
+
 void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
   const std::uint64_t low = std::min(vertices, past_vertices_);
   const std::uint64_t high = std::max(vertices, past_vertices_);
   past_vertices_ = vertices;
   if (low == high) return;
-  // Segments are drawn from one multiple of the stride to the next.
-  const std::uint64_t margin = largest_stride_;
-  const std::uint64_t first = low > margin ? low - margin - 1 : 0;
-  const std::uint64_t last = high + margin;
   Box box;
-  for (std::uint64_t c = first / kPathChunkSegments;
-       c < chunks_.size() && c * kPathChunkSegments <= last; ++c) {
+  for (std::size_t c = low / kPathChunkSegments;
+       c < chunks_.size() && c * kPathChunkSegments < high; ++c) {
     const Chunk& chunk = chunks_[c];
-    const std::uint64_t start = c * kPathChunkSegments;
-    const std::uint64_t begin = first > start ? first - start : 0;
-    const std::uint64_t end = std::min<std::uint64_t>(chunk.count, last - start + 1);
-    const bool is_whole = begin == 0 && end == chunk.count;
-    box.extend(is_whole ? chunk.box_mm : box_of_part(chunk, begin, end));
+    const std::size_t first = past_of(c, low), end = past_of(c, high);
+    if (first == end) continue;
+    // From the last vertex of the strip before those that turn to the first one behind them.
+    const Strip& strip = chunk.strips[chunk.level];
+    const std::size_t from = first > 0 ? strip.number(strip.at_number(first) - 1) : 0;
+    const std::size_t to = end < chunk.count() ? strip.number(strip.at_number(end)) : end - 1;
+    box.extend(box_of_part(chunk, from, to + 1));
   }
   if (!box.empty()) changed_mm->push_back(box);
 }
 
 void PathStore::project(Chunk* chunk) const {
   chunk->rect = covered_rect(chunk->box_mm, projection_);
-  chunk->run_rects.clear();
+  chunk->seen_share = chunk->rect.empty() ? 0.0 : 1.0;
+  for (Strip& strip : chunk->strips) strip.run_rects.clear();
   chunk->pixel_mm = smallest_pixel_mm(chunk->box_mm, projection_);
+  if (!chunk->rect.empty() && reaches_edge(chunk->rect, projection_.size_px)) project_parts(chunk);
+}
+
+/// Of a chunk that is in the picture in part, the nearest point may be far outside, even behind the
+/// eye.
+void PathStore::project_parts(Chunk* chunk) const {
+  const auto has_few = [](const Strip& strip) { return strip.run_boxes_mm.size() <= kSeenBoxes; };
+  const auto found = std::find_if(chunk->strips.begin(), chunk->strips.end(), has_few);
+  const Strip& strip = found == chunk->strips.end() ? chunk->strips.back() : *found;
+  double pixel_mm = std::numeric_limits<double>::infinity();
+  std::size_t seen = 0;
+  for (Box box : strip.run_boxes_mm) {
+    box.min -= strip.tolerance_mm;
+    box.max += strip.tolerance_mm;
+    if (is_outside(box, projection_)) continue;
+    ++seen;
+    pixel_mm = std::min(pixel_mm, smallest_pixel_mm(box, projection_));
+  }
+  const std::size_t boxes = std::max<std::size_t>(1, strip.run_boxes_mm.size());
+  chunk->seen_share = static_cast<double>(seen) / static_cast<double>(boxes);
+  chunk->pixel_mm = pixel_mm;
 }
 
 void PathStore::project(const Projection& projection) {
   projection_ = projection;
   for (Chunk& chunk : chunks_) project(&chunk);
   std::vector<Box> all;  // A new projection changes the whole picture anyway.
-  choose_strides(&all);
+  choose_levels(&all);
 }
 
 /// Of the chunks that a rectangle cuts only: to know them for all would cost more than drawing,
 /// whenever the eye moves.
-const std::vector<ScreenRect>& PathStore::run_rects(const Chunk& chunk) const {
-  if (chunk.run_rects.empty()) {
-    chunk.run_rects.reserve(chunk.run_boxes_mm.size());
-    for (const Box& box : chunk.run_boxes_mm) {
-      chunk.run_rects.push_back(covered_rect(box, projection_));
+const std::vector<ScreenRect>& PathStore::run_rects(const Strip& strip) const {
+  if (strip.run_rects.empty()) {
+    strip.run_rects.reserve(strip.run_boxes_mm.size());
+    for (const Box& box : strip.run_boxes_mm) {
+      strip.run_rects.push_back(covered_rect(box, projection_));
     }
   }
-  return chunk.run_rects;
+  return strip.run_rects;
 }
 
-/// The segments that come near the rectangle, as strips.
-void PathStore::draw_segments(const Chunk& chunk, std::size_t path_begin, const ScreenRect& rect,
-                              const DrawnPart& part) const {
-  const bool is_whole = chunk.rect.common(rect) == chunk.rect;
-  const auto is_seen = [&](std::size_t begin, std::size_t end) {  // vertices
-    if (is_whole) return true;
-    const std::vector<ScreenRect>& rects = run_rects(chunk);
-    for (std::size_t run = begin / kRunSegments; run * kRunSegments < end; ++run) {
-      if (rects[run].intersects(rect)) return true;
-    }
-    return false;
-  };
+void PathStore::draw_lines(const Chunk& chunk, const Strip& strip, std::size_t begin,
+                           std::size_t end, const ScreenRect& rect) const {
+  if (end < begin + 2) return;
+  const auto first = static_cast<GLint>(strip.first);
+  if (chunk.rect.common(rect) == chunk.rect && !reaches_edge(chunk.rect, projection_.size_px)) {
+    glDrawArrays(GL_LINE_STRIP, first + static_cast<GLint>(begin),
+                 static_cast<GLsizei>(end - begin));
+    return;
+  }
   std::vector<GLint> firsts;
   std::vector<GLsizei> counts;
-  const std::size_t at_once = std::max<std::size_t>(1, kRunSegments / part.stride);
-  std::size_t strip_end = 0;
-  for (std::size_t begin = 0; begin < part.segments; begin += at_once) {
-    const std::size_t end = std::min(begin + at_once, part.segments);
-    if (!is_seen(part.first + begin * part.stride, part.first + end * part.stride)) continue;
-    if (counts.empty() || strip_end != begin) {
-      firsts.push_back(static_cast<GLint>(begin));
+  const std::vector<ScreenRect>& rects = run_rects(strip);
+  const std::size_t last = end - 1;
+  std::size_t drawn_to = 0;
+  const std::size_t segments = strip.run_segments();
+  for (std::size_t run = begin / segments; run * segments < last; ++run) {
+    if (!rects[run].intersects(rect)) continue;
+    const std::size_t from = std::max(begin, run * segments);
+    const std::size_t to = std::min(last, (run + 1) * segments);
+    if (counts.empty() || drawn_to != from) {
+      firsts.push_back(first + static_cast<GLint>(from));
       counts.push_back(1);
     }
-    counts.back() += static_cast<GLsizei>(end - begin);
-    strip_end = end;
+    counts.back() += static_cast<GLsizei>(to - from);
+    drawn_to = to;
   }
   if (counts.empty()) return;
-  point_to_vertices(part.first, part.stride);
-  program_.set("first_vertex", static_cast<int>(path_begin + part.first));
-  program_.set("stride", static_cast<int>(part.stride));
   glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
                     static_cast<GLsizei>(counts.size()));
+}
+
+void PathStore::draw_line(std::size_t from, std::size_t to) const {
+  if (from == to) return;
+  const std::array numbers{static_cast<GLushort>(from), static_cast<GLushort>(to)};
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, line_.name());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof(numbers), numbers.data(), GL_STREAM_DRAW);
+  glDrawElements(GL_LINES, 2, GL_UNSIGNED_SHORT, nullptr);
 }
 
 void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const {
   program_.use();
   program_.set("clip_from_world", projection_.clip_from_world);
   program_.set("towards_eye", towards_eye(projection_, kNearer_px));
-  // Past what an int holds everything is past.
-  program_.set("past_vertices",
-               static_cast<int>(std::min<std::uint64_t>(past_vertices_, 1u << 30)));
   for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
     const std::string at = "rgba[" + std::to_string(2 * kind);
     program_.set((at + "]").c_str(), colors.past[kind]);
     program_.set(("rgba[" + std::to_string(2 * kind + 1) + "]").c_str(), colors.future[kind]);
   }
-  if (may_smooth && is_smooth_) glEnable(GL_LINE_SMOOTH);
+  const auto is_opaque_color = [](const glm::vec4& rgba) { return rgba.a == 0 || rgba.a == 1; };
+  // Blending is a fifth of what lines cost a processor.
+  const bool is_opaque = std::ranges::all_of(colors.past, is_opaque_color) &&
+                         std::ranges::all_of(colors.future, is_opaque_color);
+  std::optional<bool> told_past;
+  const auto tell_past = [&](bool is_past) {
+    if (is_past != told_past) program_.set("is_past", is_past ? 1 : 0);
+    told_past = is_past;
+  };
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const Chunk& chunk = chunks_[c];
-    if (chunk.count == 0 || !chunk.rect.intersects(rect)) continue;
-    const std::size_t path_begin = c * kPathChunkSegments;
-    const std::size_t segments = chunk.count - 1;
-    const std::size_t coarse = segments / chunk.stride;
-    const std::size_t rest = coarse * chunk.stride;
+    if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
+    const bool is_smooth = may_smooth && chunk.is_smooth;
+    (is_smooth ? glEnable : glDisable)(GL_LINE_SMOOTH);
+    (is_smooth || !is_opaque ? glEnable : glDisable)(GL_BLEND);
     glBindVertexArray(chunk.array.name());
-    glBindBuffer(GL_ARRAY_BUFFER, chunk.vertices.name());
-    draw_segments(chunk, path_begin, rect, {0, coarse, chunk.stride});
-    draw_segments(chunk, path_begin, rect, {rest, segments - rest, 1});
+    const Strip& strip = chunk.strips[chunk.level];
+    const std::size_t past = past_of(c, past_vertices_);
+    // The segment to the first vertex belongs to the chunk before.
+    if (past <= 1 || past == chunk.count()) {
+      tell_past(past > 1);
+      draw_lines(chunk, strip, 0, strip.count, rect);
+      continue;
+    }
+    const std::size_t next = strip.at_number(past);
+    tell_past(true);
+    draw_lines(chunk, strip, 0, next, rect);
+    draw_line(strip.number(next - 1), past - 1);
+    tell_past(false);
+    draw_line(past - 1, strip.number(next));
+    draw_lines(chunk, strip, next, strip.count, rect);
   }
   glDisable(GL_LINE_SMOOTH);
+  glEnable(GL_BLEND);
 }
 
 }  // namespace kerf

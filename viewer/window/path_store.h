@@ -23,17 +23,27 @@ struct PathColors {
 
 /// The vertices are on the card, not here as well. What stays of a chunk that is full, and thus
 /// does not grow any more, is where its vertices are to a 65535th of its size: that says which part
-/// of the picture is old when the tool has passed them. With boxes it is half of what the card has.
+/// of the picture is old when the tool has passed them. With boxes it is six tenths of what the
+/// card has.
 ///
-/// A chunk whose segments are shorter than a pixel on average is drawn through every 2nd, 4th, ...
-/// of its vertices; all chunks are, further, while more than kDrawnVertices remain: ten million
-/// lines are more than there are pixels. Lines are antialiased up to kSmoothVertices. Of a chunk
-/// only what comes near the rectangle is drawn, in runs of kRunSegments.
+/// A chunk that is full is on the card through fewer vertices as well (PathLevel), and is drawn
+/// through the fewest that are nowhere further than kTolerance_px from it: closer than that, what
+/// is left out is not seen. Where that is still more than kDrawnVertices, the tolerance grows, the
+/// same for all chunks, until it is not: the picture is coarser then, but there in time. Where the
+/// past ends, the vertex at which it does is drawn as well. Lines are antialiased up to
+/// kSmoothVertices and kSmooth_px, in chunks whose segments are longer than kSmoothSegment_px on
+/// average: of shorter ones, the faint rims of one hide the next. Of a chunk only what comes near
+/// the rectangle is drawn, in runs of kRunSegments or kThinnedRunSegments.
 class PathStore {
  public:
+  static constexpr double kTolerance_px = 0.5, kMostTolerance_px = 64.0;
   static constexpr std::size_t kDrawnVertices = 250'000;
-  static constexpr std::size_t kSmoothVertices = 60'000;
+  /// A processor takes a microsecond for such a line and a twentieth of one for each of its pixels,
+  /// which is three times what it takes for a plain one.
+  static constexpr std::size_t kSmoothVertices = 20'000;
+  static constexpr double kSmooth_px = 300'000, kSmoothSegment_px = 1.0;
   static constexpr std::size_t kRunSegments = 32;
+  static constexpr std::size_t kThinnedRunSegments = 4;  ///< longer ones
 
   static Result<PathStore> create();
 
@@ -50,7 +60,8 @@ class PathStore {
   void set_past(std::uint64_t vertices, std::vector<Box>* changed_mm);
 
   void project(const Projection& projection);
-  /// `may_smooth`: lines may be antialiased. Their faint rims have a depth as well.
+  /// `may_smooth`: lines may be antialiased. Their faint rims have a depth as well. Blending has to
+  /// be on, and is afterwards.
   void draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const;
 
   std::size_t gpu_bytes() const { return gpu_bytes_; }
@@ -59,20 +70,39 @@ class PathStore {
   /// Of a chunk's box, in each direction.
   using Steps = std::array<std::uint16_t, 3>;
 
+  /// Strip of lines in the buffer of a chunk.
+  struct Strip {
+    double tolerance_mm = 0.0;        ///< nowhere further from the path; 0: the path itself
+    std::size_t first = 0;            ///< vertex
+    std::size_t count = 0;            ///< of vertices
+    std::vector<std::uint16_t> kept;  ///< their numbers in the chunk; empty: all of them
+    std::vector<Box> run_boxes_mm;
+    mutable std::vector<ScreenRect> run_rects;  ///< of the present projection; empty until needed
+
+    std::size_t run_segments() const { return kept.empty() ? kRunSegments : kThinnedRunSegments; }
+    std::size_t number(std::size_t i) const { return kept.empty() ? i : kept[i]; }
+    /// The first of its vertices with this number in the chunk, or with a larger one.
+    std::size_t at_number(std::size_t number) const;
+  };
+
   struct Chunk {
-    std::size_t count = 0;  ///< of its vertices on the card; 0 until uploaded
+    /// All vertices, then fewer and fewer; empty until uploaded.
+    std::vector<Strip> strips;
     /// While it grows, to be compared with what comes next; else null.
     std::shared_ptr<const PathChunk> growing;
     GlVertexArray array;
     GlBuffer vertices;
     Box box_mm;
     std::vector<Steps> places;  ///< of the vertices within the box
-    std::vector<Box> run_boxes_mm;
-    ScreenRect rect;
-    mutable std::vector<ScreenRect> run_rects;  ///< of the present projection; empty until needed
     double length_mm = 0.0;
-    double pixel_mm = 0.0;   // edge of a pixel at the point of the box that is nearest to the eye
-    std::size_t stride = 1;  // from one drawn vertex to the next
+    std::size_t level = 0;  ///< of its strips: that is drawn
+    bool is_smooth = true;
+    ScreenRect rect;
+    double pixel_mm = 0.0;    ///< its edge where the path that is in the picture is nearest
+    double seen_share = 1.0;  ///< of the path is about in the picture
+
+    std::size_t count() const { return strips.empty() ? 0 : strips.front().count; }
+    std::size_t gpu_bytes() const;
   };
 
   explicit PathStore(GlProgram program) : program_(std::move(program)) {}
@@ -83,24 +113,27 @@ class PathStore {
   /// Holds vertices [begin, end) of it, and is at most two steps larger.
   static Box box_of_part(const Chunk& chunk, std::size_t begin, std::size_t end);
   void project(Chunk* chunk) const;
+  void project_parts(Chunk* chunk) const;
   /// Appends the boxes of chunks that are drawn through other vertices than before.
-  void choose_strides(std::vector<Box>* changed_mm);
-  struct DrawnPart {
-    std::size_t first;     ///< vertex
-    std::size_t segments;  ///< of `stride` vertices each
-    std::size_t stride;
-  };
-  /// `path_begin`: number of the chunk's first vertex in the path.
-  void draw_segments(const Chunk& chunk, std::size_t path_begin, const ScreenRect& rect,
-                     const DrawnPart& part) const;
-  const std::vector<ScreenRect>& run_rects(const Chunk& chunk) const;
+  void choose_levels(std::vector<Box>* changed_mm);
+  static std::size_t level_for(const Chunk& chunk, double tolerance_px);
+  /// Of the chunks in the picture.
+  std::size_t drawn_vertices(double tolerance_px) const;
+  double drawn_px() const;
+  /// Of the vertices of a chunk, how many the tool has left behind.
+  std::size_t past_of(std::size_t chunk, std::uint64_t past_vertices) const;
+  /// Lines between the vertices [begin, end) of a strip that come near the rectangle.
+  void draw_lines(const Chunk& chunk, const Strip& strip, std::size_t begin, std::size_t end,
+                  const ScreenRect& rect) const;
+  /// One line, between vertices of the chunk that is bound.
+  void draw_line(std::size_t from, std::size_t to) const;
+  const std::vector<ScreenRect>& run_rects(const Strip& strip) const;
 
   GlProgram program_;
+  GlBuffer line_;  ///< numbers of the vertices of one
   std::vector<Chunk> chunks_;
   std::deque<std::shared_ptr<const PathChunk>> waiting_;
   std::uint64_t past_vertices_ = 0;
-  std::size_t largest_stride_ = 1;
-  bool is_smooth_ = true;
   std::size_t gpu_bytes_ = 0;
   Box dropped_mm_;
   Projection projection_;

@@ -1,0 +1,262 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/viewer/scene_fixture.h"
+
+namespace kerf {
+namespace {
+
+/// Waves in rows, with a traverse between rows: `count` vertices, rows of a thousand.
+std::vector<PathVertex> waves(std::size_t count) {
+  constexpr std::size_t kRow = 1000;
+  std::vector<PathVertex> path;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = i / kRow;
+    const double along = 100.0 * static_cast<double>(i % kRow) / kRow;
+    const double x = row % 2 == 0 ? along : 100.0 - along;
+    const double y = 4.0 * static_cast<double>(row) + std::sin(x / 3.0);
+    const bool is_first = i % kRow == 0;
+    path.push_back(
+        {glm::vec3(x, y, std::cos(x / 5.0)), is_first ? PathKind::kTraverse : PathKind::kFeed});
+  }
+  return path;
+}
+
+/// In chunks that are never full, of which all vertices are drawn.
+std::vector<std::shared_ptr<const PathChunk>> growing_chunks(const std::vector<PathVertex>& path) {
+  std::vector<std::shared_ptr<const PathChunk>> chunks;
+  for (std::size_t first = 0; first + 1 < path.size(); first += kPathChunkSegments - 1) {
+    const std::size_t end = std::min(first + kPathChunkSegments, path.size());
+    auto chunk = std::make_shared<PathChunk>();
+    chunk->index = static_cast<std::uint32_t>(chunks.size());
+    chunk->vertices.assign(path.begin() + static_cast<std::ptrdiff_t>(first),
+                           path.begin() + static_cast<std::ptrdiff_t>(end));
+    chunks.push_back(std::move(chunk));
+  }
+  return chunks;
+}
+
+SceneUpdate path_update(std::vector<std::shared_ptr<const PathChunk>> chunks) {
+  SceneUpdate update;
+  SceneSetup setup;
+  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
+  update.setup = std::make_shared<const SceneSetup>(setup);
+  update.path = std::move(chunks);
+  return update;
+}
+
+SceneUpdate past_update(std::uint64_t vertices) {
+  Moment moment;
+  moment.past_vertices = vertices;
+  SceneUpdate update;
+  update.moment = std::make_shared<const Moment>(moment);
+  return update;
+}
+
+/// A line that is moved by half a pixel, and rounded to whole ones in both pictures.
+constexpr int kMoved_px = 2;
+
+/// Pixels of `a` that no pixel of `b` has, at their place or near it.
+int pixels_elsewhere(const Picture& a, const Picture& b) {
+  int count = 0;
+  for (int y = kMoved_px; y + kMoved_px < kSize_px.y; ++y) {
+    for (int x = kMoved_px; x + kMoved_px < kSize_px.x; ++x) {
+      bool is_found = false;
+      for (int to_y = y - kMoved_px; to_y <= y + kMoved_px && !is_found; ++to_y) {
+        for (int to_x = x - kMoved_px; to_x <= x + kMoved_px && !is_found; ++to_x) {
+          is_found = at(a, {x, y}) == at(b, {to_x, to_y});
+        }
+      }
+      count += is_found ? 0 : 1;
+    }
+  }
+  return count;
+}
+
+TEST_F(SceneRendererTest, AThinnedPathIsWhereTheWholeOneIs) {
+  const std::vector<PathVertex> path = waves(25'000);
+  DrawOptions options = everything_;
+  options.looks[0].opacity = 0.5f;  // lines beside what is seen through have no faint rims
+  for (const bool is_perspective : {true, false}) {
+    camera_.set_perspective(is_perspective);
+    SceneRenderer thinned = renderer(), whole = renderer();
+    thinned.apply(path_update(path_chunks(path)));
+    whole.apply(path_update(growing_chunks(path)));
+    const Projection projection = view_of(thinned);
+    draw(&thinned, projection, options);
+    draw(&whole, projection, options);
+    const Picture found = thinned.read(), expected = whole.read();
+    // The thinned one is another one: a pixel here and there is.
+    EXPECT_GT(differing_pixels(found, expected), 0);
+    EXPECT_LT(differing_pixels(found, expected), kSize_px.x * kSize_px.y / 50);
+    EXPECT_EQ(pixels_elsewhere(found, expected), 0);
+    EXPECT_EQ(pixels_elsewhere(expected, found), 0);
+  }
+}
+
+TEST_F(SceneRendererTest, OfAThinnedPathThePastEndsAtTheVertex) {
+  std::vector<PathVertex> path;
+  for (std::size_t i = 0; i <= 3 * kPathChunkSegments; ++i) {
+    path.push_back({{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
+  }
+  SceneRenderer scene = renderer();
+  scene.apply(path_update(path_chunks(path)));
+  camera_.look_from(StandardView::kTop);
+  camera_.set_perspective(false);
+  const Projection projection = view_of(scene);
+  const auto color_at = [&](double x) {
+    const glm::ivec2 px = pixel_of(projection, Vec3(x, 50, 0));
+    Color darkest{255, 255, 255};
+    for (int y = px.y - 1; y <= px.y + 1; ++y) {
+      darkest = std::min(darkest, at(scene.read(), {px.x, y}));
+    }
+    return darkest;
+  };
+  draw(&scene, projection, everything_);
+  const Color future = color_at(50);
+  scene.apply(past_update(path.size()));
+  draw(&scene, projection, everything_);
+  const Color past = color_at(50);
+  ASSERT_NE(past, future);
+  for (const std::size_t vertices : {700u, 2000u, 4096u, 4097u, 4098u, 9000u, 12000u, 300u}) {
+    scene.apply(past_update(vertices));
+    draw(&scene, projection, everything_);
+    const double border_mm = static_cast<double>(path[vertices - 1].position_mm.x);
+    const double pixel_mm = camera_.pixel_mm(kSize_px);
+    EXPECT_EQ(color_at(border_mm - 1.5 * pixel_mm), past) << vertices;
+    EXPECT_EQ(color_at(border_mm + 1.5 * pixel_mm), future) << vertices;
+  }
+}
+
+TEST_F(SceneRendererTest, OfAThinnedPathThatPassesTheSamePixelsAsAnew) {
+  std::mt19937 random(7);
+  SceneRenderer local = renderer(), full = renderer();
+  const std::vector<PathVertex> path = waves(25'000);
+  local.apply(path_update(path_chunks(path)));
+  full.apply(path_update(path_chunks(path)));
+  DrawOptions anew = everything_;
+  anew.is_local = false;
+  // Whole, and so near that most of it is outside the picture and some behind the eye.
+  for (const double zoom : {1.0, 30.0}) {
+    camera_.fit({Vec3(0, 0, -10), Vec3(100, 100, 0)}, kSize_px);
+    camera_.zoom(zoom, glm::vec2(kSize_px) * 0.4f, kSize_px);
+    const Projection projection = camera_.projection(local.depth_box(), kSize_px);
+    draw(&local, projection, everything_);
+    local.reset_counters();
+    std::uint64_t past = 3000;
+    for (int step = 0; step < 30; ++step) {
+      past = step % 5 == 4 ? random() % path.size() : past + random() % 200;
+      local.apply(past_update(past));
+      full.apply(past_update(past));
+      draw(&local, projection, everything_);
+      draw(&full, projection, anew);
+      ASSERT_EQ(differing_pixels(local.read(), full.read()), 0)
+          << "zoom " << zoom << " past " << past;
+    }
+    EXPECT_EQ(local.counters().full.frames, 0u);
+    EXPECT_GE(local.counters().local.frames, zoom > 1.0 ? 1u : 20u);
+  }
+}
+
+TEST_F(SceneRendererTest, OfALongPathThatPassesPartByPartTheSamePixelsAsAnew) {
+  TestWorkpiece workpiece(200, 170);
+  SceneRenderer scene = renderer();
+  SceneUpdate first = first_update(&workpiece);
+  std::vector<PathVertex> path;
+  for (int i = 0; i < 6000; ++i) {
+    const auto along = static_cast<float>(i % 100), row = static_cast<float>(i / 100);
+    path.push_back({{i / 100 % 2 == 0 ? along : 99 - along, 1.2f * row, 5}, PathKind::kFeed});
+  }
+  first.path = path_chunks(path);
+  scene.apply(first);
+  const Projection projection = view_of(scene);
+  draw(&scene, projection, everything_);
+  DrawOptions anew = everything_;
+  anew.is_local = false;
+  for (const std::uint64_t past : {30u, 70u, 1000u, 4090u, 4100u, 5990u, 500u}) {
+    Moment moment;
+    moment.past_vertices = past;
+    SceneUpdate update;
+    update.moment = std::make_shared<const Moment>(moment);
+    scene.apply(update);
+    draw(&scene, projection, everything_);
+    const Picture kept = scene.read();
+    draw(&scene, projection, anew);
+    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << past;
+    draw(&scene, projection, everything_);
+  }
+  EXPECT_GE(scene.counters().local.frames, 7u);
+}
+
+TEST_F(SceneRendererTest, OfAPathThatGrowsAndIsReplacedTheSamePixelsAsAnew) {
+  SceneRenderer scene = renderer();
+  SceneUpdate first;
+  SceneSetup setup;
+  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
+  first.setup = std::make_shared<const SceneSetup>(setup);
+  scene.apply(first);
+  const Projection projection = view_of(scene);
+  DrawOptions anew = everything_;
+  anew.is_local = false;
+  const auto path_of = [](std::size_t vertices, float height_mm) {
+    std::vector<PathVertex> path;
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const auto row = static_cast<float>(i / 100), along = static_cast<float>(i % 100);
+      path.push_back({{along, row, height_mm}, PathKind::kFeed});
+    }
+    return path_chunks(path);
+  };
+  Picture last;
+  const auto expect_equal = [&](const SceneUpdate& update, const char* when) {
+    scene.apply(update);
+    draw(&scene, projection, everything_);
+    const Picture kept = scene.read();
+    EXPECT_TRUE(last.rgb.empty() || differing_pixels(kept, last) > 0) << when;
+    draw(&scene, projection, anew);
+    EXPECT_EQ(differing_pixels(kept, scene.read()), 0) << when;
+    draw(&scene, projection, everything_);
+    last = kept;
+  };
+  SceneUpdate update;
+  for (const std::size_t vertices : {2000u, 4050u, 4097u, 6000u}) {
+    update.path = path_of(vertices, 0.0f);
+    expect_equal(update, "it grows");
+  }
+  const std::size_t full_bytes = scene.counters().gpu_bytes;
+  update.path.clear();
+  update.path_chunk_count = 1;
+  expect_equal(update, "its end is dropped");
+  EXPECT_EQ(full_bytes - scene.counters().gpu_bytes, (6000u - 4096u) * sizeof(PathVertex));
+  update.path_chunk_count.reset();
+  update.path = path_of(4097, -8.0f);
+  expect_equal(update, "a full chunk comes again, with other values");
+}
+
+TEST_F(SceneRendererTest, TenMillionPathVerticesAreThinnedOut) {
+  constexpr std::size_t kVertices = 10'000'000;
+  SceneRenderer scene = renderer();
+  SceneUpdate update;
+  SceneSetup setup;
+  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
+  update.setup = std::make_shared<const SceneSetup>(setup);
+  std::vector<PathVertex> path(kVertices);
+  for (std::size_t i = 0; i < kVertices; ++i) {
+    path[i] = {{static_cast<float>(i % 1000) * 0.1f, static_cast<float>(i) * 1e-5f, 0.0f},
+               PathKind::kFeed};
+  }
+  update.path = path_chunks(path);
+  path.clear();
+  scene.apply(update);
+  draw(&scene, view_of(scene), everything_);
+  EXPECT_FALSE(scene.has_waiting());
+  EXPECT_GE(scene.counters().gpu_bytes, kVertices * sizeof(PathVertex));
+  // Blue where the path is.
+  const Color middle = at(scene.read(), kSize_px / 2);
+  EXPECT_GT(middle.b, middle.r + 20);
+}
+
+}  // namespace
+}  // namespace kerf
