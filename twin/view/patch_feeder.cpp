@@ -25,6 +25,7 @@ void PatchFeeder::follow(std::shared_ptr<const StockModel> stock) {
                           stock_->cell_mm() == stock->cell_mm();
   if (same_blank) {
     for (const std::uint32_t tile : stock->differing_tiles(*stock_)) {
+      has_news_ = true;
       for (const std::uint32_t near : neighbors_[tile]) shown_[near].is_old = true;
     }
   } else {
@@ -141,7 +142,9 @@ void PatchFeeder::hurry(const std::vector<std::uint32_t>& cut_ones, Clock::time_
     const int finer = std::max(0, shown.level - levels_[tile]);
     triangles += std::size_t{shown.triangles} << (2 * finer);
   }
-  if (triangles <= easy_triangles_) return;
+  const bool is_too_much = triangles > easy_triangles_;
+  if (std::exchange(has_news_, false)) rounds_ = is_too_much ? rounds_ + 1 : 0;
+  if (!is_too_much || rounds_ < kRounds) return;
   last_hurry_ = now;
   for (const std::uint32_t tile : cut_ones) {
     Shown& shown = shown_[tile];

@@ -175,8 +175,12 @@ TEST(PatchFeeder, MuchThatIsCutComesCoarserUntilItIsCalm) {
     return feeder.make_until(Clock::time_point::max());
   };
   std::set<std::uint32_t> coarse;
-  for (const double z : {-3.0, -3.1, -3.2}) {
-    const auto made = cut(z);
+  for (int round = 1; round < 3 * PatchFeeder::kRounds; ++round) {
+    const auto made = cut(-3.0 - 0.1 * round);
+    if (round < PatchFeeder::kRounds) {
+      EXPECT_EQ(levels_of(made), std::set{0}) << "it may be a jump";
+      continue;
+    }
     EXPECT_EQ(levels_of(made), std::set{1});
     EXPECT_GE(made.size(), 4u);
     for (const auto& patch : made) coarse.insert(patch->tile);
