@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <map>
 #include <set>
 #include <thread>
@@ -218,8 +219,14 @@ TEST(Machine, TwoFaultsAtOnceAreSeenOnTheWire) {
   MachineProcess machine({program.path(), "--modbus-tcp", "127.0.0.1:0", "--hold", "--fault",
                           "nan:0.4:0.2", "--fault", "freeze:0.4:0.2"});
   ModbusClient client(machine.wait_line("listening modbus-tcp"));
-  EXPECT_EQ(machine.wait_line("fault"), "nan on at 0.400 s");
-  EXPECT_EQ(machine.wait_line("fault"), "freeze on at 0.400 s");
+  // From 0.4 s on, at the machine's next turn: that may come late on a busy computer.
+  for (const std::string name : {"nan", "freeze"}) {
+    const std::string line = machine.wait_line("fault");
+    double at_s = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), (name + " on at %lf s").c_str(), &at_s), 1) << line;
+    EXPECT_GE(at_s, 0.4);
+    EXPECT_LT(at_s, 0.6);
+  }
   std::set<std::uint16_t> scans;
   std::uint16_t scan = 0;
   bool is_nan = true;
