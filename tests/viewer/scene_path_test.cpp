@@ -120,14 +120,16 @@ TEST_F(SceneRendererTest, OfAThinnedPathThePastEndsAtTheVertex) {
   scene.apply(past_update(path.size()));
   draw(&scene, projection, everything_);
   const Color past = color_at(50);
-  ASSERT_NE(past, future);
+  ASSERT_GT(future.r - past.r, 30);
+  // Where two chords meet, a line is a little paler than elsewhere.
+  const auto is_past = [&](double x) { return color_at(x).r < (past.r + future.r) / 2; };
   for (const std::size_t vertices : {700u, 2000u, 4096u, 4097u, 4098u, 9000u, 12000u, 300u}) {
     scene.apply(past_update(vertices));
     draw(&scene, projection, everything_);
     const double border_mm = static_cast<double>(path[vertices - 1].position_mm.x);
     const double pixel_mm = camera_.pixel_mm(kSize_px);
-    EXPECT_EQ(color_at(border_mm - 1.5 * pixel_mm), past) << vertices;
-    EXPECT_EQ(color_at(border_mm + 1.5 * pixel_mm), future) << vertices;
+    EXPECT_TRUE(is_past(border_mm - 1.5 * pixel_mm)) << vertices;
+    EXPECT_FALSE(is_past(border_mm + 1.5 * pixel_mm)) << vertices;
   }
 }
 

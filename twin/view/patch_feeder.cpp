@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <map>
@@ -143,8 +144,11 @@ void PatchFeeder::hurry(const std::vector<std::uint32_t>& cut_ones, Clock::time_
     triangles += std::size_t{shown.triangles} << (2 * finer);
   }
   const bool is_too_much = triangles > easy_triangles_;
-  if (std::exchange(has_news_, false)) rounds_ = is_too_much ? rounds_ + 1 : 0;
-  if (!is_too_much || rounds_ < kRounds) return;
+  if (std::exchange(has_news_, false)) {
+    too_much_ = static_cast<std::uint8_t>(too_much_ << 1 | (is_too_much ? 1 : 0));
+  }
+  const bool hurries = !hurried_.empty() || std::popcount(too_much_) >= kRounds;
+  if (!is_too_much || !hurries) return;
   last_hurry_ = now;
   for (const std::uint32_t tile : cut_ones) {
     Shown& shown = shown_[tile];

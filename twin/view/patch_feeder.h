@@ -29,10 +29,10 @@ class PatchFeeder {
   void follow(std::shared_ptr<const StockModel> stock);
   /// What a pixel shows: cells much finer than that are joined (StockModel::patch levels), tile
   /// by tile. Until it is told: as if the blank filled a picture of usual size. When more than
-  /// `easy_triangles` would have to be made of what was cut (0: never), kRounds times one after the
-  /// other, these tiles come a level coarser, a quarter of the triangles. They are made anew when
-  /// it has not been too much for kCalm: not before, as then what is redrawn would be spread over
-  /// the picture. A jump is one time.
+  /// `easy_triangles` would have to be made of what was cut (0: never), and have been kRounds times
+  /// of the last eight, these tiles come a level coarser, a quarter of the triangles. They are made
+  /// anew when it has not been too much for kCalm: not before, as then what is redrawn would be
+  /// spread over the picture. A jump is one time.
   void set_detail(const ViewDetail& detail, std::size_t easy_triangles = 0);
   static constexpr int kRounds = 4;
   static constexpr std::chrono::milliseconds kCalm{1000};
@@ -78,7 +78,7 @@ class PatchFeeder {
   std::vector<std::int8_t> levels_;  ///< of each tile, as it should be drawn
   std::size_t easy_triangles_ = 0;
   bool has_news_ = false;               ///< since hurry()
-  int rounds_ = 0;                      ///< see kRounds
+  std::uint8_t too_much_ = 0;           ///< whether it was, the last eight times, a bit each
   std::vector<std::uint32_t> hurried_;  ///< tiles with Shown::is_hurried
   Clock::time_point last_hurry_;
   std::size_t next_ = 0;  ///< where looking for tiles goes on

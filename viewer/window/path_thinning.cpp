@@ -6,12 +6,15 @@
 namespace kerf {
 namespace {
 
-/// Whether the vertices between `begin` and `end` are within the tolerance of the chord.
+/// Whether the vertices between `begin` and `end` are within the tolerance of the chord, and that
+/// is no longer than it may be.
 bool is_chord(std::span<const PathVertex> vertices, std::size_t begin, std::size_t end,
               double tolerance_mm) {
   const Vec3 from(vertices[begin].position_mm);
   const Vec3 chord = Vec3(vertices[end].position_mm) - from;
   const double length2 = glm::dot(chord, chord);
+  const double longest_mm = kLongestChord * tolerance_mm;
+  if (length2 > longest_mm * longest_mm) return false;
   const double per_length2 = length2 > 0.0 ? 1.0 / length2 : 0.0;
   const double limit = tolerance_mm * tolerance_mm;
   for (std::size_t i = begin + 1; i < end; ++i) {

@@ -14,8 +14,10 @@ namespace kerf {
 /// Places in `vertices` of those that stay, ascending: the first, the last, those at which the kind
 /// changes, and so many others that what is left out lies within `tolerance_mm` of the chord that
 /// takes its place. So does all of the path between, and no place of a chord is further from it.
-/// Each chord reaches about as far as it can; none replaces segments of two kinds.
-/// `vertices` is not empty. O(n log k), k being the segments that a chord replaces.
+/// Each chord reaches about as far as it can; none replaces segments of two kinds, or is longer
+/// than kLongestChord tolerances: where the tool is, a whole chord is drawn anew. `vertices` is not
+/// empty. O(n log k), k being the segments that a chord replaces.
+inline constexpr double kLongestChord = 256.0;
 std::vector<std::uint32_t> thinned_path(std::span<const PathVertex> vertices, double tolerance_mm);
 
 /// A path through fewer vertices that is nowhere further than the tolerance from it.

@@ -600,7 +600,7 @@ std::string SceneRenderer::gl_name() {
   return fmt::format("OpenGL {}, {}", string_of(GL_VERSION), string_of(GL_RENDERER));
 }
 double SceneRenderer::detail_px() { return is_software() ? 2.0 : 1.0; }
-std::size_t SceneRenderer::easy_triangles() { return is_software() ? 12'000 : 0; }
+std::size_t SceneRenderer::easy_triangles() { return is_software() ? 7'000 : 0; }
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }
