@@ -26,9 +26,13 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// Added to the number of a split corner where otherwise the number of a vertex is.
 constexpr std::uint32_t kSplitCorner = std::uint32_t{1} << 31;
 
+/// Cracks between tiles of different levels are about as deep as the surface is steep.
+constexpr float kCrack_cells = 4;
+
 /// On which sides the tile has neighbours, and how far skirts go down there.
 struct Side {
   bool has_neighbor = false;
+  glm::vec2 outward{0};
   float skirt_end_mm = 0;
 };
 struct Sides {
@@ -132,8 +136,13 @@ class PatchBuilder {
   void add_walls();
   void add_wall(int cell, bool along_y, int i, int j, bool owned_if_lower, bool owned_if_higher);
   WallEnd wall_end(int i, int j, Quadrant upper, Quadrant lower);
-  void add_skirt(const Side& side, std::uint32_t from, std::uint32_t to, int i0, int j0, int i1,
-                 int j1);
+  /// A corner on the tile's border, and the quadrants of the cells within and beyond it.
+  struct BorderEnd {
+    int i, j;
+    Quadrant inner, outer;
+  };
+  void add_skirt(const Side& side, int outer_cell, bool is_linked, const BorderEnd& from,
+                 const BorderEnd& to);
 
   const TileRelief& r_;
   const TileCutIds* cut_ids_;
@@ -462,41 +471,67 @@ void PatchBuilder::add_surface() {
   patch_.skirt_begin = static_cast<std::uint32_t>(patch_.indices.size());
 }
 
-/// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right. It
-/// ends on the tile's border, wherever the top's corners were moved, so that no gap is left between
-/// tiles seen from above. None where the surface is level all about.
-void PatchBuilder::add_skirt(const Side& side, std::uint32_t from, std::uint32_t to, int i0, int j0,
-                             int i1, int j1) {
-  const auto reaches_end = [&](std::uint32_t top) {
-    return patch_.vertices[top].position_mm.z <= side.skirt_end_mm;
+/// Below the edge of a cell's top from `from` to `to`, which runs with the outside on its right; or
+/// below the wall of this tile that is there. It ends on the tile's border, wherever the top's
+/// corners were moved, so that no gap is left between tiles seen from above. None where the surface
+/// is level all about.
+void PatchBuilder::add_skirt(const Side& side, int outer_cell, bool is_linked,
+                             const BorderEnd& from, const BorderEnd& to) {
+  const auto z = [&](const BorderEnd& end, Quadrant q) { return z_at(end.i, end.j, q); };
+  const bool is_below_wall =
+      !is_linked && z(from, from.inner) + z(to, to.inner) >= z(from, from.outer) + z(to, to.outer);
+  const auto upper_z = [&](const BorderEnd& end) {
+    return z(end, is_below_wall ? end.outer : end.inner);
   };
-  if (reaches_end(from) && reaches_end(to)) return;
-  // The top's own normals: where a skirt fills a crack it must not be seen.
-  const auto below = [&](std::uint32_t top, int i, int j) {
-    const std::uint32_t vertex =
-        add_vertex(unmoved(i, j), side.skirt_end_mm, patch_.vertices[top].normal);
-    if (cut_ids_) set_cut_by(vertex, patch_.cut_by[top]);
+  if (upper_z(from) <= side.skirt_end_mm && upper_z(to) <= side.skirt_end_mm) return;
+  const std::uint32_t level = pack_normal(glm::vec3(side.outward, 0));
+  const auto add = [&](const glm::vec2& xy, float height, std::uint32_t normal, std::uint32_t id) {
+    const std::uint32_t vertex = add_vertex(xy, height, normal);
+    set_cut_by(vertex, id);
     return vertex;
   };
-  const std::uint32_t a = below(from, i0, j0), b = below(to, i1, j1);
-  add_triangle(a, b, to);
-  add_triangle(a, to, from);
+  struct Ends {
+    std::uint32_t upper, lower;
+  };
+  const auto ends = [&](const BorderEnd& end) -> Ends {
+    const glm::vec2 border = unmoved(end.i, end.j);
+    if (is_below_wall) {
+      const std::uint32_t id = cut_by(outer_cell);
+      return {add(place_of(end.i, end.j), upper_z(end), level, id),
+              add(border, side.skirt_end_mm, level, id)};
+    }
+    const std::uint32_t top = top_vertex(end.i, end.j, end.inner);
+    // Where a skirt fills a crack it must not be seen: the top's own normals. Where it is high, it
+    // may stand between walls that coarse cells have elsewhere than fine ones, and is lit as a
+    // wall.
+    const bool is_high = upper_z(end) - side.skirt_end_mm > kCrack_cells * r_.cell_mm();
+    const std::uint32_t normal = is_high ? level : patch_.vertices[top].normal;
+    const std::uint32_t id = cut_ids_ ? patch_.cut_by[top] : MeshPatch::kNotCut;
+    return {top, add(border, side.skirt_end_mm, normal, id)};
+  };
+  const Ends a = ends(from), b = ends(to);
+  add_triangle(a.lower, b.lower, b.upper);
+  add_triangle(a.lower, b.upper, a.upper);
 }
 
 void PatchBuilder::add_skirts() {
   const int nx = r_.nx(), ny = r_.ny();
-  const auto solid = [&](int i, int j) { return r_.solid(TileRelief::slot(i, j)); };
+  const auto slot = [](int i, int j) { return TileRelief::slot(i, j); };
   for (int j = 0; j < ny; ++j) {
-    if (sides_.left.has_neighbor && solid(0, j))
-      add_skirt(sides_.left, top_vertex(0, j + 1, kB), top_vertex(0, j, kC), 0, j + 1, 0, j);
-    if (sides_.right.has_neighbor && solid(nx - 1, j))
-      add_skirt(sides_.right, top_vertex(nx, j, kD), top_vertex(nx, j + 1, kA), nx, j, nx, j + 1);
+    if (sides_.left.has_neighbor && r_.solid(slot(0, j)))
+      add_skirt(sides_.left, slot(-1, j), r_.linked_x(slot(-1, j)), {0, j + 1, kB, kA},
+                {0, j, kC, kD});
+    if (sides_.right.has_neighbor && r_.solid(slot(nx - 1, j)))
+      add_skirt(sides_.right, slot(nx, j), r_.linked_x(slot(nx - 1, j)), {nx, j, kD, kC},
+                {nx, j + 1, kA, kB});
   }
   for (int i = 0; i < nx; ++i) {
-    if (sides_.low.has_neighbor && solid(i, 0))
-      add_skirt(sides_.low, top_vertex(i, 0, kC), top_vertex(i + 1, 0, kD), i, 0, i + 1, 0);
-    if (sides_.high.has_neighbor && solid(i, ny - 1))
-      add_skirt(sides_.high, top_vertex(i + 1, ny, kA), top_vertex(i, ny, kB), i + 1, ny, i, ny);
+    if (sides_.low.has_neighbor && r_.solid(slot(i, 0)))
+      add_skirt(sides_.low, slot(i, -1), r_.linked_y(slot(i, -1)), {i, 0, kC, kB},
+                {i + 1, 0, kD, kA});
+    if (sides_.high.has_neighbor && r_.solid(slot(i, ny - 1)))
+      add_skirt(sides_.high, slot(i, ny), r_.linked_y(slot(i, ny - 1)), {i + 1, ny, kA, kD},
+                {i, ny, kB, kC});
   }
 }
 
@@ -509,10 +544,12 @@ Sides sides_of(const TileGrid& grid, std::uint32_t tile) {
   const int x0 = tx * kTileCells, y0 = ty * kTileCells;
   const int x1 = x0 + kTileCells, y1 = y0 + kTileCells;
   const auto across_x = [&](bool has_neighbor, int x) {
-    return Side{has_neighbor, grid.lowest_mm(x - kReach, y0 - kReach, x + kReach, y1 + kReach)};
+    return Side{has_neighbor, glm::vec2(x == x0 ? -1 : 1, 0),
+                grid.lowest_mm(x - kReach, y0 - kReach, x + kReach, y1 + kReach)};
   };
   const auto across_y = [&](bool has_neighbor, int y) {
-    return Side{has_neighbor, grid.lowest_mm(x0 - kReach, y - kReach, x1 + kReach, y + kReach)};
+    return Side{has_neighbor, glm::vec2(0, y == y0 ? -1 : 1),
+                grid.lowest_mm(x0 - kReach, y - kReach, x1 + kReach, y + kReach)};
   };
   return {across_x(tx > 0, x0), across_x(tx + 1 < grid.tiles_x(), x1), across_y(ty > 0, y0),
           across_y(ty + 1 < grid.tiles_y(), y1)};

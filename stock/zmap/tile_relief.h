@@ -70,6 +70,8 @@ class TileRelief {
   bool all_linked_y(int cell, int count) const { return all_set(link_y_, cell, count); }
   float x(int i) const { return x_[index(i)]; }  ///< of corner line i, mm
   float y(int j) const { return y_[index(j)]; }
+  /// The longer edge of a whole cell.
+  float cell_mm() const { return std::max(cell_mm_.x, cell_mm_.y); }
   /// Edges of a cell. The last ones of the grid may be narrower than the others.
   glm::vec2 size_mm(int i, int j) const { return {x(i + 1) - x(i), y(j + 1) - y(j)}; }
 
