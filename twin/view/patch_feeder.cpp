@@ -191,10 +191,14 @@ std::vector<std::shared_ptr<const MeshPatch>> PatchFeeder::make_until(Clock::tim
   };
   const std::vector<std::uint32_t> cut_ones = old_tiles();
   hurry(cut_ones, now);
+  const auto is_shown = [&](std::uint32_t tile) { return shown_[tile].level >= 0; };
+  const bool come_together =
+      cut_ones.size() <= kTogether && std::all_of(cut_ones.begin(), cut_ones.end(), is_shown);
   for (const std::uint32_t tile : cut_ones) {
     add(tile);
-    if (late()) return made;
+    if (!come_together && late()) return made;
   }
+  if (!made.empty() && late()) return made;
   const std::size_t first = next_;
   for (std::size_t i = 0; i < tiles; ++i) {
     const std::size_t tile = (first + i) % tiles;

@@ -34,6 +34,7 @@ class PatchFeeder {
   /// anew when it has not been too much for kCalm: not before, as then what is redrawn would be
   /// spread over the picture. A jump is one time.
   void set_detail(const ViewDetail& detail, std::size_t easy_triangles = 0);
+  static constexpr std::size_t kTogether = 100;
   static constexpr int kRounds = 4;
   static constexpr std::chrono::milliseconds kCalm{1000};
 
@@ -43,8 +44,9 @@ class PatchFeeder {
   void compare_with(std::shared_ptr<const DesignPart> design, double tolerance_mm);
 
   /// Patches made until `deadline`, at least one if there is one to be made. Tiles that were cut
-  /// come before those that are made at another level only. To be called every now and then: it
-  /// may be calm.
+  /// come before those that are made at another level only, and up to kTogether of them at once,
+  /// whatever it takes: between one as it is and one as it was the picture has a slit. To be called
+  /// every now and then: it may be calm.
   std::vector<std::shared_ptr<const MeshPatch>> make_until(Clock::time_point deadline);
   /// Some tiles are not yet as they should be, other than those that come when it is calm.
   bool behind() const { return behind_; }

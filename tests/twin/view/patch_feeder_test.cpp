@@ -135,6 +135,18 @@ TEST(PatchFeeder, WorksInSlicesAndForgetsNoTile) {
   EXPECT_EQ(seen.size(), stock->tile_count());
 }
 
+TEST(PatchFeeder, WhatOneMoveCutComesTogether) {
+  const auto stock = test::block_40();
+  PatchFeeder feeder;
+  feeder.follow(stock->snapshot());
+  feeder.make_until(Clock::time_point::max());
+  cut_line(*stock, {3, 3, -2}, {37, 20, -2});
+  feeder.follow(stock->snapshot());
+  const auto made = feeder.make_until(Clock::time_point::min());
+  EXPECT_GT(made.size(), 9u);
+  EXPECT_TRUE(feeder.make_until(Clock::time_point::max()).empty());
+}
+
 TEST(PatchFeeder, FromAfarCellsAreJoined) {
   const auto stock = test::block_40(0.1);
   PatchFeeder feeder;
