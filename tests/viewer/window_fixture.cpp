@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <utility>
 
 namespace kerf {
@@ -192,17 +191,6 @@ void WindowTest::key(const std::string& name) { ASSERT_TRUE(xdotool("key " + nam
 std::uint64_t WindowTest::frames() const {
   const DrawCounters& counters = window_->counters();
   return counters.full.frames + counters.local.frames + counters.still.frames;
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "kerf-window-XXXXXX").string();
-  const char* made = mkdtemp(pattern.data());
-  path_ = made != nullptr ? made : "";
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code error;
-  if (!path_.empty()) std::filesystem::remove_all(path_, error);
 }
 
 }  // namespace kerf

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "tests/base/temporary_folder.h"
 #include "tests/viewer/test_scene.h"
 #include "tests/viewer/virtual_display.h"
 #include "viewer/window/window.h"
@@ -84,19 +85,6 @@ class WindowTest : public testing::Test {
   CommandQueue commands_;
   std::string settings_file_;
   std::optional<Window> window_;
-};
-
-/// A folder of its own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 }  // namespace kerf

@@ -184,7 +184,9 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
   if (has_dropped) changed_mm->push_back(std::exchange(dropped_mm_, Box{}));
   std::size_t bytes = 0;
   while (!waiting_.empty()) {
-    const std::size_t size = waiting_.front()->vertices.size() * sizeof(PathVertex);
+    const std::size_t count = waiting_.front()->vertices.size();
+    // Levels have no more vertices together than the path itself.
+    const std::size_t size = (count > kPathChunkSegments ? 2 : 1) * count * sizeof(PathVertex);
     if (bytes > 0 && bytes + size > budget_bytes) break;
     std::shared_ptr<const PathChunk> values = std::move(waiting_.front());
     waiting_.pop_front();
