@@ -27,31 +27,65 @@ if(KERF_SANITIZE MATCHES "address")
   target_link_options(kerf_driver_leaks INTERFACE LINKER:-u,__lsan_is_turned_off)
 endif()
 
+# What compiling costs is above all reading headers: except in Release, those that nearly all sources need are read once
+# for the libraries and once for the tests. g++ 12 warns falsely of strings that it inlines from a precompiled header; in
+# Release, where nothing is precompiled, all warnings are on and each source has to include what it uses.
+if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(KERF_BUILDS_QUICKLY ON)
+  file(CONFIGURE OUTPUT kerf_headers.cpp CONTENT "")
+endif()
+set(KERF_FALSE_WARNINGS -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+
+function(kerf_precompile_headers name)
+  if(NOT KERF_BUILDS_QUICKLY)
+    return()
+  endif()
+  target_compile_options(${name} PRIVATE ${KERF_FALSE_WARNINGS})
+  if(NOT TARGET kerf_headers)
+    add_library(kerf_headers OBJECT ${PROJECT_BINARY_DIR}/kerf_headers.cpp)
+    target_link_libraries(kerf_headers PRIVATE kerf_options fmt::fmt)
+    target_compile_options(kerf_headers PRIVATE ${KERF_FALSE_WARNINGS})
+    target_precompile_headers(kerf_headers PRIVATE
+      <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <string_view>
+      <variant> <vector> <fmt/format.h> <glm/common.hpp> <glm/geometric.hpp> <glm/mat4x4.hpp> <glm/matrix.hpp>
+      <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM kerf_headers)
+endfunction()
+
 # kerf_add_library(name SOURCES ... LINK ...): a static library with the project's options.
 function(kerf_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC kerf_options ${ARG_LINK})
+  kerf_precompile_headers(${name})
 endfunction()
 
-# What compiling a test costs is above all gtest: read once for all of them, and optimised little. g++ 12 warns falsely
-# of strings that it inlines from a precompiled header; in Release it is not used, and all warnings are on.
-if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
-  set(KERF_QUICK_TESTS ON)
-  file(CONFIGURE OUTPUT kerf_test_headers.cpp CONTENT "")
-endif()
+# kerf_set_kernel_options(SOURCES ... OPTIONS ...): of sources whose speed goes by them. A precompiled header is of no use
+# to what is compiled with other options.
+function(kerf_set_kernel_options)
+  cmake_parse_arguments(ARG "" "" "SOURCES;OPTIONS" ${ARGN})
+  set_property(SOURCE ${ARG_SOURCES} APPEND PROPERTY COMPILE_OPTIONS ${ARG_OPTIONS})
+  set_property(SOURCE ${ARG_SOURCES} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# Tests are optimised little, and without sanitizers they say where they failed themselves.
 function(kerf_compile_quickly name)
-  if(KERF_QUICK_TESTS)
-    target_compile_options(${name} PRIVATE -O1 -Wno-array-bounds -Wno-restrict
-      -Wno-stringop-overflow)
-    if(NOT TARGET kerf_test_headers)
-      add_library(kerf_test_headers OBJECT ${PROJECT_BINARY_DIR}/kerf_test_headers.cpp)
-      target_link_libraries(kerf_test_headers PRIVATE kerf_options GTest::gtest)
-      target_compile_options(kerf_test_headers PRIVATE -O1)
-      target_precompile_headers(kerf_test_headers PRIVATE <gtest/gtest.h> <string> <vector>)
-    endif()
-    target_precompile_headers(${name} REUSE_FROM kerf_test_headers)
+  if(NOT KERF_BUILDS_QUICKLY)
+    return()
   endif()
+  set(options -O1 ${KERF_FALSE_WARNINGS})
+  if(NOT KERF_SANITIZE)
+    list(APPEND options -g0)
+  endif()
+  target_compile_options(${name} PRIVATE ${options})
+  if(NOT TARGET kerf_test_headers)
+    add_library(kerf_test_headers OBJECT ${PROJECT_BINARY_DIR}/kerf_headers.cpp)
+    target_link_libraries(kerf_test_headers PRIVATE kerf_options GTest::gtest)
+    target_compile_options(kerf_test_headers PRIVATE ${options})
+    target_precompile_headers(kerf_test_headers PRIVATE <gtest/gtest.h> <string> <vector>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM kerf_test_headers)
 endfunction()
 
 # kerf_add_test(name SOURCES ... LINK ... [ALONE]): one gtest executable, each TEST a ctest. ALONE: they measure times of
