@@ -1,7 +1,7 @@
 #include "tests/viewer/virtual_display.h"
 
+#include <dlfcn.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -95,6 +95,27 @@ VirtualDisplay::~VirtualDisplay() {
   if (pid_ <= 0) return;
   kill(pid_, SIGTERM);
   waitpid(pid_, nullptr, 0);
+}
+
+bool VirtualDisplay::set_resources(const std::string& text) const {
+  // Xlib is there where the window is, its headers need not be.
+  void* const xlib = dlopen("libX11.so.6", RTLD_NOW);
+  if (xlib == nullptr) return false;
+  struct Display;
+  const auto open = reinterpret_cast<Display* (*)(const char*)>(dlsym(xlib, "XOpenDisplay"));
+  const auto root =
+      reinterpret_cast<unsigned long (*)(Display*)>(dlsym(xlib, "XDefaultRootWindow"));
+  const auto change =
+      reinterpret_cast<int (*)(Display*, unsigned long, unsigned long, unsigned long, int, int,
+                               const char*, int)>(dlsym(xlib, "XChangeProperty"));
+  const auto close = reinterpret_cast<int (*)(Display*)>(dlsym(xlib, "XCloseDisplay"));
+  Display* const display = open(name_.c_str());
+  if (display == nullptr) return false;
+  constexpr unsigned long kResourceManager = 23, kString = 31;  // atoms that every server has
+  change(display, root(display), kResourceManager, kString, 8, 0, text.data(),
+         static_cast<int>(text.size()));
+  close(display);
+  return true;
 }
 
 void VirtualDisplay::kill_server() {

@@ -21,6 +21,8 @@ class VirtualDisplay {
   ~VirtualDisplay();
 
   const std::string& name() const { return name_; }  ///< ":7"
+  /// What a desktop tells its programs: "Xft.dpi: 192". False if it cannot be told.
+  bool set_resources(const std::string& text) const;
   /// Ends the server at once, as a crash would.
   void kill_server();
 

@@ -517,6 +517,37 @@ TEST_F(WindowTest, AllButtonsAreAtHandOnAFineDisplay) {
   EXPECT_GT(mean_difference(before, window_->read(), {580, 240, 1000, 830}), 10.0);
 }
 
+TEST_F(WindowTest, TheDisplaySaysHowFineItIs) {
+  Result<VirtualDisplay> display = VirtualDisplay::start();
+  ASSERT_TRUE(display) << display.error();
+  ASSERT_TRUE(display->set_resources("Xft.dpi:\t192\n"));
+  WindowOptions options;
+  options.width_px = 700;
+  options.height_px = 450;
+  open(options);
+  const Picture picture = window_->read();
+  EXPECT_EQ(picture.width_px, 1400);
+  EXPECT_EQ(picture.height_px, 900);
+  // The letters of the toolbar reach below where they would at scale 1.
+  options.scale = 1.0f;
+  window_.reset();
+  open(options);
+  EXPECT_GT(mean_difference(picture, window_->read(), {0, 36, 290, 72}), 1.0);
+  window_.reset();  // before its display
+}
+
+/// As after a larger screen, or where a fine one has doubled it.
+TEST_F(WindowTest, IsNotLargerThanTheScreen) {
+  WindowOptions options;
+  options.width_px = 3000;
+  options.height_px = 2000;
+  open(options);
+  EXPECT_TRUE(turn_until([&] {
+    const Picture picture = window_->read();
+    return picture.width_px == 1600 && picture.height_px == 1000;
+  }));
+}
+
 TEST_F(WindowTest, EverythingIsLargerOnAFineDisplay) {
   WindowOptions options;
   options.scale = 2.0f;

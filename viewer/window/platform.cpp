@@ -6,6 +6,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
@@ -111,6 +112,25 @@ std::string found_gl() {
   return found;
 }
 
+/// A window may be larger than every screen: it was remembered from a larger one, or its size was
+/// doubled for a fine one. Then it takes what there is.
+void fit_on_screens(GLFWwindow* window) {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  int most_width = 0, most_height = 0;
+  for (int i = 0; i < count; ++i) {
+    int x = 0, y = 0, width = 0, height = 0;
+    glfwGetMonitorWorkarea(monitors[i], &x, &y, &width, &height);
+    most_width = std::max(most_width, width);
+    most_height = std::max(most_height, height);
+  }
+  if (most_width <= 0 || most_height <= 0) return;
+  int width = 0, height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  if (width <= most_width && height <= most_height) return;
+  glfwSetWindowSize(window, std::min(width, most_width), std::min(height, most_height));
+}
+
 }  // namespace
 
 /// GLX_MESA_copy_sub_buffer: copies a rectangle of the back buffer, of which nothing else is
@@ -200,6 +220,7 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
     return Error{fmt::format("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}",
                              display_name(), found / 10, found % 10, kWithout)};
   }
+  fit_on_screens(window);
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
   find_parts(window);
   survive_destroyed_window(window);

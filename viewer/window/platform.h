@@ -23,8 +23,9 @@ class Platform {
 
   /// Error: "no window: cannot open display ':7' (...); pictures need no display: --png FILE".
   Done start();
-  /// A window with a current OpenGL 3.3 core context. Error: the OpenGL that is there, and the one
-  /// that is needed.
+  /// A window with a current OpenGL 3.3 core context, at most as large as the largest screen; sizes
+  /// are for a display of ordinary resolution, and grow with that of the screen. Error: the OpenGL
+  /// that is there, and the one that is needed.
   Result<GLFWwindow*> open_window(int width_px, int height_px, const char* title);
 
   /// show() of a few rectangles is worth it: this OpenGL is a software renderer, for which sending

@@ -24,13 +24,19 @@ Result<GlProgram> scene_variant(const std::string& defines) {
 }  // namespace
 
 Result<ScenePrograms> ScenePrograms::create() {
-  // In the order of Name.
+  // In the order of Name; the workpiece's in that of Paint.
+  const std::string open = "#define SECTION\n#define TWO_SIDED\n";
   Result<GlProgram> made[]{
       scene_variant(""),
-      scene_variant("#define SECTION\n"),
-      scene_variant("#define COLORED\n"),
-      scene_variant("#define SECTION\n#define COLORED\n"),
-      scene_variant("#define BESIDE_GLASS\n"),
+      scene_variant(open),
+      scene_variant("#define BY_CUT\n"),
+      scene_variant("#define BY_CUT\n" + open),
+      scene_variant("#define BY_MOVE\n"),
+      scene_variant("#define BY_MOVE\n" + open),
+      scene_variant("#define BY_MEASURE\n"),
+      scene_variant("#define BY_MEASURE\n" + open),
+      scene_variant("#define TWO_SIDED\n"),
+      scene_variant("#define BESIDE_GLASS\n#define TWO_SIDED\n"),
       GlProgram::create(shaders::screen_vert, shaders::background_frag),
       GlProgram::create(shaders::screen_vert, shaders::section_frag),
       GlProgram::create(shaders::screen_vert, shaders::glass_frag),
@@ -41,11 +47,6 @@ Result<ScenePrograms> ScenePrograms::create() {
     programs.push_back(std::move(*program));
   }
   return ScenePrograms(std::move(programs));
-}
-
-const GlProgram& ScenePrograms::scene(Variant variant) const {
-  if (variant.beside_glass != 0) return programs_[kBesideGlass];
-  return programs_[kScene + (variant.has_section ? 1u : 0u) + (variant.is_colored ? 2u : 0u)];
 }
 
 }  // namespace kerf

@@ -103,7 +103,8 @@ class SceneRenderer::Impl {
   void draw_section_face(const glm::dvec4& kept);
   void draw_lines(const ScreenRect& rect) const;
   void draw_shown(ScreenRect rect);
-  void draw_moving(const ScreenRect& rect, ScenePrograms::Variant variant, bool opaque_parts) const;
+  void draw_moving(const ScreenRect& rect, const GlProgram& program, bool opaque_parts) const;
+  void draw_moving_beside_glass(const ScreenRect& rect, bool is_behind) const;
   void draw_seen_through(const ScreenRect& rect);
   void draw_glass();
   std::size_t gpu_bytes() const;
@@ -363,9 +364,8 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
     return 0;
   }
   const std::optional<glm::dvec4> section = kept_side(options_.section);
-  const auto use = [&](bool is_colored) -> const GlProgram& {
-    const GlProgram& program =
-        programs_.scene({.has_section = section.has_value(), .is_colored = is_colored});
+  const auto use = [&](ScenePrograms::Paint paint) -> const GlProgram& {
+    const GlProgram& program = programs_.workpiece(paint, section.has_value());
     program.use();
     program.set("clip_from_model", projection_.clip_from_world);
     program.set("view_from_model", projection_.view_from_world);
@@ -385,10 +385,10 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
   // What is closed shows no backs. Cut open it does.
   if (!section) glEnable(GL_CULL_FACE);
   const VertexData data = SurfaceColors::needs(shown_by_);
-  colors_.bind(use(true), shown_by_, scale_);
+  colors_.bind(use(SurfaceColors::paint(shown_by_)), shown_by_, scale_);
   std::size_t triangles = patches_.draw(rect, data, true);
   if (data != VertexData::kNone) {
-    use(false);
+    use(ScenePrograms::Paint::kOne);
     triangles += patches_.draw(rect, data, false);
   }
   glDisable(GL_CULL_FACE);
@@ -454,7 +454,7 @@ void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_LESS);
-  draw_moving(rect, {}, true);
+  draw_moving(rect, programs_.moving(), true);
   draw_seen_through(rect);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
@@ -462,16 +462,10 @@ void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
 }
 
 /// Tool and machine, as far as they are opaque or as far as they are not.
-void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, ScenePrograms::Variant variant,
+void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, const GlProgram& program,
                                       bool opaque_parts) const {
-  const GlProgram& program = programs_.scene(variant);
   program.use();
   program.set("up_view", glm::vec3(projection_.view_from_world[2]));
-  if (variant.beside_glass != 0) {
-    bind_texture(0, glass_.depth());
-    program.set("glass_depths", 0);
-    program.set("is_behind", variant.beside_glass < 0 ? 1 : 0);
-  }
   const ObjectLook& machine = look(SceneObject::kMachine);
   if (machine.is_visible) {
     machine_.draw(projection_, program, machine.opacity, opaque_parts, rect);
@@ -479,10 +473,21 @@ void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, ScenePrograms::Var
   if (tool_rect_.intersects(rect)) {
     const ObjectLook& cutter = look(SceneObject::kCutter);
     const ObjectLook& holder = look(SceneObject::kHolder);
+    glEnable(GL_CULL_FACE);  // tools are closed; what others drew of a machine may not be
     tool_.draw(projection_, program,
                {cutter.is_visible, holder.is_visible, cutter.opacity, holder.opacity},
                opaque_parts);
+    if (opaque_parts) glDisable(GL_CULL_FACE);
   }
+}
+
+void SceneRenderer::Impl::draw_moving_beside_glass(const ScreenRect& rect, bool is_behind) const {
+  const GlProgram& program = programs_.moving_beside_glass();
+  program.use();
+  bind_texture(0, glass_.depth());
+  program.set("glass_depths", 0);
+  program.set("is_behind", is_behind ? 1 : 0);
+  draw_moving(rect, program, false);
 }
 
 /// What is seen through, over what is not: first what lies behind the surface of a transparent
@@ -493,11 +498,11 @@ void SceneRenderer::Impl::draw_seen_through(const ScreenRect& rect) {
   glDepthMask(GL_FALSE);
   glEnable(GL_CULL_FACE);
   if (is_glass()) {
-    draw_moving(rect, {.beside_glass = -1}, false);
+    draw_moving_beside_glass(rect, true);
     draw_glass();
-    draw_moving(rect, {.beside_glass = 1}, false);
+    draw_moving_beside_glass(rect, false);
   } else {
-    draw_moving(rect, {}, false);
+    draw_moving(rect, programs_.moving(), false);
   }
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);
@@ -600,7 +605,7 @@ std::string SceneRenderer::gl_name() {
   return fmt::format("OpenGL {}, {}", string_of(GL_VERSION), string_of(GL_RENDERER));
 }
 double SceneRenderer::detail_px() { return is_software() ? 2.0 : 1.0; }
-std::size_t SceneRenderer::easy_triangles() { return is_software() ? 7'000 : 0; }
+std::size_t SceneRenderer::easy_triangles() { return is_software() ? 20'000 : 0; }
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }

@@ -142,7 +142,7 @@ class SceneRenderer {
   /// Pixels that the smallest detail of the workpiece need have: 1, or 2 where the processor draws,
   /// which has a quarter of the triangles to draw then.
   static double detail_px();
-  /// DetailCommand::easy_triangles. Where the processor draws, three times as many, with what lies
+  /// DetailCommand::easy_triangles. Where the processor draws, twice as many, with what lies
   /// about them, take two slow cores longer than a sixtieth of a second.
   static std::size_t easy_triangles();
   /// The picture last drawn, of the pixels that it has.

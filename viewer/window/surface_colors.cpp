@@ -81,23 +81,40 @@ VertexData SurfaceColors::needs(ColorBy mode) {
   return VertexData::kDeviation;
 }
 
+ScenePrograms::Paint SurfaceColors::paint(ColorBy mode) {
+  if (mode == ColorBy::kPlain) return ScenePrograms::Paint::kCutOrNot;
+  const bool goes_by_moves = needs(mode) == VertexData::kCutBy;
+  return goes_by_moves ? ScenePrograms::Paint::kMove : ScenePrograms::Paint::kMeasure;
+}
+
 void SurfaceColors::bind(const GlProgram& program, ColorBy mode, const ColorScale& scale) const {
-  const VertexData data = needs(mode);
-  program.set("source", data == VertexData::kCutBy ? 1 : data == VertexData::kDeviation ? 2 : 0);
-  const double range = std::max(scale.highest_mm - scale.lowest_mm, 1e-6);
-  program.set("heights",
-              glm::vec2(static_cast<float>(scale.lowest_mm), static_cast<float>(1.0 / range)));
-  program.set("tolerance_mm", static_cast<float>(scale.tolerance_mm));
-  const Stops& stops = stops_of(mode);
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    program.set(fmt::format("stops[{}]", i).c_str(), stops[i]);
+  switch (paint(mode)) {
+    case ScenePrograms::Paint::kOne:
+      break;
+    case ScenePrograms::Paint::kCutOrNot:
+      program.set("other_rgb", kCut);
+      program.set("not_cut_rgb", kNotCut);
+      break;
+    case ScenePrograms::Paint::kMove:
+      program.set("move_count", move_count_);
+      program.set("other_rgb", rgb_of(colors_->other));
+      program.set("not_cut_rgb", rgb_of(colors_->not_cut));
+      bind_texture(0, texture_);
+      program.set("move_colors", 0);
+      break;
+    case ScenePrograms::Paint::kMeasure: {
+      program.set("is_deviation", mode == ColorBy::kDeviation ? 1 : 0);
+      const double range = std::max(scale.highest_mm - scale.lowest_mm, 1e-6);
+      program.set("heights",
+                  glm::vec2(static_cast<float>(scale.lowest_mm), static_cast<float>(1.0 / range)));
+      program.set("tolerance_mm", static_cast<float>(scale.tolerance_mm));
+      const Stops& stops = stops_of(mode);
+      for (std::size_t i = 0; i < stops.size(); ++i) {
+        program.set(fmt::format("stops[{}]", i).c_str(), stops[i]);
+      }
+      break;
+    }
   }
-  const bool is_plain = mode == ColorBy::kPlain || !colors_;
-  program.set("move_count", is_plain ? 0 : move_count_);
-  program.set("other_rgb", is_plain ? kCut : rgb_of(colors_->other));
-  program.set("not_cut_rgb", is_plain ? kNotCut : rgb_of(colors_->not_cut));
-  bind_texture(0, texture_);
-  program.set("move_colors", 0);
 }
 
 std::vector<ColorLegendEntry> SurfaceColors::legend(ColorBy mode, const ColorScale& scale) const {

@@ -8,6 +8,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
+#include "viewer/window/scene_programs.h"
 
 namespace kerf {
 
@@ -37,7 +38,9 @@ class SurfaceColors {
   /// `wanted`, or kPlain if that goes by moves and there are no colours for it.
   ColorBy available(ColorBy wanted) const;
   static VertexData needs(ColorBy mode);
-  /// Sets the uniforms of the COLORED variants of viewer/shaders/scene, in use now.
+  /// What programs for an available mode go by.
+  static ScenePrograms::Paint paint(ColorBy mode);
+  /// Sets what the program of paint(mode), in use now, takes its colours from.
   void bind(const GlProgram& program, ColorBy mode, const ColorScale& scale) const;
   /// Of an available mode; from low to high for scales. Empty for kPlain.
   std::vector<ColorLegendEntry> legend(ColorBy mode, const ColorScale& scale) const;

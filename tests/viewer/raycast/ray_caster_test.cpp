@@ -150,7 +150,9 @@ TEST(ToolRays, AreMetOnTheOutline) {
   EXPECT_FALSE(ToolRays({}, {tip}).trace({Vec3(9, 9, 9), tip - Vec3(9)}, 1e9));
 }
 
-/// The window's renderer, with patches of the same workpiece, draws the same picture.
+/// The window's renderer, with patches of the same workpiece, draws the same picture. It lights the
+/// corners of triangles and the rays what they meet: colours differ a little within those triangles
+/// whose corners face in different directions.
 class AgainstMeshes : public testing::TestWithParam<int> {};
 
 TEST_P(AgainstMeshes, DepthAndColorAgreeExceptAtSilhouettes) {
@@ -180,7 +182,7 @@ TEST_P(AgainstMeshes, DepthAndColorAgreeExceptAtSilhouettes) {
   // Depth in mm along the view: rows of the inverse would do, two points of the pixel's ray do too.
   const glm::dmat4 world_from_clip = glm::inverse(glm::dmat4(view.clip_from_world));
   const double pixel_mm = 40.0 / kSize_px.y;  // about
-  int covered = 0, near = 0, alike = 0, silhouettes = 0, off = 0;
+  int covered = 0, near = 0, alike = 0, similar = 0, silhouettes = 0, off = 0;
   for (int y = 0; y < kSize_px.y; ++y) {
     for (int x = 0; x < kSize_px.x; ++x) {
       const auto pixel = static_cast<std::size_t>(y * kSize_px.x + x);
@@ -198,6 +200,7 @@ TEST_P(AgainstMeshes, DepthAndColorAgreeExceptAtSilhouettes) {
       for (std::size_t k = 3 * pixel; k < 3 * pixel + 3; ++k)
         worst = std::max(worst, std::abs(int{drawn.rgb[k]} - int{caster.picture().rgb[k]}));
       alike += agrees && worst <= 3;
+      similar += agrees && worst <= 24;
       if (agrees) continue;
       // Allowed where a neighbouring ray meets what the mesh shows here, or nothing.
       bool is_silhouette = false;
@@ -214,7 +217,8 @@ TEST_P(AgainstMeshes, DepthAndColorAgreeExceptAtSilhouettes) {
   EXPECT_GT(covered, 4000);
   EXPECT_EQ(off, 0) << silhouettes << " at silhouettes";
   EXPECT_GE(near, covered - covered / 1000);
-  EXPECT_GE(alike, covered - covered / 200);
+  EXPECT_GE(alike, covered - covered / 50);
+  EXPECT_GE(similar, covered - covered / 500);
 }
 
 INSTANTIATE_TEST_SUITE_P(Views, AgainstMeshes, testing::Range(0, 16));
