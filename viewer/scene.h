@@ -215,7 +215,7 @@ enum class RoadLimit {
   kTilted,     ///< CSG cuts with upright tools, and here tools or workpiece turn.
   kTool,       ///< A tool cannot be subtracted; RoadAnswer::detail says which and why.
   kWatched,    ///< CSG has no moves of a machine that is watched.
-  kNewest,     ///< CSG shows the newest moves alone: those since RoadAnswer::line.
+  kNewest,     ///< CSG shows the newest moves: those since RoadAnswer::line, and what it has kept.
 };
 
 /// The answer to a RoadCommand, and again whenever it becomes another one.
