@@ -38,21 +38,18 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(KERF_FALSE_WARNINGS -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 
-function(kerf_precompile_headers name)
-  if(NOT KERF_BUILDS_QUICKLY)
-    return()
+# kerf_share_headers(name SHARED LINK library OPTIONS ... HEADERS ...): HEADERS are read once, by SHARED, for all that share
+# them, with the same OPTIONS.
+function(kerf_share_headers name shared)
+  cmake_parse_arguments(ARG "" "LINK" "OPTIONS;HEADERS" ${ARGN})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  if(NOT TARGET ${shared})
+    add_library(${shared} OBJECT ${PROJECT_BINARY_DIR}/kerf_headers.cpp)
+    target_link_libraries(${shared} PRIVATE kerf_options ${ARG_LINK})
+    target_compile_options(${shared} PRIVATE ${ARG_OPTIONS})
+    target_precompile_headers(${shared} PRIVATE ${ARG_HEADERS})
   endif()
-  target_compile_options(${name} PRIVATE ${KERF_FALSE_WARNINGS})
-  if(NOT TARGET kerf_headers)
-    add_library(kerf_headers OBJECT ${PROJECT_BINARY_DIR}/kerf_headers.cpp)
-    target_link_libraries(kerf_headers PRIVATE kerf_options fmt::fmt)
-    target_compile_options(kerf_headers PRIVATE ${KERF_FALSE_WARNINGS})
-    target_precompile_headers(kerf_headers PRIVATE
-      <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <string_view>
-      <variant> <vector> <fmt/format.h> <glm/common.hpp> <glm/geometric.hpp> <glm/mat4x4.hpp> <glm/matrix.hpp>
-      <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
-  endif()
-  target_precompile_headers(${name} REUSE_FROM kerf_headers)
+  target_precompile_headers(${name} REUSE_FROM ${shared})
 endfunction()
 
 # kerf_add_library(name SOURCES ... LINK ...): a static library with the project's options.
@@ -60,7 +57,12 @@ function(kerf_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC kerf_options ${ARG_LINK})
-  kerf_precompile_headers(${name})
+  if(KERF_BUILDS_QUICKLY)
+    kerf_share_headers(${name} kerf_headers LINK fmt::fmt OPTIONS ${KERF_FALSE_WARNINGS} HEADERS
+      <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <string_view>
+      <variant> <vector> <fmt/format.h> <glm/common.hpp> <glm/geometric.hpp> <glm/mat4x4.hpp> <glm/matrix.hpp>
+      <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
+  endif()
 endfunction()
 
 # kerf_set_kernel_options(SOURCES ... OPTIONS ...): of sources whose speed goes by them. A precompiled header is of no use
@@ -80,14 +82,8 @@ function(kerf_compile_quickly name)
   if(NOT KERF_SANITIZE)
     list(APPEND options -g0)
   endif()
-  target_compile_options(${name} PRIVATE ${options})
-  if(NOT TARGET kerf_test_headers)
-    add_library(kerf_test_headers OBJECT ${PROJECT_BINARY_DIR}/kerf_headers.cpp)
-    target_link_libraries(kerf_test_headers PRIVATE kerf_options GTest::gtest)
-    target_compile_options(kerf_test_headers PRIVATE ${options})
-    target_precompile_headers(kerf_test_headers PRIVATE <gtest/gtest.h> <string> <vector>)
-  endif()
-  target_precompile_headers(${name} REUSE_FROM kerf_test_headers)
+  kerf_share_headers(${name} kerf_test_headers LINK GTest::gtest OPTIONS ${options}
+    HEADERS <gtest/gtest.h> <string> <vector>)
 endfunction()
 
 # kerf_add_test(name SOURCES ... LINK ... [ALONE]): one gtest executable, each TEST a ctest. ALONE: they measure times of
