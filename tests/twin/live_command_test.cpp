@@ -176,7 +176,7 @@ TEST_F(Shadow, TheWorkpieceIsThatOfTheDryRunAndTheRecordingGivesItAgain) {
 TEST_F(Shadow, ACollisionIsToldBeforeItHappens) {
   std::string text = kProgram;
   text.replace(text.find("G0 Z5\nM5"), 5, "G0 X30\nG0 Z5");
-  start(text, {"--look-ahead", "3"});
+  start(text, {"--look-ahead", "10"});
   wait_for_end();
   const Json report = finish(1);
   ASSERT_FALSE(report["findings"].empty());
