@@ -565,6 +565,13 @@ TEST_F(ViewWindow, ALogGoesOnWhenTheDisplayIsGone) {
   Result<VirtualDisplay> display = VirtualDisplay::start();
   ASSERT_TRUE(display) << display.error();
   open({"replay", write_log(), "--speed", "8"});
+  // While a window is being opened, what it is drawn by takes no loss of the display.
+  Picture first;
+  kerf_->shows([&first](const Picture& now) {
+    first = now;
+    return true;
+  });
+  EXPECT_TRUE(changes_from(first));
   display->kill_server();
   setenv("DISPLAY", shared_display.c_str(), 1);
   expect_end(0);

@@ -42,6 +42,9 @@ class Platform {
   /// Another program has destroyed the window, as `xdotool windowclose` does: it has no size and
   /// cannot be drawn into. Asks the X server, about 50 us.
   static bool is_gone(GLFWwindow* window);
+  /// Neither of the two. What GLFW said of the window's size just before is to be believed only
+  /// then: it asks the X server, and does not look whether an answer came.
+  static bool is_there(GLFWwindow* window) { return !is_gone(window) && !is_lost(); }
 
   /// Ends the waiting for events. From any thread, at any time.
   static void wake();

@@ -62,9 +62,9 @@ void Window::Impl::remember_settings() {
   if (options_.settings_file.empty()) return;
   if (!settings_faults_.empty() && !set_aside(options_.settings_file)) return;
   int width = 0, height = 0;
-  if (!Platform::is_gone(window_)) glfwGetWindowSize(window_, &width, &height);
+  glfwGetWindowSize(window_, &width, &height);
   // A window that was shrunk to nothing is not worth remembering.
-  if (width >= kLeastSize_px && height >= kLeastSize_px) {
+  if (Platform::is_there(window_) && width >= kLeastSize_px && height >= kLeastSize_px) {
     const auto unscaled = [this](int px) {
       const auto size = static_cast<int>(std::lround(static_cast<float>(px) / display_scale_));
       return std::clamp(size, kLeastSize_px, kMostSize_px);

@@ -227,7 +227,8 @@ void Window::Impl::lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 
 Done Window::Impl::draw() {
   glm::ivec2 window_px(0);
   glfwGetFramebufferSize(window_, &window_px.x, &window_px.y);
-  if (window_px.x < 1 || window_px.y < 1 || Platform::is_gone(window_)) return std::monostate{};
+  if (!Platform::is_there(window_)) return platform_.check();
+  if (window_px.x < 1 || window_px.y < 1) return std::monostate{};
   if (window_px != layer_->size_px()) is_window_old_ = true;
   if (Done done = layer_->resize(window_px); !done) return done;
   std::vector<ScreenRect> changed;
@@ -236,8 +237,8 @@ Done Window::Impl::draw() {
     set_scale();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    // Of a window that was destroyed just now it has asked for the size, and got anything.
-    if (Platform::is_gone(window_)) return std::monostate{};
+    // It has asked for the size.
+    if (!Platform::is_there(window_)) return platform_.check();
     feed_mouse();
     ImGui::NewFrame();
     const glm::vec2 display(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y);
