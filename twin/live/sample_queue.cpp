@@ -15,7 +15,7 @@ bool SampleQueue::push_or_drop(const ArrivedSample& sample) {
 
 bool SampleQueue::push_waiting(const ArrivedSample& sample) {
   std::unique_lock lock(mutex_);
-  not_full_.wait(lock, [this] { return closed_ || waiting_.size() < kCapacity; });
+  not_full_.wait(lock, [this] { return closed_ || waiting_.size() < kLogCapacity; });
   if (closed_) return false;
   waiting_.push_back(sample);
   if (waiting_.size() == 1) not_empty_.notify_one();
@@ -26,7 +26,7 @@ bool SampleQueue::pop_all(std::vector<ArrivedSample>& out, std::chrono::millisec
   out.clear();
   std::unique_lock lock(mutex_);
   not_empty_.wait_for(lock, patience, [this] { return closed_ || !waiting_.empty(); });
-  const bool was_full = waiting_.size() >= kCapacity;
+  const bool was_full = waiting_.size() >= kLogCapacity;
   out.swap(waiting_);
   if (was_full) not_full_.notify_one();
   return !(closed_ && out.empty());

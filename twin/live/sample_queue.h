@@ -19,11 +19,12 @@ struct ArrivedSample {
   std::uint64_t lost = 0;  ///< samples known to be lost before this one, in all
 };
 
-/// One producer, one consumer. Holds kCapacity samples (2 MB): 16 s at 1 kHz. Nothing is allocated
-/// after the first rounds.
+/// One producer, one consumer. Nothing is allocated after the first rounds.
 class SampleQueue {
  public:
-  static constexpr std::size_t kCapacity = 16384;
+  /// What is held while nobody takes it: 16 s of a machine's samples at 1 kHz (2 MB). A log waits,
+  /// so of it there need be no more than one side takes in one go; a few stay in the cache.
+  static constexpr std::size_t kCapacity = 16384, kLogCapacity = 1024;
 
   /// A machine does not wait: false, and counted, if the queue is full.
   bool push_or_drop(const ArrivedSample& sample);

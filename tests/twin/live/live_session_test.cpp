@@ -7,6 +7,8 @@
 #include <deque>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
 
 #include "stock/cutter/shape_spec.h"
 #include "tests/twin/live/live_shop.h"
@@ -280,6 +282,28 @@ TEST(SampleQueue, DropsAndCountsWhatIsTooMuch) {
   queue.close();
   EXPECT_FALSE(queue.pop_all(out, 0ms));
   EXPECT_FALSE(queue.push_waiting(sample));
+}
+
+TEST(SampleQueue, ALogWaitsForWhoTakesIt) {
+  SampleQueue queue;
+  constexpr std::uint64_t kSamples = 5000;
+  std::thread log([&queue] {
+    for (std::uint64_t i = 0; i < kSamples; ++i) {
+      ArrivedSample sample{};
+      sample.lost = i;
+      queue.push_waiting(sample);
+    }
+    queue.close();
+  });
+  std::vector<ArrivedSample> out;
+  std::uint64_t taken = 0;
+  while (queue.pop_all(out, 10s)) {
+    EXPECT_LE(out.size(), SampleQueue::kLogCapacity);
+    for (const ArrivedSample& sample : out) EXPECT_EQ(sample.lost, taken++);
+    std::this_thread::sleep_for(1ms);
+  }
+  log.join();
+  EXPECT_EQ(taken, kSamples);
 }
 
 TEST(LiveJson, EventsAreLinesOfJson) {
