@@ -115,6 +115,26 @@ const char* to_string(FindingId id) {
       return "grip-lost";
     case FindingId::kNoHit:
       return "no-hit";
+    case FindingId::kPositionUnknown:
+      return "position-unknown";
+    case FindingId::kToolLength:
+      return "tool-length";
+    case FindingId::kNotModelled:
+      return "not-modelled";
+    case FindingId::kNothingCut:
+      return "nothing-cut";
+    case FindingId::kToolNotChanged:
+      return "tool-not-changed";
+    case FindingId::kStopInPart:
+      return "stop-in-part";
+    case FindingId::kDrillSideways:
+      return "drill-sideways";
+    case FindingId::kBeamOnTraverse:
+      return "beam-on-traverse";
+    case FindingId::kCellCoarse:
+      return "cell-coarse";
+    case FindingId::kThinFilm:
+      return "thin-film";
   }
   return "";
 }

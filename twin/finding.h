@@ -61,6 +61,16 @@ enum class FindingId : std::uint8_t {
   kPunchDown,         ///< the sheet moves while the punch is down
   kGripLost,          ///< a clamp holds nothing of the sheet
   kNoHit,             ///< the program never makes the punch strike
+  kPositionUnknown,   ///< an axis stands where nothing has said: its moves are not cut
+  kToolLength,        ///< the offset in force is not the length of the tool in the spindle
+  kNotModelled,       ///< a machine of a kind that no model is for: turning
+  kNothingCut,        ///< the program moves nothing, or misses its blank entirely
+  kToolNotChanged,    ///< a T word that no M6 follows, and the old tool cuts on
+  kStopInPart,        ///< tool change, M0 or end of the program while the tool is inside the part
+  kDrillSideways,     ///< a drill is fed sideways through material
+  kBeamOnTraverse,    ///< the beam is on along traverses
+  kCellCoarse,        ///< the cells of the grid are too large for a tool or a depth of the program
+  kThinFilm,          ///< a wall or roof thinner than a cell was left, and the octree lost it
 };
 
 /// "rapid-contact", ...: the `id` of the report.
