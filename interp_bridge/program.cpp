@@ -160,7 +160,7 @@ std::unique_ptr<Program> open_kind(const ProgramOptions& options, bool from_stdi
         diagnostics, {},
         fmt::format("LinuxCNC's interpreter was not found: no executable {}{}", options.rs274_path,
                     options.rs274_path.find('/') == std::string::npos ? " in PATH" : ""),
-        "sudo apt install linuxcnc-uspace");
+        "sudo apt install --no-remove linuxcnc-uspace");
     return nullptr;
   }
   return make_nc_program(options, std::move(rs274), std::move(tools), std::move(survey),

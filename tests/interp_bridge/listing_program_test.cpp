@@ -240,7 +240,7 @@ TEST(OpenProgram, InterpreterThatIsNotInstalled) {
   EXPECT_EQ(
       run_program(options).messages(),
       "kerf: error: LinuxCNC's interpreter was not found: no executable rs274-of-nowhere in PATH\n"
-      "   hint: sudo apt install linuxcnc-uspace\n");
+      "   hint: sudo apt install --no-remove linuxcnc-uspace\n");
   options.path = folder.write("a.canon", kListing);
   EXPECT_TRUE(run_program(options).opened) << "a listing needs no interpreter";
 }

@@ -137,7 +137,7 @@ TEST_F(BadInput, InterpreterNotInstalled) {
   call.environment["PATH"] = folder_.path();
   expect(run_kerf(call), 4,
          "kerf: error: LinuxCNC's interpreter was not found: no executable rs274 in PATH\n"
-         "   hint: sudo apt install linuxcnc-uspace\n");
+         "   hint: sudo apt install --no-remove linuxcnc-uspace\n");
 }
 
 TEST_F(BadInput, MissingToolTable) {
