@@ -17,11 +17,11 @@ constexpr int kRefinements = 3;
 /// Of arcs on which axes turn: a piece of 0.1 rad becomes shorter than 1e-7 of it.
 constexpr int kThirds = 40;
 
-PointOnWay nearest_on_line(const Motion& m, const Vec3& place, double from_t) {
+PointOnWay nearest_on_line(const Motion& m, const Vec3& place, double from_t, double to_t) {
   const Vec3 way = m.to_mm - m.from_mm;
   const double square = glm::dot(way, way);
   double t = from_t;
-  if (square > 0) t = std::clamp(glm::dot(place - m.from_mm, way) / square, from_t, 1.0);
+  if (square > 0) t = std::clamp(glm::dot(place - m.from_mm, way) / square, from_t, to_t);
   return {t, glm::length(place - (m.from_mm + t * way))};
 }
 
@@ -83,7 +83,7 @@ struct AxisView {
   double along = 0, x = 0, y = 0;  ///< of the place
 };
 
-PointOnWay nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
+PointOnWay nearest_on_arc(const Motion& m, const Vec3& place, double from_t, double to_t) {
   AxisView view(m);
   view.look_at(place);
   PointOnWay best{from_t, view.distance(from_t)};
@@ -97,12 +97,12 @@ PointOnWay nearest_on_arc(const Motion& m, const Vec3& place, double from_t) {
     const double turn = 2 * kPi / std::abs(sweep);  // fraction of the way
     double t = std::atan2(view.y, view.x) / sweep;
     t += turn * std::ceil((from_t - t) / turn - 1);  // the passage before from_t
-    for (; t <= 1 + turn; t += turn) {
-      consider(std::clamp(t, from_t, 1.0));
-      if (!plain) consider(std::clamp(view.refined(t), from_t, 1.0));
+    for (; t <= to_t + turn; t += turn) {
+      consider(std::clamp(t, from_t, to_t));
+      if (!plain) consider(std::clamp(view.refined(t), from_t, to_t));
     }
   }
-  consider(1.0);
+  consider(to_t);
   return best;
 }
 
@@ -132,7 +132,7 @@ struct TurnedWay {
 };
 
 PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const TurnedWay& turned,
-                                   double from_t) {
+                                   double from_t, double to_t) {
   const Vec3 way = m.to_mm - m.from_mm;
   const double square = glm::dot(way, way) + glm::dot(turned.way, turned.way) +
                         glm::dot(turned.slide_way, turned.slide_way);
@@ -140,7 +140,7 @@ PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const Tur
   if (square > 0) {
     const double along = glm::dot(place - m.from_mm, way) + glm::dot(turned.off, turned.way) +
                          glm::dot(turned.slide_off, turned.slide_way);
-    t = std::clamp(along / square, from_t, 1.0);
+    t = std::clamp(along / square, from_t, to_t);
   }
   const double tip_mm = glm::length(place - (m.from_mm + t * way));
   return {t, std::hypot(tip_mm, turned.distance(t))};
@@ -148,19 +148,19 @@ PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const Tur
 
 /// By trials, and by thirds about the best of them.
 PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const TurnedWay& turned,
-                                  double from_t) {
+                                  double from_t, double to_t) {
   const auto distance = [&](double t) {
     return std::hypot(glm::length(place - point_at(m, t)), turned.distance(t));
   };
   const int trials = 16 + static_cast<int>(8 * std::abs(m.arc.sweep_rad));
-  const double step = (1 - from_t) / trials;
+  const double step = (to_t - from_t) / trials;
   PointOnWay best{from_t, distance(from_t)};
   for (int i = 1; i <= trials; ++i) {
-    const double t = i == trials ? 1.0 : from_t + i * step;
+    const double t = i == trials ? to_t : from_t + i * step;
     if (const double here = distance(t); here < best.distance_mm - kSamePlace_mm) best = {t, here};
   }
   double low = std::max(from_t, best.t - step);
-  double high = std::min(1.0, best.t + step);
+  double high = std::min(to_t, best.t + step);
   for (int i = 0; i < kThirds; ++i) {
     const double third = (high - low) / 3;
     if (distance(low + third) <= distance(high - third)) {
@@ -177,21 +177,21 @@ PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const Turn
 }  // namespace
 
 PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, const TurnedAxes& turned,
-                      double from_t) {
+                      double from_t, double to_t) {
   const TurnedWay axes(m, turned);
   if (axes.stands()) {
-    PointOnWay point = nearest_on(m, place_mm, from_t);
+    PointOnWay point = nearest_on(m, place_mm, from_t, to_t);
     const double off_mm = axes.distance(0);
     if (off_mm > 0) point.distance_mm = std::hypot(point.distance_mm, off_mm);
     return point;
   }
-  return m.kind == MotionKind::kArc ? nearest_on_turning_arc(m, place_mm, axes, from_t)
-                                    : nearest_on_turning_line(m, place_mm, axes, from_t);
+  return m.kind == MotionKind::kArc ? nearest_on_turning_arc(m, place_mm, axes, from_t, to_t)
+                                    : nearest_on_turning_line(m, place_mm, axes, from_t, to_t);
 }
 
-PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, double from_t) {
-  return m.kind == MotionKind::kArc ? nearest_on_arc(m, place_mm, from_t)
-                                    : nearest_on_line(m, place_mm, from_t);
+PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, double from_t, double to_t) {
+  return m.kind == MotionKind::kArc ? nearest_on_arc(m, place_mm, from_t, to_t)
+                                    : nearest_on_line(m, place_mm, from_t, to_t);
 }
 
 Motion part_of(const Motion& m, double from_t, double to_t) {

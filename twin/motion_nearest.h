@@ -14,10 +14,11 @@ struct PointOnWay {
   double distance_mm = 0;
 };
 
-/// The nearest point at or after fraction `from_t`. Where an arc of several turns passes the place
-/// more than once as near (within 1 um), the first passage. Lines and circles exactly; helices and
-/// spirals to within 0.1 um as long as they rise or grow by less than a radius a turn.
-PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, double from_t);
+/// The nearest point between the fractions `from_t` and `to_t`, 0 <= from_t <= to_t <= 1. Where an
+/// arc of several turns passes the place more than once as near (within 1 um), the first passage.
+/// Lines and circles exactly; helices and spirals to within 0.1 um as long as they rise or grow by
+/// less than a radius a turn.
+PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, double from_t, double to_t = 1);
 
 /// Axes A B C, which turn, and U V W, as a place has them.
 struct TurnedAxes {
@@ -33,7 +34,7 @@ struct TurnedAxes {
 /// lines, and for arcs on which none of them goes; else to within 1 um, as long as the place is
 /// less than a radius from the way.
 PointOnWay nearest_on(const Motion& motion, const Vec3& place_mm, const TurnedAxes& turned,
-                      double from_t);
+                      double from_t, double to_t = 1);
 
 /// The part of a motion between two fractions of its way, 0 <= from_t <= to_t <= 1. With 0 and 1
 /// the motion itself, bit for bit.

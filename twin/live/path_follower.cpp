@@ -100,19 +100,20 @@ bool PathFollower::passed_all() const {
   return pieces_.empty() || (pieces_.size() == 1 && found_ && t_ >= 1);
 }
 
-PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place,
-                                    double from_t) const {
+PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
+                                    double to_t) const {
   const ProgramPlace here = place_on(piece.motion, place);
   TurnedAxes turned{here.abc_deg, place.abc_known, options_.lever_mm, here.uvw_mm, place.uvw_known};
   for (std::size_t i = 0; i < 3; ++i) {
     turned.counts[i] = turned.counts[i] && piece.turned[i];
     turned.uvw_counts[i] = turned.uvw_counts[i] && piece.slid[i];
   }
-  return nearest_on(piece.motion, here.tip_mm, turned, from_t);
+  return nearest_on(piece.motion, here.tip_mm, turned, from_t, to_t);
 }
 
-/// One past the last piece that the machine can have reached.
-std::size_t PathFollower::reach(const FollowedPlace& place) const {
+/// As far as the machine can have come. That may be within a piece: a full circle ends where it
+/// begins.
+PathFollower::Reach PathFollower::reach(const FollowedPlace& place) const {
   // How long the machine stands in a dwell or a tool change is not the path's business.
   const Piece& first = pieces_.front();
   const double ahead_s = found_
@@ -126,23 +127,25 @@ std::size_t PathFollower::reach(const FollowedPlace& place) const {
     if (tool_agrees && pieces_[end].motion.tool != tool) break;
     ++end;
   }
-  return std::max<std::size_t>(end, 1);
+  return {std::max<std::size_t>(end, 1), latest_s};
 }
 
 /// The first place that is nearly as near as the nearest. `line` > 0: only on pieces of that line;
 /// `tool` >= 0: only on pieces of that tool.
 std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace& place,
-                                                            std::size_t end, int line,
+                                                            const Reach& reach, int line,
                                                             int tool) const {
   std::optional<Candidate> nearest;
   std::optional<Candidate> first;  // within the ambiguity of the nearest so far
-  for (std::size_t i = 0; i < end; ++i) {
+  for (std::size_t i = 0; i < reach.end; ++i) {
     const Motion& m = pieces_[i].motion;
     if (line > 0 && (m.source.file != 0 || m.source.line != static_cast<std::uint32_t>(line))) {
       continue;
     }
     if (tool >= 0 && m.tool != tool) continue;
-    const PointOnWay point = nearest_of(pieces_[i], place, i == 0 ? t_ : 0);
+    const double from_t = i == 0 ? t_ : 0;
+    const double to_t = std::max(from_t, pieces_[i].share_at(reach.latest_s));
+    const PointOnWay point = nearest_of(pieces_[i], place, from_t, to_t);
     const Candidate here{i, point.t, point.distance_mm};
     if (!nearest || here.distance_mm < nearest->distance_mm) nearest = here;
     // A better place at the far side of an ambiguity, or the same approach going on.
@@ -173,7 +176,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   // Line 0: the machine runs no program yet.
   if (pieces_.empty() || (!found_ && place.line == 0)) return point;
   unseen_s_ += place.elapsed_s;
-  const std::size_t end = reach(place);
+  const Reach end = reach(place);
   // What the machine says of itself goes first, but need not be so.
   std::optional<Candidate> at;
   const auto missed = [&] { return !at || at->distance_mm > options_.tolerance_mm; };
@@ -181,8 +184,8 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (missed() && place.tool >= 0) at = search(place, end, 0, place.tool);
   if (missed()) at = search(place, end, 0, -1);
   // A machine that was out of sight may be anywhere, and says where.
-  if (missed() && place.line > 0 && end < pieces_.size()) {
-    const auto far = search(place, pieces_.size(), place.line, place.tool);
+  if (missed() && place.line > 0) {
+    const auto far = search(place, {pieces_.size()}, place.line, place.tool);
     if (far && far->distance_mm <= options_.tolerance_mm) at = far;
   }
   if (!at) return point;

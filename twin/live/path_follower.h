@@ -1,6 +1,7 @@
 // twin/live/path_follower.h - where on the programmed path a machine is, from where its tip is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -133,6 +134,11 @@ class PathFollower {
     std::array<bool, 3> turned{};  ///< the program has turned the axis by its end
     std::array<bool, 3> slid{};    ///< or moved U, V, W
     double time_at(double t) const { return start_s + t * duration_s; }
+    /// Of its way, that has been gone when the machine has been in motion for so long; 0 to 1.
+    double share_at(double time_moved_s) const {
+      if (time_moved_s - moved_s >= duration_s) return 1;
+      return std::max(0.0, (time_moved_s - moved_s) / duration_s);
+    }
   };
   struct Candidate {
     std::size_t piece = 0;
@@ -140,9 +146,16 @@ class PathFollower {
     double distance_mm = std::numeric_limits<double>::infinity();
   };
   void add(const Motion& motion, double start_s, double duration_s);
-  PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t) const;
-  std::size_t reach(const FollowedPlace& place) const;
-  std::optional<Candidate> search(const FollowedPlace& place, std::size_t end, int line,
+  /// The part of the path in which a tip is looked for: from where the machine was last.
+  struct Reach {
+    std::size_t end = 0;  ///< one past the last piece
+    /// Time in motion (Piece::moved_s) up to which the machine can have come.
+    double latest_s = std::numeric_limits<double>::infinity();
+  };
+  PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
+                        double to_t) const;
+  Reach reach(const FollowedPlace& place) const;
+  std::optional<Candidate> search(const FollowedPlace& place, const Reach& reach, int line,
                                   int tool) const;
   void drive_to(const Candidate& to, const Drive& drive);
 

@@ -30,7 +30,8 @@ constexpr milliseconds kLongPatience{20'000};
 constexpr const char* kOwnBus = "kerfvcan1";  // to be taken down and away
 
 #define NEEDS_PROGRAM(name, package) \
-  if (!has_program(name)) GTEST_SKIP() << name << " is missing: apt-get install --no-remove " package
+  if (!has_program(name))            \
+  GTEST_SKIP() << name << " is missing: apt-get install --no-remove " package
 
 class CanSocket : public testing::Test {
  protected:

@@ -170,6 +170,82 @@ TEST(PathFollower, NeverAheadAndNeverFarBehind) {
   }
 }
 
+/// What comes back to where it began: full circles behind helices, a circle twice, closed squares,
+/// a spiral out and in again, a line there and back.
+MotionList closed_program(double radius) {
+  MotionList program;
+  program.at({0, 0, 5}).spindle(true).feed_rate(1500);
+  for (int hole = 0; hole < 3; ++hole) {
+    const Vec3 start{20.0 * hole, 0, 0};
+    const Vec3 center = start + Vec3{radius, 0, 0};
+    program.traverse(start + Vec3{0, 0, 5}).feed(start);
+    for (int turn = 1; turn <= 3; ++turn) {
+      program.arc(start + Vec3{0, 0, -1.5 * turn}, center, {0, 0, 1}, 2 * kPi);
+    }
+    const Vec3 floor{0, 0, -4.5};
+    for (int turn = 0; turn < 2; ++turn) {
+      program.arc(start + floor, center + floor, {0, 0, 1}, 2 * kPi);
+    }
+    program.feed(center + floor).traverse(center + Vec3{0, 0, 5});
+  }
+  const Vec3 corner{0, 20, -1};
+  program.traverse(corner + Vec3{0, 0, 6}).feed(corner);
+  for (int round = 0; round < 2; ++round) {
+    program.feed(corner + Vec3{4 * radius, 0, 0}).feed(corner + Vec3{4 * radius, 4 * radius, 0});
+    program.feed(corner + Vec3{0, 4 * radius, 0}).feed(corner);
+  }
+  for (int there = 0; there < 3; ++there) program.feed(corner + Vec3{30, 0, 0}).feed(corner);
+  const Vec3 eye{40, 40, -1};
+  program.feed(eye + Vec3{0.3, 0, 0});
+  program.arc(eye + Vec3{3 * radius, 0, 0}, eye, {0, 0, 1}, 6 * kPi);
+  program.arc(eye + Vec3{3 * radius, 0, 0}, eye, {0, 0, 1}, 2 * kPi);
+  program.arc(eye + Vec3{0.3, 0, 0}, eye, {0, 0, 1}, -6 * kPi);
+  program.traverse(eye + Vec3{0.3, 0, 6});
+  return program;
+}
+
+/// Corners are rounded as under G64: by the mean of the places within so much time.
+Vec3 rounded_tip(const RunningMachine& machine, double t_s, double window_s) {
+  constexpr int kPlaces = 20;
+  Vec3 sum{0};
+  for (int i = 0; i <= kPlaces; ++i) {
+    const double t = t_s + window_s * (static_cast<double>(i) / kPlaces - 0.5);
+    sum += machine.tip(std::clamp(t, 0.0, machine.duration_s()));
+  }
+  return sum / (kPlaces + 1.0);
+}
+
+TEST(PathFollower, ClosedPathsAreNotJumpedOver) {
+  constexpr double kRounding_s = 0.03;
+  for (const double radius : {1.5, 4.0}) {
+    for (const double rate_hz : {1000.0, 200.0, 100.0, 50.0, 20.0, 10.0}) {
+      for (const bool with_line : {false, true}) {
+        SCOPED_TRACE(testing::Message()
+                     << "radius " << radius << ", " << rate_hz << " Hz, lines " << with_line);
+        Chase chase(closed_program(radius));
+        const double end_s = chase.machine().duration_s();
+        double worst_ahead_s = 0, worst_behind_s = 0;
+        for (double t = 0; t < end_s; t += 1 / rate_hz) {
+          const Vec3 error_mm =
+              rounded_tip(chase.machine(), t, kRounding_s) - chase.machine().tip(t);
+          const FollowedPoint point = chase.see(t, with_line, error_mm);
+          ASSERT_TRUE(point.on_path) << t;
+          worst_ahead_s = std::max(worst_ahead_s, point.program_s - t);
+          worst_behind_s = std::max(worst_behind_s, t - point.program_s);
+        }
+        EXPECT_LT(worst_ahead_s, kRounding_s) << "ahead of the machine";
+        EXPECT_LT(worst_behind_s, 0.1 + 2.5 / rate_hz);
+        chase.see(end_s);
+        chase.see(end_s + 1);
+        double whole_mm = 0;
+        for (const TimedMotion& m : chase.machine().list()) whole_mm += path_length_mm(m.motion);
+        // Parts of a spiral are measured less exactly than the whole.
+        EXPECT_NEAR(chase.driven_mm(), whole_mm, 1e-3 * whole_mm);
+      }
+    }
+  }
+}
+
 TEST(PathFollower, FollowingErrorsDoNotConfuseIt) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 0.01);
