@@ -61,6 +61,8 @@ const char* to_string(FindingId id) {
       return "source-gap";
     case FindingId::kOffPath:
       return "off-path";
+    case FindingId::kNotThisProgram:
+      return "not-this-program";
     case FindingId::kToolMismatch:
       return "tool-mismatch";
     case FindingId::kLengthUnknown:

@@ -34,6 +34,7 @@ enum class FindingId : std::uint8_t {
   kNotSimulated,      ///< user M-codes, M66: what a machine would do there is not known
   kSourceGap,         ///< positions were missing while the machine moved: that move is not cut
   kOffPath,           ///< the machine's tip is not on the path of the program
+  kNotThisProgram,    ///< the machine has never been on the path of the program, and cuts
   kToolMismatch,      ///< the machine has another tool in the spindle than the program
   kLengthUnknown,     ///< a tool whose length nothing tells; it counts as 0
   kLateStart,         ///< the machine was running its program when it was first seen

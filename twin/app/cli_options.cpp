@@ -273,6 +273,10 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
                   "the way between two positions with a gap between them: mark | cut | ignore "
                   "(default mark: a finding, not cut)")
       ->type_name("POLICY");
+  live.add_option("--joined-late", a.joined_late,
+                  "what a program that runs already cuts before the machine is first seen: cut | "
+                  "keep (default cut: it is in the workpiece)")
+      ->type_name("POLICY");
   live.add_option("--look-ahead", a.look_ahead,
                   "how far ahead of the machine the program is run (default 10, 0 = not)")
       ->type_name("SECONDS");

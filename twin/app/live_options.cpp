@@ -36,6 +36,17 @@ void understand_gap(const std::string& text, OptionReader& reader, GapPolicy& po
   }
 }
 
+void understand_joined_late(const std::string& text, OptionReader& reader, JoinedLate& policy) {
+  if (text.empty()) return;
+  if (text == "cut") {
+    policy = JoinedLate::kCut;
+  } else if (text == "keep") {
+    policy = JoinedLate::kKeep;
+  } else {
+    reader.fault("--joined-late", fmt::format("'{}' is no policy; allowed: cut, keep", text));
+  }
+}
+
 /// The log to replay, with what the configuration says of its kind.
 void understand_log(const LiveArguments& a, LiveConfig& config, Diagnostics& diagnostics) {
   LogSettings log;
@@ -94,6 +105,9 @@ void understand_cutting(const LiveArguments& a, const ProgramRequest& program,
       reader.number("--off-path", a.off_path, kOffPath, cutting.follow.tolerance_mm);
   cutting.guard_s =
       reader.number("--look-ahead", a.look_ahead, kLookAhead, config.follow.look_ahead_s);
+  cutting.off_path_s = config.follow.off_path_s;
+  cutting.joined_late = config.follow.joined_late;
+  understand_joined_late(a.joined_late, reader, cutting.joined_late);
   cutting.gap = config.common.gap;
   understand_gap(a.gap, reader, cutting.gap);
   if (config.machine.max_mm_per_min) {

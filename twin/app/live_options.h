@@ -31,6 +31,7 @@ struct LiveArguments {
   std::string for_s;
   std::string gap;
   std::string look_ahead;
+  std::string joined_late;
   std::string off_path;
   std::string events;
   std::string cpu_limit;     ///< shadow

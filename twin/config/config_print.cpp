@@ -191,6 +191,8 @@ void print_work(Printer& printer, const LiveConfig& config) {
     printer.put("path", *config.follow.planned_path ? "planned" : "programmed");
   }
   printer.put("off_path_mm", config.follow.options.tolerance_mm);
+  printer.put("off_path_s", config.follow.off_path_s);
+  printer.put("joined_late", config.follow.joined_late == JoinedLate::kKeep ? "keep" : "cut");
   printer.put("look_ahead_s", config.follow.look_ahead_s);
   printer.close();
   printer.open("view");

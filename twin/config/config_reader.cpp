@@ -143,6 +143,10 @@ void read_follow(const GroupReader& follow, ConfigFollow& out) {
   out.program = follow.path("program");
   if (const int word = follow.word("path"); word >= 0) out.planned_path = word == 1;
   follow.number("off_path_mm", out.options.tolerance_mm);
+  follow.number("off_path_s", out.off_path_s);
+  if (const int word = follow.word("joined_late"); word >= 0) {
+    out.joined_late = word == 1 ? JoinedLate::kKeep : JoinedLate::kCut;
+  }
   follow.number("look_ahead_s", out.look_ahead_s);
 }
 

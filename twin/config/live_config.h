@@ -68,7 +68,9 @@ struct ConfigFollow {
   std::optional<std::string> program;  ///< path
   std::optional<bool> planned_path;    ///< what is cut; not given: the command's default
   FollowOptions options;               ///< tolerance_mm is off_path_mm
-  double look_ahead_s = 10;            ///< LiveCutOptions::guard_s; 0: not
+  double off_path_s = 2;               ///< LiveCutOptions::off_path_s
+  JoinedLate joined_late = JoinedLate::kCut;
+  double look_ahead_s = 10;  ///< LiveCutOptions::guard_s; 0: not
 };
 
 struct ConfigView {

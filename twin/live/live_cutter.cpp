@@ -24,8 +24,6 @@ constexpr double kShortGap_s = 0.1;
 constexpr double kShortGapPeriods = 4;
 /// Share of a new interval in the usual period.
 constexpr double kPeriodShare = 0.05;
-/// Program time that is planned beyond what is looked at, so that the follower has where to look.
-constexpr double kPlannedAhead_s = 6.0;
 /// A jump is faster than the machine by this factor, and longer than this.
 constexpr double kJumpFactor = 1.5;
 constexpr double kJump_mm = 1.0;
@@ -38,8 +36,6 @@ constexpr double kStanding_rpm = 1.0;
 /// A machine that says it runs, and is not seen at the program's beginning, is looked for in all of
 /// it after so long.
 constexpr double kJoin_s = 0.3;
-/// And again, should it not be found, after so many times as long.
-constexpr double kJoinAgain = 4;
 /// An axis that has turned by less stands. Degrees.
 constexpr double kTurned_deg = 0.01;
 
@@ -163,14 +159,7 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
   ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
                      options_.wait_for_program);
   const FollowedPlace place = place_of(now, elapsed_s);
-  const PathFollower::Drive drive = [this](const PathFollower::DrivenPart& part) {
-    driven_.push_back(part);
-  };
-  point = follower_.follow(place, drive);
-  if (!point.on_path && !follower_.found() && lost_sight_s_ >= join_after_s_ && join(place)) {
-    point = follower_.follow(place, drive);
-    driven_.clear();  // the way to where it was first seen has not been seen
-  }
+  point = follower_.found() ? follower_.follow(place, drive()) : find(place);
   if (point.on_path && point.kinematics_type != kinematics_type_) {
     take_kinematics(point.kinematics_type, place.without_length, now);
   }
@@ -224,82 +213,6 @@ Pose LiveCutter::pose_in_workpiece(const Sighting& at) const {
   here.tool_offset_mm = {0, 0, at.tool_length_mm};
   set_type(path->machine(), kinematics_type_, here);
   return path->pose_at(here, 1);
-}
-
-/// A machine that was running when we came: finds where in the program it is, and takes what lies
-/// before as cut. False if it cannot be told.
-bool LiveCutter::join(const FollowedPlace& place) {
-  join_after_s_ *= kJoinAgain;
-  const std::optional<std::uint64_t> motion = motion_at(place);
-  if (!motion) return false;
-  cut_before(*motion);
-  Finding finding =
-      finding_of(FindingId::kLateStart, Severity::kNote, t_s_, place.here.tip_mm, place.tool);
-  finding.source = {0, static_cast<std::uint32_t>(place.line)};
-  finding.text =
-      "the machine was here already when it was first seen; what the program cuts before is taken "
-      "as cut";
-  log_.add(std::move(finding));
-  guard_stale_ = true;
-  return true;
-}
-
-/// Number of the first motion of the machine's line that its tip is on.
-std::optional<std::uint64_t> LiveCutter::motion_at(const FollowedPlace& place) const {
-  if (!options_.reopen || place.line <= 0) return std::nullopt;
-  const std::unique_ptr<Program> program = options_.reopen();
-  if (!program) return std::nullopt;
-  std::optional<std::uint64_t> found;
-  std::uint64_t number = 0;
-  Diagnostics ignored;
-  program->run(
-      [&](std::span<const Motion> motions) {
-        for (const Motion& m : motions) {
-          const bool here = m.source.file == 0 && m.start_known &&
-                            m.source.line == static_cast<std::uint32_t>(place.line) &&
-                            (m.kind == MotionKind::kTraverse || is_feed(m));
-          const ProgramPlace at = here ? place_on(m, place) : ProgramPlace{};
-          const TurnedAxes turned{at.abc_deg, place.abc_known, options_.follow.lever_mm, at.uvw_mm,
-                                  place.uvw_known};
-          const bool turns = m.from_abc_deg != m.to_abc_deg || m.from_uvw_mm != m.to_uvw_mm;
-          if (here && nearest_on(m, at.tip_mm, turns ? turned : TurnedAxes{}, 0).distance_mm <=
-                          options_.follow.tolerance_mm) {
-            found = number;
-            return false;
-          }
-          ++number;
-        }
-        return true;
-      },
-      {}, ignored);
-  return found;
-}
-
-/// Without a word.
-void LiveCutter::cut_before(std::uint64_t motion) {
-  cut_run();
-  stage_.hold_reports();
-  double begin_s = 0;
-  while (ahead_->forgotten() + ahead_->motions().size() <= motion) {
-    for (const PlannedMotion& planned : ahead_->motions()) begin_s = planned.end_s;
-    cut_planned(ahead_->motions().size());
-    follower_.begin_at(begin_s);
-    const std::uint64_t before = ahead_->forgotten();
-    ahead_->read_until(begin_s + kPlannedAhead_s, true);
-    if (ahead_->motions().empty() && ahead_->forgotten() == before && ahead_->complete()) break;
-  }
-  const auto left = static_cast<std::size_t>(motion - ahead_->forgotten());
-  if (left < ahead_->motions().size()) begin_s = ahead_->motions()[left].start_s;
-  cut_planned(std::min(left, ahead_->motions().size()));
-  follower_.begin_at(begin_s);
-  stage_.release_reports();
-}
-
-/// The first `count` motions that have been planned, as the program has them.
-void LiveCutter::cut_planned(std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) cut_now(ahead_->motions()[i].motion, 0, t_s_);
-  ahead_->forget(count);
-  punched_ = ahead_->forgotten();
 }
 
 /// As far as the tip has gone on the part, or what the axes have turned at the lever.
@@ -413,6 +326,7 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   // Jogging in the air needs no tool that is known.
   if (stage_.is_upright(motion) && !near_stock(from.tip_mm, now.place.tip_mm, radius_mm)) return;
   note_unseen_beam(now);
+  note_foreign_program(now, duration_s);
   cut(motion, DrivenRun::Way::kStraight, duration_s);
   // The workpiece is no longer what the program makes of it.
   guard_stale_ |= off_path;

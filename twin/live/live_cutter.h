@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,20 @@
 
 namespace kerf {
 
+/// Program time that is planned beyond what is looked at, so that the follower has where to look.
+inline constexpr double kPlannedAhead_s = 6.0;
+
 /// What becomes of the way between two samples with a gap between them.
 enum class GapPolicy : std::uint8_t {
   kMark,    ///< it is not cut, and is a finding
   kCut,     ///< it is cut, and is a finding
   kIgnore,  ///< it is not cut
+};
+
+/// What becomes of the program before the place where a machine that runs it already is first seen.
+enum class JoinedLate : std::uint8_t {
+  kCut,   ///< it is in the workpiece
+  kKeep,  ///< the workpiece is as it was given
 };
 
 struct LiveCutOptions {
@@ -46,6 +56,9 @@ struct LiveCutOptions {
   double most_mm_per_s = std::numeric_limits<double>::infinity();
   TimelineOptions timeline;
   double guard_s = 10;  ///< how far to look ahead; 0: not
+  JoinedLate joined_late = JoinedLate::kCut;
+  /// A machine that has cut for so long, and never been on the path of the program, runs another.
+  double off_path_s = 2;
   /// Opens the program once more, to find out how far a machine has come that runs it already; may
   /// be empty.
   std::function<std::unique_ptr<Program>()> reopen;
@@ -141,10 +154,13 @@ class LiveCutter {
   static ProgramPlace place_on_path(const Sighting& now, const FollowedPoint& point);
   Pose pose_in_workpiece(const Sighting& at) const;
   double way_between(const Sighting& before, const Sighting& now) const;
-  bool join(const FollowedPlace& place);
+  PathFollower::Drive drive();
+  FollowedPoint find(const FollowedPlace& place);
+  void note_late_start(const FollowedPlace& place);
   std::optional<std::uint64_t> motion_at(const FollowedPlace& place) const;
-  void cut_before(std::uint64_t motion);
-  void cut_planned(std::size_t count);
+  void pass(std::uint64_t motion);
+  void pass_planned(std::size_t count);
+  void take_as_cut(std::span<const PathFollower::DrivenPart> parts);
   enum class Break : std::uint8_t { kNone, kGap, kJump };
   bool too_fast(const Sighting& before, const Sighting& now) const;
   Break break_between(const Sighting& before, const Sighting& now, bool lost) const;
@@ -157,6 +173,7 @@ class LiveCutter {
   void note_unseen_beam(const Sighting& now);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
+  void note_foreign_program(const Sighting& now, double duration_s);
   void cut_chord(const ProgramPlace& from, const Sighting& now, double duration_s, bool off_path);
   void cut_path(const Sighting& now, const FollowedPoint& point, double duration_s);
   void cut(const Motion& motion, DrivenRun::Way way, double duration_s);
@@ -208,8 +225,12 @@ class LiveCutter {
   double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
   int program_tool_ = -1;    ///< where the machine was last on the path
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
+  double foreign_s_ = 0;     ///< the machine has cut, and never been on the path, for so long
+  bool foreign_told_ = false;
+  double watched_s_ = 0;  ///< since the first sample, while the path has not been found
   std::optional<SeenStrokes> strokes_;
   std::uint64_t punched_ = 0;   ///< motions of the program that have been; the next is under way
+  bool struck_before_ = false;  ///< what the program strikes before this sample has been struck
   double seen_share_ = 0;       ///< of that one, since strokes of it were last cut
   int real_tool_ = -1;          ///< in the spindle, when the machine was last between two places ..
   int real_program_tool_ = -1;  ///< .. where the program has this one

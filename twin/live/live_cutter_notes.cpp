@@ -188,6 +188,24 @@ void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) 
   log_.deepen(*off_path_event_, point.distance_mm);
 }
 
+/// Once: the machine has worked in the blank for `duration_s` more, and not by this program.
+void LiveCutter::note_foreign_program(const Sighting& now, double duration_s) {
+  if (!ahead_ || follower_.found() || foreign_told_) return;
+  foreign_s_ += duration_s;
+  if (foreign_s_ < options_.off_path_s) return;
+  foreign_told_ = true;
+  Finding finding = finding_of(FindingId::kNotThisProgram, Severity::kError, now.t_s,
+                               now.pose.origin_mm, now.tool);
+  finding.text = fmt::format(
+      "the machine has worked in the blank for {:.1f} s and has not once been on the path of this "
+      "program: nothing can be told ahead",
+      foreign_s_);
+  finding.hint =
+      "another program, another work offset (--ini, machine.work_offset), or positions in another "
+      "frame or unit";
+  log_.add(std::move(finding));
+}
+
 /// Once: a sheet is cut by whoever knows when the beam is on.
 void LiveCutter::note_unseen_beam(const Sighting& now) {
   if (!options_.beam || ahead_ || beam_told_ || !std::isnan(sample_.spindle_rpm)) return;

@@ -211,14 +211,8 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   point.share = at->t;
   if (at->distance_mm > options_.tolerance_mm) return point;
   point.on_path = true;
-  if (!found_) {
-    // The way to where the machine was first seen has not been seen.
-    found_ = true;
-    for (std::size_t i = 0; i < at->piece; ++i) pieces_.pop_front();
-    t_ = at->t;
-  } else {
-    drive_to(*at, drive);
-  }
+  found_ = true;
+  drive_to(*at, drive);
   unseen_s_ = 0;
   return point;
 }

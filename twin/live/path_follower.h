@@ -105,7 +105,8 @@ class PathFollower {
   void append(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path);
 
   /// Looks for the tip. If it is on the path, the path up to there has been `driven`: each call one
-  /// piece of it or part of one, in order, without gaps from where the last one ended.
+  /// piece of it or part of one, in order, without gaps from where the last one ended; the first
+  /// time, from the path's beginning, whether or not the machine has been seen there.
   struct DrivenPart {
     Motion motion;
     double duration_s = 0;       ///< by the plan

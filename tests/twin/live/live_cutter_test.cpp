@@ -437,6 +437,84 @@ TEST(LiveCutter, AMachineThatRunsAlreadyIsJoinedWhereItIs) {
   EXPECT_LT(watch.cutter().stage().tools()[0].cut_s, 0.45 * end_s);
 }
 
+/// A slot, one beside it, and a rapid back through the first.
+MotionList two_slots() {
+  MotionList program;
+  program.at({5, 20, 5}).tool(1).spindle(true).feed_rate(900);
+  program.traverse({5, 20, 3}).feed({5, 20, -3}).feed({35, 20, -3}).traverse({35, 20, 5});
+  program.traverse({5, 30, 5}).feed({5, 30, -3}).feed({35, 30, -3}).traverse({35, 30, 5});
+  program.traverse({35, 20, 5}).traverse({35, 20, -3}).traverse({5, 20, -3}).traverse({5, 20, 5});
+  return program;
+}
+
+TEST(LiveCutter, WhatCameBeforeAMachineThatIsFoundAtOnceIsCutToo) {
+  const MotionList program = two_slots();
+  const auto wanted = dry_run(program.list());
+  const RunningMachine machine(program.list());
+  const double end_s = machine.duration_s();
+  double second_slot_s = 0;
+  for (const TimedMotion& m : machine.list()) {
+    if (m.motion.source.line == 8) second_slot_s = m.step.start_s;
+  }
+  // Within the first slot; within the second, whose line the machine names.
+  for (const double begin_s : {2.0, second_slot_s + 0.5}) {
+    for (const bool with_line : {true, false}) {
+      if (!with_line && begin_s > 4) continue;
+      for (const JoinedLate policy : {JoinedLate::kCut, JoinedLate::kKeep}) {
+        SCOPED_TRACE(testing::Message() << begin_s << " s, lines " << with_line);
+        LiveCutOptions options;
+        options.joined_late = policy;
+        Watch watch(options, &program);
+        for (double t = begin_s; t < end_s + 0.02; t += 0.01) {
+          watch.cutter().take(machine.sample(std::min(t, end_s), with_line), t, false);
+          watch.cutter().look();
+        }
+        const double missing_mm3 =
+            watch.removed_mm3() - (wanted->blank_mm3() - wanted->remaining_mm3());
+        ASSERT_FALSE(watch.ids().empty());
+        EXPECT_EQ(watch.ids()[0], FindingId::kLateStart);
+        if (policy == JoinedLate::kCut) {
+          EXPECT_EQ(watch.ids().size(), 1U) << message_of(watch.log().kept().back());
+          EXPECT_LT(worst_difference_mm(watch.stock(), *wanted), 2e-5);
+        } else {
+          // The rapid back cuts the first slot then, and it shows.
+          EXPECT_LT(missing_mm3, begin_s > 4 ? -10 : 1e-3);
+          EXPECT_EQ(watch.ids()[1], FindingId::kRapidContact);
+          EXPECT_NE(watch.log().kept()[0].text.find("is not cut"), std::string::npos);
+        }
+      }
+    }
+  }
+}
+
+TEST(LiveCutter, AMachineThatHasBeenWatchedSinceBeforeIsNotLate) {
+  MotionList program = two_slots();
+  const RunningMachine machine(program.list());
+  Watch watch({}, &program);
+  // It stands elsewhere for a minute, and is first seen on the path 1 s after the program's start.
+  for (int i = 0; i < 60; ++i) watch.see({-40, -40, 50}, i);
+  for (double t = 1; t < machine.duration_s(); t += 0.01) {
+    watch.cutter().take(machine.sample(t), 60 + t, false);
+  }
+  for (const FindingId id : watch.ids()) EXPECT_NE(id, FindingId::kLateStart);
+}
+
+TEST(LiveCutter, AMachineThatCutsAndIsNeverOnThePathRunsAnotherProgram) {
+  const MotionList program = two_slots();
+  const RunningMachine machine(program.list());
+  for (const double beside_mm : {0.0, 1.5}) {
+    Watch watch({}, &program);
+    for (int i = 0; i < 600; ++i) {
+      AxisSample sample = machine.sample(std::min(0.01 * i, machine.duration_s()));
+      sample.set(1, sample.position[1] + beside_mm);
+      watch.cutter().take(sample, 0.01 * i, false);
+    }
+    const std::vector<FindingId> wanted =
+        beside_mm > 0 ? std::vector{FindingId::kNotThisProgram} : std::vector<FindingId>{};
+    EXPECT_EQ(watch.ids(), wanted) << beside_mm;
+  }
+}
+
 TEST(LiveCutter, TheWayToTheProgramsFirstPositionIsNotOffItsPath) {
   MotionList program;
   program.at({10, 20, 5}).tool(1).spindle(true).feed_rate(600);

@@ -78,13 +78,14 @@ class SheetWatch {
   using Edit = std::function<void(AxisSample&, const TimedMotion&)>;
 
   SheetWatch(const MotionList* program, TurretPointer press, double guard_s = 0,
-             GapPolicy gap = GapPolicy::kMark)
+             GapPolicy gap = GapPolicy::kMark, JoinedLate joined_late = JoinedLate::kCut)
       : sheet_(sheet_200()) {
     LiveCutOptions options;
     options.frame.tool_length = ToolLengthFrom::kNone;
     options.wait_for_program = true;
     options.guard_s = guard_s;
     options.gap = gap;
+    options.joined_late = joined_late;
     options.turret = std::move(press);
     if (!options.turret) options.beam = BeamSettings{};
     std::unique_ptr<Program> listed;
@@ -184,8 +185,8 @@ TEST(LivePunch, OfARowWhatIsSeenIsStruck) {
   program.at({10, 10, 5}).tool(1).feed_rate(3000).traverse({30, 50, 5}).spindle(true).signal();
   program.feed({110, 50, 5}).spindle(false).signal().traverse({10, 10, 5});
   const RunningMachine machine(program.list());
-  const auto punched = [&](double from_x, double until_x) {
-    SheetWatch watch(&program, turret("m3", 8));
+  const auto punched = [&](double from_x, double until_x, JoinedLate joined_late) {
+    SheetWatch watch(&program, turret("m3", 8), 0, GapPolicy::kMark, joined_late);
     for (double t = 0; t <= machine.duration_s(); t += 0.01) {
       const double x = machine.tip(t).x;
       const bool feeds = machine.at(t).motion.kind == MotionKind::kFeed;
@@ -197,10 +198,12 @@ TEST(LivePunch, OfARowWhatIsSeenIsStruck) {
     return out;
   };
   // Strokes at 30, 38, .. 110; the first one is M3's.
-  const std::vector<bool> middle = punched(51, 75);
+  const std::vector<bool> middle = punched(51, 75, JoinedLate::kKeep);
+  const std::vector<bool> until = punched(51, 75, JoinedLate::kCut);
   for (std::size_t i = 0; i < middle.size(); ++i) {
     const double x = 30 + 8 * static_cast<double>(i);
     EXPECT_EQ(middle[i], x > 52 && x < 75) << x;
+    EXPECT_EQ(until[i], x < 75) << x;
   }
 }
 
