@@ -16,6 +16,7 @@
 
 #include "interp_bridge/child_listener.h"
 #include "interp_bridge/interpreter_process.h"
+#include "interp_bridge/parameter_file.h"
 #include "interp_bridge/private_folder.h"
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/record_reader.h"
@@ -26,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr double kInchMm = 25.4;
 
 /// A row as `kerf-interp --tools` takes it: machine units, all digits.
 std::string tool_row(const ToolTableRow& row, double unit_mm, bool lengths) {
@@ -98,6 +101,7 @@ class BridgeProgram final : public Program {
     Diagnostics& diagnostics;
   };
   Result<Session> start_session() const;
+  Result<std::string> parameters_for(const std::string& home) const;
   Result<std::vector<std::string>> arguments(const std::string& home) const;
   std::string shown_name(const std::string& raw) const;
   void report(Severity severity, SourceRef place, std::string message, std::string hint,
@@ -114,6 +118,27 @@ class BridgeProgram final : public Program {
   std::atomic<double> progress_{0};
 };
 
+/// The interpreter rewrites its parameters; a path that cannot exist is not written.
+Result<std::string> BridgeProgram::parameters_for(const std::string& home) const {
+  const InterpreterSetup& machine = options_.machine;
+  if (machine.parameter_path.empty() && !machine.work_offset) return home + "/none/parameters";
+  std::string path = home + "/parameters";
+  if (!machine.work_offset) {
+    std::error_code error;
+    fs::copy_file(machine.parameter_path, path, error);
+    if (!error) return path;
+    return Error{fmt::format("cannot read {}: {}", machine.parameter_path, error.message())};
+  }
+  // The interpreter itself tells the faults of the file.
+  Diagnostics ignored;
+  const Result<ParameterFile> values =
+      parameters_of(machine, machine.inch_machine ? kInchMm : 1.0, ignored);
+  if (!values) return Error{values.error()};
+  std::ofstream file(path);
+  if (file << values->text() << std::flush) return path;
+  return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+}
+
 Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& home) const {
   const InterpreterSetup& machine = options_.machine;
   const auto cannot_write = [](const std::string& path) {
@@ -121,28 +146,20 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   };
   const std::string tool_path = home + "/tools";
   std::ofstream tool_file(tool_path);
-  const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
+  const double unit_mm = machine.inch_machine ? kInchMm : 1.0;
   for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine.tool_lengths);
   if (!tool_file.flush()) return cannot_write(tool_path);
   const std::string torch_path = home + "/torch";
   std::ofstream torch_file(torch_path);
   if (!(torch_file << torch_run_text(torch_) << std::flush)) return cannot_write(torch_path);
-  // The interpreter rewrites its parameters; a path that cannot exist is not written.
-  std::string parameters = home + "/none/parameters";
-  if (!machine.parameter_path.empty()) {
-    parameters = home + "/parameters";
-    std::error_code error;
-    fs::copy_file(machine.parameter_path, parameters, error);
-    if (error) {
-      return Error{fmt::format("cannot read {}: {}", machine.parameter_path, error.message())};
-    }
-  }
+  const Result<std::string> parameters = parameters_for(home);
+  if (!parameters) return Error{parameters.error()};
   std::vector<std::string> out = {"--records",      std::to_string(kListingFd),
                                   "--units",        machine.inch_machine ? "inch" : "mm",
                                   "--axes",         std::to_string(machine.axis_mask),
                                   "--tools",        tool_path,
                                   "--torch",        torch_path,
-                                  "--parameters",   parameters,
+                                  "--parameters",   *parameters,
                                   "--block-delete", options_.block_delete ? "on" : "off"};
   if (machine.start != std::array<double, 9>{}) {
     out.insert(out.end(), {"--start", fmt::format("{}", fmt::join(machine.start, " "))});
@@ -342,7 +359,10 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.torch = torch_;
   feeding.signals = options_.signals;
   feeding.materials = &materials_;
-  if (options_.machine.start_known) feeding.start = options_.machine.start;
+  const InterpreterSetup& machine = options_.machine;
+  if (machine.start_known) feeding.start = machine.start;
+  feeding.places = {machine.unknown_places && !machine.start_known, machine.start,
+                    machine.work_offset || !machine.parameter_path.empty(), machine.z_matters};
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);

@@ -109,11 +109,20 @@ struct Motion {
   bool mist = false;
   PathMode path_mode = PathMode::kContinuous;
   bool feed_per_rev = false;  ///< G95: feed is mm per revolution
-  /// False where the start is not known: in the first motion (rs274 starts at 0,0,0 and the real
-  /// machine does not) and all steps before it, and after a spline, whose points the listing does
-  /// not hold. kerf must not cut along such a move; `to_mm` is right, from_mm equals it, and an arc
-  /// has a sweep of 0.
+  /// False where the way is not known: in the first motion (rs274 starts at 0,0,0 and the real
+  /// machine does not) and all steps before it, after a spline, whose points the listing does not
+  /// hold, and where an axis is unknown (unknown_from, unknown_to). kerf must not cut along such a
+  /// move; `to_mm` is right but for the axes of unknown_to, from_mm equals it, and an arc has a
+  /// sweep of 0.
   bool start_known = true;
+  /// Axes, bit 0 is X, 1 Y, 2 Z, of which nothing has said where they stand when the step begins,
+  /// and when it ends: no block has placed them yet, or they went where only the machine's zero
+  /// would tell. Only of programs that are followed so (InterpreterSetup::unknown_places).
+  std::uint8_t unknown_from = 0;
+  std::uint8_t unknown_to = 0;
+  /// The step goes to a place of the machine (G53, G28, G30, a tool change), and where the work
+  /// lies in the machine is not known.
+  bool to_machine_place = false;
   std::uint8_t user_m = 0;  ///< kSignal of M100 to M199: the number; else 0
   /// kArc only: the rounded corner of a traverse, where the planned path is taken for the
   /// program's; as rapid as that.

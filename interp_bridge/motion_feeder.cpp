@@ -34,7 +34,7 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
       diagnostics_(diagnostics),
       fold_(options_.tool_by_index),
       materials_(options_.torch.materials) {
-  if (options_.start) fold_.stand_at(*options_.start);
+  start_fold();
   const TorchRun& torch = options_.torch;
   fold_.set_filter({torch.qtplasmac && !torch.text.is_filtered, torch.inch_machine});
   fold_.set_signals(options_.signals.wanted);
@@ -42,8 +42,41 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
   batch_.reserve(kBatchMotions + kMotionsPerCommand);
 }
 
+void MotionFeeder::start_fold() {
+  if (options_.start) {
+    fold_.stand_at(*options_.start);
+    return;
+  }
+  const MotionFeederOptions::Places& places = options_.places;
+  if (!places.followed || summary_.files.empty()) return;
+  constexpr std::uint8_t kAll = 7;
+  constexpr std::uint8_t kButZ = 3;
+  const std::uint8_t named = blocks_.named_in(summary_.files[0]);
+  const auto axes = static_cast<std::uint8_t>(named & (places.z_matters ? kAll : kButZ));
+  fold_.start_unknown(places.interpreter_start, axes, places.zero_known ? kAll : 0);
+}
+
+/// Of what moves or shifts the words of its block are looked up.
+void MotionFeeder::follow_block(CanonicalName name) {
+  switch (name) {
+    case CanonicalName::kStraightTraverse:
+    case CanonicalName::kStraightFeed:
+    case CanonicalName::kStraightProbe:
+    case CanonicalName::kArcFeed:
+    case CanonicalName::kRigidTap:
+    case CanonicalName::kNurbsFeed:
+    case CanonicalName::kSetG5xOffset:
+    case CanonicalName::kSetG92Offset:
+      fold_.set_block(blocks_.at(source_, summary_.files, fold_.unplaced()));
+      return;
+    default:
+      return;
+  }
+}
+
 bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   source_ = source;
+  if (options_.places.followed) follow_block(command.name);
   if (command.spelling.empty() ||
       command.spelling.size() == canonical_spelling(command.name).size()) {
     ++counts_[static_cast<std::size_t>(command.name)];
@@ -60,6 +93,7 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
 
 bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {
   source_ = source;
+  if (options_.places.followed) follow_block(CanonicalName::kNurbsFeed);
   ++counts_[static_cast<std::size_t>(CanonicalName::kNurbsFeed)];
   const bool first = batch_.empty();
   const FoldRemark said = fold_.fold_spline(spline, source_, batch_);
@@ -223,9 +257,8 @@ bool MotionFeeder::hand_over() {
     *options_.materials = materials_.rows();
     materials_told_ = materials_.rows().size();
   }
-  if (options_.frame != nullptr && !frame_told_ && fold_.workpiece_frame_fixed()) {
+  if (options_.frame != nullptr && fold_.workpiece_frame_fixed()) {
     *options_.frame = fold_.workpiece_frame();
-    frame_told_ = true;
   }
   sink_done_ = !sink_(batch_);
   batch_.clear();

@@ -25,7 +25,16 @@ struct MotionFeederOptions {
   std::uint64_t max_commands = 0;  ///< 0: any number
   /// Of MotionFold::stand_at.
   std::optional<std::array<double, 9>> start;
-  /// Written once, before the first motion that moves is handed over. May be null.
+  /// Of MotionFold::start_unknown, without `start`.
+  struct Places {
+    bool followed = false;  ///< InterpreterSetup::unknown_places
+    std::array<double, 9> interpreter_start{};
+    bool zero_known = false;  ///< the interpreter's work offsets are the machine's
+    bool z_matters = true;
+  };
+  Places places;
+  /// Written before the first motion that moves is handed over, and again where an axis is placed
+  /// under another offset than that. May be null.
   WorkpieceFrame* frame = nullptr;
   /// What is known of a torch machine. Without `torch.qtplasmac` its materials do not count.
   TorchRun torch;
@@ -76,6 +85,8 @@ class MotionFeeder {
   void edit_material(const CanonicalCommand& comment);
   void material_changed();
   void follow_modes();
+  void start_fold();
+  void follow_block(CanonicalName name);
   void remark_on_defaults();
   bool hand_over();
 
@@ -96,7 +107,7 @@ class MotionFeeder {
   bool compensation_reported_ = false;
   bool too_many_ = false;
   bool sink_done_ = false;
-  bool frame_told_ = false;
+  BlockReader blocks_;
   SourceRef source_;
 };
 

@@ -130,6 +130,7 @@ Vec3 MotionFold::scaled(const CanonicalCommand& command, std::size_t first) cons
 
 void MotionFold::frame_changed() {
   if (!work_fixed_) return;
+  if (follows_places_) adopt_frame();
   const bool same = frame_ == work_;
   if (same && same_frame_) return;
   position_as_printed_ = false;
@@ -153,7 +154,7 @@ void MotionFold::fix_workpiece_frame() {
   for (std::size_t i = 0; i < 3; ++i) {
     abc_deg_[i] = at[3 + i] - tool_offset_abc_deg_[i] - work_.g5x_abc_deg[i] - work_.g92_abc_deg[i];
   }
-  has_rotary_motion_ |= abc_deg_ != std::array<double, 3>{};
+  if (!follows_places_) has_rotary_motion_ |= abc_deg_ != std::array<double, 3>{};
   uvw_mm_ = Vec3{at[6], at[7], at[8]} - tool_offset_uvw_mm_ - work_.g5x_uvw_mm - work_.g92_uvw_mm;
   position_known_ = true;
   position_as_printed_ = false;
@@ -178,7 +179,8 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.tool = tool_;
   motion.flood = flood_;
   motion.mist = mist_;
-  motion.start_known = position_known_;
+  motion.start_known = position_known_ && unknown_ == 0;
+  motion.unknown_from = motion.unknown_to = unknown_;
   motion.from_mm = position_mm_;
   motion.to_mm = position_mm_;
   motion.from_abc_deg = abc_deg_;
@@ -211,7 +213,11 @@ void MotionFold::move_to(Motion& motion, const Vec3& to_mm, const std::array<dou
   motion.to_mm = to_mm;
   motion.to_abc_deg = to_abc_deg;
   motion.to_uvw_mm = to_uvw_mm;
-  if (!position_known_) {
+  if (follows_places_) {
+    motion.unknown_to = unknown_ = unknown_after(motion, to_mm);
+    motion.start_known = motion.start_known && unknown_ == 0;
+  }
+  if (!motion.start_known) {
     motion.from_mm = to_mm;
     motion.from_abc_deg = to_abc_deg;
     motion.from_uvw_mm = to_uvw_mm;
@@ -287,7 +293,7 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
                    start_mm[axes.second] - center_mm[axes.second]};
   const Vec2 end{end_mm[axes.first] - center_mm[axes.first],
                  end_mm[axes.second] - center_mm[axes.second]};
-  const bool start_known = position_known_;
+  const bool start_known = position_known_ && unknown_ == 0;
   const bool as_printed = position_as_printed_;
   // No rotation, or no radius: LinuxCNC moves straight.
   const double resolution_mm = kPrintResolution * unit_mm_;
@@ -304,7 +310,7 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   if (straight) return FoldRemark::kNone;
   motion.arc.center_mm = work_from_program(center_mm);
   motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
-  motion.arc.sweep_rad = sweep_rad;
+  motion.arc.sweep_rad = motion.start_known ? sweep_rad : 0.0;
   if (full_circle && hole_active_ && modes_.overburn) append_overburn(Motion(motion), out);
   return FoldRemark::kNone;
 }
@@ -315,7 +321,8 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   take_synchronised_outputs();
   overburn_from_mm_.reset();
   const Vec3 bottom_mm = work_from_program(scaled(command, 0));
-  const bool top_known = position_known_;
+  const bool top_known = position_known_ && unknown_ == 0;
+  const std::uint8_t unknown_at_top = unknown_;
   const Vec3 top_mm = position_mm_;
   const auto abc_deg = abc_deg_;
   Motion& down = append(MotionKind::kThread, source, out);
@@ -323,7 +330,9 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   set_feed(down);
   if (!top_known) {
     // Back to where it came from, which nobody has said.
-    position_known_ = false;
+    position_known_ = follows_places_;
+    if (follows_places_) position_mm_ = top_mm;
+    unknown_ = unknown_at_top;
     return;
   }
   Motion& up = append(MotionKind::kThread, source, out);
@@ -364,12 +373,14 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
       frame_.g5x_mm = scaled(command, 1);
       for (std::size_t i = 0; i < 3; ++i) frame_.g5x_abc_deg[i] = command.number(4 + i);
       frame_.g5x_uvw_mm = scaled_if_there(command, 7);
+      follow_offset(command.name, command.integer(0));
       frame_changed();
       return true;
     case CanonicalName::kSetG92Offset:
       frame_.g92_mm = scaled(command, 0);
       for (std::size_t i = 0; i < 3; ++i) frame_.g92_abc_deg[i] = command.number(3 + i);
       frame_.g92_uvw_mm = scaled_if_there(command, 6);
+      follow_offset(command.name, 0);
       frame_changed();
       return true;
     case CanonicalName::kSetXyRotation:

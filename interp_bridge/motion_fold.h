@@ -7,9 +7,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/geometry.h"
+#include "interp_bridge/block_words.h"
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/filter_modes.h"
 #include "interp_bridge/motion.h"
@@ -77,7 +79,9 @@ inline constexpr double kSplineChord_mm = 1e-3;
 /// A, B or C. A thread's feed is its pitch, per revolution. Rpm under G96 (constant surface speed)
 /// is that at the end of the step. Steps before the first motion have start_known = false and stand
 /// at the origin; the first motion has it too, with from_mm = to_mm, unless stand_at() has said
-/// where the machine is. Its unnamed axes count as known afterwards, at 0, as the listing says.
+/// where the machine is. Its unnamed axes count as known afterwards, at 0, as the listing says;
+/// unless start_unknown() has been called: then each of X, Y and Z is unknown until a block of the
+/// program places it.
 class MotionFold {
  public:
   /// `tool_by_index`: tool number of each row of the interpreter's tool table, [0] = none, for
@@ -88,6 +92,20 @@ class MotionFold {
   /// Before the first command: the machine stands at `machine_position` (X Y Z A B C U V W of the
   /// machine frame, mm and degrees), so that the first motion has a start.
   void stand_at(const std::array<double, 9>& machine_position) { stands_at_ = machine_position; }
+
+  /// Before the first command, instead: where the machine stands is not known in X, Y, Z (bits 0 to
+  /// 2 of `axes`). The interpreter takes it to be at `machine_position`, so that its numbers can be
+  /// compared. An axis is known again after a block in G90 that names it, or moves it all the same
+  /// (cycles), and after a G92 or G10 L20 that names it. In G91 it stays as it was. After G53, G28
+  /// and G30 the axes that they move are unknown, unless the axis is of `zero_known`, which says
+  /// that the work offset of the listing is the true one, or the program has set it by G10 L2.
+  /// G91 is known by the interpreter's comments, the rest by set_block().
+  void start_unknown(const std::array<double, 9>& machine_position, std::uint8_t axes,
+                     std::uint8_t zero_known);
+  /// The block of the commands that follow; null: not known, as that of a listing. Outlives them.
+  void set_block(const BlockWords* block) { block_ = block; }
+  /// Axes of which it matters whether a block names them.
+  std::uint8_t unplaced() const { return unknown_; }
 
   /// Before the first command: QtPlasmaC's filter has its share.
   void set_filter(FilterSetup setup) { filter_ = setup; }
@@ -177,6 +195,15 @@ class MotionFold {
   bool fold_event(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void fold_switch(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void change_tool_length(const CanonicalCommand& command);
+  // motion_fold_places.cpp
+  std::uint8_t unknown_after(Motion& motion, const Vec3& to_mm);
+  std::uint8_t changed_axes(const Vec3& to_mm) const;
+  bool is_at_machine_place(const Motion& motion);
+  void follow_offset(CanonicalName name, int system);
+  void take_as_known_here(std::uint8_t axes, bool by_g92);
+  void relate_shift();
+  void adopt_frame();
+  void note_distance_mode(std::string_view comment);
   // motion_fold_torch.cpp
   bool fold_torch(const CanonicalCommand& command);
   void take_synchronised_outputs();
@@ -210,6 +237,24 @@ class MotionFold {
   std::optional<std::array<double, 9>> stands_at_;  ///< until the workpiece frame is fixed
   bool position_as_printed_ =
       true;  ///< no change of frame or unit since: equal digits mean equal points
+
+  // Axes as bits, where start_unknown() was called.
+  bool follows_places_ = false;
+  bool incremental_ = false;  ///< G91
+  const BlockWords* block_ = nullptr;
+  std::uint8_t unknown_ = 0;
+  std::uint8_t placed_ = 0;      ///< at least once
+  std::uint8_t zero_known_ = 0;  ///< where the machine's zero is
+  std::uint8_t zero_by_program_ = 0;
+  int g5x_index_ = 1;
+  bool shifted_ = false;               ///< by G92
+  std::uint8_t shift_floats_ = 0;      ///< the G92 was given where the axis was unknown
+  std::uint8_t work_floats_ = 0;       ///< the workpiece frame is that of such a G92
+  std::uint8_t shift_unrelated_ = 0;   ///< present numbers and those of the workpiece frame have
+                                       ///< nothing to do with each other, for G92 ..
+  std::uint8_t system_unrelated_ = 0;  ///< .. or G10 L20
+  SourceRef reference_;                ///< the block of the last G28 or G30 ..
+  int reference_moves_ = 0;            ///< .. and its moves so far
 
   int tool_ = 0;
   int selected_tool_ = 0;

@@ -101,12 +101,14 @@ FoldRemark MotionFold::fold_spline(const Spline& spline, SourceRef source,
   Curve curve(spline);
   std::vector<Vec2> points;
   Vec2 from = curve.at(0);
+  // Its first point is where the tip stands; where that is not known only its end is of use.
+  if ((unknown_ & 3) != 0) points.push_back(curve.at(curve.end()));
   const double tolerance = kSplineChord_mm / unit_mm_;
   // From knot to knot the curve is smooth; each span begins in quarters, so that an S is not taken
   // for a line.
   constexpr int kParts = 4;
   const auto parts = static_cast<int>(curve.end()) * kParts;
-  for (int i = 0; i < parts; ++i) {
+  for (int i = 0; i < parts && (unknown_ & 3) == 0; ++i) {
     const double u0 = static_cast<double>(i) / kParts;
     const double u1 = static_cast<double>(i + 1) / kParts;
     const Vec2 to = curve.at(u1);

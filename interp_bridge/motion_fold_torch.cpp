@@ -74,6 +74,7 @@ bool MotionFold::fold_torch(const CanonicalCommand& command) {
       if (command.text.substr(0, kCompensation.size()) == kCompensation) {
         compensation_ = command.text.substr(kCompensation.size(), 3) != "off";
       }
+      note_distance_mode(command.text);
       return true;
     default:
       return false;

@@ -14,6 +14,7 @@
 #include "interp_bridge/canonical_reader.h"
 #include "interp_bridge/child_listener.h"
 #include "interp_bridge/interpreter_process.h"
+#include "interp_bridge/parameter_file.h"
 #include "interp_bridge/private_folder.h"
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/program_prepare.h"
@@ -27,6 +28,8 @@ using Clock = std::chrono::steady_clock;
 
 /// The second run of a program that fell silent need not wait as long to call it so.
 constexpr double kSilenceAgain_s = 2.0;
+/// rs274 reads tables and parameters in inches, whatever the machine.
+constexpr double kInchMm = 25.4;
 
 class NcProgram final : public Program {
  public:
@@ -95,6 +98,17 @@ Result<NcProgram::Session> NcProgram::start_session() const {
   if (!(table_file << table.text << std::flush)) {
     return Error{fmt::format("cannot write {}: {}", table_path, std::strerror(errno))};
   }
+  if (options_.machine.work_offset) {
+    InterpreterSetup machine;
+    machine.work_offset = options_.machine.work_offset;
+    Diagnostics ignored;
+    const Result<ParameterFile> values = parameters_of(machine, kInchMm, ignored);
+    const std::string path = home + "/x.var";
+    std::ofstream file(path);
+    if (!values || !(file << values->text() << std::flush)) {
+      return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+    }
+  }
   InterpreterProcessOptions child;
   child.executable = rs274_;
   child.arguments = rs274_arguments(*prepared, home, table_path);
@@ -120,7 +134,8 @@ std::vector<std::string> NcProgram::rs274_arguments(const PreparedProgram& prepa
   const std::string program = name.front() == '-' ? "./" + name : name;
   // No var file: a path that cannot exist is not written either. (rs274 replaces its var file, even
   // /dev/null.)
-  arguments.insert(arguments.end(), {"-t", table_path, "-v", home + "/none/x.var", "-g", program});
+  const std::string parameters = home + (options_.machine.work_offset ? "/x.var" : "/none/x.var");
+  arguments.insert(arguments.end(), {"-t", table_path, "-v", parameters, "-g", program});
   return arguments;
 }
 
@@ -134,6 +149,9 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
+  const InterpreterSetup& machine = options_.machine;
+  reading.feeder.places = {
+      machine.unknown_places, {}, machine.work_offset.has_value(), machine.z_matters};
   return reading;
 }
 

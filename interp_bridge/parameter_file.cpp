@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 namespace kerf {
 namespace {
@@ -73,6 +74,23 @@ WorkpieceFrame ParameterFile::frame(int index, double unit_mm) const {
   return frame;
 }
 
+void ParameterFile::set_frame(int index, const WorkpieceFrame& frame, double unit_mm) {
+  const int first = kWorkOffsetFirst + (index - 1) * kWorkOffsetStride;
+  for (int i = 0; i < 3; ++i) {
+    values[first + i] = frame.g5x_mm[i] / unit_mm;
+    values[first + 3 + i] = frame.offset_abc_deg[static_cast<std::size_t>(i)];
+    values[first + 6 + i] = frame.offset_uvw_mm[i] / unit_mm;
+  }
+  values[first + kRotation] = frame.rotation_deg;
+  values.try_emplace(kWorkOffset, 1);
+}
+
+std::string ParameterFile::text() const {
+  std::string out;
+  for (const auto& [number, value] : values) out += fmt::format("{} {:.17g}\n", number, value);
+  return out;
+}
+
 Result<ParameterFile> read_parameter_file(const std::string& path, Diagnostics& diagnostics) {
   errno = 0;
   std::ifstream file(path);
@@ -108,6 +126,24 @@ Result<ParameterFile> read_parameter_file(const std::string& path, Diagnostics& 
   }
   if (file.bad()) return unreadable();
   return out;
+}
+
+Result<ParameterFile> parameters_of(const InterpreterSetup& machine, double unit_mm,
+                                    Diagnostics& diagnostics) {
+  ParameterFile file;
+  const bool has_file = !machine.parameter_path.empty();
+  if (has_file) {
+    Result<ParameterFile> given = read_parameter_file(machine.parameter_path, diagnostics);
+    if (!given) return given;
+    file = std::move(*given);
+  }
+  if (!machine.work_offset) return file;
+  if (has_file) {
+    file.set_frame(file.work_offset_index(), *machine.work_offset, unit_mm);
+    return file;
+  }
+  for (int i = 1; i <= kWorkOffsets; ++i) file.set_frame(i, *machine.work_offset, unit_mm);
+  return file;
 }
 
 }  // namespace kerf

@@ -50,6 +50,15 @@ struct InterpreterSetup {
   std::array<double, 9> start{};
   /// That is where it stands, and the work offsets are known too: the first move has a start.
   bool start_known = false;
+  /// Without start_known: each of X, Y and Z is unknown until a block of the program places it, and
+  /// again after G53, G28 or G30 without a known work offset. Else they count as known after the
+  /// first move. An axis that the program never names counts as standing at 0.
+  bool unknown_places = false;
+  /// Of them Z does not matter, and counts as standing at 0: what is cut is a sheet.
+  bool z_matters = true;
+  /// Machine coordinates of the work zero (mm, degrees): of the offset in force at the start, or
+  /// without a parameter file of all of them. It comes before that of the parameter file.
+  std::optional<WorkpieceFrame> work_offset;
   std::string ini_path;        ///< read by the interpreter itself: remaps, paths, features
   std::string ini_text;        ///< of ini_path with its #INCLUDEs in place; empty: it has none
   std::string working_folder;  ///< relative paths of the INI; empty: the program's folder

@@ -90,7 +90,13 @@ void AxisLimitCheck::check(const Motion& m, const TimedStep& step) {
       return;
   }
   const Reach reach = reach_of(m);
-  for (std::size_t axis = 0; axis < kAxisCount; ++axis) check_axis(axis, reach, m, step);
+  // Under a rotation an unknown X or Y makes both so.
+  const bool turned = sin_ != 0 && (m.unknown_to & 3) != 0;
+  const unsigned unknown = turned ? m.unknown_to | 3U : m.unknown_to;
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    if (axis < 3 && (unknown >> axis & 1) != 0) continue;
+    check_axis(axis, reach, m, step);
+  }
 }
 
 void AxisLimitCheck::check_axis(std::size_t axis, const Reach& reach, const Motion& m,

@@ -98,7 +98,7 @@ std::vector<CommentText> comments_with_units(const Program& program, const std::
 }
 
 void BlankGuess::add(const Motion& m, double tool_radius_mm) {
-  if (m.kind != MotionKind::kTraverse && !is_feed(m)) return;
+  if (m.unknown_to != 0 || (m.kind != MotionKind::kTraverse && !is_feed(m))) return;
   all_mm_.extend(m.to_mm);
   if (!is_feed(m)) return;
   // A plunge or retraction at feed starts in the air: its end alone says where there is material.
@@ -119,6 +119,7 @@ void BlankGuess::add(const Motion& m, double tool_radius_mm) {
 }
 
 void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double tool_radius_mm) {
+  if (m.unknown_to != 0) return;
   Box way;
   for (const CutMove& move : moves) {
     way.extend(move.from_mm);

@@ -14,6 +14,8 @@ namespace {
 /// Moves handed to the model at once: many enough that the call costs nothing, few enough to stay
 /// in the cache.
 constexpr std::size_t kMovesPerCut = 4096;
+/// Motion::unknown_to: X, Y and Z.
+constexpr std::uint8_t kAllUnknown = 7;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 
@@ -98,6 +100,7 @@ void CutStage::begin_reporting() {
   if (punch_) punch_->begin_reporting();
   mounted_ = nullptr;
   feed_missing_reported_ = false;
+  machine_place_told_ = unknown_feed_told_ = false;
   over_feed_ = {};
   holding_ = false;
   log_.set_muted(false);
@@ -124,6 +127,7 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
+  if ((m.unknown_from | m.unknown_to) != 0) report_unknown_place(m, step);
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (punch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
@@ -196,10 +200,46 @@ void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
   }
 }
 
+/// That rapids come from an unknown place until every axis has been placed is how programs begin.
+/// Once each: a feed move that is not cut, and a place of the machine.
+void CutStage::report_unknown_place(const Motion& m, const TimedStep& step) {
+  const bool to_machine = m.to_machine_place && !machine_place_told_;
+  const bool feed = is_feed(m) && !unknown_feed_told_;
+  if (!to_machine && !feed) return;
+  (to_machine ? machine_place_told_ : unknown_feed_told_) = true;
+  const unsigned axes = to_machine ? m.unknown_to : m.unknown_from | m.unknown_to;
+  std::string letters;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes >> i & 1) == 0) continue;
+    letters += letters.empty() ? "" : ", ";
+    letters += kAxisLetters[i];
+  }
+  Finding finding;
+  finding.id = FindingId::kPositionUnknown;
+  finding.severity = Severity::kNote;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  if (to_machine) {
+    finding.text = fmt::format(
+        "goes to a place of the machine (G53, G28, G30), and where the work lies in the machine is "
+        "not known (--work-offset X,Y,Z or --ini says it): such moves are not checked, and {} is "
+        "unknown until a block places it",
+        letters);
+  } else {
+    finding.text = fmt::format(
+        "a feed move while nothing has said where {} stands (--ini does, or a G0 before it that "
+        "names the axis): such moves are not cut",
+        letters);
+  }
+  log_.add(std::move(finding));
+}
+
 void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
   // With an empty spindle a comment without a number waits for the first feed move: the traverse
   // may just clear the way for the tool change that the comment announces.
   if (!mounted_ && m.tool == 0 && !book_.has_arguments()) return;
+  // Nor does a move to where nobody knows say which tool is in the spindle: many programs begin so.
+  if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
   if (!mount_for(m) || !m.start_known) return;
   divide(m);
   if (!comes_near(m)) {

@@ -124,6 +124,7 @@ class CutStage : private StepSink {
   void report_ignored_turn(const Motion& motion, const TimedStep& step);
   void report_assumptions(const Motion& motion);
   void report_rotary_faults(const TimedStep& step);
+  void report_unknown_place(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
@@ -176,6 +177,8 @@ class CutStage : private StepSink {
   bool feed_missing_reported_ = false;
   bool turn_reported_ = false;
   bool assumptions_told_ = false;
+  bool machine_place_told_ = false;
+  bool unknown_feed_told_ = false;
   std::array<bool, 3> slide_reported_{};  ///< U, V, W
   bool reached_stock_ = false;            ///< a feed move came near the blank, in boxes
   Box feed_bounds_mm_;                    ///< of all feed moves, until then

@@ -59,13 +59,39 @@ bool moves(MotionKind kind) {
 
 bool is_zero(const std::array<double, 3>& abc) { return abc[0] == 0 && abc[1] == 0 && abc[2] == 0; }
 
+/// null for an axis of which nothing says where it goes.
+void append_end(const Motion& m, std::string& out) {
+  if (m.unknown_to == 0) return append_vector("to", m.to_mm, out);
+  out += ",\"to\":";
+  for (int i = 0; i < 3; ++i) {
+    out += i == 0 ? '[' : ',';
+    if ((m.unknown_to >> i & 1) != 0) {
+      out += "null";
+    } else {
+      append_number(m.to_mm[i], out);
+    }
+  }
+  out += ']';
+}
+
+void append_axes(const char* name, std::uint8_t axes, std::string& out) {
+  if (axes == 0) return;
+  out += fmt::format(",\"{}\":\"", name);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes >> i & 1) != 0) out += "XYZ"[i];
+  }
+  out += '"';
+}
+
 void append_way(const Motion& m, std::string& out) {
   if (m.start_known) {
     append_vector("from", m.from_mm, out);
   } else {
     out += ",\"from\":null";
   }
-  append_vector("to", m.to_mm, out);
+  append_end(m, out);
+  append_axes("unknown_from", m.unknown_from, out);
+  append_axes("unknown_to", m.unknown_to, out);
   if (!is_zero(m.from_abc_deg) || !is_zero(m.to_abc_deg)) {
     append_vector("from_abc", m.from_abc_deg, out);
     append_vector("to_abc", m.to_abc_deg, out);

@@ -5,7 +5,9 @@
 // mm, mm/min, s, degrees; the tip in the workpiece frame. "kind" is traverse | feed | arc | thread
 // | probe | dwell | tool-change | stop | program-end. Only where they apply:
 //
-//     "from": null           where the motion begins is not known (the first one)
+//     "from": null           where the motion begins is not known (the first one), or where it ends
+//     "to": [50,30,null]     of this axis nothing says where it goes
+//     "unknown_from", "unknown_to": "XZ"       the axes of which nothing says where they stand
 //     "center", "axis", "sweep_deg"   arcs: the tip turns about the axis by the right-hand rule
 //     "from_abc", "to_abc"   A, B or C are not at 0
 //     "from_uvw", "to_uvw"   U, V or W are not at 0

@@ -15,6 +15,11 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       .add_option("--ini", a.ini,
                   "LinuxCNC INI of the machine: limits, speeds, tool table, offsets, startup code")
       ->type_name("FILE");
+  command
+      .add_option("--work-offset", a.work_offset,
+                  "where the work zero (G54 ..) lies in the machine, for G53, G28, G30 and axes "
+                  "that turn (default: the INI's parameter file; else it is not known)")
+      ->type_name("X,Y,Z");
   command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
       ->type_name("FILE");
   command

@@ -174,7 +174,9 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.ini = source.ini;
   source.kinematics = machine.kinematics;
   source.joints = machine.joints;
+  source.configured_offset = machine.work_offset;
   ProgramRequest program = understand_program(source, reader);
+  request.config.machine.work_offset = program.program.machine.work_offset;
   WorkRequest work = understand_work(a.work, reader);
   LiveOptions& options = request.options;
   TorchArguments torch = a.torch;
@@ -183,6 +185,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   options.turret = understand_turret(torch, reader, program.program);
   // Where the machine stands when it starts the program is seen, not read from its INI.
   program.program.machine.start_known = false;
+  program.program.machine.unknown_places = false;
   request.inch_machine = program.program.machine.inch_machine;
   request.joint_letters = program.joint_letters;
   request.config.machine.turning_joints = program.turning_joints;
@@ -257,9 +260,7 @@ void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostic
   d.message =
       "where the workpiece lies in the machine is not known: its zero is taken to be that of the "
       "machine";
-  d.hint =
-      "--ini reads it from the machine's parameter file; --set machine.work_offset.x=.. (y, z) "
-      "gives it";
+  d.hint = "--ini reads it from the machine's parameter file; --work-offset X,Y,Z gives it";
   diagnostics.push_back(std::move(d));
 }
 

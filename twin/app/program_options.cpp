@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -13,6 +15,7 @@ namespace kerf {
 namespace {
 
 constexpr OptionRange kMaxCommands{1, 1e12, false, "commands"};
+constexpr double kFar_mm = 1e6;
 constexpr OptionRange kMaxSeconds{0, 1e6, true, "s"};
 
 std::uint16_t turning_joints_of(const MachineKinematics& machine) {
@@ -23,7 +26,37 @@ std::uint16_t turning_joints_of(const MachineKinematics& machine) {
   return joints;
 }
 
+/// "10,20,-5.5"; nothing if it is not three numbers.
+std::optional<Vec3> three_numbers(const std::string& text) {
+  Vec3 out{0};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    if (error != std::errc() || !(std::abs(out[i]) <= kFar_mm)) return std::nullopt;
+    at = next;
+  }
+  return at == end ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
+
+std::optional<WorkpieceFrame> understand_work_offset(const ProgramArguments& a,
+                                                     OptionReader& reader) {
+  if (a.work_offset.empty()) return a.configured_offset;
+  const std::optional<Vec3> given = three_numbers(a.work_offset);
+  if (!given) {
+    reader.fault("--work-offset",
+                 fmt::format("'{}' is not allowed; must be X,Y,Z in mm, each from {:g} to {:g}",
+                             a.work_offset, -kFar_mm, kFar_mm),
+                 "as in --work-offset 150,60,-180: the work zero in machine coordinates");
+    return a.configured_offset;
+  }
+  WorkpieceFrame frame = a.configured_offset.value_or(WorkpieceFrame{});
+  frame.g5x_mm = *given;
+  return frame;
+}
 
 ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reader) {
   ProgramRequest request;
@@ -57,6 +90,10 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
       reader.fault("machine.kinematics", machine.error());
     }
   }
+  options.machine.unknown_places = true;
+  options.machine.work_offset = understand_work_offset(a, reader);
+  // Home is a place of the machine.
+  if (!a.ini.empty() && options.machine.work_offset) options.machine.start_known = true;
   if (!a.tool_table.empty()) options.tool_table_path = a.tool_table;
   if (a.interp == "bridge") {
     options.interpreter = InterpreterChoice::kBridge;

@@ -20,11 +20,14 @@ struct ProgramArguments {
   std::string tool_table;
   std::string interp;
   std::string block_delete;
+  std::string work_offset;  ///< X,Y,Z
   std::string max_commands;
   std::string max_seconds;
   /// Of a configuration (machine.kinematics, machine.joints), as read.
   std::optional<KinematicsRequest> kinematics;
   std::string joints;
+  /// machine.work_offset of a configuration.
+  std::optional<WorkpieceFrame> configured_offset;
   /// Values of HAL pins that are told; those of the kinematics are for these, too.
   std::map<std::string, double> hal_pins;
 };
@@ -38,7 +41,14 @@ struct ProgramRequest {
   std::optional<std::uint16_t> turning_joints;
 };
 
-/// Reads the INI, if one is given. Faults go to the reader.
+/// Where the work zero lies in the machine: the X, Y, Z of the command line come before those of
+/// the configuration, which comes before what the INI's parameter file has. Nothing: neither says
+/// it.
+std::optional<WorkpieceFrame> understand_work_offset(const ProgramArguments& arguments,
+                                                     OptionReader& reader);
+
+/// Reads the INI, if one is given. Faults go to the reader. The program is followed by
+/// InterpreterSetup::unknown_places.
 ProgramRequest understand_program(const ProgramArguments& arguments, OptionReader& reader);
 
 }  // namespace kerf

@@ -24,6 +24,11 @@ void read_lines(const RunArguments& a, OptionReader& reader, LineRange& lines) {
                fmt::format("{} lies beyond --until-line {}", lines.from, lines.until));
 }
 
+/// A beam and a punch go through a sheet whatever Z says.
+void note_sheet(SessionOptions& session) {
+  session.program.machine.z_matters = !session.blank || !is_sheet(*session.blank);
+}
+
 }  // namespace
 
 void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
@@ -32,6 +37,7 @@ void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
   if (source.tool_table.empty()) source.tool_table = config.machine.tool_table.value_or("");
   source.kinematics = config.machine.kinematics;
   source.joints = config.machine.joints;
+  source.configured_offset = config.machine.work_offset;
   complete_torch(config, arguments.torch);
 }
 
@@ -41,6 +47,7 @@ void complete_session(const LiveConfig& config, const RunArguments& a, SessionOp
   if (a.work.model.empty()) session.stock.kind = config.stock.model;
   if (a.work.cell.empty() && config.stock.cell_mm) session.stock.cell_mm = *config.stock.cell_mm;
   if (a.work.margin.empty()) session.margin_mm = config.stock.margin_mm;
+  note_sheet(session);
 }
 
 RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
@@ -64,6 +71,7 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   session.blank = std::move(work.blank);
   session.stock = work.stock;
   session.margin_mm = work.margin_mm;
+  note_sheet(session);
   if (config) complete_session(*config, a, session);
   session.timeline.planner.with_path = work.planned_path.value_or(false);
   if (session.turret && work.planned_path.value_or(false)) {

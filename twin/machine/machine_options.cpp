@@ -98,6 +98,8 @@ MachineRequest understand_machine(const MachineArguments& a, Diagnostics& diagno
   OptionReader reader(diagnostics);
   MachineRequest request;
   request.source = understand_program(a.source, reader);
+  // Here the machine is known: it is this one.
+  request.source.program.machine.unknown_places = false;
   // A machine may run for ever: no number of commands, no silence makes a program endless here.
   request.source.program.max_commands = 0;
   request.source.program.max_silent_s = 1e9;

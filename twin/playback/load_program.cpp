@@ -195,11 +195,11 @@ std::vector<NamedOffset> read_work_offsets(const InterpreterSetup& machine) {
   std::vector<NamedOffset> offsets;
   if (machine.parameter_path.empty()) return offsets;
   Diagnostics faults;
-  const Result<ParameterFile> file = read_parameter_file(machine.parameter_path, faults);
+  const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
+  const Result<ParameterFile> file = parameters_of(machine, unit_mm, faults);
   if (!file) return offsets;
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    offsets.push_back(
-        {kNames[i], file->frame(static_cast<int>(i) + 1, machine.inch_machine ? 25.4 : 1.0)});
+    offsets.push_back({kNames[i], file->frame(static_cast<int>(i) + 1, unit_mm)});
   }
   return offsets;
 }

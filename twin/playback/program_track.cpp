@@ -243,7 +243,8 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       static_cast<std::uint64_t>(m.path_mode) << 16 | std::uint64_t{m.flood} << 24 |
       std::uint64_t{m.mist} << 25 | std::uint64_t{m.feed_per_rev} << 26 |
       std::uint64_t{m.start_known} << 27 | std::uint64_t{m.user_m} << 28 |
-      std::uint64_t{m.rapid} << 36;
+      std::uint64_t{m.rapid} << 36 | std::uint64_t{m.unknown_from} << 37 |
+      std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
   const auto floats = [](float a, float b) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);

@@ -1,0 +1,358 @@
+#include "interp_bridge/block_words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+namespace kerf {
+namespace {
+
+constexpr std::uint8_t kAllThree = 7;
+constexpr std::uint32_t kFirstLine = 1;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
+bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
+
+/// Words of a block, one after the other: a letter, and its number unless that is computed.
+class WordScanner {
+ public:
+  explicit WordScanner(std::string_view text) : p_(text.data()), end_(text.data() + text.size()) {}
+
+  /// False: no more. `number`: nothing if an expression stands there.
+  bool next(char& letter, std::optional<double>& number) {
+    for (;;) {
+      skip_blanks();
+      if (p_ == end_ || *p_ == ';') return false;
+      if (*p_ == '(') {
+        skip_past(')');
+      } else if (is_letter(*p_) || *p_ == '@' || *p_ == '^') {
+        letter = lower(*p_++);
+        number = read_number();
+        return true;
+      } else if (*p_ == '#' || *p_ == '[') {
+        skip_value();  // a setting of a parameter
+      } else {
+        ++p_;
+      }
+    }
+  }
+
+ private:
+  void skip_blanks() {
+    while (p_ != end_ && is_blank(*p_)) ++p_;
+  }
+  void skip_past(char closing) {
+    while (p_ != end_ && *p_ != closing) ++p_;
+    if (p_ != end_) ++p_;
+  }
+  void skip_brackets() {
+    int depth = 0;
+    for (; p_ != end_; ++p_) {
+      if (*p_ == '[') ++depth;
+      if (*p_ == ']' && --depth == 0) {
+        ++p_;
+        return;
+      }
+    }
+  }
+  /// #5, ##5, #<name>, #[..], [..], sin[..], and what is set to it.
+  void skip_value() {
+    for (;;) {
+      skip_blanks();
+      while (p_ != end_ && (*p_ == '#' || *p_ == '+' || *p_ == '-')) ++p_;
+      skip_blanks();
+      while (p_ != end_ && is_letter(*p_)) ++p_;
+      skip_blanks();
+      if (p_ != end_ && *p_ == '[') {
+        skip_brackets();
+        skip_blanks();
+        // atan[y]/[x]
+        if (p_ != end_ && *p_ == '/') {
+          ++p_;
+          continue;
+        }
+      } else if (p_ != end_ && *p_ == '<') {
+        skip_past('>');
+      } else {
+        skip_digits();
+      }
+      skip_blanks();
+      if (p_ == end_ || *p_ != '=') return;
+      ++p_;
+    }
+  }
+  void skip_digits() {
+    while (p_ != end_ && (is_digit(*p_) || *p_ == '.' || is_blank(*p_))) ++p_;
+  }
+  std::optional<double> read_number() {
+    skip_blanks();
+    if (p_ == end_) return std::nullopt;
+    if (*p_ == '#' || *p_ == '[' || is_letter(*p_)) {
+      skip_value();
+      return std::nullopt;
+    }
+    const char* at = p_;
+    const bool minus = *at == '-';
+    if (*at == '+' || *at == '-') ++at;
+    while (at != end_ && is_blank(*at)) ++at;
+    if (at != end_ && (*at == '#' || *at == '[' || is_letter(*at))) {
+      skip_value();
+      return std::nullopt;
+    }
+    double value = 0;
+    double scale = 0;
+    for (; at != end_; ++at) {
+      if (is_blank(*at)) continue;
+      if (*at == '.' && scale == 0) {
+        scale = 1;
+      } else if (is_digit(*at)) {
+        value = value * 10 + (*at - '0');
+        scale *= 10;
+      } else {
+        break;
+      }
+    }
+    if (at == p_) return std::nullopt;
+    p_ = at;
+    if (scale > 0) value /= scale;
+    return minus ? -value : value;
+  }
+
+  const char* p_;
+  const char* end_;
+};
+
+/// G92.1 as 921; 0 for what is no code.
+int code_of(const std::optional<double>& number) {
+  return number && *number >= 0 && *number < 1000 ? static_cast<int>(std::lround(*number * 10)) : 0;
+}
+
+struct Codes {
+  bool g10 = false;
+  int l = -1;
+};
+
+void take_g(int code, BlockWords& words, Codes& codes) {
+  switch (code) {
+    case 0:
+      words.speed = BlockWords::Speed::kRapid;
+      break;
+    case 10:
+    case 20:
+    case 30:
+      words.speed = BlockWords::Speed::kFeed;
+      break;
+    case 100:
+      codes.g10 = true;
+      break;
+    case 280:
+    case 300:
+      words.place = BlockWords::Place::kReference;
+      break;
+    case 530:
+      words.place = BlockWords::Place::kMachine;
+      break;
+    case 920:
+      words.offset = BlockWords::Offset::kShift;
+      break;
+    case 921:
+    case 922:
+      words.offset = BlockWords::Offset::kUnshift;
+      break;
+    case 923:
+      words.offset = BlockWords::Offset::kReshift;
+      break;
+    default:
+      break;
+  }
+}
+
+bool is_special(const BlockWords& words) {
+  return words.place != BlockWords::Place::kProgram || words.offset != BlockWords::Offset::kNone;
+}
+
+/// False: the line has no G10, G28, G30, G53, G92 and no M6. Most lines, so it is to be quick.
+bool may_be_special(std::string_view line) {
+  const char* const end = line.data() + line.size();
+  for (const char* p = line.data(); p != end; ++p) {
+    const char letter = lower(*p);
+    if (letter != 'g' && letter != 'm') continue;
+    const char* at = p + 1;
+    while (at != end && (is_blank(*at) || *at == '0')) ++at;
+    if (at == end) return false;
+    if (letter == 'm') {
+      if (*at == '6') return true;
+      continue;
+    }
+    if (*at == '1' || *at == '2' || *at == '3' || *at == '5' || *at == '9') {
+      ++at;
+      while (at != end && is_blank(*at)) ++at;
+      if (at != end && is_digit(*at)) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether such a block calls others: M98, O.. CALL.
+bool calls(std::string_view line) {
+  for (std::size_t i = 0; i + 3 < line.size(); ++i) {
+    const char c = lower(line[i]);
+    if (c == 'c' && lower(line[i + 1]) == 'a' && lower(line[i + 2]) == 'l' &&
+        lower(line[i + 3]) == 'l') {
+      return true;
+    }
+    if (c == 'm' && line[i + 1] == '9' && line[i + 2] == '8') return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+BlockWords words_of_block(std::string_view line) {
+  BlockWords words;
+  Codes codes;
+  WordScanner scanner(line);
+  char letter = 0;
+  std::optional<double> number;
+  while (scanner.next(letter, number)) {
+    switch (letter) {
+      case 'o':
+        return {};
+      case 'x':
+      case 'y':
+      case 'z':
+        words.named = static_cast<std::uint8_t>(words.named | 1U << (letter - 'x'));
+        break;
+      case '@':
+      case '^':
+        words.named |= 3;
+        break;
+      case 'g':
+        if (number) take_g(*number == 0 ? 0 : std::max(code_of(number), 1), words, codes);
+        break;
+      case 'm':
+        if (code_of(number) == 60 && words.place == BlockWords::Place::kProgram) {
+          words.place = BlockWords::Place::kToolChange;
+        }
+        break;
+      case 'l':
+        codes.l = code_of(number);
+        break;
+      default:
+        break;
+    }
+  }
+  if (codes.g10 && codes.l == 20) words.offset = BlockWords::Offset::kMachine;
+  if (codes.g10 && codes.l == 200) words.offset = BlockWords::Offset::kTouchOff;
+  return words;
+}
+
+/// What is known of one file, and where it was read last.
+struct BlockReader::File {
+  std::string path;
+  bool readable = false;
+  std::uint8_t named = 0;
+  std::vector<std::uint32_t> special;  ///< lines, rising
+  // The line that was asked for last, and the piece of the file that it stands in.
+  std::unique_ptr<TextPieces> pieces;
+  std::string_view piece;
+  std::uint32_t piece_line = 0;  ///< of its first line
+  std::size_t at = 0;            ///< in the piece: where line `line` begins
+  std::uint32_t line = 0;
+
+  void look_through();
+  void look_at(std::string_view text);
+  void rewind();
+  bool find(std::uint32_t wanted, std::string_view& text);
+};
+
+void BlockReader::File::look_at(std::string_view text) {
+  if (text.empty()) return;
+  if (named == kAllThree && !may_be_special(text)) return;
+  const BlockWords words = words_of_block(text);
+  named |= words.named;
+  if (named != kAllThree && calls(text)) named = kAllThree;
+  if (is_special(words)) special.push_back(line);
+}
+
+void BlockReader::File::look_through() {
+  TextPieces whole(path);
+  std::string_view text;
+  line = kFirstLine;
+  while (whole.next(text)) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      look_at(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+      ++line;
+    }
+  }
+  readable = whole.error().empty();
+  if (!readable) named = kAllThree;
+  line = 0;
+}
+
+void BlockReader::File::rewind() {
+  pieces = std::make_unique<TextPieces>(path);
+  piece = {};
+  piece_line = line = kFirstLine;
+  at = 0;
+}
+
+bool BlockReader::File::find(std::uint32_t wanted, std::string_view& text) {
+  if (!pieces || wanted < piece_line) rewind();
+  if (wanted < line) {
+    line = piece_line;
+    at = 0;
+  }
+  for (;;) {
+    while (at < piece.size()) {
+      const std::size_t end = std::min(piece.find('\n', at), piece.size());
+      if (line == wanted) {
+        text = piece.substr(at, end - at);
+        return true;
+      }
+      at = end + 1;
+      ++line;
+    }
+    if (!pieces->next(piece)) {
+      pieces.reset();
+      return false;
+    }
+    piece_line = line;
+    at = 0;
+  }
+}
+
+BlockReader::File& BlockReader::file(std::size_t index, const std::string& path) {
+  if (index >= files_.size()) files_.resize(index + 1);
+  std::shared_ptr<File>& found = files_[index];
+  if (!found) {
+    found = std::make_shared<File>();
+    found->path = path;
+    found->look_through();
+  }
+  return *found;
+}
+
+const BlockWords* BlockReader::at(SourceRef source, const std::vector<std::string>& files,
+                                  std::uint8_t unplaced) {
+  if (source.line == 0 || source.file >= files.size()) return nullptr;
+  File& in = file(source.file, files[source.file]);
+  if (!in.readable) return nullptr;
+  words_ = {};
+  if (unplaced == 0 && !std::binary_search(in.special.begin(), in.special.end(), source.line)) {
+    return &words_;
+  }
+  std::string_view text;
+  if (!in.find(source.line, text)) return nullptr;
+  words_ = words_of_block(text);
+  return &words_;
+}
+
+std::uint8_t BlockReader::named_in(const std::string& path) { return file(0, path).named; }
+
+}  // namespace kerf

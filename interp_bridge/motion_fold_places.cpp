@@ -1,0 +1,198 @@
+// What MotionFold knows of where the axes stand: of X, Y and Z, as bits 0, 1, 2.
+#include <cmath>
+
+#include "interp_bridge/motion_fold.h"
+
+namespace kerf {
+namespace {
+
+using Place = BlockWords::Place;
+using Speed = BlockWords::Speed;
+
+constexpr std::uint8_t kX = 1;
+constexpr std::uint8_t kXy = 3;
+constexpr std::uint8_t kXyz = 7;
+constexpr std::uint8_t kZ = 4;
+
+/// Of one place, said twice by rs274 under different offsets.
+constexpr double kSamePlace_mm = 6e-4;
+
+std::uint8_t without(std::uint8_t axes, std::uint8_t others) {
+  return static_cast<std::uint8_t>(axes & ~others & kXyz);
+}
+
+/// Whether a motion of this kind can be that of a block that says G0, or G1.
+bool agrees(Speed said, MotionKind kind) {
+  return said == Speed::kUnsaid || (said == Speed::kRapid) == (kind == MotionKind::kTraverse);
+}
+
+/// About Z, by an angle whose sine and cosine they are.
+Vec3 turned_by(const Vec3& p, double cosine, double sine) {
+  return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, p.z};
+}
+
+}  // namespace
+
+void MotionFold::start_unknown(const std::array<double, 9>& machine_position, std::uint8_t axes,
+                               std::uint8_t zero_known) {
+  stands_at_ = machine_position;
+  follows_places_ = true;
+  unknown_ = axes;
+  placed_ = without(kXyz, axes);
+  zero_known_ = zero_known;
+}
+
+std::uint8_t MotionFold::changed_axes(const Vec3& to_mm) const {
+  std::uint8_t changed = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(to_mm[i] - position_mm_[i]) <= kSamePlace_mm) continue;
+    changed = static_cast<std::uint8_t>(changed | kX << i);
+  }
+  return changed;
+}
+
+/// The motion goes where its block's numbers, or none, are of the machine. A motion that cutter
+/// compensation has held back comes with the words of a later block, and is told by its kind.
+bool MotionFold::is_at_machine_place(const Motion& motion) {
+  switch (block_->place) {
+    case Place::kProgram:
+      return false;
+    case Place::kMachine:
+      return agrees(block_->speed, motion.kind);
+    case Place::kReference:
+      if (motion.kind != MotionKind::kTraverse) return false;
+      // Two each: to the place that the block names, and from there.
+      if (!(motion.source == reference_) || reference_moves_ == 2) reference_moves_ = 0;
+      reference_ = motion.source;
+      return ++reference_moves_ == 2;
+    case Place::kToolChange:
+      return true;
+  }
+  return false;
+}
+
+std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
+  const std::uint8_t changed = changed_axes(to_mm);
+  if (block_ == nullptr) {
+    placed_ |= changed;
+    return without(unknown_, changed);
+  }
+  const std::uint8_t unrelated = shift_unrelated_ | system_unrelated_;
+  std::uint8_t unknown = unknown_;
+  std::uint8_t named = agrees(block_->speed, motion.kind) ? block_->named : std::uint8_t{0};
+  const Place place = block_->place;
+  std::uint8_t to_machine = 0;
+  if (is_at_machine_place(motion)) {
+    to_machine = changed;
+    if (place == Place::kMachine) to_machine |= named;
+    if (place == Place::kReference) to_machine |= named != 0 ? named : kXyz;
+    if (place == Place::kToolChange) {
+      to_machine = without(changed, named);
+    } else {
+      named = 0;
+    }
+  }
+  const std::uint8_t lost = to_machine & (without(kXyz, zero_known_) | unrelated);
+  motion.to_machine_place = lost != 0;
+  const std::uint8_t found = without(to_machine, lost);
+  placed_ |= found;
+  unknown = without(unknown, found) | lost;
+  if (incremental_ && place != Place::kMachine) return unknown;
+  // An axis that moves without being named is one that a block before has placed (cycles), or that
+  // compensation has held back.
+  const std::uint8_t said = without(named | changed, to_machine);
+  placed_ |= without(said, unrelated);
+  return without(unknown, said) | (said & unrelated);
+}
+
+/// An offset of the program has just changed.
+void MotionFold::follow_offset(CanonicalName name, int system) {
+  if (!follows_places_) return;
+  const bool is_shift = name == CanonicalName::kSetG92Offset;
+  if (!is_shift && system != g5x_index_) {
+    g5x_index_ = system;
+    zero_known_ = without(zero_known_, zero_by_program_);
+    zero_by_program_ = 0;
+  }
+  if (block_ == nullptr) return;
+  const std::uint8_t named = block_->named;
+  switch (block_->offset) {
+    case BlockWords::Offset::kNone:
+      return;
+    case BlockWords::Offset::kShift:
+      if (!is_shift) return;
+      shifted_ = true;
+      // Where the axis is known the new numbers hang together with those of the workpiece frame.
+      shift_floats_ = without(shift_floats_, named) | (named & (unknown_ | work_floats_));
+      take_as_known_here(named & unknown_, true);
+      return relate_shift();
+    case BlockWords::Offset::kUnshift:
+      shifted_ = false;
+      return relate_shift();
+    case BlockWords::Offset::kReshift:
+      shifted_ = true;
+      return relate_shift();
+    case BlockWords::Offset::kTouchOff:
+      if (!is_shift) take_as_known_here(named & unknown_, false);
+      return;
+    case BlockWords::Offset::kMachine:
+      if (is_shift) return;
+      zero_by_program_ |= without(named, placed_ | zero_known_);
+      zero_known_ |= zero_by_program_;
+      return;
+  }
+}
+
+/// The program has given numbers to a place that is not known in the machine: from here on they are
+/// what is known. If the axis had others before, the two have nothing to do with each other.
+void MotionFold::take_as_known_here(std::uint8_t axes, bool by_g92) {
+  if (axes == 0) return;
+  if (work_fixed_) adopt_frame();
+  const std::uint8_t fresh = without(axes, placed_);
+  if (by_g92) work_floats_ |= fresh;
+  if (!by_g92) system_unrelated_ |= axes & placed_;
+  placed_ |= fresh;
+  unknown_ = without(unknown_, fresh);
+  zero_known_ = without(zero_known_, fresh);
+}
+
+void MotionFold::relate_shift() {
+  const std::uint8_t floats = shifted_ ? shift_floats_ : std::uint8_t{0};
+  // A second G92 at an unknown place is another one than that of the workpiece frame.
+  const std::uint8_t lost = shifted_ ? floats & unknown_ : std::uint8_t{0};
+  shift_unrelated_ = placed_ & ((floats ^ work_floats_) | lost);
+}
+
+/// The workpiece frame is that in which the program first writes: of an axis that no block has
+/// placed yet it follows the offsets.
+void MotionFold::adopt_frame() {
+  const bool turned = work_.rotation_deg != 0 || frame_.rotation_deg != 0;
+  std::uint8_t free = without(kXyz, placed_);
+  if (turned && (free & kXy) != kXy) free &= kZ;
+  if (free == 0) return;
+  const auto cosine = [](double degrees) { return std::cos(degrees * (kPi / 180)); };
+  const auto sine = [](double degrees) { return std::sin(degrees * (kPi / 180)); };
+  double degrees = work_.rotation_deg;
+  const Vec3 machine_mm =
+      turned_by(position_mm_ + work_.g92_mm, cosine(degrees), sine(degrees)) + work_.g5x_mm;
+  for (int i = 0; i < 3; ++i) {
+    if ((free & kX << i) == 0) continue;
+    work_.g5x_mm[i] = frame_.g5x_mm[i];
+    work_.g92_mm[i] = frame_.g92_mm[i];
+  }
+  if ((free & kXy) == kXy) work_.rotation_deg = frame_.rotation_deg;
+  degrees = work_.rotation_deg;
+  const Vec3 here_mm =
+      turned_by(machine_mm - work_.g5x_mm, cosine(degrees), -sine(degrees)) - work_.g92_mm;
+  for (int i = 0; i < 3; ++i) {
+    if ((free & kX << i) != 0) position_mm_[i] = here_mm[i];
+  }
+}
+
+void MotionFold::note_distance_mode(std::string_view comment) {
+  constexpr std::string_view kMode = "interpreter: distance mode changed to ";
+  if (comment.substr(0, kMode.size()) != kMode) return;
+  incremental_ = comment.substr(kMode.size()) == "incremental";
+}
+
+}  // namespace kerf
