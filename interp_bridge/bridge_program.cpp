@@ -356,6 +356,12 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.diameters_known = !options_.tool_table_path.empty();
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
+  feeding.lengths.length_mm = known_lengths(tools_);
+  feeding.lengths.calls = options_.machine.tool_lengths ? ToolLengthSetup::Calls::kTrue
+                                                        : ToolLengthSetup::Calls::kHidden;
+  feeding.lengths.table_unit_mm = options_.machine.inch_machine ? 25.4 : 1.0;
+  feeding.lengths.start_z_mm = options_.machine.start[2];
+  feeding.lengths.displaces = options_.machine.straight_axes;
   feeding.torch = torch_;
   feeding.signals = options_.signals;
   feeding.materials = &materials_;

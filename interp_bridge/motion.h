@@ -98,10 +98,29 @@ constexpr TorchTool torch_tool(const TorchState& torch) {
   return (torch.spindles_on & 4) != 0 ? TorchTool::kSpotting : TorchTool::kNone;
 }
 
+/// The tool length offset in force, where it is not the length of the tool in the spindle. 88
+/// bytes.
+struct ToolLengthState {
+  enum class Verdict : std::uint8_t {
+    kSound,   ///< it is, or nothing tells; the rest is empty
+    kStated,  ///< the program itself has said another length for this tool (G43.1): positions are
+              ///< as programmed
+    kWrong,   ///< the tip is not where the program has it, but at tip_shift_mm from there
+  };
+  Vec3 applied_mm{0};    ///< X Y Z of the offset in force, along the machine's axes
+  Vec3 real_mm{0};       ///< of the tool in the spindle, by the tool table
+  Vec3 tip_shift_mm{0};  ///< workpiece frame; in from_mm, to_mm and the arc's centre already
+  SourceRef set_at;      ///< G43 that set it after the tool change; line 0: none has
+  std::int32_t offset_tool = -1;  ///< whose row is applied (H); -1: none's (G49), or not known
+  Verdict verdict = Verdict::kSound;
+  bool operator==(const ToolLengthState&) const = default;
+};
+
 /// One step of the program. Positions are the tool tip in the workpiece frame: the coordinates that
 /// the program writes under its first work offset, in mm (ABC in degrees). from_mm of a step is
-/// to_mm of the one before, except where a tool length offset changes under a standing machine: the
-/// tip (of the new tool) is then elsewhere, and both ends are true workpiece positions.
+/// to_mm of the one before, except where a tool length offset changes under a standing machine, or
+/// a tool of another length known comes into the spindle: the tip (of the new tool) is then
+/// elsewhere, and both ends are true workpiece positions.
 struct Motion {
   MotionKind kind = MotionKind::kTraverse;
   SpindleState spindle = SpindleState::kStopped;
@@ -138,7 +157,8 @@ struct Motion {
   Vec3 from_uvw_mm{0};
   Vec3 to_uvw_mm{0};
   ArcGeometry arc;  ///< kArc only
-  /// In force (G43): the machine's own coordinates are those of the tip plus this, along its axes.
+  /// The machine's own coordinates are those of the tip plus this, along its axes: the offset in
+  /// force (G43), or where that is wrong and the tip displaced, the tool's length.
   Vec3 tool_offset_mm{0};
   Vec3 tool_offset_uvw_mm{0};  ///< the same of U, V, W
   /// Programmed; 0 for traverses. Of X Y Z, or of U V W where those stand. mm per revolution if
@@ -151,6 +171,7 @@ struct Motion {
   /// G64 Q (without Q: P): straight feeds may be merged into one within this; 0 = they are not.
   float merge_tolerance_mm = 0;
   TorchState torch;
+  ToolLengthState length;
 };
 
 }  // namespace kerf

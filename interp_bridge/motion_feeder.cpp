@@ -34,6 +34,7 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
       diagnostics_(diagnostics),
       fold_(options_.tool_by_index),
       materials_(options_.torch.materials) {
+  fold_.set_lengths(options_.lengths);
   start_fold();
   const TorchRun& torch = options_.torch;
   fold_.set_filter({torch.qtplasmac && !torch.text.is_filtered, torch.inch_machine});

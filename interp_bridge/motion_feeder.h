@@ -22,6 +22,7 @@ struct MotionFeederOptions {
   std::vector<int> tool_by_index;  ///< of MotionFold
   bool diameters_known =
       true;  ///< false: warn of cutter compensation, whose radius the interpreter took as 0
+  ToolLengthSetup lengths;         ///< of MotionFold::set_lengths
   std::uint64_t max_commands = 0;  ///< 0: any number
   /// Of MotionFold::stand_at.
   std::optional<std::array<double, 9>> start;

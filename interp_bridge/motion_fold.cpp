@@ -147,6 +147,7 @@ void MotionFold::fix_workpiece_frame() {
   work_fixed_ = true;
   same_frame_ = true;
   if (!stands_at_) return;
+  height_said_ = true;
   const std::array<double, 9>& at = *stands_at_;
   const auto [work_cos, work_sin] = cos_sin(work_.rotation_deg);
   const Vec3 tip_mm = Vec3{at[0], at[1], at[2]} - tool_offset_mm_ - work_.g5x_mm;
@@ -256,8 +257,9 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
   if (kind == MotionKind::kFeed && only_pierces(source, out)) return FoldRemark::kNone;
   overburn_from_mm_.reset();
   Motion& motion = append(kind, source, out);
-  move_to(motion, work_from_program(scaled(command, 0)), work_abc(&command.arguments[3]),
-          work_uvw(command, 6));
+  Vec3 to_mm = scaled(command, 0);
+  if (held_z_mm_) hold_height(command, source, to_mm);
+  move_to(motion, work_from_program(to_mm), work_abc(&command.arguments[3]), work_uvw(command, 6));
   if (kind != MotionKind::kTraverse) set_feed(motion);
   return FoldRemark::kNone;
 }
@@ -282,6 +284,11 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   end_mm[axes.second] = number(1);
   end_mm[axes.normal] = number(5);
   const Vec3 start_mm = position_known_ ? program_from_work(position_mm_) : end_mm;
+  if (held_z_mm_ && end_mm.z == *held_z_mm_) {
+    end_mm.z = start_mm.z;
+  } else {
+    held_z_mm_.reset();
+  }
   Vec3 center_mm{0};
   center_mm[axes.first] = number(2);
   center_mm[axes.second] = number(3);
@@ -343,7 +350,7 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
 void MotionFold::change_tool_length(const CanonicalCommand& command) {
   const Vec3 offset_mm = scaled(command, 0);
   const std::array<double, 3> abc_deg = {command.number(3), command.number(4), command.number(5)};
-  const Vec3 uvw_mm = scaled_if_there(command, 6);
+  const Vec3 uvw_mm = coded_lengths_ ? Vec3{0} : scaled_if_there(command, 6);
   if (offset_mm == tool_offset_mm_ && abc_deg == tool_offset_abc_deg_ &&
       uvw_mm == tool_offset_uvw_mm_) {
     return;
@@ -532,6 +539,19 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
 
 FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
                             std::vector<Motion>& out) {
+  if (!lengths_.checks()) return fold_command(command, source, out);
+  const std::size_t first = out.size();
+  const bool known = position_known_;
+  const double z_mm = position_mm_.z;
+  const FoldRemark remark = fold_command(command, source, out);
+  follow_lengths(command, source);
+  if (!height_said_ && out.size() > first) note_height(command, known, z_mm);
+  place_tips(first, out);
+  return remark;
+}
+
+FoldRemark MotionFold::fold_command(const CanonicalCommand& command, SourceRef source,
+                                    std::vector<Motion>& out) {
   switch (command.name) {
     case CanonicalName::kStraightFeed: {
       const bool thread = synchronised_ && !synchronised_by_speed_;
@@ -560,6 +580,7 @@ FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
 
 void MotionFold::signal(std::uint8_t user_m, SourceRef source, std::vector<Motion>& out) {
   append(MotionKind::kSignal, source, out).user_m = user_m;
+  place_tips(out.size() - 1, out);
 }
 
 /// What does not move the machine. A signal for what it has switched.

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/geometry.h"
@@ -15,6 +16,7 @@
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/filter_modes.h"
 #include "interp_bridge/motion.h"
+#include "interp_bridge/tool_lengths.h"
 
 namespace kerf {
 
@@ -109,6 +111,13 @@ class MotionFold {
 
   /// Before the first command: QtPlasmaC's filter has its share.
   void set_filter(FilterSetup setup) { filter_ = setup; }
+  /// Before the first command: lengths are checked (ToolLengths), and motions are those of the real
+  /// tip.
+  void set_lengths(ToolLengthSetup setup) {
+    start_z_mm_ = setup.start_z_mm;
+    coded_lengths_ = setup.calls == ToolLengthSetup::Calls::kCoded;
+    lengths_.set_up(std::move(setup));
+  }
   /// For the commands that follow: steps of MotionKind::kSignal are made.
   void set_signals(bool wanted) { signals_ = wanted; }
   /// Appends the step of a user M-code.
@@ -204,6 +213,15 @@ class MotionFold {
   void relate_shift();
   void adopt_frame();
   void note_distance_mode(std::string_view comment);
+  FoldRemark fold_command(const CanonicalCommand& command, SourceRef source,
+                          std::vector<Motion>& out);
+  FoldRemark fold_points(const Spline& spline, SourceRef source, std::vector<Motion>& out);
+  // motion_fold_length.cpp
+  void follow_lengths(const CanonicalCommand& command, SourceRef source);
+  Vec3 along_work(const Vec3& v_mm) const;
+  void note_height(const CanonicalCommand& command, bool known, double z_mm);
+  void hold_height(const CanonicalCommand& command, SourceRef source, Vec3& to_mm);
+  void place_tips(std::size_t first, std::vector<Motion>& out) const;
   // motion_fold_torch.cpp
   bool fold_torch(const CanonicalCommand& command);
   void take_synchronised_outputs();
@@ -227,6 +245,16 @@ class MotionFold {
   Vec3 tool_offset_mm_{0};
   std::array<double, 3> tool_offset_abc_deg_{};
   Vec3 tool_offset_uvw_mm_{0};
+  ToolLengths lengths_;
+  bool coded_lengths_ = false;  ///< U and W of the offset are no lengths
+  bool height_said_ = false;    ///< the program has said where Z is, or the machine has
+  double start_z_mm_ = 0;       ///< where the interpreter has it before
+  /// The interpreter does not know that the offset has changed: as long as the program does not
+  /// name Z, it goes on to say this one (program coordinates, mm), and the tip stays as high as it
+  /// is.
+  std::optional<double> held_z_mm_;
+  SourceRef held_at_;
+  Vec3 call_offset_mm_{0};  ///< tool_offset_mm_ at the last call
   double unit_mm_ = 1;
   CanonicalPlane plane_ = CanonicalPlane::kXy;
 

@@ -94,6 +94,14 @@ bool usable(const Spline& spline) {
 
 FoldRemark MotionFold::fold_spline(const Spline& spline, SourceRef source,
                                    std::vector<Motion>& out) {
+  const std::size_t first = out.size();
+  const FoldRemark remark = fold_points(spline, source, out);
+  place_tips(first, out);
+  return remark;
+}
+
+FoldRemark MotionFold::fold_points(const Spline& spline, SourceRef source,
+                                   std::vector<Motion>& out) {
   if (!usable(spline) || !position_known_) {
     position_known_ = false;
     return FoldRemark::kSplineLost;

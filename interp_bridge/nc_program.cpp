@@ -28,8 +28,8 @@ using Clock = std::chrono::steady_clock;
 
 /// The second run of a program that fell silent need not wait as long to call it so.
 constexpr double kSilenceAgain_s = 2.0;
-/// rs274 reads tables and parameters in inches, whatever the machine.
-constexpr double kInchMm = 25.4;
+/// rs274 2.9 reads tables and parameters in inches, whatever the machine.
+constexpr double kTableUnit_mm = 25.4;
 
 class NcProgram final : public Program {
  public:
@@ -102,7 +102,7 @@ Result<NcProgram::Session> NcProgram::start_session() const {
     InterpreterSetup machine;
     machine.work_offset = options_.machine.work_offset;
     Diagnostics ignored;
-    const Result<ParameterFile> values = parameters_of(machine, kInchMm, ignored);
+    const Result<ParameterFile> values = parameters_of(machine, kTableUnit_mm, ignored);
     const std::string path = home + "/x.var";
     std::ofstream file(path);
     if (!values || !(file << values->text() << std::flush)) {
@@ -147,6 +147,10 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.tool_by_index = session.table.tool_by_index;
   reading.feeder.diameters_known = !options_.tool_table_path.empty();
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
+  reading.feeder.lengths.length_mm = known_lengths(tools_);
+  reading.feeder.lengths.calls = ToolLengthSetup::Calls::kCoded;
+  reading.feeder.lengths.table_unit_mm = kTableUnit_mm;
+  reading.feeder.lengths.displaces = options_.machine.straight_axes;
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
   const InterpreterSetup& machine = options_.machine;

@@ -46,6 +46,10 @@ struct InterpreterSetup {
   /// The lengths of the tool table count (G43). Without a known place of the machine they must not:
   /// a program that begins with G43 and G0 X Y would find its tool a tool's length below Z0.
   bool tool_lengths = false;
+  /// X Y Z are slides, and no controller follows the tip where the tool tilts: a tool longer than
+  /// its offset has its tip lower by the difference. Of other machines lengths are compared, and
+  /// what is cut is what the program says.
+  bool straight_axes = true;
   /// Where the machine stands at the start, machine coordinates: X Y Z A B C U V W, mm and degrees.
   std::array<double, 9> start{};
   /// That is where it stands, and the work offsets are known too: the first move has a start.

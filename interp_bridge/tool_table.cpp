@@ -12,6 +12,7 @@
 #include <set>
 
 #include "interp_bridge/source_text.h"
+#include "interp_bridge/tool_lengths.h"
 
 namespace kerf {
 namespace {
@@ -265,9 +266,11 @@ InterpreterToolTable interpreter_tool_table(const std::vector<ToolTableRow>& row
     if (row.tool == 0 || table.tool_by_index.size() >= kMaxRows) return;
     if (!present.insert(row.tool).second) return;
     table.tool_by_index.push_back(row.tool);
-    table.text += fmt::format("T{} P{} D{:.10f} I{:.6f} J{:.6f} Q{}\n", row.tool, row.pocket,
-                              row.diameter_mm / kInchMm, row.front_angle_deg, row.back_angle_deg,
-                              row.orientation);
+    const CodedOffset code = coded_offset(row.tool);
+    table.text +=
+        fmt::format("T{} P{} U{:.10f} W{:.10f} D{:.10f} I{:.6f} J{:.6f} Q{}\n", row.tool,
+                    row.pocket, code.u_mm / kInchMm, code.w_mm / kInchMm, row.diameter_mm / kInchMm,
+                    row.front_angle_deg, row.back_angle_deg, row.orientation);
     pocket = std::max(pocket, row.pocket);
   };
   for (const ToolTableRow& row : rows) add(row);

@@ -22,9 +22,9 @@ struct InterpreterToolTable {
 };
 
 /// The given rows, and one for every named tool without a row so that its M6 runs. rs274 2.9 takes
-/// every table for inches, so a diameter of 6 mm is written as 6 / 25.4. Length offsets are all 0:
-/// the engine works at the tool's tip, and with offsets of 0 the printed points are just that (and
-/// rs274's wrong Z after M6 behind a G43 cannot show).
+/// every table for inches, so a diameter of 6 mm is written as 6 / 25.4. Length offsets are all 0
+/// in X Y Z: with these the printed points are what the program writes (and rs274's wrong Z after
+/// M6 behind a G43 cannot show). U and W say whose row it is (coded_offset()).
 InterpreterToolTable interpreter_tool_table(const std::vector<ToolTableRow>& rows,
                                             const NamedTools& named);
 

@@ -87,11 +87,11 @@ std::optional<Checks::Touch> Checks::first_touch(const CheckedMove& move) const 
   return touch;
 }
 
-void Checks::check_traverse(const CheckedMove& move) {
+bool Checks::check_traverse(const CheckedMove& move) {
   const std::optional<Touch> touch = first_touch(move);
   if (!touch) {
     rapid_.reset();
-    return;
+    return false;
   }
   if (!rapid_) {
     Finding finding =
@@ -100,6 +100,7 @@ void Checks::check_traverse(const CheckedMove& move) {
     rapid_ = log_.add(std::move(finding));
   }
   log_.deepen(*rapid_, touch->contact.depth_mm);
+  return true;
 }
 
 void Checks::check_standing_spindle(const CheckedMove& move) {

@@ -40,8 +40,8 @@ class Checks {
   /// The same for tilted tools.
   bool may_touch(std::span<const CutMove> moves, const Cutter& cutter) const;
 
-  /// rapid-contact. An event ends with the first traverse that touches nothing.
-  void check_traverse(const CheckedMove& move);
+  /// rapid-contact. An event ends with the first traverse that touches nothing. True if it touches.
+  bool check_traverse(const CheckedMove& move);
   void clear_traverse() { rapid_.reset(); }
 
   /// spindle-off-contact. An event lasts until the spindle turns or the tool changes; after it is

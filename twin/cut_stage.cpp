@@ -19,6 +19,9 @@ constexpr std::uint8_t kAllUnknown = 7;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 
+/// Beams and punches go through whatever the length of the tool: they are taken as programmed.
+bool displaced(const Motion& motion) { return motion.length.tip_shift_mm != Vec3{0}; }
+
 }  // namespace
 
 CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
@@ -32,6 +35,7 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       joint_limits_(options.joint_limits),
       timeline_(options, *this),
       checks_(stock, log),
+      lengths_(stock.bounds_mm(), log),
       axis_limits_(options.limits, log) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
@@ -93,6 +97,7 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
 void CutStage::begin_reporting() {
   flush_whole();
   checks_.forget_events();
+  lengths_.forget();
   axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();
@@ -131,13 +136,13 @@ void CutStage::cut(const Motion& m, const TimedStep& step) {
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (punch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
-    punch_->take(m, step);
+    punch_->take(displaced(m) ? as_programmed(m) : m, step);
     return;
   }
   check_turns(m, step);
   if (torch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
-    torch_->take(m, step, path_);
+    torch_->take(displaced(m) ? as_programmed(m) : m, step, path_);
     return;
   }
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
@@ -240,21 +245,27 @@ void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
   if (!mounted_ && m.tool == 0 && !book_.has_arguments()) return;
   // Nor does a move to where nobody knows say which tool is in the spindle: many programs begin so.
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
-  if (!mount_for(m) || !m.start_known) return;
+  if (!mount_for(m) || !m.start_known) {
+    check_length(m, step, false);
+    return;
+  }
   divide(m);
   if (!comes_near(m)) {
+    check_length(m, step, false);
     checks_.clear_traverse();
     return;
   }
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number};
   flush_whole();
-  checks_.check_traverse(move);
+  check_length(m, step, checks_.check_traverse(move));
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   push(m, step, false);
 }
 
 void CutStage::take_feed(const Motion& m, const TimedStep& step) {
-  if (!mount_for(m)) {
+  const bool known = mount_for(m);
+  check_length(m, step, false);
+  if (!known) {
     report_undefined(m, step);
     return;
   }
@@ -271,6 +282,11 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
     checks_.check_standing_spindle(move);
   }
   push(m, step, spindle_off);
+}
+
+void CutStage::check_length(const Motion& m, const TimedStep& step, bool touches) {
+  const double radius_mm = cutter() ? cutter()->radius_mm() : 0;
+  lengths_.check(m, step, radius_mm, motion_moves_.is_upright(m), touches);
 }
 
 /// What it is cut as.

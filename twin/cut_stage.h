@@ -17,6 +17,7 @@
 #include "twin/cut_labels.h"
 #include "twin/finding.h"
 #include "twin/kinematics/rotary_checks.h"
+#include "twin/length_check.h"
 #include "twin/motion_moves.h"
 #include "twin/punch_stage.h"
 #include "twin/timeline.h"
@@ -126,6 +127,7 @@ class CutStage : private StepSink {
   void report_rotary_faults(const TimedStep& step);
   void report_unknown_place(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
+  void check_length(const Motion& motion, const TimedStep& step, bool touches);
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
   void report_over_feed();
@@ -167,6 +169,7 @@ class CutStage : private StepSink {
   std::span<const PathPiece> path_;  ///< of the present step
   OverFeed over_feed_;
   Checks checks_;
+  LengthCheck lengths_;
   AxisLimitCheck axis_limits_;
   std::optional<TorchStage> torch_;
   std::optional<PunchStage> punch_;

@@ -352,6 +352,10 @@ void read_kinematics(IniReader& reader, const IniEntry* entry, double unit_mm,
   start_at_home(reader, *machine, unit_mm, setup.interpreter);
   setup.timeline.kinematics = std::make_shared<const MachineKinematics>(std::move(machine.value()));
   setup.timeline.kinematics_known = true;
+  const std::vector<KinematicsType>& types = setup.timeline.kinematics->types;
+  setup.interpreter.straight_axes =
+      std::all_of(types.begin(), types.end(),
+                  [](const KinematicsType& type) { return type.mode == KinematicsMode::kAxes; });
   // Of a module that has a joint for every axis, whether the INI names that or not (maxkins).
   setup.timeline.joint_limits =
       joint_limits_of_ini(reader.file(), setup.timeline.kinematics->joint_letters, unit_mm);

@@ -30,6 +30,17 @@ ArcEnds arc_ends(const Motion& m) {
 
 }  // namespace
 
+Motion as_programmed(const Motion& motion) {
+  Motion out = motion;
+  const Vec3 shift_mm = motion.length.tip_shift_mm;
+  out.from_mm -= shift_mm;
+  out.to_mm -= shift_mm;
+  out.tool_offset_mm += out.length.applied_mm - out.length.real_mm;
+  out.length = {};
+  if (out.kind == MotionKind::kArc) out.arc.center_mm -= shift_mm;
+  return out;
+}
+
 double path_length_mm(const Motion& m) {
   if (m.kind != MotionKind::kArc) return glm::length(m.to_mm - m.from_mm);
   const ArcEnds ends = arc_ends(m);

@@ -11,6 +11,9 @@ struct PathPiece;
 
 /// Length of the way of the tip. Helices exactly; spirals (radius changing with the angle) by their
 /// mean radius, which is right to second order in the change. 0 for motions that do not move.
+/// Without the shift of a wrong tool length: where the program has the tip.
+Motion as_programmed(const Motion& motion);
+
 double path_length_mm(const Motion& motion);
 
 /// What the feed is for: the way of X Y Z, or where these stand that of U V W.

@@ -19,6 +19,9 @@
 //     "analog": [0,0,0,50]   analog outputs (M67, M68), if one is not 0
 //     "adaptive_feed", "overburn": true   M52; QtPlasmaC's overburn
 //     "material": 2          row of QtPlasmaC's materials, if it is not the first
+//     "tip_off": [0,0,-15]   the tool is not as long as its offset: so far off is the tip from
+//     where
+//                            the program has it, in from, to and center already
 //     "path": "exact-stop" | "exact-path"      G61.1, G61; "blend_mm", "merge_mm": G64 P Q
 #pragma once
 

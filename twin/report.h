@@ -51,6 +51,7 @@ struct Report {
   std::optional<StockReport> stock;  ///< absent if the run ended before there was one
   std::optional<SheetReport> sheet;  ///< of a workpiece that is one
   std::vector<ToolUse> tools;
+  bool lengths_all_zero = false;   ///< of the tool table: they are not checked
   std::optional<LiveReport> live;  ///< of shadow and replay
   FindingLog findings;
   std::string partial_reason;  ///< not empty: the program was not run to its end, and why

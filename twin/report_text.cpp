@@ -169,6 +169,9 @@ std::string summary_text(const Report& report) {
   if (report.stock) add_stock(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
+  if (report.lengths_all_zero) {
+    out += "lengths   all 0 in the tool table, and so they are not checked\n";
+  }
   out += fmt::format("time      {}{}\n          {}\n", duration_text(m.duration_s),
                      m.held ? held_text(*m.held) : "", report.time_model);
   out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),

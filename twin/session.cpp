@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "interp_bridge/tool_lengths.h"
 #include "twin/batch_queue.h"
 
 namespace kerf {
@@ -243,6 +244,8 @@ void Session::complete_report(const CutStage& stage) {
   report_.motion = stage.timeline().totals();
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
+  const std::vector<ToolTableRow>& table = front_.tools.table;
+  report_.lengths_all_zero = !table.empty() && known_lengths(table).empty() && !front_.is_sheet();
   report_.stock = stock_report(*stock(), front_.stock.facts);
   if (stage.torch() && as_sheet(*stock())) {
     report_.sheet =

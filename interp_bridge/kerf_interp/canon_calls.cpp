@@ -99,10 +99,12 @@ void SET_XY_ROTATION(double degrees) {
   record(CanonicalName::kSetXyRotation, {degrees});
 }
 void USE_TOOL_LENGTH_OFFSET(EmcPose offset) {
-  world().set_tool_offset(pose(offset));
   const Pose p = pose(offset);
-  recording().records->numbers(code(CanonicalName::kUseToolLengthOffset), recording().line_now(),
-                               p.data(), p.size());
+  const World::OffsetSource source = world().offset_source(p, recording().block_text());
+  world().set_tool_offset(p);
+  record(CanonicalName::kUseToolLengthOffset,
+         {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], static_cast<double>(source.origin),
+          static_cast<double>(source.tool)});
 }
 
 // ---- Motion
@@ -313,9 +315,13 @@ void UNCLAMP_AXIS(CANON_AXIS) { record(CanonicalName::kUnclampAxis); }
 // ---- Tools
 // ----------------------------------------------------------------------------------------------
 
-void SELECT_TOOL(int tool) { record(CanonicalName::kSelectTool, {static_cast<double>(tool)}); }
+void SELECT_TOOL(int tool) {
+  world().forget_lookup();
+  record(CanonicalName::kSelectTool, {static_cast<double>(tool)});
+}
 void START_CHANGE() { record(CanonicalName::kStartChange); }
 void CHANGE_TOOL(int row) {
+  world().forget_lookup();
   // LinuxCNC's task moves the machine by itself: all axes at once, whatever is in the way.
   if (world().tool_change_axes > 0) {
     const Pose p = world().tool_change_position();

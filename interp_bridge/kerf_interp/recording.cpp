@@ -36,6 +36,12 @@ void Recording::find_file() {
   change_file(index, text);
 }
 
+std::string Recording::block_text() const {
+  std::array<char, 1024> text{};
+  if (interpreter != nullptr) interpreter->line_text(text.data(), text.size() - 1);
+  return text.data();
+}
+
 /// Moves come in the order of their blocks, so the block is the first with that line from the last
 /// move's on. (A later one may have the same number in another file.)
 void Recording::find_earlier_block(int line) {

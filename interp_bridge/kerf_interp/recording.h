@@ -33,7 +33,12 @@ class Recording {
   /// subroutine begins where the first one's ends.
   void find_file();
   /// A block has been read and is about to be executed.
-  void begin_block(int line) { recent_[++blocks_ % kRecent] = {file_, line}; }
+  void begin_block(int line) {
+    recent_[++blocks_ % kRecent] = {file_, line};
+    world.forget_lookup();
+  }
+  /// The block being executed, as it is written.
+  std::string block_text() const;
   /// The block only called or returned: no move is its own.
   void block_does_not_move() { recent_[blocks_ % kRecent].line = 0; }
   /// The line of a move. Moves bring that of their block; those of G70 to G72 bring 0. Cutter

@@ -2,9 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace kerf::interp {
+namespace {
+
+/// G43, G43.1, G43.2 and G49 among the words of a block.
+std::vector<double> length_codes(const std::string& block) {
+  std::vector<double> codes;
+  int depth = 0;
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    if (block[i] == ';' && depth == 0) break;
+    depth += block[i] == '(' ? 1 : block[i] == ')' ? -1 : 0;
+    if (depth != 0 || (block[i] != 'g' && block[i] != 'G')) continue;
+    std::string digits;
+    for (std::size_t at = i + 1; at < block.size(); ++at) {
+      if (block[at] == ' ' || block[at] == '\t') continue;
+      if (std::string_view("0123456789.").find(block[at]) == std::string_view::npos) break;
+      digits += block[at];
+    }
+    const double code = std::round(std::strtod(digits.c_str(), nullptr) * 10) / 10;
+    if (code == 43 || code == 43.1 || code == 43.2 || code == 49) codes.push_back(code);
+  }
+  return codes;
+}
+
+}  // namespace
 
 CANON_TOOL_TABLE empty_tool() {
   CANON_TOOL_TABLE tool{};
@@ -109,7 +134,9 @@ void World::mount_pocket_0() {
   rows_.erase(mounted);
 }
 
-int World::row_of_tool(int number) {
+int World::row_of_tool(int number) { return looked_up_ = find_row(number); }
+
+int World::find_row(int number) {
   if (number == 0 && !random_toolchanger) return 0;
   const auto found = std::find_if(rows_.begin() + 1, rows_.end(),
                                   [&](const CANON_TOOL_TABLE& t) { return t.toolno == number; });
@@ -121,6 +148,38 @@ int World::row_of_tool(int number) {
   tool.pocketno = static_cast<int>(rows_.size());
   rows_.push_back(tool);
   return tool.pocketno;
+}
+
+bool World::is_offset(const Pose& offset_mm, int index) const {
+  constexpr double kRounding_mm = 1e-9;
+  const EmcPose& o = row(index).offset;
+  const Pose p = {o.tran.x, o.tran.y, o.tran.z, o.a, o.b, o.c, o.u, o.v, o.w};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double mm = is_length(i) ? p[i] / units_per_mm : p[i];
+    if (std::abs(mm - offset_mm[i]) > kRounding_mm) return false;
+  }
+  return true;
+}
+
+/// The interpreter does not say it with the call. The block does, unless it writes its G codes as
+/// expressions; then the numbers do.
+World::OffsetSource World::offset_source(const Pose& program_units,
+                                         const std::string& block) const {
+  const Pose offset_mm = scaled(program_units);
+  const int named = looked_up_ >= 0 ? looked_up_ : 0;
+  const int tool = row(named).toolno;
+  for (const double code : length_codes(block)) {
+    if (code == 49) return {};
+    if (code == 43) return {OffsetSource::kRow, tool};
+    if (code == 43.2 && looked_up_ >= 0) return {OffsetSource::kAddedRow, tool};
+    return {OffsetSource::kStated, -1};
+  }
+  if (looked_up_ < 0 && offset_mm == Pose{}) return {};
+  if (is_offset(offset_mm, named)) return {OffsetSource::kRow, tool};
+  Pose added = offset_mm;
+  for (std::size_t i = 0; i < added.size(); ++i) added[i] -= tool_offset_[i];
+  if (looked_up_ >= 0 && is_offset(added, named)) return {OffsetSource::kAddedRow, tool};
+  return {OffsetSource::kStated, -1};
 }
 
 CANON_TOOL_TABLE World::row(int index) const {

@@ -78,6 +78,15 @@ class World {
   void set_tool_offset(const Pose& program_units) { tool_offset_ = scaled(program_units); }
   void set_rotation(double degrees);
   double tool_offset(std::size_t axis) const;  ///< program units
+  /// Whose row an offset is.
+  struct OffsetSource {
+    enum Origin { kNone, kRow, kAddedRow, kStated } origin = kNone;  ///< kerf::OffsetOrigin
+    int tool = -1;
+  };
+  /// Of the offset that is about to be set by `block`; before set_tool_offset().
+  OffsetSource offset_source(const Pose& program_units, const std::string& block) const;
+  /// The look-ups of tools so far are not those of an H word that comes.
+  void forget_lookup() { looked_up_ = -1; }
 
   // ---- Position
   // -------------------------------------------------------------------------------------
@@ -112,6 +121,8 @@ class World {
   Pose scaled(const Pose& program_units) const;
   Pose machine_from_program(const Pose& p) const;
   Pose program_from_machine(const Pose& m) const;
+  int find_row(int number);
+  bool is_offset(const Pose& offset_mm, int row) const;
 
   Pose g5x_{}, g92_{}, tool_offset_{};
   double cos_ = 1, sin_ = 0;
@@ -119,6 +130,7 @@ class World {
   bool probe_found_ = false;
   std::vector<CANON_TOOL_TABLE> rows_;
   int loaded_ = 0;
+  int looked_up_ = -1;  ///< row of the last tool that was asked for by its number
 };
 
 CANON_TOOL_TABLE empty_tool();

@@ -128,8 +128,9 @@ TEST(InterpreterTable, InchDiametersAndNoLengths) {
   named.numbers = {4, 7};
   const InterpreterToolTable table = interpreter_tool_table({row}, named);
   EXPECT_EQ(table.text,
-            "T7 P3 D0.2362204724 I0.000000 J0.000000 Q2\n"
-            "T4 P4 D0.0000000000 I0.000000 J0.000000 Q0\n");
+            "T7 P3 U0.2755905512 W0.0393700787 D0.2362204724 I0.000000 J0.000000 Q2\n"
+            "T4 P4 U0.1574803150 W0.0393700787 D0.0000000000 I0.000000 J0.000000 Q0\n")
+      << "U and W name the row, in mm";
   EXPECT_EQ(table.tool_by_index, (std::vector<int>{0, 7, 4}));
 }
 

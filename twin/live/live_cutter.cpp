@@ -121,6 +121,8 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
   now.uvw_known = pose->uvw_known;
   now.t_s = t_s;
   now.tool_length_mm = pose->tool_length_mm;
+  now.length_is_applied = pose->length_is_applied;
+  now.real_shift_mm = pose->real_shift_mm;
   now.sample = sample;
   // A program that is followed knows better than a configuration that says one tool for all.
   const bool by_configuration = !ahead_ || program_tool_ < 0;
@@ -145,6 +147,7 @@ FollowedPlace LiveCutter::place_of(const Sighting& now, double elapsed_s) const 
   place.without_length = options_.program_lengths && !options_.frame.workpiece_frame &&
                          (from == ToolLengthFrom::kProgram ||
                           (from == ToolLengthFrom::kAuto && std::isnan(sample.tool_offset_z_mm)));
+  place.applied_length = now.length_is_applied;
   place.elapsed_s = elapsed_s;
   place.line = sample.line;
   place.tool = sample.tool;
@@ -171,6 +174,14 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
   // Strokes hang on motions that do not move, too: punch() forgets them.
   if (!options_.turret) ahead_->forget_before(follower_.program_s());
   return point;
+}
+
+/// On the path the tip is off as the program's is; elsewhere as the tool table has it.
+void LiveCutter::place_real_tip(Sighting& now, const FollowedPoint& point) {
+  if (!now.length_is_applied) return;
+  if (point.on_path) now.real_shift_mm = point.tip_shift_mm;
+  now.place.tip_mm += now.real_shift_mm;
+  now.tool_length_mm -= now.real_shift_mm.z;
 }
 
 /// What the machine has behind it.
@@ -316,6 +327,12 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
     set_type(path->machine(), kinematics_type_, motion);
   }
   motion.tool_offset_mm = {0, 0, now.tool_length_mm};
+  if (now.real_shift_mm != Vec3{0}) {
+    motion.length.verdict = ToolLengthState::Verdict::kWrong;
+    motion.length.real_mm = motion.tool_offset_mm;
+    motion.length.applied_mm = motion.tool_offset_mm + now.real_shift_mm;
+    motion.length.tip_shift_mm = now.real_shift_mm;
+  }
   motion.feed_mm_per_min = duration_s > 0 ? 60 * length_mm / duration_s : 0;
   facts_.chord_mm += length_mm;
   double radius_mm = 0;
@@ -380,6 +397,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   Sighting& now = *seen;
   const double elapsed_s = before_ ? now.t_s - before_->t_s : 0;
   const FollowedPoint point = follow(now, elapsed_s);
+  place_real_tip(now, point);
   const MachineKinematics* const machine = switched_machine();
   if (before_ && machine && machine->type(kinematics_type_).mode == KinematicsMode::kArm) {
     now.place.abc_deg = nearest_turns(now.place.abc_deg, before_->place.abc_deg);

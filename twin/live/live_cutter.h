@@ -136,6 +136,8 @@ class LiveCutter {
     Pose pose;           ///< of the tool in the workpiece
     double t_s = 0;
     double tool_length_mm = 0;
+    bool length_is_applied = false;  ///< LivePose's
+    Vec3 real_shift_mm{0};           ///< of it, while the tip is not on the program's path
     int tool = -1;
     std::array<bool, 3> abc_known{};
     std::array<bool, 3> uvw_known{};
@@ -149,6 +151,7 @@ class LiveCutter {
   std::optional<double> assumed_length_mm() const;
   FollowedPlace place_of(const Sighting& now, double elapsed_s) const;
   FollowedPoint follow(Sighting& now, double elapsed_s);
+  static void place_real_tip(Sighting& now, const FollowedPoint& point);
   void check_passed(double until_s);
   void take_kinematics(int type, bool without_length, Sighting& now);
   static ProgramPlace place_on_path(const Sighting& now, const FollowedPoint& point);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interp_bridge/tool_lengths.h"
+
 namespace kerf {
 namespace {
 
@@ -119,13 +121,14 @@ std::string LiveFrame::missing_axes(const AxisSample& sample) const {
 }
 
 double LiveFrame::length_of(const AxisSample& sample, std::optional<double> program_length_mm,
-                            bool& known) const {
+                            LivePose& pose) const {
   const ToolLengthFrom from = options_.tool_length;
   const auto allowed = [from](ToolLengthFrom one) {
     return from == one || from == ToolLengthFrom::kAuto;
   };
   if (from == ToolLengthFrom::kNone) return 0;
   if (allowed(ToolLengthFrom::kSource) && !std::isnan(sample.tool_offset_z_mm)) {
+    pose.length_is_applied = true;
     return sample.tool_offset_z_mm;
   }
   if (allowed(ToolLengthFrom::kProgram) && program_length_mm) return *program_length_mm;
@@ -135,8 +138,24 @@ double LiveFrame::length_of(const AxisSample& sample, std::optional<double> prog
     const auto row = options_.table_length_mm.find(tool);
     if (row != options_.table_length_mm.end()) return row->second;
   }
-  known = false;
+  pose.length_known = false;
   return 0;
+}
+
+/// Only of straight axes; of others the controller turns the tool with the length that it is told.
+Vec3 LiveFrame::real_shift_of(const AxisSample& sample, double applied_mm) const {
+  const auto& lengths = options_.table_length_mm;
+  const auto row = lengths.find(tool_of(sample));
+  if (row == lengths.end() || row->first <= 0) return Vec3{0};
+  const bool any =
+      std::any_of(lengths.begin(), lengths.end(), [](const auto& one) { return one.second != 0; });
+  const bool turned =
+      options_.kinematics &&
+      std::any_of(options_.kinematics->types.begin(), options_.kinematics->types.end(),
+                  [](const KinematicsType& type) { return type.mode != KinematicsMode::kAxes; });
+  const double off_mm = applied_mm - row->second;
+  if (!any || turned || std::abs(off_mm) <= kMostWear_mm) return Vec3{0};
+  return {0, 0, off_mm};
 }
 
 /// Machine coordinates without the tool's length and the work offset.
@@ -152,7 +171,10 @@ std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
                                            int type) const {
   LivePose pose;
   if (!options_.workpiece_frame) {
-    pose.tool_length_mm = length_of(sample, program_length_mm, pose.length_known);
+    pose.tool_length_mm = length_of(sample, program_length_mm, pose);
+    if (pose.length_is_applied) {
+      pose.real_shift_mm = real_shift_of(sample, pose.tool_length_mm);
+    }
   }
   const Axes axes = axes_of(sample, type, pose.tool_length_mm);
   if ((axes.known & kTipAxes) != kTipAxes) return std::nullopt;

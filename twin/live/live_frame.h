@@ -63,6 +63,11 @@ struct LivePose {
       0};  ///< X Y Z as the machine has them; of positions in the workpiece frame: tip_mm
   double tool_length_mm = 0;
   bool length_known = true;  ///< false: taken as 0 because nothing tells it
+  /// The length is the offset that the controller applies (the source says it). Where the tool in
+  /// the spindle has another one in the tool table the tip is real_shift_mm from tip_mm. Up to 1 mm
+  /// are wear, or a tool that was measured.
+  bool length_is_applied = false;
+  Vec3 real_shift_mm{0};
 };
 
 /// Turns samples into poses. One thread.
@@ -94,7 +99,8 @@ class LiveFrame {
   Axes axes_of(const AxisSample& sample, int type, double tool_mm) const;
   Vec3 tip_of(const Axes& axes, double tool_mm) const;
   double length_of(const AxisSample& sample, std::optional<double> program_length_mm,
-                   bool& known) const;
+                   LivePose& pose) const;
+  Vec3 real_shift_of(const AxisSample& sample, double applied_mm) const;
 
   LiveFrameOptions options_;
   double cos_ = 1;

@@ -46,6 +46,7 @@ ProgramPlace place_on(const Motion& m, const FollowedPlace& place) {
     arm = place.machine->type(type).mode == KinematicsMode::kArm;
   }
   if (place.without_length) here.tip_mm -= m.tool_offset_mm.z * here.along_tool;
+  if (place.applied_length) here.tip_mm += m.length.tip_shift_mm;
   if (arm) here.abc_deg = nearest_turns(here.abc_deg, m.to_abc_deg);
   return here;
 }
@@ -205,6 +206,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (place.machine) point.kinematics_type = place.machine->type_of(piece.motion);
   point.source = piece.motion.source;
   point.tool = piece.motion.tool;
+  point.tip_shift_mm = piece.motion.length.tip_shift_mm;
   point.tool_length_mm = piece.motion.tool_offset_mm.z;
   point.program_s = piece.time_at(at->t);
   point.motion = piece.number;

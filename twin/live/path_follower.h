@@ -52,6 +52,9 @@ struct FollowedPlace {
   /// The tip is where a tool of no length would have it: the lengths are those that the program
   /// has in force (Motion::tool_offset_mm, Z).
   bool without_length = false;
+  /// The tip is that of the offset which the controller applies: where a program's is not the
+  /// tool's length, the tip is as far off as the program's (ToolLengthState::tip_shift_mm).
+  bool applied_length = false;
   double elapsed_s = 0;  ///< since the place before
   int line = -1;         ///< program line that the machine says it is on; < 1: it does not say
   int tool = -1;         ///< tool number that it says is in the spindle; -1: it does not say
@@ -71,6 +74,7 @@ struct FollowedPoint {
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
   ProgramPlace place;      ///< on the path
+  Vec3 tip_shift_mm{0};    ///< of a wrong tool length there; in `place` already
   int kinematics_type = 0;       ///< in force there, by the program
   std::array<bool, 3> turned{};  ///< A, B, C: the program has turned it, up to there
   std::array<bool, 3> slid{};    ///< U, V, W: the program has moved it

@@ -51,7 +51,7 @@ void MachinePlayer::begin_pass() {
   if (found) state_.position = start;
   const MachineStep& first = batch_.steps.front();
   if (first.kind != MotionKind::kToolChange) state_.tool = first.tool;
-  state_.tool_offset_z_mm = first.tool_offset_mm.z;
+  state_.tool_offset_z_mm = first.applied_offset_z_mm;
 }
 
 /// Where the first step that moves begins.
@@ -138,7 +138,7 @@ void MachinePlayer::begin_step() {
   state_.line = s.moves ? s.line : 0;
   if (s.kind == MotionKind::kToolChange) return;
   state_.tool = s.tool;
-  state_.tool_offset_z_mm = s.tool_offset_mm.z;
+  state_.tool_offset_z_mm = s.applied_offset_z_mm;
   lengths_.clear();
   double sum = 0;
   for (std::uint32_t i = 0; i < s.piece_count; ++i) {

@@ -92,6 +92,7 @@ void StepFeed::step(const Motion& motion, const TimedStep& timed, std::span<cons
   step.tool = motion.tool;
   step.spindle_rpm = signed_rpm(motion);
   step.tool_offset_mm = motion.tool_offset_mm;
+  step.applied_offset_z_mm = motion.tool_offset_mm.z + motion.length.tip_shift_mm.z;
   step.from_abc_deg = motion.start_known ? motion.from_abc_deg : motion.to_abc_deg;
   step.to_abc_deg = motion.to_abc_deg;
   step.first_piece = static_cast<std::uint32_t>(filling_.pieces.size());

@@ -28,6 +28,7 @@ struct MachineStep {
   int tool = 0;
   double spindle_rpm = 0;  ///< negative: counterclockwise
   Vec3 tool_offset_mm{0};
+  double applied_offset_z_mm = 0;  ///< what the controller takes for it
   std::array<double, 3> from_abc_deg{};
   std::array<double, 3> to_abc_deg{};
   std::uint32_t first_piece = 0;  ///< in StepBatch::pieces

@@ -266,7 +266,19 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
           floats(m.torch.analog[0], m.torch.analog[1]),
           floats(m.torch.analog[2], m.torch.analog[3]),
           std::uint64_t{m.torch.material} << 32 | std::uint64_t{m.torch.spindles_on} << 8 |
-              std::uint64_t{m.torch.adaptive_feed} << 1 | std::uint64_t{m.torch.overburn}};
+              std::uint64_t{m.torch.adaptive_feed} << 1 | std::uint64_t{m.torch.overburn},
+          bits(m.length.applied_mm.x),
+          bits(m.length.applied_mm.y),
+          bits(m.length.applied_mm.z),
+          bits(m.length.real_mm.x),
+          bits(m.length.real_mm.y),
+          bits(m.length.real_mm.z),
+          bits(m.length.tip_shift_mm.x),
+          bits(m.length.tip_shift_mm.y),
+          bits(m.length.tip_shift_mm.z),
+          std::uint64_t{m.length.set_at.file} << 32 | m.length.set_at.line,
+          std::uint64_t{static_cast<std::uint32_t>(m.length.offset_tool)} << 32 |
+              static_cast<std::uint64_t>(m.length.verdict)};
 }
 
 std::uint64_t ProgramTrackBuilder::mode_of(const Motion& m) {

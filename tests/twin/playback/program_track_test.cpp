@@ -19,11 +19,15 @@ std::vector<std::uint64_t> bits_of(const Motion& m) {
         static_cast<std::int64_t>(m.flood), static_cast<std::int64_t>(m.mist),
         static_cast<std::int64_t>(m.path_mode), static_cast<std::int64_t>(m.feed_per_rev),
         static_cast<std::int64_t>(m.start_known), static_cast<std::int64_t>(m.tool),
-        static_cast<std::int64_t>(m.source.file), static_cast<std::int64_t>(m.source.line)}) {
+        static_cast<std::int64_t>(m.source.file), static_cast<std::int64_t>(m.source.line),
+        static_cast<std::int64_t>(m.length.verdict),
+        static_cast<std::int64_t>(m.length.offset_tool),
+        static_cast<std::int64_t>(m.length.set_at.line)}) {
     bits.push_back(static_cast<std::uint64_t>(integer));
   }
   for (const Vec3& v : {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm,
-                        m.from_uvw_mm, m.to_uvw_mm, m.tool_offset_uvw_mm}) {
+                        m.from_uvw_mm, m.to_uvw_mm, m.tool_offset_uvw_mm, m.length.applied_mm,
+                        m.length.real_mm, m.length.tip_shift_mm}) {
     for (int axis = 0; axis < 3; ++axis) add(v[axis]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -67,6 +71,14 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.from_uvw_mm = random() % 50 == 0 ? vector() : m.to_uvw_mm;
     if (random() % 20 == 0) m.to_uvw_mm = vector();
     m.tool_offset_uvw_mm = random() % 9 == 0 ? Vec3{0, 0, 2.5} : Vec3{0};
+    if (random() % 9 == 0) {
+      m.length.verdict = static_cast<ToolLengthState::Verdict>(random() % 3);
+      m.length.offset_tool = static_cast<int>(random() % 3) - 1;
+      m.length.set_at = {0, static_cast<std::uint32_t>(random() % 3)};
+      m.length.tip_shift_mm = {0, 0, random() % 2 == 0 ? -15.0 : 0.0};
+      m.length.applied_mm = {0, 0, random() % 2 == 0 ? 60.0 : 75.0};
+      m.length.real_mm = {random() % 2 == 0 ? -1.0 : 0.0, 0, 75};
+    }
     m.kind = static_cast<MotionKind>(random() % 9);
     m.spindle = static_cast<SpindleState>(random() % 3);
     m.path_mode = static_cast<PathMode>(random() % 3);
