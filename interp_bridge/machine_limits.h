@@ -46,6 +46,10 @@ struct MachineLimits {
   /// where nothing has to turn.
   double io_period_s = 0.1;
 
+  /// [TASK]CYCLE_TIME: how often LinuxCNC's task looks whether the machine stands, so that it may
+  /// send what waits for that.
+  double task_period_s = 0.001;
+
   /// X, Y, Z 100, 100, 60 mm/s and 500, 500, 300 mm/s2; A, B, C 90 deg/s and 360 deg/s2; no soft
   /// limits.
   static MachineLimits small_mill();

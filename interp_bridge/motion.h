@@ -45,6 +45,14 @@ struct ArcGeometry {
 
 enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise };
 
+/// What has come since the step before that ends the chain of feeds which G64 Q merges, if nothing
+/// more. A feed or a path mode that is another one ends it too.
+enum class ChainEnd : std::uint8_t {
+  kNone,
+  kEnds,     ///< an override (M48 to M51, M53), (LOG,..), what makes the machine halt
+  kOutputs,  ///< M62, M63, M67: switched where this step begins
+};
+
 /// How the machine runs through the corner between two moves: G61.1, G61, G64.
 enum class PathMode : std::uint8_t { kExactStop, kExactPath, kContinuous };
 
@@ -146,6 +154,12 @@ struct Motion {
   /// kArc only: the rounded corner of a traverse, where the planned path is taken for the
   /// program's; as rapid as that.
   bool rapid = false;
+  /// Since the step before, so many commands have come that LinuxCNC sends out only when all moves
+  /// before them are done, so that the machine has stopped: offsets, spindle, coolant, M64, M65,
+  /// M68, M52, M66, messages. Not what is a step of its own. 255: that, or more.
+  std::uint8_t halts = 0;
+  std::uint8_t io_halts = 0;  ///< of those, the ones that wait for LinuxCNC's I/O task: coolant
+  ChainEnd chain_end = ChainEnd::kNone;
   int tool = 0;  ///< tool number in the spindle, 0 = none
   SourceRef source;
   Vec3 from_mm{0};

@@ -59,6 +59,8 @@ class MotionFeeder {
   /// A command that is none of ours: counted. True if it is the first of its name.
   bool take_unknown(std::string_view name);
   void add_foreign(std::string_view line);
+  /// M66 or a user M-code: the machine stands before the next step.
+  void take_wait() { fold_.halt(); }
   /// M190 P: true if it is QtPlasmaC's, and the material is another now.
   bool take_material_change(double number, SourceRef source);
   /// M100 to M199: true if it is one that SignalOptions names, and a step has been made of it.

@@ -22,6 +22,61 @@ constexpr double kFullTurnFuzz_rad = 1e-6;
 /// this counts as this.
 constexpr double kSmallestTurningRadius_mm = 0.5;
 
+/// What a command does to the queue of moves in LinuxCNC 2.9: its task sends some only when all
+/// moves before them are done (emcTaskCheckPreconditions: WAITING_FOR_MOTION), and some more end
+/// the chain of feeds that may be merged (flush_segments of emccanon).
+enum class QueueEffect : std::uint8_t { kNone, kEndsChain, kOutputs, kHalts, kHaltsForIo };
+
+/// Not those that are steps of their own: a dwell, a tool change, a stop.
+QueueEffect queue_effect(CanonicalName name) {
+  switch (name) {
+    case CanonicalName::kSetG5xOffset:
+    case CanonicalName::kSetG92Offset:
+    case CanonicalName::kSetXyRotation:
+    case CanonicalName::kUseToolLengthOffset:
+    case CanonicalName::kStartSpindleClockwise:
+    case CanonicalName::kStartSpindleCounterclockwise:
+    case CanonicalName::kStopSpindleTurning:
+    case CanonicalName::kSetSpindleSpeed:
+    case CanonicalName::kOrientSpindle:
+    case CanonicalName::kWaitOrientComplete:
+    case CanonicalName::kSetAuxOutputBit:
+    case CanonicalName::kClearAuxOutputBit:
+    case CanonicalName::kSetAuxOutputValue:
+    case CanonicalName::kEnableAdaptiveFeed:
+    case CanonicalName::kDisableAdaptiveFeed:
+    case CanonicalName::kMessage:
+      return QueueEffect::kHalts;
+    case CanonicalName::kFloodOn:
+    case CanonicalName::kFloodOff:
+    case CanonicalName::kMistOn:
+    case CanonicalName::kMistOff:
+    case CanonicalName::kSetToolTableEntry:
+    case CanonicalName::kReloadTooldata:
+      return QueueEffect::kHaltsForIo;
+    case CanonicalName::kSetFeedMode:
+    case CanonicalName::kSetMotionControlMode:
+    case CanonicalName::kStartSpeedFeedSync:
+    case CanonicalName::kStopSpeedFeedSynch:
+    case CanonicalName::kEnableFeedOverride:
+    case CanonicalName::kDisableFeedOverride:
+    case CanonicalName::kEnableSpeedOverride:
+    case CanonicalName::kDisableSpeedOverride:
+    case CanonicalName::kEnableFeedHold:
+    case CanonicalName::kDisableFeedHold:
+    case CanonicalName::kLog:
+      return QueueEffect::kEndsChain;
+    case CanonicalName::kSetMotionOutputBit:
+    case CanonicalName::kClearMotionOutputBit:
+    case CanonicalName::kSetMotionOutputValue:
+      return QueueEffect::kOutputs;
+    default:
+      return QueueEffect::kNone;
+  }
+}
+
+void count_up(std::uint8_t& count) { count += count < 255 ? 1 : 0; }
+
 /// Degrees to (cos, sin), exact for multiples of 90 so that a part turned by R90 keeps its digits.
 std::pair<double, double> cos_sin(double degrees) {
   const double quarter = degrees / 90.0;
@@ -196,7 +251,34 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.blend_tolerance_mm = blend_tolerance_mm_;
   motion.merge_tolerance_mm = merge_tolerance_mm_;
   motion.torch = torch_;
+  motion.halts = std::exchange(halts_, std::uint8_t{0});
+  motion.io_halts = std::exchange(io_halts_, std::uint8_t{0});
+  motion.chain_end = std::exchange(chain_end_, ChainEnd::kNone);
   return motion;
+}
+
+void MotionFold::halt() {
+  count_up(halts_);
+  chain_end_ = std::max(chain_end_, ChainEnd::kEnds);
+}
+
+void MotionFold::note_waits(const CanonicalCommand& command) {
+  switch (queue_effect(command.name)) {
+    case QueueEffect::kHaltsForIo:
+      count_up(io_halts_);
+      [[fallthrough]];
+    case QueueEffect::kHalts:
+      halt();
+      break;
+    case QueueEffect::kOutputs:
+      chain_end_ = ChainEnd::kOutputs;
+      break;
+    case QueueEffect::kEndsChain:
+      chain_end_ = std::max(chain_end_, ChainEnd::kEnds);
+      break;
+    case QueueEffect::kNone:
+      break;
+  }
 }
 
 void MotionFold::update_rpm() {
@@ -327,6 +409,7 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   if (!work_fixed_) fix_workpiece_frame();
   take_synchronised_outputs();
   overburn_from_mm_.reset();
+  halt();
   const Vec3 bottom_mm = work_from_program(scaled(command, 0));
   const bool top_known = position_known_ && unknown_ == 0;
   const std::uint8_t unknown_at_top = unknown_;
@@ -463,6 +546,8 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
 bool MotionFold::fold_feed(const CanonicalCommand& command) {
   switch (command.name) {
     case CanonicalName::kSetFeedRate:
+      // Another feed ends the chain by itself; under G95 the same one does.
+      if (feed_per_rev_) chain_end_ = std::max(chain_end_, ChainEnd::kEnds);
       feed_ = command.number(0);
       feed_mm_ = feed_ * unit_mm_;
       return true;
@@ -573,6 +658,7 @@ FoldRemark MotionFold::fold_command(const CanonicalCommand& command, SourceRef s
       if (command.name == CanonicalName::kSetMotionControlMode && source.line != 0) {
         path_mode_said_ = true;
       }
+      note_waits(command);
       fold_switch(command, source, out);
       return FoldRemark::kNone;
   }

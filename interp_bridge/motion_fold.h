@@ -120,6 +120,8 @@ class MotionFold {
   }
   /// For the commands that follow: steps of MotionKind::kSignal are made.
   void set_signals(bool wanted) { signals_ = wanted; }
+  /// The machine has to stand before the next step: what no canonical command says, as M66.
+  void halt();
   /// Appends the step of a user M-code.
   void signal(std::uint8_t user_m, SourceRef source, std::vector<Motion>& out);
   /// For the commands that follow. No effect without the filter.
@@ -188,6 +190,7 @@ class MotionFold {
   void frame_changed();
   void fix_workpiece_frame();
   Motion& append(MotionKind kind, SourceRef source, std::vector<Motion>& out);
+  void note_waits(const CanonicalCommand& command);
   void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg,
                const Vec3& to_uvw_mm);
   void set_feed(Motion& motion) const;
@@ -302,6 +305,10 @@ class MotionFold {
   double pitch_mm_ = 0;
   bool has_rotary_motion_ = false;
   bool has_program_end_ = false;
+  /// Of the next step (Motion).
+  std::uint8_t halts_ = 0;
+  std::uint8_t io_halts_ = 0;
+  ChainEnd chain_end_ = ChainEnd::kNone;
 
   TorchState torch_;
   /// M62, M63, M67 that wait for the next step that moves.

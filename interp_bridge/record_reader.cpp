@@ -152,6 +152,7 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       return take_spline(head, payload);
     case records::kUserM:
       if (head.count != 3) return refuse("a user M-code whose numbers do not fit");
+      feeder_.take_wait();
       if (number_at(payload, 0) == kMaterialCode &&
           feeder_.take_material_change(number_at(payload, 1), {file_, head.line})) {
         place_ = {file_, head.line};
@@ -170,6 +171,7 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
           number_at(payload, 1) == records::kDigitalInput) {
         return true;  // the wait for M190, which is done
       }
+      feeder_.take_wait();
       note(head, fmt::format("M66 of {} input {:g}",
                              number_at(payload, 1) == records::kDigitalInput ? "digital" : "analog",
                              number_at(payload, 0)));

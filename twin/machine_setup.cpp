@@ -182,6 +182,7 @@ void read_planner(IniReader& reader, double unit_mm, MachineLimits& limits) {
   if (const auto v = reader.number("EMCMOT", "SERVO_PERIOD", 0.0))
     limits.servo_period_s = *v * 1e-9;
   if (const auto v = reader.number("EMCIO", "CYCLE_TIME", 0.0)) limits.io_period_s = *v;
+  if (const auto v = reader.number("TASK", "CYCLE_TIME", 0.0)) limits.task_period_s = *v;
 }
 
 /// An existing file that a key names; a fault of `severity` if it is missing.

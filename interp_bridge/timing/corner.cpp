@@ -19,6 +19,7 @@ constexpr double kReversal = (2.0 * kPi / 180.0) * (2.0 * kPi / 180.0);
 constexpr double kAngleEpsilon = 1e-6;
 /// Blend arcs shorter than this are not made, mm.
 constexpr double kLeastArc_mm = 1e-6;
+constexpr double kLeastLeft_mm = 1e-6;
 /// Arcs are blended only within their plane; sine of the tilt that still counts as within.
 constexpr double kCoplanar = 1e-4;
 
@@ -297,6 +298,7 @@ bool make_blend(const AxisRates& rates, const BlendPlan& plan, const BlendPlace&
   blend.tangent_from = previous.tangent_to;
   blend.tangent_to = next.tangent_from;
   blend.request = plan.request;
+  blend.spindle_speed = next.spindle_speed;
   blend.max_speed = plan.speed;
   blend.max_accel = plan.accel;
   blend.along_share = kAlongShare;
@@ -353,7 +355,8 @@ CornerKind put_blend(const AxisRates& rates, const BlendPlace& place, Segment& p
   blend.tolerance_mm = previous.tolerance_mm;
   const bool line = previous.shape == SegmentShape::kLine;
   const double left = previous.length_mm - place.trim0;
-  const bool swallow = line && !previous.begins_parabolic && left < rates.gap_s * blend.max_speed;
+  const bool swallow = line && !previous.begins_parabolic && !previous.keeps_start &&
+                       left < rates.gap_s * blend.max_speed;
   trim(next, place.trim1, false);
   if (swallow) {
     blend.lead_mm = std::max(left, 0.0);
@@ -362,7 +365,9 @@ CornerKind put_blend(const AxisRates& rates, const BlendPlace& place, Segment& p
     blend.corner_load_from = previous.corner_load_from;
     return CornerKind::kSwallowed;
   }
-  trim(previous, place.trim0, true);
+  // What is left of a line that keeps its start may be next to nothing: it takes a servo period.
+  trim(previous, line ? std::min(place.trim0, previous.length_mm - kLeastLeft_mm) : place.trim0,
+       true);
   previous.end = SegmentEnd::kTangent;
   return CornerKind::kBlend;
 }

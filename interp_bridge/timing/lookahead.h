@@ -24,6 +24,10 @@ class Lookahead {
 
   /// Appends a segment, with what its corner to the one before becomes.
   void add(Segment segment);
+  /// The last of what is queued ends in a full stop: what follows waits for the spindle.
+  void stop_last() {
+    if (!queue_.empty()) queue_.back().segment.end = SegmentEnd::kStop;
+  }
   /// The machine stops after what is queued; all of it is run.
   void drain();
 

@@ -65,7 +65,9 @@ struct TrajectoryPlanner::Impl {
   void flush_chain();
   void halt();
   void command_waits(const Motion& m);
+  double halt_s() const;
   double io_wait_s(int looks);
+  double index_wait_s(const Motion& m);
   void change_tool(const Motion& m);
   void stand(const Motion& m, double seconds);
 
@@ -75,9 +77,12 @@ struct TrajectoryPlanner::Impl {
   Schedule schedule;
   Lookahead lookahead;
   MergeChain chain;
+  bool chain_follows_spindle = false;  ///< G95
+  bool chain_keeps_start = false;
   Motion last;  ///< where the machine stands and what is switched on
   bool begun = false;
   bool moved_since_change = false;
+  double index_s = -1;     ///< a moment of the spindle's index pulse; -1: none known
   double io_phase_s = -1;  ///< a moment at which the I/O task looked; -1: none known
   std::uint64_t stops = 0;
 };
@@ -95,6 +100,8 @@ void TrajectoryPlanner::Impl::flush_chain() {
   if (way.length > 0) {
     Segment segment = make_line(chain.start(), to, way, chain.speed());
     segment.end = SegmentEnd::kParabolic;
+    if (chain_follows_spindle) follow_spindle(segment, chain.speed());
+    segment.keeps_start = chain_keeps_start;
     segment.tolerance_mm = chain.tolerance_mm();
     segment.first_piece = chain.first_piece();
     segment.piece_count = chain.piece_count();
@@ -130,28 +137,36 @@ void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
   moved_since_change = false;
 }
 
-/// What the program switched between the last motion and this one.
+/// What the program switched between the last motion and this one. What M2 switches off comes
+/// behind the last move.
 void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
+  const bool ends = m.kind == MotionKind::kProgramEnd;
+  const bool halts = !ends && m.halts > 0;
   const bool spindle = m.spindle != last.spindle ||
                        (m.spindle != SpindleState::kStopped && m.spindle_rpm != last.spindle_rpm);
   const bool offset = m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
                       m.from_uvw_mm != last.to_uvw_mm;
-  const int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
-  if (!spindle && !offset && coolant == 0) return;
-  halt();
-  schedule.pause(options.halt_s);
-  if (spindle && m.spindle != SpindleState::kStopped) schedule.pause(options.spindle_start_s);
+  int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
   // Switching coolant off is two commands, one for each kind.
-  const bool off = (last.flood && !m.flood) || (last.mist && !m.mist);
-  schedule.pause(io_wait_s(off ? 2 : coolant));
+  if ((last.flood && !m.flood) || (last.mist && !m.mist)) coolant = 2;
+  if (!ends) coolant = std::max<int>(coolant, m.io_halts);
+  if (spindle) index_s = -1;
+  if (!halts && !spindle && !offset && coolant == 0) return;
+  halt();
+  schedule.pause(halt_s());
+  if (spindle && m.spindle != SpindleState::kStopped) schedule.pause(options.spindle_start_s);
+  schedule.pause(io_wait_s(coolant));
 }
+
+/// From standstill to the next move. The task sees the standstill half of its period later.
+double TrajectoryPlanner::Impl::halt_s() const { return options.halt_s + limits.task_period_s / 2; }
 
 void TrajectoryPlanner::Impl::push(const Motion& m) {
   if (begun) command_waits(m);
   switch (m.kind) {
     case MotionKind::kDwell:
       halt();
-      schedule.pause(options.halt_s);
+      schedule.pause(halt_s());
       stand(m, m.duration_s);
       break;
     case MotionKind::kToolChange:
@@ -180,6 +195,7 @@ void TrajectoryPlanner::Impl::stand(const Motion& m, double seconds) {
 }
 
 void TrajectoryPlanner::Impl::move(const Motion& m) {
+  if (m.chain_end != ChainEnd::kNone) flush_chain();
   MotionTiming timing;
   timing.programmed_mm_per_min = programmed_per_minute(m);
   const StraightRates way = straight_rates(rates, m.to_mm - m.from_mm, extra_way(m));
@@ -199,6 +215,8 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   if (!arc) {
     timing.allowed_mm_per_min = std::min(way.speed, cap) * 60.0;
     if (m.kind == MotionKind::kThread) {
+      flush_chain();
+      lookahead.stop_last();
       halt();
       thread(m, timing, way, speed);
       return;
@@ -208,6 +226,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
     return;
   }
   Segment segment = make_arc(rates, m, speed);
+  if (m.feed_per_rev) follow_spindle(segment, speed);
   timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
   Vec3 middle;
   if (!segment.extra && flat_arc(m, middle)) {
@@ -235,6 +254,8 @@ void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way
   flush_chain();
   if (m.kind == MotionKind::kProbe) halt();
   Segment segment = make_line(m.from_mm, m.to_mm, way, speed);
+  if (m.feed_per_rev && m.kind == MotionKind::kFeed) follow_spindle(segment, speed);
+  segment.keeps_start = m.chain_end == ChainEnd::kOutputs;
   segment.traverse = m.kind == MotionKind::kTraverse;
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
@@ -242,6 +263,20 @@ void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way
   segment.first_piece = schedule.add_piece(segment.length_mm);
   lookahead.add(segment);
   if (m.kind == MotionKind::kProbe) halt();
+}
+
+/// Seconds until the spindle's next index pulse. Where it is when it has started is not known: half
+/// a revolution then; but threads that follow each other wait for pulses whole revolutions apart.
+double TrajectoryPlanner::Impl::index_wait_s(const Motion& m) {
+  const double turn_s = 60.0 / m.spindle_rpm;
+  const double now = schedule.clock_s();
+  double wait = turn_s / 2;
+  if (index_s >= 0) {
+    const double since = now - index_s;
+    wait = turn_s * std::ceil(since / turn_s) - since;
+  }
+  index_s = now + wait;
+  return wait;
 }
 
 /// Follows the spindle from its index pulse on; speeding up and braking cost one v / a together.
@@ -252,8 +287,10 @@ void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing
   const bool retracts = begun && last.kind == MotionKind::kThread && m.from_mm == last.to_mm &&
                         m.to_mm == last.from_mm;
   double seconds = way.length / run;
-  if (!retracts) seconds += 30.0 / m.spindle_rpm + run / way.accel;
+  if (!retracts) seconds += index_wait_s(m) + run / way.accel;
   schedule.alone(m, timing, seconds, run);
+  // As it turns back as far as it had turned, its index is where it has turned round again.
+  if (retracts) index_s = schedule.clock_s();
 }
 
 void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, double speed,
@@ -265,7 +302,11 @@ void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, dou
     flush_chain();
   }
   const std::uint64_t piece = schedule.add_piece(glm::length(to - from));
-  if (chain.empty()) chain.begin(from, speed, blend, piece);
+  if (chain.empty()) {
+    chain.begin(from, speed, blend, piece);
+    chain_follows_spindle = m.feed_per_rev;
+    chain_keeps_start = m.chain_end == ChainEnd::kOutputs;
+  }
   chain.append(to);
 }
 

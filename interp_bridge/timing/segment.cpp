@@ -181,6 +181,11 @@ Vec3 Segment::arc_point(double angle) const {
          radius * (std::cos(angle) * out + std::sin(angle) * side);
 }
 
+void follow_spindle(Segment& segment, double speed) {
+  segment.request = segment.max_speed;
+  segment.spindle_speed = speed;
+}
+
 void clamp_to_cycle(Segment& segment, double cycle_s) {
   segment.max_speed = std::min(segment.max_speed, segment.length_mm / cycle_s);
 }

@@ -59,11 +59,15 @@ struct Segment {
   bool extra = false;             ///< moves A, B, C, U, V or W: no arc blends its corners
   bool linear = true;             ///< moves X, Y, Z, U, V or W
   bool begins_parabolic = false;  ///< starts while the one before slows down
+  bool keeps_start = false;       ///< switches an output where it begins: no corner swallows it
   bool finalized = false;         ///< its length does not change any more
   double length_mm = 0;           ///< what is left of it; degrees if only A, B, C move
   double nominal_mm = 0;          ///< as programmed
   double request = 0;             ///< speed that the program wants, mm/s
-  double max_speed = 0;           ///< that the machine can do along it
+  /// Of a feed per revolution: what the spindle makes of it. LinuxCNC rounds corners for `request`,
+  /// which is then the fastest that there is, and runs through them at this.
+  double spindle_speed = kUnlimited;
+  double max_speed = 0;  ///< that the machine can do along it
   double max_accel = 0;
   double along_share = 1;       ///< of max_accel that is left along a curve
   double corner_speed = -1;     ///< limit at its end, -1: none
@@ -89,7 +93,8 @@ struct Segment {
   /// The speed that it is run at where nothing else limits it.
   double target(const AxisRates& rates) const {
     const double cap = linear ? rates.linear_cap : rates.angular_cap;
-    const double wanted = request < max_speed ? request : max_speed;
+    double wanted = request < max_speed ? request : max_speed;
+    if (spindle_speed < wanted) wanted = spindle_speed;
     return wanted < cap ? wanted : cap;
   }
   /// Point at angle (radians from the untrimmed start) of an arc.
@@ -122,6 +127,9 @@ Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straigh
 /// A circular or helical segment of a kArc motion that has_radius().
 bool has_radius(const Motion& motion);
 Segment make_arc(const AxisRates& rates, const Motion& motion, double speed);
+
+/// G95: the segment is run at what the spindle makes of the feed, mm/s.
+void follow_spindle(Segment& segment, double speed);
 
 /// Caps speed so that the segment takes a servo period at least.
 void clamp_to_cycle(Segment& segment, double cycle_s);
