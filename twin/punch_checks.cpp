@@ -89,6 +89,7 @@ void PunchChecks::go_on_from(const PunchChecks& other) {
   blank_ = other.blank_;
   place_ = other.place_;
   grip_checked_ = other.grip_checked_;
+  unseen_told_ = other.unseen_told_;
   uncut_pieces_ = other.uncut_pieces_;
   freed_ = other.freed_;
 }
@@ -120,6 +121,22 @@ void PunchChecks::check_grip(const Motion& m, const TimedStep& step) {
     tell(FindingId::kGripLost, Severity::kError, m, step, Vec3(0.5 * (min + max), m.to_mm.z),
          fmt::format("clamp {} holds nothing of the sheet", i + 1));
   }
+}
+
+void PunchChecks::strikes_unseen(const Motion& m, const TimedStep& step) {
+  if (std::exchange(unseen_told_, true)) return;
+  Finding out;
+  out.id = FindingId::kPositionUnknown;
+  out.severity = Severity::kWarning;
+  out.source = m.source;
+  out.time_s = step.start_s;
+  out.tool = m.tool;
+  out.text =
+      "the punch strikes before the program has said where the machine is; what it strikes there "
+      "is "
+      "not cut";
+  out.hint = "a move to X and Y before it, or --ini, which says where the machine starts";
+  log_.add(std::move(out));
 }
 
 void PunchChecks::no_station(const Motion& m, const TimedStep& step, const Vec3& place) {

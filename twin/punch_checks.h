@@ -30,6 +30,8 @@ class PunchChecks {
 
   /// Every motion, before its strokes: re-gripping. grip-lost, punch-down.
   void follow(const Motion& motion, const TimedStep& step, bool drags);
+  /// position-unknown: a stroke where nobody knows. Once.
+  void strikes_unseen(const Motion& motion, const TimedStep& step);
   /// no-punch, station-empty.
   void no_station(const Motion& motion, const TimedStep& step, const Vec3& place_mm);
   /// Strokes of one motion that are about to be cut: hit-on-clamp, hit-off-sheet, hit-over-edge,
@@ -76,6 +78,7 @@ class PunchChecks {
   ClampPlace place_;
   std::uint64_t regrips_ = 0;
   bool grip_checked_ = false;
+  bool unseen_told_ = false;
   bool off_sheet_ = false;  ///< a stroke of the present motion
   std::size_t uncut_pieces_;
   std::vector<FreedPiece> freed_;

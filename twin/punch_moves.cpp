@@ -56,9 +56,12 @@ bool PunchMoves::is_on_at(const Motion& m, const Vec3& place) const {
 }
 
 bool PunchMoves::nibbles(const Motion& m) const {
-  if (turret_->pitch_mm(m.tool) <= 0 || !m.start_known || !is_feed(m) || !moves_sideways(m)) {
-    return false;
-  }
+  return m.start_known && moves_sideways(m) && nibbles_from(m);
+}
+
+/// On a feed, wherever it begins.
+bool PunchMoves::nibbles_from(const Motion& m) const {
+  if (turret_->pitch_mm(m.tool) <= 0 || !is_feed(m)) return false;
   // The reader of turrets sees to it that one of them is there.
   const BeamTrigger& state = turret_->nibbles ? *turret_->nibbles : turret_->trigger.state();
   return holds_at(state, m, m.from_mm) && holds_at(state, m, m.to_mm);
@@ -82,6 +85,40 @@ bool PunchMoves::strikes_at_end(const Motion& m) const {
   if (!is_on_at(m, m.to_mm)) return false;
   if (turret_->strikes_at_ends) return moves_sideways(m);
   return !is_on_at(m, m.from_mm);
+}
+
+namespace {
+
+/// Without a start a coordinate of 0 may be one that the program has not written: the interpreter
+/// begins there.
+bool ends_at_known_place(const Motion& m) { return m.to_mm.x != 0 && m.to_mm.y != 0; }
+
+}  // namespace
+
+/// Whether it comes from afar or stands there already, a stroke comes at its end.
+bool PunchMoves::strikes_at_known_end(const Motion& m) const {
+  const bool goes = is_feed(m) || is_traverse(m);
+  if (m.start_known || !goes || !ends_at_known_place(m)) return false;
+  if (turret_->strikes_at_ends && is_on_at(m, m.to_mm)) return true;
+  return nibbles_from(m);
+}
+
+bool PunchMoves::strikes_unseen(const Motion& m) const {
+  if (m.start_known || m.kind == MotionKind::kProgramEnd) return false;
+  const bool goes = is_feed(m) || is_traverse(m);
+  switch (turret_->trigger.kind()) {
+    case Kind::kUserCode:
+      return (m.kind == MotionKind::kSignal && m.user_m == turret_->trigger.user_code()) ||
+             nibbles_from(m);
+    case Kind::kPlunge:
+      return is_feed(m);
+    case Kind::kState:
+      break;
+  }
+  // What nibbles strikes along its way, too.
+  if (nibbles_from(m)) return true;
+  if (!is_on_at(m, m.to_mm)) return false;
+  return turret_->strikes_at_ends ? goes && !ends_at_known_place(m) : true;
 }
 
 double PunchMoves::turn_rad(const Motion& m, double share) const {

@@ -9,6 +9,7 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
+#include "twin/motion_geometry.h"
 #include "twin/turret.h"
 
 namespace kerf {
@@ -43,7 +44,9 @@ struct PunchHit {
 ///  - with Turret::strikes_at_ends at the end of every move sideways while it holds
 ///  - nibbling, on a feed line or arc: at its start unless the last stroke was there, every
 ///    nibble_pitch_mm along it, and at its end
-/// A motion whose start is not known strikes nowhere. Values; const calls from any thread.
+/// A motion whose start is not known strikes at its end alone, if it would there whatever its start
+/// (strikes_at_ends, nibbling) and its end is known; strikes_unseen() tells of what is left out.
+/// Values; const calls from any thread.
 class PunchMoves {
  public:
   /// So far back it is looked whether the last stroke was at the place where the machine is.
@@ -60,7 +63,11 @@ class PunchMoves {
   void hits(std::size_t i, MotionAt&& motion_at, std::vector<PunchHit>& out) const {
     const Motion& m = motion_at(i);
     // The end of a program has what was on before the interpreter stopped it.
-    if (!m.start_known || m.kind == MotionKind::kProgramEnd) return;
+    if (m.kind == MotionKind::kProgramEnd) return;
+    if (!m.start_known) {
+      if (strikes_at_known_end(m)) out.push_back(hit_at(m, 1));
+      return;
+    }
     const std::size_t before = out.size();
     const bool comes = is_on_at(m, m.from_mm) && !is_on_after(i, motion_at);
     if (comes && !turret_->strikes_at_ends) out.push_back(hit_at(m, 0));
@@ -72,6 +79,8 @@ class PunchMoves {
     }
   }
 
+  /// The start of the motion is not known, and the punch strikes on it where nobody knows.
+  bool strikes_unseen(const Motion& motion) const;
   /// The trigger holds there, or has just struck: what keeps the punch down in a picture.
   bool holds(const Motion& motion, double share) const;
   /// The motion is a feed on which the punch nibbles.
@@ -99,6 +108,8 @@ class PunchMoves {
  private:
   bool is_on_at(const Motion& motion, const Vec3& place_mm) const;
   bool strikes_at_end(const Motion& motion) const;
+  bool strikes_at_known_end(const Motion& motion) const;
+  bool nibbles_from(const Motion& motion) const;
   PunchHit hit_at(const Motion& motion, double share) const;
   void append_row(const Motion& motion, std::vector<PunchHit>& out) const;
   static bool moves_sideways(const Motion& motion);
@@ -108,7 +119,8 @@ class PunchMoves {
   bool is_on_after(std::size_t i, MotionAt&& motion_at) const {
     if (i == 0) return false;
     const Motion& before = motion_at(i - 1);
-    return before.start_known && is_on_at(before, before.to_mm);
+    const bool ends_somewhere = before.start_known || is_feed(before) || is_traverse(before);
+    return ends_somewhere && is_on_at(before, before.to_mm);
   }
   /// The last stroke was where motion i begins.
   template <class MotionAt>
@@ -116,7 +128,7 @@ class PunchMoves {
     const std::size_t last = i > kLookBack ? i - kLookBack : 0;
     while (i-- > last) {
       const Motion& before = motion_at(i);
-      if (!before.start_known) return false;
+      if (!before.start_known) return strikes_at_known_end(before);
       if (nibbles(before) || strikes_at_end(before)) return true;
       if (moves_sideways(before)) return false;
       const bool on = is_on_at(before, before.from_mm);

@@ -31,6 +31,7 @@ void PunchStage::begin(const Motion& m, const TimedStep& step) {
   moves_.hits(
       taken_++, [this](std::size_t n) -> const Motion& { return recent_[n % recent_.size()]; },
       hits_);
+  if (moves_.strikes_unseen(m)) checks_.strikes_unseen(m, step);
   has_moved_ = has_moved_ || is_feed(m) || m.kind == MotionKind::kTraverse;
   checks_.follow(m, step, moves_.drags(m));
 }

@@ -85,6 +85,31 @@ TEST(PunchStage, DwellsWithTheSpindleOnStrikeOnce) {
   EXPECT_NEAR(shop.punched_mm2(), 100, 1e-9);
 }
 
+/// Without an INI nobody knows where the first move begins.
+TEST(PunchStage, FirstMoveStrikesAtItsEnd) {
+  const auto first_to = [](const Vec3& place) {
+    MotionList program;
+    program.at(place).tool(2).spindle(true).traverse(place);
+    program.last().start_known = false;
+    program.traverse({90, 50, 5}).spindle(false).traverse({130, 50, 5});
+    return program;
+  };
+  auto press = turret("m3");
+  press->strikes_at_ends = true;
+  const PunchShop known(first_to({50, 50, 5}).list(), press);
+  EXPECT_EQ(known.ids(), Ids{});
+  EXPECT_EQ(known.totals().hits, 2U);
+  EXPECT_FALSE(known.sheet().has_material({50, 50}));
+  // X of 0 may be where the interpreter began.
+  const PunchShop unknown(first_to({0, 50, 5}).list(), press);
+  EXPECT_EQ(unknown.ids(), Ids{"position-unknown"});
+  EXPECT_EQ(unknown.totals().hits, 1U);
+  // A punch that strikes where the trigger comes does so before the move.
+  const PunchShop once(first_to({50, 50, 5}).list(), turret("m3"));
+  EXPECT_EQ(once.ids().at(0), "position-unknown");
+  EXPECT_EQ(once.totals().hits, 0U);
+}
+
 TEST(PunchStage, TriggersOfEveryKind) {
   // M62 takes effect with the move behind it: where that begins.
   MotionList synchronous = start(2);
