@@ -1,10 +1,14 @@
 #include "twin/blank_choice.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <string_view>
 
+#include "stock/cutter/scan.h"
 #include "twin/motion_geometry.h"
 
 namespace kerf {
@@ -19,58 +23,139 @@ constexpr double kMostCoarseCells = 6.4e7;
 /// A blank without thickness or width is no blank: the least size that a guess gives it.
 constexpr double kLeastGuess_mm = 1.0;
 
-enum class UnitWord { kNone, kInch, kMm };
+/// What a block says outside its comments, as far as comments need it.
+struct BlockWords {
+  enum class Unit { kNone, kInch, kMm };
+  Unit unit = Unit::kNone;  ///< the last G20 or G21
+  int tool = -1;            ///< T
+  bool changes = false;     ///< M6
+  bool moves = false;       ///< an axis word
+};
 
-/// The last G20 or G21 of a block, outside comments; of a saved listing, its USE_LENGTH_UNITS line.
-UnitWord unit_word(const std::string& line) {
-  if (line.find("USE_LENGTH_UNITS(CANON_UNITS_INCHES)") != std::string::npos)
-    return UnitWord::kInch;
-  if (line.find("USE_LENGTH_UNITS(CANON_UNITS_MM)") != std::string::npos) return UnitWord::kMm;
-  std::string code;  // without comments and blanks, as LinuxCNC reads a block
+/// Without comments, blanks and what O-words and parameters compute; lower case.
+std::string code_of(const std::string& line) {
+  std::string code;
+  int brackets = 0;
   bool in_comment = false;
+  bool in_name = false;
   for (const char c : line) {
     if (c == ';' && !in_comment) break;
+    if (in_comment) {
+      in_comment = c != ')';
+      continue;
+    }
     if (c == '(') in_comment = true;
-    if (!in_comment && !std::isspace(static_cast<unsigned char>(c))) {
+    if (c == '<') in_name = true;
+    if (c == '[') ++brackets;
+    const bool counts = !in_comment && !in_name && brackets == 0;
+    if (counts && !std::isspace(static_cast<unsigned char>(c))) {
       code.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
     }
-    if (c == ')') in_comment = false;
+    if (c == ']' && brackets > 0 && --brackets == 0) code.push_back('#');
+    if (c == '>') in_name = false;
   }
-  UnitWord found = UnitWord::kNone;
-  for (std::size_t at = code.find('g'); at != std::string::npos; at = code.find('g', at + 1)) {
-    std::size_t digit = at + 1;
-    while (digit < code.size() && code[digit] == '0') ++digit;
-    const bool ends =
-        digit + 2 >= code.size() ||
-        (code[digit + 2] != '.' && !std::isdigit(static_cast<unsigned char>(code[digit + 2])));
-    if (!ends) continue;
-    if (code.compare(digit, 2, "20") == 0) found = UnitWord::kInch;
-    if (code.compare(digit, 2, "21") == 0) found = UnitWord::kMm;
+  return code;
+}
+
+/// The words of a block: a letter and a number. Of a saved listing its unit lines alone count.
+BlockWords words_of_block(const std::string& line) {
+  BlockWords found;
+  if (line.find("USE_LENGTH_UNITS(CANON_UNITS_INCHES)") != std::string::npos) {
+    found.unit = BlockWords::Unit::kInch;
+  } else if (line.find("USE_LENGTH_UNITS(CANON_UNITS_MM)") != std::string::npos) {
+    found.unit = BlockWords::Unit::kMm;
+  }
+  const std::string code = code_of(line);
+  const std::size_t first = code.starts_with('/') ? 1 : 0;
+  if (code.size() <= first || code[first] == 'o') return found;
+  for (std::size_t at = first; at < code.size(); ++at) {
+    const char letter = code[at];
+    if (letter < 'a' || letter > 'z') continue;
+    const std::size_t end = std::min(code.find_first_not_of("+-.0123456789", at + 1), code.size());
+    const bool computed = end == at + 1 && end < code.size() && code[end] == '#';
+    const std::optional<double> value =
+        parse_decimal(std::string_view(code).substr(at + 1, end - at - 1));
+    if (!value && !computed) continue;
+    if (std::string_view("xyzabcuvwijkr").find(letter) != std::string_view::npos) {
+      found.moves = true;
+    }
+    if (!value) continue;
+    if (letter == 'g' && *value == 20) found.unit = BlockWords::Unit::kInch;
+    if (letter == 'g' && *value == 21) found.unit = BlockWords::Unit::kMm;
+    if (letter == 'm' && *value == 6) found.changes = true;
+    if (letter == 't' && *value >= 0 && *value < 1e6) found.tool = static_cast<int>(*value);
+    at = end - 1;
   }
   return found;
 }
 
-/// Units in force at each line up to `last_line`; lines before the first word take that word.
-std::vector<bool> inches_by_line(const std::string& path, std::uint32_t last_line) {
-  std::vector<bool> inches;
-  std::ifstream in(path);
-  std::string line;
-  bool now_inches = false;
-  bool seen = false;
-  // A unit word a little after the last comment still counts for it, if it is the first of the
-  // program.
-  while (std::getline(in, line) &&
-         (inches.size() < last_line || (!seen && inches.size() < 100000))) {
-    const UnitWord word = unit_word(line);
-    if (word != UnitWord::kNone) {
-      now_inches = word == UnitWord::kInch;
-      if (!seen) inches.assign(inches.size(), now_inches);
-      seen = true;
+/// Reads a program for the sake of its comments.
+class CommentPlaces {
+ public:
+  /// Up to `last_line`, and on to where nothing moves any more before the next change.
+  CommentPlaces(const std::string& path, std::uint32_t last_line) {
+    std::ifstream in(path);
+    std::string line;
+    // A unit word a little after the last comment still counts for it, if it is the first of the
+    // program; so does a change that only now comes.
+    while (std::getline(in, line)) {
+      const bool beyond = lines_.size() >= last_line;
+      const BlockWords words = words_of_block(line);
+      if (words.changes) has_changes_ = true;
+      if (beyond && gap_ended_ && has_changes_ && (seen_unit_ || lines_.size() >= kFarLines)) break;
+      if (beyond && lines_.size() >= last_line + kFarLines) break;
+      if (beyond && words.moves) gap_ended_ = true;
+      add(words);
     }
-    inches.push_back(now_inches);
+    end_gap();
   }
-  return inches;
-}
+
+  bool inches(std::uint32_t line) const { return known(line) && lines_[line - 1].inches; }
+  int tool(std::uint32_t line) const { return known(line) ? lines_[line - 1].tool : -1; }
+  /// Without an M6 all of the program belongs to one tool.
+  bool at_change(std::uint32_t line) const {
+    return !has_changes_ || (known(line) && lines_[line - 1].at_change);
+  }
+
+ private:
+  static constexpr std::size_t kFarLines = 100000;
+  struct Line {
+    int tool = -1;
+    bool inches = false;
+    bool at_change = false;
+  };
+
+  bool known(std::uint32_t line) const { return line >= 1 && line <= lines_.size(); }
+
+  void add(const BlockWords& words) {
+    if (words.unit != BlockWords::Unit::kNone) {
+      inches_ = words.unit == BlockWords::Unit::kInch;
+      if (!seen_unit_) {
+        for (Line& before : lines_) before.inches = inches_;
+      }
+      seen_unit_ = true;
+    }
+    // A block that changes and moves changes first.
+    gap_changes_ = gap_changes_ || words.changes;
+    lines_.push_back({words.tool, inches_, false});
+    if (words.moves) end_gap();
+  }
+
+  /// The lines since the last motion stand at a change, or do not.
+  void end_gap() {
+    for (std::size_t i = gap_begin_; i < lines_.size(); ++i) lines_[i].at_change = gap_changes_;
+    gap_begin_ = lines_.size();
+    gap_changes_ = false;
+  }
+
+  std::vector<Line> lines_;
+  std::size_t gap_begin_ = 0;
+  bool gap_changes_ = false;
+  bool gap_ended_ = false;
+  bool has_changes_ = false;
+  bool inches_ = false;
+  bool seen_unit_ = false;
+};
 
 double outward(double value, bool up) {
   return up ? std::ceil(value - 1e-6) : std::floor(value + 1e-6);
@@ -85,13 +170,15 @@ std::vector<CommentText> comments_with_units(const Program& program, const std::
     last_line = std::max(last_line, comment.source.line);
   }
   if (program.comments().empty()) return out;
-  const std::vector<bool> inches = inches_by_line(path, last_line);
+  const CommentPlaces places(path, last_line);
   out.reserve(program.comments().size());
   for (const ProgramComment& comment : program.comments()) {
     CommentText text;
     text.line = comment.source.line;
     text.text = comment.text;
-    text.inches = text.line >= 1 && text.line <= inches.size() && inches[text.line - 1];
+    text.inches = places.inches(text.line);
+    text.block_tool = places.tool(text.line);
+    text.at_change = places.at_change(text.line);
     out.push_back(std::move(text));
   }
   return out;

@@ -14,9 +14,10 @@
 
 namespace kerf {
 
-/// The comments of a program with the unit that is in force at each: G20/G21 words of the program's
-/// text outside comments, or the unit lines of a saved listing. Reads the head of the file once
-/// more, up to the last comment.
+/// The comments of a program with the unit that is in force at each (G20/G21 words of the program's
+/// text outside comments, or the unit lines of a saved listing), the T word of its block, and
+/// whether it stands at a tool change. Reads the file once more, to a little beyond the last
+/// comment.
 std::vector<CommentText> comments_with_units(const Program& program, const std::string& path);
 
 /// Gathers where a program works, in one pass over its motions, and makes a box of it.

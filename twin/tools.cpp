@@ -3,8 +3,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
 namespace kerf {
+namespace {
+
+/// Decimals of one and the same cutter differ by less: 12.7 and 1/2", 4.76 and 3/16".
+constexpr double kSameDiameter = 0.02;
+
+std::string_view kind_of(std::string_view shape) { return shape.substr(0, shape.find(':')); }
+
+/// Two descriptions that cannot be of one cutter. Corners and points are often left out.
+bool disagree(const ToolHint& a, const ToolHint& b) {
+  const Result<Cutter> one = parse_shape(a.shape);
+  const Result<Cutter> other = parse_shape(b.shape);
+  if (!one || !other) return false;
+  const double larger = std::max(one->radius_mm(), other->radius_mm());
+  if (std::abs(one->radius_mm() - other->radius_mm()) > kSameDiameter * larger) return true;
+  if (a.shape_guessed || b.shape_guessed) return false;
+  const auto plain = [](const ToolHint& hint) {
+    return kind_of(hint.shape) == "bull" ? std::string_view("flat") : kind_of(hint.shape);
+  };
+  return plain(a) != plain(b);
+}
+
+}  // namespace
 
 ToolBook::ToolBook(ToolSources sources, CutterCheck can_cut)
     : sources_(std::move(sources)), can_cut_(can_cut) {
@@ -21,11 +45,13 @@ const ResolvedTool& ToolBook::mount(int tool, std::uint32_t line) {
   return tools_[tool] = std::move(resolved);
 }
 
-/// The last comment without a tool number between the previous tool's first move and this one's.
+/// The last comment without a tool number between the previous tool's first move and this one's;
+/// running text only if there is no other.
 std::optional<std::size_t> ToolBook::take_nameless_hint(std::uint32_t line) {
   std::optional<std::size_t> found;
   while (next_hint_ < sources_.hints.size() && sources_.hints[next_hint_].line <= line) {
-    if (sources_.hints[next_hint_].tool < 0) found = next_hint_;
+    const ToolHint& hint = sources_.hints[next_hint_];
+    if (hint.tool < 0 && !(found && !sources_.hints[*found].near && hint.near)) found = next_hint_;
     ++next_hint_;
   }
   return found;
@@ -50,20 +76,40 @@ bool ToolBook::from_hint(ResolvedTool& out, const ToolHint& hint) const {
   }
   out.cutter = std::move(cutter.value());
   out.origin = fmt::format("comment in line {} ({})", hint.line, hint.dialect);
-  out.guessed = hint.shape_guessed;
+  out.guessed = hint.shape_guessed || hint.near;
+  out.guess = hint.near ? "that comment names no tool, and may be about another" : hint.guess;
   return true;
 }
 
-/// Comments that give a whole shape win over those with a diameter only; else the first one counts.
-bool ToolBook::from_comments(ResolvedTool& out, std::optional<std::size_t> fresh_hint) const {
+/// Those that name the tool. Whole shapes win over those with a diameter only; else the first one
+/// counts.
+bool ToolBook::from_comments(ResolvedTool& out) const {
   for (const bool guessed : {false, true}) {
     for (const ToolHint& hint : sources_.hints) {
-      if (hint.tool == out.number && hint.shape_guessed == guessed && from_hint(out, hint)) {
-        return true;
+      if (hint.tool != out.number || hint.shape_guessed != guessed || !from_hint(out, hint)) {
+        continue;
       }
+      note_disagreement(out, hint);
+      return true;
     }
   }
-  return fresh_hint && from_hint(out, sources_.hints[*fresh_hint]);
+  return false;
+}
+
+void ToolBook::note_disagreement(ResolvedTool& out, const ToolHint& taken) const {
+  for (const ToolHint& other : sources_.hints) {
+    if (other.tool != taken.tool || !disagree(taken, other)) continue;
+    out.guessed = true;
+    out.guess = fmt::format("the comment in line {} describes it as {}", other.line, other.shape);
+    return;
+  }
+}
+
+/// The one that stands where the tool is changed, `near` or not.
+bool ToolBook::from_place(ResolvedTool& out, std::optional<std::size_t> fresh_hint,
+                          bool near) const {
+  return fresh_hint && sources_.hints[*fresh_hint].near == near &&
+         from_hint(out, sources_.hints[*fresh_hint]);
 }
 
 bool ToolBook::from_table(ResolvedTool& out) const {
@@ -95,7 +141,8 @@ bool ToolBook::from_table(ResolvedTool& out) const {
 ResolvedTool ToolBook::resolve(int tool, std::optional<std::size_t> fresh_hint) const {
   ResolvedTool out;
   out.number = tool;
-  if (from_argument(out) || from_comments(out, fresh_hint) || from_table(out)) {
+  if (from_argument(out) || from_comments(out) || from_place(out, fresh_hint, false) ||
+      from_table(out) || from_place(out, fresh_hint, true)) {
     out.trouble.clear();
   }
   return out;
@@ -111,20 +158,23 @@ ResolvedTool ToolBook::resolve_empty_spindle(std::optional<std::size_t> fresh_hi
     }
     return out;
   }
-  if (fresh_hint) {
-    from_hint(out, sources_.hints[*fresh_hint]);
-    return out;
-  }
-  const std::vector<ToolHint>& hints = sources_.hints;
-  const bool alone =
-      !hints.empty() && std::all_of(hints.begin(), hints.end(), [&](const ToolHint& h) {
-        return h.tool >= 0 && h.tool == hints[0].tool;
-      });
-  if (alone) {
-    out.number = hints[0].tool;
-    from_comments(out, std::nullopt);
+  if (!from_place(out, fresh_hint, false) && !from_only_tool(out)) {
+    from_place(out, fresh_hint, true);
   }
   return out;
+}
+
+/// All comments that name a tool name the same one.
+bool ToolBook::from_only_tool(ResolvedTool& out) const {
+  int only = -1;
+  for (const ToolHint& hint : sources_.hints) {
+    if (hint.tool < 0 && hint.near) continue;
+    if (hint.tool < 0 || (only >= 0 && hint.tool != only)) return false;
+    only = hint.tool;
+  }
+  if (only < 0) return false;
+  out.number = only;
+  return from_comments(out);
 }
 
 void ToolBook::refuse_unfit(ResolvedTool& tool) const {

@@ -29,15 +29,19 @@ struct ResolvedTool {
       cutter;  ///< absent: nothing is known (`trouble` says what is wrong), it does not cut
   std::string
       origin;  ///< "--tool", "comment in line 3 (fusion)", "tool table line 4: its remark", ...
-  bool guessed = false;  ///< only a diameter is known: a flat cutter is assumed
+  bool guessed = false;  ///< its shape, or whether it is this tool's
+  std::string guess;     ///< what is guessed of it, a sentence; empty: all but its diameter
   bool assumed = false;  ///< the spindle was empty, and this is the only tool described
   std::string trouble;
 };
 
-/// Answers "what is tool N" in the order: --tool, comments of the program, the remark in the tool
-/// table, a flat cutter of the tool table's diameter (guessed). Never gives one tool for another,
-/// with one exception that is marked `assumed`: a program that cuts before any tool change has no
-/// tool number, and then the only tool that --tool describes (or, without
+/// Answers "what is tool N" in the order: --tool; comments of the program that name it or stand in
+/// the block of its T word, where they disagree the first, guessed; comments at its tool change,
+/// guessed where they are not certainly about it (ToolHint::near) or several stand there; the
+/// remark in the tool table; a flat cutter of the tool table's diameter (guessed). Running text
+/// that names no tool comes after the tool table. Never gives one tool for another, with one
+/// exception that is marked `assumed`: a program that cuts before any tool change has no tool
+/// number, and then the only tool that --tool describes (or, without
 /// --tool, the only one that comments describe) is taken.
 /// Cutters are refused where the stock model cannot hold what they leave.
 class ToolBook {
@@ -59,7 +63,10 @@ class ToolBook {
   ResolvedTool resolve_empty_spindle(std::optional<std::size_t> fresh_hint) const;
   bool from_argument(ResolvedTool& out) const;
   bool from_hint(ResolvedTool& out, const ToolHint& hint) const;
-  bool from_comments(ResolvedTool& out, std::optional<std::size_t> fresh_hint) const;
+  bool from_comments(ResolvedTool& out) const;
+  bool from_place(ResolvedTool& out, std::optional<std::size_t> fresh_hint, bool near) const;
+  bool from_only_tool(ResolvedTool& out) const;
+  void note_disagreement(ResolvedTool& out, const ToolHint& taken) const;
   bool from_table(ResolvedTool& out) const;
   std::optional<std::size_t> take_nameless_hint(std::uint32_t line);
   void refuse_unfit(ResolvedTool& tool) const;

@@ -17,6 +17,8 @@ namespace {
 constexpr double kMmPerInch = 25.4;
 constexpr double kDrillAngle_deg = 118;
 constexpr double kVeeAngle_deg = 90;
+/// Of V-bits whose text has an angle only. Engraving uses the tip.
+constexpr double kVeeDiameter_mm = 12.7;
 /// A bare number in a V-bit's text from here up is an angle, below it a size.
 constexpr double kLeastBareAngle_deg = 20;
 constexpr double kMostBareAngle_deg = 170;
@@ -95,6 +97,14 @@ class QuantityScanner {
     return parse_decimal(text_.substr(from, to - from)).value_or(0);
   }
 
+  /// The number beside it says how long something is, how thick the shank, or where it is kept.
+  static bool is_length(std::string_view word) {
+    constexpr std::array<std::string_view, 14> kWords = {
+        "loc",   "oal", "lof",  "len",   "length", "long",  "reach",
+        "shank", "shk", "deep", "depth", "offset", "stick", "stickout"};
+    return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  }
+
   /// Label by the word before the number, across ":", "=", ".", "-" and blanks.
   Label label_before(std::size_t begin) const {
     std::size_t end = begin;
@@ -114,6 +124,7 @@ class QuantityScanner {
     if (word == "r" && (touches || equals)) return Label::kCorner;
     if (word == "angle") return Label::kAngle;
     if (word == "td" || word == "tip") return Label::kTip;
+    if (is_length(word)) return Label::kIgnored;
     // "endmill001", "h0", "zmin=-5": part of a name, or the value of something else.
     if (!word.empty() && (touches || equals)) return Label::kIgnored;
     return begin > 0 && text_[begin - 1] == '#' ? Label::kIgnored : Label::kNone;
@@ -191,6 +202,9 @@ class QuantityScanner {
     if (rest.starts_with("dia")) return Label::kDiameter;
     if (rest.starts_with("point angle") || rest.starts_with("angle")) return Label::kAngle;
     if (rest.starts_with("rad") || rest.starts_with("corner")) return Label::kCorner;
+    std::size_t length = 0;
+    while (length < rest.size() && is_letter(rest[length])) ++length;
+    if (is_length(rest.substr(0, length))) return Label::kIgnored;
     if (rest.starts_with("tip")) return contains(rest, "tip rad") ? Label::kCorner : Label::kTip;
     return Label::kNone;
   }
@@ -261,11 +275,11 @@ std::string size_text(double value) {
 }
 
 ShapeText flat_or_bull(double diameter, double corner, bool guessed) {
-  if (corner >= kBallFraction * diameter / 2) return {"ball:" + size_text(diameter), guessed};
+  if (corner >= kBallFraction * diameter / 2) return {"ball:" + size_text(diameter), guessed, {}};
   if (corner > 0) {
-    return {fmt::format("bull:{}:{}", size_text(diameter), size_text(corner)), guessed};
+    return {fmt::format("bull:{}:{}", size_text(diameter), size_text(corner)), guessed, {}};
   }
-  return {fmt::format("flat:{}", size_text(diameter)), guessed};
+  return {fmt::format("flat:{}", size_text(diameter)), guessed, {}};
 }
 
 ShapeText draft_shape(const CutterFacts& facts, double diameter) {
@@ -276,28 +290,41 @@ ShapeText draft_shape(const CutterFacts& facts, double diameter) {
       if (facts.tapered && facts.angle_deg) {
         return {fmt::format("taper:{}:{}:{}", d, number_text(*facts.angle_deg),
                             number_text(std::round(diameter * 1e6) / 2e6)),
-                false};
+                false,
+                {}};
       }
-      return {fmt::format("ball:{}", d), facts.tapered};
-    case CutterKind::kBull:
-      return flat_or_bull(diameter, corner, corner <= 0);
+      return {fmt::format("ball:{}", d), facts.tapered, "the angle of its taper is not given"};
+    case CutterKind::kBull: {
+      ShapeText text = flat_or_bull(diameter, corner, corner <= 0);
+      text.guess = "its corner radius is not given";
+      return text;
+    }
     case CutterKind::kTaper:
-      if (!facts.angle_deg) return flat_or_bull(diameter, corner, true);
-      return {fmt::format("taper:{}:{}{}", d, number_text(*facts.angle_deg),
-                          corner > 0 ? fmt::format(":{}", size_text(corner)) : ""),
-              false};
+      if (!facts.angle_deg) {
+        ShapeText text = flat_or_bull(diameter, corner, true);
+        text.guess = "the angle of its taper is not given";
+        return text;
+      }
+      return {fmt::format("taper:{}:{}{}{}", d, number_text(*facts.angle_deg),
+                          corner > 0 ? fmt::format(":{}", size_text(corner)) : "",
+                          facts.cone_mm > 0 ? ":flute=" + size_text(facts.cone_mm) : ""),
+              false,
+              {}};
     case CutterKind::kVee: {
       const double written = facts.angle_deg.value_or(kVeeAngle_deg);
       const double angle = facts.angle_deg && facts.angle_is_half ? 2 * written : written;
       return {fmt::format("vee:{}:{}{}", d, number_text(angle),
                           facts.tip_mm > 0 ? fmt::format(":{}", size_text(facts.tip_mm)) : ""),
-              !facts.angle_deg};
+              !facts.angle_deg,
+              fmt::format("its angle is not given, {:g} degrees are assumed", kVeeAngle_deg)};
     }
     case CutterKind::kLollipop:
-      return {fmt::format("lollipop:{}:{}", d, size_text(diameter / 2)), true};
+      return {fmt::format("lollipop:{}:{}", d, size_text(diameter / 2)), true,
+              "the diameter of its neck is not given"};
     case CutterKind::kDrill:
       return {fmt::format("drill:{}:{}", d, number_text(facts.angle_deg.value_or(kDrillAngle_deg))),
-              false};
+              false,
+              {}};
     case CutterKind::kFlat:
       return flat_or_bull(diameter, corner, false);
     case CutterKind::kUnnamed:
@@ -306,7 +333,7 @@ ShapeText draft_shape(const CutterFacts& facts, double diameter) {
     case CutterKind::kNotCutter:
       break;
   }
-  return {fmt::format("flat:{}", d), true};
+  return {fmt::format("flat:{}", d), true, {}};
 }
 
 }  // namespace
@@ -321,8 +348,9 @@ CutterKind kind_in(std::string_view text) {
   if (contains_any(text, {"ball", "spher", "kugelfr"})) return CutterKind::kBall;
   if (contains_any(text, {"bull", "corner r", "toroid", "torus"})) return CutterKind::kBull;
   if (contains_any(text, {"taper"})) return CutterKind::kTaper;
-  if (contains_any(text, {"v-bit", "vbit", "v bit", "v-carv", "vcarv", "v-groove", "chamfer",
-                          "engrav", "conic", "countersink", "gravier", "fasenfr"})) {
+  if (contains_any(text,
+                   {"v-bit", "vbit", "v bit", "v-carv", "vcarv", "v-groove", "v cutter", "v-cutter",
+                    "chamfer", "engrav", "conic", "countersink", "gravier", "fasenfr"})) {
     return CutterKind::kVee;
   }
   if (contains_any(text, {"dovetail", "thread mill", "threadmill", "reamer", "boring bar",
@@ -360,8 +388,14 @@ CutterFacts read_free_text(std::string_view text, bool inches) {
 }
 
 std::optional<ShapeText> shape_from_facts(const CutterFacts& facts) {
-  if (facts.kind == CutterKind::kNotCutter || !facts.diameter_mm) return std::nullopt;
-  ShapeText text = draft_shape(facts, *facts.diameter_mm);
+  const bool vee = facts.kind == CutterKind::kVee && facts.angle_deg;
+  if (facts.kind == CutterKind::kNotCutter || (!facts.diameter_mm && !vee)) return std::nullopt;
+  ShapeText text = draft_shape(facts, facts.diameter_mm.value_or(kVeeDiameter_mm));
+  if (!facts.diameter_mm) {
+    text.guessed = true;
+    text.guess = fmt::format("its diameter is not given, {:g} mm are assumed", kVeeDiameter_mm);
+  }
+  if (!text.guessed) text.guess.clear();
   const Result<Cutter> cutter = parse_shape(text.shape);
   if (!cutter) return std::nullopt;
   text.shape = cutter->spec();

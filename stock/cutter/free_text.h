@@ -32,6 +32,7 @@ struct CutterFacts {
   std::optional<double> angle_deg;  ///< as written: included or half depends on kind
   bool angle_is_half = false;
   double tip_mm = 0;
+  double cone_mm = 0;    ///< kTaper: height of the cone; 0: not known
   bool tapered = false;  ///< "tapered ball": kBall with this set
 };
 
@@ -46,11 +47,13 @@ CutterFacts read_free_text(std::string_view text, bool inches);
 
 /// A SHAPE text that parse_shape() accepts, nullopt if the facts do not make one. `guessed` is set
 /// if the text gives less than the shape needs: no kind (a flat cutter is taken), a V-bit without
-/// its angle (90 degrees), a bull-nose or tapered cutter without its radius or angle (flat). A
-/// drill without its angle has 118 degrees and is no guess.
+/// its angle (90 degrees) or, where it has one, its diameter (12.7 mm), a bull-nose or tapered
+/// cutter without its radius or angle (flat). A drill without its angle has 118 degrees and is no
+/// guess.
 struct ShapeText {
   std::string shape;
   bool guessed = false;
+  std::string guess;  ///< what is assumed, a sentence; empty: the kind, or it is no guess
 };
 std::optional<ShapeText> shape_from_facts(const CutterFacts& facts);
 

@@ -49,7 +49,14 @@ struct NumberedText {
 std::optional<NumberedText> split_tool_number(std::string_view lower) {
   std::string_view text = lower;
   const bool word = text.starts_with("tool");
-  if (word) text = skip(text.substr(4), " \t:#");
+  bool is_numbered = false;  // "tool #1", "tools: t05"
+  if (word) {
+    text.remove_prefix(text.starts_with("tools:") ? 5 : 4);
+    const std::string_view after = skip(text, " \t:#");
+    const std::string_view signs = text.substr(0, text.size() - after.size());
+    is_numbered = signs.ends_with('#') || (signs.starts_with(':') && after.starts_with('t'));
+    text = after;
+  }
   if (text.starts_with("t")) {
     text.remove_prefix(1);
   } else if (!word) {
@@ -64,11 +71,41 @@ std::optional<NumberedText> split_tool_number(std::string_view lower) {
   if (!text.empty() && std::string_view(":=|-").find(text.front()) != std::string_view::npos) {
     numbered.separator = text.front();
     text = skip(text.substr(1), " \t>");
-  } else if (touches || (word && !lower.substr(4).starts_with(": t"))) {
+  } else if (touches || (word && !is_numbered)) {
     return std::nullopt;
   }
   numbered.rest = text;
   return numbered;
+}
+
+/// Tools that a text names: "t05", "tool 5", "tool no. 5", "tool #5". Of none: -1; of several:
+/// kSeveralTools.
+constexpr int kSeveralTools = -2;
+int tool_named_in(std::string_view lower) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  int named = -1;
+  for (std::size_t at = lower.find('t'); at != std::string_view::npos;
+       at = lower.find('t', at + 1)) {
+    if (at > 0 && (is_letter(lower[at - 1]) || is_digit(lower[at - 1]))) continue;
+    std::string_view rest = lower.substr(at + 1);
+    if (rest.starts_with("ool")) {
+      rest = skip(rest.substr(3), " \t");
+      if (rest.starts_with("no")) rest = skip(rest.substr(2), ". \t");
+      rest = skip(rest, "# \t");
+      // "tool 6mm", "tool 1/4": a size.
+      const std::size_t end = std::min(rest.find_first_not_of("0123456789"), rest.size());
+      const std::string_view behind = rest.substr(end);
+      if (behind.starts_with('.') || behind.starts_with('/') || behind.starts_with('"') ||
+          behind.starts_with("mm") || behind.starts_with(" mm") || behind.starts_with(" in")) {
+        continue;
+      }
+    }
+    const std::optional<int> tool = take_integer(rest);
+    if (!tool || (!rest.empty() && is_letter(rest.front()))) continue;
+    if (named >= 0 && named != *tool) return kSeveralTools;
+    named = *tool;
+  }
+  return named;
 }
 
 /// "KEY=number": value after the first such key that stands by itself.
@@ -98,6 +135,7 @@ class HintFinder {
       read_comment();
     }
     finish_pycam();
+    finish_fengrave();
     return std::move(hints_);
   }
 
@@ -108,7 +146,12 @@ class HintFinder {
   /// Each reader says whether the comment was of its dialect; the first that says so ends the
   /// search.
   void read_comment() {
-    if (read_pycam()) return;
+    if (read_pycam() || read_fengrave()) return;
+    if (index_ + 1 < comments_.size() &&
+        to_lower(trim(comments_[index_ + 1].text)) == "begin toolchange") {
+      return;  // read_freecad() reads it
+    }
+    if (read_mastercam() || read_kiri()) return;
     if (read_cutviewer()) return;
     if (read_numbered()) return;
     if (read_turret()) return;
@@ -117,23 +160,29 @@ class HintFinder {
     if (read_flatcam()) return;
     if (read_freecad()) return;
     if (read_tool_line()) return;
+    if (read_vectric()) return;
+    if (read_at_block()) return;
     read_prose();
   }
 
+  /// Of a comment that names no tool (-1) it is that of its own block.
   void add(int tool, std::string_view dialect, const CutterFacts& facts) {
-    add_at(comment().line, tool, dialect, facts);
+    if (tool < 0) tool = comment().block_tool;
+    add_at(comment().line, tool, dialect, facts, !comment().at_change);
   }
 
   /// A list that repeats a tool adds it once; a hint without a number counts for the place where it
   /// stands.
-  void add_at(std::uint32_t line, int tool, std::string_view dialect, const CutterFacts& facts) {
+  void add_at(std::uint32_t line, int tool, std::string_view dialect, const CutterFacts& facts,
+              bool near = false) {
     const std::optional<ShapeText> text = shape_from_facts(facts);
     if (!text) return;
     const auto same = [&](const ToolHint& hint) {
       return hint.tool == tool && hint.shape == text->shape;
     };
     if (tool >= 0 && std::any_of(hints_.begin(), hints_.end(), same)) return;
-    hints_.push_back({tool, line, std::string(dialect), text->shape, text->guessed});
+    hints_.push_back({tool, line, std::string(dialect), text->shape, text->guessed, text->guess,
+                      near && tool < 0});
   }
 
   bool read_numbered() {
@@ -153,11 +202,90 @@ class HintFinder {
         (numbered->rest.empty() || !starts_with_number(numbered->rest))) {
       return false;
     }
-    const CutterFacts facts = read_free_text(numbered->rest, comment().inches);
+    const CutterFacts facts =
+        read_free_text(without_registers(numbered->rest, numbered->separator), comment().inches);
     const bool listed = numbered->separator == '|' && facts.diameter_is_explicit;
     const bool labelled = contains(numbered->rest, "dia");
     if (facts.kind == CutterKind::kUnnamed && !listed && !labelled) return false;
     add(numbered->tool, "list", facts);
+    return true;
+  }
+
+  /// Mastercam's "T17|DRILL - 0.16|H17|D17|TOOL DIA. - .16": H17 and D17 are offsets, no sizes.
+  static std::string without_registers(std::string_view text, char separator) {
+    if (separator != '|') return std::string(text);
+    std::string kept;
+    for (const std::string_view part : split(text, '|')) {
+      const std::string_view word = trim(part);
+      const bool offset = word.size() > 1 && (word[0] == 'h' || word[0] == 'd') &&
+                          word.find_first_not_of("0123456789", 1) == std::string_view::npos;
+      if (!offset) kept.append(kept.empty() ? "" : " | ").append(part);
+    }
+    return kept;
+  }
+
+  /// 1/8 CHAMFER MILL TOOL - 14 DIA. OFF. - 14 LEN. - 14 TOOL DIA. - .125
+  bool read_mastercam() {
+    constexpr std::string_view kSize = "tool dia. -";
+    const std::size_t number = lower_.find("tool - ");
+    const std::size_t size = lower_.find(kSize);
+    if (number == std::string::npos || size == std::string::npos || size < number) return false;
+    std::string_view rest = skip(std::string_view(lower_).substr(number + 7), " ");
+    const std::optional<int> tool = take_integer(rest);
+    const std::string_view written = trim(std::string_view(lower_).substr(size + kSize.size()));
+    const std::optional<double> diameter = parse_decimal(written);
+    if (!tool || !diameter) return false;
+    CutterFacts facts =
+        read_free_text(std::string_view(lower_).substr(0, number), comment().inches);
+    facts.diameter_mm = *diameter * unit_mm();
+    add(*tool, "mastercam", facts);
+    return true;
+  }
+
+  /// tool#=1 flute=6 len=20 unit=metric
+  bool read_kiri() {
+    if (!lower_.starts_with("tool#=")) return false;
+    const std::string_view text = lower_;
+    const std::optional<double> tool = field(text, "tool#");
+    const std::optional<double> diameter = field(text, "flute");
+    if (!tool || !diameter || *tool < 0 || *tool > 1e6) return true;
+    CutterFacts facts;
+    facts.diameter_mm = *diameter * (contains(text, "unit=imperial") ? kMmPerInch : 1);
+    add(static_cast<int>(*tool), "kirimoto", facts);
+    return true;
+  }
+
+  /// Names of Vectric's tools have their size in braces: "5 = End Mill {0.25 inch}" in the list,
+  /// "V-Bit {60 deg 0.5"}" at the change.
+  bool read_vectric() {
+    const std::size_t brace = lower_.find('{');
+    if (brace == std::string::npos || lower_.find('}', brace) == std::string::npos) return false;
+    std::string_view rest = lower_;
+    int tool = -1;
+    if (const std::optional<int> number = take_integer(rest)) {
+      const std::string_view name = skip(rest, " \t");
+      if (!name.starts_with('=')) return false;
+      tool = *number;
+      rest = name.substr(1);
+    }
+    const CutterFacts facts = read_free_text(rest, comment().inches);
+    const bool sized = facts.diameter_is_explicit || facts.angle_deg;
+    if (facts.kind == CutterKind::kUnnamed || !sized) return false;
+    add(tool, "vectric", facts);
+    return true;
+  }
+
+  /// "M6 T2 (2" Facemill)": what stands in the block of a T word is about that tool, unless it
+  /// names another one.
+  bool read_at_block() {
+    const int tool = comment().block_tool;
+    if (tool < 0) return false;
+    const int named = tool_named_in(lower_);
+    if ((named != -1 && named != tool) || contains(lower_, "next")) return true;
+    const CutterFacts facts = read_free_text(lower_, comment().inches);
+    const bool sized = facts.diameter_is_explicit || facts.angle_deg || starts_with_number(lower_);
+    if (facts.kind == CutterKind::kUnnamed || !sized) return false;
+    add(tool, "block", facts);
     return true;
   }
 
@@ -200,8 +328,10 @@ class HintFinder {
       facts.kind = CutterKind::kFlat;
       if (const auto corner = value(2)) facts.corner_mm = *corner * unit_mm();
       if (const auto taper = value(4); taper && *taper > 0) {
+        // A V-bit has its tip's diameter, and half its angle: TOOL/MILL,0.03,0,10,45.
         facts.kind = CutterKind::kTaper;
         facts.angle_deg = *taper;
+        facts.cone_mm = value(3).value_or(0) * unit_mm();
       }
     } else if (kind == "drill" || kind == "centerdrill" || kind == "chamfer") {
       facts.kind = kind == "chamfer" ? CutterKind::kVee : CutterKind::kDrill;
@@ -318,21 +448,90 @@ class HintFinder {
 
   /// "Cutter is assumed to be a 10mm ball nose", "Ball cutter D=10.00": words in running text. The
   /// kind must be a milling cutter's and the size must be marked as one, or every remark about the
-  /// work would be a tool.
+  /// work would be a tool. What names several tools is about none; what names none is a guess.
   void read_prose() {
-    const bool names_tool = contains(lower_, "cutter") || contains(lower_, "end mill") ||
-                            contains(lower_, "endmill") || contains(lower_, "end_mill");
+    const int named = tool_named_in(lower_);
+    if (named == kSeveralTools) return;
     // FreeCAD repeats the tool controller's label as the name of an operation.
     const bool names_operation = contains(lower_, "operation") || lower_.starts_with("path:") ||
                                  lower_.starts_with("block-name:");
-    if (!names_tool) return;
+    if (names_operation) return;
     const CutterFacts facts = read_free_text(lower_, comment().inches);
+    if (facts.kind == CutterKind::kVee && facts.angle_deg && names_vee()) {
+      add_at(comment().line, named, "prose", facts, true);
+      return;
+    }
+    const bool names_tool = contains(lower_, "cutter") || contains(lower_, "end mill") ||
+                            contains(lower_, "endmill") || contains(lower_, "end_mill");
     const bool milling = facts.kind == CutterKind::kBall || facts.kind == CutterKind::kBull ||
                          facts.kind == CutterKind::kFlat;
-    if (milling && facts.diameter_is_explicit && !names_operation) {
-      add(-1, "prose", facts);
+    if (names_tool && milling && facts.diameter_is_explicit) {
+      add_at(comment().line, named, "prose", facts, true);
     }
   }
+
+  /// "30.0 deg. conical", "60deg. 1/2" V bit"; not "engrave 30 deg lines".
+  bool names_vee() const {
+    for (const std::string_view name : {"v bit", "v-bit", "vbit", "conical", "v cutter"}) {
+      if (contains(lower_, name)) return true;
+    }
+    return false;
+  }
+
+  // ---- F-Engrave ----
+  //     fengrave_set units       in
+  //     fengrave_set bit_shape   VBIT
+  //     fengrave_set v_bit_angle 60
+  //     fengrave_set v_bit_dia   0.5
+
+  bool read_fengrave() {
+    constexpr std::string_view kKey = "fengrave_set";
+    if (!lower_.starts_with(kKey)) {
+      finish_fengrave();
+      return false;
+    }
+    const std::vector<std::string_view> words = words_of(lower_);
+    if (words.size() < 3) return true;
+    if (!fengrave_) {
+      fengrave_.emplace();
+      fengrave_->line = comment().line;
+      fengrave_->near = !comment().at_change;
+    }
+    const std::string_view key = words[1], value = words[2];
+    if (key == "units") fengrave_->inches = value == "in";
+    if (key == "bit_shape") fengrave_->shape = std::string(value);
+    if (key == "cut_type") fengrave_->cut = std::string(value);
+    if (key == "v_bit_angle") fengrave_->angle_deg = parse_decimal(value);
+    if (key == "v_bit_dia") fengrave_->diameter = parse_decimal(value);
+    return true;
+  }
+
+  /// Without a shape it is a V-bit where it carves by one; of other programs nothing is said.
+  void finish_fengrave() {
+    if (!fengrave_) return;
+    const FEngrave block = *fengrave_;
+    fengrave_.reset();
+    if (!block.diameter || block.cut == "engrave") return;
+    CutterFacts facts;
+    facts.diameter_mm = *block.diameter * (block.inches ? kMmPerInch : 1);
+    if (block.shape == "ball") {
+      facts.kind = CutterKind::kBall;
+    } else if (block.shape == "flat") {
+      facts.kind = CutterKind::kFlat;
+    } else {
+      facts.kind = CutterKind::kVee;
+      facts.angle_deg = block.angle_deg;
+    }
+    add_at(block.line, -1, "fengrave", facts, block.near);
+  }
+
+  struct FEngrave {
+    std::uint32_t line = 0;
+    bool near = false;
+    bool inches = false;
+    std::string shape, cut;
+    std::optional<double> angle_deg, diameter;
+  };
 
   // ---- PyCAM ----
   //     [Tool]
@@ -347,6 +546,7 @@ class HintFinder {
       pycam_ = PyCam{};
       pycam_->line = comment().line;
       pycam_->inches = comment().inches;
+      pycam_->near = !comment().at_change;
       return true;
     }
     if (!pycam_) return false;
@@ -374,12 +574,13 @@ class HintFinder {
     facts.diameter_mm = 2 * *block.radius * unit;
     // The torus radius is written for every shape and counts for one.
     if (facts.kind == CutterKind::kBull && block.torus) facts.corner_mm = *block.torus * unit;
-    add_at(block.line, -1, "pycam", facts);
+    add_at(block.line, -1, "pycam", facts, block.near);
   }
 
   struct PyCam {
     std::uint32_t line = 0;
     bool inches = false;
+    bool near = false;
     std::string shape;
     std::optional<double> radius, torus;
   };
@@ -388,6 +589,7 @@ class HintFinder {
   std::size_t index_ = 0;
   std::string lower_;
   std::optional<PyCam> pycam_;
+  std::optional<FEngrave> fengrave_;
   std::vector<ToolHint> hints_;
 };
 
@@ -404,7 +606,7 @@ std::optional<ToolHint> shape_from_remark(int tool, double diameter_mm, std::str
   if (std::isfinite(diameter_mm) && diameter_mm > 0) facts.diameter_mm = diameter_mm;
   const std::optional<ShapeText> shape = shape_from_facts(facts);
   if (!shape) return std::nullopt;
-  return ToolHint{tool, 0, "remark", shape->shape, shape->guessed};
+  return ToolHint{tool, 0, "remark", shape->shape, shape->guessed, shape->guess, false};
 }
 
 }  // namespace kerf

@@ -20,12 +20,17 @@ struct CommentText {
   std::uint32_t line = 0;
   std::string text;
   bool inches = false;
+  /// T word of its own block, outside comments; -1: there is none.
+  int block_tool = -1;
+  /// Nothing moves between it and an M6, before or behind it; or the program has no M6.
+  bool at_change = true;
 };
 
 /// A tool that a comment describes.
 struct ToolHint {
-  /// Number; -1 when the dialect gives none: then the next tool to be used after `line` is meant,
-  /// and of several such hints before that use the last one counts.
+  /// The number that the comment names, else that of the T word of its own block; -1 without
+  /// either: then the next tool to be used after `line` is meant, and of several such hints before
+  /// that use the last one counts.
   int tool = 0;
   std::uint32_t line = 0;
   std::string dialect;  ///< "fusion", "cambam", "cutviewer", ... for messages
@@ -33,6 +38,10 @@ struct ToolHint {
   /// The text gives less than the shape needs: only a diameter (a flat cutter is assumed), a V-bit
   /// without its angle (90 degrees), a bull-nose or tapered cutter without its radius or angle.
   bool shape_guessed = false;
+  /// What the text does not give, as a sentence; empty: the kind, or shape_guessed is false.
+  std::string guess;
+  /// Without a number: running text, or not at a tool change. It may be about another tool.
+  bool near = false;
 };
 /// In the order of the comments, at most the first 10000; a tool that a list repeats with the same
 /// shape comes once. Comments longer than 512 characters are passed over.

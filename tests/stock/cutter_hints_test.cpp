@@ -73,7 +73,9 @@ TEST(ToolHints, CutViewer) {
   // Half of the diameter within the decimals written.
   EXPECT_EQ(mm("TOOL/MILL,0.7937,0.39687,1.000,0.0"), "cutviewer T-1 ball:0.7937");
   EXPECT_EQ(mm("TOOL/MILL, 10, 2, 30, 0"), "cutviewer T-1 bull:10:2");
-  EXPECT_EQ(inch("tool/mill,.125,0,1,15"), "cutviewer T-1 taper:3.175:15");
+  EXPECT_EQ(inch("tool/mill,.125,0,1,15"), "cutviewer T-1 taper:3.175:15:flute=25.4");
+  // Carbide Create's V-bit of 90 degrees.
+  EXPECT_EQ(mm("TOOL/MILL,0.03, 0.00, 10.00, 45.00"), "cutviewer T-1 taper:0.03:45:flute=10");
   EXPECT_EQ(mm("TOOL/DRILL, 5, 135, 40"), "cutviewer T-1 drill:5:135");
   EXPECT_EQ(mm("TOOL/CHAMFER, 12, 60, 10"), "cutviewer T-1 vee:12:60");
   EXPECT_EQ(mm("TOOL/MILL,x,0,1,0"), "");
@@ -176,6 +178,89 @@ TEST(ToolHints, Prose) {
         "Block-name: 3mm Endmill001", "Begin operation: 3mm Endmill", "Feed 300mm/min end mill"}) {
     EXPECT_EQ(mm(text), "") << text;
   }
+}
+
+TEST(ToolHints, Mastercam) {
+  // H17 and D17 are offsets.
+  EXPECT_EQ(inch("T17|STANDARD DRILL - 0.16|H17|D17|TOOL DIA. - .16"), "list T17 drill:4.064:118");
+  EXPECT_EQ(inch("T15|3'' FACE MILL / SHELL MILL|H15|D15|TOOL DIA. - 3.25"), "list T15 flat:82.55");
+  EXPECT_EQ(inch("1/8 FLAT ENDMILL TOOL - 14 DIA. OFF. - 14 LEN. - 14 TOOL DIA. - .125"),
+            "mastercam T14 flat:3.175");
+}
+
+TEST(ToolHints, Vectric) {
+  EXPECT_EQ(inch("5 = End Mill {0.2500 inch} UpDown"), "vectric T5 flat:6.35");
+  EXPECT_EQ(mm("T2 = End Mill {0.5 inches}"), "list T2 flat:12.7");
+  EXPECT_EQ(mm("V-Bit {60 deg 12.7 mm}"), "vectric T-1 vee:12.7:60");
+  EXPECT_EQ(mm("2 = V-Bit {60 deg}"), "vectric T2 vee:12.7:60 guessed");
+  EXPECT_EQ(mm("T1 - V-Bit 60 degree"), "list T1 vee:12.7:60 guessed");
+  EXPECT_EQ(mm("Profile {1}"), "");
+}
+
+TEST(ToolHints, FEngrave) {
+  const auto settings = [](const char* cut, const char* shape, const char* units) {
+    return hints_in({{1, std::string("fengrave_set units   ") + units},
+                     {2, std::string("fengrave_set cut_type ") + cut},
+                     {3, std::string("fengrave_set bit_shape ") + shape},
+                     {4, "fengrave_set v_bit_angle 60"},
+                     {5, "fengrave_set v_bit_dia 0.5"},
+                     {6, "part"}});
+  };
+  EXPECT_EQ(settings("v-carve", "VBIT", "in"), "fengrave T-1 vee:12.7:60");
+  EXPECT_EQ(settings("v-carve", "VBIT", "mm"), "fengrave T-1 vee:0.5:60");
+  EXPECT_EQ(settings("v-carve", "BALL", "in"), "fengrave T-1 ball:12.7");
+  EXPECT_EQ(settings("v-carve", "FLAT", "in"), "fengrave T-1 flat:12.7");
+  EXPECT_EQ(settings("engrave", "VBIT", "in"), "") << "engraving says nothing of its bit";
+  EXPECT_EQ(mm("30.0 deg. conical"), "prose T-1 vee:12.7:30 guessed");
+  EXPECT_EQ(mm("60deg. 1/2\" V bit"), "prose T-1 vee:12.7:60");
+}
+
+TEST(ToolHints, KiriMoto) {
+  EXPECT_EQ(mm("tool#=2 flute=3.175 len=20 unit=metric"), "kirimoto T2 flat:3.175 guessed");
+  EXPECT_EQ(mm("tool#=5 flute=0.25 len=1 unit=imperial"), "kirimoto T5 flat:6.35 guessed");
+  EXPECT_EQ(mm("tool#=-5 flute=0.25"), "");
+}
+
+TEST(ToolHints, LengthsAreNoDiameters) {
+  EXPECT_EQ(inch("Tools: T05 1/8\" Endmill, Square, 3 Flute, 1\" LOC, 1\" Offset H#"),
+            "list T5 flat:3.175");
+  EXPECT_EQ(inch("Tools: T02 2\" Facemill, 4 Flute, 1.5\" LOC, 2\" Offset H#"),
+            "list T2 flat:50.8");
+  EXPECT_EQ(mm("T3 = 50 mm long 6 mm end mill, shank 8 mm"), "list T3 flat:6");
+}
+
+CommentText in_block(const char* text, int tool) {
+  CommentText comment{1, text, false};
+  comment.block_tool = tool;
+  return comment;
+}
+
+TEST(ToolHints, OfABlockBelongToItsTool) {
+  EXPECT_EQ(hints_in({in_block("2\" Facemill", 2)}), "block T2 flat:50.8");
+  EXPECT_EQ(hints_in({in_block("5 mm drill", 3)}), "block T3 drill:5:118");
+  EXPECT_EQ(hints_in({in_block("3. FLAT ENDMILL", 3)}), "block T3 flat:3");
+  EXPECT_EQ(hints_in({in_block("TOOL/MILL,6.0,0,25.0,0", 3)}), "cutviewer T3 flat:6");
+  // What names another tool is about that one.
+  EXPECT_EQ(hints_in({in_block("T5 = 3 mm end mill", 2)}), "list T5 flat:3");
+  EXPECT_EQ(hints_in({in_block("then T5: 3 mm end mill", 2)}), "");
+  EXPECT_EQ(hints_in({in_block("next: 3 mm end mill", 2)}), "");
+  EXPECT_EQ(hints_in({in_block("Reset tool", 2)}), "");
+}
+
+TEST(ToolHints, NearAreThoseThatNameNoToolAndAreNotAtAChange) {
+  const auto near = [](const char* text, bool at_change) {
+    CommentText comment{1, text, false};
+    comment.at_change = at_change;
+    const std::vector<ToolHint> hints = find_tool_hints(std::vector<CommentText>{comment});
+    EXPECT_EQ(hints.size(), 1U) << text;
+    return !hints.empty() && hints[0].near;
+  };
+  EXPECT_FALSE(near("TOOL/MILL,6.0,0,25.0,0", true));
+  EXPECT_TRUE(near("TOOL/MILL,6.0,0,25.0,0", false));
+  EXPECT_FALSE(near("T1 = 6 mm end mill", false));
+  EXPECT_TRUE(near("the cutter is a 10mm ball nose", true));
+  EXPECT_FALSE(near("the cutter of T4 is a 10mm ball nose", false));
+  EXPECT_EQ(mm("the cutter of T4, as that of T5, is a 10mm ball nose"), "");
 }
 
 TEST(ToolHints, RepeatedListEntriesCountOnce) {

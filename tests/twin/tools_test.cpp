@@ -82,6 +82,39 @@ TEST(ToolBook, CommentWithoutNumberBelongsToTheNextTool) {
   EXPECT_EQ(shape_of(book, 3, 25), "ball:4");
 }
 
+TEST(ToolBook, RunningTextIsAGuessAndComesLast) {
+  ToolSources sources;
+  sources.hints = {hint(-1, 5, "flat:6")};
+  sources.hints[0].near = true;
+  ToolBook book(sources, ZMap::can_cut);
+  EXPECT_EQ(shape_of(book, 7, 8), "flat:6");
+  EXPECT_TRUE(book.mount(7, 8).guessed);
+  EXPECT_EQ(book.mount(7, 8).guess, "that comment names no tool, and may be about another");
+  sources.table = {row(7, 3, "ball nose")};
+  ToolBook with_table(sources, ZMap::can_cut);
+  EXPECT_EQ(shape_of(with_table, 7, 8), "ball:3");
+  EXPECT_FALSE(with_table.mount(7, 8).guessed);
+  // A statement at the change comes before the text behind it.
+  sources.hints = {hint(-1, 5, "flat:6"), hint(-1, 6, "ball:2")};
+  sources.hints[1].near = true;
+  ToolBook at_change(sources, ZMap::can_cut);
+  EXPECT_EQ(shape_of(at_change, 7, 8), "flat:6");
+}
+
+TEST(ToolBook, CommentsThatDisagreeAreAGuess) {
+  ToolSources sources;
+  sources.hints = {hint(1, 1, "flat:6"),      hint(1, 9, "flat:3"),      hint(2, 2, "flat:12.7"),
+                   hint(2, 9, "flat:12.69"),  hint(3, 3, "flat:6"),      hint(3, 9, "ball:6"),
+                   hint(4, 4, "drill:5:118"), hint(4, 9, "flat:5", true)};
+  ToolBook book(sources, ZMap::can_cut);
+  EXPECT_EQ(shape_of(book, 1), "flat:6");
+  EXPECT_TRUE(book.mount(1, 10).guessed);
+  EXPECT_EQ(book.mount(1, 10).guess, "the comment in line 9 describes it as flat:3");
+  EXPECT_FALSE(book.mount(2, 10).guessed) << "rounded";
+  EXPECT_TRUE(book.mount(3, 10).guessed);
+  EXPECT_FALSE(book.mount(4, 10).guessed) << "one of them says less";
+}
+
 TEST(ToolBook, EmptySpindleTakesTheOnlyToolThatIsDescribed) {
   ToolSources one;
   one.arguments.push_back(argument("4=flat:8"));
