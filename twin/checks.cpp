@@ -1,8 +1,11 @@
 #include "twin/checks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "twin/motion_geometry.h"
 
@@ -35,6 +38,17 @@ double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
 
 }  // namespace
 
+Severity severity_of(FindingId id, const Grounds& grounds) {
+  return doubt_of(id, grounds).empty() ? Severity::kError : Severity::kWarning;
+}
+
+std::string doubt_of(FindingId id, const Grounds& grounds) {
+  const bool tool = grounds.tool_guessed && id != FindingId::kBelowStock;
+  if (grounds.blank_guessed && tool) return " (of a guessed blank, with a guessed tool)";
+  if (grounds.blank_guessed) return " (of a guessed blank)";
+  return tool ? " (with a guessed tool)" : "";
+}
+
 bool Checks::may_touch(const Motion& m, double radius_mm) const {
   const Box way = bounds_of(m);
   return way.min.z < bounds_mm_.max.z && way.min.x - radius_mm < bounds_mm_.max.x &&
@@ -43,9 +57,12 @@ bool Checks::may_touch(const Motion& m, double radius_mm) const {
 }
 
 Finding Checks::finding_at(FindingId id, const CheckedMove& move, const Vec3& place,
-                           double fraction) const {
+                           double fraction, std::string text) const {
+  const Grounds grounds{options_.blank_guessed, move.tool_guessed};
   Finding finding;
   finding.id = id;
+  finding.severity = severity_of(id, grounds);
+  finding.text = std::move(text) + doubt_of(id, grounds);
   finding.source = move.motion.source;
   finding.time_s = move.step.start_s + fraction * move.step.duration_s;
   finding.position_mm = place;
@@ -94,9 +111,8 @@ bool Checks::check_traverse(const CheckedMove& move) {
     return false;
   }
   if (!rapid_) {
-    Finding finding =
-        finding_at(FindingId::kRapidContact, move, touch->contact.tip_mm, touch->fraction);
-    finding.text = "traverse touches the workpiece";
+    Finding finding = finding_at(FindingId::kRapidContact, move, touch->contact.tip_mm,
+                                 touch->fraction, "traverse touches the workpiece");
     rapid_ = log_.add(std::move(finding));
   }
   log_.deepen(*rapid_, touch->contact.depth_mm);
@@ -107,8 +123,8 @@ void Checks::check_standing_spindle(const CheckedMove& move) {
   const std::optional<Touch> touch = first_touch(move);
   if (!touch) return;
   Finding finding =
-      finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm, touch->fraction);
-  finding.text = "feed move touches the workpiece while the spindle stands";
+      finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm, touch->fraction,
+                 "feed move touches the workpiece while the spindle stands");
   finding.depth_mm = touch->contact.depth_mm;
   spindle_ = log_.add(std::move(finding));
 }
@@ -118,7 +134,7 @@ void Checks::deepen_spindle_event(double depth_mm) {
 }
 
 std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
-  const double limit = bounds_mm_.min.z - kContactTolerance_mm;
+  const double limit = bounds_mm_.min.z - options_.below_mm - kContactTolerance_mm;
   if (m.kind != MotionKind::kArc) {
     if (std::min(m.from_mm.z, m.to_mm.z) >= limit) return std::nullopt;
     double t0 = 0;
@@ -155,8 +171,16 @@ void Checks::check_floor(const CheckedMove& move) {
     return;
   }
   if (!below_) {
-    Finding finding = finding_at(FindingId::kBelowStock, move, below->first_mm, below->fraction);
-    finding.text = "tool cuts into the table under the workpiece";
+    std::string text = "tool cuts into the table under the workpiece";
+    if (options_.below_mm > 0) {
+      text = fmt::format("tool goes deeper under the workpiece than the {:g} mm that are allowed",
+                         options_.below_mm);
+    }
+    Finding finding =
+        finding_at(FindingId::kBelowStock, move, below->first_mm, below->fraction, std::move(text));
+    if (options_.below_mm == 0) {
+      finding.hint = "over a spoilboard: --below MM (stock.below_mm) says how deep it may go";
+    }
     below_ = log_.add(std::move(finding));
   }
   log_.deepen(*below_, below->depth_mm);

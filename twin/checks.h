@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
@@ -18,6 +19,25 @@ namespace kerf {
 /// and below anything that marks a part.
 inline constexpr double kContactTolerance_mm = 0.01;
 
+/// What findings are judged by.
+struct CheckOptions {
+  bool blank_guessed = false;
+  /// How far below the floor of the blank the tip may go: into a spoilboard. mm.
+  double below_mm = 0;
+};
+
+/// What a finding about a contact rests on.
+struct Grounds {
+  bool blank_guessed = false;
+  bool tool_guessed = false;
+};
+/// Errors, unless they rest on a guess: rapid-contact and spindle-off-contact on the blank or the
+/// shape of the tool, below-stock on the blank alone (a tip is where it is, whatever its shape).
+/// These are warnings.
+Severity severity_of(FindingId id, const Grounds& grounds);
+/// " (of a guessed blank)", ..: ends the finding's text where severity_of() says warning.
+std::string doubt_of(FindingId id, const Grounds& grounds);
+
 /// A motion with what the checks need to know of it.
 struct CheckedMove {
   const Motion& motion;
@@ -25,6 +45,7 @@ struct CheckedMove {
   const Cutter& cutter;
   std::span<const CutMove> moves;  ///< it is cut as these
   int tool = 0;
+  bool tool_guessed = false;
 };
 
 /// Watches the moves of one program against one workpiece. The caller calls before it cuts the
@@ -34,6 +55,9 @@ class Checks {
  public:
   Checks(const StockModel& stock, FindingLog& log)
       : stock_(stock), bounds_mm_(stock.bounds_mm()), log_(log) {}
+
+  void set_options(const CheckOptions& options) { options_ = options; }
+  const CheckOptions& options() const { return options_; }
 
   /// False if the cutter stays clear of the blank on the whole way. Cheap: boxes only.
   bool may_touch(const Motion& motion, double radius_mm) const;
@@ -55,9 +79,10 @@ class Checks {
   /// What goes on is forgotten: the next trouble is a new event.
   void forget_events() { rapid_ = spindle_ = below_ = std::nullopt; }
 
-  /// below-stock: the tip below the floor of the blank, inside the blank's outline (its box): the
-  /// tool cuts the table. An event ends with the first move that stays above. For upright tools:
-  /// of a machine that turns the workpiece nobody knows what is below it.
+  /// below-stock: the tip below the floor of the blank, by more than CheckOptions allow, inside the
+  /// blank's outline (its box): the tool cuts the table. An event ends with the first move that
+  /// stays above. For upright tools: of a machine that turns the workpiece nobody knows what is
+  /// below it.
   void check_floor(const CheckedMove& move);
 
  private:
@@ -72,12 +97,14 @@ class Checks {
     double fraction = 0;  ///< of the motion
   };
   std::optional<Touch> first_touch(const CheckedMove& move) const;
-  Finding finding_at(FindingId id, const CheckedMove& move, const Vec3& place,
-                     double fraction) const;
+  /// `text` without the doubts that there are about it.
+  Finding finding_at(FindingId id, const CheckedMove& move, const Vec3& place, double fraction,
+                     std::string text) const;
 
   const StockModel& stock_;
   Box bounds_mm_;
   FindingLog& log_;
+  CheckOptions options_;
   std::optional<FindingLog::Handle> rapid_;
   std::optional<FindingLog::Handle> spindle_;
   std::optional<FindingLog::Handle> below_;

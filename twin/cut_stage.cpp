@@ -107,6 +107,7 @@ void CutStage::begin_reporting() {
   feed_missing_reported_ = false;
   machine_place_told_ = unknown_feed_told_ = false;
   over_feed_ = {};
+  invented_limits_told_ = false;
   holding_ = false;
   log_.set_muted(false);
 }
@@ -197,10 +198,17 @@ void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
   if (tool.guessed) {
     finding.id = FindingId::kToolGuessed;
     finding.severity = Severity::kWarning;
-    finding.text = fmt::format(
-        "only the diameter of tool {} is known ({}); a flat cutter is assumed: {} (--tool "
-        "{}=SHAPE says better)",
-        tool.number, use.origin, use.shape, tool.number);
+    finding.text =
+        tool.guess.empty()
+            ? fmt::format(
+                  "only the diameter of tool {} is known ({}); a flat cutter is assumed: {} "
+                  "(--tool "
+                  "{}=SHAPE says better)",
+                  tool.number, use.origin, use.shape, std::max(1, tool.number))
+            : fmt::format(
+                  "tool {} is taken for {} ({}), and that is a guess: {} (--tool {}=SHAPE "
+                  "says better)",
+                  tool.number, use.shape, use.origin, tool.guess, std::max(1, tool.number));
     log_.add(finding);
   }
 }
@@ -255,7 +263,7 @@ void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
     checks_.clear_traverse();
     return;
   }
-  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number};
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   flush_whole();
   check_length(m, step, checks_.check_traverse(move));
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
@@ -263,6 +271,7 @@ void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
 }
 
 void CutStage::take_feed(const Motion& m, const TimedStep& step) {
+  if (stands_still(m)) return;
   const bool known = mount_for(m);
   check_length(m, step, false);
   if (!known) {
@@ -273,7 +282,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!m.start_known) return;
   note_speed(m, step);
   divide(m);
-  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number};
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = m.spindle == SpindleState::kStopped;
@@ -371,6 +380,8 @@ void CutStage::report_assumptions(const Motion& m) {
 
 void CutStage::report_rotary_faults(const TimedStep& step) {
   for (RotaryFault& fault : rotary_faults_) {
+    const bool too_fast = fault.kind == RotaryFaultKind::kJointTooFast;
+    if (too_fast && !limits_known_ && std::exchange(invented_limits_told_, true)) continue;
     Finding finding;
     switch (fault.kind) {
       case RotaryFaultKind::kNoAxis:
@@ -417,7 +428,8 @@ void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
 
 /// A program that never comes near its blank was written for another zero, or another blank.
 void CutStage::report_outside_stock() {
-  if (reached_stock_ || feed_bounds_mm_.empty()) return;
+  // A guessed blank lies where the program works: missing it says nothing of the program.
+  if (reached_stock_ || feed_bounds_mm_.empty() || checks_.options().blank_guessed) return;
   const auto extent = [](const Box& box) {
     return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", box.min.x, box.max.x,
                        box.min.y, box.max.y, box.min.z, box.max.z);
@@ -485,7 +497,8 @@ void CutStage::note_speed(const Motion& m, const TimedStep& step) {
 
 /// One finding for the whole program: where one move is too fast, most are.
 void CutStage::report_over_feed() {
-  if (over_feed_.count == 0) return;
+  // Of a machine that was made up one note is enough.
+  if (over_feed_.count == 0 || invented_limits_told_) return;
   Finding finding;
   finding.id = FindingId::kOverFeed;
   finding.severity = limits_known_ ? Severity::kWarning : Severity::kNote;

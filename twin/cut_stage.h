@@ -42,6 +42,8 @@ class CutStage : private StepSink {
 
   /// Before the first motion that moves: where the workpiece lies in the machine.
   void set_frame(const WorkpieceFrame& frame);
+  /// What findings are judged by. Before the first motion.
+  void check_by(const CheckOptions& options) { checks_.set_options(options); }
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage.
   void label_by(CutLabels& labels) { labels_ = &labels; }
@@ -179,6 +181,7 @@ class CutStage : private StepSink {
   int spindle_tool_ = 0;
   bool feed_missing_reported_ = false;
   bool turn_reported_ = false;
+  bool invented_limits_told_ = false;
   bool assumptions_told_ = false;
   bool machine_place_told_ = false;
   bool unknown_feed_told_ = false;

@@ -108,6 +108,12 @@ bool is_traverse(const Motion& m) {
   return m.kind == MotionKind::kTraverse || (m.kind == MotionKind::kArc && m.rapid);
 }
 
+bool stands_still(const Motion& m) {
+  const bool turns = m.kind == MotionKind::kArc && m.arc.sweep_rad != 0;
+  return !turns && m.from_mm == m.to_mm && m.from_abc_deg == m.to_abc_deg &&
+         m.from_uvw_mm == m.to_uvw_mm;
+}
+
 CutMove cut_move_from(const Motion& m, std::uint64_t id) {
   CutMove move;
   move.from_mm = m.from_mm;

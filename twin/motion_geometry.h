@@ -32,6 +32,10 @@ bool is_feed(const Motion& motion);
 /// Rapid: a traverse, or a corner of one that the machine rounds (Motion::rapid).
 bool is_traverse(const Motion& motion);
 
+/// It goes nowhere, as far as anybody knows: a feed word without a move (G1 F100), a move to where
+/// the machine stands, or one whose start is not known.
+bool stands_still(const Motion& motion);
+
 /// The motion as the stock model takes it.
 CutMove cut_move_from(const Motion& motion, std::uint64_t id);
 

@@ -104,6 +104,7 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
 
 void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves) {
   for (const Motion& m : motions) {
+    if (is_feed(m) && stands_still(m)) continue;
     if (is_feed(m) && m.tool != tool_) {
       tool_ = m.tool;
       const ResolvedTool& mounted = book_.mount(tool_, m.source.line);

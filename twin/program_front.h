@@ -32,6 +32,7 @@ struct SessionOptions {
   BeamOptions beam;      ///< for a sheet
   TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
   double margin_mm = 5;  ///< around a guessed blank
+  double below_mm = 0;   ///< CheckOptions::below_mm
   TimelineOptions timeline;
   LineRange lines;  ///< cut silently up to there, reported from there, stopped there
 };
@@ -46,6 +47,8 @@ struct ProgramFront {
   StockChoice choice;          ///< of its model, by what is known of the tools
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
+
+  bool blank_guessed = false;
 
   bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };

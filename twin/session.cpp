@@ -89,6 +89,7 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
   if (stop.stop_requested() && report_.program.stopped_early) return true;
   front_.blank = survey.blank();
   front_.blank_origin = "guessed";
+  front_.blank_guessed = true;
   if (!make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome) ||
       !fill_front(options_, front_, diagnostics, outcome)) {
     return false;
@@ -206,6 +207,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   TimelineOptions timing = options_.timeline;
   if (beam) timing.holds = holds_of(options_.turret, beam);
   CutStage stage(*front_.stock.stock, book, report_.findings, timing);
+  stage.check_by({front_.blank_guessed, options_.below_mm});
   if (beam && options_.turret) {
     stage.punch(options_.turret);
   } else if (beam) {

@@ -12,7 +12,7 @@ namespace {
 class Shop {
  public:
   explicit Shop(const MotionList& program, std::size_t batch = 4096, const char* tool = "1=flat:4",
-                const TimelineOptions& timeline = {}) {
+                const TimelineOptions& timeline = {}, const CheckOptions& checks = {}) {
     ZMapOptions options;
     options.blank = parse_blank("box:0,0,-10:40,40,0").value();
     options.cell_mm = 0.1;
@@ -27,6 +27,7 @@ class Shop {
     book_ = std::make_unique<ToolBook>(sources, ZMap::can_cut);
     stage_ = std::make_unique<CutStage>(*stock_, *book_, log_, timeline);
     stage_->set_frame({});
+    stage_->check_by(checks);
     std::span<const Motion> left(program.list());
     while (!left.empty()) {
       const std::size_t count = std::min(batch, left.size());
@@ -103,6 +104,40 @@ TEST(CutStage, AQuillCutsAsZDoes) {
   const Shop unknown(by_w, 4096, "1=flat:4", timeline);
   EXPECT_EQ(unknown.removed_mm3(), 0);
   EXPECT_EQ(unknown.ids().at(0), FindingId::kSecondaryIgnored);
+}
+
+/// Tool 9 is known by its diameter alone.
+TEST(CutStage, GuessesMakeNoErrors) {
+  const auto severities = [](int tool, const CheckOptions& checks) {
+    MotionList program;
+    program.at({-5, 20, 5}).tool(tool).spindle(true);
+    program.traverse({10, 20, 5}).traverse({10, 20, -2}).traverse({10, 20, 5});  // rapid-contact
+    program.feed({30, 20, 5}).feed({30, 20, -11}).traverse({30, 20, 5});         // below-stock
+    program.spindle(false).feed({10, 30, 5}).feed({10, 30, -2});  // spindle-off-contact
+    const Shop shop(program, 4096, "1=flat:4", {}, checks);
+    std::string out;
+    for (const Finding& f : shop.findings()) {
+      if (f.id == FindingId::kToolGuessed) continue;
+      out += std::string(to_string(f.id)) + (f.severity == Severity::kError ? "!" : "?") + " ";
+    }
+    return out;
+  };
+  EXPECT_EQ(severities(1, {}), "rapid-contact! below-stock! spindle-off-contact! ");
+  EXPECT_EQ(severities(1, {true, 0}), "rapid-contact? below-stock? spindle-off-contact? ");
+  EXPECT_EQ(severities(9, {}), "rapid-contact? below-stock! spindle-off-contact? ");
+  EXPECT_EQ(severities(1, {false, 1.5}), "rapid-contact! spindle-off-contact! ");
+  EXPECT_EQ(severities(1, {false, 0.5}), "rapid-contact! below-stock! spindle-off-contact! ");
+  EXPECT_EQ(doubt_of(FindingId::kRapidContact, {true, true}),
+            " (of a guessed blank, with a guessed tool)");
+}
+
+TEST(CutStage, AFeedThatGoesNowhereAsksForNoTool) {
+  MotionList program;
+  program.at({-5, 20, 5}).feed({-5, 20, 5}).tool(1).spindle(true).feed({-5, 20, -2});
+  EXPECT_EQ(Shop(program).ids(), Ids{});
+  MotionList moves;
+  moves.at({-5, 20, 5}).feed({-5, 20, 4}).tool(1).spindle(true).feed({-5, 20, -2});
+  EXPECT_EQ(Shop(moves, 4096, "1=flat:4").ids(), (Ids{FindingId::kToolAssumed}));
 }
 
 TEST(CutStage, WhatUSlidesNobodySays) {

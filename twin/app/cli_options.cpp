@@ -67,6 +67,11 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
       .add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
       ->type_name("MM");
   command
+      .add_option(
+          "--below", a.below,
+          "how far below the floor of the blank the tool may go: the spoilboard (default 0)")
+      ->type_name("MM");
+  command
       .add_option("--path", a.path,
                   "what is cut: programmed | planned, with corners rounded as the machine does "
                   "under G64 (default programmed; beside a machine whose INI is given: planned)")

@@ -203,6 +203,8 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
     options.stock.cell_mm = *request.config.stock.cell_mm;
   }
   options.margin_mm = a.work.margin.empty() ? request.config.stock.margin_mm : work.margin_mm;
+  options.cutting.checks.below_mm =
+      a.work.below.empty() ? request.config.stock.below_mm : work.below_mm;
   options.stale_after_s = request.config.common.stale_after_s;
   options.lost_after_s = request.config.common.lost_after_s;
   understand_cutting(a, program, work, reader, request);

@@ -48,6 +48,7 @@ void complete_session(const LiveConfig& config, const RunArguments& a, SessionOp
   if (a.work.cell.empty() && config.stock.cell_mm) session.stock.cell_mm = *config.stock.cell_mm;
   if (a.work.margin.empty()) session.margin_mm = config.stock.margin_mm;
   note_sheet(session);
+  if (a.work.below.empty()) session.below_mm = config.stock.below_mm;
 }
 
 RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
@@ -72,6 +73,7 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   session.stock = work.stock;
   session.margin_mm = work.margin_mm;
   note_sheet(session);
+  session.below_mm = work.below_mm;
   if (config) complete_session(*config, a, session);
   session.timeline.planner.with_path = work.planned_path.value_or(false);
   if (session.turret && work.planned_path.value_or(false)) {

@@ -10,6 +10,7 @@ namespace {
 
 constexpr OptionRange kCell{0, 1000, true, "mm"};
 constexpr OptionRange kMargin{0, 10000, false, "mm"};
+constexpr OptionRange kBelow{0, 1000, false, "mm"};
 constexpr OptionRange kThreads{1, 256, false, "threads"};
 
 void read_model(const WorkArguments& a, OptionReader& reader, WorkRequest& work) {
@@ -97,6 +98,7 @@ WorkRequest understand_work(const WorkArguments& a, OptionReader& reader) {
   read_stock(a, reader, work);
   read_choices(a, reader, work);
   work.stock.cell_mm = reader.number("--cell", a.cell, kCell, 0);
+  work.below_mm = reader.number("--below", a.below, kBelow, work.below_mm);
   work.margin_mm = reader.number("--margin", a.margin, kMargin, work.margin_mm);
   work.stock.threads =
       static_cast<int>(reader.whole_number("--threads", a.threads, kThreads, default_threads()));

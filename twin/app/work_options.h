@@ -23,6 +23,7 @@ struct WorkArguments {
   std::string threads;
   std::string kernel;
   std::string margin;
+  std::string below;
   std::string path;
 };
 
@@ -32,6 +33,7 @@ struct WorkRequest {
   std::optional<Blank> blank;
   StockSettings stock;
   double margin_mm = 5;              ///< around a guessed blank
+  double below_mm = 0;               ///< the blank's floor
   std::optional<bool> planned_path;  ///< what is cut; nothing: the command's default
 };
 

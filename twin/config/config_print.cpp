@@ -182,6 +182,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
   if (config.stock.blank) printer.text("blank", config.stock.blank_spec);
   if (config.stock.cell_mm) printer.put("cell_mm", *config.stock.cell_mm);
   printer.put("margin_mm", config.stock.margin_mm);
+  printer.put("below_mm", config.stock.below_mm);
   printer.close();
   print_beam(printer, config.beam);
   printer.text("turret", config.turret);

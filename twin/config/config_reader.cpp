@@ -95,6 +95,7 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
   }
   stock.number("cell_mm", out.cell_mm);
   stock.number("margin_mm", out.margin_mm);
+  stock.number("below_mm", out.below_mm);
   ConfigNode* const node = stock.find("blank");
   if (node == nullptr) return;
   std::string spec = resolved_spec(*node, "state:", stock.faults());

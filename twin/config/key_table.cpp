@@ -240,6 +240,13 @@ constexpr std::array kKeys{
             .most = 10000,
             .fallback = "5",
             .purpose = "around a blank that is guessed from the program"},
+    KeySpec{.path = "stock.below_mm",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0,
+            .most = 1000,
+            .fallback = "0",
+            .purpose = "how far below the floor of the blank the tool may go: the spoilboard"},
 
     KeySpec{.path = "beam", .purpose = "sheets: the torch, laser or jet that cuts them"},
     KeySpec{.path = "beam.trigger",

@@ -52,6 +52,7 @@ struct ConfigStock {
   std::optional<StockKind> model;  ///< absent: what tools and motions need
   std::optional<double> cell_mm;   ///< grid size
   double margin_mm = 5;            ///< around a blank guessed from the program
+  double below_mm = 0;             ///< of its floor, that the tool may go
 };
 
 /// `beam:`, for sheets. What is not given comes from the command line or is BeamOptions' default.

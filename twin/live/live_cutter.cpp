@@ -58,12 +58,14 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       follower_(options_.follow),
       run_(ToolPathTolerance::of_cell(stock.cell_mm()).tip_mm, options_.follow.lever_mm),
       join_after_s_(kJoin_s) {
+  stage_.check_by(options_.checks);
   if (program) {
     ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
     adopt_program_frame();
     if (options_.guard_s > 0) {
       guard_ = std::make_unique<LookAheadGuard>(tools, options_.timeline, options_.guard_s,
                                                 options_.beam, options_.turret);
+      guard_->check_by(options_.checks);
     }
   }
   if (options_.turret) {

@@ -72,6 +72,7 @@ struct LiveCutOptions {
   /// when it is done. Elsewhere they are as the source shows them (SeenStrokes), where the machine
   /// is.
   TurretPointer turret;
+  CheckOptions checks;
 };
 
 /// The machine now.

@@ -118,6 +118,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   needs.tilt = need_of_tilt(survey);
   choice_ = choose_stock(options_.stock, needs);
   if (!found.blank && !guess_blank(survey, diagnostics, outcome)) return false;
+  options_.cutting.checks.blank_guessed = !found.blank;
   if (found.blank) {
     StockSetup setup =
         make_stock(*found.blank, choice_, options_.stock, found.origin, diagnostics, outcome);

@@ -30,6 +30,7 @@ void LookAheadGuard::restart(const StockModel& stock, const CutStage& stage,
   book_ = std::make_unique<ToolBook>(tools_, row_of(stock).can_cut);
   log_ = std::make_unique<FindingLog>();
   stage_ = std::make_unique<CutStage>(*stock_, *book_, *log_, timeline_);
+  stage_->check_by(checks_);
   if (turret_) {
     stage_->punch(turret_);
   } else if (beam_) {
@@ -79,7 +80,11 @@ void LookAheadGuard::collect(double now_s, std::vector<AheadWarning>& out) {
   for (; collected_ < log_->kept().size(); ++collected_) {
     const Finding& finding = log_->kept()[collected_];
     // A head that meets a part which has tipped is a collision, as far as anybody can tell.
-    const bool hits = finding.severity == Severity::kError || finding.id == FindingId::kCrossesPart;
+    // So is what would be one if the blank is as it was guessed.
+    const bool hits =
+        finding.severity == Severity::kError || finding.id == FindingId::kCrossesPart ||
+        finding.id == FindingId::kRapidContact || finding.id == FindingId::kSpindleOffContact ||
+        finding.id == FindingId::kBelowStock;
     if (!hits) continue;
     const auto place = static_cast<std::uint64_t>(finding.source.file) << 32 | finding.source.line;
     const double at_s = base_s_ + finding.time_s.value_or(now_s - base_s_);

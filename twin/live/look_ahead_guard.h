@@ -36,6 +36,9 @@ class LookAheadGuard {
                  std::optional<BeamSettings> beam = {}, TurretPointer turret = {});
   ~LookAheadGuard();
 
+  /// As CutStage::check_by(). Before the first restart().
+  void check_by(const CheckOptions& options) { checks_ = options; }
+
   /// Begins anew from the workpiece as it is. `stage`: what has cut it.
   void restart(const StockModel& stock, const CutStage& stage, const WorkpieceFrame& frame);
   /// Of a torch program, all that the motions name so far.
@@ -58,6 +61,7 @@ class LookAheadGuard {
   double horizon_s_;
   std::optional<BeamSettings> beam_;
   TurretPointer turret_;
+  CheckOptions checks_;
   std::unique_ptr<StockModel> stock_;
   std::unique_ptr<ToolBook> book_;
   std::unique_ptr<FindingLog> log_;

@@ -28,7 +28,8 @@ MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
 
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
                    const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope,
-                   const std::optional<BeamSettings>& beam, const TurretPointer& turret)
+                   const std::optional<BeamSettings>& beam, const TurretPointer& turret,
+                   const CheckOptions& checks)
     : track_(track),
       moves_(moves_of(*blank, options, track, beam, turret)),
       record_(track.size()),
@@ -37,6 +38,7 @@ Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank,
       stage_(stock_, book_, log_, options),
       scope_(scope) {
   stage_.set_frame(track.frame());
+  stage_.check_by(checks);
   if (turret) {
     stage_.punch(turret);
   } else if (beam) {

@@ -31,7 +31,8 @@ class Frontier {
  public:
   Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
            const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {},
-           const std::optional<BeamSettings>& beam = {}, const TurretPointer& turret = {});
+           const std::optional<BeamSettings>& beam = {}, const TurretPointer& turret = {},
+           const CheckOptions& checks = {});
 
   /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
   void advance(std::size_t end);

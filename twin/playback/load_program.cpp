@@ -220,6 +220,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   if (loading.survey()) {
     front->blank = loading.survey()->blank();
     front->blank_origin = "guessed";
+    front->blank_guessed = true;
     if (std::optional<Finding> warning = loading.survey()->warning()) {
       remarks.add(std::move(*warning));
     }
@@ -237,6 +238,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   PlayerProgram& player = loaded->player;
   player.report_from = loading.report_from();
   // As Session has it.
+  player.checks = {front->blank_guessed, options.below_mm};
   player.whole = !stopped && !(front->is_sheet() && loading.window().over());
   player.track = loading.build(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);

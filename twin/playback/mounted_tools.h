@@ -24,6 +24,7 @@ class MountedTools {
       mounted_ = nullptr;
     }
     const bool feed = is_feed(m);
+    if (feed && stands_still(m)) return nullptr;
     if (!feed && !is_traverse(m)) return nullptr;
     if (mounted_) return mounted_;
     if (!feed && m.tool == 0 && !book_.has_arguments()) return nullptr;

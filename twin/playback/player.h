@@ -16,6 +16,7 @@
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
 #include "twin/beam_settings.h"
+#include "twin/checks.h"
 #include "twin/finding.h"
 #include "twin/playback/program_track.h"
 #include "twin/timeline.h"
@@ -37,6 +38,7 @@ struct PlayerProgram {
   TurretPointer turret;  ///< of a sheet that is punched; null: it is not
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
+  CheckOptions checks;
   bool whole = true;  ///< false: it goes on behind the track's end, unread
   /// Findings that are known from reading the program; listed with those of cutting it.
   std::vector<Finding> remarks;

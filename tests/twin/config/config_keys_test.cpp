@@ -33,6 +33,7 @@ TEST(ConfigKeys, ValuesArrive) {
       "  blank: cylinder:0,0,-10:0:50\n"
       "  cell_mm: .5\n"
       "  margin_mm: 0\n"
+      "  below_mm: 0.5\n"
       "follow:\n"
       "  program: ../part.ngc\n"
       "  path: planned\n"
@@ -55,6 +56,7 @@ TEST(ConfigKeys, ValuesArrive) {
   EXPECT_EQ(config.stock.blank->bodies.at(0).diameter_mm, 50);
   EXPECT_EQ(config.stock.cell_mm, 0.5);
   EXPECT_EQ(config.stock.margin_mm, 0);
+  EXPECT_EQ(config.stock.below_mm, 0.5);
   EXPECT_EQ(config.follow.program, "dir/../part.ngc");
   EXPECT_EQ(config.follow.planned_path, true);
   EXPECT_EQ(config.follow.options.tolerance_mm, 0.1);
@@ -157,8 +159,9 @@ TEST(ConfigKeys, WrongKinds) {
 
 TEST(ConfigKeys, UnknownKeys) {
   EXPECT_EQ(said_of("Stock: {}\n"), "1:1: Stock: unknown key (did you mean stock?)\n");
-  EXPECT_EQ(said_of("stock:\n  zoom: 1\n"),
-            "2:3: stock.zoom: unknown key (here may be: blank, cell_mm, margin_mm, model)\n");
+  EXPECT_EQ(
+      said_of("stock:\n  zoom: 1\n"),
+      "2:3: stock.zoom: unknown key (here may be: below_mm, blank, cell_mm, margin_mm, model)\n");
   EXPECT_EQ(said_of("machine:\n  work_offset: {x: 1, p: 2}\n"),
             "2:23: machine.work_offset.p: unknown key (here may be: a, b, c, rotation, u, v, w, x, "
             "y, z)\n");
