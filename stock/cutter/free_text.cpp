@@ -97,11 +97,11 @@ class QuantityScanner {
     return parse_decimal(text_.substr(from, to - from)).value_or(0);
   }
 
-  /// The number beside it says how long something is, how thick the shank, or where it is kept.
+  /// The number before or behind says how long something is, how thick the shank, or where it is
+  /// kept.
   static bool is_length(std::string_view word) {
-    constexpr std::array<std::string_view, 14> kWords = {
-        "loc",   "oal", "lof",  "len",   "length", "long",  "reach",
-        "shank", "shk", "deep", "depth", "offset", "stick", "stickout"};
+    constexpr std::array<std::string_view, 10> kWords = {
+        "loc", "oal", "lof", "len", "length", "reach", "shank", "shk", "depth", "offset"};
     return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
   }
 
@@ -204,7 +204,8 @@ class QuantityScanner {
     if (rest.starts_with("rad") || rest.starts_with("corner")) return Label::kCorner;
     std::size_t length = 0;
     while (length < rest.size() && is_letter(rest[length])) ++length;
-    if (is_length(rest.substr(0, length))) return Label::kIgnored;
+    const std::string_view word = rest.substr(0, length);
+    if (is_length(word) || word == "long" || word == "deep") return Label::kIgnored;
     if (rest.starts_with("tip")) return contains(rest, "tip rad") ? Label::kCorner : Label::kTip;
     return Label::kNone;
   }

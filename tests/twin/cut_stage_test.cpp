@@ -133,10 +133,10 @@ TEST(CutStage, GuessesMakeNoErrors) {
 
 TEST(CutStage, AFeedThatGoesNowhereAsksForNoTool) {
   MotionList program;
-  program.at({-5, 20, 5}).feed({-5, 20, 5}).tool(1).spindle(true).feed({-5, 20, -2});
+  program.at({20, 20, 5}).feed({20, 20, 5}).tool(1).spindle(true).feed({20, 20, -2});
   EXPECT_EQ(Shop(program).ids(), Ids{});
   MotionList moves;
-  moves.at({-5, 20, 5}).feed({-5, 20, 4}).tool(1).spindle(true).feed({-5, 20, -2});
+  moves.at({20, 20, 5}).feed({20, 20, 4}).tool(1).spindle(true).feed({20, 20, -2});
   EXPECT_EQ(Shop(moves, 4096, "1=flat:4").ids(), (Ids{FindingId::kToolAssumed}));
 }
 
