@@ -1,10 +1,18 @@
 #include "base/worker_pool.h"
 
+#include <system_error>
+#include <utility>
+
 namespace kerf {
 
 WorkerPool::WorkerPool(int threads) {
-  for (int number = 1; number < threads; ++number)
-    workers_.emplace_back([this, number] { serve(number); });
+  for (int number = 1; number < threads; ++number) {
+    try {
+      workers_.emplace_back([this, number] { serve(number); });
+    } catch (const std::system_error&) {
+      return;  // no more are to be had: those that are there do it all
+    }
+  }
 }
 
 WorkerPool::~WorkerPool() {
@@ -25,9 +33,19 @@ void WorkerPool::run(const std::function<void(int)>& work) {
     ++round_;
   }
   wake_.notify_all();
-  work(0);
+  call(work, 0);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [this] { return busy_ == 0; });
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void WorkerPool::call(const std::function<void(int)>& work, int number) {
+  try {
+    work(number);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
 }
 
 void WorkerPool::serve(int number) {
@@ -41,7 +59,7 @@ void WorkerPool::serve(int number) {
       seen = round_;
       work = work_;
     }
-    (*work)(number);
+    call(*work, number);
     {
       const std::lock_guard lock(mutex_);
       --busy_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -10,7 +11,7 @@
 namespace kerf {
 
 /// run(f) calls f(0) .. f(threads-1), f(0) on the caller's thread, and returns when all are done.
-/// Not re-entrant.
+/// Not re-entrant. An exception of one of the calls is thrown again when all are done.
 class WorkerPool {
  public:
   explicit WorkerPool(int threads);
@@ -22,12 +23,14 @@ class WorkerPool {
 
  private:
   void serve(int number);
+  void call(const std::function<void(int)>& work, int number);
   std::mutex mutex_;
   std::condition_variable wake_, done_;
   const std::function<void(int)>* work_ = nullptr;
   unsigned round_ = 0;
   int busy_ = 0;
   bool quit_ = false;
+  std::exception_ptr failure_;  ///< the first of this round
   std::vector<std::thread> workers_;
 };
 

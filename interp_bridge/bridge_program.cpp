@@ -329,6 +329,15 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
                          options_.max_silent_s),
              std::string("the interpreter is here; ") + kLoop, reading);
       break;
+    case ChildEnding::kRepeating:
+      session.process.kill();
+      report(Severity::kError, records.place(), repeat_message(reading.feeder.repeats()),
+             std::string(kLoop) + " --max-seconds allows more", reading);
+      break;
+    case ChildEnding::kTooLong:
+      session.process.kill();
+      report(Severity::kError, records.place(), cpu_message(options_), {}, reading);
+      break;
   }
 }
 
@@ -372,7 +381,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);
-  ChildListener listener(session->process, records, feeder, options_.max_silent_s);
+  ChildListener listener(session->process, records, feeder, options_);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const ChildEnding ending = listener.listen(stop, [&] {
     const SourceRef place = records.place();

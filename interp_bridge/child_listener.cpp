@@ -16,12 +16,20 @@ using Clock = std::chrono::steady_clock;
 /// An interpreter's last words; the lines before are of no use.
 constexpr std::size_t kMaxStderrBytes = 64 * 1024;
 constexpr std::size_t kMaxStdoutLineBytes = 4096;
+/// Of max_silent_s, in processor time: what is said again and again takes the reader as long as the
+/// child.
+constexpr double kRepeatShare = 0.5;
 
 }  // namespace
 
 ChildListener::ChildListener(InterpreterProcess& process, ByteReader& reader, MotionFeeder& feeder,
-                             double max_silent_s)
-    : reader_(reader), feeder_(feeder), max_silent_s_(max_silent_s), buffer_(64 * 1024) {
+                             const ProgramOptions& limits)
+    : reader_(reader),
+      feeder_(feeder),
+      process_(process),
+      max_silent_s_(limits.max_silent_s),
+      max_cpu_s_(limits.max_cpu_s),
+      buffer_(64 * 1024) {
   fds_[kListing] = {process.listing_fd(), POLLIN, 0};
   fds_[kStdout] = {process.stdout_fd(), POLLIN, 0};
   fds_[kStderr] = {process.stderr_fd(), POLLIN, 0};
@@ -54,6 +62,21 @@ void ChildListener::take_stderr(std::string_view text) {
   }
 }
 
+/// By its processor time: that it waits for whoever cuts is no fault of its own.
+std::optional<ChildEnding> ChildListener::look_for_endlessness() {
+  const double cpu_s = process_.cpu_s();
+  if (max_cpu_s_ > 0 && cpu_s > max_cpu_s_) return ChildEnding::kTooLong;
+  const RepeatWatch& repeats = feeder_.repeats();
+  if (repeats.news() != news_) {
+    news_ = repeats.news();
+    cpu_at_news_s_ = cpu_s;
+    return std::nullopt;
+  }
+  const bool for_long = cpu_s - cpu_at_news_s_ > kRepeatShare * max_silent_s_;
+  if (for_long && repeats.seems_endless()) return ChildEnding::kRepeating;
+  return std::nullopt;
+}
+
 ChildEnding ChildListener::listen(const std::stop_token& stop,
                                   const std::function<void()>& on_progress) {
   auto heard = Clock::now();
@@ -69,6 +92,7 @@ ChildEnding ChildListener::listen(const std::stop_token& stop,
         return feeder_.too_many_commands() ? ChildEnding::kTooMany : ChildEnding::kStopped;
       }
       on_progress();
+      if (const auto endless = look_for_endlessness()) return *endless;
     } else if (!feeder_.flush_if_old()) {
       return ChildEnding::kStopped;
     }

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -200,6 +201,15 @@ InterpreterProcess::~InterpreterProcess() {
 
 void InterpreterProcess::kill() {
   if (pid_ > 0) ::kill(-pid_, SIGKILL);
+}
+
+double InterpreterProcess::cpu_s() const {
+  clockid_t clock{};
+  timespec used{};
+  if (pid_ <= 0 || clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &used) != 0) {
+    return 0;
+  }
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
 InterpreterProcess::Exit InterpreterProcess::wait() {

@@ -55,6 +55,8 @@ class InterpreterProcess {
   /// Waits for the end. Call when all pipes are at their end, or after kill().
   Exit wait();
   void kill();
+  /// Processor time that it has used, s; 0 when it is gone.
+  double cpu_s() const;
 
   /// How many bytes of the file `name` the child has read, in blocks: what is known of a program
   /// that prints nothing. 0 if it cannot be told.

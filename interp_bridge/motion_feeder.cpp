@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "interp_bridge/wild_motion.h"
+
 namespace kerf {
 namespace {
 
@@ -86,27 +88,48 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   }
   if (!command.text.empty()) remark_on_text(command);
   if (!options_.torch.text.changes.empty()) follow_modes();
-  const bool first = batch_.empty();
+  const std::size_t before = batch_.size();
   const FoldRemark said = fold_.fold(command, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
-  return took(first);
+  return took(before);
 }
 
 bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {
   source_ = source;
   if (options_.places.followed) follow_block(CanonicalName::kNurbsFeed);
   ++counts_[static_cast<std::size_t>(CanonicalName::kNurbsFeed)];
-  const bool first = batch_.empty();
+  const std::size_t before = batch_.size();
   const FoldRemark said = fold_.fold_spline(spline, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
-  return took(first);
+  return took(before);
 }
 
-bool MotionFeeder::took(bool batch_was_empty) {
-  if (batch_was_empty && !batch_.empty()) batch_since_ = std::chrono::steady_clock::now();
+/// What the last command has made, from batch_[first] on.
+void MotionFeeder::refuse_wild(std::size_t first) {
+  for (std::size_t i = first; i < batch_.size(); ++i) {
+    const std::string fault = wild_number_of(batch_[i]);
+    if (fault.empty()) continue;
+    batch_.resize(i);
+    refused_ = true;
+    Diagnostic wild = at_source(Severity::kError, fault + ": no machine has such a number");
+    wild.hint = "a slip of the pen, or an offset or a unit (G20, G21) that is not meant?";
+    diagnostics_.push_back(std::move(wild));
+    return;
+  }
+}
+
+bool MotionFeeder::took(std::size_t batch_before) {
+  if (refused_) {
+    batch_.resize(std::min(batch_before, batch_.size()));
+    return false;
+  }
+  refuse_wild(batch_before);
+  repeats_.take(source_,
+                std::span<const Motion>(batch_).subspan(std::min(batch_before, batch_.size())));
+  if (batch_before == 0 && !batch_.empty()) batch_since_ = std::chrono::steady_clock::now();
   ++commands_;
   if (options_.max_commands != 0 && commands_ > options_.max_commands) too_many_ = true;
-  return (batch_.size() < kBatchMotions || hand_over()) && !too_many_;
+  return (batch_.size() < kBatchMotions || hand_over()) && !too_many_ && !refused_;
 }
 
 bool MotionFeeder::take_unknown(std::string_view name) {
@@ -231,9 +254,9 @@ bool MotionFeeder::take_user_code(double number, SourceRef source) {
       std::find_if(known.begin(), known.end(), [&](int one) { return number == one; });
   if (code == known.end()) return false;
   source_ = source;
-  const bool first = batch_.empty();
+  const std::size_t before = batch_.size();
   fold_.signal(static_cast<std::uint8_t>(*code), source, batch_);
-  took(first);
+  took(before);
   return true;
 }
 

@@ -14,6 +14,7 @@
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/motion_fold.h"
 #include "interp_bridge/program.h"
+#include "interp_bridge/repeat_watch.h"
 #include "interp_bridge/torch_setup.h"
 
 namespace kerf {
@@ -52,7 +53,9 @@ class MotionFeeder {
   MotionFeeder(MotionFeederOptions options, const MotionSink& sink, ProgramSummary& summary,
                Diagnostics& diagnostics);
 
-  /// False: the sink has had enough, or there were too many commands.
+  /// False: the sink has had enough, there were too many commands, or a number that no machine has
+  /// (wild_motion.h): then a diagnostic names its line, and what comes from there on is not handed
+  /// over.
   bool take(const CanonicalCommand& command, SourceRef source);
   /// A spline with its control points; counts as one command.
   bool take_spline(const Spline& spline, SourceRef source);
@@ -74,15 +77,17 @@ class MotionFeeder {
   void finish();
 
   std::uint64_t commands() const { return commands_; }
+  const RepeatWatch& repeats() const { return repeats_; }
   bool too_many_commands() const { return too_many_; }
-  bool done() const { return sink_done_ || too_many_; }
+  bool done() const { return sink_done_ || too_many_ || refused_; }
   /// Of the last command.
   SourceRef last_source() const { return source_; }
   /// A diagnostic at the last command's place.
   Diagnostic at_source(Severity severity, std::string message) const;
 
  private:
-  bool took(bool batch_was_empty);
+  bool took(std::size_t batch_before);
+  void refuse_wild(std::size_t first);
   void remark(FoldRemark remark);
   void remark_on_text(const CanonicalCommand& command);
   void edit_material(const CanonicalCommand& comment);
@@ -111,6 +116,8 @@ class MotionFeeder {
   bool too_many_ = false;
   bool sink_done_ = false;
   BlockReader blocks_;
+  RepeatWatch repeats_;
+  bool refused_ = false;  ///< a wild number
   SourceRef source_;
 };
 

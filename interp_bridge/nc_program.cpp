@@ -202,8 +202,9 @@ SourceRef NcProgram::source_before_silence(const Session& session,
   Diagnostics ignored;
   const MotionSink sink = [](std::span<const Motion>) { return true; };
   CanonicalReader reader(reader_options(session), sink, scratch, ignored);
-  ChildListener listener(*process, reader, reader.feeder(),
-                         std::min(kSilenceAgain_s, options_.max_silent_s));
+  ProgramOptions limits = options_;
+  limits.max_silent_s = std::min(kSilenceAgain_s, options_.max_silent_s);
+  ChildListener listener(*process, reader, reader.feeder(), limits);
   listener.listen(stop, [] {});
   return reader.feeder().last_source();
 }
@@ -245,6 +246,15 @@ void NcProgram::report_ending(ChildEnding ending, Session& session, CanonicalRea
                          command_limit(options_, survey_.lines)),
              "a loop whose condition stays true?", summary, diagnostics);
       break;
+    case ChildEnding::kRepeating:
+      session.process.kill();
+      report(Severity::kError, place, repeat_message(reader.feeder().repeats()),
+             "a loop whose condition stays true? --max-seconds allows more", summary, diagnostics);
+      break;
+    case ChildEnding::kTooLong:
+      session.process.kill();
+      report(Severity::kError, place, cpu_message(options_), {}, summary, diagnostics);
+      break;
     case ChildEnding::kSilent: {
       const std::string message = silence_message(session);
       session.process.kill();
@@ -273,7 +283,7 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.feeder.frame = &frame_;
   reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
-  ChildListener listener(session->process, reader, reader.feeder(), options_.max_silent_s);
+  ChildListener listener(session->process, reader, reader.feeder(), options_);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const ChildEnding ending = listener.listen(stop, [&] {
     const SourceRef source = reader.feeder().last_source();

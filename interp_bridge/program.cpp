@@ -197,4 +197,18 @@ std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostic
   return program;
 }
 
+std::string repeat_message(const RepeatWatch& repeats) {
+  const double days = repeats.machine_s() / 86'400;
+  return fmt::format(
+      "the last {} commands are all repetitions, and {}; the program counts as endless",
+      repeats.commands(),
+      days < 1 ? std::string("move nothing")
+               : fmt::format("would take the machine {:.3g} days", days));
+}
+
+std::string cpu_message(const ProgramOptions& options) {
+  return fmt::format("the interpreter has used {:g} s of processor time (--max-cpu-seconds)",
+                     options.max_cpu_s);
+}
+
 }  // namespace kerf

@@ -114,7 +114,10 @@ struct ProgramOptions {
   /// million, and for longer programs 4 a line.
   std::optional<std::uint64_t> max_commands;
   /// Seconds without a canonical command after which it counts as endless.
+  /// The same where it gives none but those that it has given before, with a machine that stands
+  /// still or runs for days: after half as long, in its processor time.
   double max_silent_s = 20.0;
+  double max_cpu_s = 0;  ///< processor time of the interpreter after which it is ended; 0: any
 };
 
 /// ProgramOptions::max_commands for a source of so many lines.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interp_bridge/program.h"
+#include "interp_bridge/repeat_watch.h"
 #include "interp_bridge/source_text.h"
 
 namespace kerf {
@@ -29,5 +30,9 @@ std::unique_ptr<Program> make_listing_program(const ProgramOptions& options,
 
 /// How long a reader sleeps at most before it looks at its stop token and at waiting motions.
 inline constexpr int kReaderPatience_ms = 20;
+
+/// What is said of ChildEnding::kRepeating and kTooLong.
+std::string repeat_message(const RepeatWatch& repeats);
+std::string cpu_message(const ProgramOptions& options);
 
 }  // namespace kerf

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "base/atomic_file.h"
 
@@ -32,6 +32,11 @@ bool read_numbers(std::optional<std::string_view> line, T* out, int count) {
   }
   return value.empty();
 }
+
+/// Of the largest model that fits a memory of 16 GB.
+constexpr std::size_t kMostStateBytes = std::size_t{16} << 30;
+
+Error unreadable(const std::string& path) { return Error{fmt::format("{}: cannot be read", path)}; }
 
 Error damaged_head(const StateHead& head, const std::string& name) {
   return Error{fmt::format("{}: the head is damaged near byte {}", name, head.position())};
@@ -95,10 +100,28 @@ bool StateHead::numbers(std::string_view key, std::int64_t* out, int count) {
 }
 
 Result<std::string> read_state_bytes(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::is_directory(status)) {
+    return Error{fmt::format("{}: is a folder, not a saved workpiece", path)};
+  }
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{fmt::format("{}: {}", path, std::strerror(errno))};
-  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) return Error{fmt::format("{}: cannot be read", path)};
+  // What does not begin like one may have no end (/dev/zero).
+  std::string bytes(kStateMagic.size(), '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  if (bytes != kStateMagic) return in.bad() ? unreadable(path) : Result<std::string>(bytes);
+  std::string piece(std::size_t{1} << 20, '\0');
+  while (in) {
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    bytes.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (bytes.size() > kMostStateBytes) {
+      return Error{
+          fmt::format("{}: longer than {} GB; no saved workpiece is", path, kMostStateBytes >> 30)};
+    }
+  }
+  if (in.bad()) return unreadable(path);
   return bytes;
 }
 

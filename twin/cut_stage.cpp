@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "twin/motion_geometry.h"
@@ -16,6 +18,10 @@ namespace {
 constexpr std::size_t kMovesPerCut = 4096;
 /// Motion::unknown_to: X, Y and Z.
 constexpr std::uint8_t kAllUnknown = 7;
+/// Of moves that cost much (tilted tools) fewer, so that a stop is seen in time: as many as take
+/// about so long.
+constexpr double kCut_s = 0.05;
+constexpr std::size_t kLeastMovesPerCut = 16;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 
@@ -36,7 +42,8 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       timeline_(options, *this),
       checks_(stock, log),
       lengths_(stock.bounds_mm(), log),
-      axis_limits_(options.limits, log) {
+      axis_limits_(options.limits, log),
+      moves_per_cut_(stock.takes_tilted_tools() ? kLeastMovesPerCut : kMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
@@ -90,8 +97,21 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
   }
   ++stepped_;
   path_ = path;
-  cut(motion, timed);
+  if (!stop_now()) cut(motion, timed);
+  work_before_ += work_of(motion);
+  if (work_done_) *work_done_ = work_before_;
   log_.set_muted(false);
+}
+
+bool CutStage::stop_now() {
+  stopped_ = stopped_ || stop_.stop_requested();
+  return stopped_;
+}
+
+double CutStage::work_of(const Motion& m) {
+  double turned_deg = 0;
+  for (std::size_t i = 0; i < 3; ++i) turned_deg += std::abs(m.to_abc_deg[i] - m.from_abc_deg[i]);
+  return path_length_mm(m) + turned_deg;
 }
 
 void CutStage::begin_reporting() {
@@ -125,7 +145,7 @@ void CutStage::finish(bool whole) {
     punch_->finish(whole);
     return;
   }
-  if (whole) report_outside_stock();
+  if (whole && !stopped_) report_outside_stock();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
@@ -519,6 +539,7 @@ void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
     return;
   }
   for (const PathPiece& part : path_) {
+    if (stopped_) return;
     const Motion piece = motion_of(m, part);
     divide(piece);
     push_moves(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
@@ -530,17 +551,32 @@ void CutStage::push_moves(const Motion& m, double duration_s, bool spindle_off) 
   const std::uint64_t id = labels_ ? labels_->number_of({mounted_->number, m.source}) : next_id_++;
   const double share_s =
       duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
+  std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
     moves_.push_back(move);
     in_flight_.push_back(InFlight{share_s, use_, is_feed(m), spindle_off});
+    ++pushed;
+    if (moves_.size() < moves_per_cut_) continue;
+    flush();
+    if (stop_now()) return;
+    if (work_done_ && path_.empty()) {
+      const double share = static_cast<double>(pushed) / static_cast<double>(divided_.size());
+      *work_done_ = work_before_ + share * work_of(m);
+    }
   }
-  if (moves_.size() >= kMovesPerCut) flush();
 }
 
 void CutStage::flush() {
   if (moves_.empty()) return;
+  const auto begin = std::chrono::steady_clock::now();
   stock_.cut(*mounted_->cutter, moves_, reports_);
+  if (stock_.takes_tilted_tools()) {
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
+    moves_per_cut_ = static_cast<std::size_t>(std::clamp(
+        fits, static_cast<double>(kLeastMovesPerCut), static_cast<double>(kMovesPerCut)));
+  }
   moves_.clear();
   collect_reports();
 }

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interp_bridge/motion.h"
@@ -84,6 +87,15 @@ class CutStage : private StepSink {
   void release_reports() { report_from_ = taken_; }
   /// The program is over, or stopped before its end (`whole` = false).
   void finish(bool whole = true);
+  /// Once `stop` is requested nothing more is cut; looked at before each motion, and within a
+  /// motion of many moves. Before the first motion.
+  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+  /// Something that was taken has not been cut for that reason.
+  bool stopped() const { return stopped_; }
+  /// How much has been cut: the sum of work_of() of the motions. Any thread may look at it.
+  void count_work(std::atomic<double>& done) { work_done_ = &done; }
+  /// Of a motion, in no unit: its way in mm, and what turns in degrees.
+  static double work_of(const Motion& motion);
 
   /// How the machine turns tool and workpiece; null: it does not.
   const ToolPath* machine_path() const { return machine_moves_.path(); }
@@ -135,6 +147,7 @@ class CutStage : private StepSink {
   void report_over_feed();
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, double duration_s, bool spindle_off);
+  bool stop_now();
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
@@ -188,6 +201,11 @@ class CutStage : private StepSink {
   std::array<bool, 3> slide_reported_{};  ///< U, V, W
   bool reached_stock_ = false;            ///< a feed move came near the blank, in boxes
   Box feed_bounds_mm_;                    ///< of all feed moves, until then
+  std::stop_token stop_;
+  bool stopped_ = false;
+  std::atomic<double>* work_done_ = nullptr;  ///< may be null
+  double work_before_ = 0;                    ///< of the motions before the present one
+  std::size_t moves_per_cut_;
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;

@@ -362,6 +362,14 @@ void read_kinematics(IniReader& reader, const IniEntry* entry, double unit_mm,
       joint_limits_of_ini(reader.file(), setup.timeline.kinematics->joint_letters, unit_mm);
 }
 
+bool is_of_linuxcnc(const IniFile& ini) {
+  constexpr std::array kSections{"EMC",    "DISPLAY", "TASK",     "RS274NGC", "EMCMOT",
+                                 "EMCIO",  "HAL",     "TRAJ",     "KINS",     "JOINT_0",
+                                 "AXIS_X", "FILTER",  "SPINDLE_0"};
+  return std::any_of(kSections.begin(), kSections.end(),
+                     [&](const char* section) { return ini.has_section(section); });
+}
+
 }  // namespace
 
 bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostics& diagnostics,
@@ -370,6 +378,17 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   if (!ini) {
     Diagnostic d;
     d.message = ini.error();
+    diagnostics.push_back(std::move(d));
+    return false;
+  }
+  if (!is_of_linuxcnc(*ini)) {
+    Diagnostic d;
+    d.file = path;
+    d.message =
+        "is no INI of a LinuxCNC machine: it has none of its sections ([EMC], [KINS], "
+        "[TRAJ], [JOINT_0] ..)";
+    d.hint =
+        "--ini is the file that LinuxCNC is started with; a program is given without an option";
     diagnostics.push_back(std::move(d));
     return false;
   }

@@ -93,6 +93,7 @@ Json live_json(const LiveReport& live) {
   out["source"] = live.source;
   out["samples"] = f.samples;
   out["incomplete"] = f.incomplete;
+  out["wild"] = f.wild;
   out["duration_s"] = rounded(live.duration_s);
   out["rate_hz"] = rounded(live.rate_hz);
   out["errors"] = live.status.errors;

@@ -99,6 +99,7 @@ void add_live(std::string& out, const LiveReport& live) {
   add(live.status.disordered, "out of order");
   add(live.dropped, "dropped");
   add(f.incomplete, "incomplete");
+  add(f.wild, "where no machine is");
   add(f.gaps, "gaps");
   if (!faults.empty()) out += fmt::format("          {}\n", faults);
   if (!live.status.trouble.empty()) {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 
+#include "base/helper_thread.h"
 #include "interp_bridge/tool_lengths.h"
 #include "twin/batch_queue.h"
 
@@ -41,7 +41,10 @@ std::unique_ptr<Session> Session::open(SessionOptions options, Diagnostics& diag
 
 double Session::progress() const {
   const Program* program = shown_program_;
-  return program ? program->progress() : -1.0;
+  const double read = program ? program->progress() : -1.0;
+  const double to_cut = work_read_;
+  // What has been read is not cut yet.
+  return read <= 0 || to_cut <= 0 ? read : read * std::min(1.0, work_done_ / to_cut);
 }
 
 ProgramSummary Session::interpret(Program& program, const MotionSink& sink, std::stop_token stop) {
@@ -118,7 +121,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   stage.take(motions.subspan(split.before));
   report_.timing.cut_s += seconds_since(start);
   if (observer_) observer_->on_cut(*stock(), motions, stage.timeline().clock_s());
-  return !window_.over();
+  return !window_.over() && !stage.stopped();
 }
 
 /// A motion tilts the tool, and the model that was chosen without knowing of it is for upright
@@ -132,14 +135,24 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   Program& program = second_pass_ ? *second_pass_ : *front_.program;
   BatchQueue queue;
   ProgramSummary summary;
-  std::thread reader([&] {
+  std::stop_source end;
+  const std::stop_callback forward(stop, [&] { end.request_stop(); });
+  const auto release = [&] {
+    end.request_stop();
+    queue.close();
+  };
+  const auto read = [&] {
     const MotionSink sink = [&](std::span<const Motion> motions) {
       materials_.put(program.materials());
+      double work = work_read_;
+      for (const Motion& m : motions) work += CutStage::work_of(m);
+      work_read_ = work;
       return queue.push(motions);
     };
-    summary = interpret(program, sink, stop);
+    summary = interpret(program, sink, end.get_token());
     queue.close();
-  });
+  };
+  HelperThread reader(read, release);
   std::vector<Motion> batch;
   while (queue.pop(batch)) {
     if (cut_batch(stage, batch)) continue;
@@ -151,7 +164,8 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   report_.program = std::move(summary);
   report_.program.interpret_s += first_pass_s;
   if (must_begin_again()) return Pass::kTilted;
-  return stop.stop_requested() && report_.program.stopped_early ? Pass::kStopped : Pass::kWhole;
+  const bool unread = stop.stop_requested() && report_.program.stopped_early;
+  return unread || stage.stopped() ? Pass::kStopped : Pass::kWhole;
 }
 
 Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
@@ -162,12 +176,15 @@ Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
     return second && !second_pass_ ? Pass::kWhole : stream(stage, stop);
   }
   const std::span<const Motion> all(kept_);
+  double work = 0;
+  for (const Motion& m : all) work += CutStage::work_of(m);
+  work_read_ = work;
   for (std::size_t at = 0; at < all.size(); at += BatchQueue::kBatchMotions) {
     if (stop.stop_requested()) return Pass::kStopped;
     const std::size_t count = std::min(BatchQueue::kBatchMotions, all.size() - at);
     if (!cut_batch(stage, all.subspan(at, count))) break;
   }
-  return Pass::kWhole;
+  return stage.stopped() ? Pass::kStopped : Pass::kWhole;
 }
 
 /// Forgets what the pass has found, and makes the workpiece anew in a model that can hold it.
@@ -213,6 +230,9 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   } else if (beam) {
     stage.burn(*beam);
   }
+  stage.stop_by(stop);
+  work_read_ = work_done_ = 0;
+  stage.count_work(work_done_);
   const double cpu_before = thread_cpu_s();
   const Pass pass = cut_program(stage, stop, diagnostics);
   if (pass == Pass::kTilted) return std::nullopt;
@@ -220,12 +240,13 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   const Clock::time_point finish_start = Clock::now();
   // Where a sheet's program was stopped it may not have come to cut yet.
   stage.finish(whole && !(front_.is_sheet() && window_.over()));
+  const bool cut_whole = whole && !stage.stopped();  // the last motions come with the end
   if (observer_) observer_->on_cut(*stock(), {}, stage.timeline().clock_s());
   report_.timing.cut_s += seconds_since(finish_start);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
   complete_report(stage);
   if (has_error(diagnostics)) return Outcome::kFailed;
-  return conclude(!whole);
+  return conclude(!cut_whole);
 }
 
 Outcome Session::conclude(bool stopped) {

@@ -99,6 +99,8 @@ class Session {
   std::vector<TorchMaterial> taken_materials_;
   LineWindow window_;
   TiltWatch tilt_;
+  std::atomic<double> work_read_{0};  ///< CutStage::work_of() of what has come to be cut
+  std::atomic<double> work_done_{0};
   SwitchedMotions switched_;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;

@@ -12,6 +12,8 @@ namespace kerf {
 namespace {
 
 constexpr double kMmPerInch = 25.4;
+/// More are no log of a machine.
+constexpr std::size_t kMostColumns = 1000;
 constexpr std::string_view kAxisLetters = "xyzabcuvw";
 constexpr std::uint16_t kRotaryAxes = 0b000111000;  // A B C
 
@@ -279,6 +281,7 @@ bool is_taken(const std::vector<ColumnName>& names, const AllNamed& named, std::
          fmt::format("columns '{}' and '{}' are the same thing: which is meant is not clear",
                      names[other].text, names[i].text),
          "rename the one that is not wanted"});
+    break;  // once a column
   }
   return true;
 }
@@ -287,6 +290,13 @@ bool is_taken(const std::vector<ColumnName>& names, const AllNamed& named, std::
 
 bool find_columns(const std::vector<ColumnName>& names, const LogSettings& settings,
                   LogColumns& found, std::vector<ColumnFault>& faults) {
+  if (names.size() > kMostColumns) {
+    faults.push_back({0,
+                      fmt::format("the header has {} columns; {} are the most that kerf reads",
+                                  names.size(), kMostColumns),
+                      "is this a log of positions?"});
+    return false;
+  }
   AllNamed named;
   for (const ColumnName& name : names) named.push_back(read_column_name(name.text));
   check_units(names, named, faults);

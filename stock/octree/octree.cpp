@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/worker_pool.h"
+#include "stock/move_reach.h"
 #include "stock/octree/blank_bricks.h"
 #include "stock/octree/brick_tree.h"
 #include "stock/octree/dual_contour_mesh.h"
@@ -127,7 +128,9 @@ struct Octree::Impl {
   SweepTarget target(double shrink_mm) const { return {reach(), chord_mm(cell()), shrink_mm}; }
   bool touches(const std::vector<ToolBody>& tool, const CutMove& move, double shrink_mm) const {
     std::vector<Sweep> sweeps;
-    append_sweeps(tool, move, 0, target(shrink_mm), sweeps);
+    const std::optional<CutMove> near = within_reach(move, tree.lattice().bounds_mm);
+    if (!near) return false;
+    append_sweeps(tool, *near, 0, target(shrink_mm), sweeps);
     return touches_tree(tree, sweeps, kernel);
   }
   DualField field() const {
@@ -197,9 +200,11 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
     sweeps.clear();
     std::size_t last = first;
     for (; last < moves.size() && last - first < kMovesAtOnce && sweeps.size() < kSweepsAtOnce;
-         ++last)
-      append_sweeps(m.bodies, moves[last], static_cast<std::uint32_t>(last - first), m.target(0),
-                    sweeps);
+         ++last) {
+      const std::optional<CutMove> near = within_reach(moves[last], m.tree.lattice().bounds_mm);
+      if (!near) continue;
+      append_sweeps(m.bodies, *near, static_cast<std::uint32_t>(last - first), m.target(0), sweeps);
+    }
     totals.assign(last - first, MoveTotals{});
     cut_tree(m.tree, sweeps, m.kernel, m.additive, *m.pool, totals);
     for (std::size_t i = 0; i < totals.size(); ++i) {

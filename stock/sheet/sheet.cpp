@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "stock/cutter/scan.h"
+#include "stock/move_reach.h"
 #include "stock/sheet/pieces.h"
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/sheet_border.h"
@@ -157,6 +158,10 @@ void Sheet::cut(const Cutter& cutter, std::span<const CutMove> moves,
                 std::vector<CutReport>& reports) {
   if (cutter.footprint() != nullptr) return strike(cutter, moves, reports);
   for (const CutMove& move : moves) {
+    if (!within_reach(move, bounds_mm())) {
+      reports.push_back({move.id, 0, 0});
+      continue;
+    }
     const sheet::Kerf kerf =
         sheet::kerf_of_move(move, cutter.radius_mm(), impl_->tolerance_mm, impl_->tables);
     reports.push_back(impl_->subtract(kerf, move.id));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "stock/move_reach.h"
 #include "stock/zmap/cutter_components.h"
 
 namespace kerf {
@@ -11,6 +12,11 @@ namespace {
 /// Moves whose sweeps are worked off together: as many as keep the list of sweeps within the
 /// second-level cache.
 constexpr std::size_t kMovesAtOnce = 1024;
+/// An arc may become many sweeps: they are not all kept at once.
+constexpr std::size_t kSweepsAtOnce = std::size_t{1} << 16;
+/// The kernels count blocks of cells from where a sweep begins, in single precision: exact up to
+/// 2^24.
+constexpr double kMostBlocks = 1 << 22;
 
 }  // namespace
 
@@ -172,12 +178,24 @@ void HeightSweeper::cut_some(std::span<const CutMove> moves, HollowColumns* holl
     totals_[0] = pending_totals_;
     path_.set_pending_report(0);
   }
-  for (std::size_t i = 0; i < moves.size(); ++i)
-    path_.add(moves[i], static_cast<std::uint32_t>(i + first), ops_);
   if (grid.keeps_cut_ids()) {
     cut_ids_.clear();
     if (carried) cut_ids_.push_back(cut_id_of(pending_id_));
     for (const CutMove& move : moves) cut_ids_.push_back(cut_id_of(move.id));
+  }
+  const Box blank = grid.bounds_mm();
+  const double block_mm = std::min(kBlockX * grid.cell_x_mm(), kBlockY * grid.cell_y_mm());
+  const double reach_mm = std::min(kMoveReach_mm, kMostBlocks * block_mm);
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const std::optional<CutMove> move = within_reach(moves[i], blank, reach_mm);
+    if (!move) {
+      // Nothing is held back across it: reports come in order.
+      path_.finish(ops_);
+      path_.restart();
+      continue;
+    }
+    path_.add(*move, static_cast<std::uint32_t>(i + first), ops_);
+    if (ops_.size() > kSweepsAtOnce) run(hollows, totals_.size());
   }
   run(hollows, totals_.size());
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "stock/move_reach.h"
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
@@ -75,7 +76,10 @@ void ZMap::finish(std::vector<CutReport>& reports) { impl_->sweeper.finish(nullp
 
 std::optional<Contact> ZMap::first_contact(const Cutter& cutter, const CutMove& move,
                                            double tolerance_mm) const {
-  return find_first_contact(impl_->grid(), convex_components(cutter.profile()), move, tolerance_mm);
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
+  return find_first_contact(impl_->grid(), convex_components(cutter.profile()), *near,
+                            tolerance_mm);
 }
 
 std::unique_ptr<StockModel> ZMap::snapshot() const {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -72,6 +74,33 @@ TEST(Interrupt, EndlessProgram) {
   ASSERT_TRUE(kerf.wait_until([&] { return !listing(folder.file("tmp")).empty(); }));
   kerf.send(SIGINT);
   expect_partial(folder, kerf.finish());
+}
+
+/// One motion that is cut for a long time, all of which has been read.
+TEST(Interrupt, WithinALongMotion) {
+  const TestFolder folder;
+  const std::string program = folder.write("turn.canon",
+                                           "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+                                           "    2 N1     CHANGE_TOOL(1)\n"
+                                           "    3 N2     START_SPINDLE_CLOCKWISE(0)\n"
+                                           "    4 N3     SET_FEED_RATE(300.0000)\n"
+                                           "    5 N3     STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)\n"
+                                           "    6 N4     STRAIGHT_FEED(0, 0, -1, 0, 0, 0)\n"
+                                           "    7 N5     STRAIGHT_FEED(20, 5, -1, 0, 3600000, 0)\n"
+                                           "    8 N6     PROGRAM_END()\n");
+  KerfCall call = interrupted_run(folder, program);
+  call.arguments.insert(call.arguments.end(), {"--cell", "0.5"});
+  call.arguments.erase(std::find(call.arguments.begin(), call.arguments.end(), "--cell"),
+                       std::find(call.arguments.begin(), call.arguments.end(), "--cell") + 2);
+  RunningKerf kerf(call);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(kerf.wait_until(
+      [&] { return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(1500); }));
+  const auto sent = std::chrono::steady_clock::now();
+  kerf.send(SIGTERM);
+  expect_partial(folder, kerf.finish());
+  // The mesh is written within, too.
+  EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
 }
 
 TEST(Interrupt, BeforeThereIsABlank) {

@@ -6,6 +6,7 @@
 #include <stop_token>
 
 #include "base/atomic_file.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/progress_bar.h"
 #include "twin/app/stop_signals.h"
@@ -16,7 +17,7 @@ namespace {
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) fmt::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
   }
 }
 
@@ -72,7 +73,7 @@ int canon_command(const CanonArguments& arguments) {
   }
   Result<AtomicFile> file = AtomicFile::create(arguments.out);
   if (!file) {
-    fmt::print(stderr, "kerf: error: {}\n", file.error());
+    kerf::print(stderr, "kerf: error: {}\n", file.error());
     return kExitFailure;
   }
   LineWriter writer(*file, request.timeline);
@@ -87,7 +88,7 @@ int canon_command(const CanonArguments& arguments) {
   writer.finish();
   const Done written = file->commit();
   print(diagnostics, arguments.quiet);
-  if (!written) fmt::print(stderr, "kerf: error: {}\n", written.error());
+  if (!written) kerf::print(stderr, "kerf: error: {}\n", written.error());
   if (!written || has_error(diagnostics) || summary.stopped_early) return kExitFailure;
   return summary.lost_splines > 0 ? kExitLossy : kExitGood;
 }

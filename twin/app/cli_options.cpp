@@ -35,8 +35,13 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
                   "or 4 a line if that is more)")
       ->type_name("N");
   command
-      .add_option("--max-seconds", a.max_seconds,
-                  "silent seconds after which a program counts as endless")
+      .add_option(
+          "--max-seconds", a.max_seconds,
+          "a program that commands nothing (new) for so long counts as endless (default 20)")
+      ->type_name("S");
+  command
+      .add_option("--max-cpu-seconds", a.max_cpu_seconds,
+                  "processor time that the interpreter may use in all (default: any)")
       ->type_name("S");
 }
 
@@ -47,8 +52,9 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
       ->allow_extra_args(false);
   command
       .add_option("--stock", a.stock,
-                  "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d | tube:x,y,z0:z1:d:inner | "
-                  "several of these joined by +; or state:FILE (a saved workpiece); or "
+                  "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | "
+                  "tube:x,y,z0:z1:d:inner[:axis] | several of these joined by +; or state:FILE (a "
+                  "saved workpiece); or "
                   "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
                   "(metal to be cut by a torch, laser or jet, or punched; its top is at Z0)")
       ->type_name("SPEC");

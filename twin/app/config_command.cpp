@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/config/live_config.h"
 
@@ -13,7 +14,7 @@ int config_command(const ConfigArguments& a) {
   Diagnostic fault;
   if (a.action == "schema") {
     if (a.file.empty() && a.sets.empty()) {
-      fmt::print("{}", schema_text());
+      kerf::print(stdout, "{}", schema_text());
       return kExitGood;
     }
     fault.message = "config schema lists every key; it takes no file and no --set";
@@ -25,17 +26,17 @@ int config_command(const ConfigArguments& a) {
     fault.hint = fmt::format("kerf config {} FILE", a.action);
   }
   if (!fault.message.empty()) {
-    fmt::print(stderr, "{}", to_string(fault));
+    kerf::print(stderr, "{}", to_string(fault));
     return kExitUsage;
   }
   Diagnostics diagnostics;
   const std::optional<LiveConfig> config = read_config(a.file, a.sets, diagnostics);
-  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+  for (const Diagnostic& d : diagnostics) kerf::print(stderr, "{}", to_string(d));
   if (!config) return kExitUsage;
   if (a.action == "print") {
-    fmt::print("{}", effective_yaml(*config));
+    kerf::print(stdout, "{}", effective_yaml(*config));
   } else {
-    fmt::print("{}: all is well\n", a.file.empty() ? "--set" : a.file);
+    kerf::print(stdout, "{}: all is well\n", a.file.empty() ? "--set" : a.file);
   }
   return kExitGood;
 }

@@ -14,6 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "machine_io/recorder.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/good_neighbour.h"
 #include "twin/app/live_console.h"
@@ -29,7 +30,7 @@ namespace {
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) fmt::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
   }
 }
 
@@ -261,14 +262,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
                 diagnostics);
   if (console.unprinted() > 0) {
-    fmt::print(stderr, "kerf: note: {} more findings; --json FILE lists them\n",
-               console.unprinted());
+    kerf::print(stderr, "kerf: note: {} more findings; --json FILE lists them\n",
+                console.unprinted());
   }
   if (!request.quiet) {
     const bool stdout_taken = request.outputs.uses_stdout() || request.events == "-";
-    fmt::print(stdout_taken ? stderr : stdout, "{}", summary_text(session->report()));
+    kerf::print(stdout_taken ? stderr : stdout, "{}", summary_text(session->report()));
   }
-  std::fflush(stdout);
+  flush_console();
   print(diagnostics, request.quiet);
   // What it came to may be looked at until the window is closed.
   if (view && !stop.stop_requested()) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "twin/app/console.h"
 #include "twin/live/live_json.h"
 
 namespace kerf {
@@ -63,14 +64,14 @@ LiveConsole::~LiveConsole() { wipe(); }
 
 void LiveConsole::wipe() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
+  kerf::print(stderr, "\r\033[K");
   drawn_ = false;
 }
 
 void LiveConsole::say(const std::string& text) {
   wipe();
-  fmt::print(stderr, "{}", text);
-  std::fflush(stderr);
+  kerf::print(stderr, "{}", text);
+  flush_console();
 }
 
 void LiveConsole::send(const std::string& line) {
@@ -117,8 +118,8 @@ void LiveConsole::on_status(const LiveStatus& status) {
     wipe();
     return;
   }
-  fmt::print(stderr, "\r\033[K{:.100}", status_line(status));
-  std::fflush(stderr);
+  kerf::print(stderr, "\r\033[K{:.100}", status_line(status));
+  flush_console();
   drawn_ = true;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 
 namespace kerf {
@@ -31,7 +32,7 @@ int machine_command(int argc, char** argv) {
   Diagnostic d;
   d.message = fmt::format("{}: {}", kName, std::strerror(errno));
   d.hint = "it is built and installed beside kerf";
-  fmt::print(stderr, "{}", to_string(d));
+  kerf::print(stderr, "{}", to_string(d));
   return kExitFailure;
 }
 

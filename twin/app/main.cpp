@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "twin/app/canon_command.h"
 #include "twin/app/cli_options.h"
 #include "twin/app/config_command.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/live_command.h"
 #include "twin/app/machine_command.h"
@@ -118,7 +121,7 @@ int refuse_argument(const std::string& argument, const CLI::App& app, bool comma
   if (!near.empty()) d.message += fmt::format("; did you mean {}?", near);
   const std::string name = app.get_parent() ? "kerf " + app.get_name() : "kerf";
   d.hint = fmt::format("{} --help lists what there is", name);
-  fmt::print(stderr, "{}", to_string(d));
+  kerf::print(stderr, "{}", to_string(d));
   return kExitUsage;
 }
 
@@ -140,7 +143,7 @@ int refuse_empty_values(const CLI::App& app) {
       if (!value.empty()) continue;
       Diagnostic d;
       d.message = fmt::format("{}: the value is empty", option->get_name());
-      fmt::print(stderr, "{}", to_string(d));
+      kerf::print(stderr, "{}", to_string(d));
       code = kExitUsage;
     }
   }
@@ -204,7 +207,7 @@ struct Commands {
   }
   void add_list(CLI::App& app, const char* name, const char* purpose, std::string text) {
     add(app, name, purpose, fmt::format("Example:\n  kerf {}\n", name), [text = std::move(text)] {
-      fmt::print("{}", text);
+      kerf::print(stdout, "{}", text);
       return static_cast<int>(kExitGood);
     });
   }
@@ -224,7 +227,7 @@ int refuse(const CLI::ParseError& error, const Commands& commands) {
       d.hint = fmt::format("kerf {} --help lists what there is", command->get_name());
     }
   }
-  fmt::print(stderr, "{}", to_string(d));
+  kerf::print(stderr, "{}", to_string(d));
   return kExitUsage;
 }
 
@@ -242,7 +245,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
-    return app.exit(success);  // --help, --version
+    std::ostringstream text;
+    const int code = app.exit(success, text, text);  // --help, --version
+    kerf::print(stdout, "{}", text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return refuse(error, commands);
   }
@@ -261,7 +267,7 @@ int run(int argc, char** argv) {
   for (const auto& [command, call] : commands.calls) {
     if (command->parsed()) return call();
   }
-  fmt::print(stderr, "{}", app.help());
+  kerf::print(stderr, "{}", app.help());
   return kExitUsage;
 }
 
@@ -274,10 +280,13 @@ int main(int argc, char** argv) {
   // The same for `ulimit -f`.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  int code = kerf::kExitFailure;
   try {
-    return kerf::run(argc, argv);
+    code = kerf::run(argc, argv);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "kerf: error: out of memory\n");
-    return kerf::kExitFailure;
+    kerf::print(stderr, "kerf: error: out of memory\n");
+  } catch (const std::exception& failure) {
+    kerf::print(stderr, "kerf: error: {}\n", failure.what());
   }
+  return kerf::end_console(code);
 }

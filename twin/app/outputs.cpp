@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -80,7 +82,24 @@ Done write_picture(const std::string& path, const StockModel& stock, const std::
 
 }  // namespace
 
+void check_picture_name(const char* option, const std::string& path, Diagnostics& diagnostics) {
+  constexpr std::array kOthers{".jpg",  ".jpeg", ".gif", ".bmp", ".tif",
+                               ".tiff", ".webp", ".svg", ".pdf"};
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(kOthers.begin(), kOthers.end(), ending) == kOthers.end()) return;
+  Diagnostic d;
+  d.message = fmt::format(
+      "{} {}: pictures are written as PNG; a name that ends with {} says "
+      "something else",
+      option, path, ending);
+  d.hint =
+      fmt::format("{} {}", option, std::filesystem::path(path).replace_extension(".png").string());
+  diagnostics.push_back(std::move(d));
+}
+
 void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
+  check_picture_name("--png", paths.png, diagnostics);
   const auto all = named(paths);
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

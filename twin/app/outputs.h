@@ -27,7 +27,10 @@ struct OutputPaths {
   }
 };
 
-/// Faults of the arguments themselves: two outputs to one place.
+/// A picture's name that says another format than PNG.
+void check_picture_name(const char* option, const std::string& path, Diagnostics& diagnostics);
+
+/// Faults of the arguments themselves: two outputs to one place, a picture's name.
 void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics);
 
 /// Faults of the file system that can be seen before a minute of cutting: folder missing or not

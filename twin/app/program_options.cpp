@@ -110,6 +110,8 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
   }
   options.max_silent_s =
       reader.number("--max-seconds", a.max_seconds, kMaxSeconds, options.max_silent_s);
+  options.max_cpu_s =
+      reader.number("--max-cpu-seconds", a.max_cpu_seconds, kMaxSeconds, options.max_cpu_s);
   return request;
 }
 

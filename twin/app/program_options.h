@@ -23,6 +23,7 @@ struct ProgramArguments {
   std::string work_offset;  ///< X,Y,Z
   std::string max_commands;
   std::string max_seconds;
+  std::string max_cpu_seconds;
   /// Of a configuration (machine.kinematics, machine.joints), as read.
   std::optional<KinematicsRequest> kinematics;
   std::string joints;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "twin/app/console.h"
+
 namespace kerf {
 namespace {
 
@@ -48,13 +50,13 @@ void ProgressBar::draw_until_stopped(const std::function<double()>& progress) {
     wait = kRedraw;
     const double elapsed =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print(stderr, "\r\033[K{}", progress_line(progress(), elapsed));
-    std::fflush(stderr);
+    kerf::print(stderr, "\r\033[K{}", progress_line(progress(), elapsed));
+    flush_console();
     drawn = true;
   }
   if (drawn) {
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    kerf::print(stderr, "\r\033[K");
+    flush_console();
   }
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/progress_bar.h"
 #include "twin/app/stop_signals.h"
@@ -22,7 +23,7 @@ namespace {
 constexpr std::size_t kFindingsShown = 20;
 
 void print(const Diagnostics& diagnostics) {
-  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+  for (const Diagnostic& d : diagnostics) kerf::print(stderr, "{}", to_string(d));
 }
 
 void print_findings(const Report& report, bool quiet) {
@@ -30,11 +31,11 @@ void print_findings(const Report& report, bool quiet) {
   for (const Finding& finding : report.findings.kept()) {
     if (quiet && finding.severity != Severity::kError) continue;
     if (++shown > kFindingsShown) break;
-    fmt::print(stderr, "{}", to_string(diagnostic_of(finding, report.program.files)));
+    kerf::print(stderr, "{}", to_string(diagnostic_of(finding, report.program.files)));
   }
   if (shown > kFindingsShown) {
-    fmt::print(stderr, "kerf: note: {} findings in all; --json FILE lists the first {}\n",
-               report.findings.total(), FindingLog::kMaxKept);
+    kerf::print(stderr, "kerf: note: {} findings in all; --json FILE lists the first {}\n",
+                report.findings.total(), FindingLog::kMaxKept);
   }
 }
 
@@ -93,11 +94,11 @@ int run_command(const RunArguments& arguments) {
                   diagnostics);
     print_findings(session->report(), request.quiet);
     if (!request.quiet) {
-      fmt::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
-                 summary_text(session->report()));
+      kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
+                  summary_text(session->report()));
     }
   }
-  std::fflush(stdout);
+  flush_console();
   print(diagnostics);
   const int code = exit_code(outcome, session->report(), diagnostics);
   if (!request.view || stop.stop_requested() || !session->stock()) return code;

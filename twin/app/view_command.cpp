@@ -15,6 +15,7 @@
 
 #include "base/atomic_file.h"
 #include "machine_io/logs/log_source.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/live_command.h"
 #include "twin/app/option_reader.h"
@@ -34,7 +35,7 @@ constexpr std::chrono::milliseconds kPatience{200};
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) fmt::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
   }
 }
 
@@ -92,9 +93,9 @@ std::unique_ptr<LoadedProgram> load(const ViewRequest& request, Kind kind,
 void print_faults(const LoadedProgram& loaded) {
   for (const Finding& remark : loaded.player.remarks) {
     if (remark.severity != Severity::kError) continue;
-    fmt::print(stderr, "{}", to_string(diagnostic_of(remark, loaded.player.track->files())));
+    kerf::print(stderr, "{}", to_string(diagnostic_of(remark, loaded.player.track->files())));
   }
-  if (!loaded.partial_reason.empty()) fmt::print(stderr, "kerf: {}\n", loaded.partial_reason);
+  if (!loaded.partial_reason.empty()) kerf::print(stderr, "kerf: {}\n", loaded.partial_reason);
 }
 
 int exit_code(Outcome outcome, const Diagnostics& diagnostics) {

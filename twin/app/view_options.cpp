@@ -12,6 +12,7 @@
 #include "twin/app/draw_option.h"
 #include "twin/app/live_options.h"
 #include "twin/app/option_reader.h"
+#include "twin/app/outputs.h"
 #include "viewer/window/settings.h"
 
 namespace kerf {
@@ -50,6 +51,7 @@ std::optional<glm::ivec2> size_from(const std::string& text) {
 
 void read_pictures(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
   request.png = a.png;
+  check_picture_name("--png", a.png, reader.diagnostics());
   request.film.folder = a.frames;
   request.film.fps = reader.number("--fps", a.fps, kFps, request.film.fps);
   if (!a.fps.empty() && a.frames.empty()) reader.fault("--fps", "there is no --frames DIR");

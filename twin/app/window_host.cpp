@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "twin/app/console.h"
+
 namespace kerf {
 namespace {
 
@@ -31,7 +33,7 @@ Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailb
   Result<Window> window = Window::create(options, &mailbox, &commands);
   if (!window) return Error{window.error()};
   for (const Diagnostic& fault : window->settings_faults()) {
-    fmt::print(stderr, "{}", to_string(fault));
+    kerf::print(stderr, "{}", to_string(fault));
   }
   int code = 0;
   std::atomic<bool> done{false};

@@ -16,6 +16,8 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kLongestExcerpt_bytes = 200;
+/// Keys of a group, or elements of a list: each is compared with those before it.
+constexpr std::size_t kMostChildren = 2000;
 
 /// Thrown out of the library's parser where going on makes no sense; the fault is reported.
 struct Abandoned {};
@@ -108,6 +110,10 @@ class TreeBuilder final : public YAML::EventHandler {
 
   ConfigNode* attach(Open& parent, const YAML::Mark& mark, NodeKind kind,
                      const std::string& value) {
+    if (parent.node->children.size() + duplicates_.size() >= kMostChildren) {
+      abandon(mark,
+              fmt::format("more than {} keys or elements in one group or list", kMostChildren));
+    }
     auto node = std::make_unique<ConfigNode>();
     node->kind = kind;
     node->scalar = value;

@@ -53,6 +53,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       log_(log),
       options_(std::move(options)),
       frame_(options_.frame),
+      bounds_(options_.frame, options_.timeline),
       book_(tools, row_of(stock).can_cut),
       stage_(stock, book_, log, options_.timeline),
       follower_(options_.follow),
@@ -391,6 +392,11 @@ ProgramPlace LiveCutter::place_on_path(const Sighting& now, const FollowedPoint&
 
 void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
   ++facts_.samples;
+  lost |= std::exchange(lost_wild_, false);
+  if (drop_wild(sample, t_s)) {
+    lost_wild_ = lost;
+    return;
+  }
   sample_ = sample;
   t_s_ = t_s;
   if (run_.is_long(t_s_)) cut_run();

@@ -23,6 +23,7 @@
 #include "twin/live/look_ahead_guard.h"
 #include "twin/live/path_follower.h"
 #include "twin/live/program_ahead.h"
+#include "twin/live/reading_bounds.h"
 #include "twin/live/seen_strokes.h"
 #include "twin/tools.h"
 #include "twin/turret.h"
@@ -171,6 +172,7 @@ class LiveCutter {
   bool near_stock(const Vec3& from_mm, const Vec3& to_mm, double radius_mm) const;
   void note_length(int tool, double t_s);
   void note_limits(const Vec3& machine_mm, double t_s);
+  bool drop_wild(const AxisSample& sample, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
   void note_turn(const Sighting& now);
   void note_unseen_axes(const Sighting& now);
@@ -196,6 +198,9 @@ class LiveCutter {
   FindingLog& log_;
   LiveCutOptions options_;
   LiveFrame frame_;
+  ReadingBounds bounds_;
+  bool wild_told_ = false;
+  bool lost_wild_ = false;  ///< samples were lost before one that was dropped
   ToolBook book_;
   CutStage stage_;
   PathFollower follower_;

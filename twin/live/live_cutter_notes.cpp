@@ -82,6 +82,25 @@ void LiveCutter::note_limits(const Vec3& machine_mm, double t_s) {
   log_.add(std::move(finding));
 }
 
+/// A reading that no machine has moves nothing. True: it is one.
+bool LiveCutter::drop_wild(const AxisSample& sample, double t_s) {
+  const std::optional<std::string> fault = bounds_.fault_of(sample);
+  if (!fault) return false;
+  ++facts_.wild;
+  t_s_ = t_s;
+  if (wild_told_) return true;
+  wild_told_ = true;
+  Finding finding;
+  finding.id = FindingId::kSourceGap;
+  finding.severity = Severity::kWarning;
+  finding.time_s = t_s;
+  finding.text = *fault +
+                 " (a damaged number? another type or unit than the device's?); such readings are "
+                 "dropped and counted";
+  log_.add(std::move(finding));
+  return true;
+}
+
 void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump) {
   const double way_mm = way_between(before, now);
   const double elapsed_s = now.t_s - before.t_s;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/helper_thread.h"
 #include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
 #include "twin/program_front.h"
@@ -461,11 +462,15 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   live_.source = source_->describe();
   std::stop_source end;
   const std::stop_callback forward(stop, [&] { end.request_stop(); });
-  std::thread reader([&] { read_source(end.get_token()); });
-  std::thread measure;
+  const auto release = [&] {
+    end.request_stop();
+    queue_.close();
+  };
+  HelperThread reader([&] { read_source(end.get_token()); }, release);
+  std::optional<HelperThread> measure;
   const bool measured = options_.program && options_.program->path != "-" &&
                         (!options_.log() || std::isfinite(options_.speed));
-  if (measured) measure = std::thread([&] { measure_program(end.get_token()); });
+  if (measured) measure.emplace([&] { measure_program(end.get_token()); }, release);
   const double cpu_before = thread_cpu_s();
   std::vector<ArrivedSample> batch;
   double look_at_s = 0;
@@ -492,7 +497,7 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   end.request_stop();
   queue_.close();
   reader.join();
-  if (measure.joinable()) measure.join();
+  if (measure) measure->join();
   // What was recorded is cut. (A log was read ahead: what lies beyond the time asked for is not.)
   while (!options_.log() && queue_.pop_all(batch, std::chrono::milliseconds(0))) {
     for (const ArrivedSample& arrived : batch) take(arrived);
@@ -559,7 +564,7 @@ Outcome LiveSession::outcome(bool stopped) const {
   // A machine that could not be asked while it stood has lost nothing; a damaged log has.
   const bool damaged = options_.log() && live.status.errors > 0;
   const bool lossy = live.dropped > 0 || live.status.lost > 0 || damaged || live.facts.gaps > 0 ||
-                     live.facts.incomplete > 0 || gone;
+                     live.facts.incomplete > 0 || live.facts.wild > 0 || gone;
   return lossy ? Outcome::kLossy : Outcome::kFinished;
 }
 

@@ -34,7 +34,11 @@ ProgramAhead::ProgramAhead(std::unique_ptr<Program> program, const TimelineOptio
       materials_.put(program_->materials());
       return queue_.push(switched_.follow(motions, program_->workpiece_frame()));
     };
-    summary_ = program_->run(sink, stop_.get_token(), diagnostics_);
+    try {
+      summary_ = program_->run(sink, stop_.get_token(), diagnostics_);
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
     queue_.close();
   });
 }
@@ -72,6 +76,7 @@ bool ProgramAhead::plan_one_batch(bool wait) {
     return true;
   }
   if (queue_.drained()) {
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     timeline_.finish();
     complete_ = true;
   }

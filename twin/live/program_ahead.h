@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -92,6 +93,7 @@ class ProgramAhead : private StepSink {
   std::stop_source stop_;
   ProgramSummary summary_;
   Diagnostics diagnostics_;
+  std::exception_ptr failure_;  ///< of the thread; after queue_ is closed
   std::thread thread_;
 };
 

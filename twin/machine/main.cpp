@@ -6,10 +6,12 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "machine_io/simulator/register_layout.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/stop_signals.h"
 #include "twin/machine/machine_loop.h"
@@ -78,19 +80,19 @@ void add_options(CLI::App& app, MachineArguments& a) {
 }
 
 void say(const std::string& line) {
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
+  kerf::print(stdout, "{}\n", line);
+  flush_console();
 }
 
 void print(const Diagnostics& diagnostics) {
-  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+  for (const Diagnostic& d : diagnostics) kerf::print(stderr, "{}", to_string(d));
 }
 
 int refuse(const std::string& message) {
   Diagnostic d;
   d.message = message;
   d.hint = "kerf-machine --help lists what there is";
-  fmt::print(stderr, "{}", to_string(d));
+  kerf::print(stderr, "{}", to_string(d));
   return kExitUsage;
 }
 
@@ -111,7 +113,7 @@ int refuse_argument(const CLI::App& app, const std::string& argument) {
 int fail(const std::string& message) {
   Diagnostic d;
   d.message = message;
-  fmt::print(stderr, "{}", to_string(d));
+  kerf::print(stderr, "{}", to_string(d));
   return kExitFailure;
 }
 
@@ -197,7 +199,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
-    return app.exit(success);  // --help, --version
+    std::ostringstream text;
+    const int code = app.exit(success, text, text);  // --help, --version
+    kerf::print(stdout, "{}", text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return refuse(error.what());
   }
@@ -223,5 +228,5 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A reader of the output that has seen enough must not stop the machine.
   std::signal(SIGPIPE, SIG_IGN);
-  return kerf::run(argc, argv);
+  return kerf::end_console(kerf::run(argc, argv));
 }

@@ -12,6 +12,8 @@ namespace {
 
 /// Shorter ones say nothing reliable of where they point.
 constexpr double kShortestDirection = 1e-6;
+/// A machine has some ten.
+constexpr std::size_t kMostLinks = 200;
 
 std::optional<std::size_t> place_of(const std::vector<ChainLink>& links, std::string_view name) {
   const auto at =
@@ -59,6 +61,11 @@ std::vector<ChainFault> KinematicChain::faults_of(const std::vector<ChainLink>& 
                                                   std::string_view tool) {
   using Field = ChainFault::Field;
   std::vector<ChainFault> faults;
+  if (links.size() > kMostLinks) {
+    return {
+        {kMostLinks, Field::kName,
+         fmt::format("{} links; {} are the most that a machine has", links.size(), kMostLinks)}};
+  }
   for (std::size_t i = 0; i < links.size(); ++i) {
     const ChainLink& link = links[i];
     if (link.name.empty()) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "stock/move_reach.h"
 #include "stock/zmap/mmap/column_editor.h"
 
 namespace kerf {
@@ -339,7 +340,9 @@ void ColumnSweeper::cut_headed(const HeadedTool& tool, std::span<const CutMove> 
       scratch.sweep(layer, tools, ops, thread, threads);
     };
     for (std::size_t i = 0; i < moves.size(); ++i) {
-      for (const CutMove& part : head_sweeps(moves[i], tool.radius_mm)) {
+      const std::optional<CutMove> near = within_reach(moves[i], heights_.grid.bounds_mm());
+      if (!near) continue;
+      for (const CutMove& part : head_sweeps(*near, tool.radius_mm)) {
         sweep(scratch.upper, tool.upper, turned_over(part));
         sweep(scratch.lower, tool.lower, part);
         Bounds bounds;

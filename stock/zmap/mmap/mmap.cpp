@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "stock/move_reach.h"
 #include "stock/state_bytes.h"
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
@@ -115,9 +116,11 @@ std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& 
                                            double tolerance_mm) const {
   assert(move.is_vertical());
   // What goes on upward without end touches the topmost material first.
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
   const HeadedTool tool = headed_tool(cutter);
-  return earlier_contact(move, find_first_contact(impl_->grid(), tool.rays, move, tolerance_mm),
-                         find_head_contact(impl_->grid(), impl_->gaps, tool, move, tolerance_mm));
+  return earlier_contact(*near, find_first_contact(impl_->grid(), tool.rays, *near, tolerance_mm),
+                         find_head_contact(impl_->grid(), impl_->gaps, tool, *near, tolerance_mm));
 }
 
 std::unique_ptr<StockModel> MMap::snapshot() const {
