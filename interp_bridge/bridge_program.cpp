@@ -21,6 +21,7 @@
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/record_reader.h"
 #include "interp_bridge/rs274_messages.h"
+#include "interp_bridge/tool_table.h"
 
 namespace kerf {
 namespace {
@@ -349,6 +350,9 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.program_lines = survey_.lines;
   summary.interpreter = "bridge";
   const Contents contents(options_.path);
+  ToolDiameters diameters;
+  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(), diameters_,
+                                diameters);
   auto session = start_session();
   if (!session) {
     Diagnostic diagnostic;
@@ -362,7 +366,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
     return sink(motions);
   };
   MotionFeederOptions feeding;
-  feeding.diameters_known = !options_.tool_table_path.empty();
+  feeding.has_tool_table = !options_.tool_table_path.empty();
+  feeding.diameters = std::move(diameters);
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
   feeding.lengths.length_mm = known_lengths(tools_);

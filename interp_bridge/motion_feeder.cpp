@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
+#include "interp_bridge/source_text.h"
 #include "interp_bridge/wild_motion.h"
 
 namespace kerf {
@@ -19,11 +21,25 @@ constexpr std::size_t kMaxForeignBytes = 500;
 constexpr std::size_t kMaxUnknownNames = 100;
 constexpr std::size_t kExcerptBytes = 200;
 constexpr int kMaxMaterialRemarks = 20;
+/// Blocks with G41 or G42 that are read again for their D.
+constexpr int kMaxCompensationLooks = 100;
 
 std::string values_of(const TorchMaterial& material) {
   return fmt::format("{:g} mm/min, kerf {:g} mm, cut at {:g} mm, pierced at {:g} mm for {:g} s",
                      material.feed_mm_per_min, material.kerf_width_mm, material.cut_height_mm,
                      material.pierce_height_mm, material.pierce_delay_s);
+}
+
+/// Whose diameter the block of a G41 or G42 names by D; none: that of the tool in the spindle. -1: it
+/// says the diameter itself (G41.1), or the number is computed.
+std::optional<int> compensating_tool(std::string block) {
+  block.resize(std::min(block.size(), block.find_first_of(";(")));
+  if (block.find("41.1") != block.npos || block.find("42.1") != block.npos) return -1;
+  const std::size_t word = block.find_first_of("dD");
+  if (word == block.npos) return std::nullopt;
+  const std::size_t digits = block.find_first_not_of(" \t", word + 1);
+  if (digits == block.npos || block[digits] < '0' || block[digits] > '9') return -1;
+  return std::atoi(block.c_str() + digits);
 }
 
 }  // namespace
@@ -181,16 +197,38 @@ void MotionFeeder::remark_on_text(const CanonicalCommand& command) {
     return;
   }
   constexpr std::string_view kCompensation = "interpreter: cutter radius compensation on";
-  if (options_.diameters_known || compensation_reported_ ||
-      command.name != CanonicalName::kComment ||
-      command.text.substr(0, kCompensation.size()) != kCompensation) {
+  if (command.name == CanonicalName::kComment &&
+      command.text.substr(0, kCompensation.size()) == kCompensation) {
+    remark_on_compensation();
+  }
+}
+
+/// Once a tool: its radius is not known, or not the table's.
+void MotionFeeder::remark_on_compensation() {
+  const ToolDiameters& diameters = options_.diameters;
+  if (diameters.all || ++compensation_looks_ > kMaxCompensationLooks) return;
+  const std::string file = source_.file < summary_.files.size() ? summary_.files[source_.file] : "";
+  const std::optional<int> named = compensating_tool(line_of_file(file, source_.line));
+  const int tool = named.value_or(fold_.tool());
+  // D0 is no radius on purpose.
+  if (tool < 0 || named == 0 || compensation_reported_.count(tool) != 0) return;
+  const auto doubt = diameters.doubts.find(tool);
+  if (doubt == diameters.doubts.end() && diameters.known.count(tool) != 0) return;
+  compensation_reported_.insert(tool);
+  if (doubt != diameters.doubts.end()) {
+    diagnostics_.push_back(at_source(Severity::kWarning, doubt->second));
     return;
   }
-  compensation_reported_ = true;
   Diagnostic unknown = at_source(
       Severity::kWarning,
-      "cutter radius compensation (G41, G42) without a tool table: the radius counts as 0");
-  unknown.hint = "give the machine's table with --tool-table";
+      fmt::format("cutter radius compensation (G41, G42) {}: the radius counts as 0",
+                  options_.has_tool_table
+                      ? fmt::format("with tool {}, whose diameter the tool table does not have",
+                                    tool)
+                      : "without a tool table"));
+  unknown.hint = fmt::format("give the machine's table with --tool-table{}",
+                             tool > 0 ? fmt::format(", or the tool with --tool {}=SHAPE", tool)
+                                      : std::string());
   diagnostics_.push_back(std::move(unknown));
 }
 

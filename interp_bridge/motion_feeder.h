@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,15 +16,17 @@
 #include "interp_bridge/motion_fold.h"
 #include "interp_bridge/program.h"
 #include "interp_bridge/repeat_watch.h"
+#include "interp_bridge/tool_table.h"
 #include "interp_bridge/torch_setup.h"
 
 namespace kerf {
 
 struct MotionFeederOptions {
   std::vector<int> tool_by_index;  ///< of MotionFold
-  bool diameters_known =
-      true;  ///< false: warn of cutter compensation, whose radius the interpreter took as 0
   ToolLengthSetup lengths;         ///< of MotionFold::set_lengths
+  bool has_tool_table = true;  ///< the user's
+  /// Of others the interpreter takes the radius of cutter compensation as 0, which is warned of.
+  ToolDiameters diameters;
   std::uint64_t max_commands = 0;  ///< 0: any number
   /// Of MotionFold::stand_at.
   std::optional<std::array<double, 9>> start;
@@ -90,6 +93,7 @@ class MotionFeeder {
   void refuse_wild(std::size_t first);
   void remark(FoldRemark remark);
   void remark_on_text(const CanonicalCommand& command);
+  void remark_on_compensation();
   void edit_material(const CanonicalCommand& comment);
   void material_changed();
   void follow_modes();
@@ -112,7 +116,8 @@ class MotionFeeder {
   std::uint64_t commands_ = 0;
   std::uint64_t splines_lost_ = 0;
   bool plane_reported_ = false;
-  bool compensation_reported_ = false;
+  std::set<int> compensation_reported_;  ///< tools
+  int compensation_looks_ = 0;
   bool too_many_ = false;
   bool sink_done_ = false;
   BlockReader blocks_;

@@ -77,6 +77,7 @@ class NcProgram final : public Program {
   std::vector<ToolTableRow> tools_;
   TextSurvey survey_;
   TorchRun torch_;
+  ToolDiameters told_diameters_;
   std::atomic<double> progress_{0};
 };
 
@@ -145,7 +146,8 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.numbered_source = true;
   reading.unnumbered = session.prepared.unnumbered;
   reading.feeder.tool_by_index = session.table.tool_by_index;
-  reading.feeder.diameters_known = !options_.tool_table_path.empty();
+  reading.feeder.has_tool_table = !options_.tool_table_path.empty();
+  reading.feeder.diameters = told_diameters_;
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
   reading.feeder.lengths.length_mm = known_lengths(tools_);
   reading.feeder.lengths.calls = ToolLengthSetup::Calls::kCoded;
@@ -273,6 +275,8 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.files = {options_.path};
   summary.program_lines = survey_.lines;
   summary.interpreter = "text";
+  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(), diameters_,
+                                told_diameters_);
   auto session = start_session();
   if (!session) {
     report(Severity::kError, {}, session.error(), {}, summary, diagnostics);

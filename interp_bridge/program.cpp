@@ -188,12 +188,14 @@ std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostic
   torch.text = std::move(survey.torch);
   if (!read_torch(options, torch, diagnostics)) return nullptr;
   const bool is_qtplasmac = torch.qtplasmac;
+  TurningWords turning = survey.turning;
   const std::vector<TorchMaterial> materials = torch.materials;
   auto program = open_kind(options, from_stdin, std::move(tools), std::move(survey),
                            std::move(torch), diagnostics);
   if (program == nullptr) return nullptr;
   program->is_qtplasmac_ = is_qtplasmac;
   program->materials_ = materials;
+  program->turning_ = std::move(turning);
   return program;
 }
 

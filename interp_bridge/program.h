@@ -13,12 +13,14 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "base/result.h"
 #include "interp_bridge/motion.h"
 #include "interp_bridge/torch_materials.h"
+#include "interp_bridge/turning_text.h"
 
 namespace kerf {
 
@@ -94,6 +96,34 @@ struct SignalOptions {
   std::vector<int> user_codes;
 };
 
+/// The diameter of a tool whose shape is known elsewhere than from the tool table.
+struct KnownDiameter {
+  double mm = 0;
+  bool by_argument = false;  ///< --tool; else a comment of the program
+};
+
+/// What comes of a probing move, G38.2 to G38.5.
+struct ProbeAnswer {
+  enum class Kind : std::uint8_t {
+    kUnknown,  ///< nobody can tell: it runs to its end, and what depends on it is not known
+    kMet,      ///< it stops where the probe meets the workpiece, or leaves it
+    kMissed,   ///< it runs to its end, and neither meets nor leaves it
+    kRefused,  ///< the machine would not begin it: the probe is tripped already, or already clear
+  };
+  Kind kind = Kind::kUnknown;
+  double share = 1;  ///< kMet: the part of the move that is run, 0 to 1
+  std::string why;   ///< kUnknown: what is not known, as the end of a sentence
+};
+
+/// A probing move as programmed, and whether it is to lose contact (G38.4, G38.5).
+struct ProbeQuestion {
+  Motion motion;
+  bool away = false;
+};
+/// Called where the program probes, from the thread that runs it, when the sink has all motions
+/// before. The program waits for the answer.
+using ProbeAnswerer = std::function<ProbeAnswer(const ProbeQuestion&)>;
+
 /// What to interpret and how.
 struct ProgramOptions {
   /// NC file, canonical listing (.canon, or its text under any name), or "-": canonical text on
@@ -102,6 +132,9 @@ struct ProgramOptions {
   /// LinuxCNC tool.tbl, in mm or in the unit of `machine`. Empty: the tools that the program names,
   /// diameter 0. Faults of single rows are reported by read_tool_table, not here.
   std::string tool_table_path;
+  /// What says that the machine is a lathe ("mill.ini:3: [DISPLAY]LATHE = 1"); empty: nothing does.
+  std::string lathe;
+  bool as_mill = false;      ///< what is for a lathe is milled all the same
   bool block_delete = true;  ///< skip lines that begin with '/', as LinuxCNC does when it starts
   InterpreterChoice interpreter = InterpreterChoice::kAuto;
   InterpreterSetup machine;
@@ -128,6 +161,7 @@ struct ProgramNote {
   SourceRef source;  ///< the first time
   std::string text;
   std::uint64_t count = 0;
+  bool is_sentence = false;  ///< `text` says all; else it names what is passed over
 };
 
 /// Counts and facts known once the stream has ended (or was stopped).
@@ -185,6 +219,23 @@ class Program {
   const std::vector<TorchMaterial>& materials() const { return materials_; }
   /// It is read as a QtPlasmaC machine would.
   bool is_qtplasmac() const { return is_qtplasmac_; }
+  /// Of the text; of listings empty.
+  const TurningWords& turning_words() const { return turning_; }
+
+  /// Before run(): diameters by tool number, for cutter compensation (G41, G42). A tool whose row of
+  /// the table has a diameter keeps that, as on the machine.
+  void give_diameters(std::map<int, KnownDiameter> diameters) {
+    diameters_ = std::move(diameters);
+  }
+  /// Before run(): probing moves are asked about (kerf-interp only; rs274 and listings cannot ask,
+  /// theirs are not known). Null: of none is anything known. From one of which nothing is known on
+  /// the motions come with start_known = false, and a note says so, until the program sets the work
+  /// offset of the axes that it has probed by plain numbers (G10 L2). Without this call a probing
+  /// move runs to its end, and finds it there if it must find something (G38.2, G38.4).
+  void follow_probes(ProbeAnswerer answerer) {
+    follows_probes_ = true;
+    answer_probe_ = std::move(answerer);
+  }
 
   /// Share of the source already interpreted, for a progress bar; any thread.
   virtual double progress() const = 0;  ///< 0..1, or < 0 if not known
@@ -193,9 +244,13 @@ class Program {
   std::vector<std::string> files_;
   WorkpieceFrame frame_;
   std::vector<TorchMaterial> materials_{TorchMaterial{}};
+  std::map<int, KnownDiameter> diameters_;
+  bool follows_probes_ = false;
+  ProbeAnswerer answer_probe_;
 
  private:
   bool is_qtplasmac_ = false;
+  TurningWords turning_;
 };
 
 /// A row of a LinuxCNC tool table, lengths in mm (the caller says what unit the table is in; mm by
@@ -204,6 +259,7 @@ struct ToolTableRow {
   int tool = 0;
   int pocket = 0;
   double diameter_mm = 0;
+  bool has_diameter = false;  ///< there is a D, be it D0
   Vec3 offset_mm{0};
   double front_angle_deg = 0;  ///< I, lathe
   double back_angle_deg = 0;   ///< J, lathe

@@ -141,11 +141,14 @@ void TextSurveyor::add(std::string_view text) {
   if (survey_.blank) survey_.blank = is_blank_text(text);
   if (nonblank_lines_ < kLinesToTellListing && !survey_.listing) decide_kind(text);
   add_lines(text);
-  if (!survey_.listing) torch_.add(text);
+  if (survey_.listing) return;
+  torch_.add(text);
+  turning_.add(text);
 }
 
 TextSurvey TextSurveyor::take() {
   survey_.torch = torch_.take();
+  survey_.turning = turning_.take();
   return std::move(survey_);
 }
 

@@ -9,6 +9,7 @@
 
 #include "interp_bridge/program.h"
 #include "interp_bridge/torch_setup.h"
+#include "interp_bridge/turning_text.h"
 
 namespace kerf {
 
@@ -51,6 +52,7 @@ struct TextSurvey {
   bool listing = false;      ///< canonical text rather than NC code
   std::vector<ProgramComment> comments;
   TorchText torch;  ///< NC code only
+  TurningWords turning;  ///< likewise
 };
 
 /// Surveys text that comes in pieces of whole lines. Comments: (..) and ;.. of NC code,
@@ -73,6 +75,7 @@ class TextSurveyor {
 
   TextSurvey survey_;
   TorchTextScanner torch_;
+  TurningScanner turning_;
   std::size_t nonblank_lines_ = 0;
   std::size_t later_comments_ = 0;
 };

@@ -175,6 +175,7 @@ bool RowParser::store(char letter, double value, std::size_t column, ToolTableRo
       return true;
     case 'D':
       row.diameter_mm = value;
+      row.has_diameter = true;
       return true;
     case 'X':
       row.offset_mm.x = value;
@@ -252,6 +253,52 @@ Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagn
   for (ToolTableRow& row : rows) {
     row.diameter_mm *= unit_mm;
     row.offset_mm *= unit_mm;
+  }
+  return rows;
+}
+
+std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, bool has_table,
+                                               const std::map<int, KnownDiameter>& known,
+                                               ToolDiameters& told) {
+  constexpr double kEqual_mm = 0.01;
+  told.all = false;
+  std::map<int, KnownDiameter> missing = known;
+  int pocket = 0;
+  for (ToolTableRow& row : rows) {
+    pocket = std::max(pocket, row.pocket);
+    if (row.has_diameter) told.known.insert(row.tool);
+    const auto shape = missing.find(row.tool);
+    if (shape == missing.end()) continue;
+    const KnownDiameter diameter = shape->second;
+    missing.erase(shape);
+    if (!row.has_diameter) {
+      row.diameter_mm = diameter.mm;
+      told.known.insert(row.tool);
+      told.doubts[row.tool] = fmt::format(
+          "the tool table has no diameter for tool {}, and the machine would compensate by none; "
+          "{:g} mm is taken, as its shape has it",
+          row.tool, diameter.mm);
+    } else if (diameter.by_argument && row.diameter_mm != 0 &&
+               std::abs(std::abs(row.diameter_mm) - diameter.mm) > kEqual_mm) {
+      told.doubts[row.tool] = fmt::format(
+          "cutter radius compensation goes by the tool table: {:g} mm for tool {}; --tool has "
+          "{:g} mm",
+          row.diameter_mm, row.tool, diameter.mm);
+    }
+  }
+  for (const auto& [tool, diameter] : missing) {
+    if (rows.size() >= kMaxRows) break;
+    ToolTableRow& row = rows.emplace_back();
+    row.tool = tool;
+    row.pocket = ++pocket;
+    row.diameter_mm = diameter.mm;
+    row.has_diameter = true;
+    told.known.insert(tool);
+    if (!has_table) continue;
+    told.doubts[tool] = fmt::format(
+        "the tool table does not have tool {}; for compensation {:g} mm is taken, as its shape has "
+        "it",
+        tool, diameter.mm);
   }
   return rows;
 }

@@ -2,6 +2,8 @@
 // is given.
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,19 @@ namespace kerf {
 /// The rows of a table's text; `path` names it in the diagnostics. Any bytes are accepted.
 std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::string& path,
                                            Diagnostics& diagnostics);
+
+/// For which tools the interpreter knows how far G41 and G42 go off the path.
+struct ToolDiameters {
+  bool all = true;      ///< nothing is to be said of any
+  std::set<int> known;  ///< a D of the table, be it 0, or of a shape
+  std::map<int, std::string> doubts;  ///< what a user of compensation must be told of a tool
+};
+
+/// The rows with the diameters of `known` where they have none of their own, and a row for each
+/// other tool of it. Fills in `told`.
+std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, bool has_table,
+                                               const std::map<int, KnownDiameter>& known,
+                                               ToolDiameters& told);
 
 /// A tool table for rs274, and how its answers name the rows.
 struct InterpreterToolTable {

@@ -309,6 +309,21 @@ void start_at_home(IniReader& reader, const MachineKinematics& machine, double u
   std::copy(axes.begin(), axes.end(), interpreter.start.begin());
 }
 
+/// What LinuxCNC's screens take for yes.
+std::string read_lathe(IniReader& reader) {
+  for (const char* key : {"LATHE", "BACK_TOOL_LATHE"}) {
+    const IniEntry* const entry = reader.file().find("DISPLAY", key);
+    if (entry == nullptr) continue;
+    std::string value = entry->value.substr(0, entry->value.find_first_of(" \t#;"));
+    for (char& c : value) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (value != "1" && value != "true" && value != "yes" && value != "on") continue;
+    const std::string file =
+        entry->file < reader.file().files().size() ? reader.file().files()[entry->file] : "";
+    return fmt::format("{}:{}: [DISPLAY]{} = {}", file, entry->line, key, entry->value);
+  }
+  return {};
+}
+
 void find_turning_joints(IniReader& reader, MachineSetup& setup) {
   const MachineKinematics* const machine = setup.timeline.kinematics.get();
   const std::string& letters = machine != nullptr ? machine->joint_letters : setup.joint_letters;
@@ -421,6 +436,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   interpreter.random_toolchanger = reader.number("EMCIO", "RANDOM_TOOLCHANGER").value_or(0) != 0;
   interpreter.tool_lengths = true;
   read_tool_change_position(reader, unit_mm, interpreter.tool_change_position);
+  setup.lathe = read_lathe(reader);
   const IniEntry* const kins = ini->find("KINS", "KINEMATICS");
   if (kins != nullptr || (kinematics != nullptr && kinematics->is_given())) {
     read_kinematics(reader, kins, unit_mm, kinematics, setup);

@@ -18,6 +18,7 @@ struct MachineSetup {
   std::string tool_table_path;  ///< [EMCIO]TOOL_TABLE; empty: none
   TimelineOptions timeline;     ///< limits, their origin, servo and I/O periods
   std::string kinematics;       ///< [KINS]KINEMATICS: "trivkins"
+  std::string lathe;            ///< ProgramOptions::lathe, by [DISPLAY]LATHE
   std::string joint_letters;    ///< axis that each joint moves: "XYZ", "XYYZ"
   /// Bit n: joint n counts degrees. [JOINT_n]TYPE says so, else the machine's kinematics (of a
   /// robot joints turn that have the letters of X, Y and Z), else the letter.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "twin/motion_geometry.h"
+#include "twin/turning.h"
 
 namespace kerf {
 namespace {
@@ -26,8 +27,10 @@ void add_what_is_not_simulated(const ProgramSummary& summary, FindingLog& log) {
     finding.id = FindingId::kNotSimulated;
     finding.severity = Severity::kNote;
     finding.source = note.source;
-    finding.text = fmt::format("{} is passed over{}", note.text,
-                               note.count > 1 ? fmt::format(" ({} times)", note.count) : "");
+    finding.text = note.is_sentence
+                       ? note.text
+                       : fmt::format("{} is passed over{}", note.text,
+                                     note.count > 1 ? fmt::format(" ({} times)", note.count) : "");
     log.add(std::move(finding));
   }
 }
@@ -96,6 +99,11 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
                            diagnostics)) {
     return std::nullopt;
   }
+  if (refuse_turning(options.program, front.program.get(), front.tools.table, diagnostics)) {
+    outcome = Outcome::kUsageError;
+    return std::nullopt;
+  }
+  front.program->give_diameters(known_diameters(front.tools));
   front.choice = choose_stock(options.stock, stock_needs(front.tools));
   if (!choose_known_blank(options, front, diagnostics, outcome)) return std::nullopt;
   outcome = Outcome::kFinished;

@@ -30,6 +30,23 @@ bool disagree(const ToolHint& a, const ToolHint& b) {
 
 }  // namespace
 
+std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
+  std::map<int, KnownDiameter> known;
+  for (const ToolShapeArgument& argument : sources.arguments) {
+    known[argument.tool] = {2 * argument.cutter.radius_mm(), true};
+  }
+  // Whole shapes before those of which only the diameter is known, as ToolBook has it.
+  for (const bool guessed : {false, true}) {
+    for (const ToolHint& hint : sources.hints) {
+      if (hint.tool <= 0 || hint.shape_guessed != guessed || known.count(hint.tool) != 0) continue;
+      if (const Result<Cutter> cutter = parse_shape(hint.shape)) {
+        known[hint.tool] = {2 * cutter->radius_mm(), false};
+      }
+    }
+  }
+  return known;
+}
+
 ToolBook::ToolBook(ToolSources sources, CutterCheck can_cut)
     : sources_(std::move(sources)), can_cut_(can_cut) {
   std::stable_sort(sources_.hints.begin(), sources_.hints.end(),

@@ -22,6 +22,9 @@ struct ToolSources {
   std::vector<ToolTableRow> table;           ///< rows of the tool table
 };
 
+/// The diameters of the tools that arguments and comments describe by number: of the widest place.
+std::map<int, KnownDiameter> known_diameters(const ToolSources& sources);
+
 /// A tool of the program and where its shape comes from.
 struct ResolvedTool {
   int number = 0;

@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.listing_name = "fuzz";
   options.numbered_source = (data[0] & 1) != 0;
   options.unnumbered = {{0, 3}, {0, 9}};
-  options.feeder.diameters_known = (data[0] & 2) != 0;
+  options.feeder.diameters.all = (data[0] & 2) != 0;
   kerf::CanonicalReader reader(options, sink, summary, diagnostics);
   const std::size_t step = 1 + data[0] / 4u;
   for (std::size_t at = 1; at < size; at += step) {

@@ -45,6 +45,11 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
       ->type_name("S");
 }
 
+void add_as_mill(CLI::App& command, ProgramArguments& a) {
+  command.add_flag("--as-mill", a.as_mill,
+                   "mill what is for a lathe (kerf has no model for turning, and refuses it else)");
+}
+
 void add_work_options(CLI::App& command, WorkArguments& a) {
   command
       .add_option("--tool", a.tools, "shape of tool N, repeatable; `kerf tools` lists the shapes")
@@ -194,6 +199,7 @@ void add_run_options(CLI::App& run, RunArguments& a) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   add_program_options(run, a.source);
+  add_as_mill(run, a.source);
   add_work_options(run, a.work);
   add_torch_options(run, a.torch);
   add_turret_option(run, a.torch);
@@ -221,6 +227,7 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   add_program_options(view, a.run.source);
+  add_as_mill(view, a.run.source);
   add_work_options(view, a.run.work);
   add_torch_options(view, a.run.torch);
   add_turret_option(view, a.run.torch);
@@ -275,6 +282,7 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
                   "found, and what it would hit is told beforehand")
       ->type_name("FILE");
   add_program_options(live, a.source);
+  add_as_mill(live, a.source);
   add_work_options(live, a.work);
   add_torch_options(live, a.torch);
   add_turret_option(live, a.torch);

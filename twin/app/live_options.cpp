@@ -172,6 +172,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   complete(source.ini, machine.ini);
   complete(source.tool_table, machine.tool_table);
   request.ini = source.ini;
+  source.as_mill = source.as_mill || machine.as_mill;
   source.kinematics = machine.kinematics;
   source.joints = machine.joints;
   source.configured_offset = machine.work_offset;
@@ -192,6 +193,9 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.parameter_path = program.program.machine.parameter_path;
   options.tool_table_path = program.program.tool_table_path;
   options.inch_table = request.inch_machine;
+  options.lathe = machine.drawn.kind == MachineKind::kLathe ? "machine.model is lathe"
+                                                            : program.program.lathe;
+  options.as_mill = source.as_mill;
   if (!source.program.empty()) options.program = program.program;
   options.cutting.program_lengths =
       options.program.has_value() && program.program.machine.tool_lengths;

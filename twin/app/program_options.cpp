@@ -62,6 +62,7 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
   ProgramRequest request;
   ProgramOptions& options = request.program;
   options.path = a.program;
+  options.as_mill = a.as_mill;
   if (!a.ini.empty()) {
     MachineSetup setup;
     KinematicsRequest kinematics = a.kinematics.value_or(KinematicsRequest{});
@@ -69,6 +70,7 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
     read_machine_setup(a.ini, setup, reader.diagnostics(), &kinematics);
     options.machine = std::move(setup.interpreter);
     options.tool_table_path = std::move(setup.tool_table_path);
+    options.lathe = std::move(setup.lathe);
     request.timeline = std::move(setup.timeline);
     request.joint_letters = std::move(setup.joint_letters);
     request.turning_joints = setup.turning_joints;

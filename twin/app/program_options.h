@@ -24,6 +24,7 @@ struct ProgramArguments {
   std::string max_commands;
   std::string max_seconds;
   std::string max_cpu_seconds;
+  bool as_mill = false;
   /// Of a configuration (machine.kinematics, machine.joints), as read.
   std::optional<KinematicsRequest> kinematics;
   std::string joints;

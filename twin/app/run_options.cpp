@@ -35,6 +35,7 @@ void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
   ProgramArguments& source = arguments.source;
   if (source.ini.empty()) source.ini = config.machine.ini.value_or("");
   if (source.tool_table.empty()) source.tool_table = config.machine.tool_table.value_or("");
+  source.as_mill = source.as_mill || config.machine.as_mill;
   source.kinematics = config.machine.kinematics;
   source.joints = config.machine.joints;
   source.configured_offset = config.machine.work_offset;
@@ -65,6 +66,9 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   ProgramRequest source = understand_program(a.source, reader);
   source.program.torch = std::move(torch);
   session.turret = understand_turret(a.torch, reader, source.program);
+  if (config && config->machine.drawn.kind == MachineKind::kLathe) {
+    source.program.lathe = "machine.model is lathe";
+  }
   session.program = std::move(source.program);
   session.timeline = std::move(source.timeline);
   WorkRequest work = understand_work(a.work, reader);

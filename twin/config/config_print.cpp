@@ -125,6 +125,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.open("machine");
   printer.text("ini", machine.ini);
   printer.text("tool_table", machine.tool_table);
+  printer.put("as_mill", machine.as_mill ? "yes" : "no");
   if (!machine.joints.empty()) printer.text("joints", machine.joints);
   if (machine.kinematics) print_kinematics(printer, *machine.kinematics);
   if (machine.work_offset) {

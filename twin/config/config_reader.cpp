@@ -46,6 +46,7 @@ void read_joints(const GroupReader& machine, std::string& joints) {
 void read_machine(const GroupReader& machine, ConfigMachine& out) {
   out.ini = machine.path("ini");
   out.tool_table = machine.path("tool_table");
+  machine.number("as_mill", out.as_mill);
   read_joints(machine, out.joints);
   read_work_offset(machine.group("work_offset"), out);
   constexpr std::array kFrom{ToolLengthFrom::kAuto, ToolLengthFrom::kSource,

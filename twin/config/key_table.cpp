@@ -25,6 +25,10 @@ constexpr std::array kKeys{
             .type = T::kFile,
             .purpose = "LinuxCNC INI: limits, kinematics, tool table, parameter file"},
     KeySpec{.path = "machine.tool_table", .type = T::kFile, .purpose = "LinuxCNC tool table"},
+    KeySpec{.path = "machine.as_mill",
+            .type = T::kYesNo,
+            .fallback = "no",
+            .purpose = "what is for a lathe is milled all the same (--as-mill)"},
     KeySpec{.path = "machine.joints",
             .type = T::kText,
             .purpose =

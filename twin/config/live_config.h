@@ -30,6 +30,7 @@ namespace kerf {
 struct ConfigMachine {
   std::optional<std::string> ini;         ///< path
   std::optional<std::string> tool_table;  ///< path
+  bool as_mill = false;                   ///< ProgramOptions::as_mill
   /// The axis that each joint moves, of XYZABCUVW: "XYZ", "XYYZ". Empty: not given.
   std::string joints;
   /// Bits of the joints that count degrees, by the INI or the kinematics; not given: those that

@@ -12,6 +12,7 @@
 #include "twin/motion_geometry.h"
 #include "twin/program_front.h"
 #include "twin/sheet_report.h"
+#include "twin/turning.h"
 
 namespace kerf {
 namespace {
@@ -102,6 +103,13 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   if (!gather_tool_sources(options_.tools, program_.get(), program, tools, diagnostics)) {
     return false;
   }
+  program.lathe = options_.lathe;
+  program.as_mill = options_.as_mill;
+  if (refuse_turning(program, program_.get(), tools.table, diagnostics)) {
+    outcome = Outcome::kUsageError;
+    return false;
+  }
+  if (program_) program_->give_diameters(known_diameters(tools));
   for (const ToolTableRow& row : tools.table) {
     options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
   }
@@ -128,9 +136,11 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   if (!stock_) return false;
   if (options_.program && options_.program->path != "-") {
-    options_.cutting.reopen = [again = *options_.program] {
+    options_.cutting.reopen = [again = *options_.program, diameters = known_diameters(tools)] {
       Diagnostics ignored;
-      return Program::open(again, ignored);
+      std::unique_ptr<Program> reopened = Program::open(again, ignored);
+      if (reopened) reopened->give_diameters(diameters);
+      return reopened;
     };
   }
   if (as_sheet(*stock_)) choose_trade(diagnostics);
@@ -176,6 +186,7 @@ bool LiveSession::survey_program(const ToolSources& tools, Survey& survey,
   if (!program_ || options_.program->path == "-" || !(survey.guesses || may_turn)) return true;
   const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
   if (!first_pass) return false;
+  first_pass->give_diameters(known_diameters(tools));
   TiltWatch tilt(timeline.kinematics);
   BlankSurvey blank(options_.margin_mm, tools);
   Diagnostics said;
@@ -295,6 +306,7 @@ void LiveSession::measure_program(std::stop_token stop) {
   Diagnostics ignored;
   const std::unique_ptr<Program> program = Program::open(*options_.program, ignored);
   if (!program) return;
+  program->give_diameters(known_diameters(tool_sources_));
   DurationSink sink;
   TimelineOptions timing = options_.cutting.timeline;
   timing.planner.with_path = false;

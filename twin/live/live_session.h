@@ -43,6 +43,8 @@ struct LiveOptions {
   /// Without a program: where the tool table is, and its unit.
   std::string tool_table_path;
   bool inch_table = false;
+  std::string lathe;     ///< ProgramOptions::lathe, with a program or without
+  bool as_mill = false;  ///< ProgramOptions::as_mill
   std::vector<ToolShapeArgument> tools;
   std::optional<Blank> blank;
   StockSettings stock;
