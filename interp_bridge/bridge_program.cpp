@@ -165,6 +165,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   if (machine.start != std::array<double, 9>{}) {
     out.insert(out.end(), {"--start", fmt::format("{}", fmt::join(machine.start, " "))});
   }
+  if (answer_probe_) out.insert(out.end(), {"--answers", std::to_string(kAnswerFd)});
   if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
   if (!machine.tool_change_position.empty()) {
     out.insert(out.end(),
@@ -190,6 +191,7 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
   child.executable = kerf_interp_;
   child.arguments = std::move(*given);
   child.home = home;
+  child.answers = answer_probe_ != nullptr;
   child.folder = options_.machine.working_folder.empty()
                      ? fs::absolute(options_.path).parent_path().string()
                      : options_.machine.working_folder;
@@ -378,6 +380,9 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.lengths.displaces = options_.machine.straight_axes;
   feeding.torch = torch_;
   feeding.signals = options_.signals;
+  feeding.follows_probes = follows_probes_;
+  feeding.answer_probe = answer_probe_;
+  feeding.no_answer = "there is no workpiece yet";
   feeding.materials = &materials_;
   const InterpreterSetup& machine = options_.machine;
   if (machine.start_known) feeding.start = machine.start;
@@ -386,6 +391,11 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);
+  if (answer_probe_) {
+    records.answer_by([&session](const records::Answer& answer) {
+      return session->process.answer(&answer, sizeof answer);
+    });
+  }
   ChildListener listener(session->process, records, feeder, options_);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
   const ChildEnding ending = listener.listen(stop, [&] {

@@ -5,6 +5,7 @@
 #include <linux/close_range.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -39,6 +40,17 @@ struct Pipe {
     write_end = ends[1];
     return true;
   }
+  /// A socket: a write to a child that has gone must not raise SIGPIPE in us.
+  bool open_socket() {
+    std::array<int, 2> ends{};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return false;
+    read_end = ends[0];
+    write_end = ends[1];
+    return true;
+  }
+  void close_read() {
+    if (read_end >= 0) ::close(std::exchange(read_end, -1));
+  }
   void close_write() {
     if (write_end >= 0) ::close(std::exchange(write_end, -1));
   }
@@ -70,7 +82,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 /// Between fork and exec: only calls that are safe there. Never returns.
 [[noreturn]] void become_child(const InterpreterProcessOptions& options, char* const* arguments,
                                char* const* environment, const Pipe& listing, const Pipe& out,
-                               const Pipe& err, const Pipe& failure, pid_t parent) {
+                               const Pipe& err, const Pipe& failure, const Pipe& answers,
+                               pid_t parent) {
   const auto fail = [&] {
     const int error = errno;
     const ssize_t written = write(failure.write_end, &error, sizeof error);
@@ -90,13 +103,15 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   const int child_stdout = options.listing_is_stdout ? listing.write_end : out.write_end;
   if (dup2(child_stdout, STDOUT_FILENO) < 0 || dup2(err.write_end, STDERR_FILENO) < 0) fail();
   if (dup2(listing.write_end, kListingFd) < 0) fail();
+  if (options.answers && dup2(answers.read_end, kAnswerFd) < 0) fail();
   if (chdir(options.folder.c_str()) != 0) fail();
   execve(options.executable.c_str(), arguments, environment);
   fail();
   _exit(127);
 }
 
-/// dup2 onto 3 would close a pipe that sits there already, or leave its close-on-exec flag set.
+/// dup2 onto 3 or 4 would close a pipe that sits there already, or leave its close-on-exec flag
+/// set.
 bool move_above(int& fd, int lowest) {
   if (fd > lowest) return true;
   const int moved = fcntl(fd, F_DUPFD_CLOEXEC, lowest + 1);
@@ -107,8 +122,8 @@ bool move_above(int& fd, int lowest) {
 
 bool open_pipes(std::initializer_list<Pipe*> pipes) {
   for (Pipe* pipe : pipes) {
-    if (!pipe->open() || !move_above(pipe->write_end, kListingFd) ||
-        !move_above(pipe->read_end, kListingFd)) {
+    if (!pipe->open() || !move_above(pipe->write_end, kAnswerFd) ||
+        !move_above(pipe->read_end, kAnswerFd)) {
       return false;
     }
   }
@@ -147,7 +162,12 @@ Result<InterpreterProcess> InterpreterProcess::start(const InterpreterProcessOpt
   Pipe out;
   Pipe err;
   Pipe failure;
+  Pipe answers;
   if (!open_pipes({&listing, &out, &err, &failure})) return error(errno);
+  if (options.answers && (!answers.open_socket() || !move_above(answers.read_end, kAnswerFd) ||
+                          !move_above(answers.write_end, kAnswerFd))) {
+    return error(errno);
+  }
   fcntl(listing.read_end, F_SETPIPE_SZ, kPipeBytes);  // smaller works too
 
   std::vector<std::string> arguments = {options.executable};
@@ -160,10 +180,11 @@ Result<InterpreterProcess> InterpreterProcess::start(const InterpreterProcessOpt
   if (pid < 0) return error(errno);
   if (pid == 0) {
     become_child(options, argument_pointers.data(), environment_pointers.data(), listing, out, err,
-                 failure, parent);
+                 failure, answers, parent);
   }
   setpgid(pid, pid);  // here too: whichever comes first, the group exists before it can be killed
   for (Pipe* pipe : {&listing, &out, &err, &failure}) pipe->close_write();
+  answers.close_read();
 
   InterpreterProcess process;
   process.pid_ = pid;
@@ -176,6 +197,7 @@ Result<InterpreterProcess> InterpreterProcess::start(const InterpreterProcessOpt
   process.listing_fd_ = std::exchange(listing.read_end, -1);
   process.stdout_fd_ = std::exchange(out.read_end, -1);
   process.stderr_fd_ = std::exchange(err.read_end, -1);
+  process.answer_fd_ = std::exchange(answers.write_end, -1);
   return process;
 }
 
@@ -188,15 +210,21 @@ InterpreterProcess& InterpreterProcess::operator=(InterpreterProcess&& other) no
   std::swap(listing_fd_, other.listing_fd_);
   std::swap(stdout_fd_, other.stdout_fd_);
   std::swap(stderr_fd_, other.stderr_fd_);
+  std::swap(answer_fd_, other.answer_fd_);
   return *this;
 }
 
 InterpreterProcess::~InterpreterProcess() {
   kill();
   wait();
-  for (const int fd : {listing_fd_, stdout_fd_, stderr_fd_}) {
+  for (const int fd : {listing_fd_, stdout_fd_, stderr_fd_, answer_fd_}) {
     if (fd >= 0) close(fd);
   }
+}
+
+bool InterpreterProcess::answer(const void* bytes, std::size_t count) {
+  const ssize_t sent = send(answer_fd_, bytes, count, MSG_NOSIGNAL | MSG_DONTWAIT);
+  return sent == static_cast<ssize_t>(count);
 }
 
 void InterpreterProcess::kill() {

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,11 +22,16 @@ struct InterpreterProcessOptions {
   std::string ini;
   /// The listing is the child's stdout.
   bool listing_is_stdout = false;
+  /// The child reads answers from kAnswerFd, which answer() writes.
+  bool answers = false;
 };
 
 /// Where the child finds the listing's pipe open: a file descriptor, and its name.
 inline constexpr int kListingFd = 3;
 inline constexpr const char* kListingPath = "/dev/fd/3";
+
+/// Where a child that asks finds its answers.
+inline constexpr int kAnswerFd = 4;
 
 /// The full path of `name` as PATH gives it (or `name` itself if it holds a slash); empty if it
 /// cannot be executed.
@@ -48,6 +54,9 @@ class InterpreterProcess {
   int stdout_fd() const { return stdout_fd_; }
   int stderr_fd() const { return stderr_fd_; }
 
+  /// False: the child does not take it any more. Does not wait: answers are few and short.
+  bool answer(const void* bytes, std::size_t count);
+
   struct Exit {
     int status = 0;  ///< exit status, if signal is 0
     int signal = 0;
@@ -68,6 +77,7 @@ class InterpreterProcess {
   int listing_fd_ = -1;
   int stdout_fd_ = -1;
   int stderr_fd_ = -1;
+  int answer_fd_ = -1;
 };
 
 }  // namespace kerf

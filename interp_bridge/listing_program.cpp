@@ -105,6 +105,8 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.feeder.frame = &frame_;
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
+  reading.feeder.follows_probes = follows_probes_;
+  reading.feeder.no_answer = "a listing was written without a workpiece";
   reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);

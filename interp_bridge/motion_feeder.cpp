@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr std::size_t kMaxForeignBytes = 500;
 constexpr std::size_t kMaxUnknownNames = 100;
 constexpr std::size_t kExcerptBytes = 200;
 constexpr int kMaxMaterialRemarks = 20;
+constexpr unsigned kAllAxes = 7;
 /// Blocks with G41 or G42 that are read again for their D.
 constexpr int kMaxCompensationLooks = 100;
 
@@ -30,8 +32,8 @@ std::string values_of(const TorchMaterial& material) {
                      material.pierce_height_mm, material.pierce_delay_s);
 }
 
-/// Whose diameter the block of a G41 or G42 names by D; none: that of the tool in the spindle. -1: it
-/// says the diameter itself (G41.1), or the number is computed.
+/// Whose diameter the block of a G41 or G42 names by D; none: that of the tool in the spindle. -1:
+/// it says the diameter itself (G41.1), or the number is computed.
 std::optional<int> compensating_tool(std::string block) {
   block.resize(std::min(block.size(), block.find_first_of(";(")));
   if (block.find("41.1") != block.npos || block.find("42.1") != block.npos) return -1;
@@ -107,7 +109,111 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   const std::size_t before = batch_.size();
   const FoldRemark said = fold_.fold(command, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
+  if (options_.follows_probes) follow_probing(command, before);
   return took(before);
+}
+
+bool MotionFeeder::ask_probe(const CanonicalCommand& command, bool away, SourceRef source,
+                             ProbeAnswer& answer) {
+  source_ = source;
+  ++commands_;  // a sign of life: the interpreter waits for us now
+  if (!hand_over()) return false;
+  if (options_.places.followed) follow_block(CanonicalName::kStraightProbe);
+  MotionFold ahead = fold_;
+  std::vector<Motion> motions;
+  ahead.fold(command, source, motions);
+  answer = {};
+  if (probe_.any()) {
+    answer.why = "where it begins hangs on an earlier probe";
+  } else if (motions.size() != 1 || !motions[0].start_known ||
+             (!options_.start && (moved_axes(motions[0]) & ~probe_.said) != 0)) {
+    answer.why = "where it begins is not known";
+  } else if (options_.answer_probe) {
+    answer = options_.answer_probe({motions[0], away});
+  }
+  probe_.answered = answer.kind != ProbeAnswer::Kind::kUnknown;
+  probe_.why = answer.why;
+  return true;
+}
+
+/// Bits of X, Y, Z. Of a first motion, which has no start: what is not at 0, where the interpreter
+/// takes all axes to stand.
+unsigned MotionFeeder::moved_axes(const Motion& m) const {
+  constexpr double kMoved_mm = 1e-6;
+  unsigned axes = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    const auto axis = static_cast<int>(i);
+    const double from_mm = m.start_known ? m.from_mm[axis] : 0;
+    if (std::abs(m.to_mm[axis] - from_mm) > kMoved_mm) axes |= 1U << i;
+  }
+  return axes;
+}
+
+/// Of a probing move that nobody could answer for: what comes behind it, from batch_[first] on, is
+/// not known.
+void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t first) {
+  for (std::size_t i = first; i < batch_.size(); ++i) probe_.said |= moved_axes(batch_[i]);
+  if (command.name == CanonicalName::kStraightProbe && !std::exchange(probe_.answered, false)) {
+    note_unknown_probe();
+    unsigned axes = 0;
+    for (std::size_t i = first; i < batch_.size(); ++i) {
+      axes |= batch_[i].start_known ? moved_axes(batch_[i]) : kAllAxes;
+    }
+    probe_.offsets |= axes;
+    probe_.places |= axes;
+    return;
+  }
+  if (!probe_.any()) return;
+  if (command.name == CanonicalName::kSetG5xOffset && set_by_numbers()) probe_.offsets = 0;
+  if (command.name == CanonicalName::kUseToolLengthOffset) probe_.tool_length = true;
+  for (std::size_t i = first; i < batch_.size(); ++i) {
+    Motion& m = batch_[i];
+    if (!m.start_known) continue;
+    if (probe_.offsets == 0) probe_.places &= ~moved_axes(m);
+    m.start_known = false;
+    m.from_mm = m.to_mm;
+    m.from_abc_deg = m.to_abc_deg;
+    m.from_uvw_mm = m.to_uvw_mm;
+    m.arc.sweep_rad = 0;
+  }
+}
+
+void MotionFeeder::note_unknown_probe() {
+  if (probe_.note != 0) {
+    ++summary_.notes[probe_.note - 1].count;
+    return;
+  }
+  const std::string& why = probe_.why.empty() ? options_.no_answer : probe_.why;
+  ProgramNote note;
+  note.source = source_;
+  note.is_sentence = true;
+  note.count = 1;
+  note.text = fmt::format(
+      "what the probe meets is not known ({}); from here on nothing is cut or checked, until G10 "
+      "L2 sets the work offset of the axes that it has probed by plain numbers",
+      why);
+  summary_.notes.push_back(std::move(note));
+  probe_.note = summary_.notes.size();
+}
+
+/// The block is a G10 L2 that names all axes whose offset may come from a probe, with numbers
+/// alone.
+bool MotionFeeder::set_by_numbers() const {
+  if (probe_.tool_length || source_.file >= summary_.files.size()) return false;
+  std::string block;
+  for (const char c : line_of_file(summary_.files[source_.file], source_.line)) {
+    if (c == ';' || c == '(') break;
+    if (c == '#' || c == '[') return false;
+    if (c != ' ' && c != '\t') block += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+  const std::size_t l = block.find("L2");
+  if (block.find("G10") == block.npos || l == block.npos) return false;
+  if (l + 2 < block.size() && (block[l + 2] == '0' || block[l + 2] == '1')) return false;
+  for (unsigned i = 0; i < 3; ++i) {
+    const bool needed = (probe_.offsets >> i & 1U) != 0;
+    if (needed && block.find("XYZ"[i]) == block.npos) return false;
+  }
+  return true;
 }
 
 bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {
@@ -117,6 +223,7 @@ bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {
   const std::size_t before = batch_.size();
   const FoldRemark said = fold_.fold_spline(spline, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
+  if (options_.follows_probes) follow_probing({}, before);
   return took(before);
 }
 
@@ -221,14 +328,14 @@ void MotionFeeder::remark_on_compensation() {
   }
   Diagnostic unknown = at_source(
       Severity::kWarning,
-      fmt::format("cutter radius compensation (G41, G42) {}: the radius counts as 0",
-                  options_.has_tool_table
-                      ? fmt::format("with tool {}, whose diameter the tool table does not have",
-                                    tool)
-                      : "without a tool table"));
-  unknown.hint = fmt::format("give the machine's table with --tool-table{}",
-                             tool > 0 ? fmt::format(", or the tool with --tool {}=SHAPE", tool)
-                                      : std::string());
+      fmt::format(
+          "cutter radius compensation (G41, G42) {}: the radius counts as 0",
+          options_.has_tool_table
+              ? fmt::format("with tool {}, whose diameter the tool table does not have", tool)
+              : "without a tool table"));
+  unknown.hint = fmt::format(
+      "give the machine's table with --tool-table{}",
+      tool > 0 ? fmt::format(", or the tool with --tool {}=SHAPE", tool) : std::string());
   diagnostics_.push_back(std::move(unknown));
 }
 

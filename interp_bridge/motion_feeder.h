@@ -44,6 +44,9 @@ struct MotionFeederOptions {
   /// What is known of a torch machine. Without `torch.qtplasmac` its materials do not count.
   TorchRun torch;
   SignalOptions signals;
+  bool follows_probes = false;  ///< Program::follow_probes()
+  ProbeAnswerer answer_probe;   ///< null: of no probing move is anything known
+  std::string no_answer;        ///< why, as ProbeAnswer::why
   /// What TorchState::material indexes: written before motions with a new index are handed over.
   /// May be null.
   std::vector<TorchMaterial>* materials = nullptr;
@@ -71,6 +74,9 @@ class MotionFeeder {
   bool take_material_change(double number, SourceRef source);
   /// M100 to M199: true if it is one that SignalOptions names, and a step has been made of it.
   bool take_user_code(double number, SourceRef source);
+  /// The program is about to probe: all motions before are handed over, then it is asked for. What
+  /// comes next is the STRAIGHT_PROBE as it is run. False as above.
+  bool ask_probe(const CanonicalCommand& command, bool away, SourceRef source, ProbeAnswer& answer);
   bool is_qtplasmac() const { return options_.torch.qtplasmac; }
 
   /// Hands over what has waited for longer than a screen would forgive (about 40 ms). False as
@@ -94,6 +100,10 @@ class MotionFeeder {
   void remark(FoldRemark remark);
   void remark_on_text(const CanonicalCommand& command);
   void remark_on_compensation();
+  void follow_probing(const CanonicalCommand& command, std::size_t first);
+  unsigned moved_axes(const Motion& m) const;
+  void note_unknown_probe();
+  bool set_by_numbers() const;
   void edit_material(const CanonicalCommand& comment);
   void material_changed();
   void follow_modes();
@@ -124,6 +134,19 @@ class MotionFeeder {
   RepeatWatch repeats_;
   bool refused_ = false;  ///< a wild number
   SourceRef source_;
+
+  /// What hangs on a probing move of which nothing is known.
+  struct UnknownProbe {
+    unsigned said = 0;      ///< bits of X Y Z: the program has moved them, so that they are known
+    bool answered = false;  ///< the STRAIGHT_PROBE to come is the answer's
+    std::string why;
+    std::size_t note = 0;      ///< index of the note, from 1; 0: there is none
+    unsigned offsets = 0;      ///< bits of X Y Z: their work offset may come from it
+    unsigned places = 0;       ///< .. where the tip stands is not known
+    bool tool_length = false;  ///< may come from it, and nothing brings it back
+    bool any() const { return offsets != 0 || places != 0 || tool_length; }
+  };
+  UnknownProbe probe_;
 };
 
 }  // namespace kerf

@@ -158,6 +158,8 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   const InterpreterSetup& machine = options_.machine;
   reading.feeder.places = {
       machine.unknown_places, {}, machine.work_offset.has_value(), machine.z_matters};
+  reading.feeder.follows_probes = follows_probes_;
+  reading.feeder.no_answer = "rs274 cannot ask where it meets the workpiece";
   return reading;
 }
 

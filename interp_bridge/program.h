@@ -222,11 +222,9 @@ class Program {
   /// Of the text; of listings empty.
   const TurningWords& turning_words() const { return turning_; }
 
-  /// Before run(): diameters by tool number, for cutter compensation (G41, G42). A tool whose row of
-  /// the table has a diameter keeps that, as on the machine.
-  void give_diameters(std::map<int, KnownDiameter> diameters) {
-    diameters_ = std::move(diameters);
-  }
+  /// Before run(): diameters by tool number, for cutter compensation (G41, G42). A tool whose row
+  /// of the table has a diameter keeps that, as on the machine.
+  void give_diameters(std::map<int, KnownDiameter> diameters) { diameters_ = std::move(diameters); }
   /// Before run(): probing moves are asked about (kerf-interp only; rs274 and listings cannot ask,
   /// theirs are not known). Null: of none is anything known. From one of which nothing is known on
   /// the motions come with start_known = false, and a note says so, until the program sets the work

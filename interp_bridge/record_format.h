@@ -35,11 +35,22 @@ enum Code : std::uint8_t {
   kError = 0x76,   ///< text of the interpreter, at `line`; ends the run
   kEcho = 0x77,    ///< text of the line that kError is about
   kCaller = 0x78,  ///< after kError, innermost first: `line` called; count 1: index of its file
+  kProbe = 0x7a,   ///< a probing move is about to begin: 0 to 3 for G38.2 to G38.5, then its end as
+                   ///< a STRAIGHT_PROBE has it, nine numbers. kerf-interp waits for an Answer
   kEnd = 0x79,     ///< the last record: 1 if the program ended by M2, M30 or %; blocks read
 };
 constexpr bool is_text(std::uint8_t code) {
   return code >= kText || code == kFile || code == kError || code == kEcho;
 }
+
+/// What kerf writes back for each kProbe.
+struct Answer {
+  enum Kind : std::uint32_t { kUnknown, kMet, kMissed, kAlready };
+  std::uint32_t kind = kUnknown;
+  std::uint32_t unused = 0;
+  double share = 1;  ///< kMet: the part of the move that is run
+};
+static_assert(sizeof(Answer) == 16);
 
 inline constexpr double kDigitalInput = 1;     ///< kind of input of kWait; 0 = analog
 inline constexpr std::size_t kMaxText = 4096;  ///< bytes; longer is cut off

@@ -178,6 +178,8 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       return true;
     case records::kRotary:
       return true;
+    case records::kProbe:
+      return take_probe(head, payload);
     case records::kAt:
       place_ = {file_, head.line};
       return true;
@@ -231,6 +233,42 @@ bool RecordReader::take_spline(const records::Head& head, const char* payload) {
   }
   const bool fits = order >= 0 && order <= static_cast<double>(points_.size());
   return feeder_.take_spline({fits ? static_cast<unsigned>(order) : 0U, points_}, place_);
+}
+
+bool RecordReader::take_probe(const records::Head& head, const char* payload) {
+  constexpr std::uint16_t kNumbers = 10;
+  if (!give_answer_ || head.count != kNumbers) return refuse("a question that nobody expects");
+  place_ = {file_, head.line};
+  const double kind = number_at(payload, 0);
+  command_.name = CanonicalName::kStraightProbe;
+  command_.text = {};
+  command_.argument_count = kNumbers - 1;
+  std::memcpy(command_.arguments.data(), payload + sizeof(double),
+              sizeof(double) * command_.argument_count);
+  if (!(kind >= 0 && kind <= 3) || !canonical_arguments_fit(command_)) {
+    return refuse("a question whose numbers do not fit");
+  }
+  ProbeAnswer answer;
+  if (!feeder_.ask_probe(command_, kind >= 2, place_, answer)) return false;
+  records::Answer out;
+  out.share = answer.share;
+  switch (answer.kind) {
+    case ProbeAnswer::Kind::kUnknown:
+      out.kind = records::Answer::kUnknown;
+      break;
+    case ProbeAnswer::Kind::kMet:
+      out.kind = records::Answer::kMet;
+      break;
+    case ProbeAnswer::Kind::kMissed:
+      out.kind = records::Answer::kMissed;
+      break;
+    case ProbeAnswer::Kind::kRefused:
+      out.kind = records::Answer::kAlready;
+      break;
+  }
+  // A child that does not take it has ended, which its pipes tell.
+  give_answer_(out);
+  return true;
 }
 
 /// Once for every text.

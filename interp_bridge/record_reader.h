@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "interp_bridge/canonical.h"
@@ -34,6 +35,11 @@ class RecordReader final : public ByteReader {
   /// as soon as a record names it, every file that SourceRef::file indexes (its list starts anew).
   RecordReader(MotionFeeder& feeder, FileNames file_names, ProgramSummary& summary);
 
+  /// What becomes of the answers to questions about probing moves; without it they are refused as
+  /// damage, since nobody has asked for them. False: they cannot be given.
+  using GiveAnswer = std::function<bool(const records::Answer&)>;
+  void answer_by(GiveAnswer give) { give_answer_ = std::move(give); }
+
   std::span<char> room() override;
   /// False: the feeder is done, the stream is damaged or at its end.
   bool received(std::size_t bytes) override;
@@ -51,11 +57,13 @@ class RecordReader final : public ByteReader {
   bool take_command(const records::Head& head, const char* payload);
   bool take_file(const records::Head& head, std::string_view name);
   bool take_spline(const records::Head& head, const char* payload);
+  bool take_probe(const records::Head& head, const char* payload);
   void note(const records::Head& head, std::string text);
   bool refuse(const char* what);
 
   MotionFeeder& feeder_;
   FileNames file_names_;
+  GiveAnswer give_answer_;
   ProgramSummary& summary_;
   std::vector<char> buffer_;
   std::size_t filled_ = 0;

@@ -51,7 +51,7 @@ struct TextSurvey {
   std::size_t nul_line = 0;  ///< first line with a NUL byte, 0 = none
   bool listing = false;      ///< canonical text rather than NC code
   std::vector<ProgramComment> comments;
-  TorchText torch;  ///< NC code only
+  TorchText torch;       ///< NC code only
   TurningWords turning;  ///< likewise
 };
 

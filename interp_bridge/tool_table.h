@@ -19,8 +19,8 @@ std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::str
 
 /// For which tools the interpreter knows how far G41 and G42 go off the path.
 struct ToolDiameters {
-  bool all = true;      ///< nothing is to be said of any
-  std::set<int> known;  ///< a D of the table, be it 0, or of a shape
+  bool all = true;                    ///< nothing is to be said of any
+  std::set<int> known;                ///< a D of the table, be it 0, or of a shape
   std::map<int, std::string> doubts;  ///< what a user of compensation must be told of a tool
 };
 

@@ -10,16 +10,16 @@ namespace kerf {
 /// The first lines that hold what their names say; 0: none does. Of the program's own file, without
 /// comments, and without the lines that begin with `/`.
 struct TurningWords {
-  std::uint32_t diameter_mode = 0;   ///< G7: X is a diameter
-  std::uint32_t threading = 0;       ///< G76 behind a G18, the only plane in which it runs
-  std::uint32_t contour_cycle = 0;   ///< G70, G71 or G72 with a Q (without: no cycle of LinuxCNC)
-  std::uint32_t surface_speed = 0;   ///< G96
-  std::uint32_t compensation = 0;    ///< G41, G42 behind a G18
-  std::uint32_t plane_xz = 0;        ///< G18
-  bool other_plane = false;          ///< G17, G19
-  bool moves_y = false;              ///< a word Y
-  bool whole = true;                 ///< the text was looked through to its end
-  std::set<int> tools;               ///< of T words that are numbers
+  std::uint32_t diameter_mode = 0;  ///< G7: X is a diameter
+  std::uint32_t threading = 0;      ///< G76 behind a G18, the only plane in which it runs
+  std::uint32_t contour_cycle = 0;  ///< G70, G71 or G72 with a Q (without: no cycle of LinuxCNC)
+  std::uint32_t surface_speed = 0;  ///< G96
+  std::uint32_t compensation = 0;   ///< G41, G42 behind a G18
+  std::uint32_t plane_xz = 0;       ///< G18
+  bool other_plane = false;         ///< G17, G19
+  bool moves_y = false;             ///< a word Y
+  bool whole = true;                ///< the text was looked through to its end
+  std::set<int> tools;              ///< of T words that are numbers
   /// Nothing but X and Z is written, in the plane of a lathe.
   bool only_xz() const { return plane_xz != 0 && !other_plane && !moves_y && whole; }
 };

@@ -29,6 +29,17 @@ bool BatchQueue::push(std::span<const Motion> motions) {
   return true;
 }
 
+bool BatchQueue::push_mark() {
+  {
+    std::unique_lock lock(mutex_);
+    not_full_.wait(lock, [&] { return closed_ || full_.size() < kMaxBatches; });
+    if (closed_) return false;
+    full_.emplace_back();
+  }
+  not_empty_.notify_one();
+  return true;
+}
+
 bool BatchQueue::pop(std::vector<Motion>& batch) {
   std::unique_lock lock(mutex_);
   not_empty_.wait(lock, [&] { return closed_ || !full_.empty(); });

@@ -22,6 +22,8 @@ class BatchQueue {
 
   /// Copies the motions in. False once the queue is closed: the producer should stop.
   bool push(std::span<const Motion> motions);
+  /// An empty batch behind those that wait: the producer has something to ask. False as push().
+  bool push_mark();
   /// Swaps the oldest batch into `batch`. Waits for one; false when the queue is closed and empty.
   bool pop(std::vector<Motion>& batch);
   /// The same without waiting: false if there is none just now.

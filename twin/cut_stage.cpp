@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "twin/motion_geometry.h"
+#include "twin/probe_contact.h"
 
 namespace kerf {
 namespace {
@@ -316,6 +317,23 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
 void CutStage::check_length(const Motion& m, const TimedStep& step, bool touches) {
   const double radius_mm = cutter() ? cutter()->radius_mm() : 0;
   lengths_.check(m, step, radius_mm, motion_moves_.is_upright(m), touches);
+}
+
+ProbeAnswer CutStage::answer(const ProbeQuestion& question) {
+  timeline_.finish();  // the machine stands before it probes: no time changes
+  flush_whole();
+  ProbeAnswer unknown;
+  const Motion& m = question.motion;
+  if (!mount_for(m)) {
+    unknown.why = fmt::format("nothing tells the shape of tool {}, the probe", m.tool);
+    return unknown;
+  }
+  divide(m);
+  if (divided_.size() != 1) {
+    unknown.why = "the tool or the workpiece turns";
+    return unknown;
+  }
+  return probe_contact(stock_, *mounted_->cutter, divided_[0], question.away);
 }
 
 /// What it is cut as.

@@ -78,6 +78,9 @@ class CutStage : private StepSink {
   void check_whole(const Motion& motion, const TimedStep& timed);
   /// All that was taken is in the workpiece.
   void complete() { flush_whole(); }
+  /// What comes of a probing move behind all that was taken, which is cut first; the tool in the
+  /// spindle is the probe. Not of sheets, and not together with take_timed().
+  ProbeAnswer answer(const ProbeQuestion& question);
   /// All that was taken has been given to the model, which may hold some back.
   void hand_over() { flush(); }
   /// What is taken from here on is cut, but not reported on ..

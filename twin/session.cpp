@@ -8,6 +8,7 @@
 #include "base/helper_thread.h"
 #include "interp_bridge/tool_lengths.h"
 #include "twin/batch_queue.h"
+#include "twin/probe_desk.h"
 
 namespace kerf {
 namespace {
@@ -75,6 +76,7 @@ bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcom
   BlankSurvey survey(options_.margin_mm, front_.tools);
   bool too_long = false;
   kept_whole_ = true;
+  front_.program->follow_probes(nullptr);
   const MotionSink sink = [&](std::span<const Motion> motions) {
     too_long = !gather(motions, survey);
     return !too_long;
@@ -134,6 +136,11 @@ bool Session::must_begin_again() const {
 Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   Program& program = second_pass_ ? *second_pass_ : *front_.program;
   BatchQueue queue;
+  ProbeDesk desk(queue);
+  // Torches and punches go by X and Y, whatever Z is probed.
+  if (!front_.is_sheet()) {
+    program.follow_probes([&desk](const ProbeQuestion& question) { return desk.ask(question); });
+  }
   ProgramSummary summary;
   std::stop_source end;
   const std::stop_callback forward(stop, [&] { end.request_stop(); });
@@ -155,8 +162,13 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   HelperThread reader(read, release);
   std::vector<Motion> batch;
   while (queue.pop(batch)) {
+    if (batch.empty()) {
+      desk.serve([&stage](const ProbeQuestion& question) { return stage.answer(question); });
+      continue;
+    }
     if (cut_batch(stage, batch)) continue;
     queue.close();
+    desk.close();
     break;
   }
   reader.join();

@@ -172,9 +172,39 @@ void RIGID_TAP(int line, double x, double y, double z, double) {
 }
 void STRAIGHT_PROBE(int line, double x, double y, double z, double a, double b, double c, double u,
                     double v, double w, unsigned char type) {
-  const Pose p = {x, y, z, a, b, c, u, v, w};
-  record_move(CanonicalName::kStraightProbe, line, p);
-  world().probe_to(p, (type & 1) == 0);  // G38.2, .3, .4, .5 are 0, 1, 2, 3
+  using kerf::records::Answer;
+  const Pose target = {x, y, z, a, b, c, u, v, w};
+  const bool must = (type & 1) == 0;  // G38.2, .3, .4, .5 are 0, 1, 2, 3
+  const bool away = (type & 2) != 0;
+  Answer answer;
+  if (recording().answers_fd >= 0) {
+    if (must && !away && world().stands_tripped()) {
+      answer.kind = Answer::kAlready;
+    } else {
+      answer = recording().ask_probe(line, target, type);
+    }
+  }
+  // What it begins with is what it looks for: only G38.3 and G38.5 take that, where they stand.
+  if (answer.kind == Answer::kAlready && must) {
+    recording().refusal = away ? "Probe is already clear when starting G38.4 or G38.5 move"
+                               : "Probe is already tripped when starting G38.2 or G38.3 move";
+    return;
+  }
+  Pose end = target;
+  if (answer.kind == Answer::kMet || answer.kind == Answer::kAlready) {
+    const double share = answer.kind == Answer::kMet ? answer.share : 0;
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      const double start = world().position(i);
+      end[i] = start + share * (target[i] - start);
+    }
+  }
+  record_move(CanonicalName::kStraightProbe, line, end);
+  world().probe_to(end, answer.kind == Answer::kUnknown ? must : answer.kind != Answer::kMissed);
+  world().note_tripped(answer.kind == Answer::kMet && !away);
+  if (answer.kind == Answer::kMissed && must) {
+    recording().refusal = away ? "G38.4 move finished without breaking contact."
+                               : "G38.2 move finished without making contact.";
+  }
 }
 void TURN_PROBE_ON() { record(CanonicalName::kTurnProbeOn); }
 void TURN_PROBE_OFF() { record(CanonicalName::kTurnProbeOff); }

@@ -103,6 +103,7 @@ class Runner {
       line_ = interpreter_.sequence_number();
       recording().begin_block(line_);
       if (!succeeded(interpreter_.execute())) return report(line_);
+      if (!recording().refusal.empty()) return report_refusal();
       if (status_ == INTERP_EXIT) return true;
       const int level = interpreter_.call_level();
       if (level != static_cast<int>(callers_.size())) {
@@ -133,11 +134,21 @@ class Runner {
     flushed_ = now;
   }
 
+  /// The machine stands: it does not do what the block asks for.
+  bool report_refusal() {
+    records_.text(records::kError, line_, recording().refusal);
+    return report_place(line_);
+  }
+
   bool report(int line) {
     std::array<char, 1024> text{};
     interpreter_.error_text(status_, text.data(), text.size() - 1);
     records_.text(records::kError, line, text.data());
-    text.fill(0);
+    return report_place(line);
+  }
+
+  bool report_place(int line) {
+    std::array<char, 1024> text{};
     interpreter_.line_text(text.data(), text.size() - 1);
     records_.text(records::kEcho, line, text.data());
     for (auto caller = callers_.rbegin(); caller != callers_.rend(); ++caller) {
@@ -162,6 +173,7 @@ int run(int argc, char** argv) {
   RecordWriter records(options.records_fd);
   InterpBase* const interpreter = makeInterp();
   recording().records = &records;
+  recording().answers_fd = options.answers_fd;
   recording().begin(options.program);
   recording().interpreter = interpreter;
   Runner runner(*interpreter, records);

@@ -29,6 +29,7 @@ constexpr const char* kUsage =
     "                          where the machine goes before M6, mm and degrees (it stays)\n"
     "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
     "  --startup BLOCK         run first\n"
+    "  --answers FD            asks where probing moves end, and reads the answers there\n"
     "  --torch FILE            QtPlasmaC's materials and the values of pins (README.md)\n";
 
 /// With the endings that the interpreter puts behind it (".new", ".bak") less than its 256.
@@ -129,7 +130,8 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     kToolChange,
     kStart,
     kStartup,
-    kTorch
+    kTorch,
+    kAnswers
   };
   static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
                                     {"units", required_argument, nullptr, kUnits},
@@ -142,6 +144,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"start", required_argument, nullptr, kStart},
                                     {"startup", required_argument, nullptr, kStartup},
                                     {"torch", required_argument, nullptr, kTorch},
+                                    {"answers", required_argument, nullptr, kAnswers},
                                     {nullptr, 0, nullptr, 0}};
   long number = 0;
   for (int code; (code = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -188,6 +191,10 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
       case kStartup:
         options.startup = value;
         break;
+      case kAnswers:
+        if (!read_number(optarg, 0, 1023, "--answers", number)) return false;
+        options.answers_fd = static_cast<int>(number);
+        break;
       case kTorch:
         if (!read_torch(value, world)) return false;
         break;
@@ -205,6 +212,10 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
   if (fcntl(options.records_fd, F_GETFD) < 0) {
     return fault("descriptor " + std::to_string(options.records_fd) +
                  " for the records is not open");
+  }
+  if (options.answers_fd >= 0 && fcntl(options.answers_fd, F_GETFD) < 0) {
+    return fault("descriptor " + std::to_string(options.answers_fd) +
+                 " for the answers is not open");
   }
   return true;
 }

@@ -10,6 +10,7 @@ namespace kerf::interp {
 struct Options {
   std::string program;
   std::string startup;  ///< a block that is run first
+  int answers_fd = -1;  ///< --answers
   int records_fd = 3;
 };
 

@@ -1,14 +1,35 @@
 #include "interp_bridge/kerf_interp/recording.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <climits>
+#include <cstdlib>
+#include <tuple>
 
 namespace kerf::interp {
 
 Recording& recording() {
   static Recording instance;
   return instance;
+}
+
+records::Answer Recording::ask_probe(int move_line, const Pose& target, unsigned char type) {
+  std::array<double, 1 + std::tuple_size_v<Pose>> question{static_cast<double>(type)};
+  std::copy(target.begin(), target.end(), question.begin() + 1);
+  records->numbers(records::kProbe, line_of_move(move_line), question.data(), question.size());
+  records->flush();
+  records::Answer answer;
+  auto* to = reinterpret_cast<char*>(&answer);
+  for (std::size_t got = 0; got < sizeof answer;) {
+    const ssize_t more = ::read(answers_fd, to + got, sizeof answer - got);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) std::_Exit(1);  // nobody is left to be told
+    got += static_cast<std::size_t>(more);
+  }
+  return answer;
 }
 
 void Recording::begin(const std::string& program) {

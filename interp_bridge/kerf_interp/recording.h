@@ -22,6 +22,13 @@ class Recording {
   /// Line of the block being executed; canonical calls that are not motions do not bring it.
   int line() const { return interpreter != nullptr ? interpreter->sequence_number() : 0; }
 
+  int answers_fd = -1;  ///< where kerf answers; -1: it is not asked
+  /// What the machine refuses to do, in its words; the run ends behind the block. Empty: nothing.
+  std::string refusal;
+  /// Asks where a probing move to `target` (program coordinates) ends: type 0 to 3 for G38.2 to
+  /// G38.5. All records so far go out; waits.
+  records::Answer ask_probe(int move_line, const Pose& target, unsigned char type);
+
   /// Names the program itself, which is file 0.
   void begin(const std::string& program);
   /// O-word calls and returns may lead to another file: the records that follow are of that one.

@@ -98,6 +98,9 @@ class World {
   /// A probing move goes to its end, and finds it there if the program insists on it (G38.2, G38.4;
   /// they would be errors otherwise) or finds nothing if it may (G38.3, G38.5).
   void probe_to(const Pose& program, bool found);
+  /// It has not moved since a probe met something here: G38.2 and G38.3 would find it tripped.
+  bool stands_tripped() const { return tripped_ && machine_ == probed_; }
+  void note_tripped(bool tripped) { tripped_ = tripped; }
   bool probe_found() const { return probe_found_; }
   double probed(std::size_t axis) const { return program_from_machine(probed_)[axis]; }
 
@@ -128,6 +131,7 @@ class World {
   double cos_ = 1, sin_ = 0;
   Pose machine_{}, probed_{};
   bool probe_found_ = false;
+  bool tripped_ = false;
   std::vector<CANON_TOOL_TABLE> rows_;
   int loaded_ = 0;
   int looked_up_ = -1;  ///< row of the last tool that was asked for by its number

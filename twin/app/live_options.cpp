@@ -193,8 +193,8 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   request.parameter_path = program.program.machine.parameter_path;
   options.tool_table_path = program.program.tool_table_path;
   options.inch_table = request.inch_machine;
-  options.lathe = machine.drawn.kind == MachineKind::kLathe ? "machine.model is lathe"
-                                                            : program.program.lathe;
+  options.lathe =
+      machine.drawn.kind == MachineKind::kLathe ? "machine.model is lathe" : program.program.lathe;
   options.as_mill = source.as_mill;
   if (!source.program.empty()) options.program = program.program;
   options.cutting.program_lengths =

@@ -128,6 +128,8 @@ class Loading {
                options.turret),
         tilt_(options.timeline.kinematics),
         switched_(options.timeline.kinematics) {
+    // Nothing is cut while it is read.
+    if (!front.is_sheet()) program_.follow_probes(nullptr);
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
   }
 
