@@ -6,14 +6,16 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
+#include <vector>
 
 #include "twin/motion_geometry.h"
 
 namespace kerf {
 namespace {
 
-/// Arcs are searched for the floor at steps of this many degrees; the depth found is short by less
-/// than radius * (1 - cos 1) = 0.00015 radius.
+/// Arcs are searched piece by piece; between the places where a coordinate turns round, which begin
+/// pieces of their own, it is monotone. The steps are for spirals and for arcs that climb on a
+/// slant, whose coordinates turn elsewhere by a little.
 constexpr double kArcStep_deg = 2.0;
 
 /// Part of [t0, t1] where a + t * (b - a) <= limit (below) or >= limit (not below).
@@ -28,6 +30,44 @@ bool clip(double a, double b, double limit, bool below, double& t0, double& t1) 
     t0 = std::max(t0, t);
   }
   return t0 <= t1;
+}
+
+/// Of an arc: places in 0..1 between which X, Y and Z are monotone, ascending.
+std::vector<double> monotone_pieces(const Motion& m) {
+  const double sweep = std::abs(m.arc.sweep_rad);
+  const int steps = static_cast<int>(std::ceil(sweep * 180 / kPi / kArcStep_deg)) + 1;
+  std::vector<double> knots;
+  for (int i = 0; i <= steps; ++i) knots.push_back(static_cast<double>(i) / steps);
+  const Vec3 arm = m.from_mm - m.arc.center_mm;
+  const Vec3 u = arm - glm::dot(arm, m.arc.axis) * m.arc.axis;
+  const Vec3 v = glm::cross(m.arc.axis, u) * (m.arc.sweep_rad < 0 ? -1.0 : 1.0);
+  for (int i = 0; i < 3 && sweep > 0; ++i) {
+    if (u[i] == 0 && v[i] == 0) continue;
+    double angle = std::atan2(v[i], u[i]);
+    angle -= kPi * std::floor(angle / kPi);
+    for (; angle < sweep; angle += kPi) knots.push_back(angle / sweep);
+  }
+  std::sort(knots.begin(), knots.end());
+  return knots;
+}
+
+/// The part of [t0, t1], in which coordinate `axis` is monotone, where it is <= limit (below) or >=
+/// limit (not below).
+bool clip_arc(const Motion& m, int axis, double limit, bool below, double& t0, double& t1) {
+  const auto inside = [&](double t) {
+    const double place = point_at(m, t)[axis];
+    return below ? place <= limit : place >= limit;
+  };
+  const bool first = inside(t0), last = inside(t1);
+  if (first && last) return true;
+  if (!first && !last) return false;
+  double in = first ? t0 : t1, out = first ? t1 : t0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (in + out);
+    (inside(middle) ? in : out) = middle;
+  }
+  (first ? t1 : t0) = in;
+  return true;
 }
 
 double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
@@ -150,16 +190,19 @@ std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
   }
   if (bounds_of(m).min.z >= limit) return std::nullopt;
   std::optional<Below> below;
-  const int steps =
-      static_cast<int>(std::ceil(std::abs(m.arc.sweep_rad) * 180 / kPi / kArcStep_deg)) + 1;
-  for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
-    const Vec3 p = point_at(m, t);
-    const bool inside = p.z < limit && p.x >= bounds_mm_.min.x && p.x <= bounds_mm_.max.x &&
-                        p.y >= bounds_mm_.min.y && p.y <= bounds_mm_.max.y;
+  const std::vector<double> knots = monotone_pieces(m);
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    double t0 = knots[i - 1], t1 = knots[i];
+    bool inside = clip_arc(m, 2, limit, true, t0, t1);
+    for (int axis = 0; inside && axis < 2; ++axis) {
+      inside = clip_arc(m, axis, bounds_mm_.min[axis], false, t0, t1) &&
+               clip_arc(m, axis, bounds_mm_.max[axis], true, t0, t1);
+    }
     if (!inside) continue;
-    if (!below) below = Below{p, t, 0};
-    below->depth_mm = std::max(below->depth_mm, bounds_mm_.min.z - p.z);
+    const Vec3 first = point_at(m, t0);
+    if (!below) below = Below{first, t0, 0};
+    const double lowest = std::min(first.z, point_at(m, t1).z);
+    below->depth_mm = std::max(below->depth_mm, bounds_mm_.min.z - lowest);
   }
   return below;
 }
