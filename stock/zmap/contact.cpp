@@ -10,76 +10,151 @@ namespace kerf {
 namespace {
 
 constexpr double kNone = ShrunkSweep::kNone;
+/// Tiles within so many cells of a cell count for it where they are hollow.
+constexpr int kAround = 2;
 
 struct Found {
   double t = kNone;
   double depth = 0;
 };
 
-void scan_tile(const TileGrid& grid, const ShrunkSweep& sweep, int i0, int i1, int j0, int j1,
-               double low_z, Found& found) {
-  const Box& box = grid.bounds_mm();
-  for (int j = j0; j < j1; ++j) {
-    const double y = box.min.y + (j + 0.5) * grid.cell_y_mm();
-    for (int i = i0; i < i1; ++i) {
-      const double material = static_cast<double>(grid.height(i, j));
-      if (material <= low_z || material <= box.min.z) continue;
-      const double x = box.min.x + (i + 0.5) * grid.cell_x_mm();
-      double t0, t1;
-      if (!sweep.over(x, y, t0, t1)) continue;
-      const double t_low = sweep.lowest(x, y, t0, t1);
-      const double lowest = std::min(sweep.height(x, y, t_low),
-                                     std::min(sweep.height(x, y, t0), sweep.height(x, y, t1)));
-      const double bottom = std::max(lowest, box.min.z);
-      if (material <= bottom) continue;
-      found.depth = std::max(found.depth, material - bottom + sweep.tolerance);
-      if (t0 < found.t) found.t = std::min(found.t, sweep.first_below(x, y, material, t0, t_low));
-    }
+/// A convex tool on a straight piece of a move.
+class Scan {
+ public:
+  Scan(const ContactField& field, const ConvexTool& tool, double tolerance, const Vec3& from,
+       const Vec3& step)
+      : grid_(field.grid), field_(field), sweep_{tool, tolerance, from, step} {
+    low_z_ = std::min(from.z, from.z + step.z) + surface_height(tool, 0) + tolerance;
   }
-}
+  Found run();
 
-bool tile_rises_above(const float* tile, double z) {
-  const float level = static_cast<float>(z);
+ private:
+  void scan_tile(int i0, int i1, int j0, int j1);
+  bool tile_rises_above(const float* tile) const;
+  bool is_near(double x, double y) const;
+  void check_middle(double x, double y, double material);
+  void check_area(int i, int j, double x, double y);
+  bool is_hollow_around(int i, int j) const;
+
+  const TileGrid& grid_;
+  const ContactField& field_;
+  ShrunkSweep sweep_;
+  double low_z_ = 0;  ///< nothing below is told
+  Found found_;
+};
+
+bool Scan::tile_rises_above(const float* tile) const {
+  const float level = static_cast<float>(low_z_);
   bool above = false;
   for (int i = 0; i < kTileFloats; ++i) above |= tile[i] > level;
   return above;
 }
 
-Found scan(const TileGrid& grid, const ShrunkSweep& sweep) {
-  Found found;
-  const Box& box = grid.bounds_mm();
-  const Vec3 to = sweep.from + sweep.step;
-  const double low_z =
-      std::min(sweep.from.z, to.z) + surface_height(sweep.tool, 0) + sweep.tolerance;
-  if (low_z >= box.max.z || sweep.reach() <= 0) return found;
+void Scan::check_middle(double x, double y, double material) {
+  double t0, t1;
+  if (sweep_.reach() <= 0 || !sweep_.over(x, y, t0, t1)) return;
+  const double t_low = sweep_.lowest(x, y, t0, t1);
+  const double lowest = std::min(sweep_.height(x, y, t_low),
+                                 std::min(sweep_.height(x, y, t0), sweep_.height(x, y, t1)));
+  const double bottom = std::max(lowest, grid_.bounds_mm().min.z);
+  if (material <= bottom) return;
+  found_.depth = std::max(found_.depth, material - bottom + sweep_.tolerance);
+  if (t0 < found_.t) found_.t = std::min(found_.t, sweep_.first_below(x, y, material, t0, t_low));
+}
+
+/// Some point of the cell about (x, y) may be within the tool's radius of its way.
+bool Scan::is_near(double x, double y) const {
+  const double length2 = sweep_.step.x * sweep_.step.x + sweep_.step.y * sweep_.step.y;
+  const double px = x - sweep_.from.x, py = y - sweep_.from.y;
+  const double along =
+      length2 > 0 ? std::clamp((px * sweep_.step.x + py * sweep_.step.y) / length2, 0.0, 1.0) : 0.0;
+  const double dx = px - along * sweep_.step.x, dy = py - along * sweep_.step.y;
+  const double reach = sweep_.tool.radius +
+                       0.5 * (grid_.cell_x_mm() + grid_.cell_y_mm());  // above the half diagonal
+  return dx * dx + dy * dy <= reach * reach;
+}
+
+/// With gaps below the heights the bound of TipTraces does not hold.
+bool Scan::is_hollow_around(int i, int j) const {
+  if (!field_.is_hollow) return false;
+  for (const int y : {std::max(0, j - kAround), std::min(grid_.ny() - 1, j + kAround)}) {
+    for (const int x : {std::max(0, i - kAround), std::min(grid_.nx() - 1, i + kAround)}) {
+      if (field_.is_hollow(static_cast<std::size_t>(y / kTileCells * grid_.tiles_x()) +
+                           static_cast<std::size_t>(x / kTileCells)))
+        return true;
+    }
+  }
+  return false;
+}
+
+void Scan::check_area(int i, int j, double x, double y) {
+  if (!is_near(x, y)) return;
+  const double material = field_.traces.lower_bound_mm(grid_, i, j, sweep_.tolerance);
+  if (material <= low_z_ || material <= grid_.bounds_mm().min.z + sweep_.tolerance) return;
+  if (is_hollow_around(i, j)) return;
+  // What is no deeper than the tolerance in the sides of the blank is not told.
+  const double half_x = 0.5 * grid_.cell_x_mm(), half_y = 0.5 * grid_.cell_y_mm();
+  const double in = std::min({sweep_.tolerance, half_x, half_y});
+  const AreaSweep area{sweep_.tool,
+                       sweep_.from,
+                       sweep_.step,
+                       x - half_x + (i == 0 ? in : 0),
+                       y - half_y + (j == 0 ? in : 0),
+                       x + half_x - (i + 1 == grid_.nx() ? in : 0),
+                       y + half_y - (j + 1 == grid_.ny() ? in : 0)};
+  double t0, t1;
+  if (!area.over(t0, t1)) return;
+  const double t_low = area.lowest(t0, t1);
+  const double bottom = area.height(t_low), level = material - sweep_.tolerance;
+  if (bottom >= level) return;
+  found_.depth = std::max(found_.depth, material - std::max(bottom, grid_.bounds_mm().min.z));
+  if (t0 < found_.t) found_.t = std::min(found_.t, area.first_below(level, t0, t_low));
+}
+
+void Scan::scan_tile(int i0, int i1, int j0, int j1) {
+  const Box& box = grid_.bounds_mm();
+  for (int j = j0; j < j1; ++j) {
+    const double y = box.min.y + (j + 0.5) * grid_.cell_y_mm();
+    for (int i = i0; i < i1; ++i) {
+      const double material = static_cast<double>(grid_.height(i, j));
+      if (material <= low_z_ || material <= box.min.z) continue;
+      const double x = box.min.x + (i + 0.5) * grid_.cell_x_mm();
+      if (field_.middles) check_middle(x, y, material);
+      check_area(i, j, x, y);
+    }
+  }
+}
+
+Found Scan::run() {
+  const Box& box = grid_.bounds_mm();
+  const Vec3 &from = sweep_.from, to = from + sweep_.step;
+  if (low_z_ >= box.max.z) return found_;
   const auto cell = [](double position, double origin, double edge, int count) {
     return static_cast<int>(
         std::clamp(std::floor((position - origin) / edge), -1.0, static_cast<double>(count)));
   };
-  const double r = sweep.reach();
-  const int i0 =
-      std::max(0, cell(std::min(sweep.from.x, to.x) - r, box.min.x, grid.cell_x_mm(), grid.nx()));
-  const int i1 = std::min(grid.nx() - 1, cell(std::max(sweep.from.x, to.x) + r, box.min.x,
-                                              grid.cell_x_mm(), grid.nx()));
-  const int j0 =
-      std::max(0, cell(std::min(sweep.from.y, to.y) - r, box.min.y, grid.cell_y_mm(), grid.ny()));
-  const int j1 = std::min(grid.ny() - 1, cell(std::max(sweep.from.y, to.y) + r, box.min.y,
-                                              grid.cell_y_mm(), grid.ny()));
+  const auto column = [&](double x) { return cell(x, box.min.x, grid_.cell_x_mm(), grid_.nx()); };
+  const auto row = [&](double y) { return cell(y, box.min.y, grid_.cell_y_mm(), grid_.ny()); };
+  const double r = sweep_.tool.radius;
+  const int i0 = std::max(0, column(std::min(from.x, to.x) - r));
+  const int i1 = std::min(grid_.nx() - 1, column(std::max(from.x, to.x) + r));
+  const int j0 = std::max(0, row(std::min(from.y, to.y) - r));
+  const int j1 = std::min(grid_.ny() - 1, row(std::max(from.y, to.y) + r));
   for (int ty = j0 / kTileCells; ty <= j1 / kTileCells && j0 <= j1; ++ty) {
     for (int tx = i0 / kTileCells; tx <= i1 / kTileCells && i0 <= i1; ++tx) {
-      if (!tile_rises_above(grid.tile(tx, ty), low_z)) continue;
-      scan_tile(grid, sweep, std::max(i0, tx * kTileCells), std::min(i1 + 1, (tx + 1) * kTileCells),
-                std::max(j0, ty * kTileCells), std::min(j1 + 1, (ty + 1) * kTileCells), low_z,
-                found);
+      if (!tile_rises_above(grid_.tile(tx, ty))) continue;
+      scan_tile(std::max(i0, tx * kTileCells), std::min(i1 + 1, (tx + 1) * kTileCells),
+                std::max(j0, ty * kTileCells), std::min(j1 + 1, (ty + 1) * kTileCells));
     }
   }
-  return found;
+  return found_;
 }
 
 }  // namespace
 
-std::optional<Contact> find_first_contact(const TileGrid& grid, std::span<const ConvexTool> tools,
-                                          const CutMove& move, double tolerance_mm) {
+std::optional<Contact> find_first_contact(const ContactField& field,
+                                          std::span<const ConvexTool> tools, const CutMove& move,
+                                          double tolerance_mm) {
   std::vector<Vec3> points;
   if (move.arc)
     points = arc_chord_points(move, tolerance_mm / 4);
@@ -91,7 +166,7 @@ std::optional<Contact> find_first_contact(const TileGrid& grid, std::span<const 
   for (const Vec3& to : points) {
     Found first;
     for (const ConvexTool& tool : tools) {
-      const Found found = scan(grid, {tool, tolerance_mm, from, to - from});
+      const Found found = Scan(field, tool, tolerance_mm, from, to - from).run();
       first.t = std::min(first.t, found.t);
       first.depth = std::max(first.depth, found.depth);
     }

@@ -17,6 +17,8 @@ constexpr std::size_t kSweepsAtOnce = std::size_t{1} << 16;
 /// The kernels count blocks of cells from where a sweep begins, in single precision: exact up to
 /// 2^24.
 constexpr double kMostBlocks = 1 << 22;
+/// A depth is greater than another one if it is by more than this.
+constexpr double kDeeper_mm = 1e-4;
 
 }  // namespace
 
@@ -158,6 +160,13 @@ void HeightSweeper::use_cutter(const Cutter& cutter, HollowColumns* hollows,
   end_path(hollows, reports);
   cutter_spec_ = cutter.spec();
   tools_ = convex_components(cutter.profile());
+  tip_ = traces_.tip_of(tools_);
+  deepest_mm_ = 0;
+}
+
+void HeightSweeper::trace(std::span<const ConvexTool> tools, std::span<const CutMove> moves) {
+  const TipTraces::Tip tip = traces_.tip_of(tools);
+  for (const CutMove& move : moves) traces_.add(tip, move);
 }
 
 void HeightSweeper::cut(const Cutter& cutter, std::span<const CutMove> moves,
@@ -166,6 +175,39 @@ void HeightSweeper::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (std::size_t first = 0; first < moves.size(); first += kMovesAtOnce) {
     cut_some(moves.subspan(first, std::min(kMovesAtOnce, moves.size() - first)), hollows, reports);
   }
+}
+
+double HeightSweeper::radius_mm() const {
+  double radius = 0;
+  for (const ConvexTool& tool : tools_) radius = std::max(radius, tool.radius);
+  return radius;
+}
+
+/// The middles of cells tell less than the tip's depth, and no move of this cutter was as deep. Of
+/// the others (most) the middles tell enough: nobody wants but the greatest depth of a tool. Short
+/// moves are left out, which are all near to what is held back, and come by the million.
+bool HeightSweeper::may_be_deepest(const CutMove& move) const {
+  if (!tip_.is_finer_than_cells() || move.arc) return false;
+  if (!PathBuilder::is_vertical(move)) {
+    const double dx = move.to_mm.x - move.from_mm.x, dy = move.to_mm.y - move.from_mm.y;
+    if (!tip_.pointed || dx * dx + dy * dy < 4 * radius_mm() * radius_mm()) return false;
+  }
+  const double tip_z = std::min(move.from_mm.z, move.to_mm.z) + tip_.low_mm;
+  return grid.bounds_mm().max.z - std::max(tip_z, grid.bounds_mm().min.z) >
+         deepest_mm_ + kDeeper_mm;
+}
+
+/// How deep the tip of a move goes that is about to be cut. All that came before is cut first, as
+/// far as it is not held back: what is near to that is left out. The same however moves are divided
+/// into calls.
+double HeightSweeper::tip_depth_mm(const CutMove& move, HollowColumns* hollows) {
+  run(hollows, totals_.size());
+  if (hollows != nullptr && hollows->any()) return 0;
+  std::optional<TipTraces::Way> held;
+  if (path_.holds_back()) held = path_.held_back();
+  const double depth = traces_.depth_mm(grid, tip_, move, held, radius_mm());
+  deepest_mm_ = std::max(deepest_mm_, depth);
+  return depth;
 }
 
 void HeightSweeper::cut_some(std::span<const CutMove> moves, HollowColumns* hollows,
@@ -194,6 +236,14 @@ void HeightSweeper::cut_some(std::span<const CutMove> moves, HollowColumns* holl
       path_.restart();
       continue;
     }
+    if (may_be_deepest(*move)) {
+      // Straight down the path ends what is held back in any case.
+      if (path_.is_vertical(*move)) path_.finish(ops_);
+      const double depth = tip_depth_mm(*move, hollows);
+      SweepTotals& sum = totals_[i + first];
+      sum.depth = std::max(sum.depth, static_cast<float>(depth));
+    }
+    traces_.add(tip_, *move);
     path_.add(*move, static_cast<std::uint32_t>(i + first), ops_);
     if (ops_.size() > kSweepsAtOnce) run(hollows, totals_.size());
   }

@@ -14,6 +14,7 @@
 #include "stock/zmap/path_builder.h"
 #include "stock/zmap/sweep_ops.h"
 #include "stock/zmap/tile_grid.h"
+#include "stock/zmap/tip_traces.h"
 #include "stock/zmap/zmap.h"
 
 namespace kerf {
@@ -42,6 +43,8 @@ class HollowColumns {
   /// Null: the batch comes near to nothing hollow. Else how the kernels are to see it, until end().
   virtual std::optional<GapView> begin(const SweepBatch& batch) = 0;
   virtual void end() = 0;
+  /// Anything is hollow, anywhere.
+  virtual bool any() const = 0;
 };
 
 /// Lowers the heights of a grid by moves of cutters without undercut: StockModel::cut() and
@@ -52,7 +55,8 @@ class HeightSweeper {
   HeightSweeper(TileGrid heights, ZMapKernel kernel, int threads)
       : grid(std::move(heights)),
         kernels(pick_kernels(kernel)),
-        pool(std::make_shared<WorkerPool>(threads < 1 ? 1 : threads)) {}
+        pool(std::make_shared<WorkerPool>(threads < 1 ? 1 : threads)),
+        traces_(grid) {}
 
   /// `hollows` may be null. The cutter must be one of convex_components() without undercut.
   void cut(const Cutter& cutter, std::span<const CutMove> moves, HollowColumns* hollows,
@@ -63,6 +67,13 @@ class HeightSweeper {
   void end_path(HollowColumns* hollows, std::vector<CutReport>& reports);
 
   CutReport report(std::uint64_t id, const SweepTotals& sum) const;
+
+  /// Of all that was cut, moves held back included.
+  const TipTraces& traces() const { return traces_; }
+  /// Of a workpiece that was cut before by nobody knows what.
+  void forget_traces() { traces_.forget(); }
+  /// Moves of another cutter, the union of `tools`, that the caller cuts himself.
+  void trace(std::span<const ConvexTool> tools, std::span<const CutMove> moves);
   /// The grid as kernels see it, without tiles: no tile may be written before its first sweep has
   /// asked for it. This is how tiles come to be unshared and to have a new version, without a look
   /// at either in the kernels' loops.
@@ -77,6 +88,9 @@ class HeightSweeper {
   void cut_some(std::span<const CutMove> moves, HollowColumns* hollows,
                 std::vector<CutReport>& reports);
   void run(HollowColumns* hollows, std::size_t report_count);
+  double radius_mm() const;
+  bool may_be_deepest(const CutMove& move) const;
+  double tip_depth_mm(const CutMove& move, HollowColumns* hollows);
   void sweep(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
   void sweep_by_moves(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
   GridView view();
@@ -84,8 +98,11 @@ class HeightSweeper {
   void share_out(std::size_t report_count, const GridView& view, const Work& work);
 
   PathBuilder path_;
+  TipTraces traces_;
   std::string cutter_spec_;
   std::vector<ConvexTool> tools_;
+  TipTraces::Tip tip_;            ///< of tools_
+  double deepest_mm_ = 0;         ///< greatest of tip_depth_mm() since the cutter came
   std::uint64_t pending_id_ = 0;  ///< move whose last segment is held back
   SweepTotals pending_totals_;
 

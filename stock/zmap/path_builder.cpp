@@ -171,6 +171,11 @@ void PathBuilder::finish(std::vector<SweepOp>& ops) {
   pending_.reset();
 }
 
+bool PathBuilder::is_vertical(const CutMove& move) {
+  const double dx = move.to_mm.x - move.from_mm.x, dy = move.to_mm.y - move.from_mm.y;
+  return !move.arc && std::sqrt(dx * dx + dy * dy) < kVertical_mm;
+}
+
 void PathBuilder::add_segment(const Vec3& from, const Vec3& to, std::uint32_t report,
                               std::vector<SweepOp>& ops) {
   const double dx = to.x - from.x, dy = to.y - from.y;

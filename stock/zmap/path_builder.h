@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stock/stock_model.h"
@@ -32,6 +33,10 @@ class PathBuilder {
   void restart() { standing_.reset(); }
 
   bool holds_back() const { return pending_.has_value(); }
+  /// A move straight up or down, before which finish() changes nothing.
+  static bool is_vertical(const CutMove& move);
+  /// The way that is held back; only where there is one.
+  std::pair<Vec3, Vec3> held_back() const { return {pending_->from, pending_->to}; }
   /// Moves held back keep their sweeps' report index; the owner renumbers it when it starts a new
   /// batch.
   void set_pending_report(std::uint32_t report) { pending_->report = report; }

@@ -78,8 +78,8 @@ std::optional<Contact> ZMap::first_contact(const Cutter& cutter, const CutMove& 
                                            double tolerance_mm) const {
   const std::optional<CutMove> near = within_reach(move, bounds_mm());
   if (!near) return std::nullopt;
-  return find_first_contact(impl_->grid(), convex_components(cutter.profile()), *near,
-                            tolerance_mm);
+  return find_first_contact({impl_->grid(), impl_->sweeper.traces(), nullptr, true},
+                            convex_components(cutter.profile()), *near, tolerance_mm);
 }
 
 std::unique_ptr<StockModel> ZMap::snapshot() const {
@@ -193,8 +193,9 @@ Done ZMap::save(const std::string& path) const {
 Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, ZMapKernel kernel) {
   Result<SavedState> state = read_state(path);
   if (!state) return Error{state.error()};
-  return std::unique_ptr<ZMap>(
-      new ZMap(std::make_unique<Impl>(std::move(state->grid), state->blank_mm3, kernel, threads)));
+  auto impl = std::make_unique<Impl>(std::move(state->grid), state->blank_mm3, kernel, threads);
+  impl->sweeper.forget_traces();
+  return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 
 }  // namespace kerf

@@ -23,6 +23,7 @@ class ColumnSweeper final : public HollowColumns {
 
   std::optional<GapView> begin(const SweepBatch& batch) override;
   void end() override;
+  bool any() const override { return gaps_.any(); }
   /// A cutter with a head, everywhere. totals[i] receives what moves[i] removes.
   void cut_headed(const HeadedTool& tool, std::span<const CutMove> moves,
                   std::span<SweepTotals> totals);

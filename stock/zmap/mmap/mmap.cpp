@@ -64,6 +64,8 @@ void MMap::Impl::cut_headed(const Cutter& cutter, std::span<const CutMove> moves
   }
   std::vector<SweepTotals> totals(moves.size());
   columns.cut_headed(tool, moves, totals);
+  sweeper.trace(tool.lower, moves);
+  sweeper.trace(tool.rays, moves);
   for (std::size_t i = 0; i < moves.size(); ++i)
     reports.push_back(sweeper.report(moves[i].id, totals[i]));
 }
@@ -97,6 +99,7 @@ Result<std::unique_ptr<MMap>> MMap::load(const std::string& path, int threads, Z
   if (!saved) return Error{saved.error()};
   auto impl = std::make_unique<Impl>(std::move(saved->heights), saved->blank_mm3, kernel, threads);
   impl->gaps = std::move(saved->gaps);
+  impl->sweeper.forget_traces();
   return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 
@@ -119,8 +122,14 @@ std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& 
   const std::optional<CutMove> near = within_reach(move, bounds_mm());
   if (!near) return std::nullopt;
   const HeadedTool tool = headed_tool(cutter);
-  return earlier_contact(*near, find_first_contact(impl_->grid(), tool.rays, *near, tolerance_mm),
-                         find_head_contact(impl_->grid(), impl_->gaps, tool, *near, tolerance_mm));
+  const auto is_hollow = [this](std::size_t tile) { return impl_->gaps.tile(tile) != nullptr; };
+  ContactField field{impl_->grid(), impl_->sweeper.traces(), is_hollow, true};
+  const auto by_rays = find_first_contact(field, tool.rays, *near, tolerance_mm);
+  const auto by_head = find_head_contact(impl_->grid(), impl_->gaps, tool, *near, tolerance_mm);
+  const auto contact = earlier_contact(*near, by_rays, by_head);
+  if (tool.lower.empty()) return contact;
+  field.middles = false;
+  return earlier_contact(*near, contact, find_first_contact(field, tool.lower, *near, tolerance_mm));
 }
 
 std::unique_ptr<StockModel> MMap::snapshot() const {
