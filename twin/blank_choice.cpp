@@ -20,6 +20,7 @@ constexpr double kMostDefaultCells = 4.0e6;
 /// Above 0.5 mm a cell says little about a part: large blanks get more cells before they get
 /// coarser ones (256 MB of heights).
 constexpr double kMostCoarseCells = 6.4e7;
+constexpr double kSteps[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
 /// A blank without thickness or width is no blank: the least size that a guess gives it.
 constexpr double kLeastGuess_mm = 1.0;
 
@@ -249,7 +250,6 @@ Blank BlankGuess::blank() const {
 
 double default_cell_mm(const Box& blank_mm) {
   const Vec3 size = blank_mm.size();
-  constexpr double kSteps[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
   for (const double cell : kSteps) {
     if (size.x / cell * (size.y / cell) <= kMostDefaultCells) {
       // A blank smaller than a few cells (a needle) gets cells that fit it.
@@ -259,6 +259,34 @@ double default_cell_mm(const Box& blank_mm) {
   double cell = kSteps[std::size(kSteps) - 1];
   while (size.x / cell * (size.y / cell) > kMostCoarseCells) cell *= 2;
   return cell;
+}
+
+double half_width_mm(const Cutter& cutter, double depth_mm) {
+  double inside = 0, outside = cutter.radius_mm();
+  if (cutter.height_mm(outside) <= depth_mm) return outside;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (cutter.height_mm(middle) <= depth_mm ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+double cell_no_larger_mm(double size_mm) {
+  double cell = kSteps[0];
+  for (const double step : kSteps)
+    if (step <= size_mm * (1 + 1e-9)) cell = step;
+  return cell;
+}
+
+double suited_cell_mm(const Box& blank_mm, double finest_mm) {
+  const double usual = default_cell_mm(blank_mm);
+  if (finest_mm <= 0 || usual <= finest_mm) return usual;
+  const Vec3 size = blank_mm.size();
+  for (const double cell : kSteps) {
+    if (cell < cell_no_larger_mm(finest_mm) || cell >= usual) continue;
+    if (size.x / cell * (size.y / cell) <= kMostCoarseCells) return cell;
+  }
+  return usual;
 }
 
 }  // namespace kerf

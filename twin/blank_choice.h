@@ -60,4 +60,15 @@ class BlankGuess {
 /// until there are at most 64 million (above 4 m x 4 m).
 double default_cell_mm(const Box& blank_mm);
 
+/// Half the width of what a cutter leaves that goes `depth_mm` deep, mm: cells must be no larger to
+/// show it.
+double half_width_mm(const Cutter& cutter, double depth_mm);
+/// The greatest of the usual cells (see above) that is no larger; the least of them if none is.
+double cell_no_larger_mm(double size_mm);
+/// The default cell of the blank, or a usual one that is no larger than `finest_mm` (0: any is
+/// fine), or as near to it as 64 million cells come.
+double suited_cell_mm(const Box& blank_mm, double finest_mm);
+/// What the shallowest cuts that are looked for are like: half a width at this depth, mm.
+inline constexpr double kShallowCut_mm = 0.2;
+
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
 #include "twin/probe_contact.h"
 
@@ -25,6 +26,8 @@ constexpr double kCut_s = 0.05;
 constexpr std::size_t kLeastMovesPerCut = 16;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
+/// A blank is divided evenly: cells may be smaller than asked for, and rounded.
+constexpr double kCoarse = 1 + 1e-6;
 
 /// Beams and punches go through whatever the length of the tool: they are taken as programmed.
 bool displaced(const Motion& motion) { return motion.length.tip_shift_mm != Vec3{0}; }
@@ -122,6 +125,7 @@ void CutStage::begin_reporting() {
   axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();
+  deepest_.clear();
   if (torch_) torch_->begin_reporting();
   if (punch_) punch_->begin_reporting();
   mounted_ = nullptr;
@@ -147,6 +151,7 @@ void CutStage::finish(bool whole) {
     return;
   }
   if (whole && !stopped_) report_outside_stock();
+  report_coarse_cells();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
@@ -204,6 +209,7 @@ void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
   use.guessed = tool.guessed;
   if (tool.cutter) use.shape = tool.cutter->spec();
   uses_.push_back(use);
+  deepest_.emplace_back();
   if (!tool.cutter) return;
   Finding finding;
   finding.source = m.source;
@@ -305,6 +311,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   divide(m);
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
+  note_depth(m, step);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = m.spindle == SpindleState::kStopped;
   if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) {
@@ -464,6 +471,50 @@ void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
+void CutStage::note_depth(const Motion& m, const TimedStep& step) {
+  Deepest& deepest = deepest_[use_];
+  const double tip_z = std::min(m.from_mm.z, m.to_mm.z);
+  if (tip_z >= deepest.tip_z_mm || !motion_moves_.is_upright(m) || !comes_near(m)) return;
+  if (!deepest.cutter) {
+    deepest.source = m.source;
+    deepest.time_s = step.start_s;
+    deepest.cutter = mounted_->cutter;
+  }
+  deepest.tip_z_mm = tip_z;
+}
+
+/// Once a tool: what it leaves at its deepest is narrower than two cells. Contacts and depths do
+/// not need cells; volumes, pictures and meshes do.
+void CutStage::report_coarse_cells() {
+  const Box bounds = stock_.bounds_mm();
+  const double cell = stock_.cell_mm();
+  for (std::size_t i = 0; i < deepest_.size(); ++i) {
+    const Deepest& deepest = deepest_[i];
+    const double depth = bounds.max.z - std::max(deepest.tip_z_mm, bounds.min.z);
+    if (!deepest.cutter || depth <= kContactTolerance_mm) continue;
+    const double half = half_width_mm(*deepest.cutter, depth);
+    if (cell <= half * kCoarse) continue;
+    const double fitting = cell_no_larger_mm(half);
+    const Vec3 size = bounds.size();
+    const double cells = size.x / fitting * (size.y / fitting);
+    Finding finding;
+    finding.id = FindingId::kCellCoarse;
+    finding.severity = Severity::kWarning;
+    finding.source = deepest.source;
+    finding.time_s = deepest.time_s;
+    finding.tool = uses_[i].number;
+    finding.text = fmt::format(
+        "the cells of {:.3g} mm are too coarse for {}, which leaves grooves {:.2g} mm wide at its "
+        "deepest, {:.3g} mm: what it removes is not known, and pictures and meshes show it badly",
+        cell, uses_[i].shape, 2 * half, depth);
+    finding.hint = stock_.takes_tilted_tools()
+                       ? fmt::format("--cell {:g} would do", fitting)
+                       : fmt::format("--cell {:g} would do ({:.0f} million cells)", fitting,
+                                     std::ceil(cells / 1e6));
+    log_.add(std::move(finding));
+  }
+}
+
 /// A program that never comes near its blank was written for another zero, or another blank.
 void CutStage::report_outside_stock() {
   // A guessed blank lies where the program works: missing it says nothing of the program.
@@ -614,9 +665,10 @@ void CutStage::collect_reports() {
     ToolUse& use = uses_[move.use];
     if (labels_) labels_->note(report.id, report.removed_mm3, move.duration_s);
     if (move.feed) count_feed(use, move.duration_s, report.removed_mm3);
+    // Of a groove that is narrower than a cell only the depth may be known.
+    use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
-    use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);
     }

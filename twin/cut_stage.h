@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -147,6 +148,8 @@ class CutStage : private StepSink {
   void check_length(const Motion& motion, const TimedStep& step, bool touches);
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
+  void note_depth(const Motion& motion, const TimedStep& step);
+  void report_coarse_cells();
   void report_over_feed();
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, double duration_s, bool spindle_off);
@@ -163,6 +166,13 @@ class CutStage : private StepSink {
     double time_s = 0;
     double programmed_mm_per_min = 0;
     double allowed_mm_per_min = 0;
+  };
+  /// The deepest place of a tool's feed moves, where they come near the workpiece.
+  struct Deepest {
+    double tip_z_mm = std::numeric_limits<double>::infinity();
+    SourceRef source;  ///< the first of them
+    double time_s = 0;
+    std::optional<Cutter> cutter;
   };
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
@@ -192,6 +202,7 @@ class CutStage : private StepSink {
   std::optional<TorchStage> torch_;
   std::optional<PunchStage> punch_;
   std::vector<ToolUse> uses_;
+  std::vector<Deepest> deepest_;           ///< one for each of uses_
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
   std::uint32_t use_ = 0;
   int spindle_tool_ = 0;

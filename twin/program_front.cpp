@@ -53,7 +53,7 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
   if (!found.blank) return true;
   front.blank = std::move(found.blank);
   front.blank_origin = std::move(found.origin);
-  if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}};
+  if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}, 0};
   return fill_front(options, front, diagnostics, outcome);
 }
 

@@ -90,12 +90,12 @@ std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& ch
     diagnostics.push_back(general_error(fmt::format("{}: {}", origin, sheet.error())));
     return nullptr;
   }
-  const double cell_mm =
-      settings.cell_mm > 0 ? settings.cell_mm : default_cell_mm(blank.bounds_mm());
-  if (choice.kind != StockKind::kOctree && refuse_memory(blank, cell_mm, diagnostics)) {
-    return nullptr;
+  StockSettings fitting = settings;
+  if (choice.kind != StockKind::kOctree) {
+    if (fitting.cell_mm <= 0) fitting.cell_mm = suited_cell_mm(blank.bounds_mm(), choice.finest_mm);
+    if (refuse_memory(blank, fitting.cell_mm, diagnostics)) return nullptr;
   }
-  auto created = stock_model(choice.kind).create(blank, settings);
+  auto created = stock_model(choice.kind).create(blank, fitting);
   if (created) return std::move(created.value());
   const bool by_cell = created.error().rfind("cell", 0) == 0;
   diagnostics.push_back(
@@ -116,10 +116,10 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
                       const std::string& origin, Diagnostics& diagnostics, Outcome& outcome) {
   StockChoice fitting = choice;
   if (blank.sheet) {
-    fitting = {StockKind::kSheet, settings.kind ? "" : "the blank is a sheet"};
+    fitting = {StockKind::kSheet, settings.kind ? "" : "the blank is a sheet", 0};
   } else if (!settings.kind && choice.kind != StockKind::kOctree) {
     const std::string need = need_of_blank(blank);
-    if (!need.empty()) fitting = {StockKind::kOctree, need};
+    if (!need.empty()) fitting = {StockKind::kOctree, need, 0};
   }
   outcome = Outcome::kUsageError;
   StockSetup setup;

@@ -182,6 +182,15 @@ StockNeeds stock_needs(const ToolSources& tools) {
   for (const ToolShapeArgument& tool : tools.arguments) {
     if (needs.undercut.empty()) needs.undercut = undercut_of(tool.tool, tool.cutter);
   }
+  const auto look_at = [&needs](const Cutter& cutter) {
+    const double size_mm = half_width_mm(cutter, kShallowCut_mm);
+    // Wider ones are no finer than the default's cells, but for very large blanks.
+    if (size_mm > kShallowCut_mm * (1 + 1e-9)) return;
+    if (needs.finest_mm == 0 || size_mm < needs.finest_mm) needs.finest_mm = size_mm;
+  };
+  for (const ToolShapeArgument& tool : tools.arguments) look_at(tool.cutter);
+  for (const ToolHint& hint : tools.hints)
+    if (const Result<Cutter> cutter = parse_shape(hint.shape)) look_at(*cutter);
   const auto add_hint = [&needs](const ToolHint& hint) {
     if (!needs.undercut.empty()) return;
     if (const Result<Cutter> cutter = parse_shape(hint.shape)) {
@@ -238,12 +247,13 @@ std::string need_of_blank(const Blank& blank) {
 }
 
 StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs) {
-  if (settings.kind) return {*settings.kind, {}};
-  if (settings.additive) return {StockKind::kOctree, "material is added"};
-  if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt};
-  if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank};
-  if (!needs.undercut.empty()) return {StockKind::kMmap, needs.undercut};
-  return {};
+  const double finest = needs.finest_mm;
+  if (settings.kind) return {*settings.kind, {}, finest};
+  if (settings.additive) return {StockKind::kOctree, "material is added", finest};
+  if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt, finest};
+  if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank, finest};
+  if (!needs.undercut.empty()) return {StockKind::kMmap, needs.undercut, finest};
+  return {StockKind::kZmap, {}, finest};
 }
 
 }  // namespace kerf

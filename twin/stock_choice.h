@@ -20,7 +20,7 @@ enum class StockKind { kZmap, kMmap, kOctree, kSheet };
 /// How a workpiece is modelled.
 struct StockSettings {
   std::optional<StockKind> kind;  ///< of --model; absent: what tools and motions need
-  double cell_mm = 0;             ///< 0: default_cell_mm() of the blank
+  double cell_mm = 0;             ///< 0: what suits the blank (and of heights, the finest tool)
   int threads = 1;                ///< cutting threads
   ZMapKernel kernel = ZMapKernel::kAuto;
   bool additive = false;  ///< material is added along the path, within the blank's box; octree only
@@ -57,6 +57,7 @@ struct StockNeeds {
   std::string undercut;  ///< "tool 3 (tslot:20:4:8) cuts undercuts"
   std::string tilt;      ///< "line 12 turns the tool or the workpiece: A30"
   std::string blank;     ///< "the blank has a cylinder along x"
+  double finest_mm = 0;  ///< cells of heights had better be no larger; 0: any will do
 };
 
 /// Looks for the first motion that needs a model for tilted tools.
@@ -78,7 +79,8 @@ class TiltWatch {
   std::string found_;
 };
 
-/// What the tools that are known before the program runs ask for.
+/// What the tools that are known before the program runs ask for. The finest of them counts only
+/// where somebody names it for this program: a table has tools that are not used.
 StockNeeds stock_needs(const ToolSources& tools);
 /// Of a saved workpiece, by the head of its file; of one that has none, loading says what is wrong.
 StockKind saved_kind(const std::string& path);
@@ -92,7 +94,8 @@ std::string need_of_blank(const Blank& blank);
 /// The simplest model that holds what is needed, or the one that was asked for.
 struct StockChoice {
   StockKind kind = StockKind::kZmap;
-  std::string reason;  ///< for the report; empty if it was asked for, or if the simplest will do
+  std::string reason;    ///< for the report; empty if it was asked for, or if the simplest will do
+  double finest_mm = 0;  ///< StockNeeds::finest_mm
 };
 StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs);
 

@@ -72,7 +72,8 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
                    "material is added along the path (printing, welding), within the blank's box");
   command
       .add_option("--cell", a.cell,
-                  "edge of a cell (default: suits the blank, at most 4 million cells)")
+                  "edge of a cell (default: suits the blank, at most 4 million cells; fine "
+                  "engravers: up to 64)")
       ->type_name("MM");
   command
       .add_option("--margin", a.margin, "around a blank that is guessed from the moves (default 5)")
