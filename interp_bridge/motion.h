@@ -150,6 +150,8 @@ struct Motion {
   /// The step goes to a place of the machine (G53, G28, G30, a tool change), and where the work
   /// lies in the machine is not known.
   bool to_machine_place = false;
+  /// An S word has come in the program (or before it, in the startup code), S0 included.
+  bool speed_said = false;
   std::uint8_t user_m = 0;  ///< kSignal of M100 to M199: the number; else 0
   /// kArc only: the rounded corner of a traverse, where the planned path is taken for the
   /// program's; as rapid as that.
@@ -161,6 +163,9 @@ struct Motion {
   std::uint8_t io_halts = 0;  ///< of those, the ones that wait for LinuxCNC's I/O task: coolant
   ChainEnd chain_end = ChainEnd::kNone;
   int tool = 0;  ///< tool number in the spindle, 0 = none
+  /// The last T word, while no tool change has followed it; line 0: there is none that waits.
+  int selected_tool = 0;
+  SourceRef selected_at;
   SourceRef source;
   Vec3 from_mm{0};
   Vec3 to_mm{0};

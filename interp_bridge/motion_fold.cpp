@@ -233,6 +233,9 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.kind = kind;
   motion.source = source;
   motion.tool = tool_;
+  motion.selected_tool = selected_tool_;
+  motion.selected_at = selected_at_;
+  motion.speed_said = speed_said_;
   motion.flood = flood_;
   motion.mist = mist_;
   motion.start_known = position_known_ && unknown_ == 0;
@@ -531,6 +534,7 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
     case CanonicalName::kStopSpindleTurning:
       return for_each([](Spindle& spindle) { spindle.stop(); });
     case CanonicalName::kSetSpindleSpeed:
+      speed_said_ = true;
       return for_each([&](Spindle& spindle) { spindle.speed = command.number(1); });
     case CanonicalName::kSetSpindleMode:
       // Surface speed is m/min in G21 and ft/min in G20.
@@ -595,16 +599,19 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
       return true;
     case CanonicalName::kSelectTool:
       selected_tool_ = command.integer(0);
+      selected_at_ = source;
       return true;
     case CanonicalName::kChangeTool:
       // The printed number is a row of the table, not a tool; kerf-interp adds the tool's.
       tool_ = command.argument_count > 1 ? command.integer(1) : selected_tool_;
+      selected_at_ = {};
       append(MotionKind::kToolChange, source, out);
       return true;
     case CanonicalName::kChangeToolNumber: {
       const auto row = static_cast<std::size_t>(std::max(0, command.integer(0)));
       tool_ = row < tool_by_index_.size() ? tool_by_index_[row] : command.integer(0);
       if (command.argument_count > 1) tool_ = command.integer(1);
+      selected_at_ = {};
       append(MotionKind::kToolChange, source, out);
       return true;
     }

@@ -289,6 +289,8 @@ class MotionFold {
 
   int tool_ = 0;
   int selected_tool_ = 0;
+  SourceRef selected_at_;  ///< line 0: a change has followed
+  bool speed_said_ = false;
   std::array<Spindle, kMaxSpindles> spindles_{};
   std::size_t spindle_ = 0;  ///< the one that motions speak of: the first that turns
   double rpm_ = 0;

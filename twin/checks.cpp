@@ -159,14 +159,17 @@ bool Checks::check_traverse(const CheckedMove& move) {
   return true;
 }
 
-void Checks::check_standing_spindle(const CheckedMove& move) {
+std::optional<FindingLog::Handle> Checks::check_standing_spindle(const CheckedMove& move,
+                                                                 std::string_view text,
+                                                                 Severity severity) {
   const std::optional<Touch> touch = first_touch(move);
-  if (!touch) return;
+  if (!touch) return std::nullopt;
   Finding finding =
       finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm, touch->fraction,
-                 "feed move touches the workpiece while the spindle stands");
+                 std::string(text));
+  finding.severity = std::min(finding.severity, severity);
   finding.depth_mm = touch->contact.depth_mm;
-  spindle_ = log_.add(std::move(finding));
+  return spindle_ = log_.add(std::move(finding));
 }
 
 void Checks::deepen_spindle_event(double depth_mm) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
@@ -72,7 +73,10 @@ class Checks {
   /// open the depths of its moves come from their cut reports (no need to ask the model before each
   /// of them).
   bool spindle_event_open() const { return spindle_.has_value(); }
-  void check_standing_spindle(const CheckedMove& move);
+  /// `text`: how it stands. The finding, if an event begins.
+  std::optional<FindingLog::Handle> check_standing_spindle(const CheckedMove& move,
+                                                           std::string_view text,
+                                                           Severity severity);
   void deepen_spindle_event(double depth_mm);
   void end_spindle_event() { spindle_.reset(); }
 

@@ -10,6 +10,7 @@
 
 #include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
+#include "twin/planned_pieces.h"
 #include "twin/probe_contact.h"
 
 namespace kerf {
@@ -45,6 +46,8 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       joint_limits_(options.joint_limits),
       timeline_(options, *this),
       checks_(stock, log),
+      program_(stock, log),
+      load_meter_(stock),
       lengths_(stock.bounds_mm(), log),
       axis_limits_(options.limits, log),
       moves_per_cut_(stock.takes_tilted_tools() ? kLeastMovesPerCut : kMovesPerCut) {
@@ -122,6 +125,7 @@ void CutStage::begin_reporting() {
   flush_whole();
   checks_.forget_events();
   lengths_.forget();
+  program_.forget_events();
   axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();
@@ -150,7 +154,8 @@ void CutStage::finish(bool whole) {
     punch_->finish(whole);
     return;
   }
-  if (whole && !stopped_) report_outside_stock();
+  program_.finish(whole);
+  if (whole && !stopped_) report_nothing_cut();
   report_coarse_cells();
   for (ToolUse& use : uses_) {
     if (use.peak_mm3_per_s == 0) close_window(use);
@@ -172,13 +177,14 @@ void CutStage::cut(const Motion& m, const TimedStep& step) {
     torch_->take(displaced(m) ? as_programmed(m) : m, step, path_);
     return;
   }
+  watch_program(m, step);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     flush_whole();  // with the cutter that made these moves
     checks_.end_spindle_event();
     spindle_tool_ = m.tool;
     mounted_ = nullptr;
   }
-  if (m.spindle != SpindleState::kStopped && checks_.spindle_event_open()) {
+  if (!stands(m) && checks_.spindle_event_open()) {
     flush_whole();  // the depths still to come belong to the event
     checks_.end_spindle_event();
   }
@@ -307,16 +313,19 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
+  if (!timed_) program_.feeds(m, step, mounted_->number);
   note_speed(m, step);
   divide(m);
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
   note_depth(m, step);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
-  const bool spindle_off = m.spindle == SpindleState::kStopped;
-  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) {
+  const bool spindle_off = stands(m);
+  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, move);
+  if (ProgramChecks::is_drill(move.cutter) && !program_.drill_told() &&
+      ProgramChecks::goes_sideways(m) && comes_near(m)) {
     flush_whole();
-    checks_.check_standing_spindle(move);
+    program_.check_drill(move);
   }
   push(m, step, spindle_off);
 }
@@ -604,27 +613,27 @@ void CutStage::report_over_feed() {
 /// The programmed move, or what the machine makes of it.
 void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
   if (path_.empty()) {
-    push_moves(m, step.duration_s, spindle_off);
+    push_moves(m, step, spindle_off);
     return;
   }
-  for (const PathPiece& part : path_) {
+  for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
     if (stopped_) return;
-    const Motion piece = motion_of(m, part);
     divide(piece);
-    push_moves(piece, step.duration_s / static_cast<double>(path_.size()), spindle_off);
-  }
+    push_moves(piece, part, spindle_off);
+  });
 }
 
 /// Those of divide().
-void CutStage::push_moves(const Motion& m, double duration_s, bool spindle_off) {
+void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_off) {
   const std::uint64_t id = labels_ ? labels_->number_of({mounted_->number, m.source}) : next_id_++;
   const double share_s =
-      duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
+      step.duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
+  const bool measured = measure(m, step);
   std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
     moves_.push_back(move);
-    in_flight_.push_back(InFlight{share_s, use_, is_feed(m), spindle_off});
+    in_flight_.push_back(InFlight{share_s, use_, is_feed(m), measured, spindle_off});
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
     flush();
@@ -664,7 +673,7 @@ void CutStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (labels_) labels_->note(report.id, report.removed_mm3, move.duration_s);
-    if (move.feed) count_feed(use, move.duration_s, report.removed_mm3);
+    if (move.feed && !move.measured) count_feed(use, move.duration_s, report.removed_mm3);
     // Of a groove that is narrower than a cell only the depth may be known.
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (report.removed_mm3 <= 0) continue;

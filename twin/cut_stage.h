@@ -22,7 +22,9 @@
 #include "twin/finding.h"
 #include "twin/kinematics/rotary_checks.h"
 #include "twin/length_check.h"
+#include "twin/load_meter.h"
 #include "twin/motion_moves.h"
+#include "twin/program_checks.h"
 #include "twin/punch_stage.h"
 #include "twin/timeline.h"
 #include "twin/tool_use.h"
@@ -44,6 +46,8 @@ class CutStage : private StepSink {
  public:
   CutStage(StockModel& stock, ToolBook& tools, FindingLog& log, const TimelineOptions& options);
 
+  /// The program is a whole one, over this blank: it is told if nothing is cut (nothing-cut).
+  void judge_blank(BlankKind blank) { blank_ = blank; }
   /// Before the first motion that moves: where the workpiece lies in the machine.
   void set_frame(const WorkpieceFrame& frame);
   /// What findings are judged by. Before the first motion.
@@ -124,12 +128,16 @@ class CutStage : private StepSink {
     double duration_s = 0;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;
+    bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
   };
 
   void step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path) override;
   void begin_reporting();
   void cut(const Motion& motion, const TimedStep& step);
+  void watch_program(const Motion& motion, const TimedStep& step);
+  bool stands(const Motion& motion) const;
+  void check_standing(const Motion& motion, const CheckedMove& move);
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
@@ -146,14 +154,16 @@ class CutStage : private StepSink {
   void report_unknown_place(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
   void check_length(const Motion& motion, const TimedStep& step, bool touches);
+  void report_nothing_cut();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
   void note_depth(const Motion& motion, const TimedStep& step);
   void report_coarse_cells();
   void report_over_feed();
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
-  void push_moves(const Motion& motion, double duration_s, bool spindle_off);
+  void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   bool stop_now();
+  bool measure(const Motion& motion, const TimedStep& step);
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
@@ -197,6 +207,12 @@ class CutStage : private StepSink {
   std::span<const PathPiece> path_;  ///< of the present step
   OverFeed over_feed_;
   Checks checks_;
+  ProgramChecks program_;
+  BlankKind blank_ = BlankKind::kUnjudged;
+  bool probes_ = false;  ///< so far
+  /// spindle-off-contact of a program without any S word so far.
+  std::optional<FindingLog::Handle> speed_unsaid_;
+  LoadMeter load_meter_;
   LengthCheck lengths_;
   AxisLimitCheck axis_limits_;
   std::optional<TorchStage> torch_;

@@ -174,6 +174,13 @@ FindingLog::Handle FindingLog::add(Finding finding) {
   return kept_.size() - 1;
 }
 
+void FindingLog::raise(Handle handle, Severity severity) {
+  if (handle >= kept_.size()) return;
+  --counts_[static_cast<std::size_t>(kept_[handle].severity)];
+  ++counts_[static_cast<std::size_t>(severity)];
+  kept_[handle].severity = severity;
+}
+
 void FindingLog::deepen(Handle handle, double depth_mm) {
   if (handle >= kept_.size()) return;
   Finding& finding = kept_[handle];

@@ -112,6 +112,8 @@ class FindingLog {
   void reword(Handle handle, std::string text) {
     if (handle < kept_.size()) kept_[handle].text = std::move(text);
   }
+  /// The event is more than it seemed.
+  void raise(Handle handle, Severity severity);
   /// While muted nothing is kept or counted: for moves that are cut but not reported on.
   void set_muted(bool muted) { muted_ = muted; }
   /// The event goes on: its depth becomes the greater of the two.

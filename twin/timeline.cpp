@@ -116,6 +116,7 @@ void Timeline::emit(const MotionTiming& timing) {
   step.held_before_s = waiting.before.sum_s();
   step.programmed_mm_per_min = timing.programmed_mm_per_min;
   step.allowed_mm_per_min = timing.allowed_mm_per_min;
+  step.peak_mm_per_min = timing.peak_mm_per_min;
   const bool moves = motion.kind == MotionKind::kTraverse || is_feeding(motion);
   // Without a known start there is no true length: the real one is not in the program.
   if (moves && motion.start_known) step.length_mm = fed_length_mm(motion);

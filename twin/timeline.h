@@ -53,6 +53,7 @@ struct TimedStep {
   double length_mm = 0;              ///< as programmed
   double programmed_mm_per_min = 0;  ///< of a feed move; 0: no feed rate in force
   double allowed_mm_per_min = 0;     ///< by the axes, along this motion
+  double peak_mm_per_min = 0;        ///< the greatest speed that is reached; 0: not known
 };
 
 /// Receives the motions with their times.

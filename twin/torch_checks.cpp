@@ -151,14 +151,23 @@ void TorchChecks::travels(const Motion& m, const TimedStep& step) {
   for (int i = 0; i <= points; ++i) {
     const Vec3 place = point_at(m, static_cast<double>(i) / points);
     if (!is_low(place) || !sheet_.has_material(Vec2(place))) continue;
-    if (dark_.moves++ == 0) {
-      dark_.source = m.source;
-      dark_.time_s = step.start_s;
-      dark_.place_mm = place;
-      dark_.tool = m.tool;
-    }
+    count(dark_, m, step, place);
     return;
   }
+}
+
+void TorchChecks::count(Dark& dark, const Motion& m, const TimedStep& step, const Vec3& place) {
+  if (dark.moves++ > 0) return;
+  dark.source = m.source;
+  dark.time_s = step.start_s;
+  dark.place_mm = place;
+  dark.tool = m.tool;
+}
+
+void TorchChecks::cuts_on_traverse(const Motion& m, const TimedStep& step) {
+  if (!is_traverse(m) || !moves_sideways(m)) return;
+  count(lit_, m, step, m.from_mm);
+  lit_mm_ += step.length_mm;
 }
 
 void TorchChecks::stays_on(SourceRef source, double time_s) {
@@ -182,25 +191,46 @@ void TorchChecks::note_freed(const Motion& m, const TimedStep& step) {
 void TorchChecks::forget_events() {
   crossed_.clear();
   travels_ = 0;
-  dark_ = {};
+  dark_ = lit_ = {};
+  lit_mm_ = 0;
   report_from_ = freed_.size();
 }
 
 void TorchChecks::finish() {
-  if (dark_.moves > 0) {
-    Finding out;
-    out.id = FindingId::kBeamOff;
-    out.severity = Severity::kWarning;
-    out.source = dark_.source;
-    out.time_s = dark_.time_s;
-    out.position_mm = dark_.place_mm;
-    out.tool = dark_.tool;
-    out.text = fmt::format(
-        "{} over the sheet at cut height with the beam off, the first",
-        dark_.moves == 1 ? "a feed move runs" : fmt::format("{} feed moves run", dark_.moves));
-    log_.add(std::move(out));
-  }
+  if (dark_.moves > 0) report_dark_moves();
+  if (lit_.moves > 0) report_lit_traverses();
   if (options_.slats_mm > 0) report_small_parts();
+}
+
+void TorchChecks::report_dark_moves() {
+  Finding out;
+  out.id = FindingId::kBeamOff;
+  out.severity = Severity::kWarning;
+  out.source = dark_.source;
+  out.time_s = dark_.time_s;
+  out.position_mm = dark_.place_mm;
+  out.tool = dark_.tool;
+  out.text = fmt::format(
+      "{} over the sheet at cut height with the beam off, the first",
+      dark_.moves == 1 ? "a feed move runs" : fmt::format("{} feed moves run", dark_.moves));
+  log_.add(std::move(out));
+}
+
+void TorchChecks::report_lit_traverses() {
+  Finding out;
+  out.id = FindingId::kBeamOnTraverse;
+  out.severity = Severity::kWarning;
+  out.source = lit_.source;
+  out.time_s = lit_.time_s;
+  out.position_mm = lit_.place_mm;
+  out.tool = lit_.tool;
+  out.text = fmt::format(
+      "{} the sheet with the beam on, {:.1f} mm in all, the first",
+      lit_.moves == 1 ? "a traverse cuts" : fmt::format("{} traverses cut", lit_.moves), lit_mm_);
+  out.hint =
+      "if the machine's beam is off there, --beam says what turns it on: laser (power by S, rapids "
+      "dark), m3+feed, m62:N, m67:N, plasmac";
+  log_.add(std::move(out));
 }
 
 void TorchChecks::report_small_parts() {

@@ -65,11 +65,13 @@ class TorchChecks {
   void burns(const Motion& motion, const TimedStep& step);
   /// crosses-part and beam-off, of one without it.
   void travels(const Motion& motion, const TimedStep& step);
+  /// beam-on-traverse, of a motion that has cut: rapids, not those that only go up or down.
+  void cuts_on_traverse(const Motion& motion, const TimedStep& step);
   /// torch-left-on.
   void stays_on(SourceRef source, double time_s);
   /// What the motion has cut free.
   void note_freed(const Motion& motion, const TimedStep& step);
-  /// beam-off is one finding for the program; small-part.
+  /// beam-off and beam-on-traverse are one finding each for the program; small-part.
   void finish();
   /// What went on before is not reported on.
   void forget_events();
@@ -85,12 +87,15 @@ class TorchChecks {
     int tool = 0;
   };
 
+  static void count(Dark& dark, const Motion& motion, const TimedStep& step, const Vec3& place_mm);
   bool is_low(const Vec3& place_mm) const;
   const FreedPiece* freed_at(const Vec3& place_mm) const;
   void check_way(const Motion& motion, const TimedStep& step, bool burning);
   Finding finding(FindingId id, const Motion& motion, const TimedStep& step,
                   const Vec3& place_mm) const;
   void tell_travel(Finding finding);
+  void report_dark_moves();
+  void report_lit_traverses();
   void report_small_parts();
 
   const Sheet& sheet_;
@@ -105,6 +110,8 @@ class TorchChecks {
   std::string last_travel_text_;
   std::size_t report_from_;  ///< index into freed_
   Dark dark_;
+  Dark lit_;  ///< traverses that cut
+  double lit_mm_ = 0;
 };
 
 }  // namespace kerf

@@ -94,6 +94,7 @@ void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
   use.removed_mm3 += removed_mm3;
   add_cutting(use, step.duration_s, removed_mm3);
   has_removed_ = has_removed_ || removed_mm3 > 0;
+  if (removed_mm3 > 0) checks_.cuts_on_traverse(m, step);
   if (!has_removed_) burnt_mm_.extend(bounds_of(m));
   checks_.note_freed(m, step);
 }

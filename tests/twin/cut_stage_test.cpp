@@ -72,8 +72,9 @@ TEST(CutStage, SlotRemovesItsVolumeAndFindsNothing) {
   EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 0.01);
   EXPECT_NEAR(use.max_depth_mm, 2, 1e-4);
   EXPECT_NEAR(use.feed_mm, 7 + 50, 1e-9);
-  EXPECT_NEAR(use.cut_s, 5, 0.03) << "50 mm at 600 mm/min, and braking";
-  EXPECT_NEAR(use.peak_mm3_per_s, use.removed_mm3 / use.cut_s, 1e-6);
+  EXPECT_NEAR(use.cut_s, 4.2, 0.03)
+      << "from X-2 to X40 at 600 mm/min; beside the block it cuts air";
+  EXPECT_NEAR(use.peak_mm3_per_s, 4 * 2 * 10, 0.8);
 }
 
 /// W of a mill that has it among its axes is a quill along Z, also under a model for upright tools.
@@ -293,6 +294,61 @@ TEST(CutStage, AProgramThatNeverReachesItsBlankIsSaid) {
   EXPECT_EQ(Shop(started().traverse({500, 20, 5}).feed({500, 20, -3}).feed({20, 20, -3})).ids(),
             Ids{});
   EXPECT_EQ(Shop(started().traverse({500, 20, 5})).ids(), Ids{}) << "nothing was to be cut";
+}
+
+TEST(CutStage, APlungeFromFarAboveRemovesItsAreaTimesItsSpeed) {
+  const Shop shop(started().traverse({20, 20, 30}).feed({20, 20, -5}));
+  const ToolUse& use = shop.stage().tools().at(0);
+  EXPECT_NEAR(use.cut_s, 0.5, 0.02) << "5 of 35 mm, and braking";
+  EXPECT_NEAR(use.peak_mm3_per_s, kPi * 4 * 10, 0.01 * kPi * 4 * 10);
+}
+
+/// Looking at a motion in pieces leaves no trace in the workpiece.
+TEST(CutStage, MeasuringChangesNoBit) {
+  MotionList slow = started(), fast = started();
+  for (MotionList* program : {&slow, &fast}) {
+    program->feed_rate(program == &slow ? 60 : 1e5);
+    program->feed({-5, 11.3, -2}).feed({37, 22.7, -4.1}).feed({3, 30, -1});
+    program->arc({23, 30, -3}, {13, 30, -1}, {0, 0, 1}, -kPi).feed({23, 2, -5});
+  }
+  EXPECT_EQ(Shop(slow).stock().digest(), Shop(fast).stock().digest());
+}
+
+TEST(CutStage, AToolThatIsSelectedAndNotChangedIsSaidWithTheLineOfItsTWord) {
+  MotionList program = started();
+  program.feed({-5, 20, -2}).feed({5, 20, -2});
+  program.last().selected_tool = 2;
+  program.last().selected_at = {0, 7};
+  program.feed({8, 20, -2});
+  program.last().selected_tool = 2;
+  program.last().selected_at = {0, 7};
+  const Shop shop(program);
+  ASSERT_EQ(shop.ids(), Ids{FindingId::kToolNotChanged});
+  EXPECT_EQ(shop.findings()[0].source.line, 7U);
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kWarning);
+}
+
+TEST(CutStage, ASpindleThatIsToldToTurnAtNothingStands) {
+  MotionList program = started();
+  program.feed({-5, 20, -2});
+  program.feed({5, 20, -2}).last().spindle_rpm = 0;
+  program.feed({9, 20, -2}).last().spindle_rpm = 0;
+  const Shop unsaid(program);
+  ASSERT_EQ(unsaid.ids(), Ids{FindingId::kSpindleOffContact});
+  EXPECT_EQ(unsaid.findings()[0].severity, Severity::kWarning) << "no S word in the whole program";
+  program.feed({12, 20, -2}).last().speed_said = true;
+  EXPECT_EQ(Shop(program).findings().at(0).severity, Severity::kError) << "one comes after all";
+}
+
+TEST(CutStage, ADrillThatIsFedSidewaysIsAnError) {
+  MotionList program = started();
+  program.traverse({20, 20, 5}).feed({20, 20, -4}).feed({20, 20, -1}).feed({28, 20, -1});
+  const Shop shop(program, 4096, "1=drill:4:118");
+  ASSERT_EQ(shop.ids(), Ids{FindingId::kDrillSideways});
+  EXPECT_EQ(shop.findings()[0].severity, Severity::kError);
+  EXPECT_EQ(shop.findings()[0].source.line, 5U);
+  EXPECT_EQ(Shop(program, 4096, "1=drill:4:90").findings().at(0).severity, Severity::kWarning);
+  EXPECT_EQ(Shop(program).ids(), Ids{}) << "an end mill may";
 }
 
 TEST(CutStage, MissingFeedIsSaidOnce) {

@@ -316,7 +316,8 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   const bool travels = options_.beam && motion.spindle == SpindleState::kStopped;
   motion.kind = travels ? MotionKind::kTraverse : MotionKind::kFeed;
   motion.torch.spindles_on = motion.spindle != SpindleState::kStopped ? 1 : 0;
-  motion.spindle_rpm = std::isnan(sample_.spindle_rpm) ? 0 : std::abs(sample_.spindle_rpm);
+  motion.speed_said = !std::isnan(sample_.spindle_rpm);
+  motion.spindle_rpm = motion.speed_said ? std::abs(sample_.spindle_rpm) : 0;
   motion.tool = std::max(0, now.tool >= 0 ? now.tool : program_tool_);
   motion.source = {0, sample_.line > 0 ? static_cast<std::uint32_t>(sample_.line) : 0};
   motion.from_mm = from.tip_mm;
@@ -361,7 +362,10 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
   const bool spindle_told = !std::isnan(sample_.spindle_rpm);
   for (auto& [motion, share_s, of_same_piece] : driven_) {
     if (sample_.tool >= 0) motion.tool = sample_.tool;
-    if (spindle_told && !options_.beam) motion.spindle = spindle();
+    if (spindle_told && !options_.beam) {
+      motion.spindle = spindle();
+      motion.spindle_rpm = std::abs(sample_.spindle_rpm);
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       const double stands_deg = now.place.abc_deg[i];
       const bool elsewhere = std::abs(stands_deg - motion.to_abc_deg[i]) > kTurned_deg;

@@ -1,0 +1,97 @@
+// What CutStage asks of a program beyond its single moves: its order, its whole, its load.
+#include <algorithm>
+#include <utility>
+
+#include "twin/cut_stage.h"
+#include "twin/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Moves that last so long, or so much of what the tool has cut so far, are looked at in pieces:
+/// few enough in any program that it costs little, long enough that the others do not show.
+constexpr double kLongMove_s = 0.5;
+constexpr double kLongMovePart = 0.005;
+
+}  // namespace
+
+/// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
+/// found wrong.
+bool CutStage::stands(const Motion& m) const {
+  if (m.spindle == SpindleState::kStopped) return true;
+  return m.spindle_rpm == 0 && (m.speed_said || !timed_);
+}
+
+/// Before anything is made of the motion. Of a machine that is watched nobody asks why it stops,
+/// and which tool it has it tells itself.
+void CutStage::watch_program(const Motion& m, const TimedStep& step) {
+  if (speed_unsaid_ && m.speed_said) {
+    log_.raise(*std::exchange(speed_unsaid_, FindingLog::kMaxKept), Severity::kError);
+  }
+  if (timed_) return;
+  probes_ = probes_ || m.kind == MotionKind::kProbe;
+  if (m.kind == MotionKind::kToolChange) program_.end_tool();
+  if (!cutter() || !program_.may_stop_in_part(m) || !motion_moves_.is_upright(m)) return;
+  flush_whole();
+  program_.check_stop(m, step, *mounted_->cutter, mounted_->number);
+}
+
+/// A spindle that is told to turn at no speed stands. Where the program has no S word at all its
+/// speed may be set by hand, at the spindle: that is told once, as a warning, unless the machine's
+/// INI is there or an S word comes after all.
+void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
+  const bool unsaid = m.spindle != SpindleState::kStopped && !m.speed_said;
+  if (unsaid && speed_unsaid_) return;
+  flush_whole();
+  if (m.spindle == SpindleState::kStopped) {
+    checks_.check_standing_spindle(move, "feed move touches the workpiece while the spindle stands",
+                                   Severity::kError);
+  } else if (!unsaid) {
+    checks_.check_standing_spindle(
+        move, "feed move touches the workpiece while the spindle is told to turn at S0 (0 rpm)",
+        Severity::kError);
+  } else {
+    speed_unsaid_ = checks_.check_standing_spindle(
+        move,
+        "feed move touches the workpiece at 0 rpm: the spindle is told to turn, and no S word says "
+        "how fast; is its speed set by hand?",
+        limits_known_ ? Severity::kError : Severity::kWarning);
+  }
+}
+
+/// Of a feed move that lasts: how long it really cuts, and how fast at most. Short ones count
+/// whole, and their rates together (add_cutting).
+bool CutStage::measure(const Motion& m, const TimedStep& step) {
+  if (timed_ || holding_ || !is_feed(m) || divided_.size() != 1) return false;
+  ToolUse& use = uses_[use_];
+  if (step.duration_s < kLongMove_s && step.duration_s < kLongMovePart * use.cut_s) return false;
+  if (step.duration_s <= 0 || !LoadMeter::is_one_piece(divided_[0]) || !comes_near(m)) return false;
+  flush();
+  const MotionLoad load = load_meter_.measure(*mounted_->cutter, divided_[0], step.duration_s,
+                                              step.peak_mm_per_min / 60);
+  use.cut_s += load.cut_s;
+  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, load.peak_mm3_per_s);
+  return true;
+}
+
+/// Of a whole program over a blank that is known to be one; else only what lies outside.
+void CutStage::report_nothing_cut() {
+  if (blank_ == BlankKind::kUnjudged) {
+    report_outside_stock();
+    return;
+  }
+  CutFacts facts;
+  facts.blank = blank_;
+  facts.totals = timeline_.totals();
+  facts.probes = probes_;
+  facts.came_near = reached_stock_;
+  facts.feed_mm = feed_bounds_mm_;
+  facts.blank_mm = stock_.bounds_mm();
+  for (const ToolUse& use : uses_) {
+    facts.undefined = facts.undefined || use.shape.empty();
+    facts.removed_mm3 += use.removed_mm3;
+  }
+  if (std::optional<Finding> finding = nothing_cut(facts)) log_.add(std::move(*finding));
+}
+
+}  // namespace kerf
