@@ -604,15 +604,15 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
     case CanonicalName::kChangeTool:
       // The printed number is a row of the table, not a tool; kerf-interp adds the tool's.
       tool_ = command.argument_count > 1 ? command.integer(1) : selected_tool_;
-      selected_at_ = {};
       append(MotionKind::kToolChange, source, out);
+      selected_at_ = {};
       return true;
     case CanonicalName::kChangeToolNumber: {
       const auto row = static_cast<std::size_t>(std::max(0, command.integer(0)));
       tool_ = row < tool_by_index_.size() ? tool_by_index_[row] : command.integer(0);
       if (command.argument_count > 1) tool_ = command.integer(1);
-      selected_at_ = {};
       append(MotionKind::kToolChange, source, out);
+      selected_at_ = {};
       return true;
     }
     case CanonicalName::kProgramStop:

@@ -126,6 +126,7 @@ void CutStage::begin_reporting() {
   checks_.forget_events();
   lengths_.forget();
   program_.forget_events();
+  speed_unsaid_.reset();
   axis_limits_.forget_events();
   timeline_.begin_totals();
   uses_.clear();

@@ -30,7 +30,10 @@ void CutStage::watch_program(const Motion& m, const TimedStep& step) {
   }
   if (timed_) return;
   probes_ = probes_ || m.kind == MotionKind::kProbe;
-  if (m.kind == MotionKind::kToolChange) program_.end_tool();
+  if (m.kind == MotionKind::kToolChange) {
+    program_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
+    program_.end_tool();
+  }
   if (!cutter() || !program_.may_stop_in_part(m) || !motion_moves_.is_upright(m)) return;
   flush_whole();
   program_.check_stop(m, step, *mounted_->cutter, mounted_->number);

@@ -54,20 +54,19 @@ double LoadMeter::Profile::at(double part) const {
   return ramp_s + (way - ramp_mm) / speed_mm_per_s;
 }
 
-/// In a copy of the workpiece; spans that are known to be in the air are not cut again.
+/// In a copy of the workpiece; spans that are known to be in the air are not cut again. Each piece
+/// is finished: what the cutter's front takes must not wait for the last one.
 void LoadMeter::cut_pieces(const Cutter& cutter, const CutMove& move) {
-  moves_.clear();
-  for (std::size_t i = 0; i < spans_.size(); ++i) {
-    if (spans_[i].removed_mm3 == 0) continue;
-    moves_.push_back(part_of(move, spans_[i].from, spans_[i].to));
-    moves_.back().id = i;
-    spans_[i].removed_mm3 = 0;
-  }
   const std::unique_ptr<StockModel> copy = stock_.snapshot();
-  reports_.clear();
-  copy->cut(cutter, moves_, reports_);
-  copy->finish(reports_);
-  for (const CutReport& report : reports_) spans_[report.id].removed_mm3 = report.removed_mm3;
+  for (Span& span : spans_) {
+    if (!span.cuts()) continue;
+    moves_.assign(1, part_of(move, span.from, span.to));
+    reports_.clear();
+    copy->cut(cutter, moves_, reports_);
+    copy->finish(reports_);
+    span.removed_mm3 = 0;
+    for (const CutReport& report : reports_) span.removed_mm3 += report.removed_mm3;
+  }
 }
 
 /// Whether the cutting begins or ends within a span: nothing is cut beside it, and it removes less

@@ -12,6 +12,9 @@
 namespace kerf {
 namespace {
 
+/// A way that removes less of its kerf lies in one that has been cut already.
+constexpr double kLeastOfKerf = 0.01;
+
 bool goes_up_or_down(const Motion& m) {
   return m.kind != MotionKind::kArc && m.from_mm.x == m.to_mm.x && m.from_mm.y == m.to_mm.y;
 }
@@ -94,7 +97,8 @@ void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
   use.removed_mm3 += removed_mm3;
   add_cutting(use, step.duration_s, removed_mm3);
   has_removed_ = has_removed_ || removed_mm3 > 0;
-  if (removed_mm3 > 0) checks_.cuts_on_traverse(m, step);
+  const double kerf_mm2 = 2 * kerf_->cutter->radius_mm() * stock_.bounds_mm().size().z;
+  if (removed_mm3 > kLeastOfKerf * kerf_mm2 * step.length_mm) checks_.cuts_on_traverse(m, step);
   if (!has_removed_) burnt_mm_.extend(bounds_of(m));
   checks_.note_freed(m, step);
 }
