@@ -60,6 +60,10 @@ ToolLengths::Call ToolLengths::decode_coded(const Vec3& offset_mm, double u, dou
     const bool spindle = tools == row_of_spindle_ && tool_ != row_of_spindle_;
     return {OffsetOrigin::kRow, spindle ? tool_ : tools, offset_mm};
   }
+  if (count == 0 && tools == row_of_spindle_ && tool_ != 0 && offset_mm == Vec3{0}) {
+    // Nothing was in it before M61: G43 and G49 look alike, and nothing is claimed.
+    return {OffsetOrigin::kRow, tool_, offset_mm};
+  }
   if (u == before_u && w == before_w) {
     if (w == 0 && offset_mm == Vec3{0}) call.origin = OffsetOrigin::kNone;
   } else if (w == 0) {

@@ -87,6 +87,7 @@ bool LengthCheck::matters(const Motion& m, double radius_mm, bool upright, bool 
   const bool works = is_feed(m);
   if (!works && !is_traverse(m)) return false;
   if (!works && touches) return true;
+  if (!works && !m.start_known) return false;
   if (!works && m.to_mm.z > m.from_mm.z) return false;
   if (!upright) return works;
   return comes_near(m, Vec3{0}, radius_mm) ||
