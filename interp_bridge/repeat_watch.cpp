@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kFirstPlaces = std::size_t{1} << 12;
 constexpr std::size_t kMostPlaces = std::size_t{1} << 20;
 constexpr double kEndless_s = 86'400;
+/// Commands of one block: a canned cycle has some, a loop about one block has more.
+constexpr std::uint64_t kMostOfALine = 10'000;
 /// A machine that takes less for a command does not move.
 constexpr double kStands_s = 1e-4;
 constexpr double kRapid_mm_per_s = 1000;
@@ -44,7 +46,8 @@ bool RepeatWatch::seems_endless() const {
 
 void RepeatWatch::take(SourceRef source, std::span<const Motion> motions) {
   const SourceRef before = std::exchange(before_, source);
-  loops_ |= source.file == before.file && source.line < before.line;
+  same_line_ = source == before ? same_line_ + 1 : 0;
+  loops_ |= same_line_ > kMostOfALine || (source.file == before.file && source.line < before.line);
   bool fresh = !loops_;
   for (const Motion& motion : motions) {
     machine_s_ += machine_time_s(motion);

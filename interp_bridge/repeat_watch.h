@@ -33,6 +33,7 @@ class RepeatWatch {
 
   SourceRef before_;
   bool loops_ = false;
+  std::uint64_t same_line_ = 0;        ///< commands of before_, in a row
   std::vector<std::uint64_t> places_;  ///< open addressing, a power of two; 0: free
   std::size_t count_ = 0;
   std::uint64_t news_ = 0;

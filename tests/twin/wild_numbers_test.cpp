@@ -53,7 +53,8 @@ TEST_F(WildNumbers, APositionFarFromEveryMachineIsRefusedWithItsLine) {
     const KerfResult result =
         run_listing(std::string("    6 N5     STRAIGHT_FEED(") + x + ", 0, -1, 0, 0, 0)\n");
     EXPECT_EQ(result.exit_code, 4) << x;
-    EXPECT_NE(result.err.find("part.canon:5: error: interpreter-error: X is at "), result.err.npos) << result.err;
+    EXPECT_NE(result.err.find("part.canon:5: error: interpreter-error: X is at "), result.err.npos)
+        << result.err;
     EXPECT_NE(result.err.find("100000 mm are the most"), result.err.npos) << result.err;
   }
   EXPECT_EQ(run_listing("    6 N5     STRAIGHT_FEED(100000, 0, -1, 0, 0, 0)\n").exit_code, 0);
