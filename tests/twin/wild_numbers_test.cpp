@@ -192,7 +192,7 @@ TEST_F(Endless, ALoopForDays) {
 
 TEST_F(Endless, ProcessorTimeInAll) {
   folder_.write("part.ngc", "G21 G91 F100\no1 repeat [1000000000]\nG1 X0.0001\no1 endrepeat\nM2\n");
-  const KerfResult result = kerf({"canon", "part.ngc", "-o", "out", "--max-cpu-seconds", "0.5"});
+  const KerfResult result = kerf({"canon", "part.ngc", "--out", "out", "--max-cpu-seconds", "0.5"});
   EXPECT_EQ(result.exit_code, 4) << result.err;
   EXPECT_NE(result.err.find("the interpreter has used 0.5 s of processor time"), result.err.npos)
       << result.err;
