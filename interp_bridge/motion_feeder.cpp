@@ -157,7 +157,7 @@ void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t f
     note_unknown_probe();
     unsigned axes = 0;
     for (std::size_t i = first; i < batch_.size(); ++i) {
-      axes |= batch_[i].start_known ? moved_axes(batch_[i]) : kAllAxes;
+      axes |= batch_[i].start_known ? moved_axes(batch_[i]) : probed_axes();
     }
     probe_.offsets |= axes;
     probe_.places |= axes;
@@ -176,6 +176,13 @@ void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t f
     m.from_uvw_mm = m.to_uvw_mm;
     m.arc.sweep_rad = 0;
   }
+}
+
+/// Of a probing move that comes from where nobody knows: the axes that its block names.
+unsigned MotionFeeder::probed_axes() {
+  if (!options_.places.followed) return kAllAxes;
+  const BlockWords* const block = blocks_.at(source_, summary_.files, kAllAxes);
+  return block != nullptr && block->named != 0 ? block->named : kAllAxes;
 }
 
 void MotionFeeder::note_unknown_probe() {

@@ -24,7 +24,7 @@ namespace kerf {
 struct MotionFeederOptions {
   std::vector<int> tool_by_index;  ///< of MotionFold
   ToolLengthSetup lengths;         ///< of MotionFold::set_lengths
-  bool has_tool_table = true;  ///< the user's
+  bool has_tool_table = true;      ///< the user's
   /// Of others the interpreter takes the radius of cutter compensation as 0, which is warned of.
   ToolDiameters diameters;
   std::uint64_t max_commands = 0;  ///< 0: any number
@@ -101,6 +101,7 @@ class MotionFeeder {
   void remark_on_text(const CanonicalCommand& command);
   void remark_on_compensation();
   void follow_probing(const CanonicalCommand& command, std::size_t first);
+  unsigned probed_axes();
   unsigned moved_axes(const Motion& m) const;
   void note_unknown_probe();
   bool set_by_numbers() const;

@@ -264,6 +264,7 @@ struct ToolTableRow {
   int orientation = 0;         ///< Q, lathe: 0 to 9
   std::string remark;
   int line = 0;
+  bool added = false;  ///< not of the table, which does not have the tool: its length is not known
 };
 
 /// Reads tool.tbl as LinuxCNC does, but accepts tabs (with a warning). Bad rows are diagnostics

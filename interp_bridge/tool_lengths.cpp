@@ -24,6 +24,7 @@ std::map<int, Vec3> known_lengths(const std::vector<ToolTableRow>& rows) {
   std::map<int, Vec3> lengths;
   bool any = false;
   for (const ToolTableRow& row : rows) {
+    if (row.added) continue;
     lengths.emplace(row.tool, row.offset_mm);
     any |= row.offset_mm != Vec3{0};
   }

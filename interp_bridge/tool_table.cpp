@@ -293,6 +293,7 @@ std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, b
     row.pocket = ++pocket;
     row.diameter_mm = diameter.mm;
     row.has_diameter = true;
+    row.added = true;
     told.known.insert(tool);
     if (!has_table) continue;
     told.doubts[tool] = fmt::format(

@@ -164,9 +164,8 @@ std::optional<FindingLog::Handle> Checks::check_standing_spindle(const CheckedMo
                                                                  Severity severity) {
   const std::optional<Touch> touch = first_touch(move);
   if (!touch) return std::nullopt;
-  Finding finding =
-      finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm, touch->fraction,
-                 std::string(text));
+  Finding finding = finding_at(FindingId::kSpindleOffContact, move, touch->contact.tip_mm,
+                               touch->fraction, std::string(text));
   finding.severity = std::min(finding.severity, severity);
   finding.depth_mm = touch->contact.depth_mm;
   return spindle_ = log_.add(std::move(finding));

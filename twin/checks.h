@@ -65,6 +65,9 @@ class Checks {
   /// The same for tilted tools.
   bool may_touch(std::span<const CutMove> moves, const Cutter& cutter) const;
 
+  /// It meets material.
+  bool touches(const CheckedMove& move) const { return first_touch(move).has_value(); }
+
   /// rapid-contact. An event ends with the first traverse that touches nothing. True if it touches.
   bool check_traverse(const CheckedMove& move);
   void clear_traverse() { rapid_.reset(); }

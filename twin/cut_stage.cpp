@@ -165,7 +165,8 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
-  if ((m.unknown_from | m.unknown_to) != 0) report_unknown_place(m, step);
+  // Of strokes that nobody knows the place of the punch tells.
+  if (!punch_ && (m.unknown_from | m.unknown_to) != 0) report_unknown_place(m, step);
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (punch_) {
     if (is_feed(m) && m.start_known) note_speed(m, step);
@@ -319,6 +320,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   divide(m);
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
+  if (!timed_) note_contact(move);
   note_depth(m, step);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);

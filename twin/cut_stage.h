@@ -157,6 +157,7 @@ class CutStage : private StepSink {
   void report_nothing_cut();
   void report_missing_feed(const Motion& motion, const TimedStep& step);
   void note_speed(const Motion& motion, const TimedStep& step);
+  void note_contact(const CheckedMove& move);
   void note_depth(const Motion& motion, const TimedStep& step);
   void report_coarse_cells();
   void report_over_feed();
@@ -209,7 +210,9 @@ class CutStage : private StepSink {
   Checks checks_;
   ProgramChecks program_;
   BlankKind blank_ = BlankKind::kUnjudged;
-  bool probes_ = false;  ///< so far
+  bool touched_ = false;   ///< a feed move has met material, whatever the cells have of it
+  int contact_looks_ = 0;  ///< for that
+  bool probes_ = false;    ///< so far
   /// spindle-off-contact of a program without any S word so far.
   std::optional<FindingLog::Handle> speed_unsaid_;
   LoadMeter load_meter_;

@@ -77,6 +77,18 @@ bool CutStage::measure(const Motion& m, const TimedStep& step) {
   return true;
 }
 
+/// In cells that are too coarse for it a groove may remove nothing: the geometry says whether a
+/// move has met material. The first move that cuts is the last that is looked at.
+void CutStage::note_contact(const CheckedMove& move) {
+  constexpr int kMostLooks = 100;
+  if (touched_ || contact_looks_ == kMostLooks || !comes_near(move.motion)) return;
+  flush_whole();
+  for (const ToolUse& use : uses_) touched_ = touched_ || use.removed_mm3 > 0;
+  if (touched_) return;
+  ++contact_looks_;
+  touched_ = checks_.touches(move);
+}
+
 /// Of a whole program over a blank that is known to be one; else only what lies outside.
 void CutStage::report_nothing_cut() {
   if (blank_ == BlankKind::kUnjudged) {
@@ -88,6 +100,7 @@ void CutStage::report_nothing_cut() {
   facts.totals = timeline_.totals();
   facts.probes = probes_;
   facts.came_near = reached_stock_;
+  facts.touched = touched_;
   facts.feed_mm = feed_bounds_mm_;
   facts.blank_mm = stock_.bounds_mm();
   for (const ToolUse& use : uses_) {

@@ -155,7 +155,7 @@ Severity blank_severity(BlankKind blank) {
 std::optional<Finding> nothing_cut(const CutFacts& facts) {
   const MotionTotals& totals = facts.totals;
   if (facts.blank == BlankKind::kUnjudged || facts.removed_mm3 > 0) return std::nullopt;
-  if (facts.probes || facts.undefined) return std::nullopt;
+  if (facts.probes || facts.undefined || facts.touched) return std::nullopt;
   Finding finding;
   finding.id = FindingId::kNothingCut;
   finding.severity = blank_severity(facts.blank);

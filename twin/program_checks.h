@@ -94,6 +94,7 @@ struct CutFacts {
   bool probes = false;     ///< it measures
   bool undefined = false;  ///< there are tools of which nothing is known, which is told
   bool came_near = false;  ///< a feed move, to the blank, in boxes
+  bool touched = false;    ///< a feed move has met material, be it less than the cells show
   double removed_mm3 = 0;
   Box feed_mm;  ///< of the feed moves, while none has come near
   Box blank_mm;

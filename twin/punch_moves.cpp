@@ -89,9 +89,10 @@ bool PunchMoves::strikes_at_end(const Motion& m) const {
 
 namespace {
 
-/// Without a start a coordinate of 0 may be one that the program has not written: the interpreter
-/// begins there.
-bool ends_at_known_place(const Motion& m) { return m.to_mm.x != 0 && m.to_mm.y != 0; }
+bool ends_at_known_place(const Motion& m) {
+  constexpr unsigned kXy = 3;
+  return (m.unknown_to & kXy) == 0;
+}
 
 }  // namespace
 

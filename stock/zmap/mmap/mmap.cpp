@@ -129,7 +129,8 @@ std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& 
   const auto contact = earlier_contact(*near, by_rays, by_head);
   if (tool.lower.empty()) return contact;
   field.middles = false;
-  return earlier_contact(*near, contact, find_first_contact(field, tool.lower, *near, tolerance_mm));
+  return earlier_contact(*near, contact,
+                         find_first_contact(field, tool.lower, *near, tolerance_mm));
 }
 
 std::unique_ptr<StockModel> MMap::snapshot() const {
