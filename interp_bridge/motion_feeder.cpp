@@ -157,7 +157,8 @@ void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t f
     note_unknown_probe();
     unsigned axes = 0;
     for (std::size_t i = first; i < batch_.size(); ++i) {
-      axes |= batch_[i].start_known ? moved_axes(batch_[i]) : probed_axes();
+      const unsigned named = named_axes();
+      axes |= batch_[i].start_known ? moved_axes(batch_[i]) : named != 0 ? named : kAllAxes;
     }
     probe_.offsets |= axes;
     probe_.places |= axes;
@@ -168,7 +169,10 @@ void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t f
   if (command.name == CanonicalName::kUseToolLengthOffset) probe_.tool_length = true;
   for (std::size_t i = first; i < batch_.size(); ++i) {
     Motion& m = batch_[i];
-    if (!m.start_known) continue;
+    if (!m.start_known) {
+      if (probe_.offsets == 0) probe_.places &= ~named_axes();
+      continue;
+    }
     if (probe_.offsets == 0) probe_.places &= ~moved_axes(m);
     m.start_known = false;
     m.from_mm = m.to_mm;
@@ -178,11 +182,11 @@ void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t f
   }
 }
 
-/// Of a probing move that comes from where nobody knows: the axes that its block names.
-unsigned MotionFeeder::probed_axes() {
-  if (!options_.places.followed) return kAllAxes;
+/// Bits of X Y Z that the present block names; 0: it is not known.
+unsigned MotionFeeder::named_axes() {
+  if (!options_.places.followed) return 0;
   const BlockWords* const block = blocks_.at(source_, summary_.files, kAllAxes);
-  return block != nullptr && block->named != 0 ? block->named : kAllAxes;
+  return block != nullptr ? block->named : 0U;
 }
 
 void MotionFeeder::note_unknown_probe() {

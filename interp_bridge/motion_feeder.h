@@ -101,7 +101,7 @@ class MotionFeeder {
   void remark_on_text(const CanonicalCommand& command);
   void remark_on_compensation();
   void follow_probing(const CanonicalCommand& command, std::size_t first);
-  unsigned probed_axes();
+  unsigned named_axes();
   unsigned moved_axes(const Motion& m) const;
   void note_unknown_probe();
   bool set_by_numbers() const;

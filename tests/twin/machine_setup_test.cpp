@@ -218,7 +218,9 @@ TEST_F(MachineSetupTest, SamplesOfLinuxcnc) {
     ++bad;
     for (const Diagnostic& d : diagnostics) {
       if (d.severity != Severity::kError) continue;
-      EXPECT_NE(d.line, 0) << entry.path();
+      // Pieces that others include have nothing of a machine.
+      const bool is_piece = d.message.find("is no INI of a LinuxCNC machine") != std::string::npos;
+      EXPECT_TRUE(d.line != 0 || is_piece) << entry.path();
       std::cout << to_string(d);
     }
   }

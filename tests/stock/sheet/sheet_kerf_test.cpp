@@ -130,7 +130,7 @@ TEST(SheetKerf, what_is_no_number_removes_nothing) {
 TEST(SheetKerf, moves_that_come_from_afar) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}));
   const auto reports =
-      test::cut(*sheet, 2, {line({-1e6, 20}, {1e6, 20}), arc({30, -1e7}, 1e7 + 5, 1.5, 0.2)});
+      test::cut(*sheet, 2, {line({-1e6, 20}, {1e6, 20}), arc({30, -5e5}, 5e5 + 5, 1.5, 0.2)});
   EXPECT_NEAR(reports[0].removed_mm3, 60 * 2 * 2, 1e-2);
   EXPECT_NEAR(reports[1].removed_mm3, 60 * 2 * 2, 1);
 }

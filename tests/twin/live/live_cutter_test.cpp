@@ -248,10 +248,10 @@ TEST(LiveCutter, PositionsOfAnotherMachineAreSuspected) {
   options.timeline.limits.axes[0].min = -250;
   options.timeline.limits.axes[0].max = 250;
   Watch watch(options);
-  for (int i = 0; i < 30; ++i) watch.see({812.3, 20, 60}, 0.1 * i);
+  for (int i = 0; i < 30; ++i) watch.see({612.3, 20, 60}, 0.1 * i);
   ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kAxisLimit});
   EXPECT_EQ(watch.log().kept()[0].text,
-            "X stands at 812.30, beyond the limits of the machine (-250 to 250): are these "
+            "X stands at 612.30, beyond the limits of the machine (-250 to 250): are these "
             "positions of another machine, or in another unit?");
 }
 
