@@ -6,6 +6,7 @@
 
 #include "twin/motion_geometry.h"
 #include "twin/motion_nearest.h"
+#include "twin/planned_pieces.h"
 
 namespace kerf {
 namespace {
@@ -79,12 +80,9 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
     add(motion, timed.start_s, timed.duration_s);
     return;
   }
-  const double share_s = timed.duration_s / static_cast<double>(path.size());
-  double start_s = timed.start_s;
-  for (const PathPiece& part : path) {
-    add(motion_of(motion, part), start_s, share_s);
-    start_s += share_s;
-  }
+  for_each_piece(motion, timed, path, [this](const Motion& piece, const TimedStep& part) {
+    add(piece, part.start_s, part.duration_s);
+  });
 }
 
 void PathFollower::add(const Motion& motion, double start_s, double duration_s) {
