@@ -262,6 +262,7 @@ void CutStage::report_unknown_place(const Motion& m, const TimedStep& step) {
     letters += letters.empty() ? "" : ", ";
     letters += kAxisLetters[i];
   }
+  const bool one = letters.size() == 1;
   Finding finding;
   finding.id = FindingId::kPositionUnknown;
   finding.severity = Severity::kNote;
@@ -270,14 +271,14 @@ void CutStage::report_unknown_place(const Motion& m, const TimedStep& step) {
   if (to_machine) {
     finding.text = fmt::format(
         "goes to a place of the machine (G53, G28, G30), and where the work lies in the machine is "
-        "not known (--work-offset X,Y,Z or --ini says it): such moves are not checked, and {} is "
-        "unknown until a block places it",
-        letters);
+        "not known (--work-offset X,Y,Z or --ini says it): such moves are not checked, and {} {} "
+        "unknown until a block places {}",
+        letters, one ? "is" : "are", one ? "it" : "them");
   } else {
     finding.text = fmt::format(
-        "a feed move while nothing has said where {} stands (--ini does, or a G0 before it that "
-        "names the axis): such moves are not cut",
-        letters);
+        "a feed move while nothing has said where {} {} (--ini does, or a G0 before it that names "
+        "the {}): such moves are not cut",
+        letters, one ? "stands" : "stand", one ? "axis" : "axes");
   }
   log_.add(std::move(finding));
 }
