@@ -86,10 +86,11 @@ void CutStage::take(std::span<const Motion> motions) {
   flush();
 }
 
-void CutStage::take_timed(const Motion& motion, const TimedStep& timed) {
+void CutStage::take_timed(const Motion& motion, const TimedStep& timed,
+                          std::span<const PathPiece> path) {
   timed_ = true;
   ++taken_;
-  step(motion, timed, {});
+  step(motion, timed, path);
 }
 
 void CutStage::hold_reports() {
@@ -316,12 +317,12 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
-  if (!timed_) program_.feeds(m, step, mounted_->number);
+  if (!watched_) program_.feeds(m, step, mounted_->number);
   note_speed(m, step);
   divide(m);
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
-  if (!timed_) note_contact(move);
+  if (!watched_) note_contact(move);
   note_depth(m, step);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);
@@ -383,7 +384,7 @@ void CutStage::note_reach(const Motion& m) {
 void CutStage::check_turns(const Motion& m, const TimedStep& step) {
   if (rotary_check_) {
     // Sensors tremble: between two samples they are no measure of speed.
-    rotary_check_->check(m, timed_ ? 0 : step.duration_s, rotary_faults_);
+    rotary_check_->check(m, watched_ ? 0 : step.duration_s, rotary_faults_);
     if (!rotary_faults_.empty()) report_rotary_faults(step);
   }
   if (!assumptions_told_ && !motion_moves_.is_upright(m)) report_assumptions(m);
@@ -692,7 +693,7 @@ void CutStage::collect_reports() {
 }
 
 void CutStage::count_feed(ToolUse& use, double duration_s, double removed_mm3) const {
-  if (timed_) {
+  if (watched_) {
     use.grain_s += duration_s;
     use.grain_mm3 += removed_mm3;
     if (use.grain_s < kGrain_s) return;

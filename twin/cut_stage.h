@@ -56,8 +56,7 @@ class CutStage : private StepSink {
   /// the other. Outlives the stage.
   void label_by(CutLabels& labels) { labels_ = &labels; }
   /// The workpiece is a sheet, and the tools are torches: what cuts, and what it is checked for, is
-  /// TorchStage's. Before the first motion; not together with label_by() and take_timed() of a
-  /// machine that is watched.
+  /// TorchStage's. Before the first motion; not together with label_by() and watch_machine().
   void burn(BeamSettings settings) { torch_.emplace(stock_, book_, log_, std::move(settings)); }
   /// The same of a sheet under a punch: what cuts is PunchStage's.
   void punch(TurretPointer turret) { punch_.emplace(stock_, log_, std::move(turret)); }
@@ -75,9 +74,16 @@ class CutStage : private StepSink {
   /// Motions in program order. They are given to the model as soon as their times are known (which
   /// depend on those behind them), the last ones in finish(). The model may hold some back, too.
   void take(std::span<const Motion> motions);
-  /// A motion of a machine that is watched: its time is known. Not to be mixed with take(), whose
-  /// motions wait for theirs.
-  void take_timed(const Motion& motion, const TimedStep& timed);
+  /// The motions are those of a machine that is watched, in take_timed(): not the words of a
+  /// program, but what sensors tell, in steps shorter than a cell. What lies in the order of the
+  /// words (ProgramChecks) is not looked for, cutting time is counted in grains. Before the first
+  /// motion.
+  void watch_machine() { watched_ = true; }
+  /// A motion whose time is known: of a program that has been planned already, or of a machine that
+  /// is watched. Not to be mixed with take(), whose motions wait for their times. `path`: what the
+  /// machine makes of it, as in StepSink.
+  void take_timed(const Motion& motion, const TimedStep& timed,
+                  std::span<const PathPiece> path = {});
   /// A motion of the program that a machine which is watched has made, in the parts that
   /// take_timed() was given: what is only to be seen of the whole.
   void check_whole(const Motion& motion, const TimedStep& timed);
@@ -201,6 +207,7 @@ class CutStage : private StepSink {
   std::vector<CutMove> divided_;  ///< the present motion
   Timeline timeline_;
   bool timed_ = false;         ///< motions come with their times: take_timed()
+  bool watched_ = false;       ///< watch_machine()
   std::uint64_t taken_ = 0;    ///< motions
   std::uint64_t stepped_ = 0;  ///< of them, those whose time is known
   bool holding_ = false;       ///< reports
@@ -210,9 +217,11 @@ class CutStage : private StepSink {
   Checks checks_;
   ProgramChecks program_;
   BlankKind blank_ = BlankKind::kUnjudged;
-  bool touched_ = false;   ///< a feed move has met material, whatever the cells have of it
-  int contact_looks_ = 0;  ///< for that
-  bool probes_ = false;    ///< so far
+  bool touched_ = false;          ///< a feed move has met material, whatever the cells have of it
+  int contact_looks_ = 0;         ///< for that
+  bool probes_ = false;           ///< so far
+  std::uint64_t moves_made_ = 0;  ///< motions that move
+  std::uint64_t feed_moves_made_ = 0;  ///< of them, those that are no traverses
   /// spindle-off-contact of a program without any S word so far.
   std::optional<FindingLog::Handle> speed_unsaid_;
   LoadMeter load_meter_;

@@ -19,7 +19,7 @@ constexpr double kLongMovePart = 0.005;
 /// found wrong.
 bool CutStage::stands(const Motion& m) const {
   if (m.spindle == SpindleState::kStopped) return true;
-  return m.spindle_rpm == 0 && (m.speed_said || !timed_);
+  return m.spindle_rpm == 0 && (m.speed_said || !watched_);
 }
 
 /// Before anything is made of the motion. Of a machine that is watched nobody asks why it stops,
@@ -28,8 +28,12 @@ void CutStage::watch_program(const Motion& m, const TimedStep& step) {
   if (speed_unsaid_ && m.speed_said) {
     log_.raise(*std::exchange(speed_unsaid_, FindingLog::kMaxKept), Severity::kError);
   }
-  if (timed_) return;
-  probes_ = probes_ || m.kind == MotionKind::kProbe;
+  if (watched_) return;
+  const bool probes = m.kind == MotionKind::kProbe;
+  probes_ = probes_ || probes;
+  const bool feeds = probes || is_feed(m);
+  if (feeds) ++feed_moves_made_;
+  if (feeds || is_traverse(m)) ++moves_made_;
   if (m.kind == MotionKind::kToolChange) {
     program_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
     program_.end_tool();
@@ -63,7 +67,7 @@ void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
 }
 
 /// Of a feed move that lasts: how long it really cuts, and how fast at most. Short ones count
-/// whole, and their rates together (add_cutting).
+/// whole, and their rates together (add_cutting). Of a program that is played nobody asks.
 bool CutStage::measure(const Motion& m, const TimedStep& step) {
   if (timed_ || holding_ || !is_feed(m) || divided_.size() != 1) return false;
   ToolUse& use = uses_[use_];
@@ -97,7 +101,8 @@ void CutStage::report_nothing_cut() {
   }
   CutFacts facts;
   facts.blank = blank_;
-  facts.totals = timeline_.totals();
+  facts.moves = moves_made_;
+  facts.feed_moves = feed_moves_made_;
   facts.probes = probes_;
   facts.came_near = reached_stock_;
   facts.touched = touched_;

@@ -153,16 +153,15 @@ Severity blank_severity(BlankKind blank) {
 }
 
 std::optional<Finding> nothing_cut(const CutFacts& facts) {
-  const MotionTotals& totals = facts.totals;
   if (facts.blank == BlankKind::kUnjudged || facts.removed_mm3 > 0) return std::nullopt;
   if (facts.probes || facts.undefined || facts.touched) return std::nullopt;
   Finding finding;
   finding.id = FindingId::kNothingCut;
   finding.severity = blank_severity(facts.blank);
-  if (totals.moves == 0) {
+  if (facts.moves == 0) {
     finding.severity = Severity::kError;
     finding.text = "the program moves nothing";
-  } else if (totals.feed_moves == 0) {
+  } else if (facts.feed_moves == 0) {
     finding.severity = Severity::kWarning;
     finding.text = "nothing is cut: the program has no feed moves";
   } else if (!facts.came_near && !facts.feed_mm.empty()) {

@@ -3,6 +3,7 @@
 // nothing cut at all.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "interp_bridge/motion.h"
@@ -90,11 +91,12 @@ class ProgramChecks {
 /// sound that it has not.
 struct CutFacts {
   BlankKind blank = BlankKind::kUnjudged;
-  MotionTotals totals;
-  bool probes = false;     ///< it measures
-  bool undefined = false;  ///< there are tools of which nothing is known, which is told
-  bool came_near = false;  ///< a feed move, to the blank, in boxes
-  bool touched = false;    ///< a feed move has met material, be it less than the cells show
+  std::uint64_t moves = 0;       ///< motions that move
+  std::uint64_t feed_moves = 0;  ///< of them, those that are no traverses, probing ones included
+  bool probes = false;           ///< it measures
+  bool undefined = false;        ///< there are tools of which nothing is known, which is told
+  bool came_near = false;        ///< a feed move, to the blank, in boxes
+  bool touched = false;          ///< a feed move has met material, be it less than the cells show
   double removed_mm3 = 0;
   Box feed_mm;  ///< of the feed moves, while none has come near
   Box blank_mm;

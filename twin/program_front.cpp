@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+#include <regex>
+#include <string>
 #include <utility>
 
 #include "twin/motion_geometry.h"
@@ -19,6 +22,24 @@ void add_program_finding(FindingId id, Severity severity, std::string text, Find
   finding.severity = severity;
   finding.text = std::move(text);
   log.add(std::move(finding));
+}
+
+/// "o<name> sub", "O100 SUB".
+bool defines_subroutine(const std::string& line) {
+  static const std::regex kSub(R"(^\s*o\s*(<[^>]*>|\d+)\s*sub\b)", std::regex::icase);
+  return std::regex_search(line, kSub);
+}
+
+/// It moves nothing, since it only defines what other programs call.
+bool is_library(const std::string& path, const ProgramSummary& summary) {
+  for (const char* const name : {"STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"}) {
+    if (summary.canonical_commands.contains(name)) return false;
+  }
+  std::ifstream text(path);
+  for (std::string line; std::getline(text, line);) {
+    if (defines_subroutine(line)) return true;
+  }
+  return false;
 }
 
 void add_what_is_not_simulated(const ProgramSummary& summary, FindingLog& log) {
@@ -141,6 +162,17 @@ std::optional<Finding> BlankSurvey::warning() const {
       "--stock SPEC says better)",
       describe(guess_.blank()), margin_mm_);
   return finding;
+}
+
+BlankKind judged_blank(const SessionOptions& options, const ProgramFront& front,
+                       const ProgramSummary& summary, bool sound) {
+  if (!sound || options.stock.additive) return BlankKind::kUnjudged;
+  if (options.lines.from > 0 || options.lines.until > 0) return BlankKind::kUnjudged;
+  if (summary.stopped_early || is_library(options.program.path, summary)) {
+    return BlankKind::kUnjudged;
+  }
+  if (front.blank_guessed) return BlankKind::kGuessed;
+  return front.blank && !front.blank->state_file.empty() ? BlankKind::kSaved : BlankKind::kGiven;
 }
 
 ProgramEnd conclude_program(const ProgramSummary& summary, Diagnostics said,

@@ -17,6 +17,7 @@
 #include "twin/finding.h"
 #include "twin/line_window.h"
 #include "twin/outcome.h"
+#include "twin/program_checks.h"
 #include "twin/session_parts.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
@@ -92,6 +93,12 @@ class BlankSurvey {
   double radius_mm_ = 0;  ///< of that tool
   std::vector<CutMove> divided_;
 };
+
+/// For nothing-cut: what it means that nothing of this blank is cut (CutStage::judge_blank).
+/// Nothing is said of a part of a program, of one that was refused (`sound` = false) or only
+/// defines subroutines, nor where material is added. May read the program's text once more.
+BlankKind judged_blank(const SessionOptions& options, const ProgramFront& front,
+                       const ProgramSummary& summary, bool sound);
 
 /// How the reading of a program ended.
 struct ProgramEnd {

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
-#include <regex>
 
 #include "base/helper_thread.h"
 #include "interp_bridge/tool_lengths.h"
@@ -19,12 +17,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// "o<name> sub", "O100 SUB".
-bool defines_subroutine(const std::string& line) {
-  static const std::regex kSub(R"(^\s*o\s*(<[^>]*>|\d+)\s*sub\b)", std::regex::icase);
-  return std::regex_search(line, kSub);
 }
 
 }  // namespace
@@ -259,7 +251,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (pass == Pass::kTilted) return std::nullopt;
   const bool whole = pass == Pass::kWhole;
   const Clock::time_point finish_start = Clock::now();
-  if (!has_error(interpreter_) && !options_.stock.additive) stage.judge_blank(blank_kind());
+  stage.judge_blank(judged_blank(options_, front_, report_.program, !has_error(interpreter_)));
   // Where a sheet's program was stopped it may not have come to cut yet.
   stage.finish(whole && !(front_.is_sheet() && window_.over()));
   const bool cut_whole = whole && !stage.stopped();  // the last motions come with the end
@@ -269,27 +261,6 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   complete_report(stage);
   if (has_error(diagnostics)) return Outcome::kFailed;
   return conclude(!cut_whole);
-}
-
-/// It moves nothing, since it only defines what other programs call.
-bool Session::is_library() const {
-  for (const char* const name : {"STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"}) {
-    if (report_.program.canonical_commands.contains(name)) return false;
-  }
-  std::ifstream text(options_.program.path);
-  for (std::string line; std::getline(text, line);) {
-    if (defines_subroutine(line)) return true;
-  }
-  return false;
-}
-
-/// Of a part of a program nobody can say that it ought to have cut; nor of a library of
-/// subroutines.
-BlankKind Session::blank_kind() const {
-  if (options_.lines.from > 0 || options_.lines.until > 0) return BlankKind::kUnjudged;
-  if (report_.program.stopped_early || is_library()) return BlankKind::kUnjudged;
-  if (front_.blank_origin == "guessed") return BlankKind::kGuessed;
-  return front_.blank && !front_.blank->state_file.empty() ? BlankKind::kSaved : BlankKind::kGiven;
 }
 
 Outcome Session::conclude(bool stopped) {

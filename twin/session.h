@@ -86,8 +86,6 @@ class Session {
   bool begin_again(Diagnostics& diagnostics, Outcome& outcome);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
   std::optional<Outcome> cut_and_report(std::stop_token stop, Diagnostics& diagnostics);
-  BlankKind blank_kind() const;
-  bool is_library() const;
   Outcome conclude(bool stopped);
   void complete_report(const CutStage& stage);
   void complete_timing();

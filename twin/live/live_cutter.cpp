@@ -59,6 +59,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       follower_(options_.follow),
       run_(ToolPathTolerance::of_cell(stock.cell_mm()).tip_mm, options_.follow.lever_mm),
       join_after_s_(kJoin_s) {
+  stage_.watch_machine();
   stage_.check_by(options_.checks);
   if (program) {
     ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);

@@ -39,6 +39,7 @@ Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank,
       scope_(scope) {
   stage_.set_frame(track.frame());
   stage_.check_by(checks);
+  stage_.judge_blank(scope.blank);
   if (turret) {
     stage_.punch(turret);
   } else if (beam) {
@@ -47,16 +48,42 @@ Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank,
   if (scope_.from > 0) stage_.hold_reports();
 }
 
+/// The motion at reached_, or all pieces of its step. Returns the number of the motion behind it.
+std::size_t Frontier::take_one(std::size_t settled) {
+  if (!steps_.track) {
+    stock_.expect(settled, reached_ + 1);
+    stage_.take_timed(track_.motion(reached_), track_.step(reached_));
+    return reached_ + 1;
+  }
+  const std::size_t step = next_step_++;
+  const std::size_t end =
+      next_step_ < steps_.first_pieces.size() ? steps_.first_pieces[next_step_] : track_.size();
+  const Motion programmed = steps_.track->motion(step);
+  path_.clear();
+  for (std::size_t i = reached_; i < end; ++i) {
+    const Motion piece = track_.motion(i);
+    path_.push_back({piece.kind == MotionKind::kArc, piece.from_mm, piece.to_mm, piece.arc});
+  }
+  // A motion that has no path, or is run through as it is.
+  if (path_.size() == 1 && path_[0].curved == (programmed.kind == MotionKind::kArc) &&
+      path_[0].from_mm == programmed.from_mm && path_[0].to_mm == programmed.to_mm) {
+    path_.clear();
+  }
+  stock_.expect(settled, end);
+  stage_.take_timed(programmed, steps_.track->step(step), path_);
+  return end;
+}
+
 void Frontier::advance(std::size_t end) {
   end = std::min(end, track_.size());
   const std::size_t first = reached_;
   const std::shared_ptr<const Cutter> cutter = first < end ? record_.cutter(first) : nullptr;
   double cells = 0;
-  for (; reached_ < end && reached_ - first < kMotionsAtOnce && cells < kCellsAtOnce; ++reached_) {
-    stock_.expect(first, reached_ + 1);
+  while (reached_ < end && reached_ - first < kMotionsAtOnce && cells < kCellsAtOnce) {
     if (reached_ == scope_.from && scope_.from > 0) stage_.release_reports();
-    stage_.take_timed(track_.motion(reached_), track_.step(reached_));
-    if (cutter) cells += cells_under(track_.cut_move(reached_), *cutter, stock_.cell_mm());
+    for (const std::size_t next = take_one(first); reached_ < next; ++reached_) {
+      if (cutter) cells += cells_under(track_.cut_move(reached_), *cutter, stock_.cell_mm());
+    }
   }
   stage_.take({});  // hands over what it has collected
   if (reached_ < track_.size() || complete_) return;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
@@ -11,6 +13,7 @@
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
+#include "twin/playback/programmed_steps.h"
 #include "twin/playback/recording_stock.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
@@ -22,6 +25,7 @@ namespace kerf {
 struct ReportScope {
   std::size_t from = 0;
   bool whole = true;
+  BlankKind blank = BlankKind::kUnjudged;
 };
 
 /// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
@@ -34,7 +38,11 @@ class Frontier {
            const std::optional<BeamSettings>& beam = {}, const TurretPointer& turret = {},
            const CheckOptions& checks = {});
 
-  /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it.
+  /// The findings are to be those of these steps, the track being of their planned path. Before the
+  /// first advance().
+  void judge(ProgrammedSteps steps) { steps_ = std::move(steps); }
+  /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it
+  /// (of planned paths: but for the other pieces of a step that begins before it).
   void advance(std::size_t end);
   /// Motions that have been cut.
   std::size_t reached() const { return reached_; }
@@ -47,6 +55,7 @@ class Frontier {
   const FindingLog& findings() const { return log_; }
 
  private:
+  std::size_t take_one(std::size_t settled);
   const ProgramTrack& track_;
   MotionMoves moves_;
   CutRecord record_;
@@ -55,6 +64,9 @@ class Frontier {
   FindingLog log_;
   CutStage stage_;
   ReportScope scope_;
+  ProgrammedSteps steps_;
+  std::size_t next_step_ = 0;    ///< of those
+  std::vector<PathPiece> path_;  ///< of the present one
   std::size_t reached_ = 0;
   bool complete_ = false;
 };

@@ -123,6 +123,7 @@ class Loading {
       : control_(control),
         program_(*front.program),
         window_(options.lines),
+        planned_(builder_, options.timeline.planner.with_path && !options.turret),
         timeline_(timing_of(options, front), planned_),
         tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front),
                options.turret),
@@ -150,6 +151,9 @@ class Loading {
   std::vector<ProgramTool> tools() { return tools_.take(); }
   std::shared_ptr<const ProgramTrack> build(const std::vector<std::string>& files) {
     return builder_.build(files, program_.workpiece_frame());
+  }
+  ProgrammedSteps programmed(const std::vector<std::string>& files) {
+    return planned_.take_programmed(files, program_.workpiece_frame());
   }
 
  private:
@@ -179,7 +183,7 @@ class Loading {
   Program& program_;
   LineWindow window_;
   ProgramTrackBuilder builder_;
-  PlannedSteps planned_{builder_};
+  PlannedSteps planned_;
   Timeline timeline_;
   ToolList tools_;
   TiltWatch tilt_;
@@ -229,6 +233,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   }
   if (!make_room_for_tilt(options, loading.tilt(), *front, diagnostics, outcome)) return nullptr;
   if (!front->stock.stock && !fill_front(options, *front, diagnostics, outcome)) return nullptr;
+  const BlankKind blank_kind = judged_blank(options, *front, loaded->summary, !has_error(said));
   const ProgramEnd end =
       conclude_program(loaded->summary, std::move(said), loading.window(), stopped, remarks);
   loaded->outcome = outcome = end.outcome;
@@ -241,8 +246,10 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   player.report_from = loading.report_from();
   // As Session has it.
   player.checks = {front->blank_guessed, options.below_mm};
+  player.blank_kind = blank_kind;
   player.whole = !stopped && !(front->is_sheet() && loading.window().over());
   player.track = loading.build(loaded->summary.files);
+  player.programmed = loading.programmed(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
   player.blank = std::move(front->stock.stock);
   // A torch has no height by which a point could be said to be cut or not.

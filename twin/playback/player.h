@@ -19,6 +19,8 @@
 #include "twin/checks.h"
 #include "twin/finding.h"
 #include "twin/playback/program_track.h"
+#include "twin/playback/programmed_steps.h"
+#include "twin/program_checks.h"
 #include "twin/timeline.h"
 #include "twin/tools.h"
 #include "twin/turret.h"
@@ -30,6 +32,8 @@ struct PlayerProgram {
   std::shared_ptr<const ProgramTrack> track;
   std::unique_ptr<StockModel> blank;  ///< uncut
   ToolSources tools;
+  /// Where the track is of the path that the machine runs: what the program says. Not of punches.
+  ProgrammedSteps programmed;
   /// Limits for the checks (over-feed, axis limits). What is cut is the track;
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
@@ -39,6 +43,8 @@ struct PlayerProgram {
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
   CheckOptions checks;
+  /// For nothing-cut: judged_blank().
+  BlankKind blank_kind = BlankKind::kUnjudged;
   bool whole = true;  ///< false: it goes on behind the track's end, unread
   /// Findings that are known from reading the program; listed with those of cutting it.
   std::vector<Finding> remarks;

@@ -41,11 +41,13 @@ PlayerEngine::PlayerEngine(PlayerProgram program, const PlayerOptions& options)
       remarks_(std::move(program.remarks)),
       store_(options.keyframe_bytes),
       frontier_(*track_, std::move(program.blank), std::move(program.tools), program.timeline,
-                store_, {program.report_from, program.whole}, program.beam, program.turret,
-                program.checks),
+                store_, {program.report_from, program.whole, program.blank_kind}, program.beam,
+                program.turret, program.checks),
       cursor_(*track_, frontier_.moves(), frontier_.record(), store_),
       place_(track_->place_before(0)),
-      findings_(std::make_shared<const std::vector<Finding>>(by_time({}, remarks_))) {}
+      findings_(std::make_shared<const std::vector<Finding>>(by_time({}, remarks_))) {
+  frontier_.judge(std::move(program.programmed));
+}
 
 void PlayerEngine::command(const PlayerCommand& c) {
   ticket_ = c.ticket;

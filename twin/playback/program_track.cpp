@@ -75,6 +75,10 @@ Motion ProgramTrack::motion(std::size_t i) const {
   m.arc.sweep_rad = arc_sweep_rad_.real_at(i);
   m.feed_mm_per_min = feed_.real_at(i);
   m.spindle_rpm = spindle_rpm_.real_at(i);
+  m.selected_tool = static_cast<int>(static_cast<std::uint32_t>(selected_tool_.at(i)));
+  const std::uint64_t selected_at = selected_at_.at(i);
+  m.selected_at = {static_cast<std::uint32_t>(selected_at >> 32),
+                   static_cast<std::uint32_t>(selected_at)};
   return m;
 }
 
@@ -225,8 +229,9 @@ std::size_t ProgramTrack::bytes() const {
   for (const auto* columns : {&to_mm_, &to_abc_deg_, &to_uvw_mm_, &arc_center_mm_}) {
     for (const PackedColumn& column : *columns) sum += column.bytes() - sizeof column;
   }
-  for (const PackedColumn* column : {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_,
-                                     &duration_s_, &programmed_, &allowed_, &line_, &mode_}) {
+  for (const PackedColumn* column :
+       {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_, &duration_s_, &programmed_, &allowed_,
+        &line_, &selected_tool_, &selected_at_, &mode_}) {
     sum += column->bytes() - sizeof *column;
   }
   sum += modes_.capacity() * sizeof(Motion) + jumps_.capacity() * sizeof(Jump);
@@ -244,12 +249,16 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.mist} << 25 | std::uint64_t{m.feed_per_rev} << 26 |
       std::uint64_t{m.start_known} << 27 | std::uint64_t{m.user_m} << 28 |
       std::uint64_t{m.rapid} << 36 | std::uint64_t{m.unknown_from} << 37 |
-      std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43;
+      std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43 |
+      std::uint64_t{m.speed_said} << 44;
+  const std::uint64_t stops = std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
+                              static_cast<std::uint64_t>(m.chain_end) << 16;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
   const auto floats = [](float a, float b) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);
   };
   return {flags,
+          stops,
           tool << 32 | m.source.file,
           floats(m.blend_tolerance_mm, m.merge_tolerance_mm),
           bits(m.duration_s),
@@ -289,6 +298,8 @@ std::uint64_t ProgramTrackBuilder::mode_of(const Motion& m) {
   if (fresh) {
     Motion mode = m;
     mode.source.line = 0;
+    mode.selected_tool = 0;
+    mode.selected_at = {};
     mode.from_mm = mode.to_mm = mode.from_uvw_mm = mode.to_uvw_mm = Vec3{0};
     mode.from_abc_deg = mode.to_abc_deg = {};
     mode.arc.center_mm = Vec3{0};
@@ -335,6 +346,8 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   t.allowed_.push_real(timed.allowed_mm_per_min);
   t.mode_.push(mode_of(m));
   t.line_.push(m.source.line);
+  t.selected_tool_.push(static_cast<std::uint32_t>(m.selected_tool));
+  t.selected_at_.push(line_key(m.selected_at));
   previous_ = m;
 }
 
@@ -360,8 +373,9 @@ std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::
   for (auto* columns : {&t.to_mm_, &t.to_abc_deg_, &t.to_uvw_mm_, &t.arc_center_mm_}) {
     for (PackedColumn& column : *columns) column.shrink();
   }
-  for (PackedColumn* column : {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_,
-                               &t.duration_s_, &t.programmed_, &t.allowed_, &t.line_, &t.mode_}) {
+  for (PackedColumn* column :
+       {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_, &t.duration_s_, &t.programmed_,
+        &t.allowed_, &t.line_, &t.selected_tool_, &t.selected_at_, &t.mode_}) {
     column->shrink();
   }
   t.modes_.shrink_to_fit();

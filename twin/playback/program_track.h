@@ -130,11 +130,13 @@ class ProgramTrack {
   PackedColumn programmed_{Of::kReals};
   PackedColumn allowed_{Of::kReals};
   PackedColumn line_{Of::kIntegers};
-  PackedColumn mode_{Of::kIntegers};        ///< indexes modes_
-  std::vector<Motion> modes_;               ///< all that motions share; what varies is zero
-  std::vector<Jump> jumps_;                 ///< in order
-  std::vector<std::uint64_t> block_start_;  ///< a bit a motion
-  std::vector<std::uint32_t> lines_;        ///< first motions of blocks, by (file, line, motion)
+  PackedColumn selected_tool_{Of::kIntegers};
+  PackedColumn selected_at_{Of::kIntegers};  ///< file and line
+  PackedColumn mode_{Of::kIntegers};         ///< indexes modes_
+  std::vector<Motion> modes_;                ///< all that motions share; what varies is zero
+  std::vector<Jump> jumps_;                  ///< in order
+  std::vector<std::uint64_t> block_start_;   ///< a bit a motion
+  std::vector<std::uint32_t> lines_;         ///< first motions of blocks, by (file, line, motion)
   std::vector<std::uint32_t> tool_changes_;
   std::vector<std::string> files_;
   WorkpieceFrame frame_;
@@ -155,7 +157,7 @@ class ProgramTrackBuilder final : public StepSink {
 
  private:
   /// The bits of what motions share.
-  using ModeKey = std::array<std::uint64_t, 28>;
+  using ModeKey = std::array<std::uint64_t, 29>;
   static ModeKey key_of(const Motion& motion);
   std::uint64_t mode_of(const Motion& motion);
   void sort_lines();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "tests/interp_bridge/program_test_support.h"
 #include "twin/finding_json.h"
@@ -115,6 +116,17 @@ class LoadProgram : public testing::Test {
                 sorted(report.findings.kept(), report.program.files));
     }
     compared_findings_ = report.findings.kept().size();
+    compared_ids_.clear();
+    for (const Finding& finding : report.findings.kept()) compared_ids_.insert(finding.id);
+  }
+  /// A program of which the dry run finds this trouble, programmed and as the machine runs it.
+  void expect_as_session_with(FindingId id) {
+    for (const bool planned : {false, true}) {
+      SCOPED_TRACE(fmt::format("{}, planned {}", to_string(id), planned));
+      options_.timeline.planner.with_path = planned;
+      expect_as_session();
+      EXPECT_TRUE(compared_ids_.contains(id));
+    }
   }
 
   TestFolder folder_;
@@ -122,6 +134,7 @@ class LoadProgram : public testing::Test {
   Diagnostics diagnostics_;
   Outcome outcome_ = Outcome::kUsageError;
   std::size_t compared_findings_ = 0;
+  std::set<FindingId> compared_ids_;
 };
 
 /// Rows on four sides of a bar that a table turns about X, and one while it turns.
@@ -179,13 +192,13 @@ TEST_F(LoadProgram, EndsAsADryRunDoes) {
   write(slots());
   give_blank();
   expect_as_session();
-  EXPECT_EQ(compared_findings_, 2U);
+  EXPECT_EQ(compared_findings_, 3U) << "two rapids, and a spindle that no S word makes turn";
 }
 
 TEST_F(LoadProgram, WithAGuessedBlankToo) {
   write(slots());
   expect_as_session();
-  EXPECT_EQ(compared_findings_, 3U);
+  EXPECT_EQ(compared_findings_, 4U) << "the guess itself, two rapids, and the speed never said";
 }
 
 TEST_F(LoadProgram, WithABlankAndToolsOfComments) {
@@ -211,6 +224,80 @@ TEST_F(LoadProgram, PartsOfAProgramAsADryRunTakesThem) {
       expect_as_session();
     }
   }
+}
+
+/// Tool 1 turns at a speed that is said, and goes down to the middle of the block.
+std::vector<std::pair<int, std::string>> in_the_block() {
+  return {{1, "SELECT_TOOL(1)"},
+          {1, "CHANGE_TOOL(1)"},
+          {2, "SET_SPINDLE_SPEED(0, 8000.0000)"},
+          {2, "START_SPINDLE_CLOCKWISE(0)"},
+          {2, "SET_FEED_RATE(600.0000)"},
+          {3, to("STRAIGHT_TRAVERSE", 20, 20, 5)},
+          {4, to("STRAIGHT_FEED", 20, 20, -2)}};
+}
+
+/// What lies in the order of a program's words, and what it does as a whole.
+TEST_F(LoadProgram, TroublesOfAWholeProgramAsADryRunFindsThem) {
+  give_blank();
+  auto commands = in_the_block();
+  commands.emplace_back(5, "SELECT_TOOL(2)");
+  commands.emplace_back(6, to("STRAIGHT_FEED", 25, 20, -2));
+  commands.emplace_back(7, to("STRAIGHT_TRAVERSE", 25, 20, 5));
+  commands.emplace_back(8, "PROGRAM_END()");
+  write(listing(commands));
+  expect_as_session_with(FindingId::kToolNotChanged);
+
+  commands = in_the_block();
+  commands.emplace_back(5, "PROGRAM_STOP()");
+  commands.emplace_back(6, to("STRAIGHT_TRAVERSE", 20, 20, 5));
+  commands.emplace_back(7, "PROGRAM_END()");
+  write(listing(commands));
+  expect_as_session_with(FindingId::kStopInPart);
+
+  commands = in_the_block();
+  commands.emplace_back(5, to("STRAIGHT_FEED", 30, 20, -2));
+  commands.emplace_back(6, to("STRAIGHT_TRAVERSE", 30, 20, 5));
+  commands.emplace_back(7, "PROGRAM_END()");
+  write(listing(commands));
+  options_.tools.clear();
+  options_.tools.push_back(std::move(parse_tool_argument("1=drill:6:118").value()));
+  expect_as_session_with(FindingId::kDrillSideways);
+}
+
+TEST_F(LoadProgram, NothingCutAsADryRunFindsIt) {
+  auto commands = in_the_block();
+  commands.emplace_back(5, to("STRAIGHT_TRAVERSE", 20, 20, 5));
+  commands.emplace_back(6, "PROGRAM_END()");
+  write(listing(commands));
+  options_.blank = parse_blank("box:0,0,-20:40,40,-10").value();
+  expect_as_session_with(FindingId::kNothingCut);
+  // Of a part of the program nobody can say that it ought to have cut.
+  options_.lines = {1, 5};
+  expect_as_session();
+  EXPECT_FALSE(compared_ids_.contains(FindingId::kNothingCut));
+  options_.lines = {};
+  commands.erase(commands.begin() + 6);  // no feed move is left; the blank is guessed
+  write(listing(commands));
+  options_.blank.reset();
+  expect_as_session_with(FindingId::kNothingCut);
+  options_.program.path = folder_.write("empty.canon", listing({{1, "PROGRAM_END()"}}));
+  give_blank();
+  expect_as_session_with(FindingId::kNothingCut);
+}
+
+/// The spindle is told to turn before anybody has said how fast: a warning, which becomes an error
+/// when an S word comes after all.
+TEST_F(LoadProgram, ASpeedThatComesTooLateAsADryRunFindsIt) {
+  give_blank();
+  auto commands = in_the_block();
+  commands.erase(commands.begin() + 2);
+  commands.emplace_back(5, "SET_SPINDLE_SPEED(0, 8000.0000)");
+  commands.emplace_back(6, to("STRAIGHT_FEED", 25, 20, -2));
+  commands.emplace_back(7, to("STRAIGHT_TRAVERSE", 25, 20, 5));
+  commands.emplace_back(8, "PROGRAM_END()");
+  write(listing(commands));
+  expect_as_session_with(FindingId::kSpindleOffContact);
 }
 
 /// Rows of short moves that turn: their corners are rounded under G64.

@@ -14,15 +14,32 @@ namespace {
 std::vector<std::uint64_t> bits_of(const Motion& m) {
   std::vector<std::uint64_t> bits;
   const auto add = [&](double value) { bits.push_back(std::bit_cast<std::uint64_t>(value)); };
-  for (const auto integer :
-       {static_cast<std::int64_t>(m.kind), static_cast<std::int64_t>(m.spindle),
-        static_cast<std::int64_t>(m.flood), static_cast<std::int64_t>(m.mist),
-        static_cast<std::int64_t>(m.path_mode), static_cast<std::int64_t>(m.feed_per_rev),
-        static_cast<std::int64_t>(m.start_known), static_cast<std::int64_t>(m.tool),
-        static_cast<std::int64_t>(m.source.file), static_cast<std::int64_t>(m.source.line),
-        static_cast<std::int64_t>(m.length.verdict),
-        static_cast<std::int64_t>(m.length.offset_tool),
-        static_cast<std::int64_t>(m.length.set_at.line)}) {
+  for (const auto integer : {static_cast<std::int64_t>(m.kind),
+                             static_cast<std::int64_t>(m.spindle),
+                             static_cast<std::int64_t>(m.flood),
+                             static_cast<std::int64_t>(m.mist),
+                             static_cast<std::int64_t>(m.path_mode),
+                             static_cast<std::int64_t>(m.feed_per_rev),
+                             static_cast<std::int64_t>(m.start_known),
+                             static_cast<std::int64_t>(m.tool),
+                             static_cast<std::int64_t>(m.source.file),
+                             static_cast<std::int64_t>(m.source.line),
+                             static_cast<std::int64_t>(m.length.verdict),
+                             static_cast<std::int64_t>(m.length.offset_tool),
+                             static_cast<std::int64_t>(m.length.set_at.file),
+                             static_cast<std::int64_t>(m.length.set_at.line),
+                             static_cast<std::int64_t>(m.unknown_from),
+                             static_cast<std::int64_t>(m.unknown_to),
+                             static_cast<std::int64_t>(m.to_machine_place),
+                             static_cast<std::int64_t>(m.speed_said),
+                             static_cast<std::int64_t>(m.user_m),
+                             static_cast<std::int64_t>(m.rapid),
+                             static_cast<std::int64_t>(m.halts),
+                             static_cast<std::int64_t>(m.io_halts),
+                             static_cast<std::int64_t>(m.chain_end),
+                             static_cast<std::int64_t>(m.selected_tool),
+                             static_cast<std::int64_t>(m.selected_at.file),
+                             static_cast<std::int64_t>(m.selected_at.line)}) {
     bits.push_back(static_cast<std::uint64_t>(integer));
   }
   for (const Vec3& v : {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm,
@@ -86,6 +103,20 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.mist = random() % 2 == 0;
     m.feed_per_rev = random() % 2 == 0;
     m.start_known = random() % 2 == 0;
+    m.unknown_from = static_cast<std::uint8_t>(random() % 8);
+    m.unknown_to = static_cast<std::uint8_t>(random() % 8);
+    m.to_machine_place = random() % 2 == 0;
+    m.speed_said = random() % 2 == 0;
+    m.rapid = random() % 2 == 0;
+    m.user_m = random() % 9 == 0 ? static_cast<std::uint8_t>(random()) : 0;
+    m.halts = random() % 9 == 0 ? static_cast<std::uint8_t>(random()) : 0;
+    m.io_halts = random() % 9 == 0 ? static_cast<std::uint8_t>(random()) : 0;
+    m.chain_end = static_cast<ChainEnd>(random() % 3);
+    if (random() % 20 == 0) m.selected_tool = static_cast<int>(random() % 1000) - 1;
+    if (random() % 20 == 0) {
+      m.selected_at = {static_cast<std::uint32_t>(random() % 3),
+                       static_cast<std::uint32_t>(random() % 2'000'000)};
+    }
     if (random() % 30 == 0) m.tool = static_cast<int>(random() % 5) - 1;
     m.source = {static_cast<std::uint32_t>(random() % 3),
                 static_cast<std::uint32_t>(random() % 99)};
@@ -102,6 +133,7 @@ std::vector<Motion> wild_motions(std::size_t count) {
 }
 
 TEST(ProgramTrack, MotionsAndTimesComeOutBitForBit) {
+  ASSERT_EQ(sizeof(Motion), 440U) << "it has another field, which bits_of() must look at";
   const std::vector<Motion> motions = wild_motions(5000);
   ProgramTrackBuilder builder;
   std::mt19937_64 random(8);
@@ -154,6 +186,8 @@ TEST(ProgramTrack, AMillionMotionsTakeFarLessThan100MB) {
     m.to_mm = {static_cast<double>(i % 1000) / 5, static_cast<double>(i / 1000) / 5,
                std::round(1e4 * std::sin(i / 70.0)) / 1e4};
     m.source.line = i + 6;
+    m.selected_tool = 1;
+    m.selected_at.line = i + 6;  // some write a T word in every block
     step.start_s += step.duration_s;
     step.duration_s = 0.004 + 1e-4 * std::sin(i);
     step.allowed_mm_per_min = 5000 + std::cos(i);
