@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 
 #include "tests/interp_bridge/timing/run_support.h"
@@ -71,6 +73,24 @@ double distance_to(const PathPiece& piece, const Vec3& p) {
   return least;
 }
 
+/// rs274 is told no lengths (coded_offset()), so that the motions' offsets are without them: what
+/// the program's own blocks have put in force when each of its lines is run.
+std::vector<Vec3> lengths_by_line(const std::string& path) {
+  constexpr std::array<double, 4> kRow_mm = {0, 40, 55.25, 48.5};
+  std::vector<Vec3> lengths_mm(1, Vec3{0});
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line)) {
+    double z_mm = lengths_mm.back().z;
+    unsigned row = 0;
+    if (line.find("G49") != line.npos) z_mm = 0;
+    if (std::sscanf(line.c_str(), "G43 H%u", &row) == 1) z_mm = kRow_mm.at(row);
+    std::sscanf(line.c_str(), "G43.1 Z%lf", &z_mm);
+    lengths_mm.push_back({0, 0, z_mm});
+  }
+  return lengths_mm;
+}
+
 /// Of the pieces in machine coordinates.
 double path_error_mm(const std::vector<Motion>& motions, const Plan& plan,
                      const std::vector<Vec3>& places_mm) {
@@ -106,12 +126,17 @@ void compare(InterpreterChoice road) {
     options.interpreter = road;
     options.machine.start[2] = 100;
     options.machine.start_known = true;
+    options.machine.tool_lengths = true;
 #ifdef KERF_INTERP_EXECUTABLE
     options.kerf_interp_path = KERF_INTERP_EXECUTABLE;
 #endif
     ProgramRun run = run_program(options);
     ASSERT_TRUE(run.opened) << run.messages();
-    if (road == InterpreterChoice::kText) place_start(run.motions, {{0, 0, 100}}, true);
+    if (road == InterpreterChoice::kText) {
+      place_start(run.motions, {{0, 0, 100}}, true);
+      const std::vector<Vec3> lengths_mm = lengths_by_line(options.path);
+      for (Motion& m : run.motions) m.tool_offset_mm = lengths_mm.at(m.source.line);
+    }
     PlannerOptions wanted;
     wanted.with_path = true;
     const Plan plan = plan_of(run.motions, MachineLimits::small_mill(), wanted);
