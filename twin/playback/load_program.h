@@ -72,14 +72,15 @@ struct LoadControl {
 };
 
 /// Reads a program as Session does (with PlannerOptions::with_path the track is of the path that
-/// the machine runs, piece by piece): the same files, tools, blank, lines (those before --from-line
+/// the machine runs, piece by piece, and PlayerProgram::programmed is kept for the findings, with
+/// about as much memory again): the same files, tools, blank, lines (those before --from-line
 /// are cut and not reported on: PlayerProgram::report_from), findings about the program as a whole.
 /// It is read once, whether or not the blank has to be guessed. Blocks until it is read, so it
 /// wants a thread of its own beside a window. Nothing on errors that leave nothing to play; they
 /// are in `diagnostics`, and `outcome` says of which kind. `diagnostics` also gets warnings about
 /// files.
 ///
-/// A million motions of a CAM program take 3 to 4 s, nearly all of it the interpreter's, and 30 MB
+/// A million motions of a CAM program take 3 to 4 s, nearly all of it the interpreter's, and 35 MB
 /// (ProgramTrack::bytes()).
 std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
                                             const LoadControl& control, Diagnostics& diagnostics,
