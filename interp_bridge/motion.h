@@ -53,6 +53,16 @@ enum class ChainEnd : std::uint8_t {
   kOutputs,  ///< M62, M63, M67: switched where this step begins
 };
 
+/// A T word that has come since the step before. LinuxCNC's I/O task prepares the tool then, and
+/// the moves behind it are not sent before that is done. The last one's, if there are more.
+enum class ToolPrepare : std::uint8_t {
+  kNone,
+  kAheadOfLast,  ///< nothing was between that ends the chain of feeds: if the step before is a
+                 ///< straight feed, LinuxCNC holds it back and sends the T word ahead of it
+  kBehindLast,
+  kStanding,  ///< behind what made the machine halt (Motion::halts)
+};
+
 /// How the machine runs through the corner between two moves: G61.1, G61, G64.
 enum class PathMode : std::uint8_t { kExactStop, kExactPath, kContinuous };
 
@@ -162,6 +172,10 @@ struct Motion {
   std::uint8_t halts = 0;
   std::uint8_t io_halts = 0;  ///< of those, the ones that wait for LinuxCNC's I/O task: coolant
   ChainEnd chain_end = ChainEnd::kNone;
+  ToolPrepare tool_prepare = ToolPrepare::kNone;
+  /// kToolChange by M61: the program only says which tool is in the spindle. LinuxCNC 2.9 loses a
+  /// straight feed (or a chain that G64 Q merges) that comes right before it.
+  bool by_number = false;
   int tool = 0;  ///< tool number in the spindle, 0 = none
   /// The last T word, while no tool change has followed it; line 0: there is none that waits.
   int selected_tool = 0;

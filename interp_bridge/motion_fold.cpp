@@ -257,6 +257,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.halts = std::exchange(halts_, std::uint8_t{0});
   motion.io_halts = std::exchange(io_halts_, std::uint8_t{0});
   motion.chain_end = std::exchange(chain_end_, ChainEnd::kNone);
+  motion.tool_prepare = std::exchange(tool_prepare_, ToolPrepare::kNone);
   return motion;
 }
 
@@ -600,6 +601,9 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
     case CanonicalName::kSelectTool:
       selected_tool_ = command.integer(0);
       selected_at_ = source;
+      tool_prepare_ = halts_ > 0                      ? ToolPrepare::kStanding
+                      : chain_end_ != ChainEnd::kNone ? ToolPrepare::kBehindLast
+                                                      : ToolPrepare::kAheadOfLast;
       return true;
     case CanonicalName::kChangeTool:
       // The printed number is a row of the table, not a tool; kerf-interp adds the tool's.
@@ -611,7 +615,7 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
       const auto row = static_cast<std::size_t>(std::max(0, command.integer(0)));
       tool_ = row < tool_by_index_.size() ? tool_by_index_[row] : command.integer(0);
       if (command.argument_count > 1) tool_ = command.integer(1);
-      append(MotionKind::kToolChange, source, out);
+      append(MotionKind::kToolChange, source, out).by_number = true;
       selected_at_ = {};
       return true;
     }

@@ -311,6 +311,7 @@ class MotionFold {
   std::uint8_t halts_ = 0;
   std::uint8_t io_halts_ = 0;
   ChainEnd chain_end_ = ChainEnd::kNone;
+  ToolPrepare tool_prepare_ = ToolPrepare::kNone;
 
   TorchState torch_;
   /// M62, M63, M67 that wait for the next step that moves.

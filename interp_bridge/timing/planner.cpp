@@ -66,7 +66,14 @@ struct TrajectoryPlanner::Impl {
   void halt();
   void command_waits(const Motion& m);
   double halt_s() const;
+  double io_done_s(double from_s, int looks);
   double io_wait_s(int looks);
+  void wait_for_io();
+  double sent_s() const;
+  std::uint32_t held_back(const Motion& m) const;
+  void prepare_tool(const Motion& m);
+  void take_tool_number(const Motion& m);
+  std::uint64_t add_piece(double length_mm);
   double index_wait_s(const Motion& m);
   void change_tool(const Motion& m);
   void stand(const Motion& m, double seconds);
@@ -81,9 +88,11 @@ struct TrajectoryPlanner::Impl {
   bool chain_keeps_start = false;
   Motion last;  ///< where the machine stands and what is switched on
   bool begun = false;
-  bool moved_since_change = false;
-  double index_s = -1;     ///< a moment of the spindle's index pulse; -1: none known
-  double io_phase_s = -1;  ///< a moment at which the I/O task looked; -1: none known
+  std::uint32_t queued = 0;  ///< pieces since the machine stood
+  double stood_s = 0;        ///< when the first of them was queued
+  double index_s = -1;       ///< a moment of the spindle's index pulse; -1: none known
+  double io_phase_s = -1;    ///< a moment at which the I/O task looked; -1: none known
+  double io_free_s = 0;      ///< it has done all it was told
   std::uint64_t stops = 0;
 };
 
@@ -91,6 +100,12 @@ struct TrajectoryPlanner::Impl {
 void TrajectoryPlanner::Impl::halt() {
   flush_chain();
   lookahead.drain();
+  queued = 0;
+}
+
+std::uint64_t TrajectoryPlanner::Impl::add_piece(double length_mm) {
+  if (queued++ == 0) stood_s = schedule.clock_s();
+  return schedule.add_piece(length_mm);
 }
 
 void TrajectoryPlanner::Impl::flush_chain() {
@@ -114,27 +129,59 @@ void TrajectoryPlanner::Impl::flush_chain() {
   chain.clear();
 }
 
-/// The I/O task looks once in its period; a command waits for that many looks. Where in its period
-/// it was when the program began is not known: half a period then.
-double TrajectoryPlanner::Impl::io_wait_s(int looks) {
+/// When a command that is sent at `from_s` is done. The I/O task looks once in its period; a
+/// command waits for that many looks, behind those that were sent before. Where in its period it
+/// was when the program began is not known: half a period then.
+double TrajectoryPlanner::Impl::io_done_s(double from_s, int looks) {
   const double period = limits.io_period_s;
-  if (looks <= 0 || period <= 0) return 0;
-  const double now = schedule.clock_s();
+  const double begin_s = std::max(from_s, io_free_s);
+  if (looks <= 0 || period <= 0) return begin_s;
   double wait = period / 2;
   if (io_phase_s >= 0) {
-    const double since = now - io_phase_s;
+    const double since = begin_s - io_phase_s;
     wait = period * (std::floor(since / period) + 1.0) - since;
   }
   wait += (looks - 1) * period;
-  io_phase_s = now + wait;
-  return wait;
+  io_phase_s = begin_s + wait;
+  io_free_s = io_phase_s;
+  return io_free_s;
+}
+
+/// From now on.
+double TrajectoryPlanner::Impl::io_wait_s(int looks) {
+  const double now = schedule.clock_s();
+  return io_done_s(now, looks) - now;
+}
+
+void TrajectoryPlanner::Impl::wait_for_io() { schedule.pause(io_wait_s(0)); }
+
+/// When the task comes to what is sent while moves are under way: it has run ahead of them.
+double TrajectoryPlanner::Impl::sent_s() const {
+  return queued == 0 ? schedule.clock_s() : stood_s;
+}
+
+/// Pieces that LinuxCNC has not sent when a T word comes: the chain of feeds that may go on.
+std::uint32_t TrajectoryPlanner::Impl::held_back(const Motion& m) const {
+  if (m.tool_prepare != ToolPrepare::kAheadOfLast) return 0;
+  if (!chain.empty()) return chain.piece_count();
+  return last.kind == MotionKind::kFeed ? 1 : 0;
+}
+
+void TrajectoryPlanner::Impl::prepare_tool(const Motion& m) {
+  const bool none_sent = queued <= held_back(m);
+  io_done_s(none_sent ? schedule.clock_s() : sent_s(), kToolPrepareLooks);
+  if (none_sent) wait_for_io();
 }
 
 void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
   halt();
-  const int prepare = moved_since_change ? 0 : kToolPrepareLooks;
-  stand(m, io_wait_s(kToolChangeLooks + prepare) + options.tool_change_s);
-  moved_since_change = false;
+  stand(m, io_wait_s(kToolChangeLooks) + options.tool_change_s);
+}
+
+/// M61 has been sent to the I/O task; the program is read on when all is done.
+void TrajectoryPlanner::Impl::take_tool_number(const Motion& m) {
+  halt();
+  stand(m, halt_s() + io_wait_s(0));
 }
 
 /// What the program switched between the last motion and this one. What M2 switches off comes
@@ -144,8 +191,10 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
   const bool halts = !ends && m.halts > 0;
   const bool spindle = m.spindle != last.spindle ||
                        (m.spindle != SpindleState::kStopped && m.spindle_rpm != last.spindle_rpm);
-  const bool offset = m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
-                      m.from_uvw_mm != last.to_uvw_mm;
+  // The tip of another tool is elsewhere, which is no command.
+  const bool offset = m.kind != MotionKind::kToolChange &&
+                      (m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
+                       m.from_uvw_mm != last.to_uvw_mm);
   int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
   // Switching coolant off is two commands, one for each kind.
   if ((last.flood && !m.flood) || (last.mist && !m.mist)) coolant = 2;
@@ -162,7 +211,12 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
 double TrajectoryPlanner::Impl::halt_s() const { return options.halt_s + limits.task_period_s / 2; }
 
 void TrajectoryPlanner::Impl::push(const Motion& m) {
+  const bool standing = m.tool_prepare == ToolPrepare::kStanding;
+  if (m.tool_prepare != ToolPrepare::kNone && !standing) prepare_tool(m);
+  if (m.by_number && m.halts == 0) io_done_s(sent_s(), kToolNumberLooks);
   if (begun) command_waits(m);
+  if (m.by_number && m.halts > 0) io_done_s(sent_s(), kToolNumberLooks);
+  if (standing) prepare_tool(m);
   switch (m.kind) {
     case MotionKind::kDwell:
       halt();
@@ -170,7 +224,7 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
       stand(m, m.duration_s);
       break;
     case MotionKind::kToolChange:
-      change_tool(m);
+      m.by_number ? take_tool_number(m) : change_tool(m);
       break;
     case MotionKind::kStop:
       ++stops;
@@ -182,7 +236,6 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
       break;
     default:
       move(m);
-      moved_since_change = true;
       break;
   }
   last = m;
@@ -240,7 +293,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
-  segment.first_piece = schedule.add_piece(segment.length_mm);
+  segment.first_piece = add_piece(segment.length_mm);
   lookahead.add(segment);
 }
 
@@ -260,7 +313,7 @@ void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
-  segment.first_piece = schedule.add_piece(segment.length_mm);
+  segment.first_piece = add_piece(segment.length_mm);
   lookahead.add(segment);
   if (m.kind == MotionKind::kProbe) halt();
 }
@@ -301,7 +354,7 @@ void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, dou
       !(chain.speed() == speed && chain.tolerance_mm() == blend && chain.links(to, tolerance))) {
     flush_chain();
   }
-  const std::uint64_t piece = schedule.add_piece(glm::length(to - from));
+  const std::uint64_t piece = add_piece(glm::length(to - from));
   if (chain.empty()) {
     chain.begin(from, speed, blend, piece);
     chain_follows_spindle = m.feed_per_rev;

@@ -30,10 +30,11 @@ struct PlannerOptions {
   bool with_path = false;
 };
 
-/// I/O periods that a tool change waits for: to begin, to change and to be acknowledged. Two more
-/// for the T word where no move gave time to prepare the tool.
+/// I/O periods that a tool change waits for: to begin, to change and to be acknowledged. Two for
+/// the T word, while the moves that were sent before it go on; M61 takes one in the same way.
 inline constexpr int kToolChangeLooks = 3;
 inline constexpr int kToolPrepareLooks = 2;
+inline constexpr int kToolNumberLooks = 1;
 
 /// One motion in time. Motions follow each other; a gap between one's end and the next one's start
 /// is a wait for a command (spindle, coolant, offset, dwell). The time of the program is
@@ -99,7 +100,9 @@ class MotionPlanSink {
 /// measured depends on none of them. Corners that the planner blends by overlapping two segments in
 /// time (moves of A to W, corners that no arc fits) are drawn sharp in the path; the real tool
 /// passes inside. Steps that take no time have no path. Overrides, pauses and jerk limits (2.10)
-/// are not modelled.
+/// are not modelled; nor that the machine may stop at a T word for up to two I/O periods where the
+/// moves before it end sooner (it is, where there are none since the last halt), nor the feed that
+/// is lost before M61 (Motion::by_number).
 ///
 /// Threads (G33, G76, and the way in of a rigid tap, G33.1) run at pitch times speed and wait for
 /// the spindle's index: half a revolution on average, and where the spindle has turned on since the

@@ -135,7 +135,9 @@ void compare(InterpreterChoice road) {
     if (road == InterpreterChoice::kText) {
       place_start(run.motions, {{0, 0, 100}}, true);
       const std::vector<Vec3> lengths_mm = lengths_by_line(options.path);
-      for (Motion& m : run.motions) m.tool_offset_mm = lengths_mm.at(m.source.line);
+      for (Motion& m : run.motions) {
+        m.tool_offset_mm = lengths_mm.at(m.source.line) - m.length.tip_shift_mm;
+      }
     }
     PlannerOptions wanted;
     wanted.with_path = true;
