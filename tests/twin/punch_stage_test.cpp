@@ -87,10 +87,11 @@ TEST(PunchStage, DwellsWithTheSpindleOnStrikeOnce) {
 
 /// Without an INI nobody knows where the first move begins.
 TEST(PunchStage, FirstMoveStrikesAtItsEnd) {
-  const auto first_to = [](const Vec3& place) {
+  const auto first_to = [](const Vec3& place, std::uint8_t unknown_axes = 0) {
     MotionList program;
     program.at(place).tool(2).spindle(true).traverse(place);
     program.last().start_known = false;
+    program.last().unknown_to = unknown_axes;
     program.traverse({90, 50, 5}).spindle(false).traverse({130, 50, 5});
     return program;
   };
@@ -100,8 +101,9 @@ TEST(PunchStage, FirstMoveStrikesAtItsEnd) {
   EXPECT_EQ(known.ids(), Ids{});
   EXPECT_EQ(known.totals().hits, 2U);
   EXPECT_FALSE(known.sheet().has_material({50, 50}));
-  // X of 0 may be where the interpreter began.
-  const PunchShop unknown(first_to({0, 50, 5}).list(), press);
+  // X0 that a block names is a place; an X that none has named is not.
+  EXPECT_EQ(PunchShop(first_to({0, 50, 5}).list(), press).totals().hits, 2U);
+  const PunchShop unknown(first_to({0, 50, 5}, 1).list(), press);
   EXPECT_EQ(unknown.ids(), Ids{"position-unknown"});
   EXPECT_EQ(unknown.totals().hits, 1U);
   // A punch that strikes where the trigger comes does so before the move.
