@@ -45,11 +45,20 @@ struct CutMove {
   }
 };
 
+/// A wall, roof or floor that a move has left and that the model cannot hold: thinner than a cell,
+/// and more than 0.01 mm. The workpiece does not have it any more.
+struct CutFilm {
+  double area_mm2 = 0;  ///< 0: there is none
+  double thickness_mm = 0;
+  Vec3 at_mm{0};  ///< on it
+};
+
 /// What one move did to the workpiece.
 struct CutReport {
   std::uint64_t id = 0;
   double removed_mm3 = 0;
   double depth_mm = 0;  ///< greatest height of material removed above any one point of the result
+  CutFilm film{};       ///< of models that lose films (Octree)
 };
 
 /// Where a move first meets material.

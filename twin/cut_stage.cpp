@@ -49,6 +49,7 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       program_(stock, log),
       load_meter_(stock),
       lengths_(stock.bounds_mm(), log),
+      films_(stock, log),
       axis_limits_(options.limits, log),
       moves_per_cut_(stock.takes_tilted_tools() ? kLeastMovesPerCut : kMovesPerCut) {
   moves_.reserve(kMovesPerCut);
@@ -126,6 +127,7 @@ void CutStage::begin_reporting() {
   flush_whole();
   checks_.forget_events();
   lengths_.forget();
+  films_.forget();
   program_.forget_events();
   speed_unsaid_.reset();
   axis_limits_.forget_events();
@@ -638,7 +640,8 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
   for (CutMove& move : divided_) {
     move.id = id;
     moves_.push_back(move);
-    in_flight_.push_back(InFlight{share_s, use_, is_feed(m), measured, spindle_off});
+    in_flight_.push_back(
+        InFlight{share_s, step.start_s, m.source, use_, is_feed(m), measured, spindle_off});
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
     flush();
@@ -681,6 +684,8 @@ void CutStage::collect_reports() {
     if (move.feed && !move.measured) count_feed(use, move.duration_s, report.removed_mm3);
     // Of a groove that is narrower than a cell only the depth may be known.
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
+    if (report.film.area_mm2 > 0 && !holding_)
+      films_.take(report.film, {move.source, move.start_s, use.number});
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {

@@ -19,6 +19,7 @@
 #include "twin/axis_limits.h"
 #include "twin/checks.h"
 #include "twin/cut_labels.h"
+#include "twin/film_events.h"
 #include "twin/finding.h"
 #include "twin/kinematics/rotary_checks.h"
 #include "twin/length_check.h"
@@ -132,6 +133,8 @@ class CutStage : private StepSink {
   /// What is needed when a move's report comes back.
   struct InFlight {
     double duration_s = 0;
+    double start_s = 0;  ///< of its motion
+    SourceRef source;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
@@ -226,6 +229,7 @@ class CutStage : private StepSink {
   std::optional<FindingLog::Handle> speed_unsaid_;
   LoadMeter load_meter_;
   LengthCheck lengths_;
+  FilmEvents films_;
   AxisLimitCheck axis_limits_;
   std::optional<TorchStage> torch_;
   std::optional<PunchStage> punch_;

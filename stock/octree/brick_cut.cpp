@@ -17,6 +17,11 @@ constexpr int kBlock = kBrick / 2;
 /// Roots are found to this part of an edge: far below a crossing's 1 / kEdgeParts.
 constexpr double kRootPart = 1e-7;
 constexpr int kNewtonSteps = 12, kMaxRootSteps = 60;
+/// What is no thicker is no film: positions of programs are rounded.
+constexpr double kLeastFilm_mm = 0.01;
+/// The faces of a film look away from each other to within 45 degrees; those of the ridges between
+/// passes, and of edges, meet less steeply.
+constexpr double kOpposed = 0.7;
 
 /// F is convex and its gradient exact to rounding: a tangent plane is nowhere above it.
 bool is_convex(Sweep::Kind kind) {
@@ -132,10 +137,13 @@ unsigned BrickCutter::edges(const std::uint16_t* columns, int axis, int i, int j
 }
 
 /// Sorts the crossed edges near the sweep into those that were crossed before and those that are
-/// now.
-void BrickCutter::find_edges(const OpenBrick& brick) {
+/// now; and those that are no more.
+void BrickCutter::find_edges(const Sweep& sweep, const OpenBrick& brick) {
   kept_.clear();
   open_.clear();
+  lost_.clear();
+  // An endless tool that stands upright leaves nothing above.
+  const bool takes_roofs = sweep.body->endless && std::isfinite(sweep.bottom_mm);
   for (int j = 0; j < kBrick; ++j) {
     for (int i = 0; i < kBrick; ++i) {
       const int block = i / kBlock + 2 * (j / kBlock);
@@ -146,6 +154,10 @@ void BrickCutter::find_edges(const OpenBrick& brick) {
         const unsigned before = edges(brick.columns, axis, i, j) & near;
         const unsigned after = edges(columns_, axis, i, j) & near;
         if (after != 0) push_edges(brick, axis, i, j, after & before, after & ~before);
+        if (!seeks_films_) continue;
+        unsigned lost = before & ~after;
+        if (axis == 2 && takes_roofs) lost &= brick.columns[j * kSide + i] >> 1;
+        if (lost != 0) push_lost(brick, axis, i, j, lost);
       }
     }
   }
@@ -180,6 +192,31 @@ void BrickCutter::push_edges(const OpenBrick& brick, int axis, int i, int j, uns
   }
 }
 
+/// Edges whose solid node has gone, so that the crossing may be the far face of a film.
+void BrickCutter::push_lost(const OpenBrick& brick, int axis, int i, int j, unsigned lost) {
+  const double length = lattice_.cell_mm[axis];
+  for (unsigned bits = lost; bits != 0; bits &= bits - 1) {
+    const int k = std::countr_zero(bits);
+    // All of the edge is inside of the sweep.
+    if (blocks_[i / kBlock + 2 * (j / kBlock) + 4 * (k / kBlock)] == kInside) continue;
+    Crossing c{};
+    c.edge = axis * kBrickNodes + (j * kBrick + i) * kBrick + k;
+    c.axis = axis;
+    c.solid_is_lower = (brick.columns[j * kSide + i] >> k & 1u) != 0;
+    c.sign = c.solid_is_lower ? 1 : -1;
+    int solid[3] = {i, j, k};
+    if (!c.solid_is_lower) ++solid[axis];
+    const int lower = brick.place[c.edge];
+    c.reach = length * (c.solid_is_lower ? lower : kEdgeParts - lower) / kEdgeParts;
+    const int block = std::min(solid[0] / kBlock, 1) + 2 * std::min(solid[1] / kBlock, 1) +
+                      4 * std::min(solid[2] / kBlock, 1);
+    const double f = node_f_[(solid[1] * kSide + solid[0]) * 16 + solid[2]];
+    if (blocks_[block] == kMixed && f + c.reach <= kLeastFilm_mm) continue;
+    c.from_mm = Vec3(x_[solid[0]], y_[solid[1]], z_[solid[2]]);
+    lost_.push_back(c);
+  }
+}
+
 /// False if the crossing is so near to the solid end, and that so far from the sweep, that F cannot
 /// be negative there.
 bool BrickCutter::may_be_inside(const Crossing& c, const int solid[3]) const {
@@ -194,14 +231,44 @@ bool BrickCutter::may_be_inside(const Crossing& c, const int solid[3]) const {
   return node_f_[(solid[1] * kSide + solid[0]) * 16 + solid[2]] < c.reach;
 }
 
-/// Moves those of kept_ whose crossing lies inside the sweep to open_.
+/// Moves those of kept_ whose crossing lies inside the sweep to open_, and leaves in lost_ those
+/// that lie outside of it.
 void BrickCutter::keep_deeper(const Sweep& sweep) {
   points_ = 0;
   for (const Crossing& c : kept_) push_point(c, c.reach);
+  for (const Crossing& c : lost_) push_point(c, c.reach);
   kernel_.distance(sweep, points_, px_, py_, pz_, f_);
   // By more than a crossing's place is good for, so that a second cut changes nothing.
   for (std::size_t n = 0; n < kept_.size(); ++n)
     if (f_[n] < -place_slack_) open_.push_back(kept_[n]);
+  std::size_t left = 0;
+  for (std::size_t n = 0; n < lost_.size(); ++n)
+    if (f_[kept_.size() + n] > kLeastFilm_mm + place_slack_) lost_[left++] = lost_[n];
+  lost_.resize(left);
+}
+
+/// Of the crossings in lost_, those whose face and the sweep's look away from each other.
+void BrickCutter::find_films(const Sweep& sweep, const OpenBrick& brick) {
+  points_ = 0;
+  for (const Crossing& c : lost_) push_point(c, c.reach);
+  kernel_.gradient(sweep, points_, px_, py_, pz_, f_, gx_, gy_, gz_);
+  for (std::size_t n = 0; n < lost_.size(); ++n) {
+    const Vec3 face(unpack_direction(brick.direction[lost_[n].edge]));
+    if (glm::dot(face, Vec3(gx_[n], gy_[n], gz_[n])) < kOpposed) continue;
+    // Edges along each axis meet a face as often as it looks that way, so a share of each by that
+    // part of its normal is an area, whichever way it looks.
+    films_.push_back({Vec3(px_[n], py_[n], pz_[n]), std::abs(face[lost_[n].axis]), f_[n]});
+  }
+}
+
+void BrickCutter::drop_films(const Sweep& sweep) {
+  points_ = 0;
+  for (const Film& film : films_) push_point(film.at_mm.x, film.at_mm.y, film.at_mm.z);
+  kernel_.distance(sweep, points_, px_, py_, pz_, f_);
+  std::size_t left = 0;
+  for (std::size_t n = 0; n < films_.size(); ++n)
+    if (f_[n] > kLeastFilm_mm + place_slack_) films_[left++] = films_[n];
+  films_.resize(left);
 }
 
 /// Where F is 0 on each edge of open_, from its solid end (F >= 0) on. Newton's steps from there
@@ -312,8 +379,9 @@ bool BrickCutter::apply(const Sweep& sweep, OpenBrick& brick) {
   if (passes_above(sweep, brick)) return false;
   sort_blocks(sweep);
   const bool cleared = find_nodes(sweep, brick);
-  find_edges(brick);
+  find_edges(sweep, brick);
   keep_deeper(sweep);
+  if (!lost_.empty()) find_films(sweep, brick);
   if (!cleared && open_.empty()) return false;
   std::memset(changed_, 0, sizeof changed_);
   solve(sweep);
@@ -326,7 +394,7 @@ bool BrickCutter::touches(const Sweep& sweep, const OpenBrick& brick) {
   if (passes_above(sweep, brick)) return false;
   sort_blocks(sweep);
   if (find_nodes(sweep, brick)) return true;
-  find_edges(brick);
+  find_edges(sweep, brick);
   keep_deeper(sweep);
   return !open_.empty();
 }

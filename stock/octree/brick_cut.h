@@ -28,6 +28,21 @@ class BrickCutter {
   std::int64_t removed() const { return removed_; }
   const std::int32_t* removed_heights() const { return heights_; }
 
+  /// A place where an edge has lost its crossing with material left between that and the sweep: a
+  /// film, whose other face is the sweep's.
+  struct Film {
+    Vec3 at_mm;
+    double faces;  ///< its share of the area, in faces of a cell
+    double thickness_mm;
+  };
+  /// Whether apply() looks for films (not where material is added); at first it does not.
+  void seek_films(bool seek) { seeks_films_ = seek; }
+  /// All since forget_films(), of the present brick.
+  const std::vector<Film>& films() const { return films_; }
+  /// Those that `sweep` takes.
+  void drop_films(const Sweep& sweep);
+  void forget_films() { films_.clear(); }
+
   /// Is there material deeper than the sweep's shrink_mm in it? Changes nothing.
   bool touches(const Sweep& sweep, const OpenBrick& brick);
   /// All nodes of a brick lie within this of its middle.
@@ -53,7 +68,7 @@ class BrickCutter {
   bool passes_above(const Sweep& sweep, const OpenBrick& brick) const;
   void sort_blocks(const Sweep& sweep);
   bool find_nodes(const Sweep& sweep, const OpenBrick& brick);
-  void find_edges(const OpenBrick& brick);
+  void find_edges(const Sweep& sweep, const OpenBrick& brick);
   void push_point(double x, double y, double z) {
     px_[points_] = x;
     py_[points_] = y;
@@ -68,7 +83,9 @@ class BrickCutter {
   unsigned edges(const std::uint16_t* columns, int axis, int i, int j) const;
   void push_edges(const OpenBrick& brick, int axis, int i, int j, unsigned kept, unsigned fresh);
   bool may_be_inside(const Crossing& crossing, const int solid[3]) const;
+  void push_lost(const OpenBrick& brick, int axis, int i, int j, unsigned lost);
   void keep_deeper(const Sweep& sweep);
+  void find_films(const Sweep& sweep, const OpenBrick& brick);
   void solve(const Sweep& sweep);
   bool next_place(const Crossing& crossing, Root& root, double f, const Vec3& gradient,
                   int step) const;
@@ -105,7 +122,9 @@ class BrickCutter {
   int points_ = 0;
   /// F at the solid nodes of mixed blocks, or a bound below it, [column * 16 + k].
   double node_f_[kSide * kSide * 16];
-  std::vector<Crossing> kept_, open_;
+  std::vector<Crossing> kept_, open_, lost_;
+  bool seeks_films_ = false;
+  std::vector<Film> films_;
   std::vector<Root> roots_;
   std::vector<int> active_;
 };

@@ -18,6 +18,7 @@
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
 #include "stock/octree/octree_state.h"
+#include "stock/octree/thin_films.h"
 #include "stock/octree/tool_bodies.h"
 #include "stock/octree/tree_cut.h"
 #include "stock/state_bytes.h"
@@ -101,6 +102,7 @@ struct Octree::Impl {
   std::int64_t removed = 0;  ///< in kNodeVolume; added counts as removed air
   SweepKernel kernel = pick_kernel(KernelChoice::kAuto);
   std::shared_ptr<WorkerPool> pool;
+  ThinFilms films;
   std::optional<BrickTree> seen;  ///< as take_dirty_tiles() saw it last
 
   std::string cutter_spec;
@@ -110,6 +112,11 @@ struct Octree::Impl {
 
   double mm3(std::int64_t volume) const {
     return static_cast<double>(volume) / kNodeVolume * tree.lattice().node_mm3();
+  }
+  /// Of a cell, in the mean.
+  double face_mm2() const {
+    const Vec3& c = tree.lattice().cell_mm;
+    return (c.x * c.y + c.y * c.z + c.z * c.x) / 3;
   }
   double height_mm(std::int32_t height) const {
     return static_cast<double>(height) / kEdgeParts * tree.lattice().cell_mm.z;
@@ -196,6 +203,8 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
   const double sign = m.additive ? -1 : 1;
   std::vector<Sweep> sweeps;
   std::vector<MoveTotals> totals;
+  std::vector<FilmSpot> spots;
+  std::vector<CutFilm> films;
   for (std::size_t first = 0; first < moves.size();) {
     sweeps.clear();
     std::size_t last = first;
@@ -206,11 +215,14 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
       append_sweeps(m.bodies, *near, static_cast<std::uint32_t>(last - first), m.target(0), sweeps);
     }
     totals.assign(last - first, MoveTotals{});
-    cut_tree(m.tree, sweeps, m.kernel, m.additive, *m.pool, totals);
+    spots.clear();
+    cut_tree(m.tree, sweeps, m.kernel, m.additive, *m.pool, totals, &spots);
+    films.assign(totals.size(), CutFilm{});
+    m.films.add(spots, m.face_mm2(), films);
     for (std::size_t i = 0; i < totals.size(); ++i) {
       m.removed += totals[i].volume;
-      reports.push_back(
-          {moves[first + i].id, sign * m.mm3(totals[i].volume), m.height_mm(totals[i].height)});
+      reports.push_back({moves[first + i].id, sign * m.mm3(totals[i].volume),
+                         m.height_mm(totals[i].height), films[i]});
     }
     first = last;
   }
@@ -235,7 +247,7 @@ std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove
   std::vector<Sweep> sweeps;
   append_sweeps(*tool, move, 0, m.target(tolerance_mm), sweeps);
   std::vector<MoveTotals> totals(1);
-  cut_tree(copy, sweeps, m.kernel, false, alone, totals);
+  cut_tree(copy, sweeps, m.kernel, false, alone, totals, nullptr);
   return Contact{first_part(move, meets).to_mm, m.height_mm(totals[0].height) + tolerance_mm};
 }
 

@@ -35,7 +35,11 @@ struct OctreeOptions {
 /// volume, at any fixed spindle direction; other arcs as chords, turning moves with the tool's true
 /// pose at every moment, both to min(cell / 50, 2 um) (stock/octree/sweep.h).
 ///
-/// Not held: what is thinner than a cell. Of several crossings of one edge the odd ones count: a
+/// Not held: what is thinner than a cell. A wall, roof or floor that is lost so is told with the
+/// move that made it so thin (CutReport::film), if it is more than 0.01 mm thick, some cells wide
+/// both ways, and its faces look away from each other within 45 degrees: ridges between passes are
+/// not. It is told though a later move would have taken it. A snapshot that cuts on begins anew
+/// with what it has seen of films. Of several crossings of one edge the odd ones count: a
 /// slot or rib between two nodes may vanish, also where a later move makes it part of a wider cut:
 /// on such an edge the later move's surface counts. The same moves once more take that away; within
 /// one move it is seen to. Beside a cutter of radius r it is up to cell^2 / 8r too high. Beside a

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "stock/octree/brick_cut.h"
 
@@ -149,7 +150,7 @@ class ColumnPlan {
 class ColumnCutter {
  public:
   ColumnCutter(BrickTree& tree, const SweepKernel& kernel, bool additive, std::uint64_t version,
-               std::size_t reports)
+               std::size_t reports, bool seek_films)
       : tree_(tree),
         additive_(additive),
         version_(version),
@@ -157,7 +158,9 @@ class ColumnCutter {
         cutter_(tree.lattice(), kernel, additive),
         totals_(reports),
         heights_(reports * kBrick * kBrick, 0),
-        is_touched_(reports, false) {}
+        is_touched_(reports, false) {
+    cutter_.seek_films(seek_films && !additive);
+  }
 
   void cut(int column, std::span<const Sweep> sweeps, std::span<const std::uint32_t> mine) {
     plan_.begin(column);
@@ -178,6 +181,7 @@ class ColumnCutter {
   }
 
   const std::vector<MoveTotals>& totals() const { return totals_; }
+  const std::vector<FilmSpot>& films() const { return films_; }
 
  private:
   BrickRef state(int column, int level, int brick) const {
@@ -212,6 +216,7 @@ class ColumnCutter {
       // no crossing, before another piece cleared one of them. Now that there is a crossing, it is
       // seen that it lies within the former.
       if (move.size() > 1 && !is_gone_) cut_move(move, number);
+      if (!cutter_.films().empty()) note_films(move, number, level);
     }
     if (!changed) return;
     tree_.own_tile(column, level, version_).bricks[number] =
@@ -234,6 +239,28 @@ class ColumnCutter {
       if (open_.top_node < 0) return is_gone_ = true;
     }
     return changed;
+  }
+
+  /// Of a move all of whose pieces are cut: what one piece has left another may have taken.
+  void note_films(std::span<const TileSweep> move, int number, int level) {
+    if (move.size() > 1)
+      for (const TileSweep& t : move) cutter_.drop_films(*t.sweep);
+    FilmSpot spot;
+    spot.report = move[0].sweep->report;
+    const auto place = [](int n) { return static_cast<std::uint64_t>(n); };
+    const int bz = level * kTileBricks + number / (kTileBricks * kTileBricks);
+    spot.brick =
+        place(bz) << 42 | place(plan_.brick_y(number)) << 21 | place(plan_.brick_x(number));
+    for (const BrickCutter::Film& film : cutter_.films()) {
+      spot.faces += film.faces;
+      spot.thickness_mm += film.faces * film.thickness_mm;
+      spot.at_mm += film.faces * film.at_mm;
+    }
+    cutter_.forget_films();
+    if (spot.faces == 0) return;
+    spot.thickness_mm /= spot.faces;
+    spot.at_mm /= spot.faces;
+    films_.push_back(spot);
   }
 
   void add(std::uint32_t report, std::int64_t volume, const std::int32_t* heights) {
@@ -265,6 +292,7 @@ class ColumnCutter {
   OpenBrick open_;
   bool is_gone_ = false;
   std::vector<MoveTotals> totals_;
+  std::vector<FilmSpot> films_;
   std::vector<std::int32_t> heights_;  ///< of the stack at work, by report
   std::vector<bool> is_touched_;
   std::vector<std::uint32_t> touched_;
@@ -288,7 +316,8 @@ std::vector<std::vector<std::uint32_t>> by_column(const Lattice& lattice,
 }  // namespace
 
 void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel,
-              bool additive, WorkerPool& pool, std::span<MoveTotals> totals) {
+              bool additive, WorkerPool& pool, std::span<MoveTotals> totals,
+              std::vector<FilmSpot>* films) {
   if (sweeps.empty()) return;
   const auto lists = by_column(tree.lattice(), sweeps);
   std::vector<int> columns;
@@ -297,11 +326,13 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   const std::uint64_t version = next_version();
   std::atomic<std::size_t> next{0};
   std::vector<std::vector<MoveTotals>> parts(static_cast<std::size_t>(pool.threads()));
+  std::vector<std::vector<FilmSpot>> spots(parts.size());
   pool.run([&](int thread) {
-    ColumnCutter cutter(tree, kernel, additive, version, totals.size());
+    ColumnCutter cutter(tree, kernel, additive, version, totals.size(), films != nullptr);
     for (std::size_t n = next++; n < columns.size(); n = next++)
       cutter.cut(columns[n], sweeps, lists[static_cast<std::size_t>(columns[n])]);
     parts[static_cast<std::size_t>(thread)] = cutter.totals();
+    spots[static_cast<std::size_t>(thread)] = cutter.films();
   });
   for (const std::vector<MoveTotals>& part : parts) {
     for (std::size_t i = 0; i < totals.size(); ++i) {
@@ -309,6 +340,12 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
       totals[i].height = std::max(totals[i].height, part[i].height);
     }
   }
+  if (!films) return;
+  for (const std::vector<FilmSpot>& part : spots)
+    films->insert(films->end(), part.begin(), part.end());
+  std::sort(films->begin(), films->end(), [](const FilmSpot& a, const FilmSpot& b) {
+    return std::pair(a.report, a.brick) < std::pair(b.report, b.brick);
+  });
 }
 
 bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel) {
