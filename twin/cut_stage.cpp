@@ -635,13 +635,19 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
   const std::uint64_t id = labels_ ? labels_->number_of({mounted_->number, m.source}) : next_id_++;
   const double share_s =
       step.duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
-  const bool measured = measure(m, step);
+  InFlight flight;
+  flight.duration_s = flight.cut_s = share_s;
+  flight.start_s = step.start_s;
+  flight.source = m.source;
+  flight.use = use_;
+  flight.feed = is_feed(m);
+  flight.spindle_off = spindle_off;
+  measure(m, step, flight);
   std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
     moves_.push_back(move);
-    in_flight_.push_back(
-        InFlight{share_s, step.start_s, m.source, use_, is_feed(m), measured, spindle_off});
+    in_flight_.push_back(flight);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
     flush();
@@ -681,7 +687,7 @@ void CutStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (labels_) labels_->note(report.id, report.removed_mm3, move.duration_s);
-    if (move.feed && !move.measured) count_feed(use, move.duration_s, report.removed_mm3);
+    if (move.feed && !move.measured) count_feed(use, move, report);
     // Of a groove that is narrower than a cell only the depth may be known.
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (report.film.area_mm2 > 0 && !holding_)
@@ -697,15 +703,24 @@ void CutStage::collect_reports() {
   reports_.clear();
 }
 
-void CutStage::count_feed(ToolUse& use, double duration_s, double removed_mm3) const {
+void CutStage::count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const {
+  double duration_s = move.cut_s, removed_mm3 = report.removed_mm3;
   if (watched_) {
     use.grain_s += duration_s;
     use.grain_mm3 += removed_mm3;
     if (use.grain_s < kGrain_s) return;
     duration_s = std::exchange(use.grain_s, 0);
     removed_mm3 = std::exchange(use.grain_mm3, 0);
+    add_cutting(use, duration_s, removed_mm3);
+    return;
   }
-  add_cutting(use, duration_s, removed_mm3);
+  const MotionReach& reach = move.reach;
+  const double bound = report.depth_mm > 0
+                           ? report.depth_mm * reach.side_mm2_per_s + reach.disc_mm3_per_s
+                           : std::numeric_limits<double>::infinity();
+  add_cutting(use, duration_s, removed_mm3, bound);
+  const double mean = removed_mm3 * reach.speed_per_mm;
+  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, std::min(mean, bound));
 }
 
 }  // namespace kerf

@@ -135,6 +135,8 @@ class CutStage : private StepSink {
     double duration_s = 0;
     double start_s = 0;  ///< of its motion
     SourceRef source;
+    double cut_s = 0;  ///< of that, as far as it may have cut
+    MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
@@ -173,11 +175,11 @@ class CutStage : private StepSink {
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   bool stop_now();
-  bool measure(const Motion& motion, const TimedStep& step);
+  void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
-  void count_feed(ToolUse& use, double duration_s, double removed_mm3) const;
+  void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
 
   /// Feed moves that ask for more than the axes can do.
   struct OverFeed {

@@ -13,15 +13,11 @@ constexpr double kWindowOfDiameter = 0.25;
 constexpr double kWindowCells = 20;
 /// Windows that differ by less are one rate.
 constexpr double kSameRate = 0.02;
-/// Divisions after the first one, each by so much.
-constexpr int kRefinements = 3;
-constexpr int kFiner = 8;
-/// A span that removes at least so much of what its neighbour does cuts on its whole way.
-constexpr double kFull = 0.98;
-/// An end of the cutting is found to this part of the cutting time.
+/// An end of the cutting is found to this part of the way that cuts.
 constexpr double kEnds = 0.002;
 /// Fewer pieces that cut than this say little of how fast they do.
-constexpr std::ptrdiff_t kFewPieces = 8;
+constexpr std::size_t kFewPieces = 5;
+constexpr int kFinerPieces = 8;
 
 Motion motion_of(const CutMove& move) {
   Motion motion;
@@ -30,6 +26,10 @@ Motion motion_of(const CutMove& move) {
   motion.to_mm = move.to_mm;
   if (move.arc) motion.arc = {move.arc->center_mm, move.arc->axis, move.arc->sweep_rad};
   return motion;
+}
+
+double length_of(const CutMove& move) {
+  return move.arc ? path_length_mm(motion_of(move)) : glm::length(move.to_mm - move.from_mm);
 }
 
 CutMove part_of(const CutMove& whole, double from, double to) {
@@ -54,122 +54,207 @@ double LoadMeter::Profile::at(double part) const {
   return ramp_s + (way - ramp_mm) / speed_mm_per_s;
 }
 
-/// In a copy of the workpiece; spans that are known to be in the air are not cut again. Each piece
-/// is finished: what the cutter's front takes must not wait for the last one.
-void LoadMeter::cut_pieces(const Cutter& cutter, const CutMove& move) {
-  const std::unique_ptr<StockModel> copy = stock_.snapshot();
-  for (Span& span : spans_) {
-    if (!span.cuts()) continue;
-    moves_.assign(1, part_of(move, span.from, span.to));
-    reports_.clear();
-    copy->cut(cutter, moves_, reports_);
-    copy->finish(reports_);
-    span.removed_mm3 = 0;
-    for (const CutReport& report : reports_) span.removed_mm3 += report.removed_mm3;
-  }
+double LoadMeter::Profile::speed_at(double part) const {
+  const double way = std::min(part, 1 - part) * length_mm;
+  if (way >= ramp_mm) return speed_mm_per_s;
+  return std::sqrt(2 * std::max(0.0, way) * speed_mm_per_s / ramp_s);
 }
 
-/// Whether the cutting begins or ends within a span: nothing is cut beside it, and it removes less
-/// than the span on its other side does in its place.
-bool LoadMeter::is_end(std::size_t i) const {
-  const bool first = i == 0 || !spans_[i - 1].cuts();
-  const bool last = i + 1 == spans_.size() || !spans_[i + 1].cuts();
-  if (first == last) return first;
-  const Span& inner = spans_[first ? i + 1 : i - 1];
-  return spans_[i].density() < kFull * inner.density();
+double LoadMeter::Profile::greatest_speed(double from, double to) const {
+  return speed_at(std::clamp(0.5, from, to));
 }
 
-/// Divides what lies at an end of the cutting, and all that cuts where that is little. False: it is
-/// fine enough.
-bool LoadMeter::refine(double least_part, double cell_part) {
-  const auto cutting =
-      std::count_if(spans_.begin(), spans_.end(), [](const Span& span) { return span.cuts(); });
-  double cut_s = 0;
-  for (const Span& span : spans_) {
-    if (span.cuts()) cut_s += profile_.at(span.to) - profile_.at(span.from);
-  }
-  finer_.clear();
-  bool divided = false;
-  for (std::size_t i = 0; i < spans_.size(); ++i) {
-    const Span& span = spans_[i];
-    const double part = span.to - span.from;
-    const bool at_end = is_end(i);
-    const bool coarse = profile_.at(span.to) - profile_.at(span.from) > kEnds * cut_s;
-    const bool ends = at_end && coarse && part > cell_part;
-    const bool few = cutting < kFewPieces && part > 2 * least_part;
-    if (!span.cuts() || !(ends || few)) {
-      finer_.push_back(span);
-      continue;
+double LoadMeter::window_mm(const Cutter& cutter) const {
+  return std::max(kWindowOfDiameter * 2 * cutter.radius_mm(), kWindowCells * stock_.cell_mm());
+}
+
+/// A straight way of an upright tool is in the blank's box between two of its points.
+void LoadMeter::clip(const Cutter& cutter, const CutMove& move) {
+  from_ = 0, to_ = 1;
+  if (move.arc || !move.is_vertical()) return;
+  const Box box = stock_.bounds_mm();
+  const auto half_space = [&](double from, double to, double limit) {  // where it is below limit
+    if (from >= limit && to >= limit) to_ = from_;
+    if ((from < limit) == (to < limit)) return;
+    const double part = (limit - from) / (to - from);
+    if (from < limit) {
+      to_ = std::min(to_, part);
+    } else {
+      from_ = std::max(from_, part);
     }
-    divided = true;
-    for (int k = 0; k < kFiner; ++k) {
-      const double to = k + 1 == kFiner ? span.to : span.from + part * (k + 1) / kFiner;
-      finer_.push_back({span.from + part * k / kFiner, to, span.removed_mm3});
-    }
-  }
-  if (divided) spans_.swap(finer_);
-  return divided;
-}
-
-/// The windows that lie in a row are those of one stretch of cutting.
-double LoadMeter::peak(double window_part) const {
-  double greatest = 0, run_mm3 = 0, run_s = 0, run_rate = 0;
-  const auto end_run = [&] {
-    if (run_s > 0) greatest = std::max(greatest, run_mm3 / run_s);
-    run_mm3 = run_s = 0;
   };
-  double mm3 = 0, seconds = 0, part = 0, all_mm3 = 0, all_s = 0;
-  for (const Span& span : spans_) {
-    if (!span.cuts()) {
-      mm3 = seconds = part = 0;
-      end_run();
-      continue;
-    }
-    const double lasts_s = profile_.at(span.to) - profile_.at(span.from);
-    mm3 += span.removed_mm3;
-    seconds += lasts_s;
-    part += span.to - span.from;
-    all_mm3 += span.removed_mm3;
-    all_s += lasts_s;
-    if (part < window_part || seconds <= 0) continue;
-    const double rate = mm3 / seconds;
-    if (run_s > 0 && std::abs(rate - run_rate) > kSameRate * run_rate) end_run();
-    if (run_s == 0) run_rate = rate;
-    run_mm3 += mm3;
-    run_s += seconds;
-    mm3 = seconds = part = 0;
-  }
-  end_run();
-  if (greatest == 0 && all_s > 0) greatest = all_mm3 / all_s;
-  return greatest;
+  const Vec3 &a = move.from_mm, &b = move.to_mm;
+  const double r = cutter.radius_mm();
+  half_space(a.z, b.z, box.max.z);
+  half_space(a.x, b.x, box.max.x + r);
+  half_space(a.y, b.y, box.max.y + r);
+  half_space(-a.x, -b.x, r - box.min.x);
+  half_space(-a.y, -b.y, r - box.min.y);
+  to_ = std::max(from_, to_);
 }
 
-MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move, double duration_s,
-                              double speed_mm_per_s) {
-  MotionLoad load;
-  const double length_mm = path_length_mm(motion_of(move));
-  if (length_mm <= 0 || duration_s <= 0) return load;
+MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double duration_s,
+                             double speed_mm_per_s) {
+  MotionReach reach;
+  const double length_mm = length_of(move);
+  profile_ = {};
+  if (length_mm <= 0 || duration_s <= 0) return reach;
   profile_ = {length_mm, duration_s, std::max(length_mm / duration_s, speed_mm_per_s), 0, 0};
   profile_.ramp_s = duration_s - length_mm / profile_.speed_mm_per_s;
   profile_.ramp_mm = profile_.speed_mm_per_s * profile_.ramp_s / 2;
   if (profile_.ramp_mm * 2 > length_mm) profile_.ramp_mm = profile_.ramp_s = 0;
-  const double cell_mm = stock_.cell_mm();
-  const double window_mm =
-      std::max(kWindowOfDiameter * 2 * cutter.radius_mm(), kWindowCells * cell_mm);
-  const double window = std::min(1.0, window_mm / length_mm);
-  const int pieces = std::clamp(static_cast<int>(2 / window), 1, kPieces);
+  clip(cutter, move);
+  reach.seconds = profile_.at(to_) - profile_.at(from_);
+  const double way_mm = (to_ - from_) * length_mm, cell_mm = stock_.cell_mm();
+  if (way_mm >= window_mm(cutter)) {
+    reach.speed_per_mm = profile_.greatest_speed(from_, to_) / way_mm;
+  }
+  // A move up or down sweeps its disc alone.
+  const double diameter_mm = 2 * cutter.radius_mm();
+  const Vec3 step = move.to_mm - move.from_mm;
+  const bool level = move.arc || std::hypot(step.x, step.y) > std::abs(step.z);
+  if (move.is_vertical()) {
+    const double speed = profile_.speed_mm_per_s, radius_mm = cutter.radius_mm();
+    reach.side_mm2_per_s = diameter_mm * speed;
+    reach.disc_mm3_per_s = kPi * radius_mm * radius_mm * speed * std::abs(step.z) / length_mm;
+  }
+  const double swept_mm2 = diameter_mm * (level ? way_mm : std::min(way_mm, diameter_mm));
+  left_cells_ += kShare * swept_mm2 / (cell_mm * cell_mm);
+  return reach;
+}
+
+/// Finished: what the cutter's front takes must not wait for the next part.
+double LoadMeter::cut_part(StockModel& stock, double from, double to) {
+  moves_.assign(1, part_of(*move_, from, to));
+  reports_.clear();
+  stock.cut(*cutter_, moves_, reports_);
+  stock.finish(reports_);
+  double removed_mm3 = 0;
+  for (const CutReport& report : reports_) removed_mm3 += report.removed_mm3;
+  const double diameter_mm = 2 * cutter_->radius_mm(), cell_mm = stock_.cell_mm();
+  const double swept_mm2 = diameter_mm * (diameter_mm + (to - from) * profile_.length_mm);
+  left_cells_ -= swept_mm2 / (cell_mm * cell_mm) + static_cast<double>(stock_.tile_count());
+  return removed_mm3;
+}
+
+void LoadMeter::cut_spans(const StockModel& before, double from, double to, int pieces) {
   spans_.clear();
+  before_.clear();
+  const std::unique_ptr<StockModel> copy = before.snapshot();
   for (int k = 0; k < pieces; ++k) {
-    spans_.push_back({static_cast<double>(k) / pieces, static_cast<double>(k + 1) / pieces, 1});
+    Span span;
+    span.from = from + (to - from) * k / pieces;
+    span.to = k + 1 == pieces ? to : from + (to - from) * (k + 1) / pieces;
+    before_.push_back(copy->snapshot());
+    span.removed_mm3 = cut_part(*copy, span.from, span.to);
+    spans_.push_back(span);
   }
-  cut_pieces(cutter, move);
-  for (int n = 0; n < kRefinements && refine(window, cell_mm / 2 / length_mm); ++n) {
-    cut_pieces(cutter, move);
+}
+
+/// Of a span that cuts, and before which nothing does.
+double LoadMeter::find_begin(const Span& span, const StockModel& before, double least) {
+  const auto cuts = [&](double from, double to) {
+    return cut_part(*before.snapshot(), from, to) > 0;
+  };
+  double from = span.from, to = span.to;
+  if (from == 0 && cuts(0, std::min(to, least))) return 0;
+  while (to - from > least) {
+    const double middle = (from + to) / 2;
+    (cuts(from, middle) ? to : from) = middle;
   }
-  for (const Span& span : spans_) {
-    if (span.cuts()) load.cut_s += profile_.at(span.to) - profile_.at(span.from);
+  return from == span.from ? from : (from + to) / 2;
+}
+
+/// Of a span that cuts, and behind which nothing does.
+double LoadMeter::find_end(const Span& span, const StockModel& before, double least) {
+  std::unique_ptr<StockModel> state = before.snapshot();
+  double from = span.from, to = span.to;
+  while (to - from > least) {
+    const double middle = to == 1 ? std::max(from, 1 - least) : (from + to) / 2;
+    std::unique_ptr<StockModel> half = state->snapshot();
+    cut_part(*half, from, middle);
+    if (cut_part(*half->snapshot(), middle, to) > 0) {
+      if (to == 1) return 1;
+      state = std::move(half);
+      from = middle;
+    } else {
+      to = middle;
+    }
   }
-  load.peak_mm3_per_s = peak(window);
+  return to == span.to ? to : (from + to) / 2;
+}
+
+/// The windows that lie in a row are those of one stretch of cutting.
+double LoadMeter::peak(std::size_t first, std::size_t end, double window) const {
+  double greatest = 0, all_mm3 = 0, mm3 = 0, from = spans_[first].from, to = from, density = 0;
+  const auto end_run = [&] {
+    const double way_mm = (to - from) * profile_.length_mm;
+    if (way_mm > 0) greatest = std::max(greatest, mm3 / way_mm * profile_.greatest_speed(from, to));
+  };
+  for (std::size_t i = first; i < end; ++i) {
+    const Span& span = spans_[i];
+    all_mm3 += span.removed_mm3;
+    if (span.to - span.from < window) continue;
+    const double own = span.removed_mm3 / (span.to - span.from);
+    if (to != span.from || std::abs(own - density) > kSameRate * density) {
+      end_run();
+      from = span.from;
+      mm3 = 0;
+      density = own;
+    }
+    to = span.to;
+    mm3 += span.removed_mm3;
+  }
+  end_run();
+  if (greatest > 0) return greatest;
+  from = spans_[first].from, to = spans_[end - 1].to, mm3 = all_mm3;
+  end_run();
+  return greatest;
+}
+
+void LoadMeter::add_run(std::size_t first, std::size_t end, double window, MotionLoad& load) {
+  load.cut_s += profile_.at(spans_[end - 1].to) - profile_.at(spans_[first].from);
+  load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, peak(first, end, window));
+}
+
+MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move) {
+  MotionLoad load;
+  if (profile_.length_mm <= 0 || to_ <= from_) return load;
+  cutter_ = &cutter;
+  move_ = &move;
+  const double length_mm = profile_.length_mm;
+  const double window = window_mm(cutter) / length_mm;
+  const int pieces = std::clamp(static_cast<int>((to_ - from_) / window), 1, kPieces);
+  cut_spans(stock_, from_, to_, pieces);
+  double cutting = 0;
+  for (const Span& span : spans_) cutting += span.cuts() ? span.to - span.from : 0;
+  const double least = std::max(stock_.cell_mm() / 2 / length_mm, kEnds * cutting);
+  struct Run {
+    double from, to;
+    std::unique_ptr<StockModel> before;  ///< null: it is not looked at again
+  };
+  std::vector<Run> again;
+  for (std::size_t first = 0, end = 0; first < spans_.size(); first = end) {
+    end = first + 1;
+    if (!spans_[first].cuts()) continue;
+    while (end < spans_.size() && spans_[end].cuts()) ++end;
+    spans_[first].from = find_begin(spans_[first], *before_[first], least);
+    spans_[end - 1].to = find_end(spans_[end - 1], *before_[end - 1], least);
+    const double way = spans_[end - 1].to - spans_[first].from;
+    if (end - first < kFewPieces && way > 2 * window) {
+      again.push_back({spans_[first].from, spans_[end - 1].to, std::move(before_[first])});
+    } else {
+      add_run(first, end, std::min(window, (to_ - from_) / pieces) * 0.999, load);
+    }
+  }
+  for (const Run& run : again) {
+    const double way = run.to - run.from;
+    const int finer = std::clamp(static_cast<int>(way / window), 1, kFinerPieces);
+    cut_spans(*run.before, run.from, run.to, finer);
+    add_run(0, spans_.size(), std::min(window, way / finer) * 0.999, load);
+  }
+  spans_.clear();
+  before_.clear();
   return load;
 }
 

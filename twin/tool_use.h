@@ -1,6 +1,8 @@
 // twin/tool_use.h - what one tool did, for the report.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
 
 namespace kerf {
@@ -17,6 +19,7 @@ struct ToolUse {
   double peak_mm3_per_s = 0;  ///< greatest removal rate over kPeakWindow_s of cutting
   double window_s = 0;        ///< cutting time and volume of the window that is open
   double window_mm3 = 0;
+  double window_bound_mm3_per_s = 0;  ///< greatest of what its moves can have removed
   double grain_s = 0;  ///< time and volume of the grain that is open (CutStage::take_timed)
   double grain_mm3 = 0;
 };
@@ -27,18 +30,23 @@ inline constexpr double kPeakWindow_s = 0.5;
 
 /// The rate of the window that is open, whatever its length; the next one begins.
 inline void close_window(ToolUse& use) {
-  if (use.window_s > 0 && use.window_mm3 > use.peak_mm3_per_s * use.window_s) {
-    use.peak_mm3_per_s = use.window_mm3 / use.window_s;
+  if (use.window_s > 0) {
+    const double rate = std::min(use.window_mm3 / use.window_s, use.window_bound_mm3_per_s);
+    use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, rate);
   }
-  use.window_s = use.window_mm3 = 0;
+  use.window_s = use.window_mm3 = use.window_bound_mm3_per_s = 0;
 }
 
-/// A feed move, or several, that removed so much in so long.
-inline void add_cutting(ToolUse& use, double duration_s, double removed_mm3) {
+/// A feed move, or several, that removed so much in so long. `bound_mm3_per_s`: no tool of that
+/// size can be faster. A model tells what the cutter's front takes of the last of several moves in
+/// a row: the volume is right, and their sum; the rate of the last one is not.
+inline void add_cutting(ToolUse& use, double duration_s, double removed_mm3,
+                        double bound_mm3_per_s = std::numeric_limits<double>::infinity()) {
   if (removed_mm3 <= 0) return;
   use.cut_s += duration_s;
   use.window_s += duration_s;
   use.window_mm3 += removed_mm3;
+  use.window_bound_mm3_per_s = std::max(use.window_bound_mm3_per_s, bound_mm3_per_s);
   if (use.window_s >= kPeakWindow_s) close_window(use);
 }
 

@@ -123,6 +123,15 @@ std::optional<double> field(std::string_view lower, std::string_view key) {
   return std::nullopt;
 }
 
+/// What F-Engrave's settings say of the tool, as far as they have been read.
+struct FEngrave {
+  std::uint32_t line = 0;
+  bool near = false;
+  bool inches = false;
+  std::string shape, cut;
+  std::optional<double> angle_deg, diameter;
+};
+
 class HintFinder {
  public:
   explicit HintFinder(std::span<const CommentText> comments) : comments_(comments) {}
@@ -524,14 +533,6 @@ class HintFinder {
     }
     add_at(block.line, -1, "fengrave", facts, block.near);
   }
-
-  struct FEngrave {
-    std::uint32_t line = 0;
-    bool near = false;
-    bool inches = false;
-    std::string shape, cut;
-    std::optional<double> angle_deg, diameter;
-  };
 
   // ---- PyCAM ----
   //     [Tool]

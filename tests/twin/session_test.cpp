@@ -46,6 +46,7 @@ class SessionTest : public testing::Test {
         << "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
         << comments << "    3 N1     SELECT_TOOL(1)\n"
         << "    4 N1     CHANGE_TOOL(1)\n"
+        << "    5 N2     SET_SPINDLE_SPEED(0, 3000.0000)\n"
         << "    5 N2     START_SPINDLE_CLOCKWISE(0)\n"
         << "    6 N3     STRAIGHT_TRAVERSE(0.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)\n"
         << "    7 N4     SET_FEED_RATE(300.0000)\n"
@@ -115,8 +116,9 @@ class SessionOnATurningTable : public SessionTest {
     std::ofstream listing(options_.program.path);
     listing << "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
             << "    2 N1     SELECT_TOOL(1)\n    3 N1     CHANGE_TOOL(1)\n"
-            << "    4 N2     START_SPINDLE_CLOCKWISE(0)\n    5 N2     SET_FEED_RATE(300.0000)\n";
-    int number = 6;
+            << "    4 N2     SET_SPINDLE_SPEED(0, 3000.0000)\n"
+            << "    5 N2     START_SPINDLE_CLOCKWISE(0)\n    6 N2     SET_FEED_RATE(300.0000)\n";
+    int number = 7;
     for (int side = 0; side < 4; ++side) {
       const auto step = [&](const char* command, double x, double z) {
         listing << "    " << number++ << " N" << 10 * side + 10 << "    " << command << "(" << x

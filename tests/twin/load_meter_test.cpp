@@ -1,0 +1,111 @@
+#include "twin/load_meter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kCell_mm = 0.1;
+
+/// A block 40 x 40 x 10 mm with its top at Z0, and a flat cutter of 4 mm at 10 mm/s.
+class LoadMeterTest : public testing::Test {
+ protected:
+  LoadMeterTest() {
+    ZMapOptions options;
+    options.blank = parse_blank("box:0,0,-10:40,40,0").value();
+    options.cell_mm = kCell_mm;
+    stock_ = std::move(ZMap::create(options).value());
+    meter_ = std::make_unique<LoadMeter>(*stock_);
+  }
+  static CutMove line(Vec3 from, Vec3 to) {
+    CutMove move;
+    move.from_mm = from;
+    move.to_mm = to;
+    return move;
+  }
+  /// From rest to rest at 10 mm/s and 250 mm/s2: v / a longer than without ramps.
+  static double duration_s(const CutMove& move) {
+    return glm::length(move.to_mm - move.from_mm) / kSpeed + kSpeed / 250;
+  }
+  MotionLoad measure(const CutMove& move) {
+    meter_->reach(cutter_, move, duration_s(move), kSpeed);
+    return meter_->measure(cutter_, move);
+  }
+  void cut(const CutMove& move) {
+    std::vector<CutReport> reports;
+    stock_->cut(cutter_, std::span(&move, 1), reports);
+    stock_->finish(reports);
+  }
+
+  static constexpr double kSpeed = 10;
+  const Cutter cutter_ = parse_shape("flat:4").value();
+  std::unique_ptr<ZMap> stock_;
+  std::unique_ptr<LoadMeter> meter_;
+};
+
+/// It cuts from X-2 to X40. What is thinner than half a cell is not there: the slivers beside the
+/// cutter are that thin where it still has 0.05 + sqrt(4 * 0.05) = 0.497 mm to go. Both ends are
+/// found to 0.2 % of the 44 mm over the blank.
+TEST_F(LoadMeterTest, ASlotThroughABlockIsCutToItsLastSliver) {
+  const std::string digest = stock_->digest();
+  const MotionLoad load = measure(line({-5, 20, -2}, {45, 20, -2}));
+  const double found = 0.002 * 44, sliver = kCell_mm / 2 + std::sqrt(4 * kCell_mm / 2);
+  EXPECT_GE(load.cut_s, (42 - sliver - kCell_mm / 2 - found) / kSpeed);
+  EXPECT_LE(load.cut_s, (42 + found) / kSpeed);
+  EXPECT_NEAR(load.peak_mm3_per_s, 4 * 2 * kSpeed, 0.01 * 80);
+  EXPECT_EQ(stock_->digest(), digest);
+}
+
+/// Its last 5 mm take 0.5 s, and half of what braking takes longer: 10 / 250 / 2 = 0.02 s.
+TEST_F(LoadMeterTest, BrakingInMaterialIsCuttingTime) {
+  const MotionLoad load = measure(line({20, 20, 30}, {20, 20, -5}));
+  EXPECT_NEAR(load.cut_s, 0.52, 0.0052);
+  EXPECT_NEAR(load.peak_mm3_per_s, kPi * 4 * kSpeed, 0.01 * kPi * 40);
+}
+
+TEST_F(LoadMeterTest, AWayThatIsFreeIsNotCut) {
+  const CutMove slot = line({-5, 20, -2}, {25, 20, -2});
+  cut(slot);
+  EXPECT_EQ(measure(slot).cut_s, 0);
+  // The second half of the longer way is material: from X25, where the round front stands already.
+  const MotionLoad rest = measure(line({5, 20, -2}, {35, 20, -2}));
+  EXPECT_NEAR(rest.cut_s, 1 + 0.02, 0.01 + 0.002 * 30 / kSpeed);
+  EXPECT_NEAR(rest.peak_mm3_per_s, 80, 0.8);
+}
+
+/// The box of the blank, drawn out by the cutter: X-2 to X42 of a way from X-20 to X60.
+TEST_F(LoadMeterTest, ReachIsWhereTheBlankWas) {
+  const CutMove move = line({-20, 20, -2}, {60, 20, -2});
+  const MotionReach reach = meter_->reach(cutter_, move, duration_s(move), kSpeed);
+  EXPECT_NEAR(reach.seconds, 4.4, 1e-9);
+  EXPECT_NEAR(reach.speed_per_mm, kSpeed / 44, 1e-9);
+  EXPECT_NEAR(reach.side_mm2_per_s, 4 * kSpeed, 1e-9);
+  EXPECT_EQ(reach.disc_mm3_per_s, 0);
+  const CutMove above = line({-20, 20, 0}, {60, 20, 0}), beside = line({-9, 1, -2}, {-3, 9, -2});
+  EXPECT_EQ(meter_->reach(cutter_, above, duration_s(above), kSpeed).seconds, 0);
+  EXPECT_EQ(meter_->reach(cutter_, beside, duration_s(beside), kSpeed).seconds, 0);
+}
+
+/// Of 2000 slots as many are measured as 3 % of their cells, and the free ones, pay for.
+TEST_F(LoadMeterTest, MeasuringIsPaidForByCutting) {
+  const CutMove move = line({0, 20, -2}, {40, 20, -2});
+  int measured = 0;
+  for (int n = 0; n < 2000; ++n) {
+    meter_->reach(cutter_, move, duration_s(move), kSpeed);
+    if (!meter_->affords()) continue;
+    meter_->measure(cutter_, move);
+    ++measured;
+  }
+  const double slot_cells = 40 * 4 / (kCell_mm * kCell_mm);
+  EXPECT_GE(measured, 5);
+  // A measurement sweeps the way once at least.
+  EXPECT_LE(measured, (LoadMeter::kFreeCells + LoadMeter::kShare * 2000 * slot_cells) / slot_cells);
+}
+
+}  // namespace
+}  // namespace kerf
