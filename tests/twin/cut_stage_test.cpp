@@ -173,8 +173,9 @@ TEST(CutStage, TraversesThroughMaterialAreOneFinding) {
   EXPECT_NEAR(*first.depth_mm, 3, 1e-3);
   EXPECT_NEAR(first.position_mm->x, -2, 0.2) << "the edge of the cutter meets X0";
   EXPECT_NEAR(first.position_mm->z, -1, 1e-6);
-  // A tool change of 0.3 s, 6 mm down in at least 2 sqrt(6 / 300) s, and a fifth of 15 mm along.
-  EXPECT_GT(*first.time_s, 0.3 + 0.283);
+  // A tool change of half an I/O period and two whole ones, 6 mm down in at least 2 sqrt(6 / 300)
+  // s, and a fifth of 15 mm along.
+  EXPECT_GT(*first.time_s, 0.25 + 0.283);
   EXPECT_LT(*first.time_s, 0.9);
   const Finding& second = shop.findings()[1];
   EXPECT_EQ(second.source.line, 8U);

@@ -91,7 +91,8 @@ TEST_F(SessionTest, TakesBlankAndToolFromComments) {
   EXPECT_EQ(report.stock->bounds_mm.size(), Vec3(30, 10, 5));
   ASSERT_EQ(report.tools.size(), 1U);
   EXPECT_EQ(report.tools[0].shape, "flat:6");
-  EXPECT_EQ(report.findings.total(), 0U);
+  ASSERT_EQ(report.findings.total(), 1U);
+  EXPECT_EQ(report.findings.kept()[0].id, FindingId::kStopInPart) << "the listing ends in its slot";
 }
 
 TEST_F(SessionTest, SaysWhyItIsNoZmap) {

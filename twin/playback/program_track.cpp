@@ -252,7 +252,9 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43 |
       std::uint64_t{m.speed_said} << 44;
   const std::uint64_t stops = std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
-                              static_cast<std::uint64_t>(m.chain_end) << 16;
+                              static_cast<std::uint64_t>(m.chain_end) << 16 |
+                              static_cast<std::uint64_t>(m.tool_prepare) << 24 |
+                              std::uint64_t{m.by_number} << 32;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
   const auto floats = [](float a, float b) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);

@@ -37,6 +37,8 @@ std::vector<std::uint64_t> bits_of(const Motion& m) {
                              static_cast<std::int64_t>(m.halts),
                              static_cast<std::int64_t>(m.io_halts),
                              static_cast<std::int64_t>(m.chain_end),
+                             static_cast<std::int64_t>(m.tool_prepare),
+                             static_cast<std::int64_t>(m.by_number),
                              static_cast<std::int64_t>(m.selected_tool),
                              static_cast<std::int64_t>(m.selected_at.file),
                              static_cast<std::int64_t>(m.selected_at.line)}) {
@@ -112,6 +114,8 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.halts = random() % 9 == 0 ? static_cast<std::uint8_t>(random()) : 0;
     m.io_halts = random() % 9 == 0 ? static_cast<std::uint8_t>(random()) : 0;
     m.chain_end = static_cast<ChainEnd>(random() % 3);
+    m.tool_prepare = static_cast<ToolPrepare>(random() % 4);
+    m.by_number = random() % 9 == 0;
     if (random() % 20 == 0) m.selected_tool = static_cast<int>(random() % 1000) - 1;
     if (random() % 20 == 0) {
       m.selected_at = {static_cast<std::uint32_t>(random() % 3),
@@ -133,7 +137,7 @@ std::vector<Motion> wild_motions(std::size_t count) {
 }
 
 TEST(ProgramTrack, MotionsAndTimesComeOutBitForBit) {
-  ASSERT_EQ(sizeof(Motion), 440U) << "it has another field, which bits_of() must look at";
+  ASSERT_EQ(sizeof(Motion), 448U) << "it has another field, which bits_of() must look at";
   const std::vector<Motion> motions = wild_motions(5000);
   ProgramTrackBuilder builder;
   std::mt19937_64 random(8);
