@@ -66,13 +66,14 @@ void LiveCutter::punch_program(const FollowedPoint& point, bool along) {
   // A machine that stands at the end of a motion has been there.
   if (point.motion < punched_) return;
   assert(punched_ >= ahead_->forgotten());
-  const bool struck = std::exchange(struck_before_, false);
-  const std::uint64_t from = along || struck ? punched_ : seen_from(point);
+  const bool before = std::exchange(struck_before_, false);
+  along |= before;
+  const std::uint64_t from = along ? punched_ : seen_from(point);
   const bool goes_on = point.motion == punched_;
   if (!along) punch_seen_part();
   for (; punched_ < point.motion; ++punched_) {
     const std::size_t at = static_cast<std::size_t>(punched_ - ahead_->forgotten());
-    log_.set_muted(struck);  // until the motion has been taken
+    log_.set_muted(before);  // until the motion has been taken
     punch_motion(ahead_->motions()[at].motion, 1, punched_ >= from);
   }
   ahead_->forget(static_cast<std::size_t>(punched_ - ahead_->forgotten()));
@@ -81,11 +82,10 @@ void LiveCutter::punch_program(const FollowedPoint& point, bool along) {
     real_program_tool_ = point.tool;
   }
   if (!goes_on) seen_share_ = 0;
-  if (!along && point.share > 0) {
-    log_.set_muted(struck);
-    punch_motion(ahead_->motions().front().motion, point.share, struck);
-  }
   log_.set_muted(false);
+  if (!along && point.share > 0) {
+    punch_motion(ahead_->motions().front().motion, point.share, false);
+  }
   seen_share_ = along ? point.share : 0;
   if (point.share < 1) return;
   if (along) punch_motion(ahead_->motions().front().motion, 1, true);
