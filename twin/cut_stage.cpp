@@ -391,7 +391,9 @@ void CutStage::check_turns(const Motion& m, const TimedStep& step) {
   }
   if (!assumptions_told_ && !motion_moves_.is_upright(m)) report_assumptions(m);
   if (turn_reported_ || stock_.takes_tilted_tools()) return;
-  if (m.from_abc_deg != m.to_abc_deg) report_ignored_turn(m, step);
+  if (m.from_abc_deg == m.to_abc_deg) return;
+  // Of an axis that the machine has not, no model would turn anything.
+  if (!rotary_check_ || rotary_check_->turns_something(m)) report_ignored_turn(m, step);
 }
 
 /// U, V or W move. Once for each that moves nothing that is known.

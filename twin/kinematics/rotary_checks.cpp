@@ -82,6 +82,15 @@ void RotaryCheck::add(RotaryFaultKind kind, std::size_t axis, const Motion& moti
   out.push_back({kind, motion.source, kAxisLetters[axis], std::move(text), std::move(hint)});
 }
 
+bool RotaryCheck::turns_something(const Motion& motion) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (motion.to_abc_deg[i] != motion.from_abc_deg[i] && has_axis(path_.machine(), 3 + i)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void RotaryCheck::check_axes(const Motion& motion, std::vector<RotaryFault>& out) {
   const MachineKinematics& machine = path_.machine();
   for (std::size_t i = 0; i < 3; ++i) {

@@ -55,6 +55,9 @@ class RotaryCheck {
   /// The pole alone: of a motion that a machine has been seen to make, in parts.
   void check_pole(const Motion& motion, std::vector<RotaryFault>& out);
 
+  /// The motion turns an axis that the machine has.
+  bool turns_something(const Motion& motion) const;
+
   /// Motions that had the fault.
   std::uint64_t count(RotaryFaultKind kind) const {
     return counts_[static_cast<std::size_t>(kind)];
