@@ -106,6 +106,54 @@ TEST_F(WindowScreenTest, TipsOverThePictureComeAndGo) {
   expect_screen_is_window(2);
 }
 
+/// The content of a window is kept by the driver in buffers of the window's size, which it asks for
+/// when it likes.
+TEST_F(WindowScreenTest, AResizedWindowShowsWhatAFreshOneOfThatSizeDoes) {
+  struct Size {
+    int width, height;
+  };
+  constexpr std::array<Size, 10> kSizes{{{900, 600},
+                                         {1300, 900},
+                                         {700, 500},
+                                         {1100, 950},
+                                         {1500, 600},
+                                         {1281, 801},
+                                         {640, 990},
+                                         {1600, 1000},
+                                         {333, 444},
+                                         {1280, 800}}};
+  // The program's first line, to which every height scrolls alike.
+  Moment at_start = test_moment();
+  at_start.line = 1;
+  publish(at_start);
+  settle();
+  std::vector<Picture> resized;
+  for (const Size& size : kSizes) {
+    ASSERT_TRUE(xdotool("search --onlyvisible --name kerf windowsize " +
+                        std::to_string(size.width) + " " + std::to_string(size.height) +
+                        " >/dev/null"));
+    ASSERT_TRUE(turn_until([&] {
+      const Picture picture = window_->read();
+      return picture.width_px == size.width && picture.height_px == size.height;
+    }));
+    settle();
+    resized.push_back(screen_of(folder_.path(), size.width, size.height));
+  }
+  for (std::size_t i = 0; i < kSizes.size(); ++i) {
+    const auto [width, height] = kSizes[i];
+    window_.reset();
+    WindowOptions options;
+    options.width_px = width;
+    options.height_px = height;
+    open(options);
+    publish(at_start);
+    settle();
+    const Picture fresh = screen_of(folder_.path(), width, height);
+    EXPECT_EQ(mean_difference(fresh, resized[i], {0, 0, width, height}), 0.0)
+        << width << " x " << height;
+  }
+}
+
 TEST_F(WindowScreenTest, ChangedRectanglesGiveTheSamePixelsAsAllOfTheWindow) {
   for (int step = 0; step < 8; ++step) {
     play(step);

@@ -156,6 +156,10 @@ void Platform::find_parts(GLFWwindow* window) {
   parts_ = std::make_shared<const Parts>(parts);
 }
 
+void Platform::take_new_size(GLFWwindow* window) const {
+  if (parts_) glfwSwapBuffers(window);
+}
+
 void Platform::show(GLFWwindow* window, const std::vector<ScreenRect>& rects) const {
   if (!parts_) {
     glfwSwapBuffers(window);

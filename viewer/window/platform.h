@@ -31,6 +31,10 @@ class Platform {
   /// show() of a few rectangles is worth it: this OpenGL is a software renderer, for which sending
   /// a whole window is a good part of a frame, and it can send less.
   bool can_show_parts() const { return parts_ != nullptr; }
+  /// To be called before the first picture of another size is drawn: Mesa looks at the window's
+  /// size when buffers are swapped, not when a part of them is copied, and would draw into those of
+  /// the old size for ever. Shows what was there once more.
+  void take_new_size(GLFWwindow* window) const;
   /// Brings the rectangles of the back buffer to the screen; all of it unless can_show_parts().
   void show(GLFWwindow* window, const std::vector<ScreenRect>& rects) const;
 

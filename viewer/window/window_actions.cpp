@@ -65,6 +65,8 @@ void Window::Impl::move_camera() {
                     ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
                     (ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
                      (io.KeyShift || settings_.flat != FlatView::kNone));
+  const bool is_dragged = pans || ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if ((is_dragged && drag != glm::vec2(0.0f)) || io.MouseWheel != 0.0f) is_fitted_ = false;
   if (pans) {
     camera_.pan(drag, area_px_);
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {

@@ -219,6 +219,8 @@ void Window::Impl::lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 
   const glm::ivec2 high = window_px - glm::ivec2(glm::vec2(room.right, room.top) * px_per_unit);
   const glm::ivec2 size = glm::max(high - low, glm::ivec2(1));
   if (size != area_px_ || low != area_corner_px_) is_window_old_ = true;
+  // All is seen still, if nobody has chosen otherwise.
+  if (size != area_px_ && is_fitted_) wants_fit_ = true;
   area_px_ = size;
   area_corner_px_ = low;
   area_top_px_ = {room.left, room.top};
@@ -229,7 +231,10 @@ Done Window::Impl::draw() {
   glfwGetFramebufferSize(window_, &window_px.x, &window_px.y);
   if (!Platform::is_there(window_)) return platform_.check();
   if (window_px.x < 1 || window_px.y < 1) return std::monostate{};
-  if (window_px != layer_->size_px()) is_window_old_ = true;
+  if (window_px != layer_->size_px()) {
+    is_window_old_ = true;
+    platform_.take_new_size(window_);
+  }
   if (Done done = layer_->resize(window_px); !done) return done;
   std::vector<ScreenRect> changed;
   const bool draws_panels = panels_are_due_;
@@ -254,6 +259,7 @@ Done Window::Impl::draw() {
   if (wants_fit_ && !renderer_->fit_box().empty()) {
     camera_.fit(renderer_->fit_box(), area_px_);
     wants_fit_ = false;
+    is_fitted_ = true;
     if (draws_panels) touched();  // marks over the picture go with the camera
   }
   tell_detail();

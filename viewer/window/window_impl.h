@@ -135,6 +135,7 @@ class Window::Impl {
   float display_scale_ = 1.0f;
   float scale_ = 0.0f;  // of the panels
   bool wants_fit_ = true;
+  bool is_fitted_ = false;  // nobody has moved the eye since
   bool pressed_in_picture_ = false;
   double detail_px_ = 1.0;
   std::size_t easy_triangles_ = 0;
