@@ -19,10 +19,17 @@ constexpr int kSamples = 2;
 constexpr float kOcclusionReach = 0.05f;
 /// The edge detector reaches one pixel in a picture of this height.
 constexpr float kReferenceHeight_px = 1200.0f;
+/// So far around a pixel it is counted how many edges there are, in a picture of that height.
+constexpr float kDensityReach_px = 24.0f;
+/// Of the largest picture: levels of the mipmap by which it is counted.
+constexpr int kDensityLevels = 8;
 /// Darkness of edges in a picture of that height and above; smaller pictures have finer features
 /// and get paler lines.
 constexpr float kEdgeStrength = 0.70f;
 constexpr float kSmallestEdgeStrength = 0.45f;
+/// A software renderer keeps the triangles that it was given until it draws them, some 200 bytes
+/// each; of more than these it waits for them.
+constexpr std::size_t kMostWaiting = 60'000;
 /// Around the part, for the antialiased border and the edge detector.
 constexpr int kBorder_px = 4;
 
@@ -87,7 +94,8 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
         fmt::format("a picture of {} x {} pixels is too large for this OpenGL; each side may be {}",
                     picture_px.x, picture_px.y, largest_px / kSamples)};
   }
-  allocate_texture(sampled_normals_, GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, sampled_px, GL_NEAREST);
+  allocate_texture(sampled_normals_, GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV,
+                   sampled_px, GL_NEAREST);
   allocate_texture(sampled_depths_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
                    sampled_px, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
@@ -110,6 +118,9 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
   all_complete = complete() && all_complete;
 
   allocate_texture(edge_strengths_, GL_R8, GL_RED, GL_UNSIGNED_BYTE, picture_px, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kDensityLevels);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glGenerateMipmap(GL_TEXTURE_2D);
   glBindFramebuffer(GL_FRAMEBUFFER, edges_.name());
   attach(GL_COLOR_ATTACHMENT0, edge_strengths_);
   all_complete = complete() && all_complete;
@@ -180,8 +191,14 @@ void PartRenderer::draw_pieces(const PartSurface& part, const Camera& camera) co
   programs_.part.use();
   programs_.part.set("clip_from_world", camera.clip_from_world());
   programs_.part.set("view_from_world", camera.view_from_world());
-  part.each_piece([](const SurfacePiece& piece) {
+  std::size_t waiting = 0;  // triangles that may not have been drawn yet
+  part.each_piece([&waiting](const SurfacePiece& piece) {
     if (piece.indices.empty()) return;
+    if (waiting > kMostWaiting) {
+      glFinish();
+      waiting = 0;
+    }
+    waiting += piece.indices.size() / 3;
     // Fresh memory for each: what is drawn of the last one need not be waited for.
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(piece.vertices.size_bytes()),
                  piece.vertices.data(), GL_STREAM_DRAW);
@@ -220,6 +237,8 @@ void PartRenderer::draw_edges(const Camera& camera) const {
   programs_.edges.set("px_mm_at_1mm", camera.px_mm_at_1mm());
   programs_.edges.set("reach_px", std::max(1.0f, reach_px));
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  bind_texture(0, edge_strengths_);
+  glGenerateMipmap(GL_TEXTURE_2D);  // how dense they are: composite.frag
 }
 
 void PartRenderer::draw_occlusion(const Camera& camera) const {
@@ -251,6 +270,8 @@ void PartRenderer::draw_composite(const Camera& camera) const {
   programs_.composite.set("unproject", camera.unproject());
   programs_.composite.set("up_view", glm::vec3(camera.view_from_world()[2]));
   const float relative_height = static_cast<float>(picture_px_.y) / kReferenceHeight_px;
+  programs_.composite.set("dense_level",
+                          std::max(0.0f, std::log2(kDensityReach_px * relative_height)));
   programs_.composite.set("edge_strength", std::clamp(kEdgeStrength * relative_height,
                                                       kSmallestEdgeStrength, kEdgeStrength));
   glEnable(GL_BLEND);

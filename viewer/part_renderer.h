@@ -72,7 +72,8 @@ class PartRenderer {
 
   glm::ivec2 picture_px_{0};
   GlFramebuffer sampled_;
-  GlTexture sampled_normals_;  // twice the size; rgb: normal in view space, a: 1 on the part
+  GlTexture sampled_normals_;  // twice the size; rgb: half of 1 + the normal in view
+                               // space, a: 1 on the part
   GlTexture sampled_depths_;
   GlFramebuffer resolved_;
   GlTexture normals_;  // rgb: mean normal in view space, a: coverage

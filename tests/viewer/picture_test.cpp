@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "tests/viewer/test_meshes.h"
@@ -196,6 +197,50 @@ TEST_F(PictureTest, OutlineStandsWherePartIsCutAway) {
 }
 
 using PictureDeathTest = PictureTest;
+
+/// Lines along the edges of terraces that lie as close as the lines are wide leave nothing to be
+/// seen; along those of a few they tell where they are.
+TEST_F(PictureTest, CloseTerracesAreNotBlack) {
+  PictureOptions options = options_of(1600, 1200);
+  options.blank_mm = Box{{0, 0, -50}, {100, 100, 0}};
+  const auto dark_pixels = [&](double period_mm) {
+    const Picture picture = draw(terrace_mesh(800, period_mm), options);
+    return count(picture, 0.35, 0.35, 0.65, 0.6,
+                 [](const Color& c) { return c.brightness() < 90; });
+  };
+  const int all = 1600 * 1200 * 30 / 100 * 25 / 100;
+  EXPECT_LT(dark_pixels(1.2), all / 50);
+  EXPECT_GT(dark_pixels(20.0), all / 500);
+}
+
+/// Of this process since begin_peak(), in MB.
+double peak_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != "VmHWM:") continue;
+    double kb = 0.0;
+    status >> kb;
+    return kb / 1024.0;
+  }
+  return 0.0;
+}
+
+void begin_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+TEST_F(PictureTest, ManyTrianglesTakeNoMoreMemoryThanFew) {
+  const PictureOptions options = options_of(1600, 1200);
+  PartPatches part = part_of(relief_mesh(140));
+  const auto peak_of = [&](std::size_t patches) {
+    part.count = patches;
+    begin_peak();
+    EXPECT_TRUE(draw_part(part, options));
+    return peak_mb();
+  };
+  const double few_mb = peak_of(1);
+  ASSERT_GT(few_mb, 0.0);
+  const double many_mb = peak_of(100);
+  EXPECT_LT(many_mb, few_mb + 40.0);
+}
 
 TEST_F(PictureDeathTest, WithoutAnyDriverTheErrorSaysWhatToInstall) {
   // Runs in a fresh process, so that the EGL loader has not yet looked for its drivers.

@@ -44,12 +44,10 @@ TriangleMesh prism_mesh(int sides, float radius_mm, float height_mm) {
   return mesh;
 }
 
-TriangleMesh relief_mesh(int cells) {
-  const auto height_mm = [](double x, double y) {
-    if (std::hypot(x - 30.0, y - 65.0) < 18.0) return -22.0;
-    if (std::fabs(x - y - 30.0) < 5.0) return 0.0;
-    return -5.0 + 1.8 * std::sin(0.14 * x) * std::cos(0.11 * y);
-  };
+namespace {
+
+template <class Height>
+TriangleMesh grid_mesh(int cells, const Height& height_mm) {
   TriangleMesh mesh;
   const double cell_mm = 100.0 / cells;
   for (int j = 0; j <= cells; ++j) {
@@ -68,6 +66,22 @@ TriangleMesh relief_mesh(int cells) {
     }
   }
   return mesh;
+}
+
+}  // namespace
+
+TriangleMesh relief_mesh(int cells) {
+  return grid_mesh(cells, [](double x, double y) {
+    if (std::hypot(x - 30.0, y - 65.0) < 18.0) return -22.0;
+    if (std::fabs(x - y - 30.0) < 5.0) return 0.0;
+    return -5.0 + 1.8 * std::sin(0.14 * x) * std::cos(0.11 * y);
+  });
+}
+
+TriangleMesh terrace_mesh(int cells, double period_mm) {
+  return grid_mesh(cells, [period_mm](double x, double y) {
+    return -1.0 - 0.4 * std::floor(std::hypot(x - 100.0, y - 100.0) / period_mm);
+  });
 }
 
 PartPatches part_of(const TriangleMesh& mesh) {

@@ -20,6 +20,10 @@ TriangleMesh prism_mesh(int sides, float radius_mm, float height_mm);
 /// deep, a ridge.
 TriangleMesh relief_mesh(int cells);
 
+/// The same grid as plateaus, 0.4 mm one above the other and `period_mm` from one to the next, as
+/// reliefs of plywood and maps are cut.
+TriangleMesh terrace_mesh(int cells, double period_mm);
+
 /// One patch, shaded by shade_mesh().
 PartPatches part_of(const TriangleMesh& mesh);
 

@@ -7,8 +7,16 @@ uniform sampler2D edges;
 uniform vec4 unproject;  // as in occlusion.frag
 uniform vec3 up_view;    // +Z of the workpiece
 uniform float edge_strength;
+uniform float dense_level;  // of the edges' mipmap: a texel covers that many lines beside each other
 in vec2 uv;
 out vec4 color;
+
+// Share of the picture around that edges cover, from which on they are drawn paler, and are as pale
+// as they get. A corner of a part is below; where terraces or tracks lie as close as the lines are
+// wide, lines would leave nothing to be seen of them.
+const float kDense = 0.12;
+const float kDensest = 0.36;
+const float kDensestStrength = 0.15;
 
 const vec3 kKey = vec3(-0.6210, 0.3506, 0.7011);  // directions to the lamps, view space
 const vec3 kFill = vec3(0.8136, 0.2034, 0.5447);
@@ -55,6 +63,8 @@ void main() {
   vec2 corner = floor(uv * texels + 0.5) / texels;
   float open = blurred(occlusion, corner, 1.0);
   float edge = blurred(edges, uv, 0.5);  // 3 x 3 tent: antialiases the lines
+  float density = textureLod(edges, uv, dense_level).r;
+  edge *= mix(1.0, kDensestStrength, smoothstep(kDense, kDensest, density));
   vec2 tangent = (1.0 - uv * 2.0) * unproject.xy;
   vec3 linear =
       lit(unit(g.xyz), unit(vec3(tangent, 1.0)), unit(vec3(kNearRoom * tangent, 1.0)), open);

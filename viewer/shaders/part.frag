@@ -4,4 +4,4 @@
 in vec3 normal_view;
 out vec4 normal_coverage;
 
-void main() { normal_coverage = vec4(normalize(normal_view), 1.0); }
+void main() { normal_coverage = vec4(0.5 + 0.5 * normalize(normal_view), 1.0); }

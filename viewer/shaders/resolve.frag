@@ -13,7 +13,7 @@ void main() {
   float depth_sum = 0.0;
   for (int i = 0; i < 4; ++i) {
     vec4 n = texelFetch(normals, at + offsets[i], 0);
-    normal_sum += n;
+    normal_sum += n.a * vec4(2.0 * n.xyz - 1.0, 1.0);
     depth_sum += n.a * texelFetch(depths, at + offsets[i], 0).r;
   }
   normal_coverage = 0.25 * normal_sum;
