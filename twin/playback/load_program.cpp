@@ -12,6 +12,7 @@
 #include "twin/kinematics/switched_motions.h"
 #include "twin/playback/mounted_tools.h"
 #include "twin/playback/planned_steps.h"
+#include "twin/playback/probed_workpiece.h"
 
 namespace kerf {
 namespace {
@@ -119,7 +120,9 @@ class ToolList {
 /// One reading of a program.
 class Loading {
  public:
-  Loading(const SessionOptions& options, const ProgramFront& front, const LoadControl& control)
+  /// `cuts`: what its probes meet is looked for.
+  Loading(const SessionOptions& options, const ProgramFront& front, const LoadControl& control,
+          bool cuts)
       : control_(control),
         program_(*front.program),
         window_(options.lines),
@@ -129,9 +132,14 @@ class Loading {
                options.turret),
         tilt_(options.timeline.kinematics),
         switched_(options.timeline.kinematics) {
-    // Nothing is cut while it is read.
-    if (!front.is_sheet()) program_.follow_probes(nullptr);
     if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
+    if (front.is_sheet()) return;
+    if (cuts) workpiece_.emplace(options, front, control.stop);
+    if (front.stock.stock) {
+      program_.follow_probes([this](const ProbeQuestion& question) { return answer(question); });
+    } else {
+      program_.follow_probes(nullptr);
+    }
   }
 
   ProgramSummary read(Diagnostics& said) {
@@ -141,6 +149,8 @@ class Loading {
     return summary;
   }
 
+  /// It probes, and was read without `cuts`: no further than there.
+  bool wants_to_cut() const { return wants_to_cut_; }
   const std::optional<BlankSurvey>& survey() const { return survey_; }
   const LineWindow& window() const { return window_; }
   const std::string& tilt() const { return tilt_.found(); }
@@ -157,10 +167,23 @@ class Loading {
   }
 
  private:
+  ProbeAnswer answer(const ProbeQuestion& question) {
+    ProbeAnswer unknown;
+    wants_to_cut_ = !workpiece_;
+    if (wants_to_cut_) return unknown;
+    if (tilt_.found().empty() || workpiece_->takes_tilted_tools()) {
+      return workpiece_->answer(question);
+    }
+    unknown.why = "tool or workpiece have turned before, and the blank was not of --model octree";
+    return unknown;
+  }
+
   /// False: no more motions are wanted.
   bool take(std::span<const Motion> motions) {
+    if (wants_to_cut_) return false;
     motions = switched_.follow(motions, program_.workpiece_frame());
     tilt_.look_at(motions, program_.workpiece_frame());
+    if (workpiece_) workpiece_->take(motions, program_.workpiece_frame());
     if (const auto& materials = program_.materials(); materials.size() != materials_) {
       materials_ = materials.size();
       timeline_.set_materials(materials);
@@ -189,6 +212,8 @@ class Loading {
   TiltWatch tilt_;
   SwitchedMotions switched_;
   std::optional<BlankSurvey> survey_;
+  std::optional<ProbedWorkpiece> workpiece_;
+  bool wants_to_cut_ = false;
   std::size_t motions_ = 0;
   std::size_t before_window_ = 0;
   std::size_t materials_ = 0;  ///< that the timeline knows
@@ -218,9 +243,19 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   std::optional<ProgramFront> front = open_front(options, diagnostics, outcome);
   if (!front) return nullptr;
   auto loaded = std::make_unique<LoadedProgram>();
-  Loading loading(options, *front, control);
+  std::optional<Loading> reading;
+  reading.emplace(options, *front, control, false);
   Diagnostics said;
-  loaded->summary = loading.read(said);
+  loaded->summary = reading->read(said);
+  if (reading->wants_to_cut()) {
+    said.clear();
+    front->program = Program::open(options.program, diagnostics);
+    if (!front->program) return nullptr;
+    front->program->give_diameters(known_diameters(front->tools));
+    reading.emplace(options, *front, control, true);
+    loaded->summary = reading->read(said);
+  }
+  Loading& loading = *reading;
   const bool stopped = control.stop.stop_requested() && loaded->summary.stopped_early;
   FindingLog remarks;
   if (loading.survey()) {

@@ -265,6 +265,26 @@ TEST_F(LoadProgram, TroublesOfAWholeProgramAsADryRunFindsThem) {
   expect_as_session_with(FindingId::kDrillSideways);
 }
 
+#ifdef KERF_INTERP_EXECUTABLE
+/// The slot is cut before the probe comes, its floor becomes Z0, and the rapid of line 16 goes 1 mm
+/// below it.
+TEST_F(LoadProgram, WhatAProbeMeetsAsADryRunHasIt) {
+  give_blank();
+  options_.program.path = folder_.write("part.ngc",
+                                        "G21 G90 G17 G54\nT1 M6\nS8000 M3\nG0 X20 Y20 Z5\n"
+                                        "G1 Z-3 F600\nG1 X30\nG0 Z5\nM5\nT2 M6\nG0 X25 Y20\n"
+                                        "G38.2 Z-8 F100\nG10 L20 P1 Z0\nG0 Z10\nS8000 M3\n"
+                                        "G0 X25\nG0 Z-1\nG0 Z10\nM5\nM2\n");
+  options_.program.interpreter = InterpreterChoice::kBridge;
+  options_.program.kerf_interp_path = KERF_INTERP_EXECUTABLE;
+  expect_as_session_with(FindingId::kRapidContact);
+  EXPECT_FALSE(compared_ids_.contains(FindingId::kNotSimulated));
+  // Of a guessed blank nobody knows before the program is read.
+  options_.blank.reset();
+  expect_as_session_with(FindingId::kNotSimulated);
+}
+#endif
+
 TEST_F(LoadProgram, NothingCutAsADryRunFindsIt) {
   auto commands = in_the_block();
   commands.emplace_back(5, to("STRAIGHT_TRAVERSE", 20, 20, 5));

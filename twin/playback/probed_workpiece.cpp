@@ -1,0 +1,24 @@
+#include "twin/playback/probed_workpiece.h"
+
+#include <utility>
+
+#include "twin/stock_choice.h"
+
+namespace kerf {
+
+ProbedWorkpiece::ProbedWorkpiece(const SessionOptions& options, const ProgramFront& front,
+                                 std::stop_token stop)
+    : stock_(front.stock.stock->snapshot()),
+      book_(front.tools, row_of(*stock_).can_cut),
+      stage_(*stock_, book_, log_, options.timeline) {
+  log_.set_muted(true);
+  stage_.stop_by(std::move(stop));
+  stage_.check_by({front.blank_guessed, options.below_mm});
+}
+
+void ProbedWorkpiece::take(std::span<const Motion> motions, const WorkpieceFrame& frame) {
+  stage_.set_frame(frame);
+  stage_.take(motions);
+}
+
+}  // namespace kerf
