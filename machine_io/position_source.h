@@ -59,6 +59,10 @@ struct SourceStatus {
   std::uint64_t reconnects = 0;  ///< after the first connection
   std::uint64_t lost = 0;        ///< data known to be lost: kernel queue overruns, gaps in counters
   std::uint64_t duplicates = 0;  ///< logs: the same stamp twice
+  std::uint64_t incomplete = 0;  ///< cycles of a bus in which a frame was missing: dropped
+  /// Logs: samples while the device's clock stood (LogSource::kStanding).
+  std::uint64_t standing = 0;
+  std::uint64_t damaged = 0;     ///< samples of a recording's parts whose sum is wrong: dropped
   std::uint64_t disordered = 0;  ///< stamps that went back; such samples are not handed out
   std::string trouble;  ///< the last thing that went wrong, for people; empty if nothing has
 };

@@ -40,6 +40,14 @@ std::vector<std::pair<std::string, const CanSignal*>> mapped_signals(const CanMa
   return all;
 }
 
+/// Not an id that means something else.
+int sync_id_of(const CanMap& map) {
+  for (const auto& [name, signal] : mapped_signals(map)) {
+    if (!signal->extended && static_cast<int>(signal->id) == map.sync_id) return -1;
+  }
+  return map.sync_id;
+}
+
 std::int64_t nanoseconds(double milliseconds) {
   return std::llround(milliseconds * kNanosecondsPerMillisecond);
 }
@@ -64,6 +72,17 @@ std::vector<std::string> validate(const CanMap& map, const std::string& key) {
           "{0}.{1}: reads the same bits of frame {2} as {0}.{3}", key, signals[i].first,
           can_id_text(signals[i].second->id, signals[i].second->extended), signals[k].first));
     }
+  }
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    const CanAxisRange& range = map.ranges[i];
+    if (range.min && range.max && !(*range.min < *range.max)) {
+      faults.push_back(fmt::format("{}.{}.max: {} is not allowed; must be above min {}", key,
+                                   map.axis_keys[i], *range.max, *range.min));
+    }
+  }
+  if (map.sync_id < -1 || map.sync_id > static_cast<int>(kMaxStandardCanId)) {
+    faults.push_back(fmt::format(
+        "{}.sync_id: {} is not allowed; must be 0 to 0x7FF, or -1 for none", key, map.sync_id));
   }
   if (!(map.gather_ms >= kLeastGather_ms && map.gather_ms <= kMostGather_ms)) {
     faults.push_back(fmt::format("{}.gather_ms: {} is not allowed; must be {} to {} ms", key,
@@ -90,12 +109,21 @@ CanSignal odrive_position(std::uint8_t node, double mm_per_turn) {
 }
 
 CanAssembler::CanAssembler(const CanMap& map) : gather_ns_(nanoseconds(map.gather_ms)) {
+  std::uint16_t axes = 0;
+  bool is_cyclic = true;
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     names_[i] = map.axis_keys[i];
     if (!map.axes[i]) continue;
     add(i, *map.axes[i]);
-    mapped_ = static_cast<std::uint16_t>(mapped_ | 1U << i);
+    // Machines overshoot their limits a little.
+    const CanAxisRange& range = map.ranges[i];
+    const double slack = range.min && range.max ? (*range.max - *range.min) / 100 : 1;
+    if (range.min) slots_[i].low = *range.min - slack;
+    if (range.max) slots_[i].high = *range.max + slack;
+    axes = static_cast<std::uint16_t>(axes | 1U << i);
+    is_cyclic = is_cyclic && map.axes[i]->max_age_ms > 0;
   }
+  cycle_ = CanCycle(axes, gather_ns_, is_cyclic);
   names_[kTool] = "tool";
   names_[kLine] = "line";
   names_[kSpindle] = "spindle";
@@ -106,6 +134,7 @@ CanAssembler::CanAssembler(const CanMap& map) : gather_ns_(nanoseconds(map.gathe
   if (map.spindle) add(kSpindle, *map.spindle);
   if (map.tool_offset_z) add(kToolOffsetZ, *map.tool_offset_z);
   if (map.trigger) add(kTrigger, *map.trigger);
+  sync_id_ = sync_id_of(map);
 }
 
 void CanAssembler::add(std::size_t slot, const CanSignal& signal) {
@@ -116,17 +145,28 @@ void CanAssembler::add(std::size_t slot, const CanSignal& signal) {
 
 void CanAssembler::forget() {
   for (Slot& slot : slots_) slot.at_ns = AxisSample::kNoTime;
-  gathered_ = 0;
+  cycle_.forget();
+  has_held_ = false;
+  is_first_ = true;
   ready_count_ = 0;
   newest_ns_ = AxisSample::kNoTime;
+}
+
+/// Data of a SYNC is its count at most.
+bool CanAssembler::is_sync(const CanFrame& frame) const {
+  return sync_id_ >= 0 && !frame.error && !frame.remote && !frame.extended &&
+         frame.id == static_cast<std::uint32_t>(sync_id_) && frame.length <= 1;
 }
 
 bool CanAssembler::note_unfit(std::size_t slot, const CanFrame& frame, CanFit fit, double value) {
   if (fit == CanFit::kValue) {
     // Tools and lines are counts; anything else is a wrong map or a damaged frame.
-    if (slot != kTool && slot != kLine && slot != kTrigger) return false;
-    if (std::round(value) >= 0.0 &&
-        std::round(value) <= static_cast<double>(std::numeric_limits<std::int32_t>::max())) {
+    if (slot < kMaxPositions) {
+      if (value >= slots_[slot].low && value <= slots_[slot].high) return false;
+    } else if (slot != kTool && slot != kLine && slot != kTrigger) {
+      return false;
+    } else if (std::round(value) >= 0.0 &&
+               std::round(value) <= static_cast<double>(std::numeric_limits<std::int32_t>::max())) {
       return false;
     }
   }
@@ -136,6 +176,13 @@ bool CanAssembler::note_unfit(std::size_t slot, const CanFrame& frame, CanFit fi
 
 CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t device_ns) {
   assert(ready_count_ == 0);
+  if (is_sync(frame)) {
+    if (cycle_.ends_at_sync()) {
+      close_incomplete();
+      cycle_.ends_at_sync();
+    }
+    return Taken::kNotMapped;
+  }
   std::array<Arrival, kSlots> arrivals;
   std::size_t count = 0;
   std::uint16_t axes = 0;
@@ -159,35 +206,73 @@ CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t devic
     forget();
     stepped = true;
   }
-  if (gathered_ != 0 && ((gathered_ & axes) != 0 || device_ns > gather_end_ns())) {
-    flush();
+  if (std::exchange(is_broken_, false) && !cycle_.is_empty()) close_incomplete();
+  if (axes != 0 && has_held_ && cycle_.is_empty() && !cycle_.seems_shifted(device_ns)) {
+    release_held();
   }
+  if (cycle_.ends_before(axes, device_ns)) close_incomplete();
   newest_ns_ = device_ns;
   for (std::size_t i = 0; i < count; ++i) {
     slots_[arrivals[i].slot].value = arrivals[i].value;
     slots_[arrivals[i].slot].at_ns = device_ns;
   }
   if (axes != 0) {
-    if (gathered_ == 0) gather_start_ns_ = device_ns;
-    gather_newest_ns_ = device_ns;
-    gathered_ = static_cast<std::uint16_t>(gathered_ | axes);
-    if (gathered_ == mapped_) flush();
+    cycle_.add(axes, device_ns);
+    if (cycle_.is_complete()) close();
   }
   if (stepped) return Taken::kClockStepped;
   return unfit ? Taken::kUnfit : Taken::kTaken;
 }
 
-bool CanAssembler::is_known(const Slot& slot) const {
-  if (slot.at_ns == AxisSample::kNoTime) return false;
-  return slot.max_age_ns == 0 || gather_newest_ns_ - slot.at_ns <= slot.max_age_ns;
+/// A whole cycle is gathered.
+void CanAssembler::close() {
+  const AxisSample sample = gathered_sample();
+  if (cycle_.close() == CanCycle::Verdict::kShifted) {
+    // What was held is of two cycles, too.
+    has_held_ = false;
+    return;
+  }
+  release_held();
+  if (std::exchange(is_first_, false) && cycle_.widest_ns() > 0) {
+    held_ = sample;
+    has_held_ = true;
+    return;
+  }
+  make_ready(sample);
+  incomplete_ += static_cast<std::uint64_t>(cycle_.take_missing());
+}
+
+void CanAssembler::close_incomplete() {
+  release_held();
+  const AxisSample sample = gathered_sample();
+  if (!cycle_.close_incomplete()) make_ready(sample);
+}
+
+void CanAssembler::release_held() {
+  if (std::exchange(has_held_, false)) make_ready(held_);
+}
+
+void CanAssembler::make_ready(const AxisSample& sample) {
+  assert(ready_count_ < ready_.size());
+  ready_[ready_count_++] = sample;
 }
 
 void CanAssembler::flush() {
-  if (gathered_ == 0) return;
-  assert(ready_count_ < ready_.size());
-  AxisSample& sample = ready_[ready_count_++];
-  sample = AxisSample{};
-  sample.device_ns = gather_newest_ns_;
+  if (cycle_.is_empty()) {
+    release_held();
+  } else {
+    close_incomplete();
+  }
+}
+
+bool CanAssembler::is_known(const Slot& slot) const {
+  if (slot.at_ns == AxisSample::kNoTime) return false;
+  return slot.max_age_ns == 0 || cycle_.last_ns() - slot.at_ns <= slot.max_age_ns;
+}
+
+AxisSample CanAssembler::gathered_sample() const {
+  AxisSample sample;
+  sample.device_ns = cycle_.last_ns();
   for (std::size_t i = 0; i < used_count_; ++i) {
     const Slot& slot = slots_[used_[i]];
     if (!is_known(slot)) continue;
@@ -212,16 +297,26 @@ void CanAssembler::flush() {
         sample.known = static_cast<std::uint16_t>(sample.known | 1U << used_[i]);
     }
   }
-  sample.fresh = gathered_ & sample.known;
-  gathered_ = 0;
+  sample.fresh = cycle_.gathered() & sample.known;
+  return sample;
 }
 
 bool CanAssembler::next(AxisSample& sample) {
   if (ready_count_ == 0) return false;
   sample = ready_[0];
-  ready_[0] = ready_[1];
+  std::copy(ready_.begin() + 1, ready_.end(), ready_.begin());
   --ready_count_;
   return true;
+}
+
+std::string CanAssembler::incomplete_text() const {
+  std::string names;
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    if ((cycle_.missing_axes() >> i & 1U) == 0) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", names_[i]);
+  }
+  return fmt::format("a cycle of the bus came without {} and was dropped (a frame was lost?)",
+                     names);
 }
 
 std::string CanAssembler::unfit_text() const {
@@ -236,6 +331,10 @@ std::string CanAssembler::unfit_text() const {
       return fmt::format("{}no finite number in {}; is its type or byte order another?", what,
                          name);
     case CanFit::kValue:
+      if (unfit_.slot < kMaxPositions) {
+        return fmt::format("{}{:g} in {}, beyond min or max and what a machine may overshoot", what,
+                           unfit_.value, name);
+      }
       return fmt::format("{}{} in {}, which must be 0 or above", what, unfit_.value, name);
     case CanFit::kOther:
       break;

@@ -4,28 +4,43 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "machine_io/can/can_cycle.h"
 #include "machine_io/can/can_signal.h"
 #include "machine_io/position_source.h"
 
 namespace kerf {
 
+/// What a position can be, mm or degrees. A frame that says another, by more than a hundredth of
+/// the span (1 without a span), is at fault, and not taken.
+struct CanAxisRange {
+  std::optional<double> min;
+  std::optional<double> max;
+  /// mm/s; for those who look at positions one after the other. Not looked at here.
+  std::optional<double> max_speed_per_s;
+};
+
 /// Where on the bus the machine's numbers are. Scale each to mm, degrees, rpm.
 struct CanMap {
   std::array<std::optional<CanSignal>, kMaxPositions> axes;
+  std::array<CanAxisRange, kMaxPositions> ranges;
   std::optional<CanSignal> tool;           ///< tool number in the spindle, 0 = none
   std::optional<CanSignal> line;           ///< program line, 0 = idle
   std::optional<CanSignal> spindle;        ///< rpm, signed
   std::optional<CanSignal> tool_offset_z;  ///< mm
   std::optional<CanSignal> trigger;        ///< of a punch: 0 off, else on
 
-  /// The drives of one machine answer one after the other. What comes within this time makes one
-  /// sample; ms, 0.1 to 10 000. Longer than the bus needs for one cycle; when drives send only
+  /// The drives of one machine answer one after the other. What comes within this time can make
+  /// one sample; ms, 0.1 to 10 000. Longer than the bus needs for one cycle; when drives send only
   /// what changes, the last change is shown so much later.
   double gather_ms = 50.0;
+  /// The frame that drives answer with their positions of that moment: an 11-bit id, at most one
+  /// byte of data. CANopen's SYNC is 0x080. -1: none; nor is it one where a signal has that id.
+  int sync_id = 0x080;
 
   /// What the configuration calls them; for messages.
   std::array<std::string, kMaxPositions> axis_keys{"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
@@ -42,10 +57,13 @@ CanSignal cia402_position(std::uint8_t node, double mm_per_count);
 /// Position of an ODrive axis, Get_Encoder_Estimates (node << 5 | 9): float32 turns.
 CanSignal odrive_position(std::uint8_t node, double mm_per_turn);
 
-/// Puts the frames of one cycle of the bus together. A sample is ready
-///   - when every mapped axis has come,
+/// Puts the frames of one cycle of the bus together (CanCycle). A sample is ready
+///   - when every mapped axis has come; the very first one perhaps only with the next frame, when
+///     it may be made of two cycles;
 ///   - when an axis comes a second time, or CanMap::gather_ms after the first of them: the missing
-///     are then known from before (if not too old), but not fresh.
+///     are then known from before (if not too old), but not fresh. But where the bus is cyclic a
+///     cycle that lacks a frame is dropped, and counted when the bus goes on as before. (Axes whose
+///     max_age_ms is 0 come when they change: such a bus is not cyclic.)
 /// A sample bears the stamp of the newest of its axes; stamps go back from one sample to
 /// the next only behind kClockStepped. `host_ns` is left to the caller. Tool, line, spindle and
 /// tool offset go along with the axes and make no sample by themselves. No allocation after
@@ -66,9 +84,9 @@ class CanAssembler {
   /// The map must be valid.
   explicit CanAssembler(const CanMap& map);
 
-  /// Takes a frame in. `device_ns` is its stamp, 0 to 2^62. A frame makes at most two samples
-  /// ready, which next() must have handed out before the next push. kUnfit: what fits of it is
-  /// taken.
+  /// Takes a frame in. `device_ns` is its stamp, 0 to 2^62. A frame makes at most kMostReady
+  /// samples ready, which next() must have handed out before the next push. kUnfit: what fits of it
+  /// is taken.
   Taken push(const CanFrame& frame, std::int64_t device_ns);
 
   /// The next sample that is ready, if there is one.
@@ -78,12 +96,23 @@ class CanAssembler {
   void flush();
 
   /// True while some axes of a sample have come and others are waited for.
-  bool is_gathering() const { return gathered_ != 0; }
+  bool is_gathering() const { return !cycle_.is_empty() || has_held_; }
 
   /// The stamp behind which a frame no longer belongs to what is being gathered.
-  std::int64_t gather_end_ns() const { return gather_start_ns_ + gather_ns_; }
+  std::int64_t gather_end_ns() const {
+    return cycle_.is_empty() ? cycle_.seems_shifted_until_ns() : cycle_.first_ns() + gather_ns_;
+  }
 
   std::int64_t gather_ns() const { return gather_ns_; }
+
+  /// Frames are known to be lost here: what is gathered is not completed by what follows.
+  void frames_lost() { is_broken_ = true; }
+
+  /// Cycles of a cyclic bus that were dropped because a frame was missing.
+  std::uint64_t incomplete() const { return incomplete_; }
+  /// About the last of them: "a cycle of the bus came without X and was dropped (a frame was
+  /// lost?)". Built on demand.
+  std::string incomplete_text() const;
 
   /// Forgets every value: what comes next is a new beginning.
   void forget();
@@ -101,6 +130,8 @@ class CanAssembler {
 
   struct Slot {
     CanSignal signal;
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
     std::int64_t max_age_ns = 0;  // 0: never too old
     double value = 0.0;
     std::int64_t at_ns = AxisSample::kNoTime;  // kNoTime: never read
@@ -110,7 +141,16 @@ class CanAssembler {
     double value;
   };
 
+  static constexpr std::size_t kMostReady = 3;
+
   void add(std::size_t slot, const CanSignal& signal);
+  bool is_sync(const CanFrame& frame) const;
+  void take_axes(std::uint16_t axes, std::int64_t device_ns);
+  void close();
+  void close_incomplete();
+  void release_held();
+  AxisSample gathered_sample() const;
+  void make_ready(const AxisSample& sample);
   bool is_known(const Slot& slot) const;  // at the time of the sample being gathered
   bool note_unfit(std::size_t slot, const CanFrame& frame, CanFit fit, double value);
 
@@ -118,14 +158,19 @@ class CanAssembler {
   std::array<Slot, kSlots> slots_;
   std::array<std::size_t, kSlots> used_{};  // the first used_count_: which slots are mapped
   std::size_t used_count_ = 0;
-  std::uint16_t mapped_ = 0;    // axes
-  std::uint16_t gathered_ = 0;  // axes that came since the last sample
   std::int64_t gather_ns_ = 0;
-  std::int64_t gather_start_ns_ = 0;
-  std::int64_t gather_newest_ns_ = 0;
+  int sync_id_ = -1;
+  CanCycle cycle_{0, 0, false};
   std::int64_t newest_ns_ = AxisSample::kNoTime;
+  std::uint64_t incomplete_ = 0;
 
-  std::array<AxisSample, 2> ready_;
+  /// The first sample, while it is not known whether it is of one cycle.
+  AxisSample held_;
+  bool has_held_ = false;
+  bool is_first_ = true;
+  bool is_broken_ = false;
+
+  std::array<AxisSample, kMostReady> ready_;
   std::size_t ready_count_ = 0;
 
   struct Unfit {

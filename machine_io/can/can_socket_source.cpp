@@ -93,6 +93,11 @@ std::vector<can_filter> filters_of(const CanMap& map) {
   add(map.spindle);
   add(map.tool_offset_z);
   add(map.trigger);
+  if (map.sync_id >= 0) {
+    CanSignal sync;
+    sync.id = static_cast<std::uint32_t>(map.sync_id);
+    add(sync);
+  }
   return filters;
 }
 
@@ -356,6 +361,7 @@ void CanSource::Reader::count_dropped(const FrameRemarks& remarks) {
   const std::uint32_t more = remarks.dropped - dropped_;  // the count may wrap around
   dropped_ = remarks.dropped;
   status_.lost += more;
+  assembler_.frames_lost();
   say(
       fmt::format("{} frames were lost: the receive queue was full (is net.core.rmem_max too "
                   "small?)",
@@ -370,6 +376,7 @@ void CanSource::Reader::take_error(std::size_t index) {
   ++status_.errors;
   if ((frame.can_id & CAN_ERR_CRTL) != 0 && (frame.data[1] & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
     ++status_.lost;
+    assembler_.frames_lost();
   }
   if (bus_off) {
     status_.state = SourceState::kConnecting;
@@ -392,10 +399,16 @@ void CanSource::Reader::take(std::size_t index) {
     take_error(index);
     return;
   }
-  connected();
   const std::int64_t stamp =
       remarks.stamp_ns == AxisSample::kNoTime ? fetched_ns_ : remarks.stamp_ns;
-  switch (assembler_.push(frame_of(frames_[index], bytes), stamp)) {
+  const CanAssembler::Taken taken = assembler_.push(frame_of(frames_[index], bytes), stamp);
+  // A SYNC is no sign of life of a drive.
+  if (taken != CanAssembler::Taken::kNotMapped) connected();
+  if (assembler_.incomplete() != status_.incomplete) {
+    status_.incomplete = assembler_.incomplete();
+    say(assembler_.incomplete_text());
+  }
+  switch (taken) {
     case CanAssembler::Taken::kUnfit:
       ++status_.errors;
       say(assembler_.unfit_text());

@@ -71,6 +71,8 @@ class CandumpFrames final : public LogLines {
   }
 
   bool judges_order() const override { return true; }
+  std::uint64_t incomplete() const override { return assembler_.incomplete(); }
+  std::string incomplete_text() const override { return assembler_.incomplete_text(); }
 
   bool take_complaint(std::string& text) override {
     if (is_watching_ && frames_ != 0 && (is_ended_ || frames_ >= kFramesToTell)) {

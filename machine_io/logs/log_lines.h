@@ -41,8 +41,13 @@ class LogLines {
   virtual void end() {}
   /// True if samples are in order by themselves, and the reader's order is not to be judged again.
   virtual bool judges_order() const { return false; }
+  /// What was read last is not believed: an empty cell does not stand for it.
+  virtual void forget_values() {}
   /// The last sample is from after the log's clock was set back; numbers begin anew there.
   virtual void clock_was_set() {}
+  /// Cycles of a bus that were dropped because a frame was missing, and about the last of them.
+  virtual std::uint64_t incomplete() const { return 0; }
+  virtual std::string incomplete_text() const { return {}; }
   /// Said once each, when there is something to say: what the lines as a whole lack.
   virtual bool take_complaint(std::string&) { return false; }
 };

@@ -91,6 +91,7 @@ class Rows : public LogLines {
     sample = sample_;
     return true;
   }
+  void forget_values() override { sample_ = AxisSample{}; }
 
  protected:
   explicit Rows(LogColumns columns) : columns_(std::move(columns.columns)) {}

@@ -52,6 +52,11 @@ TEST(CanAssembler, ASampleIsReadyWhenAllAxesHaveCome) {
   EXPECT_FALSE(bus.next());
   bus.now += kMs;
   bus.axis(2, 3.0);
+  // The first one may be made of two cycles; the pause behind it tells.
+  EXPECT_FALSE(bus.next());
+  EXPECT_TRUE(bus.assembler.is_gathering());
+  EXPECT_EQ(bus.assembler.gather_end_ns(), bus.now + kMs / 8);
+  bus.assembler.flush();
   const auto sample = bus.next();
   ASSERT_TRUE(sample);
   EXPECT_EQ(sample->known, 7);
@@ -236,6 +241,247 @@ TEST(CanAssembler, WhatIsNoNumberIsUnfit) {
   EXPECT_EQ(bus.assembler.unfit_text(),
             "frame 0x029 has no finite number in X; is its type or byte order another?");
   EXPECT_FALSE(bus.next());
+}
+
+/// Cycles of three drives, each with a position that tells which cycle it is of.
+struct CyclicBus : Bus {
+  explicit CyclicBus(CanMap the_map = three_axes()) : Bus(std::move(the_map)) {}
+
+  /// Sends the axes of `order` that are not in `lost`, 0.15 ms apart but for `late_ns` before the
+  /// axis `late`.
+  void cycle(std::vector<std::size_t> order = {0, 1, 2}, unsigned lost = 0,
+             std::size_t late = kMaxPositions, std::int64_t late_ns = 0) {
+    ++number;
+    for (const std::size_t i : order) {
+      if (i == late) now += late_ns;
+      if ((lost >> i & 1U) == 0) axis(i, static_cast<double>(number));
+      take();
+      now += 150'000;
+    }
+  }
+  /// The next cycle begins `ns` after `from`.
+  void wait_until(std::int64_t from, std::int64_t ns) { now = std::max(now, from + ns); }
+  void cycles(int count) {
+    for (int i = 0; i < count; ++i) {
+      const std::int64_t from = now;
+      cycle();
+      wait_until(from, 10 * kMs);
+    }
+  }
+  void take() {
+    while (const auto sample = next()) {
+      ++samples;
+      const auto& p = sample->position;
+      if (sample->fresh != 7 || p[0] != p[1] || p[1] != p[2]) ++mixed;
+    }
+  }
+  void end() {
+    assembler.flush();
+    take();
+  }
+  int number = 0;
+  int samples = 0;
+  int mixed = 0;  ///< of two cycles, or with a value of before
+};
+
+TEST(CanAssembler, OneLostFrameCostsOneCycle) {
+  for (const unsigned lost : {1U, 2U, 4U, 3U, 5U, 6U}) {
+    CyclicBus bus;
+    bus.cycles(50);
+    const std::int64_t from = bus.now;
+    bus.cycle({0, 1, 2}, lost);
+    bus.wait_until(from, 10 * kMs);
+    bus.cycles(50);
+    bus.end();
+    EXPECT_EQ(bus.mixed, 0) << lost;
+    EXPECT_EQ(bus.samples, 100) << lost;
+    EXPECT_EQ(bus.assembler.incomplete(), 1U) << lost;
+  }
+}
+
+TEST(CanAssembler, WhatIsMissingIsNamed) {
+  CyclicBus bus;
+  bus.cycles(20);
+  bus.cycle({0, 1, 2}, 0b101);
+  bus.now += 9 * kMs;
+  bus.cycles(2);
+  EXPECT_EQ(bus.assembler.incomplete_text(),
+            "a cycle of the bus came without X, Z and was dropped (a frame was lost?)");
+}
+
+TEST(CanAssembler, ManyLostFramesMixNothing) {
+  // Each frame is lost with one chance in fifty.
+  std::uint32_t seed = 1;
+  CyclicBus bus;
+  bus.cycles(20);
+  int whole = 20;
+  int in_a_row = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    unsigned lost = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      seed = seed * 1664525 + 1013904223;
+      // Three in a row are too many without a SYNC.
+      in_a_row = seed >> 16U < 65536 / 50 && in_a_row < 2 ? in_a_row + 1 : 0;
+      if (in_a_row > 0) lost |= 1U << axis;
+    }
+    if (lost == 0) ++whole;
+    const std::int64_t from = bus.now;
+    bus.cycle({0, 1, 2}, lost);
+    bus.wait_until(from, 10 * kMs);
+  }
+  bus.cycles(1);
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.samples, whole + 1);
+  EXPECT_GT(bus.assembler.incomplete(), 1000U);
+}
+
+TEST(CanAssembler, WhoBeginsToListenInACycleMixesNothing) {
+  for (const unsigned missed : {1U, 3U}) {
+    CyclicBus bus;
+    bus.cycle({0, 1, 2}, missed);
+    bus.now += 9'550'000;
+    bus.cycles(30);
+    bus.end();
+    EXPECT_EQ(bus.mixed, 0) << missed;
+    // The first whole cycle is the one that tells, and has been taken apart by then.
+    EXPECT_EQ(bus.samples, 29) << missed;
+    EXPECT_EQ(bus.assembler.incomplete(), 0U) << "nothing was lost";
+  }
+}
+
+TEST(CanAssembler, CyclesThatAreHeldUpAreWhole) {
+  // Cycles of 10 ms, each up to 9 ms late, some held up in their middle for up to 40 ms and those
+  // behind them at once: a busy computer stamps late, but in order.
+  std::uint32_t seed = 7;
+  const auto random = [&seed](std::int64_t below_ns) {
+    seed = seed * 1664525 + 1013904223;
+    return static_cast<std::int64_t>((seed >> 8U) % static_cast<std::uint64_t>(below_ns));
+  };
+  CyclicBus bus;
+  bus.cycles(5);
+  std::int64_t due = bus.now;
+  for (int i = 0; i < 20'000; ++i) {
+    due += 10 * kMs;
+    bus.now = std::max(bus.now, due + random(9 * kMs));
+    const bool stalls = i % 20 == 0;
+    bus.cycle({0, 1, 2}, 0, static_cast<std::size_t>(i % 3), stalls ? random(40 * kMs) : 0);
+  }
+  bus.end();
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.assembler.incomplete(), 0U);
+  // A first frame may stand 20 ms (gather_ms) from its last one; nothing else costs a sample.
+  EXPECT_EQ(bus.samples, 20'005);
+}
+
+TEST(CanAssembler, DrivesThatOvertakeEachOtherAreWhole) {
+  std::uint32_t seed = 3;
+  CyclicBus bus;
+  for (int i = 0; i < 5'000; ++i) {
+    std::vector<std::size_t> order{0, 1, 2};
+    seed = seed * 1664525 + 1013904223;
+    // Sometimes, as where an answer is late; from the middle on always.
+    if (i > 2500 || seed >> 16U < 65536 / 30) std::swap(order[seed >> 8U & 1U], order[2]);
+    const std::int64_t from = bus.now;
+    bus.cycle(order);
+    bus.wait_until(from, 10 * kMs);
+  }
+  bus.end();
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.samples, 5'000);
+  EXPECT_EQ(bus.assembler.incomplete(), 0U);
+}
+
+TEST(CanAssembler, ASyncPartsCyclesWhateverTheOrder) {
+  CyclicBus bus;
+  std::uint32_t seed = 5;
+  int whole = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    CanFrame sync;
+    sync.id = 0x080;
+    EXPECT_EQ(bus.push(sync), Taken::kNotMapped);
+    std::vector<std::size_t> order{0, 1, 2};
+    seed = seed * 1664525 + 1013904223;
+    std::swap(order[seed >> 8U & 1U], order[2]);
+    const unsigned lost = i > 20 && seed >> 16U < 65536 / 10 ? 1U << (i % 3) : 0;
+    if (lost == 0) ++whole;
+    const std::int64_t from = bus.now;
+    bus.cycle(order, lost);
+    bus.wait_until(from, 10 * kMs);
+  }
+  bus.end();
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.samples, whole);
+  EXPECT_NEAR(static_cast<double>(bus.assembler.incomplete()), 2'000 - whole, 1);
+}
+
+TEST(CanAssembler, ASyncWithinCyclesPartsNothing) {
+  // A slow drive answers when the next SYNC has been already.
+  CyclicBus bus;
+  CanFrame sync;
+  sync.id = 0x080;
+  for (int i = 0; i < 100; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axis == 2) bus.push(sync);
+      bus.axis(axis, i);
+      bus.take();
+      bus.now += 3 * kMs;
+    }
+  }
+  bus.end();
+  EXPECT_EQ(bus.samples, 100);
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.assembler.incomplete(), 0U);
+}
+
+TEST(CanAssembler, AnIdOfTheMapIsNoSync) {
+  CanMap map = three_axes();
+  map.axes[0]->id = 0x080;
+  CyclicBus bus(map);
+  bus.cycles(20);
+  bus.end();
+  EXPECT_EQ(bus.samples, 20);
+  map.sync_id = 0x800;
+  EXPECT_EQ(validate(map), (std::vector<std::string>{
+                               "map.sync_id: 2048 is not allowed; must be 0 to 0x7FF, or -1 for "
+                               "none"}));
+}
+
+TEST(CanAssembler, DrivesThatSendWhatChangesLackNothing) {
+  // Moves in three axes, then long ones in two, and again: Z comes while it moves.
+  for (const double max_age_ms : {0.0, 1000.0}) {
+    CanMap map = three_axes();
+    for (std::size_t i = 0; i < 3; ++i) map.axes[i]->max_age_ms = max_age_ms;
+    CyclicBus bus(map);
+    for (int move = 0; move < 20; ++move) {
+      bus.cycles(30);
+      for (int i = 0; i < 30; ++i) {
+        const std::int64_t from = bus.now;
+        bus.cycle({0, 1, 2}, 0b100);
+        bus.wait_until(from, 10 * kMs);
+      }
+    }
+    bus.end();
+    EXPECT_EQ(bus.assembler.incomplete(), 0U);
+    // Where nobody says that axes come when they change, it takes some cycles to see that.
+    EXPECT_EQ(bus.samples, 1200 - (max_age_ms == 0 ? 0 : 20 * CanCycle::kMostIncomplete));
+  }
+}
+
+TEST(CanAssembler, FramesThatTheKernelDroppedPartCycles) {
+  CyclicBus bus;
+  bus.cycles(20);
+  // Y and Z of this cycle, and X of the next.
+  ++bus.number;
+  bus.axis(0, bus.number);
+  bus.now += 10 * kMs;
+  bus.assembler.frames_lost();
+  bus.cycle({0, 1, 2}, 1);
+  bus.now += 9 * kMs;
+  bus.cycles(20);
+  bus.end();
+  EXPECT_EQ(bus.mixed, 0);
+  EXPECT_EQ(bus.samples, 40);
+  EXPECT_EQ(bus.assembler.incomplete(), 2U);
 }
 
 TEST(CanMap, EveryFaultIsNamed) {
