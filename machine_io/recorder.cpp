@@ -26,6 +26,10 @@ static_assert(kLook_ms < Recorder::kLongestDelay_ms);
 
 // One write(2) of so much: large enough to be cheap, small enough to be in L2.
 constexpr std::size_t kBlock_bytes = std::size_t{64} << 10U;
+// A sum is written after so long, or so much: what is damaged costs no more than that.
+constexpr std::chrono::milliseconds kSumEvery{1000};
+constexpr std::size_t kSumEvery_bytes = std::size_t{256} << 10U;
+
 constexpr std::size_t kFewestSlots = 64;
 
 std::string error_text(int number) {
@@ -93,7 +97,8 @@ std::vector<std::string> validate(const RecordingHead& head) {
         "axes: {:#x} found, at least one of the bits 0 to 8 and no other allowed", head.axes));
   }
   for (const auto& [key, value] : head.extra) {
-    if (key == "source" || key == "units" || key == "coordinates" || key == "start") {
+    if (key == "source" || key == "units" || key == "coordinates" || key == "start" ||
+        key == "sums") {
       faults.push_back(fmt::format("extra: the key {} is one of the format's own", key));
     } else if (!is_key(key)) {
       faults.push_back(fmt::format(
@@ -125,6 +130,8 @@ struct Recorder::Writer {
   bool drain();
   void append_lost(std::uint64_t count);
   bool write_block();
+  void add_to_sum();
+  void append_sum();
   void fail(int error_number);
   void end();
   void wake() const {
@@ -152,6 +159,10 @@ struct Recorder::Writer {
   std::string block;
   std::uint64_t block_samples = 0;
   std::int64_t file_bytes = 0;  // up to the last whole block
+  std::size_t summed = 0;       // of `block`, in `sum`
+  std::uint32_t sum = 0;        // of all since the last sum line
+  std::size_t sum_bytes = 0;
+  std::chrono::steady_clock::time_point sum_since = std::chrono::steady_clock::now();
   std::thread thread;
 
   std::atomic<std::uint64_t> samples{0};
@@ -174,9 +185,32 @@ bool Recorder::Writer::drain() {
     block.append(line, static_cast<std::size_t>(lines.append(slot.sample, line) - line));
     ++block_samples;
     taken.store(++at, std::memory_order_release);
-    if (block.size() >= kBlock_bytes && !write_block()) return false;
+    if (block.size() < kBlock_bytes) continue;
+    add_to_sum();
+    if (sum_bytes >= kSumEvery_bytes) append_sum();
+    if (!write_block()) return false;
   }
+  add_to_sum();
+  if (std::chrono::steady_clock::now() - sum_since >= kSumEvery) append_sum();
   return write_block();
+}
+
+void Recorder::Writer::add_to_sum() {
+  const std::string_view more = std::string_view(block).substr(summed);
+  sum = crc32(sum, more);
+  sum_bytes += more.size();
+  summed = block.size();
+}
+
+/// Nothing without lines.
+void Recorder::Writer::append_sum() {
+  sum_since = std::chrono::steady_clock::now();
+  if (sum_bytes == 0) return;
+  block += recording_sum_line(sum);
+  summed = block.size();
+  sum = 0;
+  sum_bytes = 0;
+  lines.restart();
 }
 
 bool Recorder::Writer::write_block() {
@@ -199,6 +233,7 @@ bool Recorder::Writer::write_block() {
   samples.fetch_add(block_samples, std::memory_order_relaxed);
   block_samples = 0;
   block.clear();
+  summed = 0;
   return true;
 }
 
@@ -213,8 +248,12 @@ void Recorder::Writer::fail(int error_number) {
 
 void Recorder::Writer::end() {
   if (lost_pending != 0) append_lost(lost_pending);
+  add_to_sum();
+  append_sum();
   block += fmt::format("{}{}\n", kRecordingEnd, samples.load(std::memory_order_relaxed));
   if (!write_block()) return;
+  // The only time: nobody is disturbed by it any more. Devices and pipes cannot be synced.
+  if (::fsync(fd) != 0 && errno == EIO) fail(errno);
   // NFS and quotas tell some faults only here.
   const int result = ::close(std::exchange(fd, -1));
   if (result != 0 && errno != EINTR) fail(errno);
@@ -250,10 +289,13 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path,
     return Error{fmt::format("recording {}: {}", path, error_text(number))};
   }
   RecordingHead dated = head;
+  dated.sums = true;
   if (dated.start_ns == AxisSample::kNoTime) dated.start_ns = realtime_ns();
   auto writer = std::make_unique<Writer>(path, *file, event, dated, slots);
   writer->block.reserve(kBlock_bytes + 2 * RecordingLines::kLongestLine_bytes);
   writer->block = recording_head_text(dated);
+  writer->add_to_sum();
+  writer->append_sum();
   if (!writer->write_block()) {
     // A head without samples tells nobody anything.
     const std::string text = writer->trouble.substr(0, writer->trouble.rfind(';'));

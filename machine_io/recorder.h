@@ -31,6 +31,8 @@ struct RecordingHead {
   CoordinateFrame frame = CoordinateFrame::kMachine;
   std::uint16_t axes = 0b111;  ///< bit i: position[i] gets a column; others are not recorded
   bool trigger = false;        ///< AxisSample::trigger gets one, too
+  /// Of a file that is read: it has sums (README.md). The recorder writes them always.
+  bool sums = false;
   /// CLOCK_REALTIME, ns; kNoTime: the recorder takes the time at which it creates the file.
   std::int64_t start_ns = AxisSample::kNoTime;
   /// Further `# key: value` lines, in this order: "map", "program", "ini", .. A key is of letters,
@@ -54,7 +56,7 @@ struct RecorderStatus {
 /// The file ends at a whole line whenever the operating system lets it: after a fault (full disk)
 /// it is cut back to the last whole line, stays as it is, and replays. A process killed at any
 /// moment loses the samples of the last kLongestDelay, no more; a power cut also what the kernel
-/// had not yet brought to the disk.
+/// had not yet brought to the disk. (Only finish() waits for the disk.)
 class Recorder {
  public:
   /// From record() to write(2), also when no sample follows.

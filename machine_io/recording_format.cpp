@@ -11,6 +11,26 @@
 namespace kerf {
 namespace {
 
+constexpr std::string_view kSumName = "crc32";
+
+/// table[k][b]: byte b, followed by k bytes of 0.
+constexpr std::array<std::array<std::uint32_t, 256>, 4> crc_tables() {
+  std::array<std::array<std::uint32_t, 256>, 4> table{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t crc = byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+    table[0][byte] = crc;
+  }
+  for (std::size_t k = 1; k < table.size(); ++k) {
+    for (std::size_t byte = 0; byte < 256; ++byte) {
+      const std::uint32_t before = table[k - 1][byte];
+      table[k][byte] = (before >> 8U) ^ table[0][before & 0xFFU];
+    }
+  }
+  return table;
+}
+constexpr auto kCrcTables = crc_tables();
+
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 // Room for any double or integer: -1.7976931348623157e+308 is 24 long.
@@ -89,6 +109,32 @@ std::string_view position_column(CoordinateKind kind, std::size_t index) {
   return kind == CoordinateKind::kJoints ? kJoints[index] : kAxes[index];
 }
 
+std::uint32_t crc32(std::uint32_t crc, std::string_view bytes) {
+  const auto byte_at = [&](std::size_t i) {
+    return std::uint32_t{static_cast<unsigned char>(bytes[i])};
+  };
+  crc = ~crc;
+  std::size_t i = 0;
+  for (; i + 4 <= bytes.size(); i += 4) {
+    crc ^= byte_at(i) | byte_at(i + 1) << 8U | byte_at(i + 2) << 16U | byte_at(i + 3) << 24U;
+    crc = kCrcTables[3][crc & 0xFFU] ^ kCrcTables[2][crc >> 8U & 0xFFU] ^
+          kCrcTables[1][crc >> 16U & 0xFFU] ^ kCrcTables[0][crc >> 24U];
+  }
+  for (; i < bytes.size(); ++i) crc = (crc >> 8U) ^ kCrcTables[0][(crc ^ byte_at(i)) & 0xFFU];
+  return ~crc;
+}
+
+std::string recording_sum_line(std::uint32_t crc) {
+  return fmt::format("{}{:08x}\n", kRecordingSum, crc);
+}
+
+bool parse_recording_sum(std::string_view line, std::uint32_t& crc) {
+  if (!line.starts_with(kRecordingSum)) return false;
+  line.remove_prefix(kRecordingSum.size());
+  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), crc, 16);
+  return error == std::errc() && end == line.data() + line.size() && line.size() == 8;
+}
+
 std::string iso_time(std::int64_t since_1970_ns) {
   using namespace std::chrono;
   const sys_time<nanoseconds> time{nanoseconds{since_1970_ns}};
@@ -131,6 +177,7 @@ std::string recording_head_text(const RecordingHead& head) {
                       head.kind == CoordinateKind::kJoints ? "joints" : "axes",
                       head.frame == CoordinateFrame::kMachine ? "machine" : "workpiece");
   text += fmt::format("# start: {}\n", iso_time(head.start_ns));
+  if (head.sums) text += fmt::format("# sums: {}\n", kSumName);
   for (const auto& [key, value] : head.extra) {
     text += fmt::format("# {}: {}\n", key, on_one_line(value));
   }
@@ -156,6 +203,8 @@ bool read_recording_head_line(std::string_view line, RecordingHead& head) {
     return value == "mm";
   } else if (key == "coordinates") {
     return read_coordinates(value, head);
+  } else if (key == "sums" && value == kSumName) {
+    head.sums = true;
   } else if (key == "start") {
     return parse_iso_time(value, head.start_ns);
   } else {

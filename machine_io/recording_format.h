@@ -15,6 +15,7 @@ namespace kerf {
 
 inline constexpr std::string_view kRecordingMagic = "# kerf-recording/1";
 inline constexpr std::string_view kRecordingLost = "# lost ";
+inline constexpr std::string_view kRecordingSum = "# sum ";
 inline constexpr std::string_view kRecordingEnd = "# end samples=";
 
 /// Columns "x".."w", or "j0".."j8".
@@ -24,6 +25,14 @@ std::string_view position_column(CoordinateKind kind, std::size_t index);
 std::string iso_time(std::int64_t since_1970_ns);
 /// And back; false if it is not such a text.
 bool parse_iso_time(std::string_view text, std::int64_t& since_1970_ns);
+
+/// CRC-32 (IEEE 802.3) of `bytes` behind bytes whose sum is `crc`; 0 begins.
+std::uint32_t crc32(std::uint32_t crc, std::string_view bytes);
+/// "# sum 1c291ca3" with its LF: of all lines since the last such line, or since the beginning,
+/// each with a LF. The first one stands behind the header row.
+std::string recording_sum_line(std::uint32_t crc);
+/// And back; false if it is not such a line (without LF).
+bool parse_recording_sum(std::string_view line, std::uint32_t& crc);
 
 /// All head lines and the header row.
 std::string recording_head_text(const RecordingHead& head);
@@ -42,6 +51,8 @@ class RecordingLines {
 
   /// Puts the line with its LF at `out`, which has room for kLongestLine_bytes; returns its end.
   char* append(const AxisSample& sample, char* out);
+  /// The next line stands for itself: what is before it may turn out to be damaged.
+  void restart() { written_ = 0; }
 
  private:
   char* append_position(const AxisSample& sample, std::size_t index, char* out);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "machine_io/logs/candump_line.h"
 #include "machine_io/logs/number_text.h"
@@ -117,6 +118,7 @@ class Opening {
     if (is_unended_) return false;
     switch (reader_.next(line_, kAsLongAsItTakes)) {
       case LineReader::Got::kLine:
+        log_.sum = crc32(crc32(log_.sum, line_), "\n");
         return true;
       case LineReader::Got::kUnended:
         is_unended_ = true;
@@ -233,10 +235,25 @@ class Opening {
                               head.kind == CoordinateKind::kJoints ? "joints" : "axes"),
                   "");
     }
+    if (head.sums && !is_head_whole()) return false;
     head.axes = columns.positions;
     log_.contents.recording = std::move(head);
     log_.lines = make_recording_lines(std::move(columns));
     return true;
+  }
+
+  /// The line behind the header row is the sum of all up to there.
+  bool is_head_whole() {
+    const std::uint32_t sum = std::exchange(log_.sum, 0);
+    std::uint32_t found = 0;
+    if (!next_line() || is_unended_) {
+      return has_faults_ ? false : fail(0, "the recording is cut off in its head", "");
+    }
+    log_.sum = 0;
+    if (parse_recording_sum(line_, found) && found == sum) return true;
+    return fail(1, "the recording's head is damaged: its sum is wrong",
+                "what the positions are is not certain; kerf reads the file without the line "
+                "'# sums: crc32', and checks nothing then");
   }
 
   void keep_line() {

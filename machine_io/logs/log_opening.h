@@ -2,6 +2,7 @@
 // columns are.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,7 @@ struct OpenedLog {
   std::string first_line;
   bool has_first_line = false;
   bool is_first_unended = false;
+  std::uint32_t sum = 0;  ///< crc32() of the lines since the last sum, each with a LF
 };
 
 /// Reads as far as needed. False: `diagnostics` has errors. What is ignored goes to `notes`.

@@ -5,14 +5,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "machine_io/can/can_map.h"
 #include "machine_io/logs/line_reader.h"
 #include "machine_io/logs/log_lines.h"
 #include "machine_io/logs/log_opening.h"
+#include "machine_io/recording_format.h"
 
 namespace kerf {
 namespace {
@@ -20,6 +26,8 @@ namespace {
 constexpr double kLeastPeriod_s = 1e-6;
 constexpr double kMostPeriod_s = 10.0;
 constexpr std::size_t kLongestExcerpt = 160;
+/// A recorder writes a sum every second; a file that has none behind so many samples is damaged.
+constexpr std::size_t kMostUnsummed = 100'000;
 
 /// -1, 0, 1: `a` before, at, after `b`; by the device's clock if both have it. 1 if nothing tells.
 int compare_times(const AxisSample& a, const AxisSample& b) {
@@ -33,6 +41,19 @@ int compare_times(const AxisSample& a, const AxisSample& b) {
     return compare(a.host_ns, b.host_ns);
   }
   return 1;
+}
+
+/// The same reading once more.
+bool is_same(const AxisSample& a, const AxisSample& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  if (a.known != b.known || a.tool != b.tool || a.trigger != b.trigger || a.line != b.line ||
+      !same(a.tool_offset_z_mm, b.tool_offset_z_mm) || !same(a.spindle_rpm, b.spindle_rpm)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < kMaxPositions; ++i) {
+    if (a.has(i) && a.position[i] != b.position[i]) return false;
+  }
+  return true;
 }
 
 std::string error_text(int number) {
@@ -103,6 +124,7 @@ class LogSource::Reading {
   Reading(LogSettings settings, std::string name, int fd, bool is_waited_for)
       : settings_(std::move(settings)),
         name_(std::move(name)),
+        is_waited_for_(is_waited_for),
         reader_(fd, is_waited_for, kLongestLine_bytes) {}
 
   bool open(Diagnostics& diagnostics) {
@@ -111,7 +133,7 @@ class LogSource::Reading {
 
   Next next(AxisSample& sample, std::chrono::milliseconds patience) {
     while (true) {
-      while (log_.lines->next_sample(sample)) {
+      while (next_parsed(sample)) {
         if (hand_out(sample)) return Next::kSample;
       }
       if (is_at_end_) {
@@ -183,7 +205,61 @@ class LogSource::Reading {
     describe_line(remark.column, remark.message, line);
   }
 
+  bool has_sums() const { return contents().recording && contents().recording->sums; }
+
+  /// Of a file with sums: as soon as the sum of its part has been found right.
+  bool next_parsed(AxisSample& sample) {
+    if (!has_sums()) return log_.lines->next_sample(sample);
+    if (part_at_ == part_good_) return false;
+    sample = part_[part_at_++];
+    return true;
+  }
+
+  /// The part of a recording up to its sum.
+  void end_part(bool is_good, std::string_view line) {
+    part_good_ = part_.size();
+    if (is_good) return;
+    ++status_.errors;
+    status_.damaged += part_.size() - part_at_;
+    status_.lost += part_.size() - part_at_;
+    describe_line(1,
+                  fmt::format("the {} samples before this line are damaged: their sum is wrong; "
+                              "they are dropped",
+                              part_.size() - part_at_),
+                  line);
+    part_at_ = part_good_;
+    log_.lines->forget_values();
+  }
+
+  /// False: the line is one of a recording's sums.
+  bool is_summed(std::string_view line) {
+    if (part_at_ == part_good_) {
+      part_.erase(part_.begin(), part_.begin() + static_cast<std::ptrdiff_t>(part_at_));
+      part_at_ = part_good_ = 0;
+    }
+    if (line.starts_with(kRecordingSum)) {
+      std::uint32_t sum = 0;
+      end_part(parse_recording_sum(line, sum) && sum == log_.sum, line);
+      log_.sum = 0;
+      return false;
+    }
+    log_.sum = crc32(crc32(log_.sum, line), "\n");
+    return true;
+  }
+
   void take(std::string_view line) {
+    if (!has_sums()) return take_line(line);
+    if (!is_summed(line)) return;
+    take_line(line);
+    AxisSample sample;
+    while (log_.lines->next_sample(sample)) part_.push_back(sample);
+    if (part_.size() - part_good_ >= kMostUnsummed) {
+      end_part(false, line);
+      log_.sum = 0;
+    }
+  }
+
+  void take_line(std::string_view line) {
     remark_.count = 0;
     switch (log_.lines->read(line, remark_)) {
       case LineMeaning::kNothing:
@@ -208,10 +284,20 @@ class LogSource::Reading {
         break;
       case LineMeaning::kEnd:
         has_end_line_ = true;
+        // The last sum stands before it.
+        if (part_.size() != part_good_) end_part(false, {});
         check_count(remark_.count);
         break;
     }
     complain();
+    note_incomplete();
+  }
+
+  void note_incomplete() {
+    const std::uint64_t incomplete = log_.lines->incomplete();
+    if (incomplete == status_.incomplete) return;
+    status_.incomplete = incomplete;
+    describe_line(0, log_.lines->incomplete_text(), {});
   }
 
   void take_unended(std::string_view line) {
@@ -244,9 +330,14 @@ class LogSource::Reading {
     log_.lines->end();
     complain();
     if (contents().format == LogFormat::kRecording && !has_end_line_) {
-      const std::string text =
+      std::string text =
           fmt::format("cut off after {} samples{}", rows_,
                       is_torn_ ? "; the piece of a line behind them is dropped" : "");
+      if (const std::size_t unsummed = part_.size() - part_good_; unsummed > 0) {
+        text +=
+            fmt::format("; the last {} have no sum that tells whether they are damaged", unsummed);
+        part_good_ = part_.size();
+      }
       status_.trouble = fmt::format("{}: {}", name_, text);
       note(Severity::kWarning, 0, text, {});
     }
@@ -260,11 +351,56 @@ class LogSource::Reading {
          {});
   }
 
+  /// When the sample was received: a recording says it, a pipe shows it.
+  std::int64_t received_ns(const AxisSample& sample) const {
+    if (contents().format == LogFormat::kRecording) return sample.host_ns;
+    return is_waited_for_ ? reader_.read_ns() : AxisSample::kNoTime;
+  }
+
+  /// What passed since the last sample by the times of receipt; 0 without them.
+  std::int64_t received_step_ns(std::int64_t received_ns) const {
+    const bool known =
+        received_ns != AxisSample::kNoTime && last_received_ns_ != AxisSample::kNoTime;
+    return known ? std::max<std::int64_t>(0, received_ns - last_received_ns_) : 0;
+  }
+
+  /// Goes on by the times of receipt while the device's clock stands. False: the same once more.
+  bool mend_time(AxisSample& sample, std::int64_t received_ns) {
+    const std::int64_t device_ns = sample.device_ns;
+    if (device_ns == AxisSample::kNoTime || !has_last_ || last_.device_ns == AxisSample::kNoTime) {
+      return true;
+    }
+    const std::int64_t step_ns = received_step_ns(received_ns);
+    if (device_ns == last_stamp_ns_) {
+      if (step_ns == 0 && is_same(sample, last_)) return false;
+      sample.device_ns = last_.device_ns + step_ns;
+      stood_ns_ += step_ns;
+      note_standing();
+    } else {
+      // A clock that goes on has stood, or only its stamps have: the times of receipt tell.
+      const std::int64_t went_ns = device_ns - last_stamp_ns_;
+      const bool caught_up = std::abs(went_ns - stood_ns_ - step_ns) < std::abs(went_ns - step_ns);
+      sample.device_ns = last_.device_ns + went_ns - (caught_up ? stood_ns_ : 0);
+      stood_ns_ = 0;
+      standing_run_ = 0;
+    }
+    return true;
+  }
+
+  /// A few in a row are a burst that was stamped at once, or a coarse clock.
+  void note_standing() {
+    if (++standing_run_ < kStanding) return;
+    status_.standing += standing_run_ == kStanding ? kStanding : 1;
+    if (standing_run_ != kStanding) return;
+    describe_line(0, "the device's clock stands still: its stamp is that of the line before", {});
+  }
+
   /// False: not in its order.
   bool is_in_order(const AxisSample& sample) {
     if (!has_last_) return true;
     const int order = compare_times(sample, last_);
-    if (order > 0) {
+    const bool stands = order == 0 && standing_run_ > 0;
+    if (order > 0 || stands) {
       disorder_run_ = 0;
       return true;
     }
@@ -292,10 +428,17 @@ class LogSource::Reading {
   }
 
   bool hand_out(AxisSample& sample) {
+    const std::int64_t stamp_ns = sample.device_ns;
+    const std::int64_t received = received_ns(sample);
+    if (!mend_time(sample, received)) {
+      ++status_.duplicates;
+      return false;
+    }
     if (!is_in_order(sample)) return false;
     has_last_ = true;
-    last_.host_ns = sample.host_ns;
-    last_.device_ns = sample.device_ns;
+    last_ = sample;
+    last_stamp_ns_ = stamp_ns;
+    last_received_ns_ = received;
     // A recording says itself when its samples were read.
     const bool is_recorded = contents().format == LogFormat::kRecording;
     if (sample.host_ns == AxisSample::kNoTime && !is_recorded) sample.host_ns = reader_.read_ns();
@@ -306,6 +449,7 @@ class LogSource::Reading {
 
   LogSettings settings_;
   std::string name_;
+  bool is_waited_for_;
   LineReader reader_;
   OpenedLog log_;
   SourceStatus status_;
@@ -320,7 +464,18 @@ class LogSource::Reading {
   std::uint64_t rows_ = 0;  // lines that are samples, in order or not
 
   bool has_last_ = false;
-  AxisSample last_;        // its times alone
+  AxisSample last_;                                   // as it was handed out
+  std::int64_t last_stamp_ns_ = AxisSample::kNoTime;  // its device_ns as the log has it
+  std::int64_t last_received_ns_ = AxisSample::kNoTime;
+  std::int64_t stood_ns_ = 0;  // that has passed while the device's clock stands
+  int standing_run_ = 0;       // samples in a row with one stamp, but the first
+
+  /// Of a recording with sums: what has been read since the last sum, and before that what has not
+  /// been handed out yet.
+  std::vector<AxisSample> part_;
+  std::size_t part_at_ = 0;    // the next to be handed out
+  std::size_t part_good_ = 0;  // so many may be
+
   AxisSample disordered_;  // the last one that went back
   int disorder_run_ = 0;
 };

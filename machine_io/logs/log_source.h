@@ -85,19 +85,26 @@ struct LogContents {
 /// the name: x_mm, "x [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes(). Cells
 /// that are empty and '-' mean what they mean in a recording.
 ///
-/// Times: a recording has both its times back as recorded, to the ns. Of other logs device_ns is
-/// the log's stamp (seconds of whatever clock it has; halsampler: sample number times period, from
-/// 0) and host_ns is when this computer read the piece of the file.
+/// Times: a recording has both its times back as recorded, to the ns (but see below). Of other logs
+/// device_ns is the log's stamp (seconds of whatever clock it has; halsampler: sample number times
+/// period, from 0) and host_ns is when this computer read the piece of the file.
 ///
 /// What becomes of lines:
 ///   comment, blank                  passed over
 ///   not readable as the format says errors + 1; the first kMostDescribed of them are in notes()
-///   stamp equal to the last one     duplicates + 1
+///   stamp equal to the last one     the same once more: duplicates + 1. Another position, or
+///                                   received later: the device's clock stands. It is handed out,
+///                                   its device_ns later by what passed between the times of
+///                                   receipt (of a recording, or from a pipe; other files have
+///                                   none), and so are those behind it. From the kStanding-th in a
+///                                   row on they are counted in standing, with a note
 ///   stamp before the last one       disordered + 1. After kClockSet such lines that are in order
 ///                                   among themselves, the log's clock is taken as set back: a
 ///                                   note, and reading goes on with the next one
 ///   `# lost N`, `overrun`, a gap in
 ///   halsampler's numbers            lost + N; one `overrun` without numbers counts 1
+///   recordings: a part whose sum
+///   is wrong                        errors + 1, and its samples are damaged + 1 and lost + 1 each
 ///   last line without a line end    recording: dropped, `trouble` says "cut off after N samples"
 ///                                   (a number may have lost digits). Other formats: read as it is
 /// Allocates nothing per line. Above 1 million lines of 12 columns per second.
@@ -105,6 +112,7 @@ class LogSource final : public PositionSource {
  public:
   static constexpr std::size_t kMostDescribed = 20;
   static constexpr int kClockSet = 10;
+  static constexpr int kStanding = 10;
   /// Longer lines are damaged: no log has such.
   static constexpr std::size_t kLongestLine_bytes = std::size_t{1} << 20U;
 

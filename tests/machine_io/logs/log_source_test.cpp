@@ -313,6 +313,66 @@ TEST(RecordingLog, SaysWhatIsWrongWithItsHead) {
             "1:1: the first line has to be '# kerf-recording/1'");
 }
 
+/// Twenty rows, 10 ms apart as received; the device's clock is `device_ms`.
+std::string recording_of(const std::vector<int>& device_ms) {
+  std::string text = std::string(kHead) + kColumns;
+  for (std::size_t i = 0; i < device_ms.size(); ++i) {
+    text += fmt::format("1772357400.{:03}000000,{}.{:03}000000,{},1,1,-,-\n", 10 * i,
+                        device_ms[i] / 1000, device_ms[i] % 1000, i);
+  }
+  return text + fmt::format("# end samples={}\n", device_ms.size());
+}
+
+TEST(RecordingLog, GoesOnWhereTheDevicesClockStands) {
+  const TestFolder folder;
+  // It stands from the 21st row on, goes on at the 41st as if it had not stood, or from there.
+  for (const int behind_ms : {0, 200}) {
+    std::vector<int> device_ms;
+    for (int i = 0; i < 60; ++i) {
+      device_ms.push_back(i < 20 ? 10 * i : i < 40 ? 190 : 10 * i - behind_ms);
+    }
+    const ReadLog log = read_as(folder, recording_of(device_ms));
+    ASSERT_EQ(log.samples.size(), 60U);
+    for (std::size_t i = 0; i < 60; ++i) {
+      EXPECT_EQ(log.samples[i].device_ns, static_cast<std::int64_t>(i) * 10'000'000) << i;
+      EXPECT_EQ(log.samples[i].position[0], static_cast<double>(i));
+    }
+    EXPECT_EQ(log.status.standing, 20U);
+    EXPECT_EQ(log.status.duplicates, 0U);
+    EXPECT_EQ(all_text(log.notes).find("the device's clock stands still") != std::string::npos,
+              true);
+  }
+}
+
+TEST(RecordingLog, ABurstWithOneStampIsNoClockThatStands) {
+  const TestFolder folder;
+  // Held up and stamped at once, five and five; and a clock of 50 ms.
+  std::vector<int> device_ms;
+  for (int i = 0; i < 60; ++i) device_ms.push_back(50 * (i / 5));
+  const ReadLog log = read_as(folder, recording_of(device_ms));
+  ASSERT_EQ(log.samples.size(), 60U);
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(log.samples[i].device_ns, static_cast<std::int64_t>(i) * 10'000'000) << i;
+  }
+  EXPECT_EQ(log.status.standing, 0U);
+  EXPECT_EQ(all_text(log.notes), "");
+  EXPECT_EQ(log.status.trouble, "");
+}
+
+TEST(CsvLog, GoesOnWhereItsClockStandsAndSaysSo) {
+  const TestFolder folder;
+  std::string text = "t,x\n";
+  for (int i = 0; i < 100; ++i) text += fmt::format("{},{}\n", std::min(i, 49), i);
+  const ReadLog log = read_as(folder, text);
+  EXPECT_EQ(log.samples.size(), 100U) << "positions are known, if not their times";
+  EXPECT_EQ(log.status.standing, 50U);
+  // A machine that stands, logged twice.
+  const ReadLog twice = read_as(folder, "t,x\n1,1\n1,1\n2,2\n2,2\n");
+  EXPECT_EQ(twice.samples.size(), 2U);
+  EXPECT_EQ(twice.status.duplicates, 2U);
+  EXPECT_EQ(twice.status.standing, 0U);
+}
+
 TEST(RecordingLog, HasItsTimesAsRecorded) {
   const TestFolder folder;
   const ReadLog log = read_as(folder, std::string(kHead) + kColumns +

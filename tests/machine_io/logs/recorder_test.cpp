@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <thread>
 
 #include "machine_io/recording_format.h"
 #include "tests/machine_io/logs/log_test_support.h"
@@ -146,10 +147,13 @@ TEST(Recorder, WritesWhatTheFormatSays) {
             "# units: mm\n"
             "# coordinates: joints machine\n"
             "# start: 2026-03-01T09:30:00.000000123Z\n"
+            "# sums: crc32\n"
             "t_host,t_device,j0,j2,tool,line,tool_offset_z,spindle_rpm\n"
+            "# sum 4b5e6420\n"
             "1772357400.000481204,,12.5,40.000000000000014,1,-,-,-\n"
             "1772357400.000481204,-0.000000001,-0,~41,1,8,55.25,-8000\n"
             "1772357400.000481204,-0.000000001,-,,1,8,55.25,-8000\n"
+            "# sum 679b56ad\n"
             "# end samples=3\n");
 }
 
@@ -162,7 +166,7 @@ TEST(Recorder, IsCutAtEveryByte) {
     for (const AxisSample& sample : samples) (*recorder)->record(sample);
   }
   const std::string whole = read_text(folder.file("run.csv"));
-  const std::size_t first = whole.find("spindle_rpm\n") + 12;
+  const std::size_t first = whole.find("spindle_rpm\n# sum ") + 12 + 15;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const ReadLog log = read_file(folder.write("cut.csv", whole.substr(0, size)));
     ASSERT_EQ(log.is_open, size >= first) << size;
@@ -172,7 +176,8 @@ TEST(Recorder, IsCutAtEveryByte) {
     }
     // As many samples as there are whole lines.
     const std::string rows = whole.substr(first, size - first);
-    const auto lines = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n'));
+    const auto lines = std::min(
+        samples.size(), static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')));
     ASSERT_EQ(log.samples.size(), lines) << size;
     for (std::size_t i = 0; i < lines; ++i) {
       ASSERT_EQ(difference(log.samples[i], samples[i]), "") << size;
@@ -183,6 +188,80 @@ TEST(Recorder, IsCutAtEveryByte) {
     ASSERT_EQ(log.status.errors, 0U) << size;
   }
   EXPECT_EQ(read_file(folder.file("run.csv")).status.trouble, "");
+}
+
+/// A file with three parts: a sum every second.
+std::string three_parts(const TestFolder& folder, std::vector<AxisSample>& samples) {
+  const std::string path = folder.file("run.csv");
+  auto recorder = Recorder::create(path, head_of(0b111));
+  EXPECT_TRUE(recorder);
+  samples = any_samples(12, 0b111, 3);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i % 4 == 3) std::this_thread::sleep_for(std::chrono::milliseconds(1150));
+    (*recorder)->record(samples[i]);
+  }
+  (*recorder)->finish();
+  return read_text(path);
+}
+
+TEST(Recorder, WhatIsDamagedIsToldAndNotReplayed) {
+  const TestFolder folder;
+  std::vector<AxisSample> samples;
+  const std::string whole = three_parts(folder, samples);
+  std::size_t sums = 0;
+  for (std::size_t at = 0; (at = whole.find("\n# sum ", at)) != std::string::npos; ++at) ++sums;
+  ASSERT_GE(sums, 4U) << whole;
+  const std::size_t sums_line = whole.find("# sums: ");
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    // Without this line the file is one without sums.
+    if (at >= sums_line && at < sums_line + 14) continue;
+    for (const bool is_lost : {true, false}) {
+      std::string damaged = whole;
+      if (is_lost) {
+        damaged.erase(at, 1);
+      } else {
+        damaged[at] = static_cast<char>(damaged[at] ^ 1);
+      }
+      const ReadLog log = read_file(folder.write("damaged.csv", damaged));
+      // Without its first line it is a CSV file.
+      if (!log.is_open || log.contents.format != LogFormat::kRecording) continue;
+      ASSERT_NE(log.status.trouble, "") << "byte " << at;
+      // What is handed out was recorded, in its order.
+      std::size_t next = 0;
+      for (const AxisSample& sample : log.samples) {
+        while (next < samples.size() && !difference(sample, samples[next]).empty()) ++next;
+        ASSERT_LT(next, samples.size()) << "byte " << at;
+        ++next;
+      }
+      // A line end that is missing between two parts damages both.
+      ASSERT_GE(log.samples.size() + 8, samples.size()) << "byte " << at;
+    }
+  }
+}
+
+TEST(Recorder, TheRestOfADamagedRecordingIsReplayed) {
+  const TestFolder folder;
+  std::vector<AxisSample> samples;
+  std::string text = three_parts(folder, samples);
+  // The decimal point of a position in the middle part.
+  const std::size_t sum = text.find("# sum ", text.find("# sum ", text.find("# sum ") + 1) + 1);
+  text.erase(text.rfind('.', sum), 1);
+  const ReadLog log = read_file(folder.write("damaged.csv", text));
+  ASSERT_TRUE(log.is_open);
+  EXPECT_GT(log.status.damaged, 0U);
+  EXPECT_EQ(log.status.damaged, log.status.lost);
+  EXPECT_EQ(log.samples.size() + log.status.damaged, samples.size());
+  EXPECT_EQ(log.status.errors, 1U);
+  ASSERT_EQ(log.notes.size(), 1U);
+  EXPECT_EQ(log.notes[0].message,
+            "the " + std::to_string(log.status.damaged) +
+                " samples before this line are damaged: their sum is wrong; they are dropped");
+}
+
+TEST(RecordingFormat, TheSumIsThatOfEthernet) {
+  EXPECT_EQ(crc32(0, "123456789"), 0xCBF43926U);
+  EXPECT_EQ(crc32(crc32(0, "12345"), "6789"), 0xCBF43926U);
+  EXPECT_EQ(crc32(0, ""), 0U);
 }
 
 TEST(Recorder, CountsWhatAFullQueueDrops) {
