@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "machine_io/modbus/modbus_settings.h"
 #include "machine_io/modbus/poll_plan.h"
@@ -44,6 +45,8 @@ class ModbusLink {
   /// `deadline`. A trial read may overrun it by timeout_ms. Always settled for TCP.
   virtual Settling settle(SteadyClock::time_point deadline) = 0;
 
+  /// Reads of settle() that failed since the last call.
+  std::uint64_t take_failures() { return std::exchange(failures_, 0); }
   const std::string& trouble() const { return trouble_; }
   int exception_code() const { return exception_code_; }
 
@@ -63,6 +66,7 @@ class ModbusLink {
   /// Notes what libmodbus left in errno.
   void note_errno(const PollRead& read, int error);
   Answer refused(const PollRead& read, int code);
+  void count_failure() { ++failures_; }
 
   const ModbusSettings settings_;
 
@@ -70,6 +74,7 @@ class ModbusLink {
   _modbus* context_ = nullptr;
   bool open_ = false;
   int exception_code_ = 0;
+  std::uint64_t failures_ = 0;
   std::string trouble_;
 };
 

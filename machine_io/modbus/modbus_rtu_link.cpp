@@ -3,14 +3,21 @@
 // old (measured with libmodbus' own recovery and answers later than two timeouts). Hence, after any
 // fault:
 //
-//     fault -> quiet line -> trial read -> quiet line -> trusted
-//                  ^             |             |
-//                  +--longer-----+--bytes------+
+//     fault -> quiet line -> trial reads ------------------> trusted
+//                  ^             |  |                           ^
+//                  +--longer-----+  +-- as a whole -> quiet line
+//                  ^                                     |
+//                  +--bytes------------------------------+
 //
 // A line that has just been opened must be quiet once: somebody else may have asked.
-// The trial's answer may still be an old one, to question j. Then the answer to question j+1 comes
-// as long after it as j+1 was asked after j: the second quiet time is the longest time between two
-// questions since the fault, and one timeout more.
+// An answer says how many registers it holds. So the trials ask for fewer than the polls do, each
+// for another number than the one before: three answers in a row, each with the number that was
+// just asked for, are no old ones. (Old ones come as far apart as they were asked for, or all at
+// once; and the numbers come round again only after kLeastNumbers or more.)
+// Where a device refuses parts of what it is polled for, does not answer them, or the poll has too
+// few registers, the trial asks for the whole. Then its answer may still be an old one, to question
+// j. Then the answer to question j+1 comes as long after it as j+1 was asked after j: the second
+// quiet time is the longest time between two questions since the fault, and one timeout more.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <modbus.h>
@@ -33,6 +40,13 @@ using std::chrono::milliseconds;
 /// Longest quiet time when nothing ever comes late. Longer only delays the recovery of a line that
 /// was cut.
 constexpr milliseconds kLongestSilence{2000};
+/// The same where trials can be told apart: then it only keeps a line free that nobody answers on.
+constexpr milliseconds kLongestPause{500};
+/// Of registers that trials can ask for.
+constexpr int kLeastNumbers = 4;
+constexpr int kMatches = 3;
+/// Trials without an answer until one asks for the whole.
+constexpr int kPartsUntilWhole = 3;
 /// Longest quiet time for a device that was seen to answer late.
 constexpr milliseconds kLongestLateness{10000};
 
@@ -75,6 +89,9 @@ class RtuLink final : public ModbusLink {
   void begin(Phase phase);
   Line listen(milliseconds quiet, SteadyClock::time_point deadline);
   bool try_out();
+  Answer try_parts();
+  Answer ask_trial(const PollRead& read);
+  bool asks_parts() const { return !refuses_parts_ && trial_.count > kLeastNumbers; }
   bool discard();
 
   milliseconds timeout() const { return milliseconds(settings_.timeout_ms); }
@@ -86,6 +103,9 @@ class RtuLink final : public ModbusLink {
   SteadyClock::time_point asked_at_{};     ///< the last question
   SteadyClock::time_point quiet_since_{};  ///< last byte, or begin of the phase
   PollRead trial_{};                       ///< the read that failed
+  bool refuses_parts_ = false;             ///< this device, of what it is polled for
+  int part_ = 0;                           ///< registers that the last trial asked for
+  int unanswered_ = 0;                     ///< trials in a row
   std::array<std::uint16_t, kMaxReadRegisters> trial_words_{};
 };
 
@@ -174,18 +194,55 @@ RtuLink::Line RtuLink::listen(milliseconds quiet, SteadyClock::time_point deadli
   }
 }
 
-/// One trial read. False: the line is gone.
-bool RtuLink::try_out() {
+/// Its words are not used.
+ModbusLink::Answer RtuLink::ask_trial(const PollRead& read) {
   const auto gap = std::chrono::ceil<milliseconds>(SteadyClock::now() - asked_at_);
   longest_gap_ = std::max(longest_gap_, std::min(gap, kLongestLateness));
-  const std::string before = trouble();
-  // Its words are not used; an exception shows as well as words that the device is there.
-  const bool answered = ask(trial_, trial_words_.data()) != Answer::kBroken;
-  if (!answered && line_is_gone(errno)) {
-    close();
-    return false;
+  return ask(read, trial_words_.data());
+}
+
+/// Reads of other numbers of registers, one after the other. kWords: every answer had its own.
+ModbusLink::Answer RtuLink::try_parts() {
+  for (int match = 0; match < kMatches; ++match) {
+    part_ = part_ % (trial_.count - 1) + 1;
+    PollRead part = trial_;
+    part.count = part_;
+    const Answer answer = ask_trial(part);
+    if (answer != Answer::kWords) return answer;
   }
-  if (!answered) quiet_ = std::max(quiet_, std::min(2 * quiet_, kLongestSilence));
+  return Answer::kWords;
+}
+
+/// A trial. False: the line is gone.
+bool RtuLink::try_out() {
+  const std::string before = trouble();
+  const bool by_parts = asks_parts() && unanswered_ < kPartsUntilWhole;
+  Answer answer = by_parts ? try_parts() : Answer::kBroken;
+  if (by_parts && answer == Answer::kWords) {
+    unanswered_ = 0;
+    trust();
+    return true;
+  }
+  if (by_parts && answer == Answer::kException) {
+    // It is there. The whole tells whether it is in step.
+    refuses_parts_ = true;
+  }
+  if (!by_parts || answer == Answer::kException) {
+    // An exception shows as well as words that the device is there.
+    answer = ask_trial(trial_);
+    unanswered_ = 0;
+  }
+  const bool answered = answer != Answer::kBroken;
+  if (!answered) {
+    count_failure();
+    if (line_is_gone(errno)) {
+      close();
+      return false;
+    }
+    if (by_parts) ++unanswered_;
+    const milliseconds longest = asks_parts() ? kLongestPause : kLongestSilence;
+    quiet_ = std::max(quiet_, std::min(2 * quiet_, longest));
+  }
   begin(answered ? Phase::kQuietAfterTrial : Phase::kQuietBeforeTrial);
   if (heard_late_) note(before);
   return true;

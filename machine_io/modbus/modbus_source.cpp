@@ -20,6 +20,10 @@ using std::chrono::milliseconds;
 
 /// A counter may stand still for some polls of a device slower than poll_hz.
 constexpr std::chrono::seconds kCounterPatience{1};
+/// Answers within so much of twice the usual time are not late.
+constexpr std::int64_t kPrompt_ns = 5'000'000;
+/// The usual time grows by one part in so many at each answer.
+constexpr std::int64_t kSlowing = 16;
 constexpr double kMaxNumber = 2147483647;  ///< tool or line: int32
 constexpr double kMaxRpm = 1e6;
 constexpr double kMaxToolOffset_mm = 1e4;
@@ -100,6 +104,7 @@ struct ModbusSource::Poller {
   bool fill_extra(AxisSample& sample, Extra what, double value, const std::uint16_t* words);
   bool read_whole_cycle();
   bool counter_moved();
+  std::int64_t lateness_ns(std::int64_t took_ns);
   void failed(std::string trouble);
 
   double value_of(std::size_t item) const {
@@ -126,6 +131,8 @@ struct ModbusSource::Poller {
   ReadingCheck check_;
   AxisReading reading_;
   HostStamp host_stamp_;
+  std::int64_t asked_ns_ = 0;  ///< CLOCK_MONOTONIC, of the last answer
+  std::int64_t usual_ns_ = 0;  ///< from question to answer
   std::optional<double> counter_;
   SteadyClock::time_point counter_moved_{};
   SourceStatus status_;
@@ -180,7 +187,9 @@ bool ModbusSource::Poller::ready(SteadyClock::time_point deadline) {
     unsettled_ = true;
   }
   if (!unsettled_) return true;
-  switch (link_->settle(deadline)) {
+  const ModbusLink::Settling settling = link_->settle(deadline);
+  status_.errors += link_->take_failures();
+  switch (settling) {
     case ModbusLink::Settling::kSettled:
       unsettled_ = false;
       schedule_.start(SteadyClock::now());
@@ -196,6 +205,7 @@ bool ModbusSource::Poller::ready(SteadyClock::time_point deadline) {
 }
 
 bool ModbusSource::Poller::read_all() {
+  asked_ns_ = now_ns(CLOCK_MONOTONIC);
   for (const PollRead& read : plan_.reads) {
     switch (link_->read(read, &words_[read.first_word])) {
       case ModbusLink::Answer::kWords:
@@ -233,6 +243,14 @@ bool ModbusSource::Poller::read_whole_cycle() {
       "{} answers in a row are of two cycles: counter_begun reads {:.0f}, counter {:.0f}",
       kMostTornAnswers, value_of(last - 1), value_of(last)));
   return false;
+}
+
+/// By how much now is later than the reading, `took_ns` after it was asked for. What took longer
+/// than usual was held up behind the reading: on its way, or because this program had to wait.
+std::int64_t ModbusSource::Poller::lateness_ns(std::int64_t took_ns) {
+  // It gets slower slowly, and quicker at once.
+  usual_ns_ = usual_ns_ == 0 ? took_ns : std::min(took_ns, usual_ns_ + usual_ns_ / kSlowing);
+  return std::max<std::int64_t>(0, took_ns - 2 * usual_ns_ - kPrompt_ns);
 }
 
 /// Whether the device has done anything since the last poll.
@@ -287,7 +305,6 @@ bool ModbusSource::Poller::fill_extra(AxisSample& sample, Extra what, double val
 }
 
 bool ModbusSource::Poller::fill(AxisSample& sample) {
-  reading_.time = SteadyClock::now();
   for (std::size_t item = 0; item < axes_.size(); ++item) {
     const std::size_t axis = axes_[item];
     reading_.value[axis] = value_of(item);
@@ -309,9 +326,11 @@ bool ModbusSource::Poller::fill(AxisSample& sample) {
 bool ModbusSource::Poller::poll(AxisSample& sample) {
   if (!read_whole_cycle()) return false;
   const std::int64_t steady_ns = now_ns(CLOCK_MONOTONIC);
-  const std::int64_t host_ns = host_stamp_.stamp(now_ns(CLOCK_REALTIME), steady_ns);
+  const std::int64_t late_ns = lateness_ns(steady_ns - asked_ns_);
+  const std::int64_t host_ns = host_stamp_.stamp(now_ns(CLOCK_REALTIME), steady_ns) - late_ns;
   back_off_.reset();
   AxisSample filled;
+  reading_.time = SteadyClock::now() - std::chrono::nanoseconds(late_ns);
   if (!counter_moved() || !fill(filled)) return false;
   sample = filled;
   sample.host_ns = host_ns;

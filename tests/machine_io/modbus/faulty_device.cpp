@@ -229,7 +229,7 @@ FaultyDevice::Bytes FaultyDevice::answer(const Bytes& question, Fault fault) {
              (address < kHoleEnd && address + count > kHole)) {
     pdu = {static_cast<std::uint8_t>(function | 0x80U), static_cast<std::uint8_t>(reads ? 2 : 1)};
   } else {
-    if (fault == Fault::kWrongCount) count -= 2;
+    if (fault == Fault::kWrongCount) count = count > 2 ? count - 2 : count + 2;
     const std::vector<std::uint16_t> words = registers(fault);
     pdu = {static_cast<std::uint8_t>(fault == Fault::kWrongFunction ? function ^ 7U : function),
            static_cast<std::uint8_t>(2 * count)};

@@ -31,7 +31,7 @@ enum class Fault {
   kWrongUnit,
   kWrongLength,    ///< TCP: the header's length is one too many
   kWrongFunction,  ///< function 4 for 3
-  kWrongCount,     ///< two registers fewer
+  kWrongCount,     ///< two registers fewer, or more where there are not so many
   kNan,
   kInfinite,
   kHuge,

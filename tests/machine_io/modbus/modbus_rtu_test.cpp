@@ -90,6 +90,58 @@ TEST_P(RtuLate, an_old_answer_never_passes_for_a_new_one) {
 
 INSTANTIATE_TEST_SUITE_P(Milliseconds, RtuLate, testing::Values(150, 260, 350, 777, 1500));
 
+/// From the moment at which the device answers again, with any timeout: silence makes kerf ask less
+/// often, but not for long.
+TEST(ModbusRtu, is_in_step_again_within_a_second) {
+  for (const int timeout_ms : {50, 200}) {
+    const auto device = FaultyDevice::rtu();
+    ModbusSettings settings = settings_for(*device, true);
+    settings.timeout_ms = timeout_ms;
+    ModbusSource source(settings);
+    SourceWatch watch(source);
+    ASSERT_TRUE(watch.more_samples(5)) << source.status().trouble;
+    device->set(Fault::kSilent);
+    const auto silent_since = std::chrono::steady_clock::now();
+    const std::uint64_t errors = source.status().errors;
+    const int questions = device->questions();
+    watch.until(
+        [&] { return std::chrono::steady_clock::now() - silent_since > std::chrono::seconds(6); });
+    // Each question that was not answered is an error.
+    EXPECT_GE(source.status().errors - errors + 1,
+              static_cast<std::uint64_t>(device->questions() - questions));
+    EXPECT_GT(device->questions() - questions, 5);
+    device->set(Fault::kNone);
+    const auto well_since = std::chrono::steady_clock::now();
+    ASSERT_TRUE(watch.more_samples(1)) << source.status().trouble;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - well_since;
+    // Of it 0.5 s and a timeout until it is asked again. The rest is for a busy computer.
+    EXPECT_LT(took.count(), 1.0) << timeout_ms;
+  }
+}
+
+TEST(ModbusRtu, a_late_answer_is_stamped_when_it_was_asked_for) {
+  const auto device = FaultyDevice::rtu();
+  ModbusSettings settings = settings_for(*device, true);
+  settings.timeout_ms = 2000;
+  ModbusSource source(settings);
+  SourceWatch watch(source);
+  ASSERT_TRUE(watch.more_samples(20)) << source.status().trouble;
+  device->set_late(milliseconds(480));
+  device->set(Fault::kLate);
+  for (int i = 0; i < 3; ++i) {
+    AxisSample sample;
+    while (source.next(sample, milliseconds(50)) != Next::kSample) {
+    }
+    const auto real_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+    const double stamped_before_s = static_cast<double>(real_ns - sample.host_ns) * 1e-9;
+    const double read_before_s = FaultyDevice::now_s() - sample.position[0];
+    EXPECT_GT(read_before_s, 0.4);
+    EXPECT_NEAR(stamped_before_s, read_before_s, 0.1) << "the device reads when it is asked";
+  }
+}
+
 TEST(ModbusRtu, waits_for_a_line_that_is_absent_at_the_start_and_survives_its_loss) {
   const TemporaryFolder folder;
   const std::string line = folder / "line";
@@ -132,9 +184,19 @@ TEST(ModbusRtu, bytes_that_nobody_asked_for_put_the_line_out_of_trust) {
   ModbusSource source(settings_for(*device, true));
   SourceWatch watch(source);
   ASSERT_TRUE(watch.more_samples(5));
-  device->chatter();
-  EXPECT_TRUE(watch.trouble_with("bytes arrived without being asked for"))
-      << source.status().trouble;
+  // Bytes that come within a question spoil its answer instead.
+  bool told = false;
+  for (int i = 0; i < 20 && !told; ++i) {
+    ASSERT_TRUE(watch.more_samples(3)) << source.status().trouble;
+    device->chatter();
+    told = watch.until(
+        [&] {
+          return source.status().trouble.find("bytes arrived without being asked for") !=
+                 std::string::npos;
+        },
+        std::chrono::seconds(1));
+  }
+  EXPECT_TRUE(told) << source.status().trouble;
   EXPECT_TRUE(watch.more_samples(5));
 }
 
