@@ -400,7 +400,7 @@ ParabolicSpeeds parabolic_speeds(const Segment& previous, const Segment& next, d
 
 CornerKind join_corner(const AxisRates& rates, Segment& previous, Segment& next, Segment& blend) {
   if (previous.traverse != next.traverse) previous.end = SegmentEnd::kStop;
-  if (previous.end == SegmentEnd::kStop) return CornerKind::kPlain;
+  if (previous.end == SegmentEnd::kStop || previous.half_run) return CornerKind::kPlain;
   if (!rates.arc_blend || previous.extra || next.extra) return CornerKind::kPlain;
   const Vec3 sum = previous.tangent_to + next.tangent_from;
   if (glm::dot(sum, sum) < kReversal) {

@@ -57,11 +57,16 @@ void Lookahead::add(Segment segment) {
   }
 }
 
+/// With nothing after the last segment.
+void Lookahead::finish_back() {
+  finalize_back(false);
+  limit_corner(queue_.end() - 1, 0);
+}
+
 void Lookahead::drain() {
   if (!queue_.empty()) {
-    finalize_back(false);
+    finish_back();
     const double end = queue_.back().sum;
-    limit_corner(queue_.end() - 1, 0);
     while (!queue_.empty()) retire(end);
   }
   limits_.clear();
@@ -76,8 +81,9 @@ void Lookahead::limit_corner(std::uint64_t number, double square) {
   limits_.push() = {number, height};
 }
 
-/// The last segment's length is settled: so are its speed and the corner before it. An arc with
-/// nothing after it keeps the cautious share of its acceleration that it was queued with.
+/// The last segment's length is settled: so are its speed and the corner before it. With nothing
+/// after it LinuxCNC never settles it: an arc keeps the cautious share of its acceleration that it
+/// was queued with, and it is entered no faster than as if the next corner cut half of it away.
 void Lookahead::finalize_back(bool followed) {
   const std::uint64_t number = queue_.end() - 1;
   Queued& queued = queue_[number];
@@ -97,11 +103,25 @@ void Lookahead::finalize_back(bool followed) {
     speed = std::min(previous.max_speed, segment.max_speed);
     if (previous.corner_speed >= 0) speed = std::min(speed, previous.corner_speed);
   }
-  limit_corner(number - 1, speed * speed);
+  double square = speed * speed;
+  if (!followed) square = std::min(square, segment.accel() * segment.length_mm);
+  limit_corner(number - 1, square);
 }
 
-/// Runs the oldest segment. horizon: S where the known path ends with a stop.
-void Lookahead::retire(double horizon) {
+/// How fast `next` may be entered, which `segment` runs into at `target`. Of one that follows the
+/// spindle LinuxCNC learns its speed from the segment before, if that follows the spindle too; from
+/// one that does not it brakes to a standstill, as far as it gets within that one.
+double Lookahead::speed_into(const Segment& segment, const Segment& next, double target) const {
+  if (!next.follows_spindle()) return next.target(rates_);
+  if (!segment.follows_spindle()) return 0;
+  Segment entered = next;
+  entered.spindle_speed = target;
+  return entered.target(rates_);
+}
+
+/// How the oldest segment is run, from clock_s on. horizon: S where the known path ends with a
+/// stop.
+Lookahead::Run Lookahead::run_of_front(double horizon, double clock_s) {
   const std::uint64_t number = queue_.begin();
   const Queued& queued = queue_.front();
   const Segment& segment = queued.segment;
@@ -113,23 +133,70 @@ void Lookahead::retire(double horizon) {
   double final_speed = 0;
   if (next != nullptr && segment.end == SegmentEnd::kTangent) {
     final_speed = std::sqrt(std::max(height - queued.sum, 0.0));
-    final_speed = std::min({final_speed, target, next->target(rates_)});
+    final_speed = std::min({final_speed, target, speed_into(segment, *next, target)});
   }
-  SpeedProfile profile =
-      speed_profile(segment.length_mm, segment.accel(), speed_, target, final_speed);
-  speed_ = profile.end_speed;
-  double overlap = 0;
+  Run run;
+  run.profile =
+      next != nullptr && segment.next_comes_s > clock_s
+          ? surprised_profile(segment.length_mm, segment.accel_alone, segment.accel(), speed_,
+                              target, final_speed, segment.next_comes_s - clock_s)
+          : speed_profile(segment.length_mm, segment.accel(), speed_, target, final_speed);
   if (next == nullptr || segment.end != SegmentEnd::kTangent) {
-    speed_ = 0;
-    profile.duration_s += stop_periods(segment.end, next == nullptr) * rates_.cycle_s;
+    run.profile.end_speed = 0;
+    run.profile.duration_s += stop_periods(segment.end, next == nullptr) * rates_.cycle_s;
     if (next != nullptr && segment.end == SegmentEnd::kParabolic) {
-      const ParabolicSpeeds speeds = parabolic_speeds(segment, *next, target, next->target(rates_));
-      overlap = std::min(speeds.leaving, profile.peak_speed) / segment.accel();
+      const double into = speed_into(segment, *next, target);
+      if (into > 0) {
+        const ParabolicSpeeds speeds = parabolic_speeds(segment, *next, target, into);
+        run.overlap_s = std::min(speeds.leaving, run.profile.peak_speed) / segment.accel();
+      }
     }
   }
-  schedule_.run(segment, profile, overlap);
-  retired_sum_ = queued.sum;
+  return run;
+}
+
+void Lookahead::drop_front(const Run& run) {
+  speed_ = run.profile.end_speed;
+  retired_sum_ = queue_.front().sum;
   queue_.pop_front();
+}
+
+void Lookahead::retire(double horizon) {
+  const Run run = run_of_front(horizon, schedule_.clock_s());
+  schedule_.run(queue_.front().segment, run.profile, run.overlap_s);
+  drop_front(run);
+}
+
+/// Runs a copy of the queue to its end.
+Lookahead::Rest Lookahead::rest() const {
+  Lookahead copy = *this;
+  Rest rest;
+  rest.end_s = schedule_.clock_s();
+  if (copy.queue_.empty()) return rest;
+  copy.finish_back();
+  const double horizon = copy.queue_.back().sum;
+  while (!copy.queue_.empty()) {
+    rest.last_begins_s = rest.end_s;
+    rest.last_speed = copy.speed_;
+    const Run run = copy.run_of_front(horizon, rest.end_s);
+    rest.end_s += std::max(run.profile.duration_s - run.overlap_s, 0.0);
+    copy.drop_front(run);
+  }
+  return rest;
+}
+
+double Lookahead::end_s() const { return rest().end_s; }
+
+void Lookahead::next_comes_at(double clock_s) {
+  if (queue_.empty()) return;
+  const Rest alone = rest();
+  Segment& last = queue_.back().segment;
+  last.next_comes_s = clock_s;
+  last.accel_alone = last.accel();
+  if (clock_s <= alone.last_begins_s) return;
+  const SpeedPoint then = point_before_stop(last.length_mm, last.accel_alone, alone.last_speed,
+                                            last.target(rates_), clock_s - alone.last_begins_s);
+  last.half_run = then.way_mm > last.length_mm / 2;
 }
 
 }  // namespace kerf

@@ -24,6 +24,12 @@ class Lookahead {
 
   /// Appends a segment, with what its corner to the one before becomes.
   void add(Segment segment);
+  bool empty() const { return queue_.empty(); }
+  /// When the machine stands, on the schedule's clock, if nothing more is added.
+  double end_s() const;
+  /// What is added from here on reaches LinuxCNC at that moment of the schedule's clock: the last
+  /// segment, if it has begun by then, has begun as if nothing followed.
+  void next_comes_at(double clock_s);
   /// The last of what is queued ends in a full stop: what follows waits for the spindle.
   void stop_last() {
     if (!queue_.empty()) queue_.back().segment.end = SegmentEnd::kStop;
@@ -41,8 +47,25 @@ class Lookahead {
     double height = 0;  ///< c + S
   };
 
+  struct Run {
+    SpeedProfile profile;
+    double overlap_s = 0;
+  };
+
+  /// What happens if nothing more is added.
+  struct Rest {
+    double end_s = 0;
+    double last_begins_s = 0;  ///< the last segment
+    double last_speed = 0;     ///< at which it begins
+  };
+
+  Rest rest() const;
   void finalize_back(bool followed);
+  void finish_back();
+  Run run_of_front(double horizon, double clock_s);
+  void drop_front(const Run& run);
   void limit_corner(std::uint64_t number, double square);
+  double speed_into(const Segment& segment, const Segment& next, double target) const;
   void retire(double horizon);
 
   const AxisRates& rates_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "interp_bridge/timing/lookahead.h"
 #include "interp_bridge/timing/merge.h"
@@ -47,6 +48,17 @@ bool flat_arc(const Motion& m, Vec3& middle) {
   return true;
 }
 
+/// Goes back where `m` came from: the way out of a rigid tap.
+bool returns(const Motion& m, const Motion& next) {
+  return next.from_mm == m.to_mm && next.to_mm == m.from_mm;
+}
+
+/// Servo periods from the end of a rigid tap's way on until the spindle turns the other way, and
+/// back to there. Measured, as is the next one, with a spindle that turns round at once.
+constexpr double kSpindleTurnPeriods = 4;
+/// Servo periods from the spindle's index to the first that moves.
+constexpr double kIndexSeenPeriods = 1.5;
+
 }  // namespace
 
 struct TrajectoryPlanner::Impl {
@@ -61,6 +73,7 @@ struct TrajectoryPlanner::Impl {
   void move(const Motion& m);
   void straight(const Motion& m, const StraightRates& way, double speed);
   void thread(const Motion& m, const MotionTiming& timing, const StraightRates& way, double speed);
+  void run_thread(const Motion* next);
   void add_to_chain(const Vec3& from, const Vec3& to, double speed, const Motion& m);
   void flush_chain();
   void halt();
@@ -68,10 +81,9 @@ struct TrajectoryPlanner::Impl {
   double halt_s() const;
   double io_done_s(double from_s, int looks);
   double io_wait_s(int looks);
-  void wait_for_io();
   double sent_s() const;
-  std::uint32_t held_back(const Motion& m) const;
   void prepare_tool(const Motion& m);
+  std::uint32_t held_pieces() const;
   void take_tool_number(const Motion& m);
   std::uint64_t add_piece(double length_mm);
   double index_wait_s(const Motion& m);
@@ -84,6 +96,9 @@ struct TrajectoryPlanner::Impl {
   Schedule schedule;
   Lookahead lookahead;
   MergeChain chain;
+  /// A straight feed that nothing is merged with. LinuxCNC holds it back too, until what comes next
+  /// shows that it cannot be.
+  std::optional<Segment> feed_waits;
   bool chain_follows_spindle = false;  ///< G95
   bool chain_keeps_start = false;
   Motion last;  ///< where the machine stands and what is switched on
@@ -91,13 +106,24 @@ struct TrajectoryPlanner::Impl {
   std::uint32_t queued = 0;  ///< pieces since the machine stood
   double stood_s = 0;        ///< when the first of them was queued
   double index_s = -1;       ///< a moment of the spindle's index pulse; -1: none known
-  double io_phase_s = -1;    ///< a moment at which the I/O task looked; -1: none known
-  double io_free_s = 0;      ///< it has done all it was told
+  /// The last motion, if it is a thread: how it ends depends on the one after it.
+  struct Thread {
+    Motion motion;
+    MotionTiming timing;
+    double length = 0;
+    double speed = 0;
+    double accel = 0;
+    bool retracts = false;
+  };
+  std::optional<Thread> thread_waits;
+  double io_phase_s = -1;  ///< a moment at which the I/O task looked; -1: none known
+  double io_free_s = 0;    ///< it has done all it was told
   std::uint64_t stops = 0;
 };
 
 /// Ends the path here: the machine stands when everything queued is done.
 void TrajectoryPlanner::Impl::halt() {
+  run_thread(nullptr);
   flush_chain();
   lookahead.drain();
   queued = 0;
@@ -109,6 +135,8 @@ std::uint64_t TrajectoryPlanner::Impl::add_piece(double length_mm) {
 }
 
 void TrajectoryPlanner::Impl::flush_chain() {
+  if (feed_waits) lookahead.add(*feed_waits);
+  feed_waits.reset();
   if (chain.empty()) return;
   const Vec3 to = chain.last();
   const StraightRates way = straight_rates(rates, to - chain.start(), {});
@@ -153,35 +181,40 @@ double TrajectoryPlanner::Impl::io_wait_s(int looks) {
   return io_done_s(now, looks) - now;
 }
 
-void TrajectoryPlanner::Impl::wait_for_io() { schedule.pause(io_wait_s(0)); }
-
 /// When the task comes to what is sent while moves are under way: it has run ahead of them.
 double TrajectoryPlanner::Impl::sent_s() const {
   return queued == 0 ? schedule.clock_s() : stood_s;
 }
 
-/// Pieces that LinuxCNC has not sent when a T word comes: the chain of feeds that may go on.
-std::uint32_t TrajectoryPlanner::Impl::held_back(const Motion& m) const {
-  if (m.tool_prepare != ToolPrepare::kAheadOfLast) return 0;
-  if (!chain.empty()) return chain.piece_count();
-  return last.kind == MotionKind::kFeed ? 1 : 0;
+/// The T word is sent behind what is in the look-ahead, and what comes after it when the tool is
+/// prepared. The machine stops if it has nothing to do until then.
+void TrajectoryPlanner::Impl::prepare_tool(const Motion& m) {
+  if (m.tool_prepare != ToolPrepare::kAheadOfLast) flush_chain();
+  run_thread(nullptr);
+  const double done_s = io_done_s(sent_s(), kToolPrepareLooks);
+  if (lookahead.end_s() > done_s) {
+    lookahead.next_comes_at(done_s);
+    return;
+  }
+  lookahead.drain();
+  schedule.pause(std::max(done_s - schedule.clock_s(), 0.0) + halt_s());
+  stood_s = schedule.clock_s();
+  queued = held_pieces();
 }
 
-void TrajectoryPlanner::Impl::prepare_tool(const Motion& m) {
-  const bool none_sent = queued <= held_back(m);
-  io_done_s(none_sent ? schedule.clock_s() : sent_s(), kToolPrepareLooks);
-  if (none_sent) wait_for_io();
+std::uint32_t TrajectoryPlanner::Impl::held_pieces() const {
+  return feed_waits ? feed_waits->piece_count : chain.piece_count();
 }
 
 void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
   halt();
-  stand(m, io_wait_s(kToolChangeLooks) + options.tool_change_s);
+  stand(m, io_wait_s(kToolChangeLooks) + options.tool_change_s + kReadOn_s);
 }
 
 /// M61 has been sent to the I/O task; the program is read on when all is done.
 void TrajectoryPlanner::Impl::take_tool_number(const Motion& m) {
   halt();
-  stand(m, halt_s() + io_wait_s(0));
+  stand(m, halt_s() + io_wait_s(0) + kReadOn_s);
 }
 
 /// What the program switched between the last motion and this one. What M2 switches off comes
@@ -204,13 +237,15 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
   halt();
   schedule.pause(halt_s());
   if (spindle && m.spindle != SpindleState::kStopped) schedule.pause(options.spindle_start_s);
-  schedule.pause(io_wait_s(coolant));
+  if (coolant > 0) schedule.pause(io_wait_s(coolant) + halt_s());
 }
 
-/// From standstill to the next move. The task sees the standstill half of its period later.
+/// From standstill, or from the I/O task's look, to the next move. The task sees it half of its
+/// period later.
 double TrajectoryPlanner::Impl::halt_s() const { return options.halt_s + limits.task_period_s / 2; }
 
 void TrajectoryPlanner::Impl::push(const Motion& m) {
+  run_thread(&m);
   const bool standing = m.tool_prepare == ToolPrepare::kStanding;
   if (m.tool_prepare != ToolPrepare::kNone && !standing) prepare_tool(m);
   if (m.by_number && m.halts == 0) io_done_s(sent_s(), kToolNumberLooks);
@@ -314,6 +349,10 @@ void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
   segment.first_piece = add_piece(segment.length_mm);
+  if (m.kind == MotionKind::kFeed) {
+    feed_waits = segment;
+    return;
+  }
   lookahead.add(segment);
   if (m.kind == MotionKind::kProbe) halt();
 }
@@ -332,24 +371,39 @@ double TrajectoryPlanner::Impl::index_wait_s(const Motion& m) {
   return wait;
 }
 
-/// Follows the spindle from its index pulse on; speeding up and braking cost one v / a together.
-/// The way out of a rigid tap follows the way in without a wait: the spindle turns round meanwhile.
 void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing,
                                      const StraightRates& way, double speed) {
-  const double run = std::min(speed, way.speed);
-  const bool retracts = begun && last.kind == MotionKind::kThread && m.from_mm == last.to_mm &&
-                        m.to_mm == last.from_mm;
-  double seconds = way.length / run;
-  if (!retracts) seconds += index_wait_s(m) + run / way.accel;
-  schedule.alone(m, timing, seconds, run);
-  // As it turns back as far as it had turned, its index is where it has turned round again.
-  if (retracts) index_s = schedule.clock_s();
+  const bool retracts = begun && last.kind == MotionKind::kThread && returns(last, m);
+  thread_waits = {m, timing, way.length, std::min(speed, way.speed), way.accel, retracts};
+}
+
+/// Follows the spindle from its index pulse on: half of v / a late, as it has to speed up, and
+/// where it stops as much later. A rigid tap does not stop: LinuxCNC turns the spindle round at the
+/// bottom and again at the top, and the axis goes back with it. The spindle has then turned back as
+/// far as it had turned, but for what the axis was late.
+void TrajectoryPlanner::Impl::run_thread(const Motion* next) {
+  if (!thread_waits) return;
+  const Thread t = *thread_waits;
+  thread_waits.reset();
+  const double late_s = t.speed / t.accel / 2;
+  const double seen_s = kIndexSeenPeriods * rates.cycle_s;
+  double seconds = t.length / t.speed;
+  if (t.retracts) {
+    seconds += 2 * kSpindleTurnPeriods * rates.cycle_s;
+  } else {
+    const bool taps =
+        next != nullptr && next->kind == MotionKind::kThread && returns(t.motion, *next);
+    seconds += index_wait_s(t.motion) + seen_s + (taps ? late_s : 2 * late_s);
+  }
+  schedule.alone(t.motion, t.timing, seconds, t.speed);
+  if (t.retracts) index_s = schedule.clock_s() - late_s - seen_s;
 }
 
 void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, double speed,
                                            const Motion& m) {
   const double tolerance = static_cast<double>(m.merge_tolerance_mm);
   const double blend = static_cast<double>(m.blend_tolerance_mm);
+  if (feed_waits) flush_chain();
   if (!chain.empty() &&
       !(chain.speed() == speed && chain.tolerance_mm() == blend && chain.links(to, tolerance))) {
     flush_chain();

@@ -44,4 +44,34 @@ SpeedProfile speed_profile(double length, double accel, double start_speed, doub
   return profile;
 }
 
+SpeedPoint point_before_stop(double length, double accel, double start_speed, double target,
+                             double seconds) {
+  const SpeedProfile whole = speed_profile(length, accel, start_speed, target, 0);
+  // Too fast to stop at the end: it has hardly begun before it is over.
+  if (seconds >= whole.duration_s || whole.end_speed > 0) return {length, whole.end_speed};
+  // To its peak, on at that, and down.
+  const double peak = std::min(whole.peak_speed, std::max(target, 0.0));
+  const double gain = peak < start_speed ? -accel : accel;
+  const double gaining_s = (peak - start_speed) / gain;
+  const double cruising_s = std::max(whole.duration_s - gaining_s - peak / accel, 0.0);
+  const double first_s = std::min(seconds, gaining_s);
+  const double second_s = std::clamp(seconds - gaining_s, 0.0, cruising_s);
+  const double third_s = seconds - first_s - second_s;
+  const double way = (start_speed + gain * first_s / 2) * first_s + peak * second_s +
+                     (peak - accel * third_s / 2) * third_s;
+  return {std::min(way, length), std::max(start_speed + gain * first_s - accel * third_s, 0.0)};
+}
+
+SpeedProfile surprised_profile(double length, double accel_alone, double accel, double start_speed,
+                               double target, double final_speed, double seconds) {
+  const SpeedProfile alone = speed_profile(length, accel_alone, start_speed, target, 0);
+  const SpeedPoint then = point_before_stop(length, accel_alone, start_speed, target, seconds);
+  if (then.way_mm >= length) return alone;
+  SpeedProfile profile =
+      speed_profile(length - then.way_mm, accel, then.speed, target, final_speed);
+  profile.duration_s += seconds;
+  profile.peak_speed = std::max(profile.peak_speed, alone.peak_speed);
+  return profile;
+}
+
 }  // namespace kerf

@@ -15,4 +15,17 @@ struct SpeedProfile {
 SpeedProfile speed_profile(double length, double accel, double start_speed, double target,
                            double final_speed);
 
+/// Where a segment is after `seconds` on the way to a stop at its end.
+struct SpeedPoint {
+  double way_mm = 0;
+  double speed = 0;
+};
+SpeedPoint point_before_stop(double length, double accel, double start_speed, double target,
+                             double seconds);
+
+/// speed_profile() of a segment that is run towards a stop at accel_alone for the first seconds,
+/// and only then with `accel` towards final_speed.
+SpeedProfile surprised_profile(double length, double accel_alone, double accel, double start_speed,
+                               double target, double final_speed, double seconds);
+
 }  // namespace kerf

@@ -69,9 +69,14 @@ struct Segment {
   double spindle_speed = kUnlimited;
   double max_speed = 0;  ///< that the machine can do along it
   double max_accel = 0;
-  double along_share = 1;       ///< of max_accel that is left along a curve
-  double corner_speed = -1;     ///< limit at its end, -1: none
-  double corner_load = 0;       ///< share of the acceleration kept for turning at its end
+  double along_share = 1;  ///< of max_accel that is left along a curve
+  /// If > 0: the segment after it came only then, on the schedule's clock; until then it was run
+  /// with accel_alone towards a stop.
+  double next_comes_s = 0;
+  double accel_alone = 0;
+  bool half_run = false;     ///< more than half of it was run by then: no corner is made of its end
+  double corner_speed = -1;  ///< limit at its end, -1: none
+  double corner_load = 0;    ///< share of the acceleration kept for turning at its end
   double corner_load_from = 0;  ///< ... at its start
   double tolerance_mm = 0;      ///< G64 P
   Vec3 from{0}, to{0};          ///< untrimmed ends
@@ -90,6 +95,7 @@ struct Segment {
     if (begins_parabolic || end == SegmentEnd::kParabolic) share *= 0.5;
     return max_accel * share;
   }
+  bool follows_spindle() const { return spindle_speed < kUnlimited; }
   /// The speed that it is run at where nothing else limits it.
   double target(const AxisRates& rates) const {
     const double cap = linear ? rates.linear_cap : rates.angular_cap;

@@ -93,20 +93,16 @@ TEST(Planner, FeedAboveWhatTheAxesDoIsTold) {
   EXPECT_NEAR(plan_of(Path().rapid(300, 300).motions).timings[0].peak_mm_per_min, 6000, 1e-9);
 }
 
-TEST(Planner, SplittingAStraightFeedChangesNothing) {
-  for (const PathMode mode : {PathMode::kExactPath, PathMode::kContinuous}) {
-    const double whole = plan_of(Path(mode).feed(3000).line(60, 30).motions).clock_s;
-    for (const int parts : {2, 7, 40}) {
-      Path path(mode);
-      path.feed(3000);
-      for (int i = 1; i <= parts; ++i) path.line(60.0 * i / parts, 30.0 * i / parts);
-      const double split = plan_of(path.motions).clock_s;
-      // Only the last part brakes at half acceleration (G64): never slower than the whole.
-      EXPECT_LE(split, whole + 1e-3);
-      EXPECT_GT(split,
-                plan_of(Path(PathMode::kExactStop).feed(3000).line(60, 30).motions).clock_s - 2e-3);
-    }
-  }
+TEST(Planner, TheLastFeedIsEnteredAsIfHalfOfItWereStillCutAway) {
+  // LinuxCNC does not know yet that nothing follows: v = sqrt(a L), a halved as it is the last.
+  const double into = std::sqrt(250.0 * 2);
+  const double top = std::sqrt((2 * 250.0 * 2 + into * into) / 2);
+  const double braking = (50 * 50 - into * into) / (2 * 500.0);
+  const double first_s = 50 / 500.0 + (60 - 2.5 - braking) / 50 + (50 - into) / 500;
+  const Plan plan = plan_of(Path().feed(3000).line(60, 0).line(62, 0).motions);
+  EXPECT_NEAR(plan.timings[0].duration_s, first_s, 1e-9);
+  EXPECT_NEAR(plan.timings[1].duration_s, (2 * top - into) / 250, kStop_s);
+  EXPECT_GT(plan.clock_s, plan_of(Path().feed(3000).line(62, 0).motions).clock_s - 0.1);
 }
 
 TEST(Planner, MergedFeedsShareTheTimeOfOneLine) {
@@ -183,11 +179,60 @@ TEST(Planner, ThreadsFollowTheSpindle) {
     m.kind = MotionKind::kThread;
     m.feed_mm_per_min = 1.5;
   }
-  // Half a turn of waiting, 10 mm at 15 mm/s, 15 mm/s at 300 mm/s2; a rigid tap comes out at once.
+  // Half a turn of waiting, 1.5 servo periods until that is seen, 10 mm at 15 mm/s, half of 15 mm/s
+  // at 300 mm/s2; a rigid tap comes out at once, but for two times 4 periods: the spindle turns.
   const Plan plan = plan_of(path.motions);
-  EXPECT_NEAR(plan.timings[0].duration_s, 0.05 + 10 / 15.0 + 15 / 300.0, 1e-9);
-  EXPECT_NEAR(plan.timings[1].duration_s, 10 / 15.0, 1e-9);
+  EXPECT_NEAR(plan.timings[0].duration_s, 0.05 + 0.0015 + 10 / 15.0 + 15 / 600.0, 1e-9);
+  EXPECT_NEAR(plan.timings[1].duration_s, 10 / 15.0 + 0.008, 1e-9);
   EXPECT_EQ(plan.timings[0].programmed_mm_per_min, 900);
+  // G33 stops at its end.
+  path.motions.pop_back();
+  EXPECT_NEAR(plan_of(path.motions).timings[0].duration_s, 0.05 + 0.0015 + 10 / 15.0 + 15 / 300.0,
+              1e-9);
+}
+
+TEST(Planner, BrakesToAStandstillBeforeAFeedThatFollowsTheSpindle) {
+  Path path;
+  path.state().spindle = SpindleState::kClockwise;
+  path.state().spindle_rpm = 1200;
+  path.feed(1800).line(20, 0);
+  path.state().feed_per_rev = true;
+  path.feed(1.2).line(40, 0).line(60, 0);
+  path.state().feed_per_rev = false;
+  path.feed(1800).line(80, 0);
+  // G94 to G95: 30 mm/s to 0 and up to 24 mm/s; from there on without a stop.
+  const Plan plan = plan_of(path.motions);
+  EXPECT_NEAR(plan.timings[0].duration_s, 20 / 30.0 + 30 / 500.0, 1e-9);
+  EXPECT_NEAR(plan.timings[1].duration_s, 20 / 24.0 + 24 / 1000.0, 1e-9);
+  EXPECT_NEAR(plan.timings[2].duration_s, 20 / 24.0, 1e-9);
+}
+
+TEST(Planner, MovesBehindAToolWordWaitUntilTheToolIsPrepared) {
+  const auto path = [](double first_mm, ToolPrepare when) {
+    Path p;
+    p.feed(1800).line(first_mm, 0).line(first_mm, 10).line(20, 10);
+    p.motions[2].tool_prepare = when;
+    PlannerOptions options;
+    options.with_path = true;
+    return plan_of(p.motions, MachineLimits::small_mill(), options);
+  };
+  // The word goes ahead of the second feed, which is held back. 1 mm takes 0.13 s, and the tool is
+  // there after half of an I/O period and one more; 2 ms later the task has sent the second.
+  EXPECT_NEAR(path(1, ToolPrepare::kAheadOfLast).timings[1].start_s, 0.15 + 0.002, 1e-9);
+  // The second feed, 10 mm, is sent before the word: it lasts longer than that.
+  EXPECT_LT(path(1, ToolPrepare::kBehindLast).timings[1].start_s, 0.14);
+  // The first, of 10 mm, has run 0.15 s towards a stop, at 30 mm/s already, when it is known to go
+  // on: the corner is rounded as ever, only its speeding up was at half of the acceleration.
+  const Plan sent = path(10, ToolPrepare::kNone);
+  const Plan late = path(10, ToolPrepare::kAheadOfLast);
+  EXPECT_NEAR(late.clock_s - sent.clock_s, 30 / 500.0 / 2, 1e-9);
+  // 4 mm: more than half of it is run then, so that its corner is not rounded, as the next one is.
+  const auto arcs = [](const Plan& plan) {
+    return std::count_if(plan.pieces.begin(), plan.pieces.end(),
+                         [](const PathPiece& piece) { return piece.curved; });
+  };
+  EXPECT_EQ(arcs(path(4, ToolPrepare::kNone)), 4);
+  EXPECT_EQ(arcs(path(4, ToolPrepare::kAheadOfLast)), 2);
 }
 
 TEST(Planner, RotaryMovesTakeFeedAsDegrees) {
