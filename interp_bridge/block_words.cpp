@@ -225,6 +225,9 @@ BlockWords words_of_block(std::string_view line) {
       case 'y':
       case 'z':
         words.named = static_cast<std::uint8_t>(words.named | 1U << (letter - 'x'));
+        if (!number) {
+          words.computed = static_cast<std::uint8_t>(words.computed | 1U << (letter - 'x'));
+        }
         break;
       case '@':
       case '^':

@@ -33,7 +33,8 @@ struct BlockWords {
   /// G0 or G1, G2, G3, where the block has the word.
   enum class Speed : std::uint8_t { kUnsaid, kRapid, kFeed };
 
-  std::uint8_t named = 0;  ///< bit 0: it has an X word, 1: Y, 2: Z
+  std::uint8_t named = 0;     ///< bit 0: it has an X word, 1: Y, 2: Z
+  std::uint8_t computed = 0;  ///< .. whose number is an expression, or a parameter
   Place place = Place::kProgram;
   Offset offset = Offset::kNone;
   Speed speed = Speed::kUnsaid;

@@ -21,6 +21,7 @@
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/record_reader.h"
 #include "interp_bridge/rs274_messages.h"
+#include "interp_bridge/source_text.h"
 #include "interp_bridge/tool_table.h"
 
 namespace kerf {
@@ -119,11 +120,41 @@ class BridgeProgram final : public Program {
   std::atomic<double> progress_{0};
 };
 
+/// A probe is sent off from G28 or G30, whose places nobody has said. At the interpreter's 0 it may
+/// stand where it is sent to, which the interpreter refuses.
+bool probes_from_reference(const std::string& path) {
+  TextPieces pieces(path);
+  bool probes = false, goes = false;
+  for (std::string_view text; pieces.next(text) && !(probes && goes);) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::string_view line = text.substr(0, end);
+      const auto has = [&](std::string_view word) {
+        return std::search(line.begin(), line.end(), word.begin(), word.end(),
+                           [](char a, char b) { return (a | 0x20) == (b | 0x20); }) != line.end();
+      };
+      probes = probes || has("g38.");
+      goes = goes || has("g28") || has("g30");
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+  }
+  return probes && goes;
+}
+
 /// The interpreter rewrites its parameters; a path that cannot exist is not written.
 Result<std::string> BridgeProgram::parameters_for(const std::string& home) const {
   const InterpreterSetup& machine = options_.machine;
-  if (machine.parameter_path.empty() && !machine.work_offset) return home + "/none/parameters";
   std::string path = home + "/parameters";
+  if (machine.parameter_path.empty() && !machine.work_offset) {
+    if (!probes_from_reference(options_.path)) return home + "/none/parameters";
+    constexpr double kAway_mm = 1;
+    const double away = kAway_mm / (machine.inch_machine ? kInchMm : 1.0);
+    ParameterFile references;
+    for (const int z : {5163, 5183}) references.values[z] = away;
+    std::ofstream file(path);
+    if (file << references.text() << std::flush) return path;
+    return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+  }
   if (!machine.work_offset) {
     std::error_code error;
     fs::copy_file(machine.parameter_path, path, error);

@@ -105,6 +105,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.feeder.frame = &frame_;
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
+  reading.feeder.places.has_blocks = false;
   reading.feeder.follows_probes = follows_probes_;
   reading.feeder.no_answer = "a listing was written without a workpiece";
   reading.feeder.materials = &materials_;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "interp_bridge/probe_branches.h"
 #include "interp_bridge/source_text.h"
 #include "interp_bridge/wild_motion.h"
 
@@ -97,7 +98,9 @@ void MotionFeeder::follow_block(CanonicalName name) {
 
 bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   source_ = source;
-  if (options_.places.followed) follow_block(command.name);
+  if (options_.places.followed || (options_.places.has_blocks && fold_.stands_on_workpiece())) {
+    follow_block(command.name);
+  }
   if (command.spelling.empty() ||
       command.spelling.size() == canonical_spelling(command.name).size()) {
     ++counts_[static_cast<std::size_t>(command.name)];
@@ -123,15 +126,17 @@ bool MotionFeeder::ask_probe(const CanonicalCommand& command, bool away, SourceR
   std::vector<Motion> motions;
   ahead.fold(command, source, motions);
   answer = {};
-  if (probe_.any()) {
-    answer.why = "where it begins hangs on an earlier probe";
-  } else if (motions.size() != 1 || !motions[0].start_known ||
-             (!options_.start && (moved_axes(motions[0]) & ~probe_.said) != 0)) {
+  if (motions.size() != 1 || !motions[0].start_known ||
+      (!options_.start && (moved_axes(motions[0]) & ~probe_.said) != 0)) {
     answer.why = "where it begins is not known";
   } else if (options_.answer_probe) {
     answer = options_.answer_probe({motions[0], away});
   }
   probe_.answered = answer.kind != ProbeAnswer::Kind::kUnknown;
+  if (answer.kind == ProbeAnswer::Kind::kMet && !away) {
+    const Vec3 way = motions[0].to_mm - motions[0].from_mm;
+    probe_.met_below = way.z < 0 && way.x == 0 && way.y == 0;
+  }
   probe_.why = answer.why;
   return true;
 }
@@ -149,31 +154,49 @@ unsigned MotionFeeder::moved_axes(const Motion& m) const {
   return axes;
 }
 
+/// A program that touches a plate of known thickness.
+void MotionFeeder::note_plate() {
+  if (fold_.plate_mm() == 0 || std::exchange(probe_.plate_told, true)) return;
+  ProgramNote note;
+  note.source = source_;
+  note.is_sentence = true;
+  note.count = 1;
+  note.text = fmt::format(
+      "the program calls the top of the workpiece, where the probe has met it, Z{:.2f}: a touch "
+      "plate of that thickness is taken to lie on it, and Z0 to be the top",
+      fold_.plate_mm());
+  summary_.notes.push_back(std::move(note));
+}
+
 /// Of a probing move that nobody could answer for: what comes behind it, from batch_[first] on, is
 /// not known.
 void MotionFeeder::follow_probing(const CanonicalCommand& command, std::size_t first) {
   for (std::size_t i = first; i < batch_.size(); ++i) probe_.said |= moved_axes(batch_[i]);
+  if (command.name == CanonicalName::kStraightProbe && std::exchange(probe_.met_below, false)) {
+    fold_.stand_on_workpiece();
+  }
+  note_plate();
   if (command.name == CanonicalName::kStraightProbe && !std::exchange(probe_.answered, false)) {
+    probe_.all_unknown = probe_.all_unknown || !options_.places.has_blocks;
+    while (probe_.files_looked_at < summary_.files.size() && !probe_.all_unknown) {
+      probe_.all_unknown = file_branches_on_probe(summary_.files[probe_.files_looked_at++]);
+    }
     note_unknown_probe();
     unsigned axes = 0;
     for (std::size_t i = first; i < batch_.size(); ++i) {
       const unsigned named = named_axes();
       axes |= batch_[i].start_known ? moved_axes(batch_[i]) : named != 0 ? named : kAllAxes;
     }
-    probe_.offsets |= axes;
-    probe_.places |= axes;
+    if (options_.places.has_blocks) {
+      options_.places.followed = true;
+      fold_.lose(static_cast<std::uint8_t>(axes));
+    }
     return;
   }
-  if (!probe_.any()) return;
-  if (command.name == CanonicalName::kSetG5xOffset && set_by_numbers()) probe_.offsets = 0;
-  if (command.name == CanonicalName::kUseToolLengthOffset) probe_.tool_length = true;
+  if (!probe_.all_unknown) return;
   for (std::size_t i = first; i < batch_.size(); ++i) {
     Motion& m = batch_[i];
-    if (!m.start_known) {
-      if (probe_.offsets == 0) probe_.places &= ~named_axes();
-      continue;
-    }
-    if (probe_.offsets == 0) probe_.places &= ~moved_axes(m);
+    if (!m.start_known) continue;
     m.start_known = false;
     m.from_mm = m.to_mm;
     m.from_abc_deg = m.to_abc_deg;
@@ -199,32 +222,14 @@ void MotionFeeder::note_unknown_probe() {
   note.source = source_;
   note.is_sentence = true;
   note.count = 1;
-  note.text = fmt::format(
-      "what the probe meets is not known ({}); from here on nothing is cut or checked, until G10 "
-      "L2 sets the work offset of the axes that it has probed by plain numbers",
-      why);
+  note.text = fmt::format("what the probe meets is not known ({}); ", why);
+  note.text += !probe_.all_unknown
+                   ? "tool lengths that the program makes of it are taken for true, and nothing is "
+                     "cut or checked until a block says in plain numbers where the tool is"
+                   : "from here on nothing is cut or checked, since what the program does hangs "
+                     "on it";
   summary_.notes.push_back(std::move(note));
   probe_.note = summary_.notes.size();
-}
-
-/// The block is a G10 L2 that names all axes whose offset may come from a probe, with numbers
-/// alone.
-bool MotionFeeder::set_by_numbers() const {
-  if (probe_.tool_length || source_.file >= summary_.files.size()) return false;
-  std::string block;
-  for (const char c : line_of_file(summary_.files[source_.file], source_.line)) {
-    if (c == ';' || c == '(') break;
-    if (c == '#' || c == '[') return false;
-    if (c != ' ' && c != '\t') block += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
-  const std::size_t l = block.find("L2");
-  if (block.find("G10") == block.npos || l == block.npos) return false;
-  if (l + 2 < block.size() && (block[l + 2] == '0' || block[l + 2] == '1')) return false;
-  for (unsigned i = 0; i < 3; ++i) {
-    const bool needed = (probe_.offsets >> i & 1U) != 0;
-    if (needed && block.find("XYZ"[i]) == block.npos) return false;
-  }
-  return true;
 }
 
 bool MotionFeeder::take_spline(const Spline& spline, SourceRef source) {

@@ -36,6 +36,7 @@ struct MotionFeederOptions {
     std::array<double, 9> interpreter_start{};
     bool zero_known = false;  ///< the interpreter's work offsets are the machine's
     bool z_matters = true;
+    bool has_blocks = true;  ///< the text of the program is there; else it is a listing
   };
   Places places;
   /// Written before the first motion that moves is handed over, and again where an axis is placed
@@ -104,7 +105,7 @@ class MotionFeeder {
   unsigned named_axes();
   unsigned moved_axes(const Motion& m) const;
   void note_unknown_probe();
-  bool set_by_numbers() const;
+  void note_plate();
   void edit_material(const CanonicalCommand& comment);
   void material_changed();
   void follow_modes();
@@ -141,11 +142,11 @@ class MotionFeeder {
     unsigned said = 0;      ///< bits of X Y Z: the program has moved them, so that they are known
     bool answered = false;  ///< the STRAIGHT_PROBE to come is the answer's
     std::string why;
-    std::size_t note = 0;      ///< index of the note, from 1; 0: there is none
-    unsigned offsets = 0;      ///< bits of X Y Z: their work offset may come from it
-    unsigned places = 0;       ///< .. where the tip stands is not known
-    bool tool_length = false;  ///< may come from it, and nothing brings it back
-    bool any() const { return offsets != 0 || places != 0 || tool_length; }
+    bool met_below = false;  ///< .. and it comes down on the workpiece
+    bool plate_told = false;
+    std::size_t note = 0;             ///< index of the note, from 1; 0: there is none
+    bool all_unknown = false;         ///< from here on, to the end
+    std::size_t files_looked_at = 0;  ///< of ProgramSummary::files, for what branches on it
   };
   UnknownProbe probe_;
 };

@@ -238,6 +238,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.speed_said = speed_said_;
   motion.flood = flood_;
   motion.mist = mist_;
+  on_workpiece_ = false;
   motion.start_known = position_known_ && unknown_ == 0;
   motion.unknown_from = motion.unknown_to = unknown_;
   motion.from_mm = position_mm_;
@@ -486,6 +487,8 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
       return true;
     case CanonicalName::kUseToolLengthOffset:
       change_tool_length(command);
+      // By how much only the probe knows.
+      unknown_ |= probed_;
       return true;
     default:
       return false;

@@ -106,8 +106,18 @@ class MotionFold {
                      std::uint8_t zero_known);
   /// The block of the commands that follow; null: not known, as that of a listing. Outlives them.
   void set_block(const BlockWords* block) { block_ = block; }
-  /// Axes of which it matters whether a block names them.
-  std::uint8_t unplaced() const { return unknown_; }
+  /// Axes of which it matters whether a block names them, and how.
+  std::uint8_t unplaced() const { return unknown_ | probed_; }
+  /// A probing move along these axes has ended nobody knows where. They are unknown until a block
+  /// says in plain numbers where the tool is, as after start_unknown(); what the program computes
+  /// may come from the probe, and says nothing any more. Tool lengths that it states are taken for
+  /// true. By set_block().
+  void lose(std::uint8_t axes);
+  /// Behind a probing move that has come down on the workpiece.
+  void stand_on_workpiece() { on_workpiece_ = true; }
+  bool stands_on_workpiece() const { return on_workpiece_; }
+  /// Thickness of the touch plate that the probe stands on instead; 0: of none.
+  double plate_mm() const { return plate_mm_; }
 
   /// Before the first command: QtPlasmaC's filter has its share.
   void set_filter(FilterSetup setup) { filter_ = setup; }
@@ -213,6 +223,8 @@ class MotionFold {
   bool is_at_machine_place(const Motion& motion);
   void follow_offset(CanonicalName name, int system);
   void take_as_known_here(std::uint8_t axes, bool by_g92);
+  double said_height_mm() const;
+  void look_for_plate(bool is_shift);
   void relate_shift();
   void adopt_frame();
   void note_distance_mode(std::string_view comment);
@@ -277,6 +289,10 @@ class MotionFold {
   std::uint8_t placed_ = 0;      ///< at least once
   std::uint8_t zero_known_ = 0;  ///< where the machine's zero is
   std::uint8_t zero_by_program_ = 0;
+  std::uint8_t probed_ = 0;               ///< lose()
+  std::uint8_t placed_before_probe_ = 0;  ///< how far a probe may go says not where it is
+  bool on_workpiece_ = false;             ///< stand_on_workpiece(), and has not moved since
+  double plate_mm_ = 0;
   int g5x_index_ = 1;
   bool shifted_ = false;               ///< by G92
   std::uint8_t shift_floats_ = 0;      ///< the G92 was given where the axis was unknown

@@ -1,5 +1,6 @@
 // What MotionFold knows of where the axes stand: of X, Y and Z, as bits 0, 1, 2.
 #include <cmath>
+#include <utility>
 
 #include "interp_bridge/motion_fold.h"
 
@@ -16,6 +17,9 @@ constexpr std::uint8_t kZ = 4;
 
 /// Of one place, said twice by rs274 under different offsets.
 constexpr double kSamePlace_mm = 6e-4;
+/// A touch plate is thicker, and a workpiece's top so near to Z0 is there.
+constexpr double kLeastPlate_mm = 0.5;
+constexpr double kSameTop_mm = 0.05;
 
 std::uint8_t without(std::uint8_t axes, std::uint8_t others) {
   return static_cast<std::uint8_t>(axes & ~others & kXyz);
@@ -40,6 +44,17 @@ void MotionFold::start_unknown(const std::array<double, 9>& machine_position, st
   unknown_ = axes;
   placed_ = without(kXyz, axes);
   zero_known_ = zero_known;
+}
+
+void MotionFold::lose(std::uint8_t axes) {
+  if (!follows_places_) {
+    follows_places_ = true;
+    placed_ = placed_before_probe_ = zero_known_ = kXyz;
+  }
+  placed_ &= placed_before_probe_ | ~axes;
+  probed_ |= axes;
+  unknown_ |= axes;
+  lengths_.take_stated_as_measured();
 }
 
 std::uint8_t MotionFold::changed_axes(const Vec3& to_mm) const {
@@ -73,12 +88,14 @@ bool MotionFold::is_at_machine_place(const Motion& motion) {
 
 std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
   const std::uint8_t changed = changed_axes(to_mm);
+  if (motion.kind == MotionKind::kProbe) placed_before_probe_ = placed_;
   if (block_ == nullptr) {
     placed_ |= changed;
     return without(unknown_, changed);
   }
   const std::uint8_t unrelated = shift_unrelated_ | system_unrelated_;
-  std::uint8_t unknown = unknown_;
+  const std::uint8_t doubtful = block_->computed & probed_;
+  std::uint8_t unknown = unknown_ | doubtful;
   std::uint8_t named = agrees(block_->speed, motion.kind) ? block_->named : std::uint8_t{0};
   const Place place = block_->place;
   std::uint8_t to_machine = 0;
@@ -94,21 +111,47 @@ std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
   }
   const std::uint8_t lost = to_machine & (without(kXyz, zero_known_) | unrelated);
   motion.to_machine_place = lost != 0;
-  const std::uint8_t found = without(to_machine, lost);
+  const std::uint8_t found = without(to_machine, lost | doubtful);
   placed_ |= found;
   unknown = without(unknown, found) | lost;
   if (incremental_ && place != Place::kMachine) return unknown;
   // An axis that moves without being named is one that a block before has placed (cycles), or that
   // compensation has held back.
-  const std::uint8_t said = without(named | changed, to_machine);
+  const std::uint8_t said = without(named | changed, to_machine | doubtful);
   placed_ |= without(said, unrelated);
   return without(unknown, said) | (said & unrelated);
 }
 
+/// Where the tip stands, in the numbers of the offsets that have just been set.
+double MotionFold::said_height_mm() const {
+  return position_mm_.z + work_.g5x_mm.z + work_.g92_mm.z - frame_.g5x_mm.z - frame_.g92_mm.z;
+}
+
+/// The model knows of no touch plate: the probe has come down to the workpiece. If that is at Z0 of
+/// the blank, and the program calls the place by more, it reckons with a plate: the tip stands so
+/// much higher, and Z0 is the workpiece's top as before.
+void MotionFold::look_for_plate(bool is_shift) {
+  if (!std::exchange(on_workpiece_, false) || block_ == nullptr || (block_->named & kZ) == 0) {
+    return;
+  }
+  const BlockWords::Offset how = block_->offset;
+  const bool by_probe = how == BlockWords::Offset::kMachine && (block_->computed & kZ) != 0;
+  if (is_shift ? how != BlockWords::Offset::kShift
+               : how != BlockWords::Offset::kTouchOff && !by_probe) {
+    return;
+  }
+  const double said_mm = said_height_mm();
+  if (std::abs(position_mm_.z) > kSameTop_mm || said_mm < kLeastPlate_mm) return;
+  plate_mm_ = said_mm;
+  work_.g5x_mm.z -= said_mm;
+  position_mm_.z += said_mm;
+}
+
 /// An offset of the program has just changed.
 void MotionFold::follow_offset(CanonicalName name, int system) {
-  if (!follows_places_) return;
   const bool is_shift = name == CanonicalName::kSetG92Offset;
+  look_for_plate(is_shift);
+  if (!follows_places_) return;
   if (!is_shift && system != g5x_index_) {
     g5x_index_ = system;
     zero_known_ = without(zero_known_, zero_by_program_);
@@ -116,6 +159,13 @@ void MotionFold::follow_offset(CanonicalName name, int system) {
   }
   if (block_ == nullptr) return;
   const std::uint8_t named = block_->named;
+  // What is not known of a probe: whatever the program computes, and a place that it has touched
+  // itself. Only by a plate's height it says where the tool is.
+  std::uint8_t doubtful = block_->computed & probed_;
+  if (block_->offset != BlockWords::Offset::kMachine) {
+    const std::uint8_t plate = said_height_mm() >= kLeastPlate_mm ? kZ : std::uint8_t{0};
+    doubtful |= named & unknown_ & without(probed_, plate);
+  }
   switch (block_->offset) {
     case BlockWords::Offset::kNone:
       return;
@@ -124,7 +174,8 @@ void MotionFold::follow_offset(CanonicalName name, int system) {
       shifted_ = true;
       // Where the axis is known the new numbers hang together with those of the workpiece frame.
       shift_floats_ = without(shift_floats_, named) | (named & (unknown_ | work_floats_));
-      take_as_known_here(named & unknown_, true);
+      system_unrelated_ |= doubtful;
+      take_as_known_here(without(named & unknown_, doubtful), true);
       return relate_shift();
     case BlockWords::Offset::kUnshift:
       shifted_ = false;
@@ -133,10 +184,13 @@ void MotionFold::follow_offset(CanonicalName name, int system) {
       shifted_ = true;
       return relate_shift();
     case BlockWords::Offset::kTouchOff:
-      if (!is_shift) take_as_known_here(named & unknown_, false);
+      if (is_shift) return;
+      system_unrelated_ |= doubtful;
+      take_as_known_here(without(named & unknown_, doubtful), false);
       return;
     case BlockWords::Offset::kMachine:
       if (is_shift) return;
+      if (probed_ != 0) system_unrelated_ = without(system_unrelated_, named) | doubtful;
       zero_by_program_ |= without(named, placed_ | zero_known_);
       zero_known_ |= zero_by_program_;
       return;

@@ -84,6 +84,10 @@ std::string hint_for(const std::string& message) {
   if (has("Unknown m code used: M190")) {
     return "kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material";
   }
+  if (has("Start point too close to probe point")) {
+    return "where the machine stands then (G28, G30, G53, or at the start) is not known; an INI "
+           "says it (--ini)";
+  }
   if (has("not found in the tool table")) return "give the machine's table with --tool-table";
   return {};
 }

@@ -123,7 +123,10 @@ void ToolLengths::use(const CanonicalCommand& command, double unit_mm, SourceRef
     else
       rows_.push_back(call.tool);
   }
-  if (call.origin == OffsetOrigin::kStated) stated_ = true;
+  if (call.origin == OffsetOrigin::kStated) {
+    stated_ = true;
+    if (stated_is_measured_) applied_known_ = false;
+  }
   if (setup_.calls == ToolLengthSetup::Calls::kTrue) {
     applied_mm_ = call.offset_mm;
   } else {

@@ -70,6 +70,8 @@ class ToolLengths {
   void mount(int tool, bool by_hand);
   /// USE_TOOL_LENGTH_OFFSET; `unit_mm`: of the program.
   void use(const CanonicalCommand& command, double unit_mm, SourceRef source);
+  /// From here on the program's own numbers may be measured lengths that nobody else knows.
+  void take_stated_as_measured() { stated_is_measured_ = true; }
   /// SET_TOOL_TABLE_ENTRY.
   void set_row(const CanonicalCommand& command);
 
@@ -100,8 +102,9 @@ class ToolLengths {
   int row_of_spindle_ = 0;  ///< tool that rs274 holds for the one in the spindle
   Vec3 applied_mm_{0};
   bool applied_known_ = true;
-  std::vector<int> rows_;      ///< whose rows make up the offset
-  bool stated_ = false;        ///< or the program's own numbers
+  std::vector<int> rows_;  ///< whose rows make up the offset
+  bool stated_ = false;    ///< or the program's own numbers
+  bool stated_is_measured_ = false;
   bool of_this_tool_ = false;  ///< set since the tool came into the spindle
   SourceRef set_at_;
   Vec3 call_mm_{0};  ///< of the last call

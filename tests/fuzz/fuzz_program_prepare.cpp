@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "interp_bridge/probe_branches.h"
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/source_text.h"
 
@@ -32,6 +33,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string twice;
   again.append(at_once, twice);
   if (whole.unnumbered().empty() && text.find('\r') == text.npos && twice != at_once) std::abort();
+
+  // What is added takes no branch away.
+  const bool branches = kerf::branches_on_probe(std::string(text));
+  if (branches && !kerf::branches_on_probe(std::string(text) + "\n#1=#2\n")) std::abort();
 
   kerf::TextSurveyor surveyor;
   surveyor.add(text.substr(0, half));

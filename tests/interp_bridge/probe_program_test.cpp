@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "interp_bridge/probe_branches.h"
 #include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
@@ -127,6 +128,18 @@ TEST_F(ProbeProgram, WhatHangsOnAnUnknownProbeIsNotKnown) {
     // By the number of line 8 the offset is known, and with line 10 where Z is.
     EXPECT_EQ(m.start_known, line > 10) << line;
   }
+}
+
+TEST(ProbeBranches, AreFoundByTheNamesOfParameters) {
+  EXPECT_FALSE(branches_on_probe(""));
+  EXPECT_FALSE(branches_on_probe("G38.2 Z-5\nG10 L2 P1 Z#5063\no1 if [#5070 EQ 0]\no1 endif\n"));
+  EXPECT_FALSE(
+      branches_on_probe("#1=0\no1 while [#1 LT 25]\n#<z>=#5063\n#1=[#1+1]\no1 endwhile\n"));
+  EXPECT_FALSE(branches_on_probe("(#1=#5063)\no1 if [#1 GT 0] ; #5063\no1 endif\n"));
+  EXPECT_TRUE(branches_on_probe("o1 if [ABS[# 5063-1] GT 0.01]\no1 endif\n"));
+  EXPECT_TRUE(branches_on_probe("O<a> ELSEIF [#<z> GT 1]\n# <Z> = [#<y>*2]\n#<y>=#5061\n"));
+  EXPECT_TRUE(branches_on_probe("#[#4+100]=#5063\no1 while [#[101] GT 0]\n"));
+  EXPECT_TRUE(branches_on_probe("o<f> call [#5063]\no<f> sub\no1 if [#1 GT 0]\n"));
 }
 
 TEST_F(ProbeProgram, RsTextCannotAsk) {
