@@ -62,10 +62,12 @@ CanCycle::Verdict CanCycle::close() {
     widest_ns = pause_ns;
     after = i;
   }
-  const bool again = widest_ns > 0 && frames_[after].axes == after_widest_ && start_ns_ != 0;
-  const bool shifted =
-      again && seems_shifted(first_ns()) && (first_ns() - before_ns_) * kPauseRatio < widest_ns;
-  if (shifted) {
+  const bool again = start_ns_ != 0 && has_pause() && widest_ns >= kLeastPause_ns &&
+                     frames_[after].axes == after_widest_ &&
+                     4 * std::abs(widest_ns - widest_ns_) <= widest_ns_;
+  const bool shifted = again && (first_ns() - before_ns_) * kPauseRatio < widest_ns;
+  shifts_ = shifted ? shifts_ + 1 : 0;
+  if (shifts_ + 1 >= kShifts) {
     std::copy(frames_.begin() + static_cast<std::ptrdiff_t>(after),
               frames_.begin() + static_cast<std::ptrdiff_t>(count_), frames_.begin());
     count_ -= after;
@@ -74,7 +76,7 @@ CanCycle::Verdict CanCycle::close() {
       gathered_ = static_cast<std::uint16_t>(gathered_ | frames_[i].axes);
     }
     sync_inside_ = false;
-    run_ = synced_ = 0;
+    run_ = synced_ = shifts_ = 0;
     start_ns_ = 0;
     widest_ns_ = 0;
     return Verdict::kShifted;
@@ -127,6 +129,7 @@ bool CanCycle::close_incomplete() {
   clear();
   start_ns_ = 0;
   widest_ns_ = 0;
+  shifts_ = 0;
   sync_before_ = false;
   if (was_cyclic && ++pending_ <= kMostIncomplete) {
     pending_axes_ = static_cast<std::uint16_t>(pending_axes_ | lacks);

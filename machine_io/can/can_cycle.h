@@ -22,13 +22,18 @@ namespace kerf {
 /// nor held against them.
 ///
 /// Who begins to listen in the middle of a cycle gathers parts of two. That shows by the pause
-/// between two cycles, when it lies within what is gathered, twice at the same place.
+/// between two cycles, when it lies within what is gathered, kShifts times in a row, as long and at
+/// the same place.
 ///
 /// No allocation. Stamps in ns.
 class CanCycle {
  public:
   /// Complete cycles in a row that make a bus cyclic.
   static constexpr int kLearnt = 8;
+  static constexpr int kShifts = 4;
+  /// A pause between two cycles is as long as this, where it is looked for. (Frames that follow
+  /// each other without a pause have none that means anything.)
+  static constexpr std::int64_t kLeastPause_ns = 500'000;
   /// So many incomplete cycles in a row are no lost frames: the drives send otherwise now.
   static constexpr int kMostIncomplete = 4;
 
@@ -62,8 +67,10 @@ class CanCycle {
   int take_missing() { return std::exchange(missing_, 0); }
   std::uint16_t missing_axes() const { return missing_axes_; }
 
-  /// The longest pause between two frames of the last complete cycle.
-  std::int64_t widest_ns() const { return widest_ns_; }
+  /// The last complete cycle may be parts of two: it has such a pause ..
+  bool has_pause() const { return widest_ns_ >= kLeastPause_ns; }
+  /// .. and so have others before it, longer than the one between them.
+  bool may_be_shifted() const { return shifts_ > 0; }
   /// The next frame came so soon after a complete cycle that its own widest pause may be the one
   /// between two cycles. (Many times sooner.)
   bool seems_shifted(std::int64_t next_ns) const {
@@ -102,6 +109,7 @@ class CanCycle {
   std::int64_t start_ns_ = 0;       ///< and its first; 0: the cycle since then was not complete
   std::int64_t widest_ns_ = 0;      ///< its longest pause ..
   std::uint16_t after_widest_ = 0;  ///< .. and the axes of the frame behind that
+  int shifts_ = 0;                  ///< complete cycles in a row that were like that
   std::int64_t period_ns_ = 0;
   int odd_ = 0;  ///< periods in a row that were others
   int run_ = 0;  ///< complete cycles in a row in the same order

@@ -146,7 +146,7 @@ void CanAssembler::add(std::size_t slot, const CanSignal& signal) {
 void CanAssembler::forget() {
   for (Slot& slot : slots_) slot.at_ns = AxisSample::kNoTime;
   cycle_.forget();
-  has_held_ = false;
+  held_count_ = 0;
   is_first_ = true;
   ready_count_ = 0;
   newest_ns_ = AxisSample::kNoTime;
@@ -207,7 +207,7 @@ CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t devic
     stepped = true;
   }
   if (std::exchange(is_broken_, false) && !cycle_.is_empty()) close_incomplete();
-  if (axes != 0 && has_held_ && cycle_.is_empty() && !cycle_.seems_shifted(device_ns)) {
+  if (axes != 0 && held_count_ > 0 && cycle_.is_empty() && !cycle_.seems_shifted(device_ns)) {
     release_held();
   }
   if (cycle_.ends_before(axes, device_ns)) close_incomplete();
@@ -229,15 +229,16 @@ void CanAssembler::close() {
   const AxisSample sample = gathered_sample();
   if (cycle_.close() == CanCycle::Verdict::kShifted) {
     // What was held is of two cycles, too.
-    has_held_ = false;
+    held_count_ = 0;
+    return;
+  }
+  const bool is_first = std::exchange(is_first_, false);
+  if (is_first ? cycle_.has_pause() : held_count_ > 0 && cycle_.may_be_shifted()) {
+    assert(held_count_ < held_.size());
+    held_[held_count_++] = sample;
     return;
   }
   release_held();
-  if (std::exchange(is_first_, false) && cycle_.widest_ns() > 0) {
-    held_ = sample;
-    has_held_ = true;
-    return;
-  }
   make_ready(sample);
   incomplete_ += static_cast<std::uint64_t>(cycle_.take_missing());
 }
@@ -249,7 +250,8 @@ void CanAssembler::close_incomplete() {
 }
 
 void CanAssembler::release_held() {
-  if (std::exchange(has_held_, false)) make_ready(held_);
+  for (std::size_t i = 0; i < held_count_; ++i) make_ready(held_[i]);
+  held_count_ = 0;
 }
 
 void CanAssembler::make_ready(const AxisSample& sample) {

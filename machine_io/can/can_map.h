@@ -58,8 +58,8 @@ CanSignal cia402_position(std::uint8_t node, double mm_per_count);
 CanSignal odrive_position(std::uint8_t node, double mm_per_turn);
 
 /// Puts the frames of one cycle of the bus together (CanCycle). A sample is ready
-///   - when every mapped axis has come; the very first one perhaps only with the next frame, when
-///     it may be made of two cycles;
+///   - when every mapped axis has come; the very first ones perhaps only with those that follow,
+///     when they may be made of two cycles each;
 ///   - when an axis comes a second time, or CanMap::gather_ms after the first of them: the missing
 ///     are then known from before (if not too old), but not fresh. But where the bus is cyclic a
 ///     cycle that lacks a frame is dropped, and counted when the bus goes on as before. (Axes whose
@@ -96,7 +96,7 @@ class CanAssembler {
   void flush();
 
   /// True while some axes of a sample have come and others are waited for.
-  bool is_gathering() const { return !cycle_.is_empty() || has_held_; }
+  bool is_gathering() const { return !cycle_.is_empty() || held_count_ > 0; }
 
   /// The stamp behind which a frame no longer belongs to what is being gathered.
   std::int64_t gather_end_ns() const {
@@ -141,7 +141,8 @@ class CanAssembler {
     double value;
   };
 
-  static constexpr std::size_t kMostReady = 3;
+  static constexpr std::size_t kMostHeld = CanCycle::kShifts - 1;
+  static constexpr std::size_t kMostReady = kMostHeld + 2;
 
   void add(std::size_t slot, const CanSignal& signal);
   bool is_sync(const CanFrame& frame) const;
@@ -164,9 +165,9 @@ class CanAssembler {
   std::int64_t newest_ns_ = AxisSample::kNoTime;
   std::uint64_t incomplete_ = 0;
 
-  /// The first sample, while it is not known whether it is of one cycle.
-  AxisSample held_;
-  bool has_held_ = false;
+  /// The first samples, while it is not known whether each is of one cycle.
+  std::array<AxisSample, kMostHeld> held_;
+  std::size_t held_count_ = 0;
   bool is_first_ = true;
   bool is_broken_ = false;
 

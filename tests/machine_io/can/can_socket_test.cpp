@@ -543,7 +543,9 @@ class CanRecording : public CanSocket {
     AxisSample sample;
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      ASSERT_TRUE(ask(source, sample)) << "sample " << i << " of " << rows.size();
+      ASSERT_TRUE(ask(source, sample))
+          << "sample " << i << " of " << rows.size() << ", lost " << source.status().lost
+          << ", incomplete " << source.status().incomplete << ", " << source.status().trouble;
       if (sample.fresh != 7) ++wrong;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::abs(sample.position[axis] - rows[i][axis]) > 1e-9) ++wrong;
@@ -553,6 +555,7 @@ class CanRecording : public CanSocket {
     EXPECT_EQ(player.wait(), 0);
     EXPECT_EQ(source.status().lost, 0U);
     EXPECT_EQ(source.status().errors, 0U);
+    EXPECT_EQ(source.status().incomplete, 0U);
   }
 };
 
