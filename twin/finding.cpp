@@ -57,6 +57,8 @@ const char* to_string(FindingId id) {
       return "outside-stock";
     case FindingId::kNotSimulated:
       return "not-simulated";
+    case FindingId::kSourceFault:
+      return "source-fault";
     case FindingId::kSourceGap:
       return "source-gap";
     case FindingId::kOffPath:

@@ -32,6 +32,7 @@ enum class FindingId : std::uint8_t {
   kOverFeed,          ///< feed moves ask for more than the axes can do
   kOutsideStock,      ///< no feed move comes near the blank: offset or blank is wrong
   kNotSimulated,      ///< user M-codes, M66: what a machine would do there is not known
+  kSourceFault,       ///< the source itself is at fault: frames lost, clock stands, file damaged
   kSourceGap,         ///< positions were missing while the machine moved: that move is not cut
   kOffPath,           ///< the machine's tip is not on the path of the program
   kNotThisProgram,    ///< the machine has never been on the path of the program, and cuts

@@ -99,6 +99,9 @@ Json live_json(const LiveReport& live) {
   out["errors"] = live.status.errors;
   out["reconnects"] = live.status.reconnects;
   out["lost"] = live.status.lost;
+  out["incomplete_cycles"] = live.status.incomplete;
+  out["damaged"] = live.status.damaged;
+  out["clock_stood"] = live.status.standing;
   out["duplicates"] = live.status.duplicates;
   out["disordered"] = live.status.disordered;
   out["dropped"] = live.dropped;

@@ -95,6 +95,9 @@ void add_live(std::string& out, const LiveReport& live) {
   add(live.status.errors, "errors");
   add(live.status.reconnects, "reconnections");
   add(live.status.lost, "lost");
+  add(live.status.incomplete, "cycles of the bus incomplete");
+  add(live.status.damaged, "damaged");
+  add(live.status.standing, "while the device's clock stood");
   add(live.status.duplicates, "duplicates");
   add(live.status.disordered, "out of order");
   add(live.dropped, "dropped");

@@ -115,6 +115,18 @@ void understand_cutting(const LiveArguments& a, const ProgramRequest& program,
   } else if (program.timeline.limits_known) {
     cutting.most_mm_per_s = fastest_mm_per_s(program.timeline.limits);
   }
+  if (config.machine.max_mm_per_min) cutting.most.per_s = cutting.most_mm_per_s;
+  cutting.most.per_s2 = config.machine.max_mm_per_s2.value_or(0);
+  const CanMap* map = nullptr;
+  if (const auto* can = std::get_if<CanSourceOptions>(&config.source)) map = &can->map;
+  if (const auto* log = std::get_if<LogSettings>(&config.source); log && log->can_map) {
+    map = &*log->can_map;
+  }
+  for (std::size_t i = 0; map && i < kMaxPositions; ++i) {
+    if (map->ranges[i].max_speed_per_s) {
+      cutting.most.of_position_per_s[i] = *map->ranges[i].max_speed_per_s;
+    }
+  }
 }
 
 /// The work offset that was in force when LinuxCNC last wrote its parameter file.

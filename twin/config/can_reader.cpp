@@ -206,7 +206,7 @@ std::optional<CanSignal> read_dbc_signal(const GroupReader& item, DbcShelf& shel
 
 /// Nothing where the signal could not be found; that has been reported.
 std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, Quantity quantity,
-                                     bool inch) {
+                                     bool inch, double stale_after_ms) {
   std::optional<CanSignal> signal;
   if (item.has("preset")) {
     if (item.find("preset") != nullptr) signal = read_preset(item);
@@ -226,17 +226,33 @@ std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, Q
   item.number("offset", offset);
   signal->scale *= scale * mm_per_unit;
   signal->offset = (signal->offset * scale + offset) * mm_per_unit;
+  signal->max_age_ms = stale_after_ms;
   item.number("max_age_ms", signal->max_age_ms);
   return signal;
+}
+
+CanAxisRange read_range(const GroupReader& item, double mm_per_unit) {
+  CanAxisRange range;
+  item.number("min", range.min);
+  item.number("max", range.max);
+  item.number("max_speed", range.max_speed_per_s);
+  for (auto* const one : {&range.min, &range.max, &range.max_speed_per_s}) {
+    if (*one) **one *= mm_per_unit;
+  }
+  return range;
 }
 
 }  // namespace
 
 void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& map) {
   source.number("gather_ms", map.gather_ms);
+  source.number("sync_id", map.sync_id);
   if (reading.kind == CoordinateKind::kJoints) {
     for (std::size_t i = 0; i < kMaxPositions; ++i) map.axis_keys[i] = fmt::format("J{}", i);
   }
+  // What has not come for so long is not known, each by itself.
+  double stale_after_ms = 500;
+  source.number("stale_after_ms", stale_after_ms);
   DbcShelf shelf(source);
   bool all_found = true;
   for (const MapItem& item : items_of(source.group("map"), reading)) {
@@ -250,12 +266,17 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
     if (item.position) {
       quantity = reading.is_length(*item.position) ? Quantity::kLength : Quantity::kAngle;
     }
-    const std::optional<CanSignal> signal = read_signal(item.group, shelf, quantity, reading.inch);
+    const std::optional<CanSignal> signal =
+        read_signal(item.group, shelf, quantity, reading.inch, stale_after_ms);
     if (!signal) {
       all_found = false;
       continue;
     }
-    if (item.position) map.axes[*item.position] = signal;
+    if (item.position) {
+      map.axes[*item.position] = signal;
+      const double unit = reading.inch && quantity == Quantity::kLength ? kMmPerInch : 1;
+      map.ranges[*item.position] = read_range(item.group, unit);
+    }
     if (item.name == "tool") map.tool = signal;
     if (item.name == "line") map.line = signal;
     if (item.name == "spindle") map.spindle = signal;

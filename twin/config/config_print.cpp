@@ -147,6 +147,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.put("tool_length", name_of(machine.tool_length));
   if (machine.tool) printer.put("tool", *machine.tool);
   if (machine.max_mm_per_min) printer.put("max_speed_mm_per_min", *machine.max_mm_per_min);
+  if (machine.max_mm_per_s2) printer.put("max_acceleration_mm_per_s2", *machine.max_mm_per_s2);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.close();
@@ -233,10 +234,16 @@ std::string signal_text(const CanSignal& signal) {
 
 void print_can_map(Printer& printer, const CanMap& map, CoordinateKind kind) {
   printer.put("gather_ms", map.gather_ms);
+  printer.put("sync_id", map.sync_id);
   printer.open("map");
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     if (!map.axes[i]) continue;
-    printer.line(fmt::format("{}: {{{}}}", item_key(kind, i), signal_text(*map.axes[i])));
+    const CanAxisRange& range = map.ranges[i];
+    std::string text = signal_text(*map.axes[i]);
+    if (range.min) text += fmt::format(", min: {}", *range.min);
+    if (range.max) text += fmt::format(", max: {}", *range.max);
+    if (range.max_speed_per_s) text += fmt::format(", max_speed: {}", *range.max_speed_per_s);
+    printer.line(fmt::format("{}: {{{}}}", item_key(kind, i), text));
   }
   const auto other = [&](const char* key, const std::optional<CanSignal>& signal) {
     if (signal) printer.line(fmt::format("{}: {{{}}}", key, signal_text(*signal)));

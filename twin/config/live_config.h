@@ -41,6 +41,7 @@ struct ConfigMachine {
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;
   std::optional<int> tool;               ///< in the spindle, where the source does not say
   std::optional<double> max_mm_per_min;  ///< positions that need more are a gap
+  std::optional<double> max_mm_per_s2;   ///< single positions that need more are dropped
   MachineChoice drawn;                   ///< `model` and `links`
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.
   std::optional<KinematicsRequest> kinematics;

@@ -54,6 +54,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       options_(std::move(options)),
       frame_(options_.frame),
       bounds_(options_.frame, options_.timeline),
+      gate_(motion_bounds(options_.frame, options_.timeline, options_.most), options_.gap_s),
       book_(tools, row_of(stock).can_cut),
       stage_(stock, book_, log, options_.timeline),
       follower_(options_.follow),
@@ -402,6 +403,12 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
     lost_wild_ = lost;
     return;
   }
+  passed_.clear();
+  if (const std::size_t wild = gate_.take({sample, t_s, lost}, passed_)) note_wild(wild, t_s);
+  for (const SampleGate::Timed& one : passed_) take_sound(one.sample, one.t_s, one.lost);
+}
+
+void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   sample_ = sample;
   t_s_ = t_s;
   if (run_.is_long(t_s_)) cut_run();
@@ -490,6 +497,9 @@ void LiveCutter::look() {
 }
 
 void LiveCutter::finish() {
+  passed_.clear();
+  gate_.finish(passed_);
+  for (const SampleGate::Timed& one : passed_) take_sound(one.sample, one.t_s, one.lost);
   cut_run();
   if (ahead_) check_passed(std::numeric_limits<double>::infinity());
   if (ahead_ && options_.turret) punch_rest();

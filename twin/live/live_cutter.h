@@ -24,6 +24,7 @@
 #include "twin/live/path_follower.h"
 #include "twin/live/program_ahead.h"
 #include "twin/live/reading_bounds.h"
+#include "twin/live/sample_gate.h"
 #include "twin/live/seen_strokes.h"
 #include "twin/tools.h"
 #include "twin/turret.h"
@@ -55,6 +56,7 @@ struct LiveCutOptions {
   double gap_s = 0.5;  ///< samples farther apart than this have a gap between them
   /// A machine cannot be faster: samples that say so have a gap between them. mm/s.
   double most_mm_per_s = std::numeric_limits<double>::infinity();
+  PositionMost most;  ///< what no single reading can need (SampleGate)
   TimelineOptions timeline;
   double guard_s = 10;  ///< how far to look ahead; 0: not
   JoinedLate joined_late = JoinedLate::kCut;
@@ -113,7 +115,7 @@ class LiveCutter {
   /// For a workpiece that keeps cut ids: see CutStage. Before the first sample.
   void label_by(CutLabels& labels) { stage_.label_by(labels); }
   /// The next sample, `t_s` after the first by one clock. `lost`: others are known to be missing
-  /// before it.
+  /// before it. One that may be wild waits for the next.
   void take(const AxisSample& sample, double t_s, bool lost);
   /// The workpiece is up to date with the samples but for a way that is still short, and the
   /// program ahead has been looked at.
@@ -145,6 +147,7 @@ class LiveCutter {
     std::array<bool, 3> uvw_known{};
     AxisSample sample;
   };
+  void take_sound(const AxisSample& sample, double t_s, bool lost);
   void adopt_program_frame();
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
   static Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place,
@@ -173,6 +176,7 @@ class LiveCutter {
   void note_length(int tool, double t_s);
   void note_limits(const Vec3& machine_mm, double t_s);
   bool drop_wild(const AxisSample& sample, double t_s);
+  void note_wild(std::size_t count, double t_s);
   void note_gap(const Sighting& before, const Sighting& now, bool jump);
   void note_turn(const Sighting& now);
   void note_unseen_axes(const Sighting& now);
@@ -199,7 +203,10 @@ class LiveCutter {
   LiveCutOptions options_;
   LiveFrame frame_;
   ReadingBounds bounds_;
+  SampleGate gate_;
+  std::vector<SampleGate::Timed> passed_;  ///< by the gate
   bool wild_told_ = false;
+  bool quick_told_ = false;
   bool lost_wild_ = false;  ///< samples were lost before one that was dropped
   ToolBook book_;
   CutStage stage_;

@@ -101,6 +101,18 @@ bool LiveCutter::drop_wild(const AxisSample& sample, double t_s) {
   return true;
 }
 
+/// Single readings that the gate has dropped.
+void LiveCutter::note_wild(std::size_t count, double t_s) {
+  facts_.wild += count;
+  if (std::exchange(quick_told_, true)) return;
+  Finding finding;
+  finding.id = FindingId::kSourceGap;
+  finding.severity = Severity::kWarning;
+  finding.time_s = t_s;
+  finding.text = gate_.fault() + " (a damaged number?); such readings are dropped and counted";
+  log_.add(std::move(finding));
+}
+
 void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump) {
   const double way_mm = way_between(before, now);
   const double elapsed_s = now.t_s - before.t_s;

@@ -9,7 +9,8 @@ namespace kerf {
 struct LiveFacts {
   std::uint64_t samples = 0;
   std::uint64_t incomplete = 0;  ///< without X, Y or Z
-  std::uint64_t wild = 0;        ///< with a position that no machine has: dropped (ReadingBounds)
+  std::uint64_t wild = 0;  ///< with a position that no machine has (ReadingBounds), or can have
+                           ///< between its neighbours (SampleGate): dropped
   std::uint64_t on_path = 0;
   std::uint64_t off_path = 0;  ///< after the machine had been found on the path
   double off_path_max_mm = 0;

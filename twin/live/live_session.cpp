@@ -398,6 +398,11 @@ void LiveSession::tell(bool ended) {
   std::erase_if(ahead_, [&](const AheadWarning& w) {
     return w.finding.time_s.value_or(0) < cutter_->place().program_s;
   });
+  // A log is read ahead: what is wrong with it is told at its end.
+  if (!options_.log() || ended) {
+    const std::lock_guard lock(status_mutex_);
+    source_faults_.look_at(source_status_, report_.findings);
+  }
   const double age_s = first_ ? seconds(now - newest_.arrival) : seconds(now - start_);
   const LiveState state = ended ? LiveState::kEnded : state_now(age_s);
   const auto& findings = report_.findings.kept();
@@ -576,7 +581,8 @@ Outcome LiveSession::outcome(bool stopped) const {
   // A machine that could not be asked while it stood has lost nothing; a damaged log has.
   const bool damaged = options_.log() && live.status.errors > 0;
   const bool lossy = live.dropped > 0 || live.status.lost > 0 || damaged || live.facts.gaps > 0 ||
-                     live.facts.incomplete > 0 || live.facts.wild > 0 || gone;
+                     live.facts.incomplete > 0 || live.facts.wild > 0 || is_at_fault(live.status) ||
+                     gone;
   return lossy ? Outcome::kLossy : Outcome::kFinished;
 }
 

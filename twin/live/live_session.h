@@ -21,6 +21,7 @@
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_report.h"
 #include "twin/live/sample_queue.h"
+#include "twin/live/source_faults.h"
 #include "twin/outcome.h"
 #include "twin/report.h"
 #include "twin/session_parts.h"
@@ -188,6 +189,7 @@ class LiveSession {
   SampleQueue queue_;
   mutable std::mutex status_mutex_;  // of source_status_
   SourceStatus source_status_;
+  SourceFaults source_faults_;
   std::atomic<double> program_total_s_{-1};
 
   // of the cutting thread

@@ -211,6 +211,30 @@ TEST(LiveCutter, LostSamplesAndImpossibleJumpsAreGapsToo) {
   EXPECT_GT(watch.removed_mm3(), before + 20);
 }
 
+TEST(LiveCutter, AWildSampleIsToldAndNotCut) {
+  double sound_mm3 = 0;
+  for (const int wild : {0, 1, 2}) {
+    LiveCutOptions options;
+    options.most.per_s2 = 5000;
+    Watch watch(options);
+    for (int i = 0; i < 100; ++i) {
+      const bool is_wild = wild > 0 && i >= 50 && i < 50 + wild;
+      watch.see({5 + 0.1 * i, is_wild ? 39.0 : 5.0, -1}, 0.01 * i);
+    }
+    watch.cutter().finish();
+    EXPECT_EQ(watch.cutter().facts().samples, 100U);
+    EXPECT_EQ(watch.cutter().facts().wild, static_cast<std::uint64_t>(wild));
+    if (wild == 0) {
+      sound_mm3 = watch.removed_mm3();
+      EXPECT_TRUE(watch.ids().empty());
+      continue;
+    }
+    EXPECT_NEAR(watch.removed_mm3(), sound_mm3, 1e-6);
+    ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSourceGap});
+    EXPECT_EQ(watch.log().kept()[0].text.substr(0, 29), "Y reads 39 mm, 34.00 mm away ");
+  }
+}
+
 TEST(LiveCutter, WhatWasHeldUpAndComesInABurstIsNoJump) {
   LiveCutOptions options;
   options.most_mm_per_s = 60;

@@ -191,6 +191,37 @@ TEST(LiveSession, WhatTheSourceHasLostMakesTheResultLossy) {
   EXPECT_EQ(run.report().live->status.lost, 3U);
 }
 
+TEST(LiveSession, WhatIsWrongWithTheSourceIsToldOnceEach) {
+  for (const bool is_wrong : {false, true}) {
+    auto source = std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(10, 20, 2, 0.1)});
+    if (is_wrong) {
+      source->status_.incomplete = 1;
+      source->status_.standing = 20;
+      source->status_.damaged = 300;
+    }
+    Watched run(with_block(), std::move(source));
+    EXPECT_EQ(run.outcome, is_wrong ? Outcome::kLossy : Outcome::kFinished);
+    EXPECT_EQ(run.told.findings, std::vector<FindingId>(is_wrong ? 3 : 0, FindingId::kSourceFault));
+    const auto json = nlohmann::json::parse(json_text(run.report()));
+    EXPECT_EQ(json["live"]["incomplete_cycles"], is_wrong ? 1 : 0);
+    EXPECT_EQ(json["live"]["clock_stood"], is_wrong ? 20 : 0);
+    EXPECT_EQ(json["live"]["damaged"], is_wrong ? 300 : 0);
+  }
+}
+
+TEST(SourceFaults, AreRewordedAsTheyGoOn) {
+  SourceFaults faults;
+  FindingLog log;
+  SourceStatus status;
+  status.incomplete = 1;
+  faults.look_at(status, log);
+  status.incomplete = 7;
+  faults.look_at(status, log);
+  ASSERT_EQ(log.kept().size(), 1U);
+  EXPECT_EQ(log.kept()[0].text,
+            "frames of the bus were lost: 7 cycles were without all axes, and dropped");
+}
+
 TEST(LiveSession, AGapIsAFindingAndALossyResult) {
   Watched run(with_block(),
               std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(20, 20, 1, 3)}));
