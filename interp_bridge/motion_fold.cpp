@@ -344,10 +344,24 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
   if (kind == MotionKind::kFeed && only_pierces(source, out)) return FoldRemark::kNone;
   overburn_from_mm_.reset();
   Motion& motion = append(kind, source, out);
+  const Vec3 from_mm = position_mm_, from_uvw_mm = uvw_mm_;
+  const std::array<double, 3> from_abc_deg = abc_deg_;
   Vec3 to_mm = scaled(command, 0);
   if (held_z_mm_) hold_height(command, source, to_mm);
   move_to(motion, work_from_program(to_mm), work_abc(&command.arguments[3]), work_uvw(command, 6));
   if (kind != MotionKind::kTraverse) set_feed(motion);
+  const bool stands = motion.unknown_to != 0 && motion.unknown_to == motion.unknown_from &&
+                      motion.to_mm == from_mm && motion.to_abc_deg == from_abc_deg &&
+                      motion.to_uvw_mm == from_uvw_mm;
+  if (kind == MotionKind::kFeed && stands) {
+    // "G1 F300" comes as a feed to where the tool stands. Where nobody knows that, it would count
+    // as one from nowhere.
+    halts_ = motion.halts;
+    io_halts_ = motion.io_halts;
+    chain_end_ = motion.chain_end;
+    tool_prepare_ = motion.tool_prepare;
+    out.pop_back();
+  }
   return FoldRemark::kNone;
 }
 

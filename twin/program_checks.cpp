@@ -34,8 +34,11 @@ const char* words_of(MotionKind kind) {
 }
 
 std::string extent(const Box& box) {
-  return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", box.min.x, box.max.x,
-                     box.min.y, box.max.y, box.min.z, box.max.z);
+  // No "-0.0".
+  const auto tenths = [](double mm) { return std::round(mm * 10) / 10 + 0.0; };
+  return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", tenths(box.min.x),
+                     tenths(box.max.x), tenths(box.min.y), tenths(box.max.y), tenths(box.min.z),
+                     tenths(box.max.z));
 }
 
 /// Of a drill's SHAPE text, "drill:D:ANGLE..".
@@ -164,13 +167,16 @@ std::optional<Finding> nothing_cut(const CutFacts& facts) {
   } else if (facts.feed_moves == 0) {
     finding.severity = Severity::kWarning;
     finding.text = "nothing is cut: the program has no feed moves";
+  } else if (!facts.came_near && !facts.feed_mm.empty() && facts.blank == BlankKind::kGuessed) {
+    finding.text = fmt::format(
+        "nothing is cut, no feed move goes into the blank, which is a guess: the moves are at {}, "
+        "the blank at {}; where it really is --stock SPEC says",
+        extent(facts.feed_mm), extent(facts.blank_mm));
   } else if (!facts.came_near && !facts.feed_mm.empty()) {
     finding.text = fmt::format(
-        "nothing is cut, no feed move comes near the workpiece: the moves are at {}, the blank{} "
-        "at "
+        "nothing is cut, no feed move comes near the workpiece: the moves are at {}, the blank at "
         "{}; is the blank given in the coordinates that the program writes?",
-        extent(facts.feed_mm), facts.blank == BlankKind::kGuessed ? " (a guess)" : "",
-        extent(facts.blank_mm));
+        extent(facts.feed_mm), extent(facts.blank_mm));
   } else if (!facts.came_near) {
     return std::nullopt;  // feed moves from nowhere known, which do not cut
   } else {

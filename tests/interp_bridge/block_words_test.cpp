@@ -33,6 +33,12 @@ TEST(BlockWords, ExpressionsNameNothing) {
   EXPECT_EQ(words_of_block("G1 Y-exp[2]").named, kY);
 }
 
+TEST(BlockWords, ComputedWordsAreToldApart) {
+  EXPECT_EQ(words_of_block("G1 X1 Y[#1+1] Z-#<z>").computed, kY | kZ);
+  EXPECT_EQ(words_of_block("G10 L20 P1 Z19.1").computed, 0);
+  EXPECT_EQ(words_of_block("G92 Z[19.1]").computed, kZ);
+}
+
 TEST(BlockWords, OWordsHaveNoAxes) {
   EXPECT_EQ(words_of_block("o<box> call [10] [#<z>]").named, 0);
   EXPECT_EQ(words_of_block("N12 o100 if [#1 EQ 2]").named, 0);
