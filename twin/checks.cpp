@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "stock/way_contact.h"
 #include "twin/motion_geometry.h"
 
 namespace kerf {
@@ -127,21 +128,14 @@ bool Checks::may_touch(std::span<const CutMove> moves, const Cutter& cutter) con
 }
 
 std::optional<Checks::Touch> Checks::first_touch(const CheckedMove& move) const {
-  std::optional<Touch> touch;
-  for (std::size_t i = 0; i < move.moves.size(); ++i) {
-    const std::optional<Contact> contact =
-        stock_.first_contact(move.cutter, move.moves[i], kContactTolerance_mm);
-    if (!contact) continue;
-    if (touch) {
-      touch->contact.depth_mm = std::max(touch->contact.depth_mm, contact->depth_mm);
-      continue;
-    }
-    const double within =
-        move.moves.size() == 1 ? fraction_of(move.motion, contact->tip_mm, move.step.length_mm) : 0;
-    touch =
-        Touch{*contact, (static_cast<double>(i) + within) / static_cast<double>(move.moves.size())};
-  }
-  return touch;
+  const std::optional<WayContact> met =
+      first_contact_of(stock_, move.cutter, move.moves, kContactTolerance_mm, stop_);
+  if (!met) return std::nullopt;
+  const double within = move.moves.size() == 1
+                            ? fraction_of(move.motion, met->contact.tip_mm, move.step.length_mm)
+                            : 0;
+  return Touch{met->contact,
+               (static_cast<double>(met->move) + within) / static_cast<double>(move.moves.size())};
 }
 
 bool Checks::check_traverse(const CheckedMove& move) {

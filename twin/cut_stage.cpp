@@ -24,7 +24,7 @@ constexpr std::uint8_t kAllUnknown = 7;
 /// Of moves that cost much (tilted tools) fewer, so that a stop is seen in time: as many as take
 /// about so long.
 constexpr double kCut_s = 0.05;
-constexpr std::size_t kLeastMovesPerCut = 16;
+constexpr std::size_t kLeastMovesPerCut = 1;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 /// A blank is divided evenly: cells may be smaller than asked for, and rounded.
@@ -621,6 +621,7 @@ void CutStage::report_over_feed() {
 
 /// The programmed move, or what the machine makes of it.
 void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
+  if (stop_now()) return;  // while its contacts were looked for
   if (path_.empty()) {
     push_moves(m, step, spindle_off);
     return;

@@ -104,7 +104,10 @@ class CutStage : private StepSink {
   void finish(bool whole = true);
   /// Once `stop` is requested nothing more is cut; looked at before each motion, and within a
   /// motion of many moves. Before the first motion.
-  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+  void stop_by(std::stop_token stop) {
+    checks_.stop_by(stop);
+    stop_ = std::move(stop);
+  }
   /// Something that was taken has not been cut for that reason.
   bool stopped() const { return stopped_; }
   /// How much has been cut: the sum of work_of() of the motions. Any thread may look at it.

@@ -45,6 +45,8 @@ void BrickCutter::set_place(int bx, int by, int bz) {
     first_[axis] = brick[axis] * kBrick;
     for (int n = 0; n < kSide; ++n) places[axis][n] = lattice_.place_mm(axis, first_[axis] + n);
   }
+  for (Near& near : nears_) near.group = nullptr;
+  reached_ = 0;
   if (!additive_) return;
   // Material is added within the blank only.
   const auto within = [&](int axis, int n) {
@@ -64,7 +66,7 @@ void BrickCutter::set_place(int bx, int by, int bz) {
 }
 
 /// Which of the 2 x 2 x 2 blocks F decides at once, as it cannot change faster than by 1 mm a mm.
-void BrickCutter::sort_blocks(const Sweep& sweep) {
+void BrickCutter::sort_blocks(const Sweep& sweep, const Near* near) {
   points_ = 0;
   const auto middle = [](const double* places, int block) {
     return 0.5 * (places[block * kBlock] + places[(block + 1) * kBlock]);
@@ -79,11 +81,13 @@ void BrickCutter::sort_blocks(const Sweep& sweep) {
     const Vec3 slope(gx_[b], gy_[b], gz_[b]);
     planes_[b] = {-std::numeric_limits<double>::infinity(), slope};
     if (convex) planes_[b].at = f_[b] - glm::dot(slope, Vec3(px_[b], py_[b], pz_[b]));
+    if (near && near->outside[b]) blocks_[b] = kOutside;
+    if (f_[b] <= clear + kReachMargin_mm) reached_ |= 1u << b;
   }
 }
 
 /// Sets columns_; true if a node has been cleared.
-bool BrickCutter::find_nodes(const Sweep& sweep, const OpenBrick& brick) {
+bool BrickCutter::find_nodes(const Sweep& sweep, const OpenBrick& brick, const Near* near) {
   std::memcpy(columns_, brick.columns, sizeof columns_);
   points_ = 0;
   bool cleared = false;
@@ -103,6 +107,13 @@ bool BrickCutter::find_nodes(const Sweep& sweep, const OpenBrick& brick) {
           columns_[column] = static_cast<std::uint16_t>(columns_[column] & ~bits);
           cleared = true;
           continue;
+        }
+        if (near) {
+          for (unsigned far = bits & ~near->columns[column]; far != 0; far &= far - 1) {
+            const int at = column << 4 | std::countr_zero(far);
+            node_f_[at] = static_cast<double>(near->bounds[at]);
+          }
+          bits &= near->columns[column];
         }
         for (; bits != 0; bits &= bits - 1) {
           const int k = std::countr_zero(bits);
@@ -368,6 +379,92 @@ void BrickCutter::account(OpenBrick& brick) {
   brick.update_top();
 }
 
+/// Null where it saves nothing.
+BrickCutter::Near* BrickCutter::near_of(const TurnGroup* group, const OpenBrick& brick) {
+  if (!group || additive_) return nullptr;
+  Near* near = nullptr;
+  for (Near& known : nears_)
+    if (known.group == group) near = &known;
+  if (!near) {
+    near = &nears_[next_near_++ % kNears];
+    near->group = group;
+    look_near(*group, brick, *near);
+    near->any = near->nodes || any_edge_near(brick, *near);
+    near->changes = changes_;
+  } else if (near->changes != changes_) {
+    near->any = near->nodes || any_edge_near(brick, *near);
+    near->changes = changes_;
+  }
+  return near;
+}
+
+void BrickCutter::look_near(const TurnGroup& group, const OpenBrick& brick, Near& near) {
+  // The pieces' poses are so far from those of the whole, as points of this brick see them.
+  const Vec3 middle(0.5 * (x_[0] + x_[kBrick]), 0.5 * (y_[0] + y_[kBrick]),
+                    0.5 * (z_[0] + z_[kBrick]));
+  const double reach = glm::length(middle - group.middle_mm) + group.tips_mm + half_diagonal_;
+  const double off = 1.01 * (group.off_mm + group.off_rad * reach) + kBlockSlack_mm;
+  Sweep whole = group.whole;
+  whole.bend_mm = bend_mm(reach, group.way_mm, group.turn_rad);
+  points_ = 0;
+  for (int b = 0; b < 8; ++b)
+    push_point(0.5 * (x_[(b & 1) * kBlock] + x_[((b & 1) + 1) * kBlock]),
+               0.5 * (y_[(b >> 1 & 1) * kBlock] + y_[((b >> 1 & 1) + 1) * kBlock]),
+               0.5 * (z_[(b >> 2) * kBlock] + z_[((b >> 2) + 1) * kBlock]));
+  const double clear = block_half_diagonal_ + kReachMargin_mm + off;
+  kernel_.turn_bound(whole, clear, 8, px_, py_, pz_, f_);
+  for (int b = 0; b < 8; ++b) near.outside[b] = f_[b] > clear;
+  points_ = 0;
+  near.nodes = false;
+  for (int column = 0; column < kSide * kSide; ++column) {
+    near.columns[column] = 0;
+    const int i = column % kSide, j = column / kSide;
+    const int block = std::min(i / kBlock, 1) + 2 * std::min(j / kBlock, 1);
+    for (unsigned bits = brick.columns[column]; bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      if (near.outside[block + 4 * std::min(k / kBlock, 1)]) continue;
+      nodes_[points_] = static_cast<std::uint16_t>(column << 4 | k);
+      push_point(x_[i], y_[j], z_[k]);
+    }
+  }
+  kernel_.turn_bound(whole, off, points_, px_, py_, pz_, f_);
+  for (int n = 0; n < points_; ++n) {
+    near.bounds[nodes_[n]] = static_cast<float>(f_[n] - off);
+    if (f_[n] > off) continue;
+    near.columns[nodes_[n] >> 4] |= static_cast<std::uint16_t>(1u << (nodes_[n] & 15));
+    near.nodes = true;
+  }
+}
+
+/// Some crossing lies no farther from its solid node than a piece may come to that.
+bool BrickCutter::any_edge_near(const OpenBrick& brick, const Near& near) const {
+  for (int j = 0; j < kBrick; ++j) {
+    for (int i = 0; i < kBrick; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (unsigned bits = edges(brick.columns, axis, i, j); bits != 0; bits &= bits - 1) {
+          const int k = std::countr_zero(bits);
+          int solid[3] = {i, j, k};
+          const bool lower_is = (brick.columns[j * kSide + i] >> k & 1u) != 0;
+          if (!lower_is) ++solid[axis];
+          const int block = std::min(solid[0] / kBlock, 1) + 2 * std::min(solid[1] / kBlock, 1) +
+                            4 * std::min(solid[2] / kBlock, 1);
+          if (near.outside[block]) {
+            // The edge's own block may be the other one, which is near.
+            if (near.outside[i / kBlock + 2 * (j / kBlock) + 4 * (k / kBlock)]) continue;
+            return true;
+          }
+          const int lower = brick.place[axis * kBrickNodes + (j * kBrick + i) * kBrick + k];
+          const double reach =
+              lattice_.cell_mm[axis] * (lower_is ? lower : kEdgeParts - lower) / kEdgeParts;
+          const float bound = near.bounds[(solid[1] * kSide + solid[0]) * 16 + solid[2]];
+          if (static_cast<double>(bound) < reach) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 /// A floor that this or another level move has cut already is by far the most frequent case.
 bool BrickCutter::passes_above(const Sweep& sweep, const OpenBrick& brick) const {
   if (brick.top_node < 0 || brick.top_node == kBrick) return false;
@@ -375,10 +472,16 @@ bool BrickCutter::passes_above(const Sweep& sweep, const OpenBrick& brick) const
          z_[0] + lattice_.cell_mm.z * brick.top / kEdgeParts < sweep.bottom_mm + 0.9 * place_slack_;
 }
 
-bool BrickCutter::apply(const Sweep& sweep, OpenBrick& brick) {
+bool BrickCutter::apply(const Sweep& sweep, OpenBrick& brick, const TurnGroup* group) {
   if (passes_above(sweep, brick)) return false;
-  sort_blocks(sweep);
-  const bool cleared = find_nodes(sweep, brick);
+  const Near* const near = near_of(group, brick);
+  if (near && !near->any) {
+    for (int b = 0; b < 8; ++b)
+      if (!near->outside[b]) reached_ |= 1u << b;
+    return false;
+  }
+  sort_blocks(sweep, near);
+  const bool cleared = find_nodes(sweep, brick, near);
   find_edges(sweep, brick);
   keep_deeper(sweep);
   if (!lost_.empty()) find_films(sweep, brick);
@@ -387,13 +490,16 @@ bool BrickCutter::apply(const Sweep& sweep, OpenBrick& brick) {
   solve(sweep);
   write(sweep, brick);
   account(brick);
+  ++changes_;
   return true;
 }
 
-bool BrickCutter::touches(const Sweep& sweep, const OpenBrick& brick) {
+bool BrickCutter::touches(const Sweep& sweep, const OpenBrick& brick, const TurnGroup* group) {
   if (passes_above(sweep, brick)) return false;
-  sort_blocks(sweep);
-  if (find_nodes(sweep, brick)) return true;
+  const Near* const near = near_of(group, brick);
+  if (near && !near->any) return false;
+  sort_blocks(sweep, near);
+  if (find_nodes(sweep, brick, near)) return true;
   find_edges(sweep, brick);
   keep_deeper(sweep);
   return !open_.empty();

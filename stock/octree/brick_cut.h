@@ -7,8 +7,13 @@
 #include "stock/octree/brick.h"
 #include "stock/octree/brick_tree.h"
 #include "stock/octree/sweep_kernel.h"
+#include "stock/octree/turn_groups.h"
 
 namespace kerf::octree {
+
+/// What a sweep passes by less than this counts as reached (BrickTree::untouched()): the places of
+/// programs are rounded, and so are ways back along the same wall.
+inline constexpr double kReachMargin_mm = 0.02;
 
 /// A solid node becomes empty exactly if F < 0 there. An edge that then joins solid and empty has
 /// its crossing where F is 0; one that had a crossing before keeps the one that leaves less.
@@ -23,8 +28,11 @@ class BrickCutter {
   /// To be called before apply(): the brick's place in the whole.
   void set_place(int bx, int by, int bz);
   /// False if nothing has changed. Else sets what was removed: volume in kNodeVolume, and of each
-  /// column (j * kBrick + i) the height in kEdgeParts.
-  bool apply(const Sweep& sweep, OpenBrick& brick);
+  /// column (j * kBrick + i) the height in kEdgeParts. `group`, if it is not null, is that of the
+  /// sweep, and lives until set_place(): it makes this faster, no other.
+  bool apply(const Sweep& sweep, OpenBrick& brick, const TurnGroup* group = nullptr);
+  /// Bits of the 2 x 2 x 2 blocks that any sweep since set_place() may have come into.
+  unsigned reached() const { return reached_; }
   std::int64_t removed() const { return removed_; }
   const std::int32_t* removed_heights() const { return heights_; }
 
@@ -44,7 +52,7 @@ class BrickCutter {
   void forget_films() { films_.clear(); }
 
   /// Is there material deeper than the sweep's shrink_mm in it? Changes nothing.
-  bool touches(const Sweep& sweep, const OpenBrick& brick);
+  bool touches(const Sweep& sweep, const OpenBrick& brick, const TurnGroup* group = nullptr);
   /// All nodes of a brick lie within this of its middle.
   double half_diagonal_mm() const { return half_diagonal_; }
 
@@ -65,9 +73,25 @@ class BrickCutter {
     double tried;
     Vec3 normal;  ///< of the sweep, at `low`
   };
+  /// What one group leaves to look at in this brick.
+  struct Near {
+    const TurnGroup* group = nullptr;
+    std::uint64_t changes = 0;                  ///< of the brick, when `any` was found
+    bool any = false;                           ///< false: no piece of it changes anything
+    bool nodes = false;                         ///< some of the nodes below
+    bool outside[8] = {};                       ///< blocks that no piece comes near
+    std::uint16_t columns[kSide * kSide] = {};  ///< nodes that a piece may clear
+    /// What F is not less than, of all pieces, at the other nodes that were solid; [column * 16 +
+    /// k].
+    float bounds[kSide * kSide * 16];
+  };
+  Near* near_of(const TurnGroup* group, const OpenBrick& brick);
+  void look_near(const TurnGroup& group, const OpenBrick& brick, Near& near);
+  bool any_edge_near(const OpenBrick& brick, const Near& near) const;
+
   bool passes_above(const Sweep& sweep, const OpenBrick& brick) const;
-  void sort_blocks(const Sweep& sweep);
-  bool find_nodes(const Sweep& sweep, const OpenBrick& brick);
+  void sort_blocks(const Sweep& sweep, const Near* near);
+  bool find_nodes(const Sweep& sweep, const OpenBrick& brick, const Near* near);
   void find_edges(const Sweep& sweep, const OpenBrick& brick);
   void push_point(double x, double y, double z) {
     px_[points_] = x;
@@ -111,6 +135,7 @@ class BrickCutter {
   };
   LowerPlane planes_[8];
   std::uint16_t columns_[kSide * kSide];  ///< after the sweep
+  unsigned reached_ = 0;
   std::int64_t removed_ = 0;
   std::int32_t heights_[kBrick * kBrick];
   std::uint8_t changed_[kBrick * kBrick];  ///< nodes of a column whose crossings have changed
@@ -122,6 +147,10 @@ class BrickCutter {
   int points_ = 0;
   /// F at the solid nodes of mixed blocks, or a bound below it, [column * 16 + k].
   double node_f_[kSide * kSide * 16];
+  static constexpr std::size_t kNears = 4;  ///< bodies of a tool take turns
+  Near nears_[kNears];
+  std::size_t next_near_ = 0;
+  std::uint64_t changes_ = 0;  ///< that apply() has made
   std::vector<Crossing> kept_, open_, lost_;
   bool seeks_films_ = false;
   std::vector<Film> films_;

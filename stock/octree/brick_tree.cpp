@@ -225,4 +225,18 @@ std::uint64_t BrickTree::version(std::uint32_t number) const {
   return t.get() ? t->version : t.is_solid();
 }
 
+void BrickTree::follow_reach() {
+  const std::array<int, 3>& n = lattice_.tiles;
+  reached_ = std::make_shared<std::vector<std::uint8_t>>(brick_index(0, 0, n[2] * kTileBricks),
+                                                         std::uint8_t{0});
+}
+
+void BrickTree::own_reach() {
+  if (!reached_) return;
+  if (reached_.use_count() > 1)
+    reached_ = std::make_shared<std::vector<std::uint8_t>>(*reached_);
+  else
+    std::atomic_thread_fence(std::memory_order_acquire);  // who let go of it has read before
+}
+
 }  // namespace kerf::octree

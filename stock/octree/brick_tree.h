@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,17 @@ class BrickTree {
   void settle_tile(int column, int level);
   void set_tile(int column, int level, TileRef tile);
 
+  /// Bits of the 2 x 2 x 2 blocks of a brick that no sweep has come near so far: there the blank is
+  /// as it was. None unless follow_reach() was called before the first.
+  unsigned untouched(int bx, int by, int bz) const {
+    return reached_ ? ~unsigned{(*reached_)[brick_index(bx, by, bz)]} & 0xffu : 0u;
+  }
+  void follow_reach();
+  /// Before note_reach(), which may be called for different bricks at the same time.
+  void own_reach();
+  void note_reach(int bx, int by, int bz, unsigned blocks) {
+    if (reached_) (*reached_)[brick_index(bx, by, bz)] |= static_cast<std::uint8_t>(blocks);
+  }
   std::size_t unique_bytes() const;
   std::size_t brick_count() const;
   /// Hash of all but ids, 32 hex digits.
@@ -92,9 +104,17 @@ class BrickTree {
 
  private:
   Column& own_column(int column);
+  std::size_t brick_index(int bx, int by, int bz) const {
+    const auto along = [&](std::size_t axis) {
+      return static_cast<std::size_t>(lattice_.tiles[axis]) * kTileBricks;
+    };
+    const auto at = [](int n) { return static_cast<std::size_t>(n); };
+    return (at(bz) * along(1) + at(by)) * along(0) + at(bx);
+  }
   Lattice lattice_;
   bool keeps_ids_ = false;
   std::vector<ColumnRef> columns_;
+  std::shared_ptr<std::vector<std::uint8_t>> reached_;  ///< by brick_index(); copies share it
 };
 
 /// Never the same twice in a process.

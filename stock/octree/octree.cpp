@@ -13,6 +13,7 @@
 #include "base/worker_pool.h"
 #include "stock/move_reach.h"
 #include "stock/octree/blank_bricks.h"
+#include "stock/octree/blank_contact.h"
 #include "stock/octree/brick_tree.h"
 #include "stock/octree/dual_contour_mesh.h"
 #include "stock/octree/dual_contour_patch.h"
@@ -36,6 +37,13 @@ constexpr double kBrickBytes = 900;
 /// A part has so many times the surface of its blank's box.
 constexpr double kPartSurface = 2;
 constexpr int kContactSteps = 24;
+/// A search for contacts takes so many moves at once.
+constexpr std::size_t kContactMoves = 32;
+/// Of ways of more moves depths are good for the tolerance only.
+constexpr std::size_t kExactDepthMoves = 256;
+/// Of longer ones so many count for the depth, evenly taken from all: they are turns that lie
+/// close together.
+constexpr std::size_t kMostDepthMoves = 4096;
 
 double needed_bytes(const Lattice& lattice) {
   const double nx = lattice.cells[0], ny = lattice.cells[1], nz = lattice.cells[2];
@@ -105,6 +113,8 @@ struct Octree::Impl {
   ThinFilms films;
   std::optional<BrickTree> seen;  ///< as take_dirty_tiles() saw it last
 
+  std::vector<BlankBody> bodies_of_blank;  ///< none: nobody knows
+
   std::string cutter_spec;
   std::vector<ToolBody> bodies;
 
@@ -133,12 +143,34 @@ struct Octree::Impl {
     return box;
   }
   SweepTarget target(double shrink_mm) const { return {reach(), chord_mm(cell()), shrink_mm}; }
-  bool touches(const std::vector<ToolBody>& tool, const CutMove& move, double shrink_mm) const {
+  std::vector<Sweep> sweeps_of(const std::vector<ToolBody>& tool, std::span<const CutMove> moves,
+                               double shrink_mm) const {
     std::vector<Sweep> sweeps;
-    const std::optional<CutMove> near = within_reach(move, tree.lattice().bounds_mm);
-    if (!near) return false;
-    append_sweeps(tool, *near, 0, target(shrink_mm), sweeps);
-    return touches_tree(tree, sweeps, kernel);
+    for (const CutMove& move : moves)
+      if (const std::optional<CutMove> near = within_reach(move, tree.lattice().bounds_mm))
+        append_sweeps(tool, *near, 0, target(shrink_mm), sweeps);
+    return sweeps;
+  }
+  bool touches(const std::vector<ToolBody>& tool, std::span<const CutMove> moves,
+               double shrink_mm) const {
+    return touches_tree(tree, bodies_of_blank, sweeps_of(tool, moves, shrink_mm), kernel);
+  }
+  /// A copy less what the tool, drawn in by `shrink_mm`, takes (kMostDepthMoves); nothing if it is
+  /// stopped.
+  std::optional<BrickTree> loss_of(const std::vector<ToolBody>& tool,
+                                   std::span<const CutMove> moves, double shrink_mm,
+                                   const std::stop_token& stop) const {
+    BrickTree copy = tree;
+    WorkerPool alone(1);
+    MoveTotals totals;
+    const std::size_t each = kContactMoves * (1 + (moves.size() - 1) / kMostDepthMoves);
+    for (std::size_t next = 0; next < moves.size(); next += each) {
+      if (stop.stop_requested()) return std::nullopt;
+      const auto some = moves.subspan(next, std::min(kContactMoves, moves.size() - next));
+      cut_tree(copy, sweeps_of(tool, some, shrink_mm), kernel, false, alone, std::span(&totals, 1),
+               nullptr);
+    }
+    return copy;
   }
   DualField field() const {
     return {tree.lattice().origin_mm, tree.lattice().cell_mm,
@@ -160,6 +192,10 @@ Result<std::unique_ptr<Octree>> Octree::create(const OctreeOptions& options) {
                                                       : blank_tree(lattice, options.blank, *pool));
   impl->pool = pool;
   impl->additive = options.additive;
+  if (!options.additive) {
+    impl->tree.follow_reach();
+    impl->bodies_of_blank = options.blank.bodies;
+  }
   const std::vector<BlankBody>& bodies = options.blank.bodies;
   if (!options.additive)
     impl->blank_mm3 = bodies.size() == 1 && bodies[0].kind == BlankBody::Kind::kBox
@@ -230,30 +266,59 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
 
 std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove& move,
                                              double tolerance_mm) const {
+  const std::optional<WayContact> found =
+      first_contact_of(cutter, std::span(&move, 1), tolerance_mm, {});
+  return found ? std::optional(found->contact) : std::nullopt;
+}
+
+std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
+                                                   std::span<const CutMove> moves,
+                                                   double tolerance_mm,
+                                                   const std::stop_token& stop) const {
   const Impl& m = *impl_;
   if (m.additive) return std::nullopt;
   const Result<std::vector<ToolBody>> tool = tool_bodies(cutter);
   assert(tool);
-  if (!m.touches(*tool, move, tolerance_mm)) return std::nullopt;
+  std::size_t first = 0;
+  while (first < moves.size()) {
+    if (stop.stop_requested()) return std::nullopt;
+    const std::span<const CutMove> some =
+        moves.subspan(first, std::min(kContactMoves, moves.size() - first));
+    if (m.touches(*tool, some, tolerance_mm)) break;
+    first += some.size();
+  }
+  while (first < moves.size() && !m.touches(*tool, moves.subspan(first, 1), tolerance_mm)) ++first;
+  if (first == moves.size()) return std::nullopt;
   double clear = 0, meets = 1;
-  if (m.touches(*tool, first_part(move, 0), tolerance_mm)) meets = 0;
+  const auto touches_by = [&](double part) {
+    const CutMove so_far = first_part(moves[first], part);
+    return m.touches(*tool, std::span(&so_far, 1), tolerance_mm);
+  };
+  if (touches_by(0)) meets = 0;
   for (int step = 0; step < kContactSteps && meets > clear; ++step) {
     const double middle = 0.5 * (clear + meets);
-    (m.touches(*tool, first_part(move, middle), tolerance_mm) ? meets : clear) = middle;
+    (touches_by(middle) ? meets : clear) = middle;
   }
-  // What the move would remove, on a copy.
-  BrickTree copy = m.tree;
-  WorkerPool alone(1);
-  std::vector<Sweep> sweeps;
-  append_sweeps(*tool, move, 0, m.target(tolerance_mm), sweeps);
-  std::vector<MoveTotals> totals(1);
-  cut_tree(copy, sweeps, m.kernel, false, alone, totals, nullptr);
-  return Contact{first_part(move, meets).to_mm, m.height_mm(totals[0].height) + tolerance_mm};
+  // What the rest would remove, on copies.
+  const std::span<const CutMove> rest = moves.subspan(first);
+  std::optional<BrickTree> drawn_in = m.loss_of(*tool, rest, tolerance_mm, stop), exact;
+  if (drawn_in && rest.size() <= kExactDepthMoves) exact = m.loss_of(*tool, rest, 0, stop);
+  if (!drawn_in || stop.stop_requested()) return std::nullopt;
+  const std::int32_t slack = static_cast<std::int32_t>(
+      std::lround(tolerance_mm / m.tree.lattice().cell_mm.z * kEdgeParts));
+  const double cells_depth_mm =
+      m.height_mm(greatest_loss(m.tree, *drawn_in, exact ? &*exact : nullptr, slack));
+  BlankContact blank(m.tree.lattice(), m.kernel, m.bodies_of_blank);
+  const double blank_depth_mm = blank.depth_mm(
+      m.tree, m.sweeps_of(*tool, rest.first(std::min(kContactMoves, rest.size())), tolerance_mm));
+  const double depth_mm = std::max({cells_depth_mm, blank_depth_mm, tolerance_mm});
+  return WayContact{first, {first_part(moves[first], meets).to_mm, depth_mm}};
 }
 
 std::unique_ptr<StockModel> Octree::snapshot() const {
   auto copy = std::make_unique<Impl>(impl_->tree);
   copy->additive = impl_->additive;
+  copy->bodies_of_blank = impl_->bodies_of_blank;
   copy->blank_mm3 = impl_->blank_mm3;
   copy->removed = impl_->removed;
   copy->pool = std::make_shared<WorkerPool>(1);

@@ -13,6 +13,7 @@
 #include "stock/blank.h"
 #include "stock/octree/hermite_grid.h"
 #include "stock/stock_model.h"
+#include "stock/way_contact.h"
 
 namespace kerf {
 
@@ -50,7 +51,7 @@ struct OctreeOptions {
 ///
 /// Sources: S. Frisken et al., "Adaptively sampled distance fields", SIGGRAPH 2000 (the field);
 /// T. Ju et al., "Dual contouring of Hermite data", SIGGRAPH 2002 (what is kept of it).
-class Octree final : public StockModel {
+class Octree final : public StockModel, public WaySearcher {
  public:
   /// Error if cell_mm is not finite or <= 0 or exceeds the blank, or if the workpiece would need
   /// more memory than the limit: then with what it would need and the cell that would fit. The
@@ -67,11 +68,17 @@ class Octree final : public StockModel {
   void cut(const Cutter& cutter, std::span<const CutMove> moves,
            std::vector<CutReport>& reports) override;
   void finish(std::vector<CutReport>&) override {}  ///< no move is held back
-  /// To a cell / 4000 along the path, but a corner of material may be missed by less than a cell.
-  /// depth_mm is the greatest height of material in the sweep above any one point. Never in an
-  /// additive model: its tool always touches what it adds.
+  /// To a cell / 4000 along the path. Where no tool has come within a few cells yet it is the exact
+  /// tool against the exact blank less the tolerance, whatever the cells (BlankContact); elsewhere,
+  /// and of a workpiece that was loaded, nodes and crossings count, and a corner of material may be
+  /// missed by less than a cell. depth_mm is the greatest height of material in the sweep above any
+  /// one point: of columns of nodes, and of an upright tool in the untouched blank exact. Never in
+  /// an additive model: its tool always touches what it adds.
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
+  std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,
+                                             double tolerance_mm,
+                                             const std::stop_token& stop) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
   void keep_cut_ids(bool keep) override;

@@ -98,11 +98,6 @@ void add_straight(const ToolBody& body, const Vec3& from, const Vec3& to, const 
   if (bound(sweep, box, 0, bounds)) out.push_back(sweep);
 }
 
-/// By how much F along a piece's path may bend the wrong way, so that it has two minima.
-double bend_mm(double reach, double step, double turn) {
-  return reach * turn * turn / 8 + step * turn / 4;
-}
-
 void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const SweepTarget& target,
                  std::vector<Sweep>& out) {
   const Box& bounds = target.bounds_mm;
@@ -203,6 +198,10 @@ int chords_of(const CutMove& move, const ArcFrame& f, double tolerance) {
 }
 
 }  // namespace
+
+double bend_mm(double reach_mm, double step_mm, double turn_rad) {
+  return reach_mm * turn_rad * turn_rad / 8 + step_mm * turn_rad / 4;
+}
 
 double chord_mm(double cell_mm) { return std::min(cell_mm / 50, 0.002); }
 

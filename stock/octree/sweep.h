@@ -49,6 +49,10 @@ double chord_mm(double cell_mm);
 /// true position and a direction within 1e-7 rad of the true one.
 inline constexpr double kTurnPiece_rad = 0.02;
 
+/// By how much F may bend the wrong way along a turning piece, so that it has two minima: of points
+/// within `reach_mm` of the tip, where the tip goes `step_mm` and the spindle turns by `turn_rad`.
+double bend_mm(double reach_mm, double step_mm, double turn_rad);
+
 struct SweepTarget {
   Box bounds_mm;            ///< sweeps that miss it are left out
   double chord_mm = 0.002;  ///< what chords and turning pieces may leave, see above

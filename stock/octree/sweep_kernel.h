@@ -17,6 +17,10 @@ struct SweepKernel {
                    double* f);
   void (*gradient)(const Sweep& sweep, int n, const double* x, const double* y, const double* z,
                    double* f, double* gx, double* gy, double* gz);
+  /// Of a turning piece of any bend: what F is not less than. As close as telling it from `level`
+  /// takes, within sixteenths of the bend.
+  void (*turn_bound)(const Sweep& sweep, double level, int n, const double* x, const double* y,
+                     const double* z, double* f);
 };
 inline constexpr double kSweepSlack_mm = 1e-7;
 

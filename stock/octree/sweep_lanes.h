@@ -401,5 +401,53 @@ void lanes_gradient(const Sweep& s, int n, const double* x, const double* y, con
   }
 }
 
+/// What F is not less than between a and b. With F'' >= -8 bend, F - 4 bend s (1 - s) is convex and
+/// nowhere above F: where the tangents of that meet.
+inline void add_bound(const Trial& a, const Trial& b, double bend_mm, Lane& bound) {
+  for (int l = 0; l < W; ++l) {
+    const double width = b.s.at[l] - a.s.at[l], fa = a.f.at[l], fb = b.f.at[l];
+    const double ga = a.slope.at[l] - 4 * bend_mm * width, gb = b.slope.at[l] + 4 * bend_mm * width;
+    const double meet = (fa - fb + gb * width) / most(gb - ga, kTiny);
+    const double ends = least(fa, fb);
+    const double inside = fa + ga * most(0.0, least(width, meet));
+    bound.at[l] = least(bound.at[l], (ga < 0) & (gb > 0) ? least(ends, inside) : ends);
+  }
+}
+
+inline void turn_bound(const Sweep& s, const Points& points, double level, Lane& bound) {
+  constexpr int kParts = 4;
+  const TurnPath path(s, points);
+  Trial ends[kParts + 1];
+  const auto look = [&](int n) {
+    for (int l = 0; l < W; ++l) ends[n].s.at[l] = static_cast<double>(n) / kParts;
+    path.at(ends[n]);
+  };
+  look(0);
+  look(kParts);
+  for (int stride = kParts; stride > 0; stride /= 2) {
+    for (int n = stride; stride < kParts && n < kParts; n += 2 * stride) look(n);
+    for (int l = 0; l < W; ++l) bound.at[l] = 1e300;
+    for (int n = 0; n < kParts; n += stride) add_bound(ends[n], ends[n + stride], s.bend_mm, bound);
+    bool any = false;
+    for (int l = 0; l < W; ++l) {
+      double low = 1e300;
+      for (int n = 0; n <= kParts; n += stride) low = least(low, ends[n].f.at[l]);
+      any |= (bound.at[l] < level) & (low >= level);
+    }
+    if (!any) return;
+  }
+}
+
+void lanes_turn_bound(const Sweep& s, double level, int n, const double* x, const double* y,
+                      const double* z, double* f) {
+  Points p;
+  Lane bound;
+  for (int i = 0; i < n; i += W) {
+    load(x, y, z, i, p);
+    turn_bound(s, p, level - s.shrink_mm, bound);
+    for (int l = 0; l < W; ++l) f[i + l] = bound.at[l] + s.shrink_mm;
+  }
+}
+
 }  // namespace
 }  // namespace kerf::octree

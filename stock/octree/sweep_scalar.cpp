@@ -2,6 +2,6 @@
 
 namespace kerf::octree {
 
-SweepKernel scalar_kernel() { return {&lanes_distance, &lanes_gradient}; }
+SweepKernel scalar_kernel() { return {&lanes_distance, &lanes_gradient, &lanes_turn_bound}; }
 
 }  // namespace kerf::octree

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "stock/octree/blank_contact.h"
 #include "stock/octree/brick_cut.h"
 
 namespace kerf::octree {
@@ -82,7 +83,7 @@ class ColumnPlan {
     reached_.clear();
     const double clear = tile_half_diagonal_ + kSlack_mm;
     for (std::size_t n = 0; n < levels_.size(); ++n) {
-      if (f_[n] > clear) continue;
+      if (f_[n] > clear + kReachMargin_mm) continue;
       const std::size_t level = static_cast<std::size_t>(levels_[n]);
       any_ = true;
       if (f_[n] < -clear) {
@@ -129,7 +130,7 @@ class ColumnPlan {
       const double f = f_[static_cast<std::size_t>(n)];
       if (f < -clear)
         reach.whole |= bit(bricks[n]);
-      else if (f <= clear)
+      else if (f <= clear + kReachMargin_mm)
         reach.some |= bit(bricks[n]);
     }
     if ((reach.whole | reach.some) != 0) lists_[static_cast<std::size_t>(level)].push_back(reach);
@@ -149,9 +150,10 @@ class ColumnPlan {
 /// Cuts one column of tiles after the other. One for each thread.
 class ColumnCutter {
  public:
-  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, bool additive, std::uint64_t version,
-               std::size_t reports, bool seek_films)
+  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, const TurnGroups& groups, bool additive,
+               std::uint64_t version, std::size_t reports, bool seek_films)
       : tree_(tree),
+        groups_(groups),
         additive_(additive),
         version_(version),
         plan_(tree, kernel),
@@ -218,6 +220,8 @@ class ColumnCutter {
       if (move.size() > 1 && !is_gone_) cut_move(move, number);
       if (!cutter_.films().empty()) note_films(move, number, level);
     }
+    tree_.note_reach(plan_.brick_x(number), plan_.brick_y(number),
+                     level * kTileBricks + number / (kTileBricks * kTileBricks), cutter_.reached());
     if (!changed) return;
     tree_.own_tile(column, level, version_).bricks[number] =
         is_gone_ ? BrickRef() : open_.close(tree_.keeps_ids());
@@ -233,7 +237,8 @@ class ColumnCutter {
         add(t.sweep->report, open_.volume, open_.height_of);
         return is_gone_ = true;
       }
-      if (((t.whole | t.some) & bit(number)) == 0 || !cutter_.apply(*t.sweep, open_)) continue;
+      if (((t.whole | t.some) & bit(number)) == 0) continue;
+      if (!cutter_.apply(*t.sweep, open_, groups_.of(*t.sweep))) continue;
       changed = true;
       add(t.sweep->report, cutter_.removed(), cutter_.removed_heights());
       if (open_.top_node < 0) return is_gone_ = true;
@@ -285,6 +290,7 @@ class ColumnCutter {
   }
 
   BrickTree& tree_;
+  const TurnGroups& groups_;
   bool additive_;
   std::uint64_t version_;
   ColumnPlan plan_;
@@ -323,12 +329,14 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   std::vector<int> columns;
   for (std::size_t c = 0; c < lists.size(); ++c)
     if (!lists[c].empty()) columns.push_back(static_cast<int>(c));
+  const TurnGroups groups(sweeps, tree.lattice());
+  tree.own_reach();
   const std::uint64_t version = next_version();
   std::atomic<std::size_t> next{0};
   std::vector<std::vector<MoveTotals>> parts(static_cast<std::size_t>(pool.threads()));
   std::vector<std::vector<FilmSpot>> spots(parts.size());
   pool.run([&](int thread) {
-    ColumnCutter cutter(tree, kernel, additive, version, totals.size(), films != nullptr);
+    ColumnCutter cutter(tree, kernel, groups, additive, version, totals.size(), films != nullptr);
     for (std::size_t n = next++; n < columns.size(); n = next++)
       cutter.cut(columns[n], sweeps, lists[static_cast<std::size_t>(columns[n])]);
     parts[static_cast<std::size_t>(thread)] = cutter.totals();
@@ -348,10 +356,13 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   });
 }
 
-bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel) {
+bool touches_tree(const BrickTree& tree, std::span<const BlankBody> blank,
+                  std::span<const Sweep> sweeps, const SweepKernel& kernel) {
   const auto lists = by_column(tree.lattice(), sweeps);
+  const TurnGroups groups(sweeps, tree.lattice());
   ColumnPlan plan(tree, kernel);
   BrickCutter cutter(tree.lattice(), kernel, false);
+  BlankContact untouched(tree.lattice(), kernel, blank);
   OpenBrick open;
   for (int column = 0; column < tree.lattice().column_count(); ++column) {
     const auto& mine = lists[static_cast<std::size_t>(column)];
@@ -367,12 +378,52 @@ bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const Sw
           if (brick.is_empty()) continue;
           open.open(brick);
           cutter.set_place(plan.brick_x(number), plan.brick_y(number), bz);
-          if (cutter.touches(*t.sweep, open)) return true;
+          if (cutter.touches(*t.sweep, open, groups.of(*t.sweep))) return true;
+          const int bx = plan.brick_x(number), by = plan.brick_y(number);
+          if (untouched.touches(*t.sweep, bx, by, bz, tree.untouched(bx, by, bz))) return true;
         }
       }
     }
   }
   return false;
+}
+
+std::int32_t greatest_loss(const BrickTree& before, const BrickTree& after, const BrickTree* exact,
+                           std::int32_t slack) {
+  const Lattice& lattice = before.lattice();
+  std::vector<bool> differs(static_cast<std::size_t>(lattice.column_count()), false);
+  for (const std::uint32_t tile : before.differing(after))
+    differs[tile % static_cast<std::size_t>(lattice.column_count())] = true;
+  OpenBrick open;
+  std::int32_t greatest = 0;
+  // Of a stack of bricks, by column.
+  std::int32_t lost[kBrick * kBrick], lost_exactly[kBrick * kBrick];
+  const auto add = [&](const BrickRef& brick, std::int32_t sign, std::int32_t* sums) {
+    if (brick.is_empty()) return;
+    open.open(brick);
+    for (int c = 0; c < kBrick * kBrick; ++c) sums[c] += sign * open.height_of[c];
+  };
+  for (int stack = 0; stack < lattice.column_count() * kTileBricks * kTileBricks; ++stack) {
+    const int column = stack / (kTileBricks * kTileBricks), n = stack % (kTileBricks * kTileBricks);
+    if (!differs[static_cast<std::size_t>(column)]) continue;
+    const int bx = column % lattice.tiles[0] * kTileBricks + n % kTileBricks;
+    const int by = column / lattice.tiles[0] * kTileBricks + n / kTileBricks;
+    std::fill(std::begin(lost), std::end(lost), 0);
+    std::fill(std::begin(lost_exactly), std::end(lost_exactly), 0);
+    for (int bz = 0; bz < lattice.tiles[2] * kTileBricks; ++bz) {
+      add(before.brick(bx, by, bz), 1, lost);
+      add(after.brick(bx, by, bz), -1, lost);
+      if (!exact) continue;
+      add(before.brick(bx, by, bz), 1, lost_exactly);
+      add(exact->brick(bx, by, bz), -1, lost_exactly);
+    }
+    for (int c = 0; c < kBrick * kBrick; ++c) {
+      if (lost[c] <= 0) continue;
+      const std::int32_t most = lost[c] + slack;
+      greatest = std::max(greatest, exact ? std::clamp(lost_exactly[c], lost[c], most) : most);
+    }
+  }
+  return greatest;
 }
 
 }  // namespace kerf::octree

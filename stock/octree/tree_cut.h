@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/worker_pool.h"
+#include "stock/blank.h"
 #include "stock/octree/brick_tree.h"
 #include "stock/octree/sweep_kernel.h"
 
@@ -38,7 +39,16 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
               bool additive, WorkerPool& pool, std::span<MoveTotals> totals,
               std::vector<FilmSpot>* films);
 
-/// Would any of the sweeps take something? Stops at the first that would.
-bool touches_tree(const BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel& kernel);
+/// Would any of the sweeps take something? Stops at the first that would. `blank`: what the tree
+/// was made of; where it is untouched nodes and crossings are not all that counts (BlankContact).
+bool touches_tree(const BrickTree& tree, std::span<const BlankBody> blank,
+                  std::span<const Sweep> sweeps, const SweepKernel& kernel);
+
+/// Greatest height of material above any one point that `before` has and `after`, cut from it, has
+/// not; in kEdgeParts an edge, of columns of nodes. `after` is cut by a tool that is drawn in by
+/// `slack` (in the same unit), and `exact` by the tool itself: where the former has lost something
+/// the latter says how much, but no more than `slack` more. `exact` may be null: it is that more.
+std::int32_t greatest_loss(const BrickTree& before, const BrickTree& after, const BrickTree* exact,
+                           std::int32_t slack);
 
 }  // namespace kerf::octree

@@ -103,6 +103,32 @@ TEST(Interrupt, WithinALongMotion) {
   EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
 }
 
+/// A traverse that turns through the workpiece: its contacts are looked for before it is cut.
+TEST(Interrupt, WithinALongTraverse) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TestFolder folder;
+    const std::string program =
+        folder.write("turn.canon",
+                     "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
+                     "    2 N1     CHANGE_TOOL(1)\n"
+                     "    3 N2     START_SPINDLE_CLOCKWISE(0)\n"
+                     "    4 N3     STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)\n"
+                     "    5 N4     STRAIGHT_TRAVERSE(0, 0, -1, 0, 0, 0)\n"
+                     "    6 N5     STRAIGHT_TRAVERSE(20, 5, -1, 0, 3600000, 0)\n"
+                     "    7 N6     PROGRAM_END()\n");
+    RunningKerf kerf(interrupted_run(folder, program));
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(kerf.wait_until([&] {
+      return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(1000);
+    }));
+    const auto sent = std::chrono::steady_clock::now();
+    kerf.send(signal);
+    expect_partial(folder, kerf.finish());
+    // The mesh is written within, too. It was minutes once.
+    EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
+  }
+}
+
 TEST(Interrupt, BeforeThereIsABlank) {
   const TestFolder folder;
   KerfCall call = interrupted_run(folder, "-");

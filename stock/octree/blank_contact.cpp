@@ -1,0 +1,168 @@
+#include "stock/octree/blank_contact.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace kerf::octree {
+namespace {
+
+constexpr int kBlock = kBrick / 2;
+/// Each projection goes on into the tool, at first by kInto_mm, then by less: a tool's point is not
+/// come near to from below otherwise.
+constexpr int kMostSteps = 96;
+constexpr double kInto_mm = 0.02, kIntoShrinks = 0.86;
+/// After so many steps it must have come nearer by a tenth.
+constexpr int kLookEvery = 16;
+constexpr double kStill_mm = 1e-7;
+/// Points of the tool's own surface are not inside of it, whatever rounding says.
+constexpr double kInside_mm = 1e-7;
+static_assert(kLanes == 8, "one lane for each eighth of a block");
+
+int axis_of(const BlankBody& body) { return body.axis == 'x' ? 0 : body.axis == 'y' ? 1 : 2; }
+
+/// Nearest point of the body less `in_mm` on every side, but for its ends.
+Vec3 into_round(const BlankBody& body, double in_mm, const Vec3& p) {
+  if (body.kind == BlankBody::Kind::kBox) return p;
+  Vec3 out = p - body.center_mm;
+  const int axis = axis_of(body);
+  const double along = out[axis];
+  out[axis] = 0;
+  const double distance = glm::length(out);
+  const double low = body.kind == BlankBody::Kind::kTube ? body.inner_diameter_mm / 2 + in_mm : 0;
+  const double wanted = std::max(std::min(distance, body.diameter_mm / 2 - in_mm), low);
+  if (wanted == distance || distance == 0) return p;
+  out *= wanted / distance;
+  out[axis] = along;
+  return body.center_mm + out;
+}
+
+Vec3 into(const Box& box, const Vec3& p) { return glm::max(box.min, glm::min(box.max, p)); }
+
+}  // namespace
+
+bool BlankContact::is_near(const Sweep& sweep, const Box& block) {
+  const Vec3 middle = 0.5 * (block.min + block.max);
+  std::fill(std::begin(x_), std::end(x_), middle.x);
+  std::fill(std::begin(y_), std::end(y_), middle.y);
+  std::fill(std::begin(z_), std::end(z_), middle.z);
+  kernel_.distance(sweep, 1, x_, y_, z_, f_);
+  return f_[0] - sweep.shrink_mm <= 0.5 * glm::length(block.size());
+}
+
+/// Each lane begins in the middle of its eighth of the block.
+bool BlankContact::search(const Sweep& sweep, const BlankBody& body, const Box& block,
+                          Vec3& found_mm) {
+  const double in = std::max(sweep.shrink_mm, kStill_mm);
+  Box part;
+  Box boxes[kLanes];
+  Vec3 at[kLanes];
+  bool searching[kLanes];
+  bool any = false;
+  double nearest[kLanes], nearest_before[kLanes];
+  std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<double>::infinity());
+  std::copy(std::begin(nearest), std::end(nearest), nearest_before);
+  const Vec3 half = 0.5 * block.size();
+  for (int l = 0; l < kLanes; ++l) {
+    part.min = block.min + half * Vec3(l & 1, l >> 1 & 1, l >> 2);
+    part.max = part.min + half;
+    boxes[l].min = glm::max(part.min, body.bounds_mm.min + Vec3(in));
+    boxes[l].max = glm::min(part.max, body.bounds_mm.max - Vec3(in));
+    searching[l] = boxes[l].min.x <= boxes[l].max.x && boxes[l].min.y <= boxes[l].max.y &&
+                   boxes[l].min.z <= boxes[l].max.z;
+    at[l] = searching[l] ? 0.5 * (boxes[l].min + boxes[l].max) : part.min;
+    any |= searching[l];
+  }
+  double deeper = kInto_mm;
+  for (int step = 0; any && step < kMostSteps; ++step, deeper *= kIntoShrinks) {
+    for (int l = 0; l < kLanes; ++l) {
+      x_[l] = at[l].x;
+      y_[l] = at[l].y;
+      z_[l] = at[l].z;
+    }
+    kernel_.gradient(sweep, kLanes, x_, y_, z_, f_, gx_, gy_, gz_);
+    any = false;
+    for (int l = 0; l < kLanes; ++l) {
+      if (!searching[l]) continue;
+      const double f = f_[l] - sweep.shrink_mm;
+      const Vec3 round = into_round(body, in, at[l]);
+      const bool within = glm::length(round - at[l]) <= kStill_mm;
+      if (f < -kInside_mm && within) {
+        found_mm = at[l];
+        return true;
+      }
+      nearest[l] = std::min(nearest[l], f);
+      const Vec3 slope(gx_[l], gy_[l], gz_[l]);
+      const Vec3 inward = at[l] - (std::max(f, 0.0) + deeper + 2 * kInside_mm) * slope;
+      at[l] = into(boxes[l], into_round(body, in, inward));
+      if (step % kLookEvery == kLookEvery - 1) {
+        searching[l] = nearest[l] < 0.9 * nearest_before[l] || nearest[l] < 2 * deeper;
+        nearest_before[l] = nearest[l];
+      }
+      any |= searching[l];
+    }
+  }
+  return false;
+}
+
+bool BlankContact::touches(const Sweep& sweep, int bx, int by, int bz, unsigned blocks) {
+  const int brick[3] = {bx, by, bz};
+  Vec3 found;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    const int b = std::countr_zero(blocks);
+    Box block;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int first = brick[axis] * kBrick + (b >> axis & 1) * kBlock;
+      block.min[axis] = lattice_.place_mm(axis, first);
+      block.max[axis] = lattice_.place_mm(axis, first + kBlock);
+    }
+    if (!is_near(sweep, block)) continue;
+    for (const BlankBody& body : bodies_)
+      if (search(sweep, body, block, found)) return true;
+  }
+  return false;
+}
+
+bool BlankContact::is_untouched_above(const BrickTree& tree, const Vec3& point_mm) const {
+  int node[3];
+  for (int axis = 0; axis < 3; ++axis)
+    node[axis] = static_cast<int>(
+        std::floor((point_mm[axis] - lattice_.origin_mm[axis]) / lattice_.cell_mm[axis]));
+  for (; node[2] <= lattice_.cells[2]; node[2] += kBlock) {
+    int block = 0;
+    for (int axis = 0; axis < 3; ++axis) block |= (node[axis] % kBrick / kBlock) << axis;
+    const unsigned bits = tree.untouched(node[0] / kBrick, node[1] / kBrick, node[2] / kBrick);
+    if ((bits >> block & 1u) == 0) return false;
+    node[2] -= node[2] % kBlock;
+  }
+  return true;
+}
+
+double BlankContact::depth_mm(const BrickTree& tree, std::span<const Sweep> sweeps) {
+  constexpr std::size_t kMostSweeps = 64;
+  constexpr int kHalvings = 30;
+  if (bodies_.size() != 1 || bodies_[0].kind != BlankBody::Kind::kBox) return 0;
+  const Box& blank = bodies_[0].bounds_mm;
+  double depth = 0;
+  for (const Sweep& sweep : sweeps.first(std::min(sweeps.size(), kMostSweeps))) {
+    if (!sweep.body->endless || !std::isfinite(sweep.bottom_mm)) continue;
+    if (blank.max.z - sweep.bottom_mm <= depth) continue;
+    Vec3 lowest;
+    if (!search(sweep, bodies_[0], blank, lowest)) continue;
+    Box below = blank;
+    double none = std::max(sweep.bottom_mm, blank.min.z);
+    for (int n = 0; n < kHalvings && lowest.z > none; ++n) {
+      below.max.z = 0.5 * (none + lowest.z);
+      if (!search(sweep, bodies_[0], below, lowest)) none = below.max.z;
+    }
+    const bool through =
+        sweep.bottom_mm <= blank.min.z && lowest.z - blank.min.z < 2 * sweep.shrink_mm;
+    if (is_untouched_above(tree, lowest))
+      depth = std::max(depth, blank.max.z - (through ? blank.min.z : lowest.z));
+  }
+  return depth;
+}
+
+}  // namespace kerf::octree
