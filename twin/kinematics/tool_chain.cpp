@@ -152,6 +152,8 @@ PathBounds ToolChain::bounds(const AxisValues& middle, const InputBounds& inputs
       }
     }
   }
+  close_level();
+  out.speed_mm = b1;
   out.acceleration_mm = b2;
   out.jerk_mm = b3;
   return out;

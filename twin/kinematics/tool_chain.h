@@ -40,6 +40,7 @@ struct PoseJet {
 
 /// Bounds on the derivatives of a moving point and of everything that turns with it.
 struct PathBounds {
+  double speed_mm = 0;
   double acceleration_mm = 0;
   double jerk_mm = 0;
   double turning_rad = 0;  ///< Sum of the turns of all joints; |d^n direction / dt^n| <= its n-th

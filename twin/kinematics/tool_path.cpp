@@ -17,6 +17,8 @@ constexpr double kStill_mm = 1e-9;
 constexpr double kMostTilt_rad = 2.5;
 /// No piece is shorter, in t: 1000 turns to 5 um at 100 mm need 1e6 of them.
 constexpr double kLeastPiece = 1e-8;
+/// Motions of fewer turns are as they are.
+constexpr double kFewTurns = 4;
 /// Inputs of a chain behind its slides X Y Z: A B C, and U V W from kFirstSlide on.
 constexpr std::size_t kFirstTurn = 3;
 constexpr std::size_t kFirstSlide = 6;
@@ -180,7 +182,7 @@ struct ToolPath::End {
 ToolPathTolerance ToolPathTolerance::of_cell(double cell_mm) {
   constexpr double kMost_mm = 0.01;
   const double least = std::min(cell_mm / 10, kMost_mm);
-  return {least, least};
+  return {least, least, cell_mm / 10};
 }
 
 Result<ToolPath> ToolPath::create(MachineKinematics machine, const WorkpieceFrame& frame,
@@ -490,33 +492,87 @@ void ToolPath::moves_of(const Motion& motion, double reach_mm, std::uint64_t id,
     add(move, 1);
     return;
   }
-  double t = 0;
-  double pieces = 1;  // that the rest is thought to need
+  const Kept kept = kept_turns(run, reach_mm);
   End from = end_of(run, 0);
-  while (t < 1) {
+  if (kept.parts.empty()) {
+    divide(run, 0, 1, reach_mm, id, from, add);
+    return;
+  }
+  for (std::size_t n = 0; n < kept.parts.size(); ++n) {
+    const bool last = n + 1 == kept.parts.size();
+    const double begin = kept.parts[n].first / kept.turns;
+    if (n > 0) {
+      const End to = end_of(run, begin);
+      add(move_of(from, to, id), begin);
+      from = to;
+    }
+    divide(run, begin, last ? 1.0 : kept.parts[n].second / kept.turns, reach_mm, id, from, add);
+  }
+}
+
+CutMove ToolPath::move_of(const End& from, const End& to, std::uint64_t id) {
+  CutMove move;
+  move.from_mm = from.tip_mm;
+  move.to_mm = to.tip_mm;
+  move.axis_from = from.axis;
+  move.axis_to = to.axis;
+  move.id = id;
+  return move;
+}
+
+/// From `from`, which is at `begin`, to `end`; `from` is there then.
+template <class Add>
+void ToolPath::divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
+                      End& from, const Add& add) const {
+  double t = begin;
+  double pieces = 1;  // that the rest is thought to need
+  while (t < end) {
     End to;
     double h = 0;
     double error = 0;
     for (;;) {
-      h = (1 - t) / pieces;
-      to = end_of(run, pieces == 1 ? 1.0 : t + h);
+      h = (end - t) / pieces;
+      to = end_of(run, pieces == 1 ? end : t + h);
       error = error_of(run, t, h, from, to, reach_mm);
       if (error <= 1 || h <= kLeastPiece) break;
       pieces = std::ceil(pieces * std::max(1.1, 1.02 * std::sqrt(error)));
     }
-    CutMove move;
-    move.from_mm = from.tip_mm;
-    move.to_mm = to.tip_mm;
-    move.axis_from = from.axis;
-    move.axis_to = to.axis;
-    move.id = id;
-    t = pieces == 1 ? 1.0 : t + h;
-    add(move, t);
+    t = pieces == 1 ? end : t + h;
+    add(move_of(from, to, id), t);
     from = to;
     // Longer ones where the path has become straighter.
     const double longer = error > 0 ? std::min(2.0, 0.95 / std::sqrt(error)) : 2.0;
-    pieces = std::max(1.0, std::ceil((1 - t) / (h * std::max(1.0, longer)) - kStill_mm));
+    pieces = std::max(1.0, std::ceil((end - t) / (h * std::max(1.0, longer)) - kStill_mm));
   }
+}
+
+/// The turns of the axis that turns most: from one to the next only the other axes move the tool.
+ToolPath::Kept ToolPath::kept_turns(const Run& run, double reach_mm) const {
+  Kept kept;
+  if (tolerance_.turn_mm <= 0) return kept;
+  InputBounds others = run.bounds;
+  std::size_t fastest = kFirstTurn;
+  for (std::size_t i = kFirstTurn; i < kFirstSlide; ++i) {
+    const bool turns = run.track->turned_by[i - kFirstTurn];
+    if (!turns) others.rate[i] = 0;
+    if (others.rate[i] > others.rate[fastest]) fastest = i;
+  }
+  kept.turns = others.rate[fastest] / 360;
+  if (kept.turns < kFewTurns) return kept;
+  others.rate[fastest] = 0;
+  const PathBounds bounds = run.chain.bounds(run.inputs_at(0.5), others, 1, run.end_mm);
+  const double pitch = (bounds.speed_mm + bounds.turning_rad * reach_mm) / kept.turns;
+  const double whole = std::floor(kept.turns);
+  const double stride =
+      std::min(std::floor(2 * tolerance_.turn_mm / std::max(pitch, kStill_mm)), whole);
+  if (stride < 2) return kept;
+  const double count = std::ceil(whole / stride) + 1;
+  if (count >= whole) return kept;
+  for (double n = 0; n < count; ++n) {
+    const double begin = n + std::floor(n * (whole - count) / (count - 1));
+    kept.parts.emplace_back(begin, n + 1 == count ? kept.turns : begin + 1);
+  }
+  return kept;
 }
 
 Pose ToolPath::pose_at(const Motion& motion, double fraction) const {

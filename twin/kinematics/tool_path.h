@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -18,8 +19,11 @@ namespace kerf {
 struct ToolPathTolerance {
   double tip_mm = 0.01;  ///< of the tip, at equal times
   double top_mm = 0.01;  ///< of the spindle's line at the top of the cutting part
+  /// Of a motion of many turns those are left out that are no farther than this from one that is
+  /// not, tip and top, at equal angles; 0: none. Ridges between turns may stand by so much.
+  double turn_mm = 0;
 
-  /// A tenth of a cell, at most 0.01 mm.
+  /// A tenth of a cell; of tip and top at most 0.01 mm.
   static ToolPathTolerance of_cell(double cell_mm);
 };
 
@@ -65,6 +69,10 @@ class ToolPath {
   /// ends, bit for bit, also from one motion to the next. `reach_mm`: from the tip to the top of
   /// what cuts. All get `id`. A motion whose start is not known makes none. About a microsecond a
   /// piece.
+  ///
+  /// Of a motion with turns in plenty (ToolPathTolerance::turn_mm) the tool goes from the end of
+  /// one that is kept straight to the beginning of the next, at the same angle. The first and the
+  /// last are kept.
   ///
   /// A planned path (PathPiece) is other than the motion where nothing turns only: call with a copy
   /// of the motion that has the piece's from_mm, to_mm and arc.
@@ -120,6 +128,17 @@ class ToolPath {
   double error_of(const Run& run, double t, double h, const End& from, const End& to,
                   double reach_mm) const;
   void rigid_move(const Run& run, const Motion& motion, CutMove& move) const;
+  /// Parts of a motion that are kept, in turns of its fastest axis from the start; empty: all of
+  /// it.
+  struct Kept {
+    double turns = 0;  ///< of the whole motion
+    std::vector<std::pair<double, double>> parts;
+  };
+  Kept kept_turns(const Run& run, double reach_mm) const;
+  static CutMove move_of(const End& from, const End& to, std::uint64_t id);
+  template <class Add>
+  void divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
+              End& from, const Add& add) const;
 
   MachineKinematics machine_;
   WorkpieceFrame frame_;

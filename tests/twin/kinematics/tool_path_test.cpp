@@ -361,6 +361,71 @@ RandomCase random_case(std::mt19937& random) {
   return out;
 }
 
+/// 2777.7 turns on 40 mm: each place of the true path has one at the same angle within turn_mm.
+TEST(ToolPath, TurnsInPlentyAreLeftOut) {
+  ToolPathTolerance tolerance{0.01, 0.01};
+  const Motion m = feed({20, 3, -1}, {-20, 3, -1}, {0, 20, 0}, {0, 999999, 0});
+  tolerance.turn_mm = 0.1;
+  const ToolPath path = path_of(machine_of("trivkins", "XYZB"), {}, tolerance);
+  std::vector<CutMove> moves;
+  std::vector<double> ends;
+  path.moves_of(m, 24, 0, moves, &ends);
+  EXPECT_LT(moves.size(), 45000u);
+  EXPECT_GT(moves.size(), 10000u);
+  EXPECT_EQ(ends.back(), 1.0);
+  const double turns = (999999.0 - 20) / 360;
+  // Parts of the motion that moves go along, but for those that go across.
+  std::vector<std::pair<double, double>> kept;
+  double t = 0;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    if (i > 0) {
+      ASSERT_EQ(moves[i].from_mm, moves[i - 1].to_mm);
+      ASSERT_EQ(moves[i].axis_from, moves[i - 1].axis_to);
+    }
+    ASSERT_GT(ends[i], t);
+    EXPECT_LT(glm::distance(moves[i].to_mm, path.pose_at(m, ends[i]).origin_mm), 1e-6);
+    const bool across = (ends[i] - t) * turns > 0.9;
+    if (across) EXPECT_LE(glm::distance(moves[i].from_mm, moves[i].to_mm), 2 * tolerance.turn_mm);
+    if (!across) {
+      if (kept.empty() || kept.back().second != t)
+        kept.emplace_back(t, ends[i]);
+      else
+        kept.back().second = ends[i];
+    }
+    t = ends[i];
+  }
+  EXPECT_NEAR(kept.front().second * turns, 1, 1e-6);
+  EXPECT_GE((1 - kept.back().first) * turns, 1);
+  double worst = 0;
+  for (int k = 0; k <= 20000; ++k) {
+    const double at = k / 20000.0;
+    const Vec3 place = path.pose_at(m, at).origin_mm;
+    double nearest = 1e9;
+    for (const auto& [begin, end] : kept) {
+      // At the same angle: whole turns away.
+      const double whole = std::ceil((begin - at) * turns - 1e-9);
+      const double same = at + whole / turns;
+      if (same > end + 1e-9) continue;
+      nearest = std::min(nearest, glm::distance(place, path.pose_at(m, same).origin_mm));
+    }
+    worst = std::max(worst, nearest);
+  }
+  EXPECT_LE(worst, tolerance.turn_mm + 1e-9);
+  EXPECT_GT(worst, tolerance.turn_mm / 4);
+}
+
+/// Two axes turn: what the slower one does between two turns of the faster counts.
+TEST(ToolPath, TurnsThatLieApartAreKept) {
+  ToolPathTolerance tolerance{0.01, 0.01};
+  tolerance.turn_mm = 0.1;
+  for (const auto& to : {std::array<double, 3>{0, 36000, 36000}, {0, 36000, 3600}}) {
+    const Motion m = feed({20, 3, -1}, {20, 3, -1.5}, {}, to);
+    const auto few = moves_of(path_of(machine_of("trivkins", "XYZBC"), {}, tolerance), m);
+    const auto all = moves_of(path_of(machine_of("trivkins", "XYZBC")), m);
+    EXPECT_EQ(few.size(), all.size());
+  }
+}
+
 /// Greatest distances between the moves and the true path at equal times.
 TEST(ToolPath, NoPieceLeavesItsTolerance) {
   std::mt19937 random(20);
