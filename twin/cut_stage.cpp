@@ -27,8 +27,6 @@ constexpr double kCut_s = 0.05;
 constexpr std::size_t kLeastMovesPerCut = 1;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
-/// A blank is divided evenly: cells may be smaller than asked for, and rounded.
-constexpr double kCoarse = 1 + 1e-6;
 
 /// Beams and punches go through whatever the length of the tool: they are taken as programmed.
 bool displaced(const Motion& motion) { return motion.length.tip_shift_mm != Vec3{0}; }
@@ -209,83 +207,6 @@ bool CutStage::mount_for(const Motion& m) {
   return mounted_->cutter.has_value();
 }
 
-void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
-  const auto known = std::find_if(uses_.begin(), uses_.end(),
-                                  [&](const ToolUse& use) { return use.number == tool.number; });
-  use_ = static_cast<std::uint32_t>(known - uses_.begin());
-  if (known != uses_.end()) return;
-  ToolUse use;
-  use.number = tool.number;
-  use.origin = tool.origin;
-  use.guessed = tool.guessed;
-  if (tool.cutter) use.shape = tool.cutter->spec();
-  uses_.push_back(use);
-  deepest_.emplace_back();
-  if (!tool.cutter) return;
-  Finding finding;
-  finding.source = m.source;
-  finding.tool = tool.number;
-  if (tool.assumed) {
-    finding.id = FindingId::kToolAssumed;
-    finding.severity = Severity::kNote;
-    finding.text = fmt::format(
-        "the program moves before any tool change; tool {} ({}, {}) is taken to be in the spindle",
-        tool.number, use.shape, use.origin);
-    log_.add(finding);
-  }
-  if (tool.guessed) {
-    finding.id = FindingId::kToolGuessed;
-    finding.severity = Severity::kWarning;
-    finding.text =
-        tool.guess.empty()
-            ? fmt::format(
-                  "only the diameter of tool {} is known ({}); a flat cutter is assumed: {} "
-                  "(--tool "
-                  "{}=SHAPE says better)",
-                  tool.number, use.origin, use.shape, std::max(1, tool.number))
-            : fmt::format(
-                  "tool {} is taken for {} ({}), and that is a guess: {} (--tool {}=SHAPE "
-                  "says better)",
-                  tool.number, use.shape, use.origin, tool.guess, std::max(1, tool.number));
-    log_.add(finding);
-  }
-}
-
-/// That rapids come from an unknown place until every axis has been placed is how programs begin.
-/// Once each: a feed move that is not cut, and a place of the machine.
-void CutStage::report_unknown_place(const Motion& m, const TimedStep& step) {
-  const bool to_machine = m.to_machine_place && !machine_place_told_;
-  const bool feed = is_feed(m) && !unknown_feed_told_;
-  if (!to_machine && !feed) return;
-  (to_machine ? machine_place_told_ : unknown_feed_told_) = true;
-  const unsigned axes = to_machine ? m.unknown_to : m.unknown_from | m.unknown_to;
-  std::string letters;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if ((axes >> i & 1) == 0) continue;
-    letters += letters.empty() ? "" : ", ";
-    letters += kAxisLetters[i];
-  }
-  const bool one = letters.size() == 1;
-  Finding finding;
-  finding.id = FindingId::kPositionUnknown;
-  finding.severity = Severity::kNote;
-  finding.source = m.source;
-  finding.time_s = step.start_s;
-  if (to_machine) {
-    finding.text = fmt::format(
-        "goes to a place of the machine (G53, G28, G30), and where the work lies in the machine is "
-        "not known (--work-offset X,Y,Z or --ini says it): such moves are not checked, and {} {} "
-        "unknown until a block places {}",
-        letters, one ? "is" : "are", one ? "it" : "them");
-  } else {
-    finding.text = fmt::format(
-        "a feed move while nothing has said where {} {} (--ini does, or a G0 before it that names "
-        "the {}): such moves are not cut",
-        letters, one ? "stands" : "stand", one ? "axis" : "axes");
-  }
-  log_.add(std::move(finding));
-}
-
 void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
   // With an empty spindle a comment without a number waits for the first feed move: the traverse
   // may just clear the way for the tool change that the comment announces.
@@ -396,97 +317,10 @@ void CutStage::check_turns(const Motion& m, const TimedStep& step) {
   if (!rotary_check_ || rotary_check_->turns_something(m)) report_ignored_turn(m, step);
 }
 
-/// U, V or W move. Once for each that moves nothing that is known.
-void CutStage::check_slides(const Motion& m, const TimedStep& step) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<int>(i);
-    const bool known = kinematics_ && kinematics_->slides_uvw() &&
-                       kinematics_->chain.is_driven_by(6 + i) && !torch_ && !punch_;
-    if (known || slide_reported_[i] || m.from_uvw_mm[axis] == m.to_uvw_mm[axis]) continue;
-    slide_reported_[i] = true;
-    const char letter = kAxisLetters[6 + i];
-    Finding finding;
-    finding.id = FindingId::kSecondaryIgnored;
-    finding.source = m.source;
-    finding.time_s = step.start_s;
-    finding.tool = m.tool;
-    finding.text = fmt::format(
-        "{} moves, and nothing says what it slides: it is cut as if {} stood still (a second "
-        "carriage, the slide of a facing head, and the wire between XY and UV of a foam cutter are "
-        "not modelled)",
-        letter, letter);
-    finding.hint =
-        "with W among the axes (--ini, machine.joints) it is a quill along Z; machine.kinematics: "
-        "links says what U, V and W slide on another machine";
-    log_.add(std::move(finding));
-  }
-}
-
 void CutStage::check_whole(const Motion& m, const TimedStep& step) {
   if (!rotary_check_ || !stock_.takes_tilted_tools() || motion_moves_.is_upright(m)) return;
   rotary_check_->check_pole(m, rotary_faults_);
   if (!rotary_faults_.empty()) report_rotary_faults(step);
-}
-
-/// Once: what the machine is taken to be, where nothing says it.
-void CutStage::report_assumptions(const Motion& m) {
-  assumptions_told_ = true;
-  for (const std::string& note : kinematics_->notes) {
-    Finding finding;
-    finding.id = FindingId::kKinematics;
-    finding.severity = Severity::kNote;
-    finding.source = m.source;
-    finding.text = note;
-    log_.add(std::move(finding));
-  }
-}
-
-void CutStage::report_rotary_faults(const TimedStep& step) {
-  for (RotaryFault& fault : rotary_faults_) {
-    const bool too_fast = fault.kind == RotaryFaultKind::kJointTooFast;
-    if (too_fast && !limits_known_ && std::exchange(invented_limits_told_, true)) continue;
-    Finding finding;
-    switch (fault.kind) {
-      case RotaryFaultKind::kNoAxis:
-        finding.id = FindingId::kNoRotaryAxis;
-        break;
-      case RotaryFaultKind::kSingularPose:
-        finding.id = FindingId::kSingularPose;
-        finding.severity = Severity::kWarning;
-        break;
-      case RotaryFaultKind::kJointTooFast:
-        finding.id = FindingId::kOverFeed;
-        finding.severity = limits_known_ ? Severity::kWarning : Severity::kNote;
-        break;
-      case RotaryFaultKind::kJointLimit:
-        finding.id = FindingId::kAxisLimit;
-        break;
-      case RotaryFaultKind::kToolTooLong:
-        finding.id = FindingId::kToolTooLong;
-        break;
-    }
-    finding.source = fault.source;
-    finding.time_s = step.start_s;
-    finding.text = std::move(fault.text);
-    finding.hint = std::move(fault.hint);
-    log_.add(std::move(finding));
-  }
-  rotary_faults_.clear();
-}
-
-/// Once: a model for upright tools was asked for, and the program is not for one.
-void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
-  turn_reported_ = true;
-  Finding finding;
-  finding.id = FindingId::kRotaryIgnored;
-  finding.source = m.source;
-  finding.time_s = step.start_s;
-  finding.tool = m.tool;
-  finding.text = fmt::format(
-      "A, B or C move, and the model {} is for upright tools over a workpiece that lies still: it "
-      "is cut as if they stood{}",
-      stock_.name(), torch_ ? "" : " (--model octree follows them)");
-  log_.add(std::move(finding));
 }
 
 void CutStage::note_depth(const Motion& m, const TimedStep& step) {
@@ -501,97 +335,6 @@ void CutStage::note_depth(const Motion& m, const TimedStep& step) {
   deepest.tip_z_mm = tip_z;
 }
 
-/// Once a tool: what it leaves at its deepest is narrower than two cells. Contacts and depths do
-/// not need cells; volumes, pictures and meshes do.
-void CutStage::report_coarse_cells() {
-  const Box bounds = stock_.bounds_mm();
-  const double cell = stock_.cell_mm();
-  for (std::size_t i = 0; i < deepest_.size(); ++i) {
-    const Deepest& deepest = deepest_[i];
-    const double depth = bounds.max.z - std::max(deepest.tip_z_mm, bounds.min.z);
-    if (!deepest.cutter || depth <= kContactTolerance_mm) continue;
-    const double half = half_width_mm(*deepest.cutter, depth);
-    if (cell <= half * kCoarse) continue;
-    const double fitting = cell_no_larger_mm(half);
-    const Vec3 size = bounds.size();
-    const double cells = size.x / fitting * (size.y / fitting);
-    Finding finding;
-    finding.id = FindingId::kCellCoarse;
-    finding.severity = Severity::kWarning;
-    finding.source = deepest.source;
-    finding.time_s = deepest.time_s;
-    finding.tool = uses_[i].number;
-    finding.text = fmt::format(
-        "the cells of {:.3g} mm are too coarse for {}, which leaves grooves {:.2g} mm wide at its "
-        "deepest, {:.3g} mm: what it removes is not known, and pictures and meshes show it badly",
-        cell, uses_[i].shape, 2 * half, depth);
-    finding.hint = stock_.takes_tilted_tools()
-                       ? fmt::format("--cell {:g} would do", fitting)
-                       : fmt::format("--cell {:g} would do ({:.0f} million cells)", fitting,
-                                     std::ceil(cells / 1e6));
-    log_.add(std::move(finding));
-  }
-}
-
-/// A program that never comes near its blank was written for another zero, or another blank.
-void CutStage::report_outside_stock() {
-  // A guessed blank lies where the program works: missing it says nothing of the program.
-  if (reached_stock_ || feed_bounds_mm_.empty() || checks_.options().blank_guessed) return;
-  const auto extent = [](const Box& box) {
-    return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", box.min.x, box.max.x,
-                       box.min.y, box.max.y, box.min.z, box.max.z);
-  };
-  Finding finding;
-  finding.id = FindingId::kOutsideStock;
-  finding.severity = Severity::kWarning;
-  finding.text = fmt::format(
-      "no feed move comes near the workpiece: the moves are at {}, the blank at {}; is the blank "
-      "given "
-      "in the coordinates that the program writes?",
-      extent(feed_bounds_mm_), extent(stock_.bounds_mm()));
-  log_.add(std::move(finding));
-}
-
-/// Once a tool: its first feed move.
-void CutStage::report_undefined(const Motion& m, const TimedStep& step) {
-  ToolUse& use = uses_[use_];
-  const bool first = use.origin.empty();
-  use.feed_mm += step.length_mm;
-  if (!first) return;
-  use.origin = "nothing";
-  Finding finding;
-  finding.id = FindingId::kToolUndefined;
-  finding.source = m.source;
-  finding.time_s = step.start_s;
-  finding.tool = mounted_->number;
-  if (!mounted_->trouble.empty()) {
-    finding.text = fmt::format("tool {}: {}; its moves do not cut", m.tool, mounted_->trouble);
-  } else if (m.tool == 0) {
-    finding.text =
-        "feed moves with no tool in the spindle do not cut (one --tool N=SHAPE names the tool "
-        "that is in it at the start)";
-  } else {
-    finding.text = fmt::format(
-        "nothing is known of tool {}; its moves do not cut (--tool {}=SHAPE describes it)", m.tool,
-        m.tool);
-  }
-  log_.add(std::move(finding));
-}
-
-void CutStage::report_missing_feed(const Motion& m, const TimedStep& step) {
-  if (feed_missing_reported_) return;
-  feed_missing_reported_ = true;
-  Finding finding;
-  finding.id = FindingId::kFeedMissing;
-  finding.severity = Severity::kWarning;
-  finding.source = m.source;
-  finding.time_s = step.start_s;
-  finding.text =
-      "feed move without a feed rate (or without spindle speed under G95); it takes no time in "
-      "this report";
-  log_.add(std::move(finding));
-}
-
 void CutStage::note_speed(const Motion& m, const TimedStep& step) {
   if (step.length_mm <= 0) return;
   if (step.programmed_mm_per_min <= 0) {
@@ -600,23 +343,6 @@ void CutStage::note_speed(const Motion& m, const TimedStep& step) {
     if (over_feed_.count++ > 0) return;
     over_feed_ = {1, m.source, step.start_s, step.programmed_mm_per_min, step.allowed_mm_per_min};
   }
-}
-
-/// One finding for the whole program: where one move is too fast, most are.
-void CutStage::report_over_feed() {
-  // Of a machine that was made up one note is enough.
-  if (over_feed_.count == 0 || invented_limits_told_) return;
-  Finding finding;
-  finding.id = FindingId::kOverFeed;
-  finding.severity = limits_known_ ? Severity::kWarning : Severity::kNote;
-  finding.source = over_feed_.source;
-  finding.time_s = over_feed_.time_s;
-  finding.text = fmt::format(
-      "{} feed move{} for more than the machine can do, the first for {:.0f} mm/min where it "
-      "can do {:.0f} ({})",
-      over_feed_.count, over_feed_.count == 1 ? " asks" : "s ask", over_feed_.programmed_mm_per_min,
-      over_feed_.allowed_mm_per_min, limits_origin_);
-  log_.add(std::move(finding));
 }
 
 /// The programmed move, or what the machine makes of it.
@@ -639,7 +365,7 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
   const double share_s =
       step.duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
   InFlight flight;
-  flight.duration_s = flight.cut_s = share_s;
+  flight.duration_s = share_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
   flight.use = use_;
@@ -690,7 +416,11 @@ void CutStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (labels_) labels_->note(report.id, report.removed_mm3, move.duration_s);
-    if (move.feed && !move.measured) count_feed(use, move, report);
+    if (move.feed && !move.measured) {
+      count_feed(use, move, report);
+    } else {
+      use.gap_mm = std::numeric_limits<double>::infinity();
+    }
     // Of a groove that is narrower than a cell only the depth may be known.
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (report.film.area_mm2 > 0 && !holding_)
@@ -704,26 +434,6 @@ void CutStage::collect_reports() {
   in_flight_.erase(in_flight_.begin(),
                    in_flight_.begin() + static_cast<std::ptrdiff_t>(reports_.size()));
   reports_.clear();
-}
-
-void CutStage::count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const {
-  double duration_s = move.cut_s, removed_mm3 = report.removed_mm3;
-  if (watched_) {
-    use.grain_s += duration_s;
-    use.grain_mm3 += removed_mm3;
-    if (use.grain_s < kGrain_s) return;
-    duration_s = std::exchange(use.grain_s, 0);
-    removed_mm3 = std::exchange(use.grain_mm3, 0);
-    add_cutting(use, duration_s, removed_mm3);
-    return;
-  }
-  const MotionReach& reach = move.reach;
-  const double bound = report.depth_mm > 0
-                           ? report.depth_mm * reach.side_mm2_per_s + reach.disc_mm3_per_s
-                           : std::numeric_limits<double>::infinity();
-  add_cutting(use, duration_s, removed_mm3, bound);
-  const double mean = removed_mm3 * reach.speed_per_mm;
-  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, std::min(mean, bound));
 }
 
 }  // namespace kerf

@@ -138,7 +138,6 @@ class CutStage : private StepSink {
     double duration_s = 0;
     double start_s = 0;  ///< of its motion
     SourceRef source;
-    double cut_s = 0;  ///< of that, as far as it may have cut
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;
@@ -182,6 +181,7 @@ class CutStage : private StepSink {
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
   void collect_reports();
+  double front_mm_of(const FeedPart& part, const CutReport& report) const;
   void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
 
   /// Feed moves that ask for more than the axes can do.

@@ -1,4 +1,4 @@
-// What CutStage asks of a program beyond its single moves: its order, its whole, its load.
+// What CutStage asks of a program beyond its single moves: its order, its whole.
 #include <algorithm>
 #include <utility>
 
@@ -6,15 +6,6 @@
 #include "twin/motion_geometry.h"
 
 namespace kerf {
-namespace {
-
-/// Moves that last so long, or so much of what the tool has cut so far, are looked at in pieces:
-/// long enough that the others do not show. Nor does where in their way those cut that are shorter
-/// than the cutter is wide.
-constexpr double kLongMove_s = 0.5;
-constexpr double kLongMovePart = 0.005;
-
-}  // namespace
 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
 /// found wrong.
@@ -65,26 +56,6 @@ void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
         "how fast; is its speed set by hand?",
         limits_known_ ? Severity::kError : Severity::kWarning);
   }
-}
-
-/// What a feed move counts for: where the blank never was it does not cut. Of one that lasts: how
-/// long it really cuts, and how fast at most. Short ones count as long as they are there, and their
-/// rates together (add_cutting). Of a program that is played nobody asks.
-void CutStage::measure(const Motion& m, const TimedStep& step, InFlight& flight) {
-  if (timed_ || holding_ || !is_feed(m) || divided_.size() != 1) return;
-  if (step.duration_s <= 0 || !LoadMeter::is_one_piece(divided_[0])) return;
-  const Cutter& cutter = *mounted_->cutter;
-  flight.reach = load_meter_.reach(cutter, divided_[0], step.duration_s, step.peak_mm_per_min / 60);
-  if (flight.reach.seconds > 0) flight.cut_s = flight.reach.seconds;
-  ToolUse& use = uses_[use_];
-  if (step.duration_s < kLongMove_s && step.duration_s < kLongMovePart * use.cut_s) return;
-  if (step.length_mm < 2 * cutter.radius_mm() && step.duration_s < kLongMove_s) return;
-  if (!load_meter_.affords() || !comes_near(m)) return;
-  flush();
-  const MotionLoad load = load_meter_.measure(cutter, divided_[0]);
-  use.cut_s += load.cut_s;
-  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, load.peak_mm3_per_s);
-  flight.measured = true;
 }
 
 /// In cells that are too coarse for it a groove may remove nothing: the geometry says whether a

@@ -11,6 +11,8 @@ namespace {
 /// A window of the way is so much of the cutter's diameter, and so many cells at least.
 constexpr double kWindowOfDiameter = 0.25;
 constexpr double kWindowCells = 20;
+/// Cells that are removed one after the other are no farther apart, by the way of the cutter.
+constexpr double kNearCells = 1.5;
 /// Windows that differ by less are one rate.
 constexpr double kSameRate = 0.02;
 /// An end of the cutting is found to this part of the way that cuts.
@@ -18,6 +20,12 @@ constexpr double kEnds = 0.002;
 /// Fewer pieces that cut than this say little of how fast they do.
 constexpr std::size_t kFewPieces = 5;
 constexpr int kFinerPieces = 8;
+/// Volumes of a scan are told to this part of a window.
+constexpr int kBinsOfWindow = 8;
+/// Looking at a height costs as much as cutting so many cells, and so much what is worked out of
+/// one that is cut.
+constexpr double kCellsOfLook = 3;
+constexpr double kCellsOfPlace = 30;
 
 Motion motion_of(const CutMove& move) {
   Motion motion;
@@ -93,9 +101,35 @@ void LoadMeter::clip(const Cutter& cutter, const CutMove& move) {
   to_ = std::max(from_, to_);
 }
 
+FeedPart LoadMeter::clipped_part(const CutMove& move) const {
+  FeedPart part;
+  part.known = true;
+  part.near_mm = kNearCells * stock_.cell_mm();
+  part.window_mm = kWindowCells * stock_.cell_mm();
+  if (to_ <= from_) return part;
+  part.seconds = profile_.at(to_) - profile_.at(from_);
+  part.way_mm = (to_ - from_) * profile_.length_mm;
+  part.enters = from_ > 0;
+  if (move.arc || !move.is_vertical()) return part;
+  const Box box = stock_.bounds_mm();
+  double inside = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double from = move.from_mm[axis], to = move.to_mm[axis];
+    const double side = to > from ? box.max[axis] : box.min[axis];
+    if (to == from || (to > from) != (to > side) || (to > side) == (from > side)) continue;
+    inside = std::min(inside, (side - from) / (to - from));
+  }
+  if (inside < 1 && inside > from_) {
+    part.leaves_s = profile_.at(inside) - profile_.at(from_);
+    part.leaves_mm = (inside - from_) * profile_.length_mm;
+  }
+  return part;
+}
+
 MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double duration_s,
                              double speed_mm_per_s) {
   MotionReach reach;
+  if (cutter.undercuts()) hollow_ = true;
   const double length_mm = length_of(move);
   profile_ = {};
   if (length_mm <= 0 || duration_s <= 0) return reach;
@@ -104,7 +138,7 @@ MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double d
   profile_.ramp_mm = profile_.speed_mm_per_s * profile_.ramp_s / 2;
   if (profile_.ramp_mm * 2 > length_mm) profile_.ramp_mm = profile_.ramp_s = 0;
   clip(cutter, move);
-  reach.seconds = profile_.at(to_) - profile_.at(from_);
+  reach.part = clipped_part(move);
   const double way_mm = (to_ - from_) * length_mm, cell_mm = stock_.cell_mm();
   if (way_mm >= window_mm(cutter)) {
     reach.speed_per_mm = profile_.greatest_speed(from_, to_) / way_mm;
@@ -217,9 +251,88 @@ void LoadMeter::add_run(std::size_t first, std::size_t end, double window, Motio
   load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, peak(first, end, window));
 }
 
+/// Something is, below the heights: an M-map's may say less than what is there. Asked once; what
+/// undercuts tells reach().
+bool LoadMeter::is_hollow(const HeightGrid& heights) {
+  if (hollow_) return *hollow_;
+  double sum_mm = 0;
+  if (stock_.name() == "mmap") {
+    const double floor = static_cast<double>(heights.floor_mm());
+    for (int j = 0; j < heights.ny(); ++j) {
+      for (int i = 0; i < heights.nx(); ++i) {
+        sum_mm += static_cast<double>(heights.height(i, j)) - floor;
+      }
+    }
+    const double all_mm3 = sum_mm * heights.cell_x_mm() * heights.cell_y_mm();
+    hollow_ = std::abs(all_mm3 - stock_.remaining_mm3()) > 1e-6 * all_mm3;
+  } else {
+    hollow_ = false;
+  }
+  return *hollow_;
+}
+
+/// Of the windows within a stretch that is cut the greatest, together with its neighbours that are
+/// as great; or the rate of the whole stretch.
+double LoadMeter::scanned_peak(const EngagementScan::Span& span, double window) {
+  const std::span<const double> bins = scan_.bins_mm3();
+  const double bin = (to_ - from_) / static_cast<double>(bins.size());
+  const auto index = [&](double part) {
+    const double at = std::floor((part - from_) / bin);
+    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bins.size() - 1)));
+  };
+  const std::size_t first = index(span.from), last = index(span.to * (1 - 1e-12));
+  const auto rate = [&](double mm3, double from, double to) {
+    return mm3 / ((to - from) * profile_.length_mm) * profile_.greatest_speed(from, to);
+  };
+  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(window / bin)));
+  double mm3 = 0;
+  rates_.clear();
+  for (std::size_t b = first; b <= last; ++b) {
+    mm3 += bins[b];
+    if (b >= first + n) mm3 -= bins[b - n];
+    if (b + 1 < first + n) continue;
+    const double to = from_ + static_cast<double>(b + 1) * bin;
+    rates_.push_back(rate(mm3, to - static_cast<double>(n) * bin, to));
+  }
+  if (span.to - span.from <= window + bin || rates_.empty()) {
+    mm3 = 0;
+    for (std::size_t b = first; b <= last; ++b) mm3 += bins[b];
+    return rate(mm3, span.from, span.to);
+  }
+  const auto greatest = std::max_element(rates_.begin(), rates_.end());
+  auto begin = greatest, end = greatest;
+  double sum = 0;
+  while (begin != rates_.begin() && *(begin - 1) >= (1 - kSameRate) * *greatest) --begin;
+  while (end != rates_.end() && *end >= (1 - kSameRate) * *greatest) sum += *end++;
+  for (auto it = begin; it != greatest; ++it) sum += *it;
+  return sum / static_cast<double>(end - begin);
+}
+
+/// False: the model, the cutter or the move is not one for it.
+bool LoadMeter::scan(const Cutter& cutter, const CutMove& move, MotionLoad& load) {
+  if (!EngagementScan::takes(cutter, move)) return false;
+  const std::shared_ptr<const HeightGrid> heights = stock_.snapshot()->height_grid();
+  if (!heights || is_hollow(*heights)) return false;
+  const double window = std::min(window_mm(cutter) / profile_.length_mm, to_ - from_);
+  const EngagementScan::Cost cost =
+      scan_.run(*heights, cutter, move, from_, to_, window * profile_.length_mm / kBinsOfWindow);
+  left_cells_ -= kCellsOfLook * cost.looks + kCellsOfPlace * cost.places +
+                 2 * static_cast<double>(stock_.tile_count());
+  for (const EngagementScan::Span& span : scan_.spans()) {
+    load.cut_s += profile_.at(span.to) - profile_.at(span.from);
+    load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, scanned_peak(span, window));
+  }
+  return true;
+}
+
 MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move) {
   MotionLoad load;
   if (profile_.length_mm <= 0 || to_ <= from_) return load;
+  return scan(cutter, move, load) ? load : measure_by_pieces(cutter, move);
+}
+
+MotionLoad LoadMeter::measure_by_pieces(const Cutter& cutter, const CutMove& move) {
+  MotionLoad load;
   cutter_ = &cutter;
   move_ = &move;
   const double length_mm = profile_.length_mm;

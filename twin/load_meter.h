@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "twin/engagement_scan.h"
+#include "twin/tool_use.h"
 
 namespace kerf {
 
@@ -20,7 +22,7 @@ struct MotionLoad {
 
 /// What geometry alone says of a motion.
 struct MotionReach {
-  double seconds = 0;  ///< of its time, while the cutter is where the blank was
+  FeedPart part;  ///< of it, while the cutter is where the blank was
   /// Its greatest speed a mm of that way: times what the motion removes it is the rate of its mean
   /// cross-section. 0: the way is shorter than a window.
   double speed_per_mm = 0;
@@ -30,40 +32,51 @@ struct MotionReach {
   double disc_mm3_per_s = 0;
 };
 
-/// Cuts motions in pieces, in a snapshot that is thrown away: the workpiece is cut as a whole, and
-/// keeps its bits. What that costs is limited by counts, not by a clock, so the results are the
-/// same for any threads and batches: a measurement is made while those before have swept no more
-/// cells than kFreeCells and kShare of what was cut, so all of them take about that share of the
-/// cutting time, and one measurement more. What is not measured is known by its reach().
+/// Works out what a feed move is going to do to the workpiece as it is: from its heights
+/// (EngagementScan), and where these do not say it (tilted tools, undercuts, arcs that are none
+/// about Z) by cutting the move in pieces, in a snapshot that is thrown away. The workpiece is cut
+/// as a whole, and keeps its bits. What that costs is limited by counts, not by a clock, so the
+/// results are the same for any threads and batches: a measurement is made while those before have
+/// cost no more than kFreeCells (kFreeBlocks of models for tilted tools) and kShare of what was
+/// cut, in cells. What is not measured counts by its reach() and its neighbours
+/// (add_short_move()).
 ///
-/// The way is cut in up to kPieces; where cutting begins and ends among them is searched by
-/// halves, to 0.2 % of the way that cuts or half a cell, whichever is more. Cells have bounds: a
-/// sliver thinner than half a cell is not there to be cut. It matters where a round cutter leaves
-/// the material on both sides of its way: cutting seems over up to cell / 2 + sqrt(D * cell / 2)
-/// before it is, and it may seem to begin half a cell late.
+/// By heights: begins and ends at the sides of a blank are exact, at walls that were cut before
+/// they are good to half a cell (to cell / 2 + sqrt(D * cell / 2) where the cutter runs along such
+/// a wall with its widest). Air of less than three eighths of a window is not seen. Of ways with
+/// more than EngagementScan::kMostPoints cells a part is looked at: volumes are then good to about
+/// 1 %, and walls that are cut across to some cells.
+///
+/// In pieces, up to kPieces: ends are searched by halves, to 0.2 % of the way that cuts or half a
+/// cell, whichever is more. A sliver thinner than half a cell is not there to be cut: cutting seems
+/// over up to cell / 2 + sqrt(D * cell / 2) before a round cutter leaves a wall beside it, and it
+/// may seem to begin half a cell late.
 ///
 /// A rate is the mean cross-section over a window of the way times the greatest speed there;
-/// neighbouring windows that differ by less than 2 % are averaged, so that cells do not make a
-/// peak. A window is a quarter of the cutter's diameter, at least 20 cells (the whole way where it
-/// is shorter; longer where kPieces of them are shorter than the way). Where in its time the
+/// neighbouring windows that are less than 2 % below the greatest are averaged with it. A window is
+/// a quarter of the cutter's diameter, at least 20 cells (the whole stretch that is cut where it is
+/// shorter; of pieces longer where kPieces of them are shorter than the way). Where in its time the
 /// machine is follows from duration and greatest speed, as if it started and ended at rest; moves
 /// that are run through at one speed have no such ramps. One thread.
 class LoadMeter {
  public:
   static constexpr int kPieces = 16;
-  static constexpr double kFreeCells = 5e5;
+  static constexpr double kFreeCells = 4e7;
+  static constexpr double kFreeBlocks = 2e6;
   static constexpr double kShare = 0.03;
 
-  explicit LoadMeter(const StockModel& stock) : stock_(stock) {}
+  explicit LoadMeter(const StockModel& stock) : stock_(stock), left_cells_(free_cells()) {}
 
   /// Of each feed move that is going to be cut (is_one_piece()) and lasts so long.
   /// `speed_mm_per_s`: the greatest on the way, 0: not known.
   MotionReach reach(const Cutter& cutter, const CutMove& move, double duration_s,
                     double speed_mm_per_s);
-  /// There is something left to spend.
-  bool affords() const { return left_cells_ >= 0; }
+  /// There is something left to spend; the last half of what is free is for moves that last.
+  bool affords(bool lasts) const { return left_cells_ >= (lasts ? 0 : free_cells() / 2); }
   /// Of the move that reach() was asked about last; all before it has been given to the model.
   MotionLoad measure(const Cutter& cutter, const CutMove& move);
+  /// Of the way, over which rates are taken.
+  double window_mm(const Cutter& cutter) const;
   /// The spindle does not turn about on the way.
   static bool is_one_piece(const CutMove& move) { return move.axis_from == move.axis_to; }
 
@@ -80,8 +93,13 @@ class LoadMeter {
     double speed_at(double part) const;
     double greatest_speed(double from, double to) const;
   };
-  double window_mm(const Cutter& cutter) const;
+  double free_cells() const { return stock_.takes_tilted_tools() ? kFreeBlocks : kFreeCells; }
+  bool scan(const Cutter& cutter, const CutMove& move, MotionLoad& load);
+  double scanned_peak(const EngagementScan::Span& span, double window);
+  bool is_hollow(const HeightGrid& heights);
+  MotionLoad measure_by_pieces(const Cutter& cutter, const CutMove& move);
   void clip(const Cutter& cutter, const CutMove& move);
+  FeedPart clipped_part(const CutMove& move) const;
   double cut_part(StockModel& stock, double from, double to);
   void cut_spans(const StockModel& before, double from, double to, int pieces);
   double find_begin(const Span& span, const StockModel& before, double least);
@@ -90,7 +108,10 @@ class LoadMeter {
   double peak(std::size_t first, std::size_t end, double window) const;
 
   const StockModel& stock_;
-  double left_cells_ = kFreeCells;
+  double left_cells_;
+  EngagementScan scan_;
+  std::vector<double> rates_;
+  std::optional<bool> hollow_;  ///< below its heights; asked when it is needed
   Profile profile_;
   double from_ = 0, to_ = 1;  ///< of the way, where the cutter is where the blank was
   const Cutter* cutter_ = nullptr;

@@ -80,6 +80,15 @@ void TorchStage::burn(const Motion& m, const TimedStep& step) {
   cut(m, step, pierces);
 }
 
+/// A kerf has one cross-section: what it takes says how much of the way was in material. Where that
+/// is not all of it the machine starts and stops beside the material, more likely than in it.
+double TorchStage::burnt_s(const Motion& m, const TimedStep& step, double burnt_mm) {
+  if (goes_up_or_down(m) || !(burnt_mm < step.length_mm)) return step.duration_s;
+  const double even_s = step.duration_s * burnt_mm / step.length_mm;
+  if (step.peak_mm_per_min <= 0) return even_s;
+  return std::min(even_s, 60 * burnt_mm / step.peak_mm_per_min);
+}
+
 void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
   divided_.clear();
   moves_.append(m, pierces, *kerf_->cutter, 0, divided_);
@@ -95,9 +104,9 @@ void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
   }
   use.removed_mm3 += removed_mm3;
-  add_cutting(use, step.duration_s, removed_mm3);
-  has_removed_ = has_removed_ || removed_mm3 > 0;
   const double kerf_mm2 = 2 * kerf_->cutter->radius_mm() * stock_.bounds_mm().size().z;
+  add_cutting(use, burnt_s(m, step, removed_mm3 / kerf_mm2), removed_mm3);
+  has_removed_ = has_removed_ || removed_mm3 > 0;
   if (removed_mm3 > kLeastOfKerf * kerf_mm2 * step.length_mm) checks_.cuts_on_traverse(m, step);
   if (!has_removed_) burnt_mm_.extend(bounds_of(m));
   checks_.note_freed(m, step);

@@ -57,6 +57,7 @@ class TorchStage {
  private:
   void take_piece(const Motion& motion, const TimedStep& step);
   void burn(const Motion& motion, const TimedStep& step);
+  static double burnt_s(const Motion& motion, const TimedStep& step, double burnt_mm);
   void cut(const Motion& motion, const TimedStep& step, bool pierces);
   ToolUse& use_of(const ResolvedTool& kerf, const Motion& motion);
   void announce(const ResolvedTool& kerf, const Motion& motion);

@@ -1,0 +1,118 @@
+// twin/engagement_scan.h - when on its way a move removes what: worked out from the heights that it
+// meets, cell by cell, without cutting.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/height_grid.h"
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+
+namespace kerf {
+
+/// Looks at the cells that a move comes over, and works out for each of them when the cutter's
+/// surface goes down through its height: the instant at which a flat cutter's edge is there, or the
+/// time from where a ball touches the top until it is right beside the cell. Reads only. Of long
+/// ways with many cells every n-th of a row is looked at, in each row another one, so that each
+/// stands for the n around it; along long arcs heights are looked up in rows that run beside them.
+///
+/// Ends of the cutting are those of the cells' squares, not of their middles: the sides of a blank,
+/// which are edges of cells, are met and left where they are; walls that were cut before are known
+/// to half a cell. Where a wall is left beside the way the cutter is taken to be at it until its
+/// widest is past the wall's end.
+///
+/// Does not see gaps of less than kLeastGapBins bins; arcs are those about Z with up to one turn;
+/// cutters do not undercut, and what is hollow below its top is not. One thread; keeps its memory.
+class EngagementScan {
+ public:
+  static constexpr int kMostPoints = 4096;  ///< looked at by each of its passes
+  static constexpr int kMostBins = 256;
+  static constexpr int kLeastGapBins = 3;
+
+  /// A stretch of the way on which material is removed: fractions of the way.
+  struct Span {
+    double from = 0, to = 0;
+  };
+
+  static bool takes(const Cutter& cutter, const CutMove& move);
+
+  struct Cost {
+    double looks = 0;   ///< heights that were looked at
+    double places = 0;  ///< of them, those that are above the cutter's tip
+  };
+
+  /// The part of the way from `from` to `to`; `bin_mm`: as fine as volumes are to be told (coarser
+  /// where kMostBins of them are shorter than that).
+  Cost run(const HeightGrid& heights, const Cutter& cutter, const CutMove& move, double from,
+           double to, double bin_mm);
+
+  std::span<const Span> spans() const { return spans_; }
+  /// What is removed on each of equal parts of the way from `from` to `to`.
+  std::span<const double> bins_mm3() const { return bins_; }
+
+ private:
+  /// A place in the frame of the way: along and beside it, or around its centre.
+  struct Place {
+    double along = 0;   ///< mm; of arcs the angle from the start, 0 .. 2 pi
+    double beside = 0;  ///< mm; of arcs the distance from the centre
+  };
+  /// The cutter is over a place: parts of the way, and where it is nearest.
+  struct Pass {
+    double first = 0, nearest = 0, last = 0;
+  };
+
+  void set(const HeightGrid& heights, const Cutter& cutter, const CutMove& move);
+  Place place_of(const Vec2& point) const;
+  Vec2 point_of(const Place& place) const;
+  Place moved(const Place& place, double along_mm, double outward_mm) const;
+  double beside_mm(const Place& place) const;
+  double distance2(const Place& place, double t) const;
+  double surface(const Place& place, double t) const;
+  int passes(const Place& place, double from, double to, Pass (&found)[3]) const;
+  bool pass_at(double nearest, double half, double from, double to, Pass& pass) const;
+
+  template <class Visit>
+  void each_cell(double from, double to, double most_apart_mm, Visit&& visit);
+  template <class Visit>
+  void each_place(Visit&& visit);
+  void take(const Place& place, double height, double area_mm2);
+  double take_pass(const Place& place, const Pass& pass, double height, double area_mm2);
+  void add(double from, double to, double mm3);
+  int bin_of(double t) const;
+  void find_spans();
+  double find_begin(double from, double to);
+  double find_end(double from, double to);
+  double lowest_at(const Place& place, const Pass& pass) const;
+  double first_below(const Place& place, const Pass& pass, double height) const;
+  double settled(const Place& place, const Pass& pass) const;
+  double left_at(const Place& place, double removed_to_mm);
+  bool stands_beside(const Place& place, double tip_mm) const;
+  bool is_at_side(const Place& place) const;
+  std::optional<double> height_at(const Vec2& point) const;
+  Box path_box(double from, double to) const;
+
+  const HeightGrid* heights_ = nullptr;
+  Motion motion_;  ///< of arcs
+  bool arc_ = false;
+  double radius_ = 0, flat_radius_ = 0;
+  double z_ = 0, rise_ = 0, low_z_ = 0;
+  Vec2 start_{0}, direction_{1, 0};
+  double length_ = 0;  ///< seen from above
+  Vec2 center_{0};
+  double arc_radius_ = 0, start_angle_ = 0, sweep_ = 0, turn_ = 1;
+  double cell_ = 0, half_along_ = 0;
+  std::vector<double> lift_;  ///< of the cutter above its tip, over the square of the radius
+  double lift_scale_ = 0;
+
+  double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;
+  Cost cost_;
+  std::vector<double> bins_;
+  std::vector<char> cuts_;
+  std::vector<Span> spans_;
+};
+
+}  // namespace kerf
