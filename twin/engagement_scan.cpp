@@ -13,6 +13,10 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// What is thinner is not there: heights are floats.
 constexpr double kLeast_mm = 1e-4;
 constexpr int kLifts = 1024;
+/// What one look at the cutter's surface costs, and what a search for a place of it does, in places
+/// (Cost).
+constexpr double kLook = 0.3;
+constexpr double kSearch = 40 * kLook, kSlopedSearch = 120 * kLook;
 constexpr double kWholeTurn = 2 * kPi * (1 + 1e-9);
 constexpr double kSameRadius_mm = 1e-3;
 
@@ -92,8 +96,7 @@ void EngagementScan::set(const HeightGrid& heights, const Cutter& cutter, const 
   lift_.resize(kLifts + 2);
   lift_scale_ = kLifts / radius_;
   for (int k = 0; k <= kLifts; ++k) {
-    lift_[static_cast<std::size_t>(k)] =
-        cutter.height_mm(std::min(radius_ * k / kLifts, radius_));
+    lift_[static_cast<std::size_t>(k)] = cutter.height_mm(std::min(radius_ * k / kLifts, radius_));
   }
   lift_[kLifts + 1] = lift_[kLifts];
 }
@@ -326,6 +329,7 @@ double EngagementScan::take_pass(const Place& place, const Pass& pass, double he
     begin = std::max(begin, (height - surface(place, 0)) / rise_);
     if (begin >= end) return rest;
   }
+  cost_.places += (rise_ < 0 ? 4 : 1) * kLook * (bin_of(end) - bin_of(begin) + 2);
   for (int b = bin_of(begin); b <= bin_of(end); ++b) {
     const double from = from_ + b * bin_, to = std::min(end, from + bin_);
     double level_mm = surface(place, to);
@@ -393,6 +397,7 @@ double EngagementScan::find_begin(double from, double to) {
     for (int k = 0; k < count && removed == kNever; ++k) {
       if (found[k].last >= from) removed = first_below(place, found[k], height);
     }
+    cost_.places += kSearch + (rise_ != 0 ? kSlopedSearch : 0);
     if (removed < from || removed > to) return;
     best = std::min(best, removed);
     // Sides of the blank are where cells end; other walls are somewhere about their middles.
@@ -448,6 +453,7 @@ double EngagementScan::find_end(double from, double to) {
     for (int k = count - 1; k >= 0; --k) {
       const Pass& pass = found[k];
       if (pass.first > to || pass.last < best) continue;
+      cost_.places += kSearch + (rise_ != 0 ? 2 * kSlopedSearch : 0);
       const double lowest = surface(place, lowest_at(place, pass));
       if (lowest >= height - kLeast_mm) continue;
       const double removed_to = settled(place, pass);

@@ -105,7 +105,7 @@ class EngagementScan {
   Vec2 center_{0};
   double arc_radius_ = 0, start_angle_ = 0, sweep_ = 0, turn_ = 1;
   double cell_ = 0, half_along_ = 0;
-  std::vector<double> lift_;  ///< of the cutter above its tip, over the square of the radius
+  std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
   double lift_scale_ = 0;
 
   double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;

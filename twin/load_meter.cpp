@@ -22,10 +22,10 @@ constexpr std::size_t kFewPieces = 5;
 constexpr int kFinerPieces = 8;
 /// Volumes of a scan are told to this part of a window.
 constexpr int kBinsOfWindow = 8;
-/// Looking at a height costs as much as cutting so many cells, and so much what is worked out of
-/// one that is cut.
-constexpr double kCellsOfLook = 3;
-constexpr double kCellsOfPlace = 30;
+/// Looking at a height counts as much as cutting so many cells, and so much what is worked out of
+/// one that is cut: some times what they cost, since what is free must not show.
+constexpr double kCellsOfLook = 12;
+constexpr double kCellsOfPlace = 120;
 
 Motion motion_of(const CutMove& move) {
   Motion motion;
