@@ -27,6 +27,8 @@ struct BeamSettings {
   /// A machine of QtPlasmaC: it lifts the torch between cuts by itself, and the kerf is that of the
   /// material.
   bool is_qtplasmac = false;
+  /// The sheet is a guess, and trigger and kerf may be: no errors come of it.
+  bool guessed = false;
   std::vector<TorchMaterial> materials;  ///< as far as they are known; TorchState::material
 };
 

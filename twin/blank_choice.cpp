@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -159,7 +160,7 @@ class CommentPlaces {
 };
 
 double outward(double value, bool up) {
-  return up ? std::ceil(value - 1e-6) : std::floor(value + 1e-6);
+  return (up ? std::ceil(value - 1e-6) : std::floor(value + 1e-6)) + 0.0;  // no -0
 }
 
 }  // namespace
@@ -188,7 +189,13 @@ std::vector<CommentText> comments_with_units(const Program& program, const std::
 void BlankGuess::add(const Motion& m, double tool_radius_mm) {
   if (m.unknown_to != 0 || (m.kind != MotionKind::kTraverse && !is_feed(m))) return;
   all_mm_.extend(m.to_mm);
-  if (!is_feed(m)) return;
+  if (!is_feed(m)) {
+    const bool level = m.start_known && m.from_mm.z == m.to_mm.z;
+    if (!level || (m.from_mm.x == m.to_mm.x && m.from_mm.y == m.to_mm.y)) return;
+    lowest_rapid_mm_ = has_rapid_ ? std::min(lowest_rapid_mm_, m.to_mm.z) : m.to_mm.z;
+    has_rapid_ = true;
+    return;
+  }
   // A plunge or retraction at feed starts in the air: its end alone says where there is material.
   const bool sideways = m.from_mm.x != m.to_mm.x || m.from_mm.y != m.to_mm.y ||
                         (m.kind == MotionKind::kArc && m.arc.sweep_rad != 0);
@@ -204,6 +211,19 @@ void BlankGuess::add(const Motion& m, double tool_radius_mm) {
   (middle > 0 ? sideways_above_zero_mm_ : sideways_below_zero_mm_) += length;
   highest_sideways_mm_ = has_sideways_ ? std::max(highest_sideways_mm_, m.to_mm.z) : m.to_mm.z;
   has_sideways_ = true;
+  if (m.from_mm.z != m.to_mm.z) return;
+  const auto level = levels_mm_.find(m.to_mm.z);
+  if (level != levels_mm_.end()) {
+    level->second += length;
+  } else if (levels_mm_.size() < kMostLevels) {
+    levels_mm_.emplace(m.to_mm.z, length);
+  }
+}
+
+void BlankGuess::widen(const Box& feeds_mm, double tool_radius_mm) {
+  if (feeds_mm.empty()) return;
+  feeds_mm_.extend(feeds_mm.min - Vec3(tool_radius_mm, tool_radius_mm, 0));
+  feeds_mm_.extend(feeds_mm.max + Vec3(tool_radius_mm, tool_radius_mm, 0));
 }
 
 void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double tool_radius_mm) {
@@ -225,18 +245,34 @@ void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double too
   feeds_mm_.extend(way);
 }
 
+/// `lowest`: of the feeds. Whole mm, but for a skin.
+BlankGuess::Top BlankGuess::top(double lowest) const {
+  double top = 0;
+  double above = std::numeric_limits<double>::infinity();  // how much more may be there
+  if (has_rapid_) above = lowest_rapid_mm_;
+  if (sideways_above_zero_mm_ > sideways_below_zero_mm_) {
+    top = highest_sideways_mm_;
+    if (levels_mm_.size() >= 2 && levels_mm_.rbegin()->first == top) {
+      const double step = top - std::next(levels_mm_.rbegin())->first;
+      if (top + step <= above) top += step;
+    }
+  }
+  if (!has_feed_ || !has_sideways_ || lowest < top) return {outward(top, true), false};
+  const double room = above > lowest ? 0.5 * (above - lowest) : kSkin_mm;
+  return {lowest + std::min(kSkin_mm, room), true};
+}
+
 Blank BlankGuess::blank() const {
   Box box = has_feed_ ? feeds_mm_ : all_mm_;
   if (box.empty()) box.extend(Vec3(0));
   const double lowest = has_feed_ ? lowest_feed_mm_ : 0;
-  double top = 0;
-  if (sideways_above_zero_mm_ > sideways_below_zero_mm_) top = highest_sideways_mm_;
+  const Top top = this->top(lowest);
   double floor = lowest - margin_mm_;
-  if (lowest >= 0 && top > 0) floor = 0;
+  if (lowest >= 0 && top.z_mm > 0 && !top.skin) floor = 0;
   box.min = Vec3(outward(box.min.x - margin_mm_, false), outward(box.min.y - margin_mm_, false),
                  outward(floor, false));
-  box.max = Vec3(outward(box.max.x + margin_mm_, true), outward(box.max.y + margin_mm_, true),
-                 outward(top, true));
+  box.max =
+      Vec3(outward(box.max.x + margin_mm_, true), outward(box.max.y + margin_mm_, true), top.z_mm);
   for (int i = 0; i < 3; ++i) {
     if (box.max[i] - box.min[i] < kLeastGuess_mm) box.min[i] = box.max[i] - kLeastGuess_mm;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,11 +32,16 @@ class BlankGuess {
   /// The same for a tilted tool: what the motion is cut as.
   void add(const Motion& motion, std::span<const CutMove> moves, double tool_radius_mm);
 
+  /// The tool that made the feed moves within this box is so wide: it was not known before.
+  void widen(const Box& feeds_mm, double tool_radius_mm);
+
   /// A box in whole mm around the feed moves:
   ///   X, Y   the feed moves of the tip, plus the tool's radius and the margin on every side
   ///   top    Z0 if the program works below it (most of its sideways feed length lies there, as CAM
-  ///   programs with zero on
-  ///          the top do), else the highest sideways feed move
+  ///          programs with zero on the top do), else the highest sideways feed move, and the step
+  ///          down from there to the next level above it, as far as the lowest rapid allows. Where
+  ///          nothing would be cut (pens, engravings at Z0) kSkin_mm above the feeds, or half the
+  ///          way to the rapids
   ///   floor  the lowest feed move less the margin; Z0 if the program never goes below it (zero on
   ///   the table)
   /// Without feed moves: around the ends of the traverses. Never empty.
@@ -43,7 +49,16 @@ class BlankGuess {
   /// False: not one move has been seen.
   bool has_moves() const { return !all_mm_.empty(); }
 
+  static constexpr double kSkin_mm = 0.5;
+  static constexpr std::size_t kMostLevels = 1000;
+
  private:
+  struct Top {
+    double z_mm = 0;
+    bool skin = false;  ///< just above the only level that is fed
+  };
+  Top top(double lowest) const;
+
   double margin_mm_;
   Box feeds_mm_;  ///< grown by the tool's radius in X and Y
   Box all_mm_;    ///< ends of every move
@@ -53,6 +68,9 @@ class BlankGuess {
   double sideways_below_zero_mm_ = 0;  ///< ... and below or on it
   double highest_sideways_mm_ = 0;
   bool has_sideways_ = false;
+  double lowest_rapid_mm_ = 0;  ///< of traverses that go sideways
+  bool has_rapid_ = false;
+  std::map<double, double> levels_mm_;  ///< level feed moves: height, length; at most kMostLevels
 };
 
 /// Least of 0.01, 0.02, 0.05, 0.1, 0.2, 0.5 mm that gives the blank at most 4 million cells, so

@@ -46,7 +46,14 @@ void CutStage::announce(const ResolvedTool& tool, const Motion& m) {
     finding.id = FindingId::kToolGuessed;
     finding.severity = Severity::kWarning;
     finding.text =
-        tool.guess.empty()
+        tool.from_moves
+            ? fmt::format(
+                  "nothing is known of {}; by its moves it is taken for {}, and that is a "
+                  "guess: {} (--tool {}=SHAPE says better)",
+                  tool.number == 0 ? std::string("the tool in the spindle")
+                                   : fmt::format("tool {}", tool.number),
+                  use.shape, tool.guess, std::max(1, tool.number))
+        : tool.guess.empty()
             ? fmt::format(
                   "only the diameter of tool {} is known ({}); a flat cutter is assumed: {} "
                   "(--tool "

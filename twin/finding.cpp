@@ -127,6 +127,8 @@ const char* to_string(FindingId id) {
       return "not-modelled";
     case FindingId::kNothingCut:
       return "nothing-cut";
+    case FindingId::kToolUnused:
+      return "tool-unused";
     case FindingId::kToolNotChanged:
       return "tool-not-changed";
     case FindingId::kStopInPart:

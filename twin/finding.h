@@ -67,6 +67,7 @@ enum class FindingId : std::uint8_t {
   kToolLength,        ///< the offset in force is not the length of the tool in the spindle
   kNotModelled,       ///< a machine of a kind that no model is for: turning
   kNothingCut,        ///< the program moves nothing, or misses its blank entirely
+  kToolUnused,        ///< --tool describes a tool that the program never uses
   kToolNotChanged,    ///< a T word that no M6 follows, and the old tool cuts on
   kStopInPart,        ///< tool change, M0 or end of the program while the tool is inside the part
   kDrillSideways,     ///< a drill is fed sideways through material
@@ -119,6 +120,15 @@ class FindingLog {
   void set_muted(bool muted) { muted_ = muted; }
   /// The event goes on: its depth becomes the greater of the two.
   void deepen(Handle handle, double depth_mm);
+
+  /// Names and texts of all that is kept: `renamed` gets each.
+  template <typename Renamed>
+  void rename_files(const Renamed& renamed) {
+    for (Finding& finding : kept_) {
+      finding.file = renamed(std::move(finding.file));
+      finding.text = renamed(std::move(finding.text));
+    }
+  }
 
   const std::vector<Finding>& kept() const { return kept_; }
   std::uint64_t count(Severity severity) const {

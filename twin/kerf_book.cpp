@@ -51,7 +51,7 @@ ResolvedTool KerfBook::resolve(const Motion& m, std::span<const TorchMaterial> m
                fmt::format("material {}{}{}", material.number, material.name.empty() ? "" : " ",
                            material.name));
   } else if (tool.cutter) {
-    tool.guessed = false;  // whatever else the tool is: of a kerf the diameter is all
+    tool.guessed = tool.from_moves;  // whatever else the tool is: of a kerf the diameter is all
   }
   return tool;
 }

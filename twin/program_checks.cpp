@@ -158,6 +158,8 @@ Severity blank_severity(BlankKind blank) {
 std::optional<Finding> nothing_cut(const CutFacts& facts) {
   if (facts.blank == BlankKind::kUnjudged || facts.removed_mm3 > 0) return std::nullopt;
   if (facts.probes || facts.undefined || facts.touched) return std::nullopt;
+  // Where the blank is a guess, that nothing was cut says nothing of the program.
+  if (facts.blank == BlankKind::kGuessed && facts.feed_moves > 0) return std::nullopt;
   Finding finding;
   finding.id = FindingId::kNothingCut;
   finding.severity = blank_severity(facts.blank);

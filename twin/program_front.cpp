@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <string>
@@ -60,7 +61,7 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
                         Diagnostics& diagnostics, Outcome& outcome) {
   CommentBlank found;
   if (options.blank) {
-    found = {options.blank, "--stock"};
+    found = {options.blank, options.blank_is_guess ? "guessed" : "--stock"};
   } else if (!find_comment_blank(*front.program, options.program.path, found, diagnostics)) {
     return false;
   }
@@ -74,6 +75,8 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
   if (!found.blank) return true;
   front.blank = std::move(found.blank);
   front.blank_origin = std::move(found.origin);
+  front.blank_guessed = options.blank && options.blank_is_guess;
+  front.guess_reason = options.guess_reason;
   if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}, 0};
   return fill_front(options, front, diagnostics, outcome);
 }
@@ -120,6 +123,7 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
                            diagnostics)) {
     return std::nullopt;
   }
+  front.tools.guesses = options.tool_guesses;
   if (refuse_turning(options.program, front.program.get(), front.tools.table, diagnostics)) {
     outcome = Outcome::kUsageError;
     return std::nullopt;
@@ -152,18 +156,6 @@ void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves)
   }
 }
 
-std::optional<Finding> BlankSurvey::warning() const {
-  if (!guess_.has_moves()) return std::nullopt;
-  Finding finding;
-  finding.id = FindingId::kStockGuessed;
-  finding.severity = Severity::kWarning;
-  finding.text = fmt::format(
-      "no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
-      "--stock SPEC says better)",
-      describe(guess_.blank()), margin_mm_);
-  return finding;
-}
-
 BlankKind judged_blank(const SessionOptions& options, const ProgramFront& front,
                        const ProgramSummary& summary, bool sound) {
   if (!sound || options.stock.additive) return BlankKind::kUnjudged;
@@ -173,6 +165,27 @@ BlankKind judged_blank(const SessionOptions& options, const ProgramFront& front,
   }
   if (front.blank_guessed) return BlankKind::kGuessed;
   return front.blank && !front.blank->state_file.empty() ? BlankKind::kSaved : BlankKind::kGiven;
+}
+
+void add_unused_tools(const SessionOptions& options, std::span<const ToolUse> used,
+                      FindingLog& log) {
+  if (!options.tools_named || options.turret || options.lines != LineRange{}) return;
+  if (used.empty()) return;  // it moves nothing, or lights no torch: that is told
+  std::string names;
+  for (const ToolUse& use : used) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", use.number);
+  }
+  for (const ToolShapeArgument& given : options.tools) {
+    const bool is_used = std::any_of(used.begin(), used.end(),
+                                     [&](const ToolUse& use) { return use.number == given.tool; });
+    if (is_used) continue;
+    add_program_finding(
+        FindingId::kToolUnused, Severity::kNote,
+        fmt::format("--tool {}={}: the program never uses tool {}{}", given.tool,
+                    given.cutter.spec(), given.tool,
+                    names.empty() ? std::string() : fmt::format("; it uses {}", names)),
+        log);
+  }
 }
 
 ProgramEnd conclude_program(const ProgramSummary& summary, Diagnostics said,

@@ -20,6 +20,7 @@
 #include "twin/program_checks.h"
 #include "twin/session_parts.h"
 #include "twin/timeline.h"
+#include "twin/tool_use.h"
 #include "twin/tools.h"
 #include "twin/turret.h"
 
@@ -35,7 +36,14 @@ struct SessionOptions {
   double margin_mm = 5;  ///< around a guessed blank
   double below_mm = 0;   ///< CheckOptions::below_mm
   TimelineOptions timeline;
-  LineRange lines;  ///< cut silently up to there, reported from there, stopped there
+  bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
+  bool guess = true;         ///< what nobody has said; false: that is an error
+  /// What has been guessed of the program already: `blank` is such a one, and why.
+  bool blank_is_guess = false;
+  std::string guess_reason;
+  std::vector<ToolGuess> tool_guesses;
+  std::string beam_text;  ///< of beam.trigger, where that is a guess
+  LineRange lines;        ///< cut silently up to there, reported from there, stopped there
 };
 
 /// A program that can be interpreted, and what is known before it is.
@@ -50,6 +58,7 @@ struct ProgramFront {
   std::string blank_origin;
 
   bool blank_guessed = false;
+  std::string guess_reason;  ///< of that
 
   bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };
@@ -77,16 +86,14 @@ bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, 
 class BlankSurvey {
  public:
   BlankSurvey(double margin_mm, ToolSources tools)
-      : margin_mm_(margin_mm), guess_(margin_mm), book_(std::move(tools), nullptr) {}
+      : guess_(margin_mm), book_(std::move(tools), nullptr) {}
 
   /// `moves`: how the machine moves.
   void add(std::span<const Motion> motions, const MotionMoves& moves);
   Blank blank() const { return guess_.blank(); }
-  /// Says what was assumed. Nothing where nothing moves: nothing will be cut.
-  std::optional<Finding> warning() const;
+  const BlankGuess& guess() const { return guess_; }
 
  private:
-  double margin_mm_;
   BlankGuess guess_;
   ToolBook book_;
   int tool_ = -1;
@@ -105,6 +112,10 @@ struct ProgramEnd {
   Outcome outcome = Outcome::kFinished;
   std::string partial_reason;  ///< empty: everything was read
 };
+
+/// tool-unused, of a whole program that uses these tools.
+void add_unused_tools(const SessionOptions& options, std::span<const ToolUse> used,
+                      FindingLog& log);
 
 /// Adds the findings about the program as a whole: what it does and kerf does not, what the
 /// interpreter said (`said`; not of lines beyond the window), a missing end. `stopped`: from

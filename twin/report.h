@@ -10,6 +10,7 @@
 #include "interp_bridge/program.h"
 #include "twin/cut_stage.h"
 #include "twin/finding.h"
+#include "twin/guess/guess_row.h"
 #include "twin/line_window.h"
 #include "twin/live/live_report.h"
 #include "twin/sheet_report.h"
@@ -51,6 +52,7 @@ struct Report {
   std::optional<StockReport> stock;  ///< absent if the run ended before there was one
   std::optional<SheetReport> sheet;  ///< of a workpiece that is one
   std::vector<ToolUse> tools;
+  std::vector<GuessRow> guesses;   ///< taken for want of better
   bool lengths_all_zero = false;   ///< of the tool table: they are not checked
   std::optional<LiveReport> live;  ///< of shadow and replay
   FindingLog findings;
@@ -61,14 +63,20 @@ struct Report {
 
 /// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
 /// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
-/// program.from_line, program.until_line (where asked for), tools[].origin, findings_total,
-/// timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of sheets: strokes, turret, regrip,
-/// pierces, pauses; part of duration_s), live (shadow and replay), sheet (SheetReport; for a
-/// workpiece that is one).
+/// program.from_line, program.until_line (where asked for), tools[].origin, guessed (what, option,
+/// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
+/// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
+/// sheet (SheetReport; for a workpiece that is one).
 std::string json_text(const Report& report);
 
-/// The page of text that `kerf run` prints; findings are only counted (they are printed as
-/// diagnostics).
-std::string summary_text(const Report& report);
+struct SummaryOptions {
+  bool verbose = false;              ///< all that is known of how the run was made
+  std::vector<std::string> command;  ///< as it was written, kerf itself first: for what was guessed
+};
+
+/// The page of text that `kerf run` prints: verdict, findings by severity (only counted; they are
+/// printed as diagnostics), time, volume, tools, blank, and last what was guessed, with the command
+/// that says so.
+std::string summary_text(const Report& report, const SummaryOptions& options = {});
 
 }  // namespace kerf

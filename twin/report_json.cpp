@@ -79,6 +79,19 @@ Json tools_json(const Report& report) {
   return out;
 }
 
+Json guesses_json(const std::vector<GuessRow>& rows) {
+  Json out = Json::array();
+  for (const GuessRow& row : rows) {
+    Json json;
+    json["what"] = row.what;
+    json["option"] = row.option.empty() ? Json(nullptr) : Json(row.option);
+    json["value"] = row.value;
+    json["reason"] = row.reason;
+    out.push_back(std::move(json));
+  }
+  return out;
+}
+
 Json findings_json(const Report& report) {
   Json out = Json::array();
   for (const Finding& finding : report.findings.kept()) {
@@ -152,6 +165,7 @@ std::string json_text(const Report& report) {
   out["stock"] = stock_json(report);
   if (report.sheet) out["sheet"] = sheet_json(*report.sheet, report.program.files);
   out["tools"] = tools_json(report);
+  if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);
   if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);
   out["findings_total"] = report.findings.total();

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "twin/report.h"
 
@@ -20,21 +23,53 @@ std::string distance_text(double mm) {
 
 std::string volume_text(double mm3) { return fmt::format("{:.3f} cm3", mm3 / 1000); }
 
-/// "3 errors, 1 warning"
-std::string count_text(const FindingLog& log) {
-  const auto part = [](std::uint64_t n, const char* word) {
-    return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
-  };
+/// "2 errors, 1 warning"; "no findings". Notes are no verdict.
+std::string verdict_text(const FindingLog& log) {
+  const std::uint64_t errors = log.count(Severity::kError);
+  const std::uint64_t warnings = log.count(Severity::kWarning);
+  if (log.total() == 0) return "no findings";
+  std::string out = errors == 0 ? std::string("no errors")
+                                : fmt::format("{} error{}", errors, errors == 1 ? "" : "s");
+  if (warnings > 0) out += fmt::format(", {} warning{}", warnings, warnings == 1 ? "" : "s");
+  return out;
+}
+
+/// "errors    2 rapid-contact, 1 below-stock", a line for each severity that there is. Of more
+/// findings than are kept the kinds of the kept ones are told.
+std::string findings_text(const FindingLog& log) {
+  constexpr std::pair<Severity, const char*> kSeverities[] = {
+      {Severity::kError, "errors"}, {Severity::kWarning, "warnings"}, {Severity::kNote, "notes"}};
   std::string out;
-  const auto add = [&](std::uint64_t n, const char* word) {
-    if (n == 0) return;
-    if (!out.empty()) out += ", ";
-    out += part(n, word);
-  };
-  add(log.count(Severity::kError), "error");
-  add(log.count(Severity::kWarning), "warning");
-  add(log.count(Severity::kNote), "note");
-  return out.empty() ? "none" : out;
+  for (const auto& [severity, word] : kSeverities) {
+    if (log.count(severity) == 0) continue;
+    std::vector<std::pair<FindingId, std::uint64_t>> kinds;
+    for (const Finding& finding : log.kept()) {
+      if (finding.severity != severity) continue;
+      const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                      [&](const auto& kind) { return kind.first == finding.id; });
+      if (known != kinds.end()) {
+        ++known->second;
+      } else {
+        kinds.emplace_back(finding.id, 1);
+      }
+    }
+    std::uint64_t told = 0;
+    std::string line;
+    for (const auto& [id, count] : kinds) {
+      told += count;
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", count, to_string(id));
+    }
+    if (told < log.count(severity)) {
+      line += fmt::format("{}{} more", line.empty() ? "" : ", ", log.count(severity) - told);
+    }
+    out += fmt::format("{:<10}{}\n", word, line);
+  }
+  return out;
+}
+
+/// Its first words: what the time was reckoned by.
+std::string short_model(const std::string& time_model) {
+  return time_model.substr(0, time_model.find(": "));
 }
 
 /// Says what the rest of the page is about, where that is not the whole program.
@@ -59,6 +94,9 @@ void add_stock(std::string& out, const StockReport& s) {
   if (!s.model_reason.empty()) {
     out += fmt::format("          {} because {}\n", s.model, s.model_reason);
   }
+}
+
+void add_removed(std::string& out, const StockReport& s) {
   const double removed = s.blank_mm3 - s.remaining_mm3;
   const double percent = s.blank_mm3 > 0 ? 100 * removed / s.blank_mm3 : 0;
   out += fmt::format("removed   {} of {} ({:.1f} %)\n", volume_text(removed),
@@ -143,53 +181,63 @@ std::string held_text(const HeldTime& held) {
   return out;
 }
 
+/// What comes first on every page.
+void add_verdict(std::string& out, const Report& report) {
+  const std::string name = report.program_path.empty() ? "" : report.program_path + ": ";
+  out += fmt::format("verdict   {}{}\n", name, verdict_text(report.findings));
+  if (!report.partial_reason.empty()) {
+    out += fmt::format("PARTIAL   {}: everything here is of the part that was run\n",
+                       report.partial_reason);
+  }
+  out += findings_text(report.findings);
+}
+
 std::string summary_text(const Report& report, const LiveReport& live) {
   std::string out;
-  if (!report.program_path.empty()) {
-    out += fmt::format("program   {}\n", report.program_path);
-  }
+  add_verdict(out, report);
   add_live(out, live);
-  if (report.stock) add_stock(out, *report.stock);
+  if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
-  out += fmt::format("findings  {}\n", count_text(report.findings));
+  if (report.stock) add_stock(out, *report.stock);
   out += fmt::format("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,
                      report.timing.cut_cpu_s, report.peak_rss_mb);
-  if (!report.partial_reason.empty()) {
-    out += fmt::format("PARTIAL   {}\n", report.partial_reason);
-  }
   return out;
+}
+
+/// --verbose.
+void add_details(std::string& out, const Report& report) {
+  const MotionTotals& m = report.motion;
+  out += fmt::format("program   {} lines, {} moves ({} arcs)\n", report.program.program_lines,
+                     m.moves, m.arcs);
+  out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
+                     distance_text(m.traverse_mm));
+  out += fmt::format("model     {}\n", report.time_model);
+  out += fmt::format(
+      "run       {:.2f} s (interpreting {:.2f}, cutting {:.2f}, surface {:.2f}), {:.0f} MB\n",
+      report.timing.total_s, report.timing.interpret_s, report.timing.cut_s, report.timing.mesh_s,
+      report.peak_rss_mb);
 }
 
 }  // namespace
 
-std::string summary_text(const Report& report) {
+std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.live) return summary_text(report, *report.live);
   std::string out;
   const MotionTotals& m = report.motion;
-  out += fmt::format("program   {}: {} lines, {} moves ({} arcs)\n", report.program_path,
-                     report.program.program_lines, m.moves, m.arcs);
+  add_verdict(out, report);
   out += lines_text(report.lines);
-  if (report.stock) add_stock(out, *report.stock);
+  out += fmt::format("time      {}{} ({})\n", duration_text(m.duration_s),
+                     m.held ? held_text(*m.held) : "", short_model(report.time_model));
+  if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
   if (report.lengths_all_zero) {
     out += "lengths   all 0 in the tool table, and so they are not checked\n";
   }
-  out += fmt::format("time      {}{}\n          {}\n", duration_text(m.duration_s),
-                     m.held ? held_text(*m.held) : "", report.time_model);
-  out += fmt::format("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
-                     distance_text(m.traverse_mm));
-  out += fmt::format("findings  {}\n", count_text(report.findings));
-  out += fmt::format(
-      "run       {:.2f} s (interpreting {:.2f}, cutting {:.2f}, surface {:.2f}), {:.0f} MB\n",
-      report.timing.total_s, report.timing.interpret_s, report.timing.cut_s, report.timing.mesh_s,
-      report.peak_rss_mb);
-  if (!report.partial_reason.empty()) {
-    out += fmt::format("PARTIAL   {}: everything above is of the part that was run\n",
-                       report.partial_reason);
-  }
-  return out;
+  if (report.stock) add_stock(out, *report.stock);
+  if (options.verbose) add_details(out, report);
+  return out + guess_text(report.guesses, options.command);
 }
 
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include "base/helper_thread.h"
 #include "interp_bridge/tool_lengths.h"
 #include "twin/batch_queue.h"
+#include "twin/guess/guess_rows.h"
 #include "twin/probe_desk.h"
 
 namespace kerf {
@@ -57,60 +58,13 @@ ProgramSummary Session::interpret(Program& program, const MotionSink& sink, std:
   return summary;
 }
 
-/// One batch of the first pass: bounds, and the motions themselves while they fit. False: a stdin
-/// too long to keep.
-bool Session::gather(std::span<const Motion> motions, BlankSurvey& survey) {
-  kept_whole_ = kept_whole_ && kept_.size() + motions.size() <= kMaxKeptMotions;
-  if (!kept_whole_ && options_.program.path == "-") return false;
-  if (kept_whole_) {
-    kept_.insert(kept_.end(), motions.begin(), motions.end());
-  } else {
-    kept_ = {};
-  }
-  tilt_.look_at(motions, front_.program->workpiece_frame());
-  survey.add(motions, tilt_.moves());
-  return true;
-}
-
-bool Session::guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome) {
-  BlankSurvey survey(options_.margin_mm, front_.tools);
-  bool too_long = false;
-  kept_whole_ = true;
-  front_.program->follow_probes(nullptr);
-  const MotionSink sink = [&](std::span<const Motion> motions) {
-    too_long = !gather(motions, survey);
-    return !too_long;
-  };
-  report_.program = interpret(*front_.program, sink, stop);
-  if (too_long) {
-    diagnostics.push_back(
-        general_error(fmt::format("standard input has more than {} motions, too many to keep while "
-                                  "the blank is guessed from them",
-                                  kMaxKeptMotions),
-                      "--stock SPEC gives the blank, and then any length will do"));
-    outcome = Outcome::kUsageError;
-    return false;
-  }
-  if (stop.stop_requested() && report_.program.stopped_early) return true;
-  front_.blank = survey.blank();
-  front_.blank_origin = "guessed";
-  front_.blank_guessed = true;
-  if (!make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome) ||
-      !fill_front(options_, front_, diagnostics, outcome)) {
-    return false;
-  }
-  if (std::optional<Finding> warning = survey.warning()) {
-    report_.findings.add(std::move(*warning));
-  }
-  return true;
-}
-
 /// False: no more motions are wanted.
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
   const WorkpieceFrame& frame = (second_pass_ ? *second_pass_ : *front_.program).workpiece_frame();
   motions = switched_.follow(motions, frame);
   tilt_.look_at(motions, frame);
+  watch_tools(motions);
   if (must_begin_again()) return false;
   stage.set_frame(frame);
   if (materials_.take(taken_materials_)) stage.set_materials(taken_materials_);
@@ -128,7 +82,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
 
 /// A motion tilts the tool, and the model that was chosen without knowing of it is for upright
 /// ones.
-bool Session::must_begin_again() const {
+bool Session::is_tilted() const {
   return !tilt_.found().empty() && !options_.stock.kind && !front_.is_sheet() &&
          !stock()->takes_tilted_tools();
 }
@@ -175,7 +129,7 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   const double first_pass_s = report_.program.interpret_s;
   report_.program = std::move(summary);
   report_.program.interpret_s += first_pass_s;
-  if (must_begin_again()) return Pass::kTilted;
+  if (must_begin_again()) return Pass::kUnfit;
   const bool unread = stop.stop_requested() && report_.program.stopped_early;
   return unread || stage.stopped() ? Pass::kStopped : Pass::kWhole;
 }
@@ -201,8 +155,8 @@ Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
 }
 
 /// Forgets what the pass has found, and makes the workpiece anew in a model that can hold it.
-bool Session::begin_again(Diagnostics& diagnostics, Outcome& outcome) {
-  if (options_.program.path == "-") {
+bool Session::begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome) {
+  if (is_tilted() && options_.program.path == "-") {
     diagnostics.push_back(general_error(
         fmt::format("{}, and standard input cannot be read a second time for another model",
                     tilt_.found()),
@@ -213,6 +167,8 @@ bool Session::begin_again(Diagnostics& diagnostics, Outcome& outcome) {
   report_.findings = {};
   window_ = LineWindow(options_.lines);
   switched_ = SwitchedMotions(options_.timeline.kinematics);
+  if (std::exchange(lacks_tool_, false) && !survey_program(stop, diagnostics, outcome))
+    return false;
   return make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome);
 }
 
@@ -221,19 +177,26 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   report_.program_path = options_.program.path;
   report_.lines = options_.lines;
   Outcome outcome = Outcome::kFinished;
-  if (!stock() && !guess_blank(stop, diagnostics, outcome)) return outcome;
+  const bool look_first = !stock() || !options_.guess;
+  if (look_first && !survey_program(stop, diagnostics, outcome)) return outcome;
   if (!stock()) return conclude(true);  // stopped while the blank was guessed
-  if (const std::optional<Outcome> ended = cut_and_report(stop, diagnostics)) return *ended;
-  if (!begin_again(diagnostics, outcome)) return outcome;
-  return cut_and_report(stop, diagnostics).value();
+  // Of standard input there is no second reading, and of a given sheet the kerf must be given, too.
+  if (!look_first && options_.program.path != "-" && !front_.is_sheet()) {
+    open_tools_.emplace(front_.tools);
+  }
+  while (true) {
+    if (const std::optional<Outcome> ended = cut_and_report(stop, diagnostics)) return *ended;
+    if (!begin_again(stop, diagnostics, outcome)) return outcome;
+  }
 }
 
-/// Nothing: the program needs another model, and nothing is reported.
+/// Nothing: the program needs another model, or a tool is to be guessed; nothing is reported.
 std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics& diagnostics) {
   if (observer_) observer_->on_start(*stock());
   ToolBook book(front_.tools, row_of(*stock()).can_cut);
   std::optional<BeamSettings> beam;
   if (front_.is_sheet()) beam = beam_settings(options_.beam, front_.program->is_qtplasmac());
+  if (beam) beam->guessed = front_.blank_guessed;
   TimelineOptions timing = options_.timeline;
   if (beam) timing.holds = holds_of(options_.turret, beam);
   CutStage stage(*front_.stock.stock, book, report_.findings, timing);
@@ -248,7 +211,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   stage.count_work(work_done_);
   const double cpu_before = thread_cpu_s();
   const Pass pass = cut_program(stage, stop, diagnostics);
-  if (pass == Pass::kTilted) return std::nullopt;
+  if (pass == Pass::kUnfit) return std::nullopt;
   const bool whole = pass == Pass::kWhole;
   const Clock::time_point finish_start = Clock::now();
   stage.judge_blank(judged_blank(options_, front_, report_.program, !has_error(interpreter_)));
@@ -269,6 +232,7 @@ Outcome Session::conclude(bool stopped) {
   const ProgramEnd end =
       conclude_program(report_.program, interpreter_, window_, stopped, report_.findings);
   report_.partial_reason = end.partial_reason;
+  if (end.partial_reason.empty()) add_unused_tools(options_, report_.tools, report_.findings);
   return end.outcome;
 }
 
@@ -281,6 +245,7 @@ void Session::complete_report(const CutStage& stage) {
   report_.motion = stage.timeline().totals();
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
+  report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
   report_.lengths_all_zero = !table.empty() && known_lengths(table).empty() && !front_.is_sheet();
   report_.stock = stock_report(*stock(), front_.stock.facts);

@@ -14,6 +14,7 @@
 #include "interp_bridge/program.h"
 #include "stock/zmap/zmap.h"
 #include "twin/cut_stage.h"
+#include "twin/guess/program_survey.h"
 #include "twin/kinematics/switched_motions.h"
 #include "twin/line_window.h"
 #include "twin/material_mail.h"
@@ -40,9 +41,10 @@ class SessionObserver {
 
 /// Runs a program through a Z-map. Two threads: one reads the interpreter, the caller's cuts;
 /// between them is a bounded queue, so that memory does not grow with the program and the slower
-/// side sets the pace. Without a blank the motions are needed twice. The first kMaxKeptMotions are
-/// kept (100 MB); a longer file is interpreted a second time, a longer stdin is an error that asks
-/// for --stock.
+/// side sets the pace. Without a blank (and where a tool turns up that is not known) the program is
+/// looked at beforehand for what fits it (twin/guess/), and the motions are needed twice. The first
+/// kMaxKeptMotions are kept (100 MB); a longer file is interpreted a second time, a longer stdin is
+/// an error that asks for --stock.
 class Session {
  public:
   static constexpr std::size_t kMaxKeptMotions = 500'000;
@@ -75,15 +77,21 @@ class Session {
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
 
-  bool guess_blank(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
-  bool gather(std::span<const Motion> motions, BlankSurvey& survey);
-  /// How a pass through the program ended.
-  enum class Pass { kWhole, kStopped, kTilted };
+  bool survey_program(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
+  bool gather(std::span<const Motion> motions, ProgramSurvey& survey);
+  bool take_guesses(const ProgramSurvey& survey, Diagnostics& diagnostics, Outcome& outcome);
+  bool take_sheet(const ProgramSurvey::SheetGuess& guess, const ProgramSurvey& survey,
+                  Diagnostics& diagnostics, Outcome& outcome);
+  /// How a pass through the program ended. kUnfit: another model is needed, or a tool that is not
+  /// known.
+  enum class Pass { kWhole, kStopped, kUnfit };
   ProgramSummary interpret(Program& program, const MotionSink& sink, std::stop_token stop);
   Pass cut_program(CutStage& stage, std::stop_token stop, Diagnostics& diagnostics);
   Pass stream(CutStage& stage, std::stop_token stop);
-  bool must_begin_again() const;
-  bool begin_again(Diagnostics& diagnostics, Outcome& outcome);
+  bool must_begin_again() const { return is_tilted() || lacks_tool_; }
+  bool is_tilted() const;
+  void watch_tools(std::span<const Motion> motions);
+  bool begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
   std::optional<Outcome> cut_and_report(std::stop_token stop, Diagnostics& diagnostics);
   Outcome conclude(bool stopped);
@@ -102,6 +110,8 @@ class Session {
   std::atomic<double> work_read_{0};  ///< CutStage::work_of() of what has come to be cut
   std::atomic<double> work_done_{0};
   SwitchedMotions switched_;
+  std::optional<OpenTools> open_tools_;  ///< while such may be guessed that are met later
+  bool lacks_tool_ = false;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass

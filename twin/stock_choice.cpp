@@ -191,6 +191,8 @@ StockNeeds stock_needs(const ToolSources& tools) {
   for (const ToolShapeArgument& tool : tools.arguments) look_at(tool.cutter);
   for (const ToolHint& hint : tools.hints)
     if (const Result<Cutter> cutter = parse_shape(hint.shape)) look_at(*cutter);
+  for (const ToolGuess& guess : tools.guesses)
+    if (const Result<Cutter> cutter = parse_shape(guess.shape)) look_at(*cutter);
   const auto add_hint = [&needs](const ToolHint& hint) {
     if (!needs.undercut.empty()) return;
     if (const Result<Cutter> cutter = parse_shape(hint.shape)) {

@@ -155,11 +155,27 @@ bool ToolBook::from_table(ResolvedTool& out) const {
   return false;
 }
 
+bool ToolBook::from_guess(ResolvedTool& out) const {
+  for (const ToolGuess& guess : sources_.guesses) {
+    if (guess.tool != out.number) continue;
+    Result<Cutter> cutter = parse_shape(guess.shape);
+    if (!cutter) return false;
+    out.cutter = std::move(cutter.value());
+    out.guessed = out.from_moves = true;
+    out.assumed = false;
+    out.origin = "its moves";
+    out.guess = guess.reason;
+    out.trouble.clear();
+    return true;
+  }
+  return false;
+}
+
 ResolvedTool ToolBook::resolve(int tool, std::optional<std::size_t> fresh_hint) const {
   ResolvedTool out;
   out.number = tool;
   if (from_argument(out) || from_comments(out) || from_place(out, fresh_hint, false) ||
-      from_table(out) || from_place(out, fresh_hint, true)) {
+      from_table(out) || from_place(out, fresh_hint, true) || from_guess(out)) {
     out.trouble.clear();
   }
   return out;
@@ -173,10 +189,12 @@ ResolvedTool ToolBook::resolve_empty_spindle(std::optional<std::size_t> fresh_hi
       out.number = sources_.arguments[0].tool;
       from_argument(out);
     }
-    return out;
-  }
-  if (!from_place(out, fresh_hint, false) && !from_only_tool(out)) {
+  } else if (!from_place(out, fresh_hint, false) && !from_only_tool(out)) {
     from_place(out, fresh_hint, true);
+  }
+  if (!out.cutter) {
+    out.number = 0;
+    from_guess(out);
   }
   return out;
 }

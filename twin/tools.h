@@ -15,11 +15,19 @@
 
 namespace kerf {
 
+/// A shape that fits what the program does with a tool (twin/guess/): no more than that.
+struct ToolGuess {
+  int tool = 0;        ///< 0: what is in the spindle before any tool change
+  std::string shape;   ///< SHAPE text, parse_shape() accepts it
+  std::string reason;  ///< "it only goes up and down"
+};
+
 /// What is known of tools before the program starts.
 struct ToolSources {
   std::vector<ToolShapeArgument> arguments;  ///< --tool N=SHAPE
   std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
   std::vector<ToolTableRow> table;           ///< rows of the tool table
+  std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
 };
 
 /// The diameters of the tools that arguments and comments describe by number: of the widest place.
@@ -32,9 +40,10 @@ struct ResolvedTool {
       cutter;  ///< absent: nothing is known (`trouble` says what is wrong), it does not cut
   std::string
       origin;  ///< "--tool", "comment in line 3 (fusion)", "tool table line 4: its remark", ...
-  bool guessed = false;  ///< its shape, or whether it is this tool's
-  std::string guess;     ///< what is guessed of it, a sentence; empty: all but its diameter
-  bool assumed = false;  ///< the spindle was empty, and this is the only tool described
+  bool guessed = false;     ///< its shape, or whether it is this tool's
+  std::string guess;        ///< what is guessed of it, a sentence; empty: all but its diameter
+  bool from_moves = false;  ///< of ToolSources::guesses: guessed from what the program does with it
+  bool assumed = false;     ///< the spindle was empty, and this is the only tool described
   std::string trouble;
 };
 
@@ -42,9 +51,10 @@ struct ResolvedTool {
 /// the block of its T word, where they disagree the first, guessed; comments at its tool change,
 /// guessed where they are not certainly about it (ToolHint::near) or several stand there; the
 /// remark in the tool table; a flat cutter of the tool table's diameter (guessed). Running text
-/// that names no tool comes after the tool table. Never gives one tool for another, with one
-/// exception that is marked `assumed`: a program that cuts before any tool change has no tool
-/// number, and then the only tool that --tool describes (or, without
+/// that names no tool comes after the tool table; last comes what was guessed from its moves. Never
+/// gives one tool for another, with one exception that is marked `assumed`: a program that cuts
+/// before any tool change has no tool number, and then the only tool that --tool describes (or,
+/// without
 /// --tool, the only one that comments describe) is taken.
 /// Cutters are refused where the stock model cannot hold what they leave.
 class ToolBook {
@@ -71,6 +81,7 @@ class ToolBook {
   bool from_only_tool(ResolvedTool& out) const;
   void note_disagreement(ResolvedTool& out, const ToolHint& taken) const;
   bool from_table(ResolvedTool& out) const;
+  bool from_guess(ResolvedTool& out) const;
   std::optional<std::size_t> take_nameless_hint(std::uint32_t line);
   void refuse_unfit(ResolvedTool& tool) const;
 

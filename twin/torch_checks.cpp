@@ -94,9 +94,9 @@ void TorchChecks::pierces(const Motion& m, const TimedStep& step) {
   if (!piece) return;
   crossed_.insert(piece->number);
   Finding out = finding(FindingId::kPierceInPart, m, step, m.from_mm);
-  out.severity = Severity::kError;
-  out.text = fmt::format("pierces piece {}, which is {} and may have moved", piece->number,
-                         free_since(*piece));
+  out.severity = options_.guessed ? Severity::kWarning : Severity::kError;
+  out.text = fmt::format("pierces piece {}, which is {} and may have moved{}", piece->number,
+                         free_since(*piece), options_.guessed ? " (of a guessed sheet)" : "");
   log_.add(std::move(out));
 }
 

@@ -34,7 +34,8 @@ struct TorchCheckOptions {
   /// After M5 that machine's torch is up, whatever the program says (held off by output 3 it stays
   /// down); it has other tools as well.
   bool is_qtplasmac = false;
-  double slats_mm = 0;  ///< from one slat of the table to the next; 0: not known
+  double slats_mm = 0;   ///< from one slat of the table to the next; 0: not known
+  bool guessed = false;  ///< BeamSettings::guessed
 };
 
 /// Asked before a motion cuts. Paths are looked at in points kStep_mm apart: what is narrower than

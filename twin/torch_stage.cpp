@@ -27,7 +27,8 @@ TorchStage::TorchStage(StockModel& stock, ToolBook& tools, FindingLog& log, Beam
       settings_(std::move(settings)),
       moves_(settings_.trigger, settings_.pierce_mm),
       kerfs_(tools, settings_.kerf_mm, settings_.is_qtplasmac),
-      checks_(*as_sheet(stock), log, {settings_.is_qtplasmac, settings_.slats_mm}) {}
+      checks_(*as_sheet(stock), log,
+              {settings_.is_qtplasmac, settings_.slats_mm, settings_.guessed}) {}
 
 void TorchStage::set_materials(std::span<const TorchMaterial> materials) {
   settings_.materials.assign(materials.begin(), materials.end());
@@ -54,7 +55,9 @@ void TorchStage::take_piece(const Motion& m, const TimedStep& step) {
     checks_.travels(m, step);
     return;
   }
-  if (m.kind == MotionKind::kProgramEnd) checks_.stays_on(m.source, step.start_s);
+  if (m.kind == MotionKind::kProgramEnd && !settings_.guessed) {
+    checks_.stays_on(m.source, step.start_s);
+  }
   totals_.beam_s += step.held_before_s + step.duration_s;
   if (moves_.burns(m)) burn(m, step);
 }
@@ -122,17 +125,28 @@ ToolUse& TorchStage::use_of(const ResolvedTool& kerf, const Motion& m) {
   use.number = kerf.number;
   use.origin = kerf.cutter ? kerf.origin : std::string();
   use.shape = shape;
+  use.guessed = kerf.cutter && kerf.guessed;
   announce(kerf, m);
   return use;
 }
 
 void TorchStage::announce(const ResolvedTool& kerf, const Motion& m) {
-  if (!kerf.cutter || !kerf.assumed) return;
+  if (!kerf.cutter || !(kerf.assumed || kerf.from_moves)) return;
   Finding finding;
   finding.id = FindingId::kToolAssumed;
   finding.severity = Severity::kNote;
   finding.source = m.source;
   finding.tool = kerf.number;
+  if (kerf.from_moves) {
+    finding.id = FindingId::kToolGuessed;
+    finding.severity = Severity::kWarning;
+    finding.text = fmt::format(
+        "the kerf is taken to be {:g} mm wide, and that is a guess: {} "
+        "(--kerf MM says better)",
+        2 * kerf.cutter->radius_mm(), kerf.guess);
+    log_.add(std::move(finding));
+    return;
+  }
   finding.text = fmt::format(
       "the program cuts before any tool change; tool {} ({}, {}) is taken to be the torch",
       kerf.number, kerf.cutter->spec(), kerf.origin);

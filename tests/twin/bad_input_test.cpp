@@ -87,9 +87,9 @@ TEST_F(BadInput, UnknownCommandAndExtraArguments) {
   expect(kerf({"rnu", "part.canon"}), 2,
          "kerf: error: unknown command 'rnu'; did you mean run?\n   hint: kerf --help lists what "
          "there is\n");
-  expect(run({"part.canon", "other.canon"}), 2,
+  expect(kerf({"canon", "part.canon", "other.canon"}), 2,
          "kerf: error: 'other.canon': one argument too many\n"
-         "   hint: kerf run --help lists what there is\n");
+         "   hint: kerf canon --help lists what there is\n");
   expect(run({"part.canon", "--stock", ""}), 2, "kerf: error: --stock: the value is empty\n");
 }
 
@@ -115,11 +115,14 @@ TEST_F(BadInput, CellLargerThanTheStockOrTooSmall) {
 }
 
 TEST_F(BadInput, UnknownShapeAndToolZero) {
-  expect(run({"part.canon", "--tool", "1=flet:6", "--tool", "0=flat:6"}), 2,
-         "kerf: error: --tool: tool 1: flet:6: unknown shape 'flet'; did you mean 'flat'? Shapes: "
-         "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, kerf, "
-         "profile\n"
-         "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n");
+  expect(
+      run({"part.canon", "--tool", "1=flet:6", "--tool", "0=flat:6"}), 2,
+      "kerf: error: --tool: tool 1: flet:6: unknown shape 'flet'; did you mean 'flat'? Shapes: "
+      "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, kerf, "
+      "profile\n"
+      "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n"
+      "   hint: --tool 1=SHAPE, if it is the only --tool, is what is in the spindle of a program "
+      "that changes no tool\n");
 }
 
 TEST_F(BadInput, CutterWithAHollowBottom) {
@@ -177,10 +180,10 @@ TEST_F(BadInput, FileThatGetsTooLargeLeavesTheOldOneAlone) {
   EXPECT_EQ(listing(folder_.path()), "part.canon part.ngc part.stl");
 }
 
-TEST_F(BadInput, StdinThatIsNoListing) {
+TEST_F(BadInput, StdinThatIsNeitherListingNorProgram) {
   KerfCall call;
   call.arguments = {"run", "-", "--stock", box_, "--quiet"};
-  call.input = "G0 X1\n";
+  call.input = "Dear machine,\nplease mill this.\n";
   const KerfResult result = run_kerf(call);
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_NE(result.err.find("no line of it is a canonical command of rs274"), std::string::npos)

@@ -120,17 +120,73 @@ TEST(ReportJson, TextThatIsNotUtf8StaysValidJson) {
 TEST(ReportText, IsAPageThatReadsInTenSeconds) {
   EXPECT_EQ(
       summary_text(sample()),
-      "program   part.ngc: 120 lines, 4684 moves (0 arcs)\n"
-      "stock     box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0 (--stock)\n"
-      "          zmap, cells of 0.05 mm, 2.40 million\n"
+      "verdict   part.ngc: 1 error\n"
+      "errors    1 rapid-contact\n"
+      "time      1 h 02 min 05 s (length / feed)\n"
       "removed   30.000 cm3 of 120.000 cm3 (25.0 %)\n"
       "tools     3   ball:6 (--tool)\n"
       "              removed 30.000 cm3, cutting 1 min 01 s, deepest cut 2.50 mm, peak 40.0 mm3/s\n"
-      "time      1 h 02 min 05 s\n"
-      "          length / feed\n"
-      "distance  feed 12.35 m, traverse 0.0 mm\n"
-      "findings  1 error\n"
-      "run       0.00 s (interpreting 0.00, cutting 0.00, surface 0.00), 0 MB\n");
+      "stock     box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0 (--stock)\n"
+      "          zmap, cells of 0.05 mm, 2.40 million\n");
+}
+
+TEST(ReportText, TellsFindingsBySeverityAndKind) {
+  Report r = sample();
+  const auto add = [&r](FindingId id, Severity severity) {
+    Finding finding;
+    finding.id = id;
+    finding.severity = severity;
+    r.findings.add(finding);
+  };
+  add(FindingId::kBelowStock, Severity::kError);
+  add(FindingId::kBelowStock, Severity::kError);
+  add(FindingId::kToolGuessed, Severity::kWarning);
+  add(FindingId::kKinematics, Severity::kNote);
+  EXPECT_EQ(summary_text(r).rfind("verdict   part.ngc: 3 errors, 1 warning\n"
+                                  "errors    1 rapid-contact, 2 below-stock\n"
+                                  "warnings  1 tool-guessed\n"
+                                  "notes     1 kinematics\n"
+                                  "time ",
+                                  0),
+            0U)
+      << summary_text(r);
+  r.findings = {};
+  EXPECT_EQ(summary_text(r).rfind("verdict   part.ngc: no findings\ntime ", 0), 0U);
+  add(FindingId::kToolGuessed, Severity::kWarning);
+  EXPECT_EQ(summary_text(r).rfind("verdict   part.ngc: no errors, 1 warning\n", 0), 0U);
+}
+
+TEST(ReportText, HasItsDetailsByWish) {
+  Report r = sample();
+  r.time_model = "LinuxCNC 2.9 trajectory planner, limits of mill.ini: X 60 mm/s, and so on";
+  const std::string text = summary_text(r);
+  EXPECT_NE(text.find("(LinuxCNC 2.9 trajectory planner, limits of mill.ini)\n"), text.npos)
+      << text;
+  EXPECT_EQ(text.find("X 60 mm/s"), text.npos);
+  EXPECT_EQ(text.find("distance"), text.npos);
+  const std::string all = summary_text(r, {true, {}});
+  EXPECT_NE(
+      all.find("program   120 lines, 4684 moves (0 arcs)\n"
+               "distance  feed 12.35 m, traverse 0.0 mm\n"
+               "model     LinuxCNC 2.9 trajectory planner, limits of mill.ini: X 60 mm/s, and "
+               "so on\n"
+               "run       0.00 s (interpreting 0.00, cutting 0.00, surface 0.00), 0 MB\n"),
+      all.npos)
+      << all;
+}
+
+TEST(ReportText, EndsWithWhatWasGuessed) {
+  Report r = sample();
+  r.guesses = {{"blank", "--stock", "box:0,0,-20:100,60,0", "the feed moves plus 5 mm"}};
+  const std::string text = summary_text(r, {false, {"kerf", "run", "part.ngc"}});
+  EXPECT_TRUE(
+      text.ends_with("guessed   blank   box:0,0,-20:100,60,0 (the feed moves plus 5 mm)\n"
+                     "          correct what is wrong, and run it again:\n"
+                     "          kerf run part.ngc --stock box:0,0,-20:100,60,0\n"))
+      << text;
+  const Json json = Json::parse(json_text(r));
+  EXPECT_EQ(json["guessed"][0]["option"], "--stock");
+  EXPECT_EQ(json["guessed"][0]["value"], "box:0,0,-20:100,60,0");
 }
 
 TEST(ReportText, MarksPartialRuns) {

@@ -69,7 +69,7 @@ TEST_F(RunCommand, CleanRunLeavesItsOutputsAndExitCodeZero) {
               outline * 0.05);
   EXPECT_EQ(report["tools"][0]["shape"], "flat:6");
   EXPECT_NEAR(report["motion"]["feed_mm"].get<double>(), 26, 1e-6);
-  EXPECT_NE(result.out.find("findings  none\n"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.rfind("verdict   slot.canon: no findings\n", 0), 0U) << result.out;
 }
 
 TEST_F(RunCommand, UntilALineIsAPartOfTheProgramAndNoFinding) {
@@ -135,13 +135,13 @@ TEST_F(RunCommand, FindingsAreSaidAndGiveExitCodeOne) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err.substr(0, result.err.find(" at X")),
             "slot.canon:6: error: rapid-contact: traverse touches the workpiece, 1.00 mm deep");
-  EXPECT_NE(result.out.find("findings  1 error\n"), std::string::npos);
+  EXPECT_EQ(result.out.rfind("verdict   slot.canon: 1 error\nerrors    1 rapid-contact\n", 0), 0U);
 }
 
 TEST_F(RunCommand, ReportOnStdoutSendsTheSummaryToStderr) {
   const KerfResult result = run(slot({"--json", "-"}));
   EXPECT_FALSE(Json::parse(result.out, nullptr, false).is_discarded());
-  EXPECT_EQ(result.err.rfind("program   slot.canon", 0), 0U) << result.err;
+  EXPECT_EQ(result.err.rfind("verdict   slot.canon", 0), 0U) << result.err;
 }
 
 TEST_F(RunCommand, QuietSaysNothingOfACleanRun) {

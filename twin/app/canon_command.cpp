@@ -9,6 +9,7 @@
 #include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/progress_bar.h"
+#include "twin/app/stdin_program.h"
 #include "twin/app/stop_signals.h"
 #include "twin/motion_json.h"
 
@@ -59,15 +60,19 @@ class LineWriter : private StepSink {
 int canon_command(const CanonArguments& arguments) {
   Diagnostics diagnostics;
   OptionReader reader(diagnostics);
-  const ProgramRequest request = understand_program(arguments.source, reader);
+  ProgramRequest request = understand_program(arguments.source, reader);
   if (has_error(diagnostics)) {
     print(diagnostics, arguments.quiet);
     return kExitUsage;
   }
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
-  const auto program = Program::open(request.program, diagnostics);
+  StdinProgram kept;
+  kept.take(request.program.path, stop.get_token(), diagnostics);
+  const auto program =
+      has_error(diagnostics) ? nullptr : Program::open(request.program, diagnostics);
   if (!program) {
+    for (Diagnostic& d : diagnostics) d.file = kept.renamed(std::move(d.file));
     print(diagnostics, arguments.quiet);
     return kExitFailure;
   }
@@ -82,9 +87,14 @@ int canon_command(const CanonArguments& arguments) {
     const bool shown = !arguments.quiet && arguments.out != "-";
     const ProgressBar bar([&] { return program->progress(); }, shown);
     summary = program->run(
-        [&](std::span<const Motion> motions) { return writer.write(program->files(), motions); },
+        [&](std::span<const Motion> motions) {
+          std::vector<std::string> files = program->files();
+          for (std::string& name : files) name = kept.renamed(std::move(name));
+          return writer.write(files, motions);
+        },
         stop.get_token(), diagnostics);
   }
+  for (Diagnostic& d : diagnostics) d.file = kept.renamed(std::move(d.file));
   writer.finish();
   const Done written = file->commit();
   print(diagnostics, arguments.quiet);

@@ -6,7 +6,7 @@ namespace {
 void add_program_argument(CLI::App& command, ProgramArguments& a) {
   command
       .add_option("PROGRAM", a.program,
-                  "NC file, saved canonical listing (.canon), or - (rs274 text on stdin)")
+                  "NC file, saved canonical listing (.canon), or - (either of them on stdin)")
       ->required();
 }
 
@@ -94,6 +94,13 @@ void add_work_options(CLI::App& command, WorkArguments& a) {
       ->type_name("N");
   command.add_option("--kernel", a.kernel, "cutting kernel: auto | scalar | avx2; same result")
       ->type_name("NAME");
+}
+
+void add_no_guess(CLI::App& command, RunArguments& a) {
+  command.add_flag(
+      "--no-guess", a.no_guess,
+      "for scripts: a blank or a tool that nobody has described is an error (exit code "
+      "2, with all that is missing)");
 }
 
 void add_torch_options(CLI::App& command, TorchArguments& a) {
@@ -193,7 +200,11 @@ void add_shadow_options(CLI::App& shadow, LiveArguments& a) {
 }  // namespace
 
 void add_run_options(CLI::App& run, RunArguments& a) {
-  add_program_argument(run, a.source);
+  run.add_option(
+         "PROGRAM", a.programs,
+         "NC file, saved canonical listing (.canon), or - (either of them on stdin); several "
+         "are run one after the other, and the exit code is the worst of them")
+      ->required();
   run.add_option("-c,--config", a.config, "configuration: machine, beam, tools, stock")
       ->type_name("FILE");
   run.add_option("--set", a.sets, "any key of the configuration, repeatable")
@@ -202,6 +213,7 @@ void add_run_options(CLI::App& run, RunArguments& a) {
   add_program_options(run, a.source);
   add_as_mill(run, a.source);
   add_work_options(run, a.work);
+  add_no_guess(run, a);
   add_torch_options(run, a.torch);
   add_turret_option(run, a.torch);
   run.add_option("--from-line", a.from_line,
@@ -216,6 +228,8 @@ void add_run_options(CLI::App& run, RunArguments& a) {
                  "the window's workpiece by mesh | raycast | csg (default as it remembers it)")
       ->type_name("NAME");
   run.add_flag("--quiet", a.quiet, "no summary, no progress bar, no warnings");
+  run.add_flag("--verbose", a.verbose,
+               "a longer summary: moves and distances, the whole time model, what the run took");
 }
 
 void add_view_options(CLI::App& view, ViewArguments& a) {
@@ -230,6 +244,7 @@ void add_view_options(CLI::App& view, ViewArguments& a) {
   add_program_options(view, a.run.source);
   add_as_mill(view, a.run.source);
   add_work_options(view, a.run.work);
+  add_no_guess(view, a.run);
   add_torch_options(view, a.run.torch);
   add_turret_option(view, a.run.torch);
   view.add_option("--until-line", a.run.until_line, "nothing beyond line N")->type_name("N");

@@ -242,6 +242,8 @@ int run(int argc, char** argv) {
   app.footer(std::string(kExamples) + "\n" + kExitCodes);
   app.allow_extras();
   Commands commands(app);
+  commands.run_arguments.command.assign(argv, argv + argc);
+  commands.view_arguments.run.command = commands.run_arguments.command;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -28,13 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-std::array<NamedPath, 7> named(const OutputPaths& paths) {
-  return {NamedPath{"--json", &paths.json},   NamedPath{"--png", &paths.png},
-          NamedPath{"--stl", &paths.stl},     NamedPath{"--ply", &paths.ply},
-          NamedPath{"--state", &paths.state}, NamedPath{"--dxf", &paths.dxf},
-          NamedPath{"--svg", &paths.svg}};
-}
-
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
   d.message = std::move(message);
@@ -82,6 +75,12 @@ Done write_picture(const std::string& path, const StockModel& stock, const std::
 
 }  // namespace
 
+std::array<std::pair<const char*, const std::string*>, 7> OutputPaths::named() const {
+  return {NamedPath{"--json", &json}, NamedPath{"--png", &png},     NamedPath{"--stl", &stl},
+          NamedPath{"--ply", &ply},   NamedPath{"--state", &state}, NamedPath{"--dxf", &dxf},
+          NamedPath{"--svg", &svg}};
+}
+
 void check_picture_name(const char* option, const std::string& path, Diagnostics& diagnostics) {
   constexpr std::array kOthers{".jpg",  ".jpeg", ".gif", ".bmp", ".tif",
                                ".tiff", ".webp", ".svg", ".pdf"};
@@ -100,7 +99,7 @@ void check_picture_name(const char* option, const std::string& path, Diagnostics
 
 void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
   check_picture_name("--png", paths.png, diagnostics);
-  const auto all = named(paths);
+  const auto all = paths.named();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const std::string& path = *all[i].second;
@@ -112,7 +111,7 @@ void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) 
 }
 
 void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
-  for (const auto& [option, path] : named(paths)) {
+  for (const auto& [option, path] : paths.named()) {
     // Only files are replaced within their folder.
     if (path->empty() || written_as_it_comes(*path)) continue;
     std::error_code ignored;

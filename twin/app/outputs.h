@@ -1,7 +1,9 @@
 // twin/app/outputs.h - the files that a run leaves: report, picture, meshes, saved workpiece.
 #pragma once
 
+#include <array>
 #include <string>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "stock/zmap/zmap.h"
@@ -19,8 +21,10 @@ struct OutputPaths {
   std::string dxf;  ///< what is left of a sheet, and parts beside it (write_outlines)
   std::string svg;
 
+  /// With the options that give them.
+  std::array<std::pair<const char*, const std::string*>, 7> named() const;
   bool uses_stdout() const {
-    for (const std::string* path : {&json, &png, &stl, &ply, &state, &dxf, &svg}) {
+    for (const auto& [option, path] : named()) {
       if (*path == "-" || *path == "/dev/stdout") return true;
     }
     return false;

@@ -2,16 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <stop_token>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "twin/app/console.h"
 #include "twin/app/exit_code.h"
+#include "twin/app/option_reader.h"
 #include "twin/app/progress_bar.h"
+#include "twin/app/stdin_program.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/view_command.h"
 #include "twin/app/window_host.h"
@@ -57,15 +63,26 @@ int exit_code(Outcome outcome, const Report& report, const Diagnostics& diagnost
   return report.findings.count(Severity::kError) > 0 ? kExitFindings : kExitGood;
 }
 
-}  // namespace
-
-int run_command(const RunArguments& arguments) {
-  Diagnostics diagnostics;
-  const RunRequest request = understand(arguments, diagnostics);
-  if (has_error(diagnostics)) {
-    print(diagnostics);
-    return kExitUsage;
+/// Messages about the text of standard input are not about the file that it was kept in.
+void rename_stdin(const StdinProgram& kept, Report& report, Diagnostics& diagnostics) {
+  if (kept.path().empty()) return;
+  report.program_path = StdinProgram::kName;
+  for (std::string& file : report.program.files) file = kept.renamed(std::move(file));
+  for (Diagnostic& d : diagnostics) {
+    d.file = kept.renamed(std::move(d.file));
+    d.message = kept.renamed(std::move(d.message));
   }
+  report.findings.rename_files([&](std::string text) { return kept.renamed(std::move(text)); });
+}
+
+/// How one of the programs ended.
+struct RunEnd {
+  int code = kExitGood;
+  bool interrupted = false;
+};
+
+RunEnd run_one(RunRequest request) {
+  Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
   if (request.view && !has_display()) {
     Diagnostic d;
@@ -76,36 +93,91 @@ int run_command(const RunArguments& arguments) {
   if (request.view) check_shapes(request.machine, diagnostics);
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
+  StdinProgram kept;
   // Before the session is opened: filling a large blank takes its time, too.
   std::stop_source stop;
   std::atomic<Session*> opened{nullptr};
   const StopSignals signals(stop, [&] { abandon(opened); });
+  kept.take(request.session.program.path, stop.get_token(), diagnostics);
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
+  Report none;
+  rename_stdin(kept, session ? session->report() : none, diagnostics);
   print(diagnostics);
-  if (!session) return exit_code(outcome, Report{}, diagnostics);
+  if (!session) return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested()};
   diagnostics.clear();
   opened = session.get();
   {
     const ProgressBar bar([&] { return session->progress(); }, !request.quiet);
     outcome = session->run(stop.get_token(), diagnostics);
   }
+  rename_stdin(kept, session->report(), diagnostics);
   if (!has_error(diagnostics)) {
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
                   diagnostics);
     print_findings(session->report(), request.quiet);
     if (!request.quiet) {
       kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
-                  summary_text(session->report()));
+                  summary_text(session->report(), request.summary));
     }
   }
   flush_console();
   print(diagnostics);
   const int code = exit_code(outcome, session->report(), diagnostics);
-  if (!request.view || stop.stop_requested() || !session->stock()) return code;
+  if (!request.view || stop.stop_requested() || !session->stock()) {
+    return {code, stop.stop_requested()};
+  }
   session.reset();
   opened = nullptr;
   const int shown = show_program(request, stop);
-  return shown == kExitGood ? code : shown;
+  return {shown == kExitGood ? code : shown, stop.stop_requested()};
+}
+
+/// What one file or one window cannot take of several programs.
+void refuse_shared_outputs(const RunArguments& arguments, Diagnostics& diagnostics) {
+  OptionReader reader(diagnostics);
+  for (const auto& [option, path] : arguments.outputs.named()) {
+    if (path->empty()) continue;
+    reader.fault(
+        option,
+        fmt::format("{}: one file, and there are {} programs", *path, arguments.programs.size()),
+        "run them one by one, each with a file of its own");
+  }
+  if (arguments.view) reader.fault("--view", "one window, and there are several programs");
+}
+
+/// The command of one of several programs: without the others.
+std::vector<std::string> own_command(const RunArguments& arguments, const std::string& program) {
+  std::vector<std::string> command = arguments.command;
+  for (const std::string& other : arguments.programs) {
+    if (other != program) std::erase(command, other);
+  }
+  return command;
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  RunArguments one = arguments;
+  if (!arguments.programs.empty()) one.source.program = arguments.programs.front();
+  Diagnostics diagnostics;
+  RunRequest request = understand(one, diagnostics);
+  if (arguments.programs.size() > 1) refuse_shared_outputs(arguments, diagnostics);
+  if (has_error(diagnostics)) {
+    print(diagnostics);
+    return kExitUsage;
+  }
+  print(diagnostics);  // warnings about files
+  if (arguments.programs.size() <= 1) return run_one(std::move(request)).code;
+  RunEnd worst;
+  for (const std::string& program : arguments.programs) {
+    RunRequest own = request;
+    own.session.program.path = program;
+    own.summary.command = own_command(arguments, program);
+    const RunEnd end = run_one(std::move(own));
+    worst.code = std::max(worst.code, end.code);
+    if (end.interrupted) break;
+  }
+  return worst.code;
 }
 
 }  // namespace kerf

@@ -73,6 +73,7 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   session.timeline = std::move(source.timeline);
   WorkRequest work = understand_work(a.work, reader);
   session.tools = std::move(work.tools);
+  session.tools_named = !session.tools.empty();
   session.blank = std::move(work.blank);
   session.stock = work.stock;
   session.margin_mm = work.margin_mm;
@@ -89,6 +90,9 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   request.outputs = a.outputs;
   check_outline_wishes(request.session.blank, request.outputs, reader);
   request.quiet = a.quiet;
+  request.summary = {a.verbose, a.command};
+  session.guess = !a.no_guess;
+  if (a.quiet && a.verbose) reader.fault("--verbose", "--quiet wants no summary at all");
   request.view = a.view;
   request.ini = a.source.ini;
   if (config) request.machine = config->machine.drawn;

@@ -19,8 +19,9 @@ namespace kerf {
 
 /// The arguments as written. Empty = not given.
 struct RunArguments {
-  std::string config;             ///< of `kerf run`; other commands read theirs themselves
-  std::vector<std::string> sets;  ///< likewise
+  std::string config;                 ///< of `kerf run`; other commands read theirs themselves
+  std::vector<std::string> sets;      ///< likewise
+  std::vector<std::string> programs;  ///< of `kerf run`; empty: source.program alone
   ProgramArguments source;
   WorkArguments work;
   TorchArguments torch;
@@ -31,6 +32,9 @@ struct RunArguments {
   bool view = false;
   std::string draw;  ///< of `kerf run`; `kerf view` has its own
   bool quiet = false;
+  bool verbose = false;
+  bool no_guess = false;
+  std::vector<std::string> command;  ///< all of it as written, kerf itself first
 };
 
 /// The same, understood.
@@ -43,6 +47,7 @@ struct RunRequest {
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
   bool quiet = false;
+  SummaryOptions summary;
 };
 
 /// What the configuration says of machine, beam, tools and blank, where the command line does not.

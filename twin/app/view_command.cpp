@@ -89,6 +89,12 @@ std::unique_ptr<LoadedProgram> load(const ViewRequest& request, Kind kind,
   return loaded;
 }
 
+/// What was taken for want of better, and the command that says so.
+void print_guesses(const ViewRequest& request, const LoadedProgram& loaded) {
+  if (request.run.quiet || loaded.guesses.empty()) return;
+  kerf::print(stderr, "{}", guess_text(loaded.guesses, request.run.summary.command));
+}
+
 /// The block that the interpreter refused, if there is one, and why the program is not whole.
 void print_faults(const LoadedProgram& loaded) {
   for (const Finding& remark : loaded.player.remarks) {
@@ -183,6 +189,7 @@ class Work {
     print(diagnostics, request_.run.quiet);
     if (!loaded || stop_.stop_requested()) return exit_code(outcome, diagnostics);
     print_faults(*loaded);
+    print_guesses(request_, *loaded);
     ViewedProgram shown = viewed(request_, *loaded);
     PlayerOptions options = request_.player;
     PlayerView view(std::move(loaded->player), options, std::move(shown), mailbox_, commands_);
@@ -266,6 +273,7 @@ int into_files(const ViewRequest& request, Kind kind, const std::stop_source& st
   print(diagnostics, request.run.quiet);
   if (!loaded) return exit_code(outcome, diagnostics);
   print_faults(*loaded);
+  print_guesses(request, *loaded);
   const bool whole = loaded->partial_reason.empty();
   ViewedProgram shown = viewed(request, *loaded);
   const std::shared_ptr<const ProgramTrack> track = loaded->player.track;

@@ -36,7 +36,9 @@ void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkReques
     }
     if (tool->tool == 0) {
       reader.fault("--tool",
-                   fmt::format("'{}': tool 0 is the empty spindle; numbers begin at 1", text));
+                   fmt::format("'{}': tool 0 is the empty spindle; numbers begin at 1", text),
+                   "--tool 1=SHAPE, if it is the only --tool, is what is in the spindle of a "
+                   "program that changes no tool");
       continue;
     }
     if (const Done fit = can_be_cut(work.stock.kind, tool->cutter); !fit) {

@@ -1,5 +1,7 @@
 #include "twin/playback/load_program.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -8,6 +10,8 @@
 #include <utility>
 
 #include "interp_bridge/parameter_file.h"
+#include "twin/guess/guess_rows.h"
+#include "twin/guess/program_survey.h"
 #include "twin/kerf_book.h"
 #include "twin/kinematics/switched_motions.h"
 #include "twin/playback/mounted_tools.h"
@@ -43,7 +47,9 @@ ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>&
 
 std::optional<BeamSettings> beam_of(const SessionOptions& options, const ProgramFront& front) {
   if (!front.is_sheet() || options.turret) return std::nullopt;
-  return beam_settings(options.beam, front.program->is_qtplasmac());
+  BeamSettings beam = beam_settings(options.beam, front.program->is_qtplasmac());
+  beam.guessed = front.blank_guessed;
+  return beam;
 }
 
 TimelineOptions timing_of(const SessionOptions& options, const ProgramFront& front) {
@@ -132,8 +138,9 @@ class Loading {
                options.turret),
         tilt_(options.timeline.kinematics),
         switched_(options.timeline.kinematics) {
-    if (!front.stock.stock) survey_.emplace(options.margin_mm, front.tools);
+    blank_wanted_ = !front.stock.stock;
     if (front.is_sheet()) return;
+    survey_.emplace(SurveyWishes::of(options, front), front.tools);
     if (cuts) workpiece_.emplace(options, front, control.stop);
     if (front.stock.stock) {
       program_.follow_probes([this](const ProbeQuestion& question) { return answer(question); });
@@ -151,7 +158,7 @@ class Loading {
 
   /// It probes, and was read without `cuts`: no further than there.
   bool wants_to_cut() const { return wants_to_cut_; }
-  const std::optional<BlankSurvey>& survey() const { return survey_; }
+  const std::optional<ProgramSurvey>& survey() const { return survey_; }
   const LineWindow& window() const { return window_; }
   const std::string& tilt() const { return tilt_.found(); }
   std::size_t report_from() const {
@@ -199,7 +206,7 @@ class Loading {
       motions_ += split.before + split.within;
     }
     if (control_.on_progress) control_.on_progress({program_.progress(), motions_});
-    return survey_ || !window_.over();
+    return blank_wanted_ || !window_.over();
   }
 
   const LoadControl& control_;
@@ -211,7 +218,8 @@ class Loading {
   ToolList tools_;
   TiltWatch tilt_;
   SwitchedMotions switched_;
-  std::optional<BlankSurvey> survey_;
+  std::optional<ProgramSurvey> survey_;  ///< none of a sheet that is known
+  bool blank_wanted_ = false;            ///< where a program works does not end with a window
   std::optional<ProbedWorkpiece> workpiece_;
   bool wants_to_cut_ = false;
   std::size_t motions_ = 0;
@@ -233,6 +241,56 @@ std::vector<NamedOffset> read_work_offsets(const InterpreterSetup& machine) {
     offsets.push_back({kNames[i], file->frame(static_cast<int>(i) + 1, unit_mm)});
   }
   return offsets;
+}
+
+/// The blank and the tools that nobody has described. False: no guesses are wanted, and something
+/// is missing.
+bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, ProgramFront& front,
+                  FindingLog& remarks, Diagnostics& diagnostics) {
+  if (!options.guess) {
+    const Diagnostics missing = survey.missing();
+    diagnostics.insert(diagnostics.end(), missing.begin(), missing.end());
+    return missing.empty();
+  }
+  if (!front.blank) {
+    front.blank = survey.blank();
+    front.blank_origin = "guessed";
+    front.blank_guessed = true;
+    front.guess_reason = fmt::format("the feed moves plus {:g} mm", options.margin_mm);
+    if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
+      remarks.add(std::move(*warning));
+    }
+  }
+  const Box bounds = front.stock.stock ? front.stock.stock->bounds_mm() : front.blank->bounds_mm();
+  front.tools.guesses = survey.tools(bounds.max.z);
+  if (front.tools.guesses.empty()) return true;
+  front.choice = choose_stock(options.stock, stock_needs(front.tools));
+  front.stock = {};
+  return true;
+}
+
+/// Those that were not known while the program was read.
+void describe_guessed(const ToolSources& sources, ToolBook::CutterCheck can_cut,
+                      std::vector<ProgramTool>& tools) {
+  ToolBook book(sources, can_cut);
+  for (ProgramTool& tool : tools) {
+    if (!tool.shape.empty()) continue;
+    for (const ToolGuess& guess : sources.guesses) {
+      if (guess.tool == tool.number) tool = described(book.mount(tool.number, 0), sources.table);
+    }
+  }
+}
+
+std::vector<ToolUse> uses_of(const std::vector<ProgramTool>& tools) {
+  std::vector<ToolUse> uses;
+  for (const ProgramTool& tool : tools) {
+    ToolUse& use = uses.emplace_back();
+    use.number = tool.number;
+    use.shape = tool.shape;
+    use.origin = tool.origin;
+    use.guessed = tool.guessed;
+  }
+  return uses;
 }
 
 }  // namespace
@@ -258,13 +316,19 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   Loading& loading = *reading;
   const bool stopped = control.stop.stop_requested() && loaded->summary.stopped_early;
   FindingLog remarks;
-  if (loading.survey()) {
-    front->blank = loading.survey()->blank();
-    front->blank_origin = "guessed";
-    front->blank_guessed = true;
-    if (std::optional<Finding> warning = loading.survey()->warning()) {
-      remarks.add(std::move(*warning));
+  if (const auto& survey = loading.survey()) {
+    const auto sheet =
+        options.guess ? survey->sheet(front->program->is_qtplasmac(), front->program->materials())
+                      : std::nullopt;
+    // Of a sheet Z does not matter, to the interpreter neither: it is read again.
+    if (sheet && !stopped) {
+      return load_program(with_sheet(options, *sheet, survey->kerfs(sheet->beam)), control,
+                          diagnostics, outcome);
     }
+    outcome = Outcome::kUsageError;
+    if (!take_guesses(options, *survey, *front, remarks, diagnostics)) return nullptr;
+  } else if (front->blank_guessed) {
+    remarks.add(guess_warning(*front->blank, front->guess_reason));
   }
   if (!make_room_for_tilt(options, loading.tilt(), *front, diagnostics, outcome)) return nullptr;
   if (!front->stock.stock && !fill_front(options, *front, diagnostics, outcome)) return nullptr;
@@ -276,6 +340,10 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   loaded->time_model = loading.time_model();
   loaded->files = absolute(loaded->summary.files);
   loaded->tools = loading.tools();
+  describe_guessed(front->tools, row_of(*front->stock.stock).can_cut, loaded->tools);
+  const std::vector<ToolUse> uses = uses_of(loaded->tools);
+  loaded->guesses = guess_rows(options, *front, uses);
+  if (end.partial_reason.empty()) add_unused_tools(options, uses, remarks);
   loaded->work_offsets = read_work_offsets(options.program.machine);
   PlayerProgram& player = loaded->player;
   player.report_from = loading.report_from();

@@ -10,6 +10,7 @@
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
+#include "twin/guess/guess_row.h"
 #include "twin/outcome.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/player.h"
@@ -49,6 +50,7 @@ struct LoadedProgram {
   /// "-" for stdin.
   std::vector<std::string> files;
   std::vector<ProgramTool> tools;
+  std::vector<GuessRow> guesses;  ///< taken for want of better
   /// Which line and tool made a point of the surface; null for sheets.
   std::shared_ptr<const CutQuery> cuts;
   /// As the machine's parameter file has them; empty: no INI, or it names none. What the program
@@ -75,10 +77,10 @@ struct LoadControl {
 /// the machine runs, piece by piece, and PlayerProgram::programmed is kept for the findings, with
 /// about as much memory again): the same files, tools, blank, lines (those before --from-line
 /// are cut and not reported on: PlayerProgram::report_from), findings about the program as a whole.
-/// It is read once, whether or not the blank has to be guessed. Blocks until it is read, so it
-/// wants a thread of its own beside a window. Nothing on errors that leave nothing to play; they
-/// are in `diagnostics`, and `outcome` says of which kind. `diagnostics` also gets warnings about
-/// files.
+/// It is read once, whether or not blank and tools have to be guessed (twice where a sheet is).
+/// Blocks until it is read, so it wants a thread of its own beside a window. Nothing on errors that
+/// leave nothing to play; they are in `diagnostics`, and `outcome` says of which kind.
+/// `diagnostics` also gets warnings about files.
 ///
 /// A million motions of a CAM program take 3 to 4 s, nearly all of it the interpreter's, and 35 MB
 /// (ProgramTrack::bytes()).

@@ -1,0 +1,113 @@
+#include "twin/guess/guess_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+/// As a shell takes it.
+std::string quoted(const std::string& argument) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=+@%";
+  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  std::string out = "'";
+  for (const char c : argument) {
+    if (c == '\'') {
+      out += "'\\''";
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
+const ToolGuess* guess_of(const ToolSources& sources, int tool) {
+  const auto found = std::find_if(sources.guesses.begin(), sources.guesses.end(),
+                                  [tool](const ToolGuess& guess) { return guess.tool == tool; });
+  return found == sources.guesses.end() ? nullptr : &*found;
+}
+
+GuessRow tool_row(const ToolUse& use, const ToolSources& sources, bool only_tool) {
+  const ToolGuess* const guess = guess_of(sources, use.number);
+  GuessRow row;
+  row.what = use.number == 0 ? "tool" : fmt::format("tool {}", use.number);
+  row.value = fmt::format("{}={}", std::max(1, use.number), use.shape);
+  row.reason = guess ? guess->reason : fmt::format("only in part said: {}", use.origin);
+  // Of several --tool none is in the spindle before the first change.
+  if (use.number > 0 || only_tool) {
+    row.option = "--tool";
+  } else {
+    row.value = use.shape;
+    row.reason += "; before the first tool change";
+  }
+  return row;
+}
+
+}  // namespace
+
+std::vector<GuessRow> guess_rows(const SessionOptions& options, const ProgramFront& front,
+                                 std::span<const ToolUse> tools) {
+  std::vector<GuessRow> rows;
+  if (front.blank_guessed && front.blank) {
+    rows.push_back({"blank", "--stock", stock_spec(*front.blank), front.guess_reason});
+  }
+  if (front.blank_guessed && front.is_sheet() && options.beam.trigger &&
+      !options.beam_text.empty()) {
+    rows.push_back({"beam", "--beam", options.beam_text, ""});
+  }
+  for (const ToolUse& use : tools) {
+    if (!use.guessed || use.shape.empty()) continue;
+    if (front.is_sheet()) {
+      const std::string width = use.shape.substr(use.shape.find(':') + 1);
+      rows.push_back({"kerf", "--kerf", width, "nothing says how wide"});
+      break;
+    }
+    rows.push_back(tool_row(use, front.tools, tools.size() == 1));
+  }
+  return rows;
+}
+
+SessionOptions with_sheet(const SessionOptions& options, const ProgramSurvey::SheetGuess& guess,
+                          std::vector<ToolGuess> kerfs) {
+  SessionOptions out = options;
+  Blank blank;
+  blank.sheet = guess.sheet;
+  out.blank = std::move(blank);
+  out.blank_is_guess = true;
+  out.guess_reason = guess.reason;
+  out.program.machine.z_matters = false;
+  if (!out.beam.trigger && !guess.beam.trigger.empty()) {
+    out.beam.trigger = BeamTrigger::parse(guess.beam.trigger).value();
+    out.beam_text = guess.beam.trigger;
+  }
+  out.tool_guesses = std::move(kerfs);
+  return out;
+}
+
+std::string command_with(std::span<const std::string> arguments, std::span<const GuessRow> rows) {
+  std::string out;
+  for (const std::string& argument : arguments) {
+    out += out.empty() ? quoted(argument) : " " + quoted(argument);
+  }
+  for (const GuessRow& row : rows) {
+    if (!row.option.empty()) out += fmt::format(" {} {}", row.option, quoted(row.value));
+  }
+  return out;
+}
+
+std::string guess_text(std::span<const GuessRow> rows, std::span<const std::string> arguments) {
+  std::string out;
+  for (const GuessRow& row : rows) {
+    out += fmt::format("{:<9} {:<8}{}{}\n", out.empty() ? "guessed" : "", row.what, row.value,
+                       row.reason.empty() ? "" : fmt::format(" ({})", row.reason));
+  }
+  if (rows.empty() || arguments.empty()) return out;
+  out += "          correct what is wrong, and run it again:\n";
+  return out + fmt::format("          {}\n", command_with(arguments, rows));
+}
+
+}  // namespace kerf

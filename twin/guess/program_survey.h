@@ -1,0 +1,98 @@
+// twin/guess/program_survey.h - what nobody has said of a program's blank and tools, and what fits
+// the program.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "interp_bridge/motion.h"
+#include "interp_bridge/torch_materials.h"
+#include "stock/blank.h"
+#include "twin/finding.h"
+#include "twin/guess/beam_guess.h"
+#include "twin/guess/tool_guess.h"
+#include "twin/motion_moves.h"
+#include "twin/program_front.h"
+#include "twin/tools.h"
+
+namespace kerf {
+
+/// What is to be guessed, where nothing else says it.
+struct SurveyWishes {
+  double margin_mm = 5;
+  bool blank = false;  ///< nothing says what it is
+  bool sheet = true;   ///< it may be one
+  bool tools = true;   ///< those of which nothing is known; what is in the spindle before any tool
+                       ///< change is guessed in any case
+
+  /// As the user has it: who describes tools (--tool, a tool table) wants to know which is missing.
+  static SurveyWishes of(const SessionOptions& options, const ProgramFront& front);
+};
+
+/// Finds the tools of which nothing is known, as CutStage mounts them.
+class OpenTools {
+ public:
+  explicit OpenTools(const ToolSources& sources) : book_(sources, nullptr) {}
+  /// The tool of a feed move that goes somewhere; null: it is none.
+  const ResolvedTool* feeding(const Motion& motion);
+
+ private:
+  ToolBook book_;
+  int tool_ = 0;
+  const ResolvedTool* mounted_ = nullptr;
+};
+
+/// Takes a program in its order, whole, and says what fits it. Its own tools are those of a
+/// ToolBook over `sources`. One thread; costs little beside reading the program.
+class ProgramSurvey {
+ public:
+  ProgramSurvey(const SurveyWishes& wishes, const ToolSources& sources);
+
+  /// `moves`: how the machine moves.
+  void add(std::span<const Motion> motions, const MotionMoves& moves);
+
+  /// The program is for a torch, laser or jet. `materials`: of Program, the first one counts.
+  struct SheetGuess {
+    BlankSheet sheet;
+    BeamGuess beam;
+    std::string reason;  ///< of its thickness
+  };
+  /// Nothing, if it is not, or no sheet may be guessed.
+  std::optional<SheetGuess> sheet(bool is_qtplasmac,
+                                  std::span<const TorchMaterial> materials) const;
+  /// The blank that fits, wide enough for the tools of tools().
+  Blank blank() const;
+  /// One shape for each tool of which nothing is known: of a box at `top_mm`.
+  std::vector<ToolGuess> tools(double top_mm) const;
+  /// A kerf for each tool that feeds.
+  std::vector<ToolGuess> kerfs(const BeamGuess& beam) const;
+  /// What is missing, as errors that say which option gives it: for those who want no guesses.
+  Diagnostics missing() const;
+  /// guess_warning(). Nothing where nothing moves.
+  std::optional<Finding> warning(const Blank& blank, const std::string& reason) const;
+
+ private:
+  bool may_guess(int tool) const { return wishes_.tools || tool == 0; }
+
+  SurveyWishes wishes_;
+  OpenTools tools_;
+  BlankSurvey blank_;
+  BeamWatch beam_;
+  std::map<int, ToolTrace> open_tools_;
+  std::map<int, std::string> half_known_;  ///< guessed of what is known: why, a sentence
+  std::set<int> fed_tools_;
+};
+
+/// stock-guessed. `reason`: what it was made of.
+Finding guess_warning(const Blank& blank, const std::string& reason);
+
+/// "box:-5,-5,-10:105,65,0", what --stock takes. Boxes and rectangular sheets alone; empty for
+/// other blanks.
+std::string stock_spec(const Blank& blank);
+
+}  // namespace kerf
