@@ -114,6 +114,15 @@ TEST(Documents, FoldersOfTheArchitectureExist) {
   for (const std::string& folder : named) EXPECT_TRUE(fs::is_directory(kRoot / folder)) << folder;
 }
 
+TEST(Documents, DemoAndReadmeSayHowToGoOn) {
+  const std::string demo = read_file(kRoot / "demo");
+  EXPECT_NE(demo.find("kerf run YOUR.ngc"), std::string::npos);
+  EXPECT_NE(demo.find("kerf view YOUR.ngc"), std::string::npos);
+  EXPECT_NE(demo.find("cmake --install build/release"), std::string::npos);
+  EXPECT_NE(read_file(kRoot / "README.md").find("cmake --install build/release"),
+            std::string::npos);
+}
+
 TEST(Documents, ScriptsCanBeRun) {
   for (const char* script : {"demo", "check", ".ci/run", "scripts/install_packages",
                              "scripts/format_check", "tests/fuzz/run_fuzzers"}) {
