@@ -120,6 +120,7 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
   replace_if(&older->heights, std::move(newer.heights));
   replace_if(&older->cut_moves, std::move(newer.cut_moves));
   replace_if(&older->road, std::move(newer.road));
+  replace_if(&older->job, std::move(newer.job));
   replace_if(&older->setup, std::move(newer.setup));
   replace_if(&older->tool_shape, std::move(newer.tool_shape));
   replace_if(&older->findings, std::move(newer.findings));

@@ -95,6 +95,8 @@ struct SceneSetup {
   /// The workpiece is compared with a design part: it is coloured by MeshPatch::deviation_mm at
   /// once, against this tolerance.
   std::optional<double> tolerance_mm;
+  /// It is what was shown before, changed: the eye stays where it is.
+  bool keeps_eye = false;
 };
 
 struct SceneFinding {
@@ -256,6 +258,26 @@ struct PickedPoint {
   std::optional<double> deviation_mm;
 };
 
+/// Of a tool that the program uses, or that somebody described.
+struct JobTool {
+  int number = 0;
+  std::string given;   ///< SHAPE text of the command line or of the window; empty: none
+  std::string in_use;  ///< by which it cuts; empty: not known
+  std::string origin;  ///< where that comes from: "--tool", "comment in line 3"
+};
+
+/// What is cut out of what, in the words of the command line; for the window to show and to change.
+struct ViewedJob {
+  std::string program;             ///< Its file; empty: none is open.
+  std::string stock, cell, model;  ///< As given; empty: chosen by itself.
+  std::string stock_in_use, cell_in_use, model_in_use;
+  std::vector<JobTool> tools;       ///< By number.
+  std::vector<std::string> models;  ///< That can be given.
+  std::string command;              ///< The equal command line.
+  /// Why what was asked for last is not shown; empty: it is.
+  std::vector<std::string> faults;
+};
+
 /// Everything that changes from frame to frame, other than the workpiece.
 struct Moment {
   PlayState state = PlayState::kPaused;
@@ -294,6 +316,7 @@ struct SceneUpdate {
   std::optional<std::uint32_t> path_chunk_count;  ///< Chunks from this number on are dropped.
   std::vector<std::shared_ptr<const PathChunk>> path;
   std::shared_ptr<const SceneSetup> setup;
+  std::shared_ptr<const ViewedJob> job;  ///< Comes only where it can be changed.
   std::shared_ptr<const ToolShape> tool_shape;
   std::shared_ptr<const FindingList> findings;
   std::shared_ptr<const ProgramText> program;

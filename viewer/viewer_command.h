@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -75,13 +76,23 @@ struct RoadCommand {
 struct PickCommand {
   Vec3 point_mm{0.0};
 };
+/// Another program instead of this one.
+struct OpenCommand {
+  std::string path;
+};
+/// The same program, cut otherwise: ViewedJob's fields as the user left them.
+struct JobCommand {
+  std::string stock, cell, model;
+  std::vector<std::pair<int, std::string>> tools;  ///< number and SHAPE text, those that are given
+};
 struct CloseCommand {};  ///< The window was closed; the last command that comes.
 
 using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
                  SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
                  NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
-                 DetailCommand, ColorCommand, RoadCommand, PickCommand, CloseCommand>;
+                 DetailCommand, ColorCommand, RoadCommand, PickCommand, OpenCommand, JobCommand,
+                 CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -97,6 +97,12 @@ TEST_F(ViewFiles, RoadsOfTheWindowAfterARunAreNamedAndNeedTheWindow) {
   EXPECT_EQ(alone.err, "kerf: error: --draw: is for the window; there is no --view\n");
 }
 
+TEST_F(ViewFiles, PicturesWantAProgram) {
+  EXPECT_EQ(err_of({"--png", "x.png"}, 2),
+            "kerf: error: PROGRAM is required: --png and --frames draw one\n"
+            "   hint: kerf view --help lists what there is\n");
+}
+
 TEST_F(ViewFiles, FaultsOfTheCommandLineComeAtOnce) {
   EXPECT_EQ(
       err_of({program_, "--speed", "0"}, 2),
@@ -439,17 +445,76 @@ TEST_F(ViewWindow, AnInterruptEndsIt) {
   }
 }
 
-TEST_F(ViewWindow, AProgramThatIsGoneOrChangedIsStillShown) {
+TEST_F(ViewWindow, AProgramThatIsGoneIsStillShown) {
   open({"view", program_});
   const Picture start = settled();
-  folder_.write("part.ngc", "G0 X1\n(changed)\n");
+  std::remove(program_.c_str());
   kerf_->key("End");
   ASSERT_TRUE(changes_from(start));
-  std::remove(program_.c_str());
   kerf_->key("Home");
   EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return different_pixels(now, start) < 30; }));
   kerf_->key("Q");
   expect_end(0);
+}
+
+/// The eye was moved, the program stands at its end: both stay, and what is shown is what a fresh
+/// window shows of the new program.
+TEST_F(ViewWindow, AChangedProgramIsReadAgainWhereItStood) {
+  std::string deeper = kProgram;
+  deeper.replace(deeper.find("Z-2"), 3, "Z-5");
+  folder_.write("deeper.ngc", deeper);
+  open({"view", folder_.file("deeper.ngc")});
+  const Picture at_start = settled();
+  kerf_->key("5");
+  ASSERT_TRUE(changes_from(at_start));
+  kerf_->key("End");
+  const Picture wanted = settled();
+  kerf_->key("Q");
+  expect_end(0);
+  open({"view", program_});
+  const Picture start = settled();
+  kerf_->key("5");
+  ASSERT_TRUE(changes_from(start));
+  kerf_->key("End");
+  const Picture before = settled();
+  ASSERT_GT(different_pixels(before, wanted), 300U);
+  folder_.write("part.ngc", deeper);
+  EXPECT_TRUE(kerf_->shows([&](const Picture& now) { return different_pixels(now, wanted) < 30; }));
+  kerf_->key("Q");
+  expect_end(0);
+}
+
+TEST_F(ViewWindow, AProgramThatIsBrokenMeanwhileStaysAsItWasUntilItIsMended) {
+  open({"view", program_, "--tool-table", folder_.write("tool.tbl", "T1 P1 D6\nT2 P2 D5\n")});
+  kerf_->key("End");
+  const Picture before = settled();
+  std::remove(program_.c_str());
+  folder_.write("tool.tbl", "T1 P1 Dsix\n");
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  EXPECT_LT(different_pixels(before, settled()), 30U);
+  std::string deeper = kProgram;
+  deeper.replace(deeper.find("Z-2"), 3, "Z-5");
+  folder_.write("part.ngc", deeper);
+  folder_.write("tool.tbl", "T1 P1 D6\nT2 P2 D5\n");
+  EXPECT_TRUE(changes_from(before));
+  kerf_->key("Q");
+  expect_end(0);
+}
+
+TEST_F(ViewWindow, AnEmptyWindowOpensAProgramByName) {
+  kerf_ = std::make_unique<WindowedKerf>(call_of({"view"}));
+  ASSERT_TRUE(kerf_->is_titled("kerf$"));
+  const Picture empty = settled();
+  kerf_->key("ctrl+o");
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  kerf_->type(program_);
+  kerf_->key("Return");
+  ASSERT_TRUE(kerf_->is_titled("kerf - part.ngc"));
+  EXPECT_TRUE(changes_from(empty));
+  kerf_->key("Q");
+  expect_end(0);
+  EXPECT_NE(read_file(kerf_->home() + "/kerf/view.conf").find("recent.1 = " + program_),
+            std::string::npos);
 }
 
 TEST_F(ViewWindow, AProgramThatCannotBeReadEndsIt) {

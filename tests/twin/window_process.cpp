@@ -87,10 +87,18 @@ std::size_t different_pixels(const Picture& a, const Picture& b) {
 WindowedKerf::WindowedKerf(KerfCall call, const std::string& settings)
     : kerf_(with_window(std::move(call), home_, settings)) {}
 
+bool WindowedKerf::is_titled(const std::string& begin) const {
+  const std::string question = fmt::format("search --onlyvisible --name '^{}'", begin);
+  return wait_for([&] { return !ask_xdotool(question).empty(); }, kEndPatience);
+}
+
+void WindowedKerf::type(const std::string& text) const {
+  EXPECT_TRUE(xdotool(fmt::format("type --delay 30 '{}'", text)));
+}
+
 bool WindowedKerf::opens() {
   // The title comes with what there is to be drawn.
-  wait_for([&] { return !ask_xdotool("search --onlyvisible --name '^kerf - '").empty(); },
-           kEndPatience);
+  is_titled("kerf - ");
   return shows([](const Picture& picture) { return picture.width_px > 0; });
 }
 

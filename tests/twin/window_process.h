@@ -26,8 +26,12 @@ class WindowedKerf {
 
   /// The window is on the screen and draws: it takes a picture of itself when asked to.
   bool opens();
+  /// Its title begins so; false after half a minute.
+  bool is_titled(const std::string& begin) const;
   /// As xdotool names them: "space", "Q".
   void key(const std::string& name) const;
+  /// One character after the other.
+  void type(const std::string& text) const;
   /// What the window shows, its panels included; by its own screenshot key.
   Picture screenshot();
   /// Takes pictures until one satisfies; false after a minute.

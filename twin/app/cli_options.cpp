@@ -233,9 +233,10 @@ void add_run_options(CLI::App& run, RunArguments& a) {
 }
 
 void add_view_options(CLI::App& view, ViewArguments& a) {
-  view.add_option("PROGRAM", a.run.source.program,
-                  "NC file, saved canonical listing (.canon), a log, or a saved workpiece")
-      ->required();
+  view.add_option(
+      "PROGRAM", a.run.source.program,
+      "NC file, saved canonical listing (.canon), a log, or a saved workpiece; without: "
+      "an empty window, from which one can be opened");
   view.add_option("-c,--config", a.config, "configuration: machine (its model), tools, stock, view")
       ->type_name("FILE");
   view.add_option("--set", a.sets, "any key of the configuration, repeatable")

@@ -139,6 +139,12 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   request.player.keyframe_bytes = static_cast<std::size_t>(keyframes_mb * 1048576.0);
   request.local = !a.no_local;
   read_pictures(a, reader, request);
+  if (a.run.source.program.empty() && !request.wants_window()) {
+    Diagnostic d;
+    d.message = "PROGRAM is required: --png and --frames draw one";
+    d.hint = "kerf view --help lists what there is";
+    diagnostics.push_back(std::move(d));
+  }
   read_comparison(a, reader, request);
   read_road(a, reader, request);
   const std::optional<Blank>& blank = request.run.session.blank;

@@ -87,6 +87,7 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   update.clears = true;
   auto setup = std::make_shared<SceneSetup>();
   setup->title = shown_.title;
+  setup->keeps_eye = shown_.keeps_eye;
   if (state.stock) setup->bounds_mm = state.stock->bounds_mm();
   setup->blank_outline = shown_.blank_outline;
   if (shown_.design) setup->tolerance_mm = shown_.tolerance_mm;

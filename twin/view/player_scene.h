@@ -27,6 +27,7 @@ namespace kerf {
 /// What is shown besides what is played.
 struct ViewedProgram {
   std::string title;
+  bool keeps_eye = false;          ///< see SceneSetup
   std::vector<std::string> files;  ///< paths, in the order of SourceRef::file
   std::vector<LineSegment> blank_outline;
   std::shared_ptr<const StockModel> blank;  ///< a snapshot; null: there is none
@@ -57,6 +58,9 @@ class PlayerScene {
 
   /// Of a file and line as the window names them; nothing if there is no such file.
   std::optional<SourceRef> source_of(const std::string& file, int line) const;
+
+  /// The path of a line's file.
+  const std::string& file(const SourceRef& line) const { return shown_.files[line.file]; }
 
   void set_detail(const ViewDetail& detail, std::size_t easy_triangles = 0) {
     feeder_.set_detail(detail, easy_triangles);

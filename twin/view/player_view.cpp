@@ -35,8 +35,10 @@ PlayerView::PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgr
       player_(std::move(program), with_frequent_states(std::move(options))),
       scene_(track_, std::move(shown)) {}
 
-void PlayerView::run(std::stop_token stop, std::optional<double> speed) {
-  mailbox_.publish(scene_.start(*player_.state()));
+void PlayerView::run(std::stop_token stop, std::optional<double> speed,
+                     const std::function<bool()>& is_over) {
+  asked_.reset();
+  if (!std::exchange(is_started_, true)) mailbox_.publish(scene_.start(*player_.state()));
   if (speed) {
     speed_ = *speed;
     player_.play(speed_);
@@ -46,15 +48,34 @@ void PlayerView::run(std::stop_token stop, std::optional<double> speed) {
   while (!stop.stop_requested()) {
     for (const ViewerCommand& command : commands_.wait_for(restless() ? kQuick : kSlow)) {
       quick_until_ = Clock::now() + kQuickAfterCommand;
+      remember(command);
       if (!obey(command)) return;
     }
     show();
+    if (is_over && is_over()) return;
   }
 }
 
 bool PlayerView::restless() const {
   if (!state_ || state_->mode != PlayerMode::kPaused) return true;
   return scene_.behind() || Clock::now() < quick_until_;
+}
+
+void PlayerView::remember(const ViewerCommand& command) {
+  const bool lasts = std::holds_alternative<DetailCommand>(command) ||
+                     std::holds_alternative<ColorCommand>(command) ||
+                     std::holds_alternative<RoadCommand>(command);
+  if (!lasts) return;
+  std::erase_if(lasting_, [&](const ViewerCommand& c) { return c.index() == command.index(); });
+  lasting_.push_back(command);
+}
+
+std::vector<ViewerCommand> PlayerView::lasting() const {
+  std::vector<ViewerCommand> all = lasting_;
+  for (const SourceRef& line : breakpoints_) {
+    all.push_back(BreakpointCommand{scene_.file(line), static_cast<int>(line.line), true});
+  }
+  return all;
 }
 
 bool PlayerView::obey(const ViewerCommand& command) {
@@ -90,6 +111,10 @@ bool PlayerView::obey(const ViewerCommand& command) {
           scene_.set_colors(c, player_.removed_mm3());
         if constexpr (std::is_same_v<Command, PickCommand>)
           scene_.pick(c.point_mm, *player_.state());
+        if constexpr (std::is_same_v<Command, OpenCommand> || std::is_same_v<Command, JobCommand>) {
+          asked_ = c;
+          goes_on = false;
+        }
         if constexpr (std::is_same_v<Command, CloseCommand>) goes_on = false;
       },
       command);
@@ -119,6 +144,7 @@ void PlayerView::show() {
   if (mailbox_.is_full()) return;
   state_ = player_.state();
   SceneUpdate update = scene_.update(state_, Clock::now() + kPatchSlice);
+  if (update.moment) moment_ = update.moment;
   if (!PlayerScene::is_empty(update)) mailbox_.publish(std::move(update));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -25,11 +26,20 @@ class PlayerView {
   PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgram shown,
              SceneMailbox& mailbox, CommandQueue& commands);
 
-  /// Until the window is closed (CloseCommand) or `stop` is asked for. Starts playing at once if
-  /// `speed` is given.
-  void run(std::stop_token stop, std::optional<double> speed = std::nullopt);
+  /// Until the window is closed (CloseCommand), something else is to be shown (asked()), `stop` is
+  /// asked for, or `is_over`, which is called about ten times a second or more often, says so.
+  /// Starts playing at once if `speed` is given. May be called again.
+  void run(std::stop_token stop, std::optional<double> speed = std::nullopt,
+           const std::function<bool()>& is_over = {});
 
   Player& player() { return player_; }
+  /// The OpenCommand or JobCommand that ended run(); none: another reason did.
+  const std::optional<ViewerCommand>& asked() const { return asked_; }
+  /// What the window was told to be shown how, and the breakpoints: for whatever is shown next.
+  std::vector<ViewerCommand> lasting() const;
+  /// That was shown last; never null.
+  const std::shared_ptr<const Moment>& moment() const { return moment_; }
+  double speed() const { return speed_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -39,6 +49,7 @@ class PlayerView {
   void set_breakpoint(const BreakpointCommand& command);
   void show();
   bool restless() const;
+  void remember(const ViewerCommand& command);
 
   std::shared_ptr<const ProgramTrack> track_;
   SceneMailbox& mailbox_;
@@ -48,6 +59,10 @@ class PlayerView {
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;
   std::shared_ptr<const PlayerState> state_;
+  std::optional<ViewerCommand> asked_;
+  std::vector<ViewerCommand> lasting_;
+  std::shared_ptr<const Moment> moment_ = std::make_shared<Moment>();
+  bool is_started_ = false;
   Clock::time_point quick_until_;  ///< after a command its answer is looked for often
 };
 

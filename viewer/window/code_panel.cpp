@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
+#include "viewer/window/code_words.h"
 #include "viewer/window/panels.h"
 
 namespace kerf {
@@ -41,9 +43,18 @@ class FileView {
     current_ = index == moment_.file ? moment_.line : 0;
   }
 
+  /// Goes to the line that was looked for, if it is one of this file.
+  void show_found() {
+    if (scroll_.shows_found && scroll_.found_file == index_) {
+      scroll_.shows_found = false;
+      scroll_.top_of_file[index_] = std::floor(scroll_.found_line - 1 - rows_ * kJumpShare);
+    }
+  }
+
   void draw() {
     if (size_.x < kScrollBar_px * context_.scale + 1.0f || size_.y < 1.0f) return;
     follow();
+    show_found();
     take_input();
     double& top = scroll_.top_of_file[index_];
     top = std::clamp(top, 0.0, std::max(0.0, file_.line_count() - rows_));
@@ -124,9 +135,12 @@ class FileView {
     float y = std::round(corner_.y - static_cast<float>(top - std::floor(top)) * row_px_);
     ImGui::PushFont(context_.fonts.mono);
     for (int number = first; number <= last; ++number, y += row_px_) {
-      if (number == current_ || number == hovered_) {
+      const bool is_found = scroll_.found_line == number && scroll_.found_file == index_;
+      if (number == current_ || number == hovered_ || is_found) {
         list->AddRectFilled({corner_.x, y}, {end.x, y + row_px_},
-                            number == current_ ? theme::kCurrentLine : theme::kHoveredLine);
+                            is_found             ? theme::kFoundLine
+                            : number == current_ ? theme::kCurrentLine
+                                                 : theme::kHoveredLine);
       }
       draw_gutter(list, number, y);
       list->PushClipRect({corner_.x + gutter_px_, corner_.y}, end, true);
@@ -151,7 +165,27 @@ class FileView {
                   label.c_str());
   }
 
-  /// Comments are dimmed: from a ';' on, and in parentheses.
+  static const ImVec4& color_of(CodeKind kind) {
+    switch (kind) {
+      case CodeKind::kMotion:
+        return theme::kMotionWord;
+      case CodeKind::kMachine:
+        return theme::kMachineWord;
+      case CodeKind::kFeed:
+        return theme::kFeedWord;
+      case CodeKind::kControl:
+        return theme::kControlWord;
+      case CodeKind::kNumber:
+        return theme::kDim;
+      case CodeKind::kComment:
+        return theme::kComment;
+      case CodeKind::kPlace:
+      case CodeKind::kOther:
+        break;
+    }
+    return theme::kText;
+  }
+
   void draw_text(ImDrawList* list, std::string_view line, float y) const {
     ImVec2 at(std::floor(corner_.x + text_px_ - scroll_.left_px), y + context_.scale);
     const auto piece = [&](std::string_view part, const ImVec4& color) {
@@ -163,15 +197,8 @@ class FileView {
     };
     // What lies beyond the panel need not be measured.
     line = line.substr(0, kLongestShown);
-    while (!line.empty()) {
-      const std::size_t comment = std::min(line.find_first_of("(;"), line.size());
-      piece(line.substr(0, comment), theme::kText);
-      line.remove_prefix(comment);
-      if (line.empty()) break;
-      const std::size_t close = line.front() == ';' ? std::string_view::npos : line.find(')');
-      const std::size_t length = close == std::string_view::npos ? line.size() : close + 1;
-      piece(line.substr(0, length), theme::kDim);
-      line.remove_prefix(length);
+    for (const CodeWord& word : code_words(line)) {
+      piece(line.substr(word.begin, word.length), color_of(word.kind));
     }
   }
 
@@ -240,6 +267,60 @@ void draw_file(const PanelContext& context, const SourceFile& file, int index) {
   ImGui::PopID();
 }
 
+/// The next line with the text, forward or back from the one found last, through all files and
+/// round; false: there is none.
+bool find_next(const std::vector<SourceFile>& files, const std::string& text, int step,
+               CodeScroll* scroll) {
+  const int count = static_cast<int>(files.size());
+  if (count == 0 || text.empty()) return false;
+  int file = std::clamp(scroll->found_file, 0, count - 1), line = scroll->found_line;
+  // Once through each file, and the one that it begins in once more.
+  for (int turns = 0; turns <= count; ++turns) {
+    const SourceFile& source = files[static_cast<std::size_t>(file)];
+    for (line += step; line >= 1 && line <= source.line_count(); line += step) {
+      if (find_text(source.line(line), text) == std::string_view::npos) continue;
+      scroll->found_file = file;
+      scroll->found_line = line;
+      scroll->shows_found = true;
+      scroll->follows = false;
+      return true;
+    }
+    file = (file + step + count) % count;
+    line = step > 0 ? 0 : files[static_cast<std::size_t>(file)].line_count() + 1;
+  }
+  return false;
+}
+
+void draw_search(const PanelContext& context) {
+  PanelState& state = *context.state;
+  CodeScroll& scroll = state.code;
+  if (!state.searches) return;
+  if (state.search_is_new) ImGui::SetKeyboardFocusHere();
+  const float buttons = 2.0f * (ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x);
+  ImGui::SetNextItemWidth(-buttons);
+  const bool is_entered = ImGui::InputTextWithHint(
+      "##search", context.word(Text::kSearch), &state.search,
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const bool is_changed = ImGui::IsItemEdited();
+  // Enter takes the field away from who types; the next Enter is for the next place.
+  if (is_entered) ImGui::SetKeyboardFocusHere(-1);
+  ImGui::SameLine();
+  const bool back = ImGui::ArrowButton("##back", ImGuiDir_Up);
+  ImGui::SameLine();
+  const bool on = ImGui::ArrowButton("##on", ImGuiDir_Down);
+  if (is_changed) {
+    scroll.found_line = 0;
+    scroll.found_file = 0;
+  }
+  const bool is_back = back || (is_entered && ImGui::GetIO().KeyShift);
+  if (!(is_changed || is_entered || back || on) || state.search.empty()) return;
+  if (!find_next(context.shown.program->files, state.search, is_back ? -1 : 1, &scroll)) {
+    state.notice = fmt::format("{}: {}", state.search, context.word(Text::kNotFound));
+  } else {
+    state.notice.clear();
+  }
+}
+
 std::string file_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 void draw_files(const PanelContext& context) {
@@ -253,7 +334,8 @@ void draw_files(const PanelContext& context) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto index = static_cast<int>(i);
     const std::string name = fmt::format("{}##{}", file_name(files[i].path()), index);
-    const bool to_front = enters && scroll.follows && index == running;
+    const bool to_front = (enters && scroll.follows && index == running) ||
+                          (scroll.shows_found && index == scroll.found_file);
     if (ImGui::BeginTabItem(name.c_str(), nullptr, to_front ? ImGuiTabItemFlags_SetSelected : 0)) {
       draw_file(context, files[i], index);
       ImGui::EndTabItem();
@@ -270,6 +352,11 @@ void draw_head(const PanelContext& context) {
       files.empty() ? std::string(context.word(Text::kProgram)) : file_name(files.front().path());
   ImGui::AlignTextToFramePadding();
   ImGui::TextColored(theme::kDim, "%s", name.c_str());
+  if (context.shown.job) {
+    ImGui::SameLine();
+    if (ImGui::SmallButton(context.word(Text::kOpen))) context.state->action = Action::kOpen;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s (Ctrl+O)", context.word(Text::kOpenWhat));
+  }
   if (files.empty() || scroll.follows) return;
   const char* label = context.word(Text::kFollowLine);
   const float width = ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x;
@@ -293,6 +380,7 @@ void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const Pan
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   draw_head(context);
+  draw_search(context);
   const auto& files = context.shown.program->files;
   if (files.empty()) {
     ImGui::TextColored(theme::kDim, "%s", context.word(Text::kNoProgram));

@@ -108,25 +108,30 @@ void draw_findings(const PanelContext& context) {
     return;
   }
   ImGui::BeginChild("finding list", {0.0f, 0.0f});
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(findings.size()));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const SceneFinding& finding = findings[static_cast<std::size_t>(i)];
-      ImGui::PushID(i);
-      ImGui::PushStyleColor(ImGuiCol_Text, theme::of(finding.severity));
-      const std::string line = finding.line > 0 ? fmt::format("{}", finding.line) : "-";
-      if (ImGui::Selectable(line.c_str(), false)) context.commands->push(SeekFindingCommand{i});
-      ImGui::PopStyleColor();
-      const bool is_hovered = ImGui::IsItemHovered();
-      ImGui::SameLine(58.0f * context.scale);
-      ImGui::TextUnformatted(finding.text.c_str());
-      if (is_hovered) {
-        ImGui::SetTooltip("%s:%d  %s\n%s", finding.file.c_str(), finding.line,
-                          clock_text(finding.time_s).c_str(), finding.text.c_str());
-      }
-      ImGui::PopID();
+  // Each as high as its text is long: at most some hundred, and what is out of sight is not drawn.
+  const float text_x = 58.0f * context.scale;
+  const float wrap_px = ImGui::GetContentRegionAvail().x - text_x;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const SceneFinding& finding = findings[i];
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::PushStyleColor(ImGuiCol_Text, theme::of(finding.severity));
+    const std::string line = finding.line > 0 ? fmt::format("{}", finding.line) : "-";
+    const float height =
+        ImGui::CalcTextSize(finding.text.c_str(), nullptr, false, std::max(wrap_px, 1.0f)).y;
+    if (ImGui::Selectable(line.c_str(), false, 0, {0.0f, height})) {
+      context.commands->push(SeekFindingCommand{static_cast<int>(i)});
     }
+    ImGui::PopStyleColor();
+    const bool is_hovered = ImGui::IsItemHovered();
+    ImGui::SameLine(text_x);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(finding.text.c_str());
+    ImGui::PopTextWrapPos();
+    if (is_hovered) {
+      ImGui::SetTooltip("%s:%d  %s", finding.file.c_str(), finding.line,
+                        clock_text(finding.time_s).c_str());
+    }
+    ImGui::PopID();
   }
   ImGui::EndChild();
 }
@@ -145,6 +150,15 @@ void draw_tabs(const PanelContext& context) {
     draw_view_tab(context);
     ImGui::EndChild();
     ImGui::EndTabItem();
+  }
+  if (context.shown.job) {
+    const std::string job = fmt::format("{}###job", context.word(Text::kJob));
+    if (ImGui::BeginTabItem(job.c_str())) {
+      ImGui::BeginChild("job tab", {0.0f, 0.0f});
+      draw_job_tab(context);
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
   }
   bool& to_front = context.state->inspection.comes_to_front;
   const std::string point = fmt::format("{}###point", context.word(Text::kPoint));

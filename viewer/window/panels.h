@@ -26,7 +26,7 @@
 
 namespace kerf {
 
-/// The values shown now; never null but `picked` and `road`.
+/// The values shown now; never null but `picked`, `road` and `job`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
@@ -35,6 +35,7 @@ struct ShownValues {
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
   std::shared_ptr<const PickedPoint> picked;
   std::shared_ptr<const RoadAnswer> road;
+  std::shared_ptr<const ViewedJob> job;  ///< Null: nothing else can be shown here.
   std::chrono::steady_clock::time_point moment_came{};
 
   /// Age of the newest sample now, also when no news come any more.
@@ -48,8 +49,11 @@ struct CodeScroll {
   bool follows = true;  ///< The running line is kept in sight.
   int seen_file = -1;   ///< What it followed last.
   int seen_line = -1;
-  int running_file = 0;  ///< Whose tab was brought to the front last.
-  int menu_line = 0;     ///< 1-based, of the context menu
+  int running_file = 0;      ///< Whose tab was brought to the front last.
+  int menu_line = 0;         ///< 1-based, of the context menu
+  int found_file = 0;        ///< Where the text is that was looked for.
+  int found_line = 0;        ///< 1-based; 0: none was found
+  bool shows_found = false;  ///< It is still to be brought in sight.
 };
 
 /// Clicks on the workpiece.
@@ -58,6 +62,27 @@ struct Inspection {
   bool measures = false;
   std::vector<Vec3> ends_mm;    ///< none, one or both
   bool comes_to_front = false;  ///< Its tab has to be shown.
+};
+
+/// The list of files from which a program is opened.
+struct FileChoice {
+  struct Entry {
+    std::string name;
+    bool is_folder = false;
+  };
+  bool is_open = false;
+  std::string folder;          ///< Absolute.
+  std::vector<Entry> entries;  ///< Folders first, by name.
+  std::string name;            ///< Being typed: a name in the folder, or a path.
+  std::string fault;           ///< Why the folder or what was typed cannot be opened.
+  bool shows_all = false;      ///< Else files whose names end as those of programs do.
+};
+
+/// What is being written into the job's fields.
+struct JobEdit {
+  std::string stock, cell, model;
+  std::map<int, std::string> tools;  ///< SHAPE text by number; empty: not given
+  int new_tool = 1;
 };
 
 /// What the panels remember while the window is open.
@@ -70,6 +95,11 @@ struct PanelState {
   int last_line = 1;
   CodeScroll code;
   Inspection inspection;
+  FileChoice files;
+  bool searches = false;  ///< The field for it is there.
+  bool search_is_new = false;
+  std::string search;
+  JobEdit job;
   double frames_per_s = 0.0;
   std::optional<Action> action;  ///< Asked for by a button.
 };
@@ -103,6 +133,18 @@ void draw_info_panel(const PanelContext& context, glm::vec2 window_px, const Pan
 void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_help(const PanelContext& context, glm::vec2 window_px);
 void draw_line_question(const PanelContext& context, glm::vec2 window_px);
+/// Shows the list, beginning in the folder of the program, of the last one, or where kerf runs.
+void open_file_choice(const ShownValues& shown, const ViewSettings& settings, FileChoice* files);
+void draw_file_choice(const PanelContext& context, glm::vec2 window_px);
+/// Where there is no program: that there is none, and how to get one.
+void draw_empty_hint(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
+/// Blank, cells, model and tools, to be changed, and the command that is equal to them.
+void draw_job_tab(const PanelContext& context);
+/// The fields as the job has them.
+JobEdit edit_of(const ViewedJob& job);
+
+/// The edges of the panels, to be dragged.
+void draw_edges(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 
 /// Parts of the info panel: objects, colours, section, drawing.
 void draw_view_tab(const PanelContext& context);

@@ -331,13 +331,15 @@ PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float sc
     room.bottom = std::round(scale * kBarHeight_px);
   }
   float left_over = window_px.x - scale * kSmallestPicture_px;
-  if (settings.shows_info && left_over >= scale * kInfoWidth_px) {
-    room.right = std::round(scale * kInfoWidth_px);
-    left_over -= room.right;
-  }
-  if (settings.shows_code && left_over >= scale * kCodeWidth_px) {
-    room.left = std::round(scale * kCodeWidth_px);
-  }
+  // A panel that was made wide shrinks before it goes.
+  const auto width_px = [&](double chosen_px, float usual_px) {
+    const float wanted = std::round(scale * static_cast<float>(chosen_px));
+    if (left_over < std::min(wanted, scale * usual_px)) return 0.0f;
+    return std::min(wanted, std::floor(left_over));
+  };
+  if (settings.shows_info) room.right = width_px(settings.info_width_px, kInfoWidth_px);
+  left_over -= room.right;
+  if (settings.shows_code) room.left = width_px(settings.code_width_px, kCodeWidth_px);
   if (room.bottom > 0.0f) {
     room.top = toolbar_room(settings, window_px.x - room.left - room.right, scale);
     // A picture that finds no room below several rows is worth more than all of the buttons.
@@ -346,6 +348,37 @@ PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float sc
     }
   }
   return room;
+}
+
+void draw_edges(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {
+  constexpr float kGrip_px = 6.0f;
+  const auto edge = [&](const char* name, float x, double* width_px, float sign) {
+    const float grip = kGrip_px * context.scale, height = window_px.y - room.bottom;
+    ImGui::SetNextWindowPos({x - 0.5f * grip, 0.0f});
+    ImGui::SetNextWindowSize({grip, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::InvisibleButton("grip", {grip, height});
+    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+      ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    }
+    if (ImGui::IsItemActive()) {
+      const double to = sign > 0.0f ? static_cast<double>(ImGui::GetIO().MousePos.x)
+                                    : static_cast<double>(window_px.x - ImGui::GetIO().MousePos.x);
+      *width_px = std::clamp(to / static_cast<double>(context.scale), kMinPanel_px, kMaxPanel_px);
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+  };
+  ViewSettings& settings = *context.settings;
+  if (room.left > 0.0f) edge("code edge", room.left, &settings.code_width_px, 1.0f);
+  if (room.right > 0.0f) {
+    edge("info edge", window_px.x - room.right, &settings.info_width_px, -1.0f);
+  }
 }
 
 void draw_player_bar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {

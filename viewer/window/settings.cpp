@@ -141,7 +141,28 @@ std::vector<Field> choices() {
       number_field(
           "text-scale", [](ViewSettings* s) { return &s->text_scale; }, kMinTextScale,
           kMaxTextScale),
+      number_field(
+          "panel.code.width", [](ViewSettings* s) { return &s->code_width_px; }, kMinPanel_px,
+          kMaxPanel_px),
+      number_field(
+          "panel.info.width", [](ViewSettings* s) { return &s->info_width_px; }, kMinPanel_px,
+          kMaxPanel_px),
   };
+}
+
+/// A path of the list; further ones follow those that are there.
+Field recent_field(std::size_t place) {
+  return {fmt::format("recent.{}", place + 1),
+          [place](const ViewSettings& settings) {
+            return place < settings.recent.size() ? settings.recent[place] : std::string();
+          },
+          [](std::string_view value, ViewSettings* settings) -> std::string {
+            if (!value.empty() && value.front() != '/') return "an absolute path";
+            if (!value.empty() && settings->recent.size() < kMostRecent) {
+              settings->recent.emplace_back(value);
+            }
+            return "";
+          }};
 }
 
 std::vector<Field> all_fields() {
@@ -168,6 +189,7 @@ std::vector<Field> all_fields() {
                      [object](ViewSettings* s) { return &s->drawing.looks[object].is_visible; }));
     fields.push_back(opacity_field(object));
   }
+  for (std::size_t place = 0; place < kMostRecent; ++place) fields.push_back(recent_field(place));
   return fields;
 }
 
@@ -264,7 +286,8 @@ ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
 Done save_settings(const std::string& path, const ViewSettings& settings) {
   std::string content = "# Remembered by the window of kerf; written when it closes.\n";
   for (const Field& field : all_fields()) {
-    content += fmt::format("{} = {}\n", field.name, field.write(settings));
+    const std::string value = field.write(settings);
+    if (!value.empty()) content += fmt::format("{} = {}\n", field.name, value);
   }
   std::error_code error;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
@@ -273,6 +296,18 @@ Done save_settings(const std::string& path, const ViewSettings& settings) {
   if (!file) return Error{file.error()};
   file->write(content.data(), content.size());
   return file->commit();
+}
+
+void remember_program(const std::string& path, ViewSettings* settings) {
+  std::error_code error;
+  const std::string absolute = std::filesystem::absolute(path, error).lexically_normal().string();
+  if (error || absolute.find_first_of("#\n\r") != std::string::npos ||
+      trimmed(absolute) != absolute) {
+    return;
+  }
+  std::erase(settings->recent, absolute);
+  settings->recent.insert(settings->recent.begin(), absolute);
+  if (settings->recent.size() > kMostRecent) settings->recent.resize(kMostRecent);
 }
 
 Result<std::string> set_aside(const std::string& path) {

@@ -35,9 +35,19 @@ struct ViewSettings {
   bool shows_counters = false;
   FlatView flat = FlatView::kNone;
   double text_scale = 1.0;  ///< Of all of the panels, times the scale of the display; 0.75 to 3.
+  double code_width_px = 290.0;  ///< of the panels, on a display of scale 1
+  double info_width_px = 300.0;
+  /// Programs that were shown, the newest first; at most kMostRecent. Absolute.
+  std::vector<std::string> recent;
   SectionChoice section;
   DrawOptions drawing;
 };
+inline constexpr std::size_t kMostRecent = 8;
+inline constexpr double kMinPanel_px = 180.0;
+inline constexpr double kMaxPanel_px = 1200.0;
+
+/// Puts a program to the front. Names that a line of the file cannot hold are not remembered.
+void remember_program(const std::string& path, ViewSettings* settings);
 
 inline constexpr double kMinTextScale = 0.75;
 inline constexpr double kMaxTextScale = 3.0;

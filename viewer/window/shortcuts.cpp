@@ -47,6 +47,8 @@ constexpr std::array kShortcuts{
     Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
     Shortcut{"S", U'S', 0, Action::kWindowPicture, Text::kWindowPicture},
     Shortcut{"?", U'?', 0, Action::kHelp, Text::kShortcuts},
+    Shortcut{"Ctrl+O", 0, GLFW_KEY_O, Action::kOpen, Text::kOpenWhat, true},
+    Shortcut{"Ctrl+F", 0, GLFW_KEY_F, Action::kSearch, Text::kSearch, true},
     Shortcut{"Q", U'Q', 0, Action::kClose, Text::kClose},
 };
 
@@ -61,9 +63,10 @@ std::optional<Action> action_of_character(char32_t character) {
   return std::nullopt;
 }
 
-std::optional<Action> action_of_key(int key) {
+std::optional<Action> action_of_key(int key, bool with_control) {
   for (const Shortcut& shortcut : kShortcuts) {
-    if (shortcut.key != 0 && shortcut.key == key) return shortcut.action;
+    if (shortcut.key == 0 || shortcut.key != key) continue;
+    if (shortcut.with_control == with_control) return shortcut.action;
   }
   return std::nullopt;
 }

@@ -47,6 +47,8 @@ enum class Action {
   kScreenshot,
   kWindowPicture,
   kHelp,
+  kOpen,
+  kSearch,
   kClose,
 };
 
@@ -58,12 +60,13 @@ struct Shortcut {
   int key;             ///< GLFW_KEY_..., or 0
   Action action;
   Text text;
+  bool with_control = false;  ///< `key` counts while Ctrl is held.
 };
 
 std::span<const Shortcut> shortcuts();
 /// It changes what is played, not how it is looked at.
 constexpr bool is_for_player(Action action) { return action <= Action::kGoToLine; }
 std::optional<Action> action_of_character(char32_t character);
-std::optional<Action> action_of_key(int key);
+std::optional<Action> action_of_key(int key, bool with_control);
 
 }  // namespace kerf

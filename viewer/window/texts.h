@@ -159,6 +159,29 @@ enum class Text {
   kMouseGutter,
   kSaving,
   kSaved,
+  // opening
+  kOpen,
+  kOpenWhat,
+  kNothingOpen,
+  kDropHint,
+  kRecent,
+  kFolderUp,
+  kAllFiles,
+  kFileName,
+  kCancel,
+  kCannotOpen,
+  kSearch,
+  kNotFound,
+  // job
+  kJob,
+  kCell,
+  kModel,
+  kByItself,
+  kInUse,
+  kAddTool,
+  kApply,
+  kCopyCommand,
+  kCopied,
   kCount_
 };
 

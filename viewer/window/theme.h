@@ -29,6 +29,13 @@ inline const ImVec4 kWarning{0.95f, 0.72f, 0.32f, 1.0f};
 inline const ImVec4 kError{0.96f, 0.45f, 0.40f, 1.0f};
 inline const ImVec4 kNote{0.53f, 0.73f, 0.95f, 1.0f};
 inline const ImVec4 kReadout{0.76f, 0.93f, 0.80f, 1.0f};
+// Words of a program.
+inline const ImVec4 kMotionWord{0.60f, 0.78f, 0.98f, 1.0f};
+inline const ImVec4 kMachineWord{0.90f, 0.66f, 0.86f, 1.0f};
+inline const ImVec4 kFeedWord{0.95f, 0.78f, 0.50f, 1.0f};
+inline const ImVec4 kControlWord{0.62f, 0.86f, 0.78f, 1.0f};
+inline const ImVec4 kComment{0.50f, 0.62f, 0.50f, 1.0f};
+inline constexpr ImU32 kFoundLine = IM_COL32(96, 82, 30, 255);
 inline constexpr ImU32 kAccent = IM_COL32(78, 128, 188, 255);
 inline constexpr ImU32 kTrack = IM_COL32(56, 60, 68, 255);
 inline constexpr ImU32 kCurrentLine = IM_COL32(52, 84, 62, 255);

@@ -152,6 +152,9 @@ void Window::Impl::install_callbacks() {
     self(window)->touched();
     ImGui_ImplGlfw_WindowFocusCallback(window, focused);
   });
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    if (count > 0) self(window)->on_drop(paths[0]);
+  });
   glfwSetFramebufferSizeCallback(window_,
                                  [](GLFWwindow* window, int, int) { self(window)->uncovered(); });
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { self(window)->uncovered(); });
@@ -208,17 +211,31 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
   if (key == GLFW_KEY_ESCAPE) {
     state_.shows_help = false;
     state_.asks_for_line = false;
+    state_.files.is_open = false;
+    state_.searches = false;
+    state_.code.found_line = 0;
     state_.notice.clear();
   }
-  if (ImGui::GetIO().WantTextInput || state_.asks_for_line) return;
-  if (const std::optional<Action> wanted = action_of_key(key)) act(*wanted);
+  if (takes_text()) return;
+  const bool with_control = (mods & GLFW_MOD_CONTROL) != 0;
+  if (const std::optional<Action> wanted = action_of_key(key, with_control)) act(*wanted);
+}
+
+/// Questions get what is typed also before they are drawn for the first time.
+bool Window::Impl::takes_text() const {
+  return ImGui::GetIO().WantTextInput || state_.asks_for_line || state_.files.is_open ||
+         state_.search_is_new;
+}
+
+void Window::Impl::on_drop(const std::string& path) {
+  touched();
+  open_program(path);
 }
 
 void Window::Impl::on_character(unsigned character) {
   touched();
   ImGui_ImplGlfw_CharCallback(window_, character);
-  // The question for a line gets what is typed also before it is drawn for the first time.
-  if (ImGui::GetIO().WantTextInput || state_.asks_for_line) return;
+  if (takes_text()) return;
   if (const std::optional<Action> wanted = action_of_character(character)) act(*wanted);
 }
 

@@ -151,6 +151,18 @@ void Window::Impl::act_on_panels(Action action) {
     case Action::kGoToLine:
       state_.asks_for_line = true;
       break;
+    case Action::kSearch:
+      settings_.shows_code = true;
+      state_.searches = true;
+      state_.search_is_new = true;
+      break;
+    case Action::kOpen:
+      if (shown_.job) {
+        open_file_choice(shown_, settings_, &state_.files);
+      } else {
+        state_.notice = text(Text::kCannotOpen, settings_.language);
+      }
+      break;
     case Action::kClose:
       close();
       break;
@@ -220,6 +232,14 @@ void Window::Impl::act_on_player(Action action) {
       break;
     default:
       break;
+  }
+}
+
+void Window::Impl::open_program(const std::string& path) {
+  if (shown_.job) {
+    commands_.push(OpenCommand{path});
+  } else {
+    state_.notice = text(Text::kCannotOpen, settings_.language);
   }
 }
 

@@ -111,6 +111,13 @@ void Window::Impl::apply(const SceneUpdate& update) {
   renderer_->apply(update);
   if (update.clears) shown_.findings = std::make_shared<FindingList>();
   if (update.road) shown_.road = update.road;
+  if (update.job) {
+    shown_.job = update.job;
+    state_.job = edit_of(*update.job);
+    const bool is_shown = !update.job->program.empty() && update.job->faults.empty();
+    if (is_shown) remember_program(update.job->program, &settings_);
+    touched();
+  }
   if (update.setup) take_setup(update.setup);
   if (update.findings) shown_.findings = update.findings;
   if (update.program) {
@@ -135,7 +142,7 @@ void Window::Impl::apply(const SceneUpdate& update) {
 }
 
 void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
-  if (!(setup->bounds_mm == shown_.setup->bounds_mm)) wants_fit_ = true;
+  if (!(setup->bounds_mm == shown_.setup->bounds_mm) && !setup->keeps_eye) wants_fit_ = true;
   shown_.setup = setup;
   if (setup->tolerance_mm) {
     settings_.drawing.color_by = ColorBy::kDeviation;
@@ -325,9 +332,13 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   draw_info_panel(context, display, room);
   draw_toolbar(context, display, room);
   draw_player_bar(context, display, room);
+  draw_edges(context, display, room);
+  draw_empty_hint(context, display, room);
   if (state_.shows_help) draw_help(context, display);
+  if (state_.files.is_open) draw_file_choice(context, display);
   if (state_.asks_for_line) draw_line_question(context, display);
   if (state_.action) act(*state_.action);
+  state_.search_is_new = false;  // also if there is no room for the panel
   // Dear ImGui has seen these keys go down now.
   fresh_keys_.clear();
   for (const auto& [key, scancode] : late_releases_) {

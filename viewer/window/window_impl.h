@@ -62,6 +62,8 @@ class Window::Impl {
   void install_callbacks();
   void on_key(int key, int scancode, int action, int mods);
   void on_character(unsigned character);
+  void on_drop(const std::string& path);
+  bool takes_text() const;
   void on_mouse_move(glm::vec2 at);
   void on_mouse_button(int button, bool is_down);
   void feed_mouse();
@@ -100,6 +102,7 @@ class Window::Impl {
   void act_on_view(Action action);
   void act_on_panels(Action action);
   void set_breakpoint();
+  void open_program(const std::string& path);
   void toggle_workpiece();
   /// A key may come before the first frame.
   bool has_drawn() const { return last_frame_ != Clock::time_point{}; }

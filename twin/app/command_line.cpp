@@ -1,0 +1,110 @@
+#include "twin/app/command_line.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+namespace kerf {
+namespace {
+
+/// What stands for itself in every shell.
+bool is_plain(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("_-./:=,+@%").find(c) != std::string_view::npos;
+}
+
+class Line {
+ public:
+  explicit Line(std::string begin) : text_(std::move(begin)) {}
+  void word(const std::string& text) { text_ += ' ' + shell_word(text); }
+  void option(const char* name, const std::string& value) {
+    if (value.empty()) return;
+    word(name);
+    word(value);
+  }
+  void options(const char* name, const std::vector<std::string>& values) {
+    for (const std::string& value : values) option(name, value);
+  }
+  void flag(const char* name, bool is_set) {
+    if (is_set) word(name);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void add_program(const ProgramArguments& a, Line& line) {
+  line.option("--ini", a.ini);
+  line.option("--work-offset", a.work_offset);
+  line.option("--tool-table", a.tool_table);
+  line.option("--interp", a.interp);
+  line.option("--block-delete", a.block_delete);
+  line.option("--max-commands", a.max_commands);
+  line.option("--max-seconds", a.max_seconds);
+  line.option("--max-cpu-seconds", a.max_cpu_seconds);
+  line.flag("--as-mill", a.as_mill);
+}
+
+void add_work(const WorkArguments& a, Line& line) {
+  line.option("--stock", a.stock);
+  line.options("--tool", a.tools);
+  line.option("--cell", a.cell);
+  line.option("--model", a.model);
+  line.flag("--additive", a.additive);
+  line.option("--margin", a.margin);
+  line.option("--below", a.below);
+  line.option("--path", a.path);
+  line.option("--threads", a.threads);
+  line.option("--kernel", a.kernel);
+}
+
+void add_torch(const TorchArguments& a, Line& line) {
+  line.option("--beam", a.beam);
+  line.option("--kerf", a.kerf);
+  line.option("--pierce", a.pierce);
+  line.option("--slats", a.slats);
+  line.option("--density", a.density);
+  line.option("--qtplasmac", a.qtplasmac);
+  line.option("--materials", a.materials);
+  line.options("--hal", a.hal);
+  line.option("--turret", a.turret);
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& text) {
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
+}
+
+std::string command_line(const ViewArguments& a) {
+  Line line("kerf view");
+  const std::string& program = a.run.source.program;
+  if (!program.empty()) line.word(program.front() == '-' ? "./" + program : program);
+  line.option("--config", a.config);
+  line.options("--set", a.sets);
+  add_program(a.run.source, line);
+  add_work(a.run.work, line);
+  add_torch(a.run.torch, line);
+  line.option("--until-line", a.run.until_line);
+  line.option("--at-line", a.at_line);
+  line.option("--speed", a.speed);
+  line.option("--keyframes", a.keyframes);
+  line.option("--compare", a.compare);
+  line.option("--tolerance", a.tolerance);
+  line.option("--draw", a.draw);
+  line.flag("--full-redraw", a.no_local);
+  line.flag("--quiet", a.run.quiet);
+  return line.text();
+}
+
+}  // namespace kerf

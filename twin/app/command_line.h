@@ -1,0 +1,16 @@
+// twin/app/command_line.h - arguments as a line for a shell.
+#pragma once
+
+#include <string>
+
+#include "twin/app/view_options.h"
+
+namespace kerf {
+
+/// `kerf view` with what these arguments say, each word quoted where a POSIX shell needs it.
+std::string command_line(const ViewArguments& arguments);
+
+/// A word that a POSIX shell reads as this text.
+std::string shell_word(const std::string& text);
+
+}  // namespace kerf
