@@ -15,6 +15,14 @@ namespace kerf {
 /// Joints 0..8, or axes X Y Z A B C U V W: which of the two, the configuration says.
 inline constexpr std::size_t kMaxPositions = 9;
 
+/// What a controller says of the program that it has.
+enum class ProgramState : std::uint8_t {
+  kUnknown,  ///< it does not say
+  kIdle,     ///< none runs: it has ended or was aborted, or the machine is moved by hand or by MDI
+  kRunning,
+  kPaused,  ///< it stands in a program, which will go on
+};
+
 /// One reading of a machine. Positions in mm or degrees, after the source's scale and offset; where
 /// they are (joints or axes, machine or workpiece frame) is not the source's business.
 struct AxisSample {
@@ -22,7 +30,7 @@ struct AxisSample {
   static constexpr std::int32_t kUnknown = -1;
 
   /// When this computer had it: CLOCK_REALTIME, ns. For logs: when that piece of the file was read;
-  /// for recordings of kerf: as recorded.
+  /// for recordings of kerf: as recorded, as if nobody had set that computer's clock meanwhile.
   std::int64_t host_ns = kNoTime;
   /// The device's own time, ns on a clock of its own: a log's stamps, the kernel's stamp of a
   /// frame, sample number times period. kNoTime if there is none. Never mixed with host_ns.
@@ -33,6 +41,7 @@ struct AxisSample {
   std::int32_t tool = kUnknown;     ///< tool number in the spindle, 0 = none
   std::int32_t trigger = kUnknown;  ///< of a punch: 0 off, else on
   std::int32_t line = kUnknown;     ///< program line that the machine says it is on; 0 = idle
+  ProgramState program = ProgramState::kUnknown;
   double tool_offset_z_mm = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
   double spindle_rpm = std::numeric_limits<double>::quiet_NaN();       ///< signed; NaN: not given
 

@@ -113,6 +113,7 @@ struct Recorder::Writer {
   struct Slot {
     AxisSample sample;
     std::uint64_t lost_before = 0;
+    std::int64_t clock_set_ns = 0;
   };
 
   Writer(std::string file_path, int file, int event, const RecordingHead& head, std::size_t slots)
@@ -120,7 +121,7 @@ struct Recorder::Writer {
         fd(file),
         wake_fd(event),
         ring(slots),
-        lines(head.axes, head.trigger) {}
+        lines(head.axes, head.trigger, head.program) {}
   ~Writer() {
     if (fd >= 0) ::close(fd);
     ::close(wake_fd);
@@ -152,6 +153,7 @@ struct Recorder::Writer {
 
   // Of the recording thread.
   std::uint64_t lost_pending = 0;
+  std::int64_t clock_set_pending_ns = 0;
   bool is_finished = false;
 
   // Of the writing thread. Lines of `block` from the last whole line in the file on.
@@ -181,6 +183,8 @@ bool Recorder::Writer::drain() {
   while (at != pushed.load(std::memory_order_acquire)) {
     const Slot& slot = ring[at & (ring.size() - 1)];
     if (slot.lost_before != 0) append_lost(slot.lost_before);
+    if (slot.clock_set_ns != 0)
+      block += fmt::format("{}{:+}\n", kRecordingClock, slot.clock_set_ns);
     char line[RecordingLines::kLongestLine_bytes];
     block.append(line, static_cast<std::size_t>(lines.append(slot.sample, line) - line));
     ++block_samples;
@@ -324,9 +328,18 @@ void Recorder::record(const AxisSample& sample) {
   Writer::Slot& slot = w.ring[at & (w.ring.size() - 1)];
   slot.sample = sample;
   slot.lost_before = std::exchange(w.lost_pending, 0);
+  slot.clock_set_ns = std::exchange(w.clock_set_pending_ns, 0);
   w.pushed.store(at + 1, std::memory_order_release);
   // Only on the way up, and only here: waking costs a system call.
   if (queued + 1 == w.ring.size() / 4) w.wake();
+}
+
+void Recorder::note_lost(std::uint64_t count) {
+  if (!writer_->is_finished) writer_->lost_pending += count;
+}
+
+void Recorder::note_clock_set(std::int64_t by_ns) {
+  if (!writer_->is_finished) writer_->clock_set_pending_ns += by_ns;
 }
 
 RecorderStatus Recorder::status() const {

@@ -31,6 +31,7 @@ struct RecordingHead {
   CoordinateFrame frame = CoordinateFrame::kMachine;
   std::uint16_t axes = 0b111;  ///< bit i: position[i] gets a column; others are not recorded
   bool trigger = false;        ///< AxisSample::trigger gets one, too
+  bool program = false;        ///< and AxisSample::program
   /// Of a file that is read: it has sums (README.md). The recorder writes them always.
   bool sums = false;
   /// CLOCK_REALTIME, ns; kNoTime: the recorder takes the time at which it creates the file.
@@ -78,6 +79,12 @@ class Recorder {
   /// From one thread. Never waits, locks or allocates: a full queue drops the sample, counts it,
   /// and the file gets `# lost N` in its place. About 20 ns. After a fault or finish(): nothing.
   void record(const AxisSample& sample);
+  /// Before the next sample the source has lost so many: `# lost N` in the file, RecorderStatus
+  /// does not count them. From the thread of record().
+  void note_lost(std::uint64_t count);
+  /// From the next sample on this computer's clock is ahead of where it would be by so much more:
+  /// somebody has set it. `# clock +N` in the file. From the thread of record().
+  void note_clock_set(std::int64_t by_ns);
 
   /// From any thread.
   RecorderStatus status() const;

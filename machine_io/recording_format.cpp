@@ -169,6 +169,30 @@ bool parse_iso_time(std::string_view text, std::int64_t& since_1970_ns) {
   return true;
 }
 
+std::string_view program_state_text(ProgramState state) {
+  switch (state) {
+    case ProgramState::kIdle:
+      return "idle";
+    case ProgramState::kRunning:
+      return "running";
+    case ProgramState::kPaused:
+      return "paused";
+    case ProgramState::kUnknown:
+      break;
+  }
+  return "-";
+}
+
+bool parse_program_state(std::string_view text, ProgramState& state) {
+  for (const ProgramState one : {ProgramState::kUnknown, ProgramState::kIdle,
+                                 ProgramState::kRunning, ProgramState::kPaused}) {
+    if (text != program_state_text(one)) continue;
+    state = one;
+    return true;
+  }
+  return false;
+}
+
 std::string recording_head_text(const RecordingHead& head) {
   std::string text = fmt::format("{}\n", kRecordingMagic);
   text += fmt::format("# source: {}\n", on_one_line(head.source));
@@ -186,7 +210,8 @@ std::string recording_head_text(const RecordingHead& head) {
     if ((head.axes >> i & 1U) != 0) text += fmt::format(",{}", position_column(head.kind, i));
   }
   text += ",tool,line,tool_offset_z,spindle_rpm";
-  text += head.trigger ? ",trigger\n" : "\n";
+  if (head.trigger) text += ",trigger";
+  text += head.program ? ",program\n" : "\n";
   return text;
 }
 
@@ -253,6 +278,11 @@ char* RecordingLines::append(const AxisSample& sample, char* out) {
   if (trigger_) {
     *out++ = ',';
     out = append_known(sample.trigger, out);
+  }
+  if (program_) {
+    *out++ = ',';
+    const std::string_view state = program_state_text(sample.program);
+    out = std::copy(state.begin(), state.end(), out);
   }
   *out++ = '\n';
   return out;

@@ -16,7 +16,13 @@ namespace kerf {
 inline constexpr std::string_view kRecordingMagic = "# kerf-recording/1";
 inline constexpr std::string_view kRecordingLost = "# lost ";
 inline constexpr std::string_view kRecordingSum = "# sum ";
+inline constexpr std::string_view kRecordingClock = "# clock ";
 inline constexpr std::string_view kRecordingEnd = "# end samples=";
+
+/// "idle", "running", "paused"; "-" for kUnknown.
+std::string_view program_state_text(ProgramState state);
+/// And back; false if it is none of the four.
+bool parse_program_state(std::string_view text, ProgramState& state);
 
 /// Columns "x".."w", or "j0".."j8".
 std::string_view position_column(CoordinateKind kind, std::size_t index);
@@ -46,8 +52,8 @@ class RecordingLines {
  public:
   static constexpr std::size_t kLongestLine_bytes = 512;
 
-  explicit RecordingLines(std::uint16_t axes, bool trigger = false)
-      : axes_(axes), trigger_(trigger) {}
+  explicit RecordingLines(std::uint16_t axes, bool trigger = false, bool program = false)
+      : axes_(axes), trigger_(trigger), program_(program) {}
 
   /// Puts the line with its LF at `out`, which has room for kLongestLine_bytes; returns its end.
   char* append(const AxisSample& sample, char* out);
@@ -59,6 +65,7 @@ class RecordingLines {
 
   std::uint16_t axes_;
   bool trigger_;
+  bool program_;
   std::uint16_t written_ = 0;  // bit i: last_[i] is what an empty cell would mean
   std::array<double, kMaxPositions> last_{};
 };

@@ -25,10 +25,11 @@ struct BitPin {
   const char* name;
   std::uint32_t bit;
 };
-constexpr std::array<BitPin, 4> kBitPins{{{"motion.in-position", kHalInPosition},
+constexpr std::array<BitPin, 5> kBitPins{{{"motion.in-position", kHalInPosition},
                                           {"halui.program.is-running", kHalProgramRunning},
                                           {"halui.program.is-paused", kHalProgramPaused},
-                                          {"halui.program.is-idle", kHalProgramIdle}}};
+                                          {"halui.program.is-idle", kHalProgramIdle},
+                                          {"halui.mode.is-auto", kHalModeAuto}}};
 
 /// Places of the pins in HalPins::wanted_, in the order of their creation.
 constexpr std::size_t kJoints = 0;
@@ -59,6 +60,7 @@ struct HalPins::StatusPins {
   hal_bit_t* stale;
   hal_bit_t* alive;
   hal_u32_t* heartbeat;
+  hal_bit_t* beat;
 };
 
 struct HalPins::Wanted {
@@ -119,6 +121,7 @@ bool HalPins::create_status_pins(std::string& trouble) {
       hal_pin_bit_new("kerf.stale", HAL_OUT, &pins->stale, component_),
       hal_pin_bit_new("kerf.alive", HAL_OUT, &pins->alive, component_),
       hal_pin_u32_new("kerf.heartbeat", HAL_OUT, &pins->heartbeat, component_),
+      hal_pin_bit_new("kerf.beat", HAL_OUT, &pins->beat, component_),
   };
   for (const int result : results) {
     if (result == 0) continue;
@@ -129,6 +132,7 @@ bool HalPins::create_status_pins(std::string& trouble) {
   put(HalStatusRecord{});
   show_silence();
   *status_pins_->heartbeat = 0;
+  *status_pins_->beat = false;
   return true;
 }
 
@@ -239,6 +243,12 @@ void HalPins::show(const HalStatusRecord& status) {
   put(status);
   *status_pins_->heartbeat = *status_pins_->heartbeat + 1;
   *status_pins_->alive = true;
+}
+
+void HalPins::beat(std::int64_t now) {
+  if (taken() || !*status_pins_->alive || now - beat_ns_ < kBeat_ns) return;
+  beat_ns_ = now;
+  *status_pins_->beat = !*status_pins_->beat;
 }
 
 void HalPins::show_silence() {

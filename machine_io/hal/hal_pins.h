@@ -52,6 +52,9 @@ class HalPins {
   Reading read(HalSampleRecord& record);
 
   void show(const HalStatusRecord& status);
+  /// kerf.beat goes over, as long as kerf.alive is on: every kBeat_ns. From each reading.
+  void beat(std::int64_t now);
+  static constexpr std::int64_t kBeat_ns = 50'000'000;
   /// No status has come for kHalStatusTimeout_ns: the announcements stay, marked as old.
   void show_silence();
 
@@ -71,6 +74,7 @@ class HalPins {
   std::vector<Wanted> wanted_;
   std::int64_t all_found_ns_ = 0;  ///< CLOCK_MONOTONIC
   std::optional<std::uint32_t> servo_period_;
+  std::int64_t beat_ns_ = 0;  ///< CLOCK_MONOTONIC of the last change of kerf.beat
   std::int64_t servo_seen_ns_ = -kServoStill_ns;  ///< CLOCK_MONOTONIC of the last new period
 };
 

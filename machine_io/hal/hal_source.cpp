@@ -58,6 +58,16 @@ HalStatusRecord record_of(const HalStatus& status) {
   return record;
 }
 
+/// What halui has of the program. An MDI block runs, too, but not in automatic mode.
+ProgramState program_of(const HalSampleRecord& record) {
+  const auto known = [&](std::uint32_t bits) { return (record.known & bits) == bits; };
+  const auto on = [&](HalBit bit) { return (record.on & bit) != 0; };
+  if (!known(kHalProgramIdle | kHalProgramRunning)) return ProgramState::kUnknown;
+  if (on(kHalProgramIdle) || (known(kHalModeAuto) && !on(kHalModeAuto))) return ProgramState::kIdle;
+  if (known(kHalProgramPaused) && on(kHalProgramPaused)) return ProgramState::kPaused;
+  return on(kHalProgramRunning) ? ProgramState::kRunning : ProgramState::kIdle;
+}
+
 AxisSample sample_of(const HalSampleRecord& record, const HalSettings& settings) {
   AxisSample sample;
   sample.host_ns = record.realtime_ns;
@@ -73,6 +83,9 @@ AxisSample sample_of(const HalSampleRecord& record, const HalSettings& settings)
   if ((record.known & kHalProgramLine) != 0 && record.program_line >= 0) {
     sample.line = record.program_line;
   }
+  sample.program = program_of(record);
+  // The lines of MDI blocks are those of no program.
+  if (sample.program == ProgramState::kIdle && sample.line > 0) sample.line = 0;
   sample.tool_offset_z_mm = record.tool_offset[2] * settings.mm_per_unit;
   sample.spindle_rpm = record.spindle_rpm;
   return sample;

@@ -36,6 +36,7 @@ enum HalBit : std::uint32_t {
   kHalProgramLine = 1U << 5,     ///< `known` only: program_line has been read
   /// `on`: the kerf.* pins are another component's; what kerf says is not shown. Always known.
   kHalPinsTaken = 1U << 6,
+  kHalModeAuto = 1U << 7,  ///< halui.mode.is-auto
 };
 
 /// One reading of the running LinuxCNC, from kerf-hal's stdout. All values are as the pins have

@@ -165,6 +165,7 @@ class Server {
       pins_.show_silence();
       last_status_ns_.reset();
     }
+    pins_.beat(now);
     if (reading == HalPins::Reading::kServoStill) {
       if (!still_since_ns_) still_since_ns_ = now;
       if (now - *still_since_ns_ < kServoPatience_ns) return std::nullopt;

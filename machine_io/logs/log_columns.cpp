@@ -137,6 +137,7 @@ std::optional<Meaning> read_name(std::string_view name) {
   }
   if (name == "spindle" || name == "spindle_rpm") return Meaning{ColumnRole::kSpindle};
   if (name == "trigger") return Meaning{ColumnRole::kTrigger};
+  if (name == "program") return Meaning{ColumnRole::kProgram};
   if (const auto axis = axis_number(name)) {
     return Meaning{ColumnRole::kPosition, *axis, CoordinateKind::kAxes, 0};
   }

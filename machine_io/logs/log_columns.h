@@ -22,6 +22,7 @@ enum class ColumnRole : std::uint8_t {
   kToolOffsetZ,
   kSpindle,
   kTrigger,
+  kProgram,
 };
 
 /// One column, ready for reading its cells.

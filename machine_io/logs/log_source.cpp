@@ -313,6 +313,7 @@ class LogSource::Reading {
 
   void check_count(std::uint64_t count) {
     if (count == rows_) return;
+    ++status_.errors;
     describe_line(1, fmt::format("the end line says {} samples, {} could be read", count, rows_),
                   {});
   }
@@ -339,6 +340,8 @@ class LogSource::Reading {
         part_good_ = part_.size();
       }
       status_.trouble = fmt::format("{}: {}", name_, text);
+      // What came behind is missing, nobody knows how much.
+      ++status_.errors;
       note(Severity::kWarning, 0, text, {});
     }
   }

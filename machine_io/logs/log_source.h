@@ -81,9 +81,9 @@ struct LogContents {
 /// CSV: a header row, then cells between ',', ';' or tabs, which may be quoted as in RFC 4180 (but
 /// not hold line ends); `#` begins a comment; LF or CRLF. Columns, in any order and case: t (time,
 /// timestamp, t_device, t_host; one is needed), x .. w or j0 .. j8 (joint0, or LinuxCNC's HAL pins;
-/// at least one), tool, line, tool_offset_z (tloz), spindle_rpm (rpm), trigger. A unit may be in
-/// the name: x_mm, "x [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes(). Cells
-/// that are empty and '-' mean what they mean in a recording.
+/// at least one), tool, line, tool_offset_z (tloz), spindle_rpm (rpm), trigger, program. A unit may
+/// be in the name: x_mm, "x [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes().
+/// Cells that are empty and '-' mean what they mean in a recording.
 ///
 /// Times: a recording has both its times back as recorded, to the ns (but see below). Of other logs
 /// device_ns is the log's stamp (seconds of whatever clock it has; halsampler: sample number times

@@ -61,6 +61,9 @@ bool read_unknown(const LogColumn& column, AxisSample& sample) {
     case ColumnRole::kTrigger:
       sample.trigger = AxisSample::kUnknown;
       return true;
+    case ColumnRole::kProgram:
+      sample.program = ProgramState::kUnknown;
+      return true;
     default:
       return column.role == ColumnRole::kIgnored;
   }
@@ -77,6 +80,8 @@ const char* wanted(ColumnRole role) {
       return "a line number";
     case ColumnRole::kTrigger:
       return "0 or 1";
+    case ColumnRole::kProgram:
+      return "idle, running or paused";
     default:
       return "a number";
   }
@@ -136,6 +141,7 @@ class DelimitedRows final : public Rows {
  private:
   LineMeaning read_comment(std::string_view line, LineRemark& remark) {
     if (!is_recording_) return LineMeaning::kNothing;
+    if (line.starts_with(kRecordingClock)) return read_clock(line, remark);
     const bool is_lost = line.starts_with(kRecordingLost);
     if (!is_lost && !line.starts_with(kRecordingEnd)) return LineMeaning::kNothing;
     line.remove_prefix(is_lost ? kRecordingLost.size() : kRecordingEnd.size());
@@ -145,6 +151,21 @@ class DelimitedRows final : public Rows {
     }
     is_ended_ = !is_lost;
     return is_lost ? LineMeaning::kLost : LineMeaning::kEnd;
+  }
+
+  /// The computer that recorded was set: later times are put back where they would have been.
+  LineMeaning read_clock(std::string_view line, LineRemark& remark) {
+    line.remove_prefix(kRecordingClock.size());
+    if (line.starts_with('+')) line.remove_prefix(1);
+    std::int64_t by_ns = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), by_ns);
+    std::int64_t set_ns = 0;
+    if (error != std::errc() || end != line.data() + line.size() ||
+        __builtin_add_overflow(clock_set_ns_, by_ns, &set_ns)) {
+      return damaged(remark, 0, "nanoseconds by which the clock was set are expected here");
+    }
+    clock_set_ns_ = set_ns;
+    return LineMeaning::kNothing;
   }
 
   LineMeaning read_row(std::string_view line, LineRemark& remark) {
@@ -174,6 +195,10 @@ class DelimitedRows final : public Rows {
     }
     if (trial_.host_ns == AxisSample::kNoTime && trial_.device_ns == AxisSample::kNoTime) {
       return damaged(remark, 0, "the line has no time");
+    }
+    if (trial_.host_ns != AxisSample::kNoTime &&
+        __builtin_sub_overflow(trial_.host_ns, clock_set_ns_, &trial_.host_ns)) {
+      return damaged(remark, 0, "the time is beyond what there is");
     }
     return accept();
   }
@@ -221,6 +246,7 @@ class DelimitedRows final : public Rows {
   char delimiter_;
   bool is_recording_;
   bool is_ended_ = false;
+  std::int64_t clock_set_ns_ = 0;  ///< of the computer that recorded, so far
 };
 
 class HalsamplerRows final : public Rows {
@@ -329,6 +355,8 @@ bool read_cell(std::string_view text, const LogColumn& column, AxisSample& sampl
       return read_finite(text, column.factor, sample.spindle_rpm);
     case ColumnRole::kTrigger:
       return read_count(text, sample.trigger);
+    case ColumnRole::kProgram:
+      return parse_program_state(text, sample.program);
   }
   return false;
 }
