@@ -413,7 +413,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.signals = options_.signals;
   feeding.follows_probes = follows_probes_;
   feeding.answer_probe = answer_probe_;
-  feeding.no_answer = "there is no workpiece yet";
+  feeding.no_answer = "no blank is given, --stock does";
   feeding.materials = &materials_;
   const InterpreterSetup& machine = options_.machine;
   if (machine.start_known) feeding.start = machine.start;

@@ -159,7 +159,7 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.places = {
       machine.unknown_places, {}, machine.work_offset.has_value(), machine.z_matters};
   reading.feeder.follows_probes = follows_probes_;
-  reading.feeder.no_answer = "rs274 cannot ask where it meets the workpiece";
+  reading.feeder.no_answer = "rs274 cannot ask, --interp bridge can";
   return reading;
 }
 

@@ -269,7 +269,8 @@ ProbeAnswer CutStage::answer(const ProbeQuestion& question) {
   ProbeAnswer unknown;
   const Motion& m = question.motion;
   if (!mount_for(m)) {
-    unknown.why = fmt::format("nothing tells the shape of tool {}, the probe", m.tool);
+    unknown.why = fmt::format("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does",
+                              m.tool, m.tool);
     return unknown;
   }
   divide(m);
