@@ -374,6 +374,35 @@ CornerKind put_blend(const AxisRates& rates, const BlendPlace& place, Segment& p
 
 }  // namespace
 
+namespace {
+
+/// Of an arc, across its axis.
+Vec3 tangent_across(const Segment& arc, const Vec3& at) {
+  const Vec3 way = glm::cross(arc.arc.axis, at - arc.arc.center_mm);
+  return glm::normalize(arc.arc.sweep_rad < 0 ? -way : way);
+}
+
+/// What LinuxCNC takes for the directions of the accelerations at a corner that is overlapped in
+/// time: those of lines, of an arc that ends without its rise, of one that begins also without, and
+/// bent inwards by what the turning takes at half of its speed.
+Vec3 braking_direction(const Segment& segment) {
+  return segment.shape == SegmentShape::kArc ? tangent_across(segment, segment.to)
+                                             : segment.tangent_to;
+}
+
+Vec3 speeding_direction(const Segment& segment) {
+  if (segment.shape != SegmentShape::kArc) return segment.tangent_from;
+  const Vec3 out = segment.arc.center_mm - segment.from;
+  const Vec3 inwards = glm::normalize(out - glm::dot(out, segment.arc.axis) * segment.arc.axis);
+  // Of a feed per revolution LinuxCNC has its few mm for a speed here.
+  const double speed = segment.follows_spindle() ? 0.0 : segment.request;
+  const double turning = speed * speed / 4 / segment.radius_mm;
+  return glm::normalize(tangent_across(segment, segment.from) * segment.overall_accel() +
+                        inwards * turning);
+}
+
+}  // namespace
+
 ParabolicSpeeds parabolic_speeds(const Segment& previous, const Segment& next, double target_before,
                                  double target_after) {
   const double a0 = previous.accel();
@@ -387,7 +416,8 @@ ParabolicSpeeds parabolic_speeds(const Segment& previous, const Segment& next, d
   ParabolicSpeeds speeds;
   speeds.leaving = std::min(v0, time * a0);
   speeds.entering = std::min(v1, time * a1);
-  const double c = std::clamp(glm::dot(previous.tangent_to, next.tangent_from), -1.0, 1.0);
+  const double c =
+      std::clamp(glm::dot(braking_direction(previous), speeding_direction(next)), -1.0, 1.0);
   const double cos_half = std::sqrt((1.0 - c) / 2.0);
   if (previous.tolerance_mm > 0 && cos_half > kAngleEpsilon) {
     const double most = 2.0 * std::sqrt(a0 * previous.tolerance_mm / cos_half);

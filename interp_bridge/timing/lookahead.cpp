@@ -148,7 +148,8 @@ Lookahead::Run Lookahead::run_of_front(double horizon, double clock_s) {
       const double into = speed_into(segment, *next, target);
       if (into > 0) {
         const ParabolicSpeeds speeds = parabolic_speeds(segment, *next, target, into);
-        run.overlap_s = std::min(speeds.leaving, run.profile.peak_speed) / segment.accel();
+        const double leaving = std::min(speeds.leaving, run.profile.peak_speed);
+        run.overlap = {leaving / segment.accel(), segment.accel(), next->accel(), into, next};
       }
     }
   }
@@ -163,7 +164,7 @@ void Lookahead::drop_front(const Run& run) {
 
 void Lookahead::retire(double horizon) {
   const Run run = run_of_front(horizon, schedule_.clock_s());
-  schedule_.run(queue_.front().segment, run.profile, run.overlap_s);
+  schedule_.run(queue_.front().segment, run.profile, run.overlap);
   drop_front(run);
 }
 
@@ -179,7 +180,7 @@ Lookahead::Rest Lookahead::rest() const {
     rest.last_begins_s = rest.end_s;
     rest.last_speed = copy.speed_;
     const Run run = copy.run_of_front(horizon, rest.end_s);
-    rest.end_s += std::max(run.profile.duration_s - run.overlap_s, 0.0);
+    rest.end_s += std::max(run.profile.duration_s - run.overlap.seconds, 0.0);
     copy.drop_front(run);
   }
   return rest;

@@ -49,7 +49,7 @@ class Lookahead {
 
   struct Run {
     SpeedProfile profile;
-    double overlap_s = 0;
+    Schedule::Overlap overlap;
   };
 
   /// What happens if nothing more is added.

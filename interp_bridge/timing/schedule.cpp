@@ -7,6 +7,9 @@
 namespace kerf {
 namespace {
 
+/// Farthest that the chords of a corner may lie from the way of the tool.
+constexpr double kCornerChord_mm = 0.001;
+
 /// Room for what the look-ahead usually holds; grows where many short moves are merged.
 constexpr std::size_t kFirstCapacity = 1024;
 
@@ -84,14 +87,55 @@ void Schedule::settle() {
   if (held_) close_piece();
 }
 
-void Schedule::run(const Segment& segment, const SpeedProfile& profile, double overlap_s) {
-  const double seconds = std::max(profile.duration_s - overlap_s, 0.0);
+void Schedule::run(const Segment& segment, const SpeedProfile& profile, const Overlap& overlap) {
+  const double seconds = std::max(profile.duration_s - overlap.seconds, 0.0);
   if (segment.shape == SegmentShape::kBlend) {
+    corner_before_mm_ = segment.length_mm;
     run_blend(segment, seconds, profile.peak_speed);
     return;
   }
   settle();
+  if (!corner_mm_.empty()) send_chords(corner_mm_.size() / 2, corner_mm_.size() - 1);
+  corner_mm_.clear();
+  if (with_path_) round_corner(segment, overlap);
   run_pieces(segment, seconds, profile.peak_speed);
+  if (!corner_mm_.empty()) send_chords(0, corner_mm_.size() / 2);
+  corner_behind_mm_ = corner_ahead_mm_;
+  corner_ahead_mm_ = 0;
+}
+
+/// Both segments at once: what is left of the first, braking, and what has been run of the second.
+void Schedule::round_corner(const Segment& segment, const Overlap& overlap) {
+  corner_before_mm_ = segment.length_mm;
+  if (overlap.seconds <= 0 || segment.extra || overlap.next->extra) return;
+  const Segment& next = *overlap.next;
+  const double whole_s = overlap.seconds;
+  const double open_mm = segment.length_mm - corner_behind_mm_;
+  const double most_s = std::sqrt(2 * std::max(open_mm, 0.0) / overlap.braking);
+  const double time_s = std::min(whole_s, most_s);
+  const auto left_mm = [&](double t) { return overlap.braking * (time_s - t) * (time_s - t) / 2; };
+  const auto run_mm = [&](double t) {
+    const double gaining_s = std::min(t, overlap.speed / overlap.speeding);
+    const double gained = overlap.speeding * gaining_s * gaining_s / 2;
+    return std::min(gained + overlap.speed * (t - gaining_s), next.length_mm);
+  };
+  const double turn = overlap.braking + overlap.speeding;
+  const double steps = std::ceil(time_s / std::sqrt(8 * kCornerChord_mm / turn));
+  const int count = 2 * static_cast<int>(std::clamp(steps / 2, 1.0, 64.0));
+  const Vec3 corner = segment.point_at(segment.length_mm);
+  for (int i = 0; i <= count; ++i) {
+    const double t = time_s * i / count;
+    corner_mm_.push_back(segment.point_at(segment.length_mm - left_mm(t)) +
+                         (next.point_at(run_mm(t)) - corner));
+  }
+  corner_before_mm_ = segment.length_mm - left_mm(0);
+  corner_ahead_mm_ = run_mm(time_s);
+}
+
+void Schedule::send_chords(std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    sink_.path({false, corner_mm_[i], corner_mm_[i + 1], {}});
+  }
 }
 
 /// Shares the time among the pieces by length; the last one stays open for the blend after it.
@@ -107,9 +151,14 @@ void Schedule::run_pieces(const Segment& segment, double seconds, double speed) 
     const double share = whole > 0 ? piece.length_mm / whole : 1.0;
     add_time(piece.motion, seconds * share, speed);
     if (with_path_ && segment.shape == SegmentShape::kArc) {
-      send_arc(segment);
+      send_arc(segment, corner_behind_mm_, corner_before_mm_);
     } else if (with_path_) {
-      send_line(segment, done, i + 1 == segment.piece_count ? 1.0 : done + share);
+      const bool last = i + 1 == segment.piece_count;
+      const double length =
+          segment.shape == SegmentShape::kBlend ? segment.lead_mm : segment.length_mm;
+      const double end = last ? length : (done + share) * length;
+      send_line(segment, std::max(done * length, corner_behind_mm_),
+                std::min(end, corner_before_mm_));
     }
     done += share;
   }
@@ -132,27 +181,30 @@ void Schedule::run_blend(const Segment& segment, double seconds, double speed) {
   if (with_path_) send_blend_half(segment, false);
 }
 
-void Schedule::send_line(const Segment& segment, double from_part, double to_part) {
+void Schedule::send_line(const Segment& segment, double from_mm, double to_mm) {
   const bool blend = segment.shape == SegmentShape::kBlend;
   const Vec3& u = segment.tangent_from;
   const double length = blend ? segment.lead_mm : segment.length_mm;
-  if (!segment.linear || length <= 0) return;
+  if (!segment.linear || length <= 0 || to_mm <= from_mm) return;
   const Vec3 start = segment.from + segment.trim_from * u;
   const Vec3 end = segment.trim_to > 0 || blend ? start + length * u : segment.to;
-  const Vec3 from = from_part > 0 ? start + (from_part * length) * u : start;
-  const Vec3 to = to_part < 1 ? start + (to_part * length) * u : end;
+  const Vec3 from = from_mm > 0 ? start + from_mm * u : start;
+  const Vec3 to = to_mm < length ? start + to_mm * u : end;
   sink_.path({false, from, to, {}});
 }
 
-void Schedule::send_arc(const Segment& segment) {
+void Schedule::send_arc(const Segment& segment, double from_mm, double to_mm) {
+  if (to_mm <= from_mm) return;
   PathPiece piece;
-  const double whole = std::abs(segment.arc.sweep_rad);
   piece.curved = true;
-  piece.from_mm = segment.trim_from > 0 ? segment.arc_point(segment.trim_from) : segment.from;
-  piece.to_mm = segment.trim_to > 0 ? segment.arc_point(whole - segment.trim_to) : segment.to;
+  const bool whole_start = segment.trim_from <= 0 && from_mm <= 0;
+  const bool whole_end = segment.trim_to <= 0 && to_mm >= segment.length_mm;
+  piece.from_mm = whole_start ? segment.from : segment.point_at(from_mm);
+  piece.to_mm = whole_end ? segment.to : segment.point_at(to_mm);
   piece.arc = segment.arc;
-  const double left = whole - segment.trim_from - segment.trim_to;
-  piece.arc.sweep_rad = segment.arc.sweep_rad < 0 ? -left : left;
+  const double left = std::abs(segment.arc.sweep_rad) - segment.trim_from - segment.trim_to;
+  const double share = (to_mm - from_mm) / segment.length_mm;
+  piece.arc.sweep_rad = segment.arc.sweep_rad < 0 ? -left * share : left * share;
   sink_.path(piece);
 }
 

@@ -2,6 +2,8 @@
 // made of.
 #pragma once
 
+#include <vector>
+
 #include "interp_bridge/timing/planner.h"
 #include "interp_bridge/timing/profile.h"
 #include "interp_bridge/timing/ring.h"
@@ -28,8 +30,16 @@ class Schedule {
   /// The oldest pieces take no time after all.
   void drop_pieces(std::uint32_t count);
 
-  /// The next segment has been run. overlap_s: how much earlier the one after it begins.
-  void run(const Segment& segment, const SpeedProfile& profile, double overlap_s);
+  /// The segment after one begins while that still brakes.
+  struct Overlap {
+    double seconds = 0;
+    double braking = 0;   ///< mm/s2, to a stop at its end
+    double speeding = 0;  ///< mm/s2, of the next, from a stop ..
+    double speed = 0;     ///< .. up to this, mm/s
+    const Segment* next = nullptr;
+  };
+  /// The next segment has been run.
+  void run(const Segment& segment, const SpeedProfile& profile, const Overlap& overlap);
   /// The machine stands: the last segment's motion is complete.
   void settle();
 
@@ -49,8 +59,10 @@ class Schedule {
   void report_ready();
   void run_pieces(const Segment& segment, double seconds, double speed);
   void run_blend(const Segment& segment, double seconds, double speed);
-  void send_line(const Segment& segment, double from_part, double to_part);
-  void send_arc(const Segment& segment);
+  void send_line(const Segment& segment, double from_mm, double to_mm);
+  void send_arc(const Segment& segment, double from_mm, double to_mm);
+  void send_chords(std::size_t from, std::size_t to);
+  void round_corner(const Segment& segment, const Overlap& overlap);
   void send_blend_half(const Segment& segment, bool first);
 
   MotionPlanSink& sink_;
@@ -58,6 +70,12 @@ class Schedule {
   double clock_s_ = 0;
   std::uint64_t next_index_ = 0;
   bool held_ = false;  ///< the oldest piece has been run, up to the blend that may follow
+  /// The corner that two segments pass while both are run, as points; the second half of it, and so
+  /// much of the second segment, belongs to that.
+  std::vector<Vec3> corner_mm_;
+  double corner_ahead_mm_ = 0;
+  double corner_behind_mm_ = 0;
+  double corner_before_mm_ = 0;  ///< of the segment that is run: where its own corner begins
   Ring<Pending> pending_;
   Ring<Piece> pieces_;
 };

@@ -181,6 +181,14 @@ Vec3 Segment::arc_point(double angle) const {
          radius * (std::cos(angle) * out + std::sin(angle) * side);
 }
 
+Vec3 Segment::point_at(double way_mm) const {
+  if (shape == SegmentShape::kArc) {
+    const double left = std::abs(arc.sweep_rad) - trim_from - trim_to;
+    return arc_point(trim_from + (length_mm > 0 ? left * way_mm / length_mm : 0.0));
+  }
+  return from + (trim_from + way_mm) * tangent_from;
+}
+
 void follow_spindle(Segment& segment, double speed) {
   segment.request = segment.max_speed;
   segment.spindle_speed = speed;

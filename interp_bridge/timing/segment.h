@@ -88,13 +88,15 @@ struct Segment {
   std::uint64_t first_piece = 0;
   std::uint32_t piece_count = 0;
 
-  /// Acceleration along the path, after what corners and curvature keep for themselves.
-  double accel() const {
+  /// Acceleration after what corners keep for themselves.
+  double overall_accel() const {
     const double load = corner_load > corner_load_from ? corner_load : corner_load_from;
-    double share = (1.0 - load) * along_share;
+    double share = 1.0 - load;
     if (begins_parabolic || end == SegmentEnd::kParabolic) share *= 0.5;
     return max_accel * share;
   }
+  /// That along the path: less what the curvature keeps.
+  double accel() const { return overall_accel() * along_share; }
   bool follows_spindle() const { return spindle_speed < kUnlimited; }
   /// The speed that it is run at where nothing else limits it.
   double target(const AxisRates& rates) const {
@@ -105,6 +107,8 @@ struct Segment {
   }
   /// Point at angle (radians from the untrimmed start) of an arc.
   Vec3 arc_point(double angle) const;
+  /// Point of a line or an arc so far from its trimmed start, 0 to length_mm.
+  Vec3 point_at(double way_mm) const;
 };
 
 /// How far a move takes A B C and U V W.

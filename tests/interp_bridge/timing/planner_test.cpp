@@ -105,6 +105,31 @@ TEST(Planner, TheLastFeedIsEnteredAsIfHalfOfItWereStillCutAway) {
   EXPECT_GT(plan.clock_s, plan_of(Path().feed(3000).line(62, 0).motions).clock_s - 0.1);
 }
 
+TEST(Planner, CornersThatNoArcFitsArePassedWhileBothMovesRun) {
+  PlannerOptions options;
+  options.with_path = true;
+  const auto nearest_mm = [&](double tolerance) {
+    // A quarter of a circle, then straight down: not in one plane.
+    Path path(PathMode::kContinuous, tolerance);
+    path.feed(1800).line(10, 0).arc(20, 10, 10, 10, kPi / 2).line(20, 10, -20);
+    const Plan plan = plan_of(path.motions, MachineLimits::small_mill(), options);
+    const Vec3 corner(20, 10, 0);
+    double least = 1e9;
+    for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
+      if (i > 0) {
+        EXPECT_LT(glm::length(plan.pieces[i].from_mm - plan.pieces[i - 1].to_mm), 1e-9);
+      }
+      least = std::min(least, glm::length(plan.pieces[i].from_mm - corner));
+    }
+    EXPECT_EQ(plan.pieces.back().to_mm, Vec3(20, 10, -20));
+    return least;
+  };
+  // Without a tolerance by far, with one about as far as that says.
+  EXPECT_GT(nearest_mm(0), 0.2);
+  EXPECT_LT(nearest_mm(0.05), 0.06);
+  EXPECT_GT(nearest_mm(0.05), 0.02);
+}
+
 TEST(Planner, MergedFeedsShareTheTimeOfOneLine) {
   Path path(PathMode::kContinuous, 0.01, 0.01);
   path.feed(3000);
