@@ -568,8 +568,10 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
 bool MotionFold::fold_feed(const CanonicalCommand& command) {
   switch (command.name) {
     case CanonicalName::kSetFeedRate:
-      // Another feed ends the chain by itself; under G95 the same one does.
-      if (feed_per_rev_) chain_end_ = std::max(chain_end_, ChainEnd::kEnds);
+      // Another feed ends the chain; under G95 the same one does.
+      if (feed_per_rev_ || command.number(0) * unit_mm_ != feed_mm_) {
+        chain_end_ = std::max(chain_end_, ChainEnd::kEnds);
+      }
       feed_ = command.number(0);
       feed_mm_ = feed_ * unit_mm_;
       return true;

@@ -166,6 +166,7 @@ void CutStage::finish(bool whole) {
 
 void CutStage::cut(const Motion& m, const TimedStep& step) {
   axis_limits_.check(m, step);
+  if (!watched_) program_.watch_lost_feed(m, step);
   // Of strokes that nobody knows the place of the punch tells.
   if (!punch_ && (m.unknown_from | m.unknown_to) != 0) report_unknown_place(m, step);
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);

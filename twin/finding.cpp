@@ -141,6 +141,8 @@ const char* to_string(FindingId id) {
       return "cell-coarse";
     case FindingId::kThinFilm:
       return "thin-film";
+    case FindingId::kFeedLost:
+      return "feed-lost";
   }
   return "";
 }

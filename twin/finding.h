@@ -74,6 +74,7 @@ enum class FindingId : std::uint8_t {
   kBeamOnTraverse,    ///< the beam is on along traverses
   kCellCoarse,        ///< the cells of the grid are too large for a tool or a depth of the program
   kThinFilm,          ///< a wall or roof thinner than a cell was left, and the octree lost it
+  kFeedLost,          ///< LinuxCNC does not run a feed that M61 comes right after
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -52,7 +52,49 @@ double point_angle_deg(const Cutter& cutter) {
   return run > 0 ? 2 * std::atan2(run, rise) * 180 / kPi : 180;
 }
 
+/// A feed that LinuxCNC holds back: straight, or an arc so flat that G64 Q makes two lines of it.
+bool held_back(const Motion& m) {
+  if (m.from_abc_deg != m.to_abc_deg || m.from_uvw_mm != m.to_uvw_mm) return false;
+  if (m.kind == MotionKind::kFeed) return m.start_known && m.from_mm != m.to_mm;
+  if (m.kind != MotionKind::kArc || m.path_mode != PathMode::kContinuous) return false;
+  if (std::abs(m.arc.axis.z) < 0.9999) return false;
+  const double radius =
+      std::hypot(m.from_mm.x - m.arc.center_mm.x, m.from_mm.y - m.arc.center_mm.y);
+  const double sagitta = radius * (1 - std::cos(m.arc.sweep_rad / 2));
+  return std::abs(m.arc.sweep_rad) < 2 * kPi && sagitta < double{m.merge_tolerance_mm};
+}
+
 }  // namespace
+
+void ProgramChecks::watch_lost_feed(const Motion& m, const TimedStep& step) {
+  Held now{held_back(m), m.merge_tolerance_mm > 0, m.by_number, m.source, m.from_mm, step.start_s};
+  const bool joined = m.halts == 0 && m.chain_end == ChainEnd::kNone;
+  if (m.by_number && last_.feed && joined) tell_lost(last_, m.source, m.tool);
+  if (now.feed && last_.by_number && m.source == last_.source && m.source.line != 0) {
+    tell_lost(now, m.source, m.tool);
+    now.feed = false;
+  }
+  last_ = now;
+}
+
+void ProgramChecks::tell_lost(const Held& feed, SourceRef m61, int tool) {
+  Finding finding;
+  finding.id = FindingId::kFeedLost;
+  finding.source = feed.source;
+  finding.time_s = feed.start_s;
+  finding.position_mm = feed.from_mm;
+  finding.tool = tool;
+  const bool same_block = m61 == feed.source;
+  finding.text = fmt::format(
+      "LinuxCNC does not run this feed{}: M61 {}; the machine stays where it is, and what comes "
+      "next starts from there",
+      feed.merges ? ", nor feeds that G64 merges with it" : "",
+      same_block ? std::string("is in its block")
+                 : fmt::format("in line {} comes right after it", m61.line));
+  finding.hint = same_block ? "write M61 in a block of its own, behind G4 P0"
+                            : "write G4 P0 between the feed and M61";
+  log_.add(std::move(finding));
+}
 
 void ProgramChecks::feeds(const Motion& m, const TimedStep& step, int tool) {
   if (m.selected_at != waiting_.source) {
