@@ -288,6 +288,16 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   CanonicalReaderOptions reading = reader_options(*session);
   reading.feeder.frame = &frame_;
   reading.feeder.materials = &materials_;
+  const InputWaits& waits = session->prepared.waits;
+  if (waits.count > 0 && !reading.feeder.torch.qtplasmac) {
+    summary.notes.push_back(
+        {waits.first,
+         fmt::format(
+             "rs274's text tells nothing of M66 ({} in the program): that the machine stops "
+             "for it is not reckoned with; --interp bridge does",
+             waits.count),
+         1, true});
+  }
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   ChildListener listener(session->process, reader, reader.feeder(), options_);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));

@@ -173,6 +173,7 @@ void LineNumberer::note_words(std::string_view text) {
       const std::string_view after(p, static_cast<std::size_t>(end - p));
       const long number = read_number(after);
       if (lower(letter) == 'm') {
+        if (number == 66) note_wait(text, static_cast<std::size_t>(hit - begin));
         if (number != 61 && number != 98) continue;
         const std::string_view line = after.substr(0, after.find('\n'));
         const std::size_t word = line.find_first_of(number == 61 ? "Qq" : "Pp");
@@ -189,6 +190,20 @@ void LineNumberer::note_words(std::string_view text) {
       tools_.computed |= next != end && (*next == '#' || *next == '[');
     }
   }
+}
+
+/// An M66 at `at`, unless that is within a comment.
+void LineNumberer::note_wait(std::string_view text, std::size_t at) {
+  const std::size_t newline = text.rfind('\n', at);
+  const std::size_t begin = newline == text.npos ? 0 : newline + 1;
+  const std::string_view before = text.substr(begin, at - begin);
+  if (before.find(';') != before.npos) return;
+  const std::size_t open = before.rfind('(');
+  if (open != before.npos && before.find(')', open) == before.npos) return;
+  const auto stop = text.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto line = line_ + static_cast<std::uint32_t>(std::count(text.begin(), stop, '\n'));
+  // Capital letters are looked for before small ones.
+  if (waits_.count++ == 0 || line < waits_.first.line) waits_.first.line = line;
 }
 
 std::set<std::string> LineNumberer::missing_subroutines() const {
@@ -283,6 +298,9 @@ Result<PreparedProgram> prepare_program(const std::string& path, const std::stri
     prepared.tools.numbers.insert(numberer->tools().numbers.begin(),
                                   numberer->tools().numbers.end());
     prepared.tools.computed |= numberer->tools().computed;
+    const InputWaits& waits = numberer->waits();
+    if (prepared.waits.count == 0) prepared.waits.first = {file, waits.first.line};
+    prepared.waits.count += waits.count;
     for (const std::string& called : numberer->missing_subroutines()) {
       const std::string found = find_subroutine(called, path);
       if (found.empty() || !taken.insert(called + ".ngc").second) continue;

@@ -33,6 +33,12 @@ struct NamedTools {
   bool computed = false;  ///< T#1, T[..]: any number may come
 };
 
+/// M66 words of a program's text, comments left out. Whether their blocks are run is not known.
+struct InputWaits {
+  SourceRef first;  ///< line 0: none
+  std::size_t count = 0;
+};
+
 /// Numbers the lines of one file. Feed it the text in pieces that end at line ends (the last may
 /// lack its newline).
 class LineNumberer {
@@ -49,11 +55,13 @@ class LineNumberer {
   /// define.
   std::set<std::string> missing_subroutines() const;
   const NamedTools& tools() const { return tools_; }
+  const InputWaits& waits() const { return waits_; }
 
  private:
   bool number_line(std::string_view line, char*& out);
   void note_o_word(std::string_view after_o);
   void note_words(std::string_view text);
+  void note_wait(std::string_view text, std::size_t at);
   void advance();
 
   std::uint32_t line_ = 1;
@@ -63,6 +71,7 @@ class LineNumberer {
   std::set<std::string> called_;
   std::set<std::string> defined_;
   NamedTools tools_;
+  InputWaits waits_;
 };
 
 /// What the interpreter is given, and how to read its answers.
@@ -73,6 +82,7 @@ struct PreparedProgram {
   std::size_t lines = 0;  ///< of files[0]
   std::vector<SourceRef> unnumbered;  ///< sorted by file and line
   NamedTools tools;
+  InputWaits waits;
 };
 
 /// Writes numbered copies of `path` and of every file that it calls, directly or not (NAME.ngc
