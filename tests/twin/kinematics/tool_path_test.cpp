@@ -385,8 +385,9 @@ TEST(ToolPath, TurnsInPlentyAreLeftOut) {
     ASSERT_GT(ends[i], t);
     EXPECT_LT(glm::distance(moves[i].to_mm, path.pose_at(m, ends[i]).origin_mm), 1e-6);
     const bool across = (ends[i] - t) * turns > 0.9;
-    if (across) EXPECT_LE(glm::distance(moves[i].from_mm, moves[i].to_mm), 2 * tolerance.turn_mm);
-    if (!across) {
+    if (across) {
+      EXPECT_LE(glm::distance(moves[i].from_mm, moves[i].to_mm), 2 * tolerance.turn_mm);
+    } else {
       if (kept.empty() || kept.back().second != t)
         kept.emplace_back(t, ends[i]);
       else
