@@ -104,6 +104,7 @@ void ToolTrace::add(const Motion& m, bool upright) {
     return;
   }
   note_circle(m);
+  const double slanted_mm = slanted_length_mm_;  // helices are ramps: Z follows nothing
   const int chords =
       std::clamp(static_cast<int>(std::ceil(std::abs(m.arc.sweep_rad) / kChord_rad)), 1, 1000);
   Vec3 from = m.from_mm;
@@ -112,6 +113,7 @@ void ToolTrace::add(const Motion& m, bool upright) {
     add_chord(from, to);
     from = to;
   }
+  slanted_length_mm_ = slanted_mm;
 }
 
 double ToolTrace::step_over_mm() const {
@@ -142,12 +144,13 @@ double ToolTrace::step_over_mm() const {
   // width on average over all directions.
   double count = grid.count();
   const double length = count * cell * kPi / 4;
-  constexpr double kAreaLike = 3.0;
+  constexpr double kAreaLike = 2.5;
   constexpr double kFewSquares = 48;
-  while (grid.side() >= 32 && count >= kFewSquares) {
+  while (grid.side() >= 16 && count >= kFewSquares) {
     const Grid next = grid.coarser();
     const double less = next.count();
-    if (count / less >= kAreaLike) return std::max(cell, count * cell * cell / length);
+    // The coarser squares cover the area, the finer ones may have gaps.
+    if (count / less >= kAreaLike) return std::max(cell, 4 * less * cell * cell / length);
     grid = next;
     count = less;
     cell *= 2;
