@@ -133,6 +133,61 @@ TEST_F(SceneRendererTest, OfAThinnedPathThePastEndsAtTheVertex) {
   }
 }
 
+TEST_F(SceneRendererTest, OfATailTheOlderSegmentsArePalerAndTheRestIsNotThere) {
+  std::vector<PathVertex> path;
+  for (std::size_t i = 0; i <= 3 * kPathChunkSegments; ++i) {
+    path.push_back({{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
+  }
+  SceneRenderer scene = renderer();
+  scene.apply(path_update(path_chunks(path)));
+  camera_.look_from(StandardView::kTop);
+  camera_.set_perspective(false);
+  const Projection projection = view_of(scene);
+  DrawOptions options = everything_;
+  options.path_tail = 4000;
+  const auto red_at = [&](std::size_t vertex) {
+    const Vec3 place(path[vertex].position_mm);
+    const glm::ivec2 px = pixel_of(projection, place);
+    int least = 255;
+    for (int y = px.y - 1; y <= px.y + 1; ++y)
+      least = std::min(least, at(scene.read(), {px.x, y}).r);
+    return least;
+  };
+  draw(&scene, projection, options);
+  const int ground = red_at(6000);
+  // Across the border of two chunks.
+  scene.apply(past_update(9000));
+  draw(&scene, projection, options);
+  EXPECT_LT(red_at(8800), red_at(7500) - 20);
+  EXPECT_LT(red_at(7500), red_at(5600) - 20);
+  EXPECT_LT(red_at(5600), ground);
+  EXPECT_NEAR(red_at(4700), ground, 2);
+  EXPECT_NEAR(red_at(9200), ground, 2);
+}
+
+TEST_F(SceneRendererTest, OfATailThatPassesTheSamePixelsAsAnew) {
+  std::mt19937 random(7);
+  SceneRenderer local = renderer(), full = renderer();
+  const std::vector<PathVertex> path = waves(25'000);
+  local.apply(path_update(path_chunks(path)));
+  full.apply(path_update(path_chunks(path)));
+  DrawOptions options = everything_, anew = everything_;
+  options.path_tail = anew.path_tail = 200;
+  anew.is_local = false;
+  camera_.fit({Vec3(0, 0, -10), Vec3(100, 100, 0)}, kSize_px);
+  const Projection projection = camera_.projection(local.depth_box(), kSize_px);
+  std::uint64_t past = 4000;
+  for (int step = 0; step < 20; ++step) {
+    past = step % 5 == 4 ? random() % path.size() : past + random() % 90;
+    local.apply(past_update(past));
+    full.apply(past_update(past));
+    draw(&local, projection, options);
+    draw(&full, projection, anew);
+    ASSERT_EQ(differing_pixels(local.read(), full.read()), 0) << past;
+  }
+  EXPECT_GE(local.counters().local.frames, 15u);
+}
+
 TEST_F(SceneRendererTest, OfAThinnedPathThatPassesTheSamePixelsAsAnew) {
   std::mt19937 random(7);
   SceneRenderer local = renderer(), full = renderer();

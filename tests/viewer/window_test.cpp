@@ -433,8 +433,9 @@ TEST_F(WindowTest, SectionHidesHalfOfTheWorkpiece) {
 
 TEST_F(WindowTest, ColoursAreAskedForInTurn) {
   open();
+  // Deviations are for those who have a design: see the next test.
   for (const ColorBy mode : {ColorBy::kHeight, ColorBy::kTool, ColorBy::kRemovalRate,
-                             ColorBy::kLineRange, ColorBy::kDeviation, ColorBy::kPlain}) {
+                             ColorBy::kLineRange, ColorBy::kPlain}) {
     key("v");
     const auto asked = next<ColorCommand>();
     ASSERT_TRUE(asked);
@@ -442,6 +443,54 @@ TEST_F(WindowTest, ColoursAreAskedForInTurn) {
     EXPECT_EQ(asked->last_line, 500);
     settle();
     EXPECT_EQ(window_->settings().drawing.color_by, mode);
+  }
+}
+
+TEST_F(WindowTest, DeviationsAreForThoseWhoHaveADesign) {
+  open();
+  const auto show = [this](const std::string& title, std::optional<double> tolerance_mm) {
+    SceneSetup setup;
+    setup.title = title;
+    setup.bounds_mm = {Vec3(0, 0, -20), Vec3(200, 180, 0)};
+    setup.tolerance_mm = tolerance_mm;
+    SceneUpdate update;
+    update.setup = std::make_shared<const SceneSetup>(setup);
+    mailbox_.publish(std::move(update));
+    settle();
+  };
+  show("with a design", 0.1);
+  EXPECT_EQ(window_->settings().drawing.color_by, ColorBy::kDeviation);
+  show("without", std::nullopt);
+  EXPECT_EQ(window_->settings().drawing.color_by, ColorBy::kPlain);
+}
+
+TEST_F(WindowTest, TheNextProgramIsInSpaceAgain) {
+  open();
+  key("o");
+  settle();
+  ASSERT_EQ(window_->settings().flat, FlatView::kXy);
+  for (const bool keeps_eye : {true, false}) {
+    SceneSetup setup;
+    setup.title = keeps_eye ? "the same, changed" : "another";
+    setup.keeps_eye = keeps_eye;
+    SceneUpdate update;
+    update.setup = std::make_shared<const SceneSetup>(setup);
+    mailbox_.publish(std::move(update));
+    settle();
+    EXPECT_EQ(window_->settings().flat, keeps_eye ? FlatView::kXy : FlatView::kNone);
+  }
+}
+
+TEST_F(WindowTest, KeysHideFeedsAndTraversesAndAllButTheLastMoves) {
+  open();
+  const Picture all = window_->read_scene();
+  for (const char* name : {"k", "j", "u"}) {
+    key(name);
+    settle();
+    EXPECT_NE(all.rgb, window_->read_scene().rgb) << name;
+    key(name);
+    settle();
+    EXPECT_EQ(all.rgb, window_->read_scene().rgb) << name;
   }
 }
 

@@ -283,10 +283,12 @@ std::size_t PathStore::past_of(std::size_t chunk, std::uint64_t past_vertices) c
 }
 
 void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
-  const std::uint64_t low = std::min(vertices, past_vertices_);
+  const std::uint64_t least = std::min(vertices, past_vertices_);
+  // All of a tail gets another shade. One more segment begins at the vertex before it.
+  const std::uint64_t low = tail_ > 0 ? least - std::min<std::uint64_t>(least, tail_ + 1) : least;
   const std::uint64_t high = std::max(vertices, past_vertices_);
   past_vertices_ = vertices;
-  if (low == high) return;
+  if (least == high) return;
   Box box;
   for (std::size_t c = low / kPathChunkSegments;
        c < chunks_.size() && c * kPathChunkSegments < high; ++c) {
@@ -294,7 +296,7 @@ void PathStore::set_past(std::uint64_t vertices, std::vector<Box>* changed_mm) {
     const std::size_t first = past_of(c, low), end = past_of(c, high);
     if (first == end) continue;
     // From the last vertex of the strip before those that turn to the first one behind them.
-    const Strip& strip = chunk.strips[chunk.level];
+    const Strip& strip = chunk.strips[tail_ > 0 ? 0 : chunk.level];
     const std::size_t from = first > 0 ? strip.number(strip.at_number(first) - 1) : 0;
     const std::size_t to = end < chunk.count() ? strip.number(strip.at_number(end)) : end - 1;
     box.extend(box_of_part(chunk, from, to + 1));
@@ -388,10 +390,39 @@ void PathStore::draw_line(std::size_t from, std::size_t to) const {
   glDrawElements(GL_LINES, 2, GL_UNSIGNED_SHORT, nullptr);
 }
 
+void PathStore::draw_tail(const ScreenRect& rect, const PathColors& colors) const {
+  program_.set("is_past", 1);
+  glEnable(GL_BLEND);
+  for (std::size_t shade = 0; shade < kTailShades; ++shade) {
+    // From the oldest to the newest; vertices that lie behind the tool.
+    const std::size_t newer = tail_ * (kTailShades - shade - 1) / kTailShades;
+    const std::size_t older = tail_ * (kTailShades - shade) / kTailShades;
+    const std::uint64_t end = past_vertices_ - std::min<std::uint64_t>(past_vertices_, newer);
+    const std::uint64_t begin = past_vertices_ - std::min<std::uint64_t>(past_vertices_, older + 1);
+    const float share = static_cast<float>(shade + 1) / static_cast<float>(kTailShades);
+    for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
+      glm::vec4 rgba = colors.past[kind];
+      rgba.a *= share;
+      program_.set(("rgba[" + std::to_string(2 * kind) + "]").c_str(), rgba);
+    }
+    for (std::size_t c = begin / kPathChunkSegments;
+         c < chunks_.size() && c * kPathChunkSegments < end; ++c) {
+      const Chunk& chunk = chunks_[c];
+      if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
+      glBindVertexArray(chunk.array.name());
+      draw_lines(chunk, chunk.strips.front(), past_of(c, begin), past_of(c, end), rect);
+    }
+  }
+}
+
 void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const {
   program_.use();
   program_.set("clip_from_world", projection_.clip_from_world);
   program_.set("towards_eye", towards_eye(projection_, kNearer_px));
+  if (tail_ > 0) {
+    draw_tail(rect, colors);
+    return;
+  }
   for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
     const std::string at = "rgba[" + std::to_string(2 * kind);
     program_.set((at + "]").c_str(), colors.past[kind]);

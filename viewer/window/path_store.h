@@ -42,6 +42,7 @@ class PathStore {
   /// which is three times what it takes for a plain one.
   static constexpr std::size_t kSmoothVertices = 20'000;
   static constexpr double kSmooth_px = 300'000, kSmoothSegment_px = 1.0;
+  static constexpr std::size_t kTailShades = 8;
   static constexpr std::size_t kRunSegments = 32;
   static constexpr std::size_t kThinnedRunSegments = 4;  ///< longer ones
 
@@ -58,6 +59,10 @@ class PathStore {
 
   /// Appends the box of the segments that turn from future to past or back.
   void set_past(std::uint64_t vertices, std::vector<Box>* changed_mm);
+
+  /// Of what is past only so many segments are drawn, the newest, in kTailShades steps paler the
+  /// older they are, and none of the future; 0: all of the path. The whole picture changes.
+  void set_tail(std::size_t segments) { tail_ = segments; }
 
   void project(const Projection& projection);
   /// `may_smooth`: lines may be antialiased. Their faint rims have a depth as well. Blending has to
@@ -125,6 +130,7 @@ class PathStore {
   /// Lines between the vertices [begin, end) of a strip that come near the rectangle.
   void draw_lines(const Chunk& chunk, const Strip& strip, std::size_t begin, std::size_t end,
                   const ScreenRect& rect) const;
+  void draw_tail(const ScreenRect& rect, const PathColors& colors) const;
   /// One line, between vertices of the chunk that is bound.
   void draw_line(std::size_t from, std::size_t to) const;
   const std::vector<ScreenRect>& run_rects(const Strip& strip) const;
@@ -134,6 +140,7 @@ class PathStore {
   std::vector<Chunk> chunks_;
   std::deque<std::shared_ptr<const PathChunk>> waiting_;
   std::uint64_t past_vertices_ = 0;
+  std::size_t tail_ = 0;  ///< segments; 0: all
   std::size_t gpu_bytes_ = 0;
   Box dropped_mm_;
   Projection projection_;

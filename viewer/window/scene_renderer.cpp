@@ -247,6 +247,7 @@ Done SceneRenderer::Impl::take_options(const Projection& projection, const DrawO
   without_budget.upload_bytes_per_frame = options_.upload_bytes_per_frame;
   if (without_budget != options_ || !options.is_local) is_kept_old_ = true;
   options_ = options;
+  path_.set_tail(options.path_tail);
   if (Done done = resize(projection.size_px); !done) return done;
   if (projection != projection_) {
     is_kept_old_ = true;

@@ -58,6 +58,8 @@ struct DrawOptions {
   /// Deviations up to this are green; from twice this on, the colour is full.
   double tolerance_mm = 0.05;
   bool is_dark = false;  ///< The background.
+  /// Of the path only so many segments behind the tool are drawn, fading; 0: all, and what comes.
+  std::size_t path_tail = 0;
   /// Redraw only what changed while the camera stands still. Off: everything, every time; for
   /// measuring and for doubtful drivers.
   bool is_local = true;

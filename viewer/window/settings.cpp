@@ -134,6 +134,10 @@ std::vector<Field> choices() {
           "section.axis", {"x", "y", "z"}, [](const ViewSettings& s) { return s.section.axis; },
           [](int choice, ViewSettings* s) { s->section.axis = choice; }),
       switch_field("section.flipped", [](ViewSettings* s) { return &s->section.is_flipped; }),
+      choice_field(
+          "path", {"all", "last"},
+          [](const ViewSettings& s) { return s.drawing.path_tail > 0 ? 1 : 0; },
+          [](int choice, ViewSettings* s) { s->drawing.path_tail = choice == 0 ? 0 : kTailMoves; }),
       switch_field("dark", [](ViewSettings* s) { return &s->drawing.is_dark; }),
       number_field(
           "tolerance", [](ViewSettings* s) { return &s->drawing.tolerance_mm; }, kMinTolerance_mm,

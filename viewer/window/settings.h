@@ -42,6 +42,8 @@ struct ViewSettings {
   SectionChoice section;
   DrawOptions drawing;
 };
+/// DrawOptions::path_tail where only the last moves are wanted.
+inline constexpr std::size_t kTailMoves = 200;
 inline constexpr std::size_t kMostRecent = 8;
 inline constexpr double kMinPanel_px = 180.0;
 inline constexpr double kMaxPanel_px = 1200.0;

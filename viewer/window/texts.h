@@ -68,6 +68,7 @@ enum class Text {
   kPlanned,
   kBlank,
   kFrames,
+  kPathTail,
   kMachineParts,
   kLocalDrawing,
   kPerspective,

@@ -49,6 +49,10 @@ void draw_objects(const PanelContext& context) {
   }
   ImGui::PopStyleVar();
   ImGui::EndTable();
+  bool is_tail = context.settings->drawing.path_tail > 0;
+  if (ImGui::Checkbox(context.word(Text::kPathTail), &is_tail)) {
+    context.settings->drawing.path_tail = is_tail ? kTailMoves : 0;
+  }
 }
 
 void draw_legend(const PanelContext& context) {
@@ -88,6 +92,8 @@ void draw_colors(const PanelContext& context) {
   const auto mode = static_cast<std::size_t>(drawing.color_by);
   if (ImGui::BeginCombo("##colors", context.word(kColorModes[mode]))) {
     for (std::size_t i = 0; i < kColorModes.size(); ++i) {
+      const bool needs_design = static_cast<ColorBy>(i) == ColorBy::kDeviation;
+      if (needs_design && !context.shown.setup->tolerance_mm) continue;
       if (!ImGui::Selectable(context.word(kColorModes[i]), i == mode) || i == mode) continue;
       drawing.color_by = static_cast<ColorBy>(i);
       context.commands->push(color_command(*context.settings, *context.state));

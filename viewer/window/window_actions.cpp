@@ -114,11 +114,18 @@ void Window::Impl::act_on_panels(Action action) {
     case Action::kWorkpiece:
       toggle_workpiece();
       break;
-    case Action::kHolder: {
-      bool& is_visible = look(SceneObject::kHolder).is_visible;
-      is_visible = !is_visible;
+    case Action::kHolder:
+      toggle(SceneObject::kHolder);
       break;
-    }
+    case Action::kFeeds:
+      toggle(SceneObject::kFeeds);
+      break;
+    case Action::kTraverses:
+      toggle(SceneObject::kTraverses);
+      break;
+    case Action::kPathTail:
+      settings_.drawing.path_tail = settings_.drawing.path_tail > 0 ? 0 : kTailMoves;
+      break;
     case Action::kCodePanel:
       settings_.shows_code = !settings_.shows_code;
       break;
@@ -294,9 +301,11 @@ void Window::Impl::act_on_view(Action action) {
       wants_fit_ = true;
       break;
     case Action::kNextColors: {
-      constexpr int kModes = static_cast<int>(ColorBy::kDeviation) + 1;
+      // Without a design there is nothing to deviate from.
+      const int modes =
+          static_cast<int>(ColorBy::kDeviation) + (shown_.setup->tolerance_mm ? 1 : 0);
       ColorBy& mode = settings_.drawing.color_by;
-      mode = static_cast<ColorBy>((static_cast<int>(mode) + 1) % kModes);
+      mode = static_cast<ColorBy>((static_cast<int>(mode) + 1) % modes);
       commands_.push(color_command(settings_, state_));
       break;
     }

@@ -148,7 +148,12 @@ void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
     settings_.drawing.color_by = ColorBy::kDeviation;
     settings_.drawing.tolerance_mm =
         std::clamp(*setup->tolerance_mm, kMinTolerance_mm, kMaxTolerance_mm);
+  } else if (settings_.drawing.color_by == ColorBy::kDeviation) {
+    settings_.drawing.color_by = ColorBy::kPlain;
   }
+  // A drawing in 2D was of what was shown before.
+  if (!setup->keeps_eye && setup->title != title_) settings_.flat = FlatView::kNone;
+  title_ = setup->title;
   const std::string& title = setup->title;
   glfwSetWindowTitle(window_, title.empty() ? "kerf" : fmt::format("kerf - {}", title).c_str());
   const Box& bounds = setup->bounds_mm;
