@@ -243,6 +243,25 @@ TEST(CanAssembler, WhatIsNoNumberIsUnfit) {
   EXPECT_FALSE(bus.next());
 }
 
+TEST(CanAssembler, APositionBeyondItsRangeIsUnfit) {
+  CanMap map = three_axes();
+  map.ranges[0] = {-100, 200, std::nullopt};
+  map.ranges[1].max = 10;
+  Bus bus(map);
+  // A hundredth of the span, or 1, more is overshoot.
+  EXPECT_EQ(bus.axis(0, 202.5), Taken::kTaken);
+  EXPECT_EQ(bus.axis(0, 203.5), Taken::kUnfit);
+  EXPECT_EQ(bus.assembler.unfit_text(),
+            "frame 0x381 has 203.5 in X, beyond min or max and what a machine may overshoot");
+  EXPECT_EQ(bus.axis(0, -103.5), Taken::kUnfit);
+  EXPECT_EQ(bus.axis(1, 10.9), Taken::kTaken);
+  EXPECT_EQ(bus.axis(1, 11.1), Taken::kUnfit);
+  EXPECT_EQ(bus.axis(1, -1e6), Taken::kTaken);
+  map.ranges[0].max = -100;
+  EXPECT_EQ(validate(map),
+            (std::vector<std::string>{"map.X.max: -100 is not allowed; must be above min -100"}));
+}
+
 /// Cycles of three drives, each with a position that tells which cycle it is of.
 struct CyclicBus : Bus {
   explicit CyclicBus(CanMap the_map = three_axes()) : Bus(std::move(the_map)) {}

@@ -50,6 +50,8 @@ CanSourceOptions cia402_options(std::size_t axes) {
   options.retry_longest_ms = 20;
   // On a busy computer the parts of a cycle may lie far apart.
   options.map.gather_ms = 10'000.0;
+  // The same of what is sent faster than it can be read.
+  options.receive_buffer_bytes = 64 * 1024 * 1024;
   return options;
 }
 
@@ -244,6 +246,39 @@ TEST_F(CanSocket, AnAxisThatFallsSilentIsNoLongerKnown) {
     forgotten = sample.known == 5;
   }
   EXPECT_TRUE(forgotten);
+}
+
+/// In the middle of cycles of 10 ms, by the kernel's stamps.
+TEST_F(CanSocket, OneLostFrameCostsOneCycle) {
+  CanSource source(cia402_options(3));
+  open(source);
+  BusNode bus;
+  int sent = 0;
+  int taken = 0;
+  int mixed = 0;
+  const auto take = [&] {
+    AxisSample sample;
+    while (source.next(sample, milliseconds(0)) == Next::kSample) {
+      ++taken;
+      const auto& p = sample.position;
+      if (sample.fresh != 7 || p[0] != p[1] || p[1] != p[2]) ++mixed;
+    }
+  };
+  for (int i = 0; i < 60; ++i) {
+    const bool is_lost = i == 30;
+    for (std::uint8_t node = 1; node <= 3; ++node) {
+      if (is_lost && node == 1) continue;
+      ASSERT_TRUE(bus.send(cia402_frame(node, i)));
+    }
+    if (!is_lost) ++sent;
+    std::this_thread::sleep_for(milliseconds(10));
+    take();
+  }
+  EXPECT_EQ(taken, sent);
+  EXPECT_EQ(mixed, 0);
+  EXPECT_EQ(source.status().incomplete, 1U);
+  EXPECT_EQ(source.status().trouble,
+            "vcan0: a cycle of the bus came without X and was dropped (a frame was lost?)");
 }
 
 TEST_F(CanSocket, ABurstOfAHundredThousandFramesIsReadWithoutLoss) {
@@ -545,7 +580,8 @@ class CanRecording : public CanSocket {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       ASSERT_TRUE(ask(source, sample))
           << "sample " << i << " of " << rows.size() << ", lost " << source.status().lost
-          << ", incomplete " << source.status().incomplete << ", " << source.status().trouble;
+          << ", incomplete " << source.status().incomplete << ", disordered "
+          << source.status().disordered << ", " << source.status().trouble;
       if (sample.fresh != 7) ++wrong;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::abs(sample.position[axis] - rows[i][axis]) > 1e-9) ++wrong;

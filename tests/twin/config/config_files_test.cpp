@@ -164,7 +164,7 @@ TEST(ConfigPrint, ReadsTheSameAgain) {
   expect_round_trip(
       "machine:\n  ini: 'odd \"name\\: # x'\n  tool_table: \"tab\\there \\u00e4\"\n  joints: XYYZ\n"
       "  work_offset: {x: 0.1, y: 1e-7, rotation: -12.345678901234567}\n  tool_length: none\n"
-      "  tool: 4\n  max_speed_mm_per_min: 123.4\n"
+      "  tool: 4\n  max_speed_mm_per_min: 123.4\n  max_acceleration_mm_per_s2: 777\n"
       "tools: {1: 'flat:6', 7: 'bull:10:2:flute=22:shank=10:holder=32x20+40x25'}\n"
       "stock: {blank: 'box:0,0,0:1,1,1+box:2,2,0:3,3,1', cell_mm: 0.05, margin_mm: 2.5}\n"
       "follow: {program: null.ngc, path: programmed, off_path_mm: 0.3, look_ahead_s: 2.25}\n");
@@ -178,8 +178,9 @@ TEST(ConfigPrint, ReadsTheSameAgain) {
       "source:\n  type: modbus\n  rtu: {device: /dev/x y, parity: odd}\n  coordinates: joints\n"
       "  map: {J8: {register: 0}}\n");
   expect_round_trip(
-      "source:\n  type: can\n  interface: vcan0\n  units: inch\n  map:\n"
-      "    X: {preset: cia402, node: 1, scale: 0.001}\n    Y: {id: 5, type: uint, length: 12, bit: "
+      "source:\n  type: can\n  interface: vcan0\n  units: inch\n  sync_id: -1\n  map:\n"
+      "    X: {preset: cia402, node: 1, scale: 0.001, min: -3, max: 4.5, max_speed: 7}\n    Y: "
+      "{id: 5, type: uint, length: 12, bit: "
       "3, mux: {bit: 7, length: 8, endian: big, value: 200}, endian: big}\n"
       "    Z: {id: 0x1FFFFFFF, extended: yes, type: float32, endian: big, byte: 4}\n"
       "    spindle: {id: 6, type: int16, byte: 2, max_age_ms: 0}\n");

@@ -26,6 +26,7 @@ TEST(ConfigKeys, ValuesArrive) {
       "  tool_length: table\n"
       "  tool: 7\n"
       "  max_speed_mm_per_min: 6000\n"
+      "  max_acceleration_mm_per_s2: 900\n"
       "tools:\n"
       "  1: flat:6\n"
       "  12: 'ball:4:flute=10'\n"
@@ -48,6 +49,7 @@ TEST(ConfigKeys, ValuesArrive) {
   EXPECT_EQ(config.machine.work_offset->rotation_deg, 90);
   EXPECT_EQ(config.machine.tool_length, ToolLengthFrom::kTable);
   EXPECT_EQ(config.machine.tool, 7);
+  EXPECT_EQ(config.machine.max_mm_per_s2, 900);
   EXPECT_EQ(config.machine.max_mm_per_min, 6000);
   ASSERT_EQ(config.tools.size(), 2U);
   EXPECT_EQ(config.tools[1].tool, 12);

@@ -277,6 +277,31 @@ TEST(ConfigCan, ValuesArrive) {
   EXPECT_EQ(options.map.tool->bits.length, 8);
 }
 
+TEST(ConfigCan, RangesAndTheSync) {
+  const ReadText read(kCan +
+                      "  units: inch\n  sync_id: 0x81\n  stale_after_ms: 250\n  map:\n"
+                      "    X: {preset: cia402, node: 1, scale: 1, min: -1, max: 2, max_speed: 10}\n"
+                      "    A: {preset: cia402, node: 2, scale: 1, max: 90, max_age_ms: 0}\n"
+                      "    tool: {id: 5, type: uint8}\n");
+  const auto& map = settings_of<CanSourceOptions>(read).map;
+  EXPECT_EQ(map.sync_id, 0x81);
+  EXPECT_EQ(map.ranges[0].min, -25.4);
+  EXPECT_EQ(map.ranges[0].max, 50.8);
+  EXPECT_EQ(map.ranges[0].max_speed_per_s, 254);
+  EXPECT_EQ(map.ranges[3].max, 90);
+  EXPECT_FALSE(map.ranges[3].min);
+  // Each item by itself, where its key says nothing.
+  EXPECT_EQ(map.axes[0]->max_age_ms, 250);
+  EXPECT_EQ(map.axes[3]->max_age_ms, 0);
+  EXPECT_EQ(map.tool->max_age_ms, 250);
+
+  const ReadText plain(kCan + "  map:\n    X: {preset: cia402, node: 1, scale: 1}\n");
+  EXPECT_EQ(settings_of<CanSourceOptions>(plain).map.sync_id, 0x80);
+  EXPECT_EQ(settings_of<CanSourceOptions>(plain).map.axes[0]->max_age_ms, 500);
+  EXPECT_EQ(said_of(kCan + "  map:\n    X: {preset: cia402, node: 1, scale: 1, min: 5, max: 5}\n"),
+            "5:57: source.map.X.max: 5 is not allowed; must be above min 5\n");
+}
+
 TEST(ConfigCan, Presets) {
   const ReadText read(kCan +
                       "  units: inch\n  map:\n"
