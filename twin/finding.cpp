@@ -187,6 +187,22 @@ void FindingLog::raise(Handle handle, Severity severity) {
   kept_[handle].severity = severity;
 }
 
+void FindingLog::forget_from(std::size_t count) {
+  while (kept_.size() > count) {
+    --counts_[static_cast<std::size_t>(kept_.back().severity)];
+    kept_.pop_back();
+  }
+}
+
+void FindingLog::join(const FindingLog& other, const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < other.kept_.size() && kept_.size() < kMaxKept; ++i) {
+    Finding& finding = kept_.emplace_back(other.kept_[i]);
+    const std::size_t file = finding.source.file;
+    if (finding.file.empty() && file < files.size()) finding.file = files[file];
+  }
+  for (std::size_t i = 0; i < 3; ++i) counts_[i] += other.counts_[i];
+}
+
 void FindingLog::deepen(Handle handle, double depth_mm) {
   if (handle >= kept_.size()) return;
   Finding& finding = kept_[handle];

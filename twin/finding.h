@@ -119,6 +119,11 @@ class FindingLog {
   void raise(Handle handle, Severity severity);
   /// While muted nothing is kept or counted: for moves that are cut but not reported on.
   void set_muted(bool muted) { muted_ = muted; }
+  /// What was added after the first `count` kept ones never happened.
+  void forget_from(std::size_t count);
+  /// All of another log behind what is here, as far as there is room; counted all the same.
+  /// `files`: what its findings' sources mean, which they are given as their own.
+  void join(const FindingLog& other, const std::vector<std::string>& files);
   /// The event goes on: its depth becomes the greater of the two.
   void deepen(Handle handle, double depth_mm);
 

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/finding_json.h"
+#include "twin/live/run_json.h"
 #include "twin/report.h"
 
 namespace kerf {
@@ -139,6 +140,8 @@ Json live_json(const LiveReport& live) {
                   {"jitter_ms", rounded(live.jitter_ms)},
                   {"steps", live.clock_steps}};
   out["warnings_ahead"] = live.warnings_ahead;
+  out["runs"] = Json::array();
+  for (const LiveRun& run : live.runs) out["runs"].push_back(run_json(run));
   return out;
 }
 

@@ -166,6 +166,26 @@ void add_live(std::string& out, const LiveReport& live) {
   }
 }
 
+/// One line a run, where there is more than the whole watch.
+void add_runs(std::string& out, const std::vector<LiveRun>& runs) {
+  if (runs.size() < 2) return;
+  const char* head = "runs      ";
+  for (const LiveRun& run : runs) {
+    const std::string file = run.program.substr(run.program.rfind('/') + 1);
+    std::string lines;
+    if (run.from_line > 0) lines = fmt::format(", lines {} to {}", run.from_line, run.to_line);
+    out += fmt::format("{}{:<3} part {}: {} {}{}, {} from {} on\n", head, run.number, run.part,
+                       file.empty() ? "no program" : file, to_string(run.end), lines,
+                       duration_text(run.end_s - run.begin_s), duration_text(run.begin_s));
+    out += fmt::format(
+        "              removed {}, {} along the program, {} beside it; {} errors, "
+        "{} warnings\n",
+        volume_text(run.removed_mm3), distance_text(run.facts.path_mm),
+        distance_text(run.facts.chord_mm), run.errors, run.warnings);
+    head = "          ";
+  }
+}
+
 /// ", of that strokes 3.6 s, turret 4.1 s"; empty where nothing was held.
 std::string held_text(const HeldTime& held) {
   const std::pair<const char*, double> causes[] = {{"strokes", held.strokes_s},
@@ -196,6 +216,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   std::string out;
   add_verdict(out, report);
   add_live(out, live);
+  add_runs(out, live.runs);
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);

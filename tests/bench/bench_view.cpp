@@ -455,7 +455,7 @@ void follow(const Arguments& arguments, double rate_hz) {
   for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
   if (!session) fail("nothing to follow");
   Arrivals arrivals;
-  session->set_tap([&](const AxisSample& sample) { arrivals.note(sample); });
+  session->set_tap([&](const TappedSample& tapped) { arrivals.note(tapped.sample); });
   SceneMailbox mailbox;
   CommandQueue commands;
   LiveViewOptions view_options;

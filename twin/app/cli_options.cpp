@@ -298,6 +298,15 @@ void add_live_options(CLI::App& live, LiveArguments& a, LiveCommand command) {
                   "the program that the machine runs: its path is cut, what it does beside it is "
                   "found, and what it would hit is told beforehand")
       ->type_name("FILE");
+  live.add_option("--next-program", a.next_programs,
+                  "another program that the machine may run, repeatable: which one it is, its path "
+                  "tells")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  live.add_option("--on-program-end", a.on_program_end,
+                  "the workpiece when a program has come to its end: keep | new-blank, for the "
+                  "next one to begin with (default keep)")
+      ->type_name("POLICY");
   add_program_options(live, a.source);
   add_as_mill(live, a.source);
   add_work_options(live, a.work);

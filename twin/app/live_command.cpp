@@ -61,6 +61,7 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
   } else if (const auto* can = std::get_if<CanSourceOptions>(&request.config.source)) {
     head.trigger = can->map.trigger.has_value();
   }
+  head.program = std::holds_alternative<HalSettings>(request.config.source);
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
     head.extra.emplace_back("joints", request.config.machine.joints);
@@ -91,6 +92,7 @@ class HalObserver final : public LiveObserver {
   void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override {
     console_.on_warning(warning, files);
   }
+  void on_run(const LiveRun& run) override { console_.on_run(run); }
 
  private:
   LiveObserver& console_;
@@ -229,7 +231,11 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     auto started = start_recorder(request, *raw_source);
     if (started) {
       recorder = std::move(started.value());
-      session->set_tap([&](const AxisSample& sample) { recorder->record(sample); });
+      session->set_tap([&](const TappedSample& tapped) {
+        if (tapped.lost > 0) recorder->note_lost(tapped.lost);
+        if (tapped.clock_set_ns != 0) recorder->note_clock_set(tapped.clock_set_ns);
+        recorder->record(tapped.sample);
+      });
     } else {
       diagnostics.push_back(fault(started.error()));
       session.reset();

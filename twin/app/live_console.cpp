@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "twin/app/console.h"
-#include "twin/live/live_json.h"
 
 namespace kerf {
 namespace {
@@ -21,6 +21,12 @@ std::string time_text(double seconds) {
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 std::string age_text(double seconds) {
@@ -58,7 +64,10 @@ std::string status_line(const LiveStatus& status) {
 }
 
 LiveConsole::LiveConsole(bool quiet, std::FILE* events)
-    : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) != 0), events_(events) {}
+    : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) != 0), events_(events) {
+  head_.instance_id = static_cast<std::uint64_t>(now_ns() / 1000);
+  head_.sequence = 0;
+}
 
 LiveConsole::~LiveConsole() { wipe(); }
 
@@ -83,6 +92,12 @@ void LiveConsole::send(const std::string& line) {
   events_error_ = errno != 0 ? errno : EIO;
 }
 
+EventHead LiveConsole::next_head() {
+  ++head_.sequence;
+  head_.time_ns = now_ns();
+  return head_;
+}
+
 /// At the end of the watch, which may be hours away, it is told as an error.
 void LiveConsole::look_at_recorder() {
   if (recorder_ == nullptr) return;
@@ -93,17 +108,19 @@ void LiveConsole::look_at_recorder() {
 }
 
 void LiveConsole::on_status(const LiveStatus& status) {
-  send(status_json(status));
+  send(status_json(status, next_head()));
   look_at_recorder();
   const bool changed = !state_told_ || status.state != state_;
   // What goes wrong is worth a line when it begins, not each time that it is tried again.
-  const bool counts = status.source.errors > errors_ || status.state == LiveState::kWaiting;
+  const bool counts = status.source.errors > errors_ || status.source.reconnects > reconnects_ ||
+                      status.state == LiveState::kWaiting;
   const bool trouble = status.source.trouble != trouble_ && counts;
   if (!quiet_ && trouble && !status.source.trouble.empty()) {
     say(fmt::format("kerf: {}\n", status.source.trouble));
     trouble_ = status.source.trouble;
   }
   errors_ = status.source.errors;
+  reconnects_ = status.source.reconnects;
   if (changed && !quiet_ && status.state != LiveState::kEnded) {
     const bool waiting = status.state == LiveState::kWaiting;
     const std::string why =
@@ -124,7 +141,7 @@ void LiveConsole::on_status(const LiveStatus& status) {
 }
 
 void LiveConsole::on_finding(const Finding& finding, const std::vector<std::string>& files) {
-  send(finding_event_json(finding, files));
+  send(finding_event_json(finding, files, next_head()));
   if (quiet_ && finding.severity != Severity::kError) return;
   if (printed_ == kFindingsShown) {
     ++unprinted_;
@@ -135,11 +152,20 @@ void LiveConsole::on_finding(const Finding& finding, const std::vector<std::stri
 }
 
 void LiveConsole::on_warning(const AheadWarning& warning, const std::vector<std::string>& files) {
-  send(ahead_json(warning, files));
+  send(ahead_json(warning, files, next_head()));
   Diagnostic ahead = diagnostic_of(warning.finding, files);
   ahead.message = fmt::format("in {:.1f} s: {}", warning.in_s, ahead.message);
   // Each is one of a kind, and what kerf is there for.
   say(to_string(ahead));
+}
+
+/// The one that the watch ends with is in the report, and alone it is the whole watch.
+void LiveConsole::on_run(const LiveRun& run) {
+  send(run_event_json(run, next_head()));
+  if (quiet_) return;
+  say(fmt::format("kerf: run {} of {}: {}, part {}\n", run.number,
+                  std::filesystem::path(run.program).filename().string(), to_string(run.end),
+                  run.part));
 }
 
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "machine_io/recorder.h"
+#include "twin/live/live_json.h"
 #include "twin/live/live_session.h"
 
 namespace kerf {
@@ -29,6 +30,7 @@ class LiveConsole final : public LiveObserver {
   void on_status(const LiveStatus& status) override;
   void on_finding(const Finding& finding, const std::vector<std::string>& files) override;
   void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override;
+  void on_run(const LiveRun& run) override;
 
   /// The event stream could not be written (its reader has gone): errno of the first failure.
   int events_error() const { return events_error_; }
@@ -38,12 +40,14 @@ class LiveConsole final : public LiveObserver {
  private:
   void say(const std::string& text);
   void send(const std::string& line);
+  EventHead next_head();
   void wipe();
   void look_at_recorder();
 
   bool quiet_;
   bool terminal_;
   std::FILE* events_;
+  EventHead head_;                      ///< of the event before
   const Recorder* recorder_ = nullptr;  ///< null: none, or its end is told
   int events_error_ = 0;
   bool drawn_ = false;
@@ -51,6 +55,7 @@ class LiveConsole final : public LiveObserver {
   bool state_told_ = false;
   std::string trouble_;
   std::uint64_t errors_ = 0;
+  std::uint64_t reconnects_ = 0;
   std::size_t printed_ = 0;
   std::size_t unprinted_ = 0;
 };

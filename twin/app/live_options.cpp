@@ -47,6 +47,18 @@ void understand_joined_late(const std::string& text, OptionReader& reader, Joine
   }
 }
 
+void understand_on_end(const std::string& text, OptionReader& reader, OnProgramEnd& policy) {
+  if (text.empty()) return;
+  if (text == "keep") {
+    policy = OnProgramEnd::kKeep;
+  } else if (text == "new-blank") {
+    policy = OnProgramEnd::kNewBlank;
+  } else {
+    reader.fault("--on-program-end",
+                 fmt::format("'{}' is no policy; allowed: keep, new-blank", text));
+  }
+}
+
 /// The log to replay, with what the configuration says of its kind.
 void understand_log(const LiveArguments& a, LiveConfig& config, Diagnostics& diagnostics) {
   LogSettings log;
@@ -209,6 +221,12 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
       machine.drawn.kind == MachineKind::kLathe ? "machine.model is lathe" : program.program.lathe;
   options.as_mill = source.as_mill;
   if (!source.program.empty()) options.program = program.program;
+  options.on_end = request.config.follow.on_program_end;
+  understand_on_end(a.on_program_end, reader, options.on_end);
+  options.more_programs = a.next_programs;
+  if (!options.more_programs.empty() && !options.program) {
+    reader.fault("--next-program", "needs --program, the first one");
+  }
   options.cutting.program_lengths =
       options.program.has_value() && program.program.machine.tool_lengths;
   options.tools = work.tools.empty() ? request.config.tools : std::move(work.tools);

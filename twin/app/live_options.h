@@ -32,6 +32,8 @@ struct LiveArguments {
   std::string gap;
   std::string look_ahead;
   std::string joined_late;
+  std::string on_program_end;
+  std::vector<std::string> next_programs;
   std::string off_path;
   std::string events;
   std::string cpu_limit;     ///< shadow

@@ -197,6 +197,8 @@ void print_work(Printer& printer, const LiveConfig& config) {
   printer.put("off_path_s", config.follow.off_path_s);
   printer.put("joined_late", config.follow.joined_late == JoinedLate::kKeep ? "keep" : "cut");
   printer.put("look_ahead_s", config.follow.look_ahead_s);
+  printer.put("on_program_end",
+              config.follow.on_program_end == OnProgramEnd::kNewBlank ? "new-blank" : "keep");
   printer.close();
   printer.open("view");
   printer.put("window", config.view.window ? "yes" : "no");

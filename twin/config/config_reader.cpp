@@ -151,6 +151,9 @@ void read_follow(const GroupReader& follow, ConfigFollow& out) {
     out.joined_late = word == 1 ? JoinedLate::kKeep : JoinedLate::kCut;
   }
   follow.number("look_ahead_s", out.look_ahead_s);
+  if (const int word = follow.word("on_program_end"); word >= 0) {
+    out.on_program_end = word == 1 ? OnProgramEnd::kNewBlank : OnProgramEnd::kKeep;
+  }
 }
 
 }  // namespace

@@ -335,6 +335,11 @@ constexpr std::array kKeys{
             .most = 3600,
             .fallback = "10",
             .purpose = "collisions are announced so long before; 0: never"},
+    KeySpec{.path = "follow.on_program_end",
+            .type = T::kWord,
+            .words = "keep|new-blank",
+            .fallback = "keep",
+            .purpose = "the next program works on, or begins in a new blank"},
 
     KeySpec{.path = "view", .purpose = "the window"},
     KeySpec{.path = "view.window",

@@ -20,6 +20,7 @@
 #include "twin/kinematics/kinematics_setup.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
+#include "twin/live/live_run.h"
 #include "twin/live/path_follower.h"
 #include "twin/machine_model/machine_choice.h"
 #include "twin/stock_choice.h"
@@ -74,6 +75,7 @@ struct ConfigFollow {
   double off_path_s = 2;               ///< LiveCutOptions::off_path_s
   JoinedLate joined_late = JoinedLate::kCut;
   double look_ahead_s = 10;  ///< LiveCutOptions::guard_s; 0: not
+  OnProgramEnd on_program_end = OnProgramEnd::kKeep;
 };
 
 struct ConfigView {

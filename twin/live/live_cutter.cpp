@@ -33,11 +33,16 @@ constexpr double kJump_mm = 1.0;
 constexpr double kBurst_s = 0.05;
 /// A spindle slower than this stands. rpm.
 constexpr double kStanding_rpm = 1.0;
+/// One that was told to stop still turns for so long, s; and where no program runs any more.
+constexpr double kCoasts_s = 0.15;
+constexpr double kCoastsIdle_s = 1.0;
 /// A machine that says it runs, and is not seen at the program's beginning, is looked for in all of
 /// it after so long.
 constexpr double kJoin_s = 0.3;
 /// An axis that has turned by less stands. Degrees.
 constexpr double kTurned_deg = 0.01;
+/// A machine that has so little of its program left is at its end: sensors round. s.
+constexpr double kEnd_s = 0.05;
 
 /// The motion is under this type of the machine's kinematics.
 void set_type(const MachineKinematics& machine, int type, Motion& motion) {
@@ -66,9 +71,10 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
     ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
     adopt_program_frame();
     if (options_.guard_s > 0) {
-      guard_ = std::make_unique<LookAheadGuard>(tools, options_.timeline, options_.guard_s,
-                                                options_.beam, options_.turret);
-      guard_->check_by(options_.checks);
+      guard_ = std::make_unique<LookAheadGuard>(
+          tools,
+          LookAheadGuard::Options{options_.timeline, options_.guard_s, options_.beam,
+                                  options_.turret, options_.checks, !options_.wait_for_program});
     }
   }
   if (options_.turret) {
@@ -90,8 +96,21 @@ SpindleState LiveCutter::spindle() const {
   if (std::isnan(sample_.spindle_rpm)) {
     return options_.beam ? SpindleState::kStopped : SpindleState::kClockwise;
   }
-  if (std::abs(sample_.spindle_rpm) < kStanding_rpm) return SpindleState::kStopped;
-  return sample_.spindle_rpm > 0 ? SpindleState::kClockwise : SpindleState::kCounterclockwise;
+  double rpm = sample_.spindle_rpm;
+  if (std::abs(rpm) < kStanding_rpm) {
+    // An abort stops spindle and axes together, and takes the axes some way.
+    const double coasts_s = sample_.program == ProgramState::kIdle ? kCoastsIdle_s : kCoasts_s;
+    const bool coasts = !options_.beam && turning_until_s_ && t_s_ - *turning_until_s_ <= coasts_s;
+    if (!coasts) return SpindleState::kStopped;
+    rpm = turning_rpm_;
+  }
+  return rpm > 0 ? SpindleState::kClockwise : SpindleState::kCounterclockwise;
+}
+
+void LiveCutter::note_spindle() {
+  if (!(std::abs(sample_.spindle_rpm) >= kStanding_rpm)) return;
+  turning_rpm_ = sample_.spindle_rpm;
+  turning_until_s_ = t_s_;
 }
 
 /// With the program's tool lengths the tip is that of a tool of no length, until follow() has found
@@ -163,7 +182,7 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
   driven_.clear();
   FollowedPoint point;
   point.distance_mm = std::numeric_limits<double>::infinity();
-  if (!ahead_) return point;
+  if (!ahead_ || !runs_) return point;
   ahead_->read_until(follower_.program_s() + options_.guard_s + kPlannedAhead_s,
                      options_.wait_for_program);
   const FollowedPlace place = place_of(now, elapsed_s);
@@ -411,6 +430,7 @@ void LiveCutter::take(const AxisSample& sample, double t_s, bool lost) {
 void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   sample_ = sample;
   t_s_ = t_s;
+  note_spindle();
   if (run_.is_long(t_s_)) cut_run();
   std::optional<Sighting> seen = see(sample, t_s);
   if (!seen) return;
@@ -437,6 +457,7 @@ void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   place_.followed = point.on_path;
   place_.distance_mm = point.distance_mm;
   if (point.on_path) {
+    if (first_line_ == 0) first_line_ = point.source.line;
     place_.source = point.source;
     place_.program_s = point.program_s;
     program_tool_ = point.tool;
@@ -485,15 +506,34 @@ void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   if (first) guard_stale_ = true;
 }
 
+bool LiveCutter::finished() const {
+  return ahead_ && ahead_->complete() && follower_.found() && follower_.left_s() <= kEnd_s;
+}
+
+void LiveCutter::settle() {
+  cut_run();
+  stage_.complete();
+}
+
+/// Between programs a machine may have any tool, or, that has just been switched on, none that it
+/// knows.
+bool LiveCutter::is_idle() const {
+  if (!runs_ || sample_.program == ProgramState::kIdle) return true;
+  const bool other_tool = place_.tool >= 0 && place_.tool != program_tool_;
+  return sample_.program == ProgramState::kUnknown && sample_.line == 0 && other_tool;
+}
+
 void LiveCutter::look() {
   stage_.complete();
-  if (!guard_ || !follower_.found() || follower_.passed_all()) return;
+  if (!looks_ahead_ || is_idle() || !guard_ || !follower_.found() || follower_.passed_all()) return;
   if (std::exchange(guard_stale_, false)) guard_->restart(stock_, stage_, work());
   if (stage_.torch()) {
     if (ahead_->take_materials(materials_)) stage_.set_materials(materials_);
     guard_->set_materials(materials_);
   }
+  const std::size_t before = warnings_.size();
   guard_->look(*ahead_, follower_.program_s(), program_tool_, place_.tool, warnings_);
+  for (std::size_t i = before; i < warnings_.size(); ++i) warnings_[i].t_s = t_s_;
 }
 
 void LiveCutter::finish() {

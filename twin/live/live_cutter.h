@@ -65,6 +65,9 @@ struct LiveCutOptions {
   /// Opens the program once more, to find out how far a machine has come that runs it already; may
   /// be empty.
   std::function<std::unique_ptr<Program>()> reopen;
+  /// The machine has been watched since before the program began: what of it lies before the place
+  /// where it is found has not been run, whatever joined_late says.
+  bool seen_before = false;
   bool wait_for_program = false;  ///< a log waits for the interpreter, a machine does not
   /// Of a sheet; such a workpiece needs it. On the path of a program the beam is on where the
   /// program has it on. Elsewhere it is on while the spindle turns, as the source tells it: M3 of
@@ -123,7 +126,33 @@ class LiveCutter {
   /// So are the workpiece's snapshots. When it or look() is called makes no difference to the
   /// workpiece in the end.
   void hand_over() { stage_.hand_over(); }
+  /// All that was taken is in the workpiece, a way that is still short, too.
+  void settle();
   void finish();
+
+  /// The workpiece was another cutter's before, which has done with it what goes before.
+  void go_on_from(const LiveCutter& other) { stage_.go_on_from(other.stage_); }
+  /// Where the machine was before the first sample: it is seen, and not counted.
+  void begin_at(const AxisSample& sample, double t_s) {
+    take(sample, t_s, false);
+    facts_ = {};
+  }
+  /// The machine does not run the program (any more): it is on no path, and off none.
+  void set_running(bool runs) { runs_ = runs; }
+  /// It is not known whether it still does: a tip that is not on the path is not told of.
+  void set_doubtful(bool doubtful) { doubtful_ = doubtful; }
+  /// Off: nothing is told ahead, at no cost.
+  void set_looks_ahead(bool looks) { looks_ahead_ = looks; }
+  /// The machine has been on the program's path.
+  bool found() const { return follower_.found(); }
+  /// And has come to its end.
+  bool finished() const;
+  /// It has worked in the blank, and never on the program's path.
+  bool is_foreign() const { return foreign_told_; }
+  /// It says that it runs a line of the program, and is not there.
+  bool is_astray() const { return off_path_event_.has_value(); }
+  /// Line of the motion on which the machine was found first; 0: it has not been.
+  std::uint32_t first_line() const { return first_line_; }
 
   const LiveFacts& facts() const { return facts_; }
   const LivePlace& place() const { return place_; }
@@ -149,6 +178,7 @@ class LiveCutter {
   };
   void take_sound(const AxisSample& sample, double t_s, bool lost);
   void adopt_program_frame();
+  bool is_idle() const;
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
   static Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place,
                             int tool);
@@ -190,6 +220,7 @@ class LiveCutter {
   void cut_run();
   void cut_now(const Motion& motion, double duration_s, double t_s);
   SpindleState spindle() const;
+  void note_spindle();
   void punch(const Sighting& now, const FollowedPoint& point, bool seen);
   void punch_program(const FollowedPoint& point, bool along);
   void punch_motion(Motion motion, double share, bool seen);
@@ -207,6 +238,10 @@ class LiveCutter {
   std::vector<SampleGate::Timed> passed_;  ///< by the gate
   bool wild_told_ = false;
   bool quick_told_ = false;
+  bool runs_ = true;
+  bool doubtful_ = false;
+  bool looks_ahead_ = true;
+  std::uint32_t first_line_ = 0;
   bool lost_wild_ = false;  ///< samples were lost before one that was dropped
   ToolBook book_;
   CutStage stage_;
@@ -243,6 +278,8 @@ class LiveCutter {
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
   double foreign_s_ = 0;     ///< the machine has cut, and never been on the path, for so long
   bool foreign_told_ = false;
+  double turning_rpm_ = 0;                 ///< signed: when the spindle was last told to turn ..
+  std::optional<double> turning_until_s_;  ///< .. which was then
   double watched_s_ = 0;  ///< since the first sample, while the path has not been found
   std::optional<SeenStrokes> strokes_;
   std::uint64_t punched_ = 0;   ///< motions of the program that have been; the next is under way

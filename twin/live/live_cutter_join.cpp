@@ -36,7 +36,9 @@ FollowedPoint LiveCutter::find(const FollowedPlace& place) {
     point = follower_.follow(place, drive());
     late = true;
   }
-  if (late) {
+  if (late && options_.seen_before) {
+    guard_stale_ = true;
+  } else if (late) {
     if (options_.turret) {
       struck_before_ = options_.joined_late == JoinedLate::kCut;
     } else {
@@ -120,7 +122,7 @@ void LiveCutter::pass(std::uint64_t motion) {
 
 /// The first `count` motions that have been planned, as the program has them.
 void LiveCutter::pass_planned(std::size_t count) {
-  if (options_.joined_late == JoinedLate::kCut) {
+  if (options_.joined_late == JoinedLate::kCut && !options_.seen_before) {
     for (std::size_t i = 0; i < count; ++i) cut_now(ahead_->motions()[i].motion, 0, t_s_);
   }
   ahead_->forget(count);

@@ -192,7 +192,9 @@ void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point, doub
 
 void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) {
   const bool searched = std::isfinite(point.distance_mm);
-  if (point.on_path || !searched || follower_.passed_all()) {
+  // Moved by hand, or by a single block: no line of the program is to blame.
+  const bool by_hand = sample_.line == 0;
+  if (point.on_path || !searched || by_hand || follower_.passed_all() || finished()) {
     off_path_event_.reset();
     lost_sight_s_ = 0;
     return;
@@ -204,6 +206,7 @@ void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) 
     lost_sight_s_ = runs ? lost_sight_s_ + elapsed_s : 0;
     if (lost_sight_s_ < kNeverSeen_s) return;
   }
+  if (doubtful_) return;
   ++facts_.off_path;
   facts_.off_path_max_mm = std::max(facts_.off_path_max_mm, point.distance_mm);
   if (!off_path_event_) {
@@ -221,7 +224,7 @@ void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) 
 
 /// Once: the machine has worked in the blank for `duration_s` more, and not by this program.
 void LiveCutter::note_foreign_program(const Sighting& now, double duration_s) {
-  if (!ahead_ || follower_.found() || foreign_told_) return;
+  if (!ahead_ || !runs_ || follower_.found() || foreign_told_) return;
   foreign_s_ += duration_s;
   if (foreign_s_ < options_.off_path_s) return;
   foreign_told_ = true;

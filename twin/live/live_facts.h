@@ -1,6 +1,7 @@
 // twin/live/live_facts.h - counts and lengths of a watched machine.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace kerf {
@@ -23,6 +24,26 @@ struct LiveFacts {
   double path_mm = 0;       ///< cut along the program
   double chord_mm = 0;      ///< cut straight from sample to sample
   std::uint64_t tool_changes = 0;
+
+  /// Of what was watched afterwards.
+  LiveFacts& operator+=(const LiveFacts& later) {
+    samples += later.samples;
+    incomplete += later.incomplete;
+    wild += later.wild;
+    on_path += later.on_path;
+    off_path += later.off_path;
+    off_path_max_mm = std::max(off_path_max_mm, later.off_path_max_mm);
+    following_max_mm = std::max(following_max_mm, later.following_max_mm);
+    following_sum_mm += later.following_sum_mm;
+    gaps += later.gaps;
+    jumps += later.jumps;
+    gap_s += later.gap_s;
+    gap_max_mm = std::max(gap_max_mm, later.gap_max_mm);
+    path_mm += later.path_mm;
+    chord_mm += later.chord_mm;
+    tool_changes += later.tool_changes;
+    return *this;
+  }
 };
 
 }  // namespace kerf

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "machine_io/recording_format.h"
 #include "twin/finding_json.h"
+#include "twin/live/run_json.h"
 
 namespace kerf {
 namespace {
@@ -14,20 +16,30 @@ Json known(double value, bool is_known) {
   return is_known && std::isfinite(value) ? Json(rounded(value)) : Json(nullptr);
 }
 
+Json event(const char* name, const EventHead& head) {
+  Json out;
+  out["event"] = name;
+  out["instance_id"] = head.instance_id;
+  out["sequence"] = head.sequence;
+  out["time"] = iso_time(head.time_ns);
+  return out;
+}
+
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
-std::string status_json(const LiveStatus& status) {
+std::string status_json(const LiveStatus& status, const EventHead& head) {
   const LivePlace& place = status.place;
   const bool followed = place.followed;
-  Json out;
-  out["event"] = "status";
+  Json out = event("status", head);
   out["state"] = to_string(status.state);
   out["age_ms"] = rounded(status.age_s * 1e3);
   out["t_s"] = rounded(status.t_s);
+  out["run"] = status.run;
+  out["part"] = status.part;
   out["samples"] = status.samples;
   out["errors"] = status.source.errors;
   out["lost"] = status.source.lost;
@@ -46,18 +58,25 @@ std::string status_json(const LiveStatus& status) {
   return line_of(out);
 }
 
-std::string finding_event_json(const Finding& finding, const std::vector<std::string>& files) {
-  Json out;
-  out["event"] = "finding";
+std::string finding_event_json(const Finding& finding, const std::vector<std::string>& files,
+                               const EventHead& head) {
+  Json out = event("finding", head);
   out.update(finding_json(finding, files));
   return line_of(out);
 }
 
-std::string ahead_json(const AheadWarning& warning, const std::vector<std::string>& files) {
-  Json out;
-  out["event"] = "ahead";
+std::string ahead_json(const AheadWarning& warning, const std::vector<std::string>& files,
+                       const EventHead& head) {
+  Json out = event("ahead", head);
+  out["t_s"] = rounded(warning.t_s);
   out["in_s"] = rounded(warning.in_s);
   out.update(finding_json(warning.finding, files));
+  return line_of(out);
+}
+
+std::string run_event_json(const LiveRun& run, const EventHead& head) {
+  Json out = event("run", head);
+  out.update(run_json(run));
   return line_of(out);
 }
 

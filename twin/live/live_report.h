@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "machine_io/position_source.h"
 #include "twin/live/live_facts.h"
+#include "twin/live/live_run.h"
 
 namespace kerf {
 
@@ -27,6 +29,7 @@ struct LiveReport {
   double jitter_ms = 0;           ///< greatest deviation from that offset
   std::uint64_t clock_steps = 0;  ///< this computer's clock was set meanwhile
   std::uint64_t warnings_ahead = 0;
+  std::vector<LiveRun> runs;  ///< one where the machine has run one program, or none
 };
 
 }  // namespace kerf

@@ -11,7 +11,6 @@
 #include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
 #include "twin/program_front.h"
-#include "twin/sheet_report.h"
 #include "twin/turning.h"
 
 namespace kerf {
@@ -135,20 +134,37 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     stock_facts_ = std::move(setup.facts);
   }
   if (!stock_) return false;
-  if (options_.program && options_.program->path != "-") {
-    options_.cutting.reopen = [again = *options_.program, diameters = known_diameters(tools)] {
-      Diagnostics ignored;
-      std::unique_ptr<Program> reopened = Program::open(again, ignored);
-      if (reopened) reopened->give_diameters(diameters);
-      return reopened;
-    };
-  }
   if (as_sheet(*stock_)) choose_trade(diagnostics);
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
-  cutter_ = std::make_unique<LiveCutter>(*stock_, tools, report_.findings, options_.cutting,
-                                         std::move(program_));
+  ShiftOptions shift{options_.cutting, shift_programs(), options_.on_end};
+  if (!shift.programs.empty()) shift.cutting.reopen = shift.programs[0].open;
+  program_total_s_ = std::vector<std::atomic<double>>(shift.programs.size());
+  for (std::atomic<double>& total_s : program_total_s_) total_s = -1;
+  shift_ = std::make_unique<LiveShift>(std::move(stock_), tools, report_.findings, std::move(shift),
+                                       std::move(program_));
   return true;
+}
+
+/// That of the options goes first.
+std::vector<ShiftProgram> LiveSession::shift_programs() {
+  std::vector<ShiftProgram> programs;
+  if (!options_.program) return programs;
+  std::vector<std::string> paths = options_.more_programs;
+  paths.insert(paths.begin(), options_.program->path);
+  for (const std::string& path : paths) {
+    ShiftProgram& program = programs.emplace_back(ShiftProgram{path, {}});
+    if (path == "-") continue;
+    program.open = [again = *options_.program, path,
+                    diameters = known_diameters(tool_sources_)]() mutable {
+      again.path = path;
+      Diagnostics ignored;
+      std::unique_ptr<Program> opened = Program::open(again, ignored);
+      if (opened) opened->give_diameters(diameters);
+      return opened;
+    };
+  }
+  return programs;
 }
 
 /// Of a sheet: it is punched, or cut by a beam.
@@ -173,8 +189,8 @@ void LiveSession::choose_trade(Diagnostics& diagnostics) {
 }
 
 void LiveSession::keep_cut_ids() {
-  stock_->keep_cut_ids(true);
-  cutter_->label_by(labels_);
+  shift_->stock().keep_cut_ids(true);
+  shift_->label_by(labels_);
 }
 
 /// One reading of the program beforehand, if anything is to be learnt from it: where it works, and
@@ -288,7 +304,7 @@ void LiveSession::read_source(std::stop_token stop) {
     }
     if (options_.log()) pace(sample, stop);
     ArrivedSample arrived{sample, Clock::now(), source_->status().lost};
-    if (tap_) tap_(sample);
+    if (tap_) tap_(tapped(arrived));
     if (!options_.log() || handed % kStatusEvery == 0) copy_status();
     ++handed;
     if (!options_.log()) {
@@ -301,12 +317,33 @@ void LiveSession::read_source(std::stop_token stop) {
   queue_.close();
 }
 
-/// How long the whole program takes, for what remains of it.
-void LiveSession::measure_program(std::stop_token stop) {
+/// What the recorder has to know beside the sample itself.
+TappedSample LiveSession::tapped(const ArrivedSample& arrived) {
+  TappedSample out{arrived.sample};
+  out.lost = arrived.lost - std::exchange(tapped_lost_, arrived.lost);
+  if (options_.log() || arrived.sample.host_ns == AxisSample::kNoTime) return out;
+  const std::int64_t offset_ns = arrived.sample.host_ns - steady_ns(arrived.arrival);
+  const std::int64_t by_ns = offset_ns - tapped_offset_ns_.value_or(offset_ns);
+  if (std::abs(seconds(by_ns)) > kClockStep_s) out.clock_set_ns = by_ns;
+  tapped_offset_ns_ = offset_ns;
+  return out;
+}
+
+/// How long the whole programs take, for what remains of them.
+void LiveSession::measure_programs(std::stop_token stop) {
+  std::size_t i = 0;
+  for (const ShiftProgram& program : shift_programs()) {
+    if (program.open && !stop.stop_requested()) {
+      program_total_s_[i] = measure_program(program, stop);
+    }
+    ++i;
+  }
+}
+
+double LiveSession::measure_program(const ShiftProgram& measured, const std::stop_token& stop) {
   Diagnostics ignored;
-  const std::unique_ptr<Program> program = Program::open(*options_.program, ignored);
-  if (!program) return;
-  program->give_diameters(known_diameters(tool_sources_));
+  const std::unique_ptr<Program> program = measured.open();
+  if (!program) return -1;
   DurationSink sink;
   TimelineOptions timing = options_.cutting.timeline;
   timing.planner.with_path = false;
@@ -322,9 +359,9 @@ void LiveSession::measure_program(std::stop_token stop) {
         return true;
       },
       stop, ignored);
-  if (stop.stop_requested()) return;
+  if (stop.stop_requested()) return -1;
   timeline.finish();
-  program_total_s_ = timeline.clock_s();
+  return timeline.clock_s();
 }
 
 /// Seconds since the first sample. By the stamps as long as they go along with the arrivals.
@@ -372,7 +409,8 @@ void LiveSession::take(const ArrivedSample& arrived) {
   dropped_before_ = dropped;
   t_s_ = t_s;
   newest_ = arrived;
-  cutter_->take(arrived.sample, t_s, lost);
+  ++samples_;
+  shift_->take(arrived.sample, t_s, lost);
   if (options_.log()) return;
   const auto age_ms = static_cast<float>(seconds(Clock::now() - arrived.arrival) * 1e3);
   if (ages_ms_.size() < kAges) {
@@ -392,30 +430,42 @@ LiveState LiveSession::state_now(double age_s) const {
 /// What is new goes to the observer at once, the rest from time to time.
 void LiveSession::tell(bool ended) {
   const auto now = Clock::now();
-  const std::vector<AheadWarning> warnings = cutter_->take_warnings();
+  const std::vector<AheadWarning> warnings = shift_->take_warnings();
   live_.warnings_ahead += warnings.size();
+  const bool other_run = told_runs_ < shift_->past().size();
+  if (other_run) ahead_.clear();
   ahead_.insert(ahead_.end(), warnings.begin(), warnings.end());
   std::erase_if(ahead_, [&](const AheadWarning& w) {
-    return w.finding.time_s.value_or(0) < cutter_->place().program_s;
+    return w.finding.time_s.value_or(0) < shift_->cutter().place().program_s;
   });
   // A log is read ahead: what is wrong with it is told at its end.
   if (!options_.log() || ended) {
+    const std::vector<Finding>& kept = report_.findings.kept();
+    const std::size_t before = kept.size();
     const std::lock_guard lock(status_mutex_);
     source_faults_.look_at(source_status_, report_.findings);
+    for (std::size_t i = before; i < kept.size(); ++i) fresh_.push_back({kept[i], {}});
   }
   const double age_s = first_ ? seconds(now - newest_.arrival) : seconds(now - start_);
   const LiveState state = ended ? LiveState::kEnded : state_now(age_s);
-  const auto& findings = report_.findings.kept();
-  const bool news = state != told_state_ || !warnings.empty() || told_findings_ < findings.size();
+  if (observer_) {
+    // In the order of what they are about: a run's findings before its end.
+    for (const LiveShift::Told& told : shift_->take_findings()) fresh_.push_back(told);
+  }
+  const bool news = state != told_state_ || !warnings.empty() || !fresh_.empty() || other_run;
   if (!observer_ || (!news && now - told_at_ < kStatusPeriod)) return;
   told_at_ = now;
   told_state_ = state;
   const LiveStatus status = status_now(state, age_s);
-  const std::vector<std::string> files =
-      cutter_->program() ? cutter_->program()->files() : std::vector<std::string>{};
-  for (; told_findings_ < findings.size(); ++told_findings_) {
-    observer_->on_finding(findings[told_findings_], files);
+  for (const LiveShift::Told& told : std::exchange(fresh_, {})) {
+    observer_->on_finding(told.finding, told.files);
   }
+  for (; told_runs_ < shift_->past().size(); ++told_runs_) {
+    // One that is the whole watch is told of by its end.
+    if (!ended || shift_->past().size() > 1) observer_->on_run(shift_->past()[told_runs_]);
+  }
+  const ProgramAhead* const program = shift_->cutter().program();
+  const std::vector<std::string> files = program ? program->files() : std::vector<std::string>{};
   for (const AheadWarning& warning : warnings) observer_->on_warning(warning, files);
   observer_->on_status(status);
 }
@@ -425,13 +475,18 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
   status.state = state;
   status.age_s = age_s;
   status.t_s = t_s_;
-  status.place = cutter_->place();
-  status.work = cutter_->work();
-  if (const ProgramAhead* program = cutter_->program()) {
+  const LiveCutter& cutter = shift_->cutter();
+  status.place = cutter.place();
+  status.work = cutter.work();
+  const LiveRun run = shift_->present();
+  status.run = run.number;
+  status.part = run.part;
+  if (const ProgramAhead* program = cutter.program()) {
     const std::vector<std::string>& files = program->files();
     if (status.place.source.file < files.size()) status.file = files[status.place.source.file];
   }
-  const double total_s = program_total_s_;
+  const std::size_t index = shift_->program();
+  const double total_s = index < program_total_s_.size() ? program_total_s_[index].load() : -1;
   if (total_s >= 0) status.remaining_s = std::max(0.0, total_s - status.place.program_s);
   for (const AheadWarning& warning : ahead_) {
     const double in_s = warning.finding.time_s.value_or(0) - status.place.program_s;
@@ -444,14 +499,17 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
     status.source = source_status_;
   }
   status.dropped = queue_.dropped();
-  status.samples = cutter_->facts().samples;
+  status.samples = samples_;
   if (status.place.off_path) status.off_path_mm = status.place.distance_mm;
-  for (const ToolUse& use : cutter_->stage().tools()) status.removed_mm3 += use.removed_mm3;
+  status.removed_mm3 = run.removed_mm3;
+  for (const LiveRun& past : shift_->past()) {
+    if (past.part == run.part && past.number != run.number) status.removed_mm3 += past.removed_mm3;
+  }
   return status;
 }
 
 void LiveSession::extend_trail() {
-  const LivePlace& place = cutter_->place();
+  const LivePlace& place = shift_->cutter().place();
   if (!shows_frames_ || !place.known) return;
   const bool far =
       !trail_end_ || glm::distance(*trail_end_, place.tip_mm) > LiveObserver::kTrail_mm;
@@ -461,15 +519,15 @@ void LiveSession::extend_trail() {
 }
 
 void LiveSession::show_frame() {
-  if (!shows_frames_ || cutter_->facts().samples == frame_samples_) return;
+  if (!shows_frames_ || samples_ == frame_samples_) return;
   const auto now = Clock::now();
   if (now - frame_at_ < kFramePeriod) return;
   frame_at_ = now;
-  frame_samples_ = cutter_->facts().samples;
-  cutter_->hand_over();
+  frame_samples_ = samples_;
+  shift_->hand_over();
   const double age_s = seconds(now - newest_.arrival);
-  observer_->on_frame(*stock_, cutter_->stage().cutter(), status_now(state_now(age_s), age_s),
-                      trail_, labels_.all());
+  observer_->on_frame(shift_->stock(), shift_->cutter().stage().cutter(),
+                      status_now(state_now(age_s), age_s), trail_, labels_.all());
   trail_.clear();
 }
 
@@ -487,7 +545,7 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   std::optional<HelperThread> measure;
   const bool measured = options_.program && options_.program->path != "-" &&
                         (!options_.log() || std::isfinite(options_.speed));
-  if (measured) measure.emplace([&] { measure_program(end.get_token()); }, release);
+  if (measured) measure.emplace([&] { measure_programs(end.get_token()); }, release);
   const double cpu_before = thread_cpu_s();
   std::vector<ArrivedSample> batch;
   double look_at_s = 0;
@@ -499,7 +557,7 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
       take(arrived);
       extend_trail();
       if (t_s_ < look_at_s) continue;
-      cutter_->look();
+      shift_->look();
       look_at_s = t_s_ + kLook_s;
       tell(false);
       show_frame();
@@ -520,8 +578,8 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
     for (const ArrivedSample& arrived : batch) take(arrived);
   }
   last_state_ = state_now(first_ ? seconds(Clock::now() - newest_.arrival) : 0);
-  cutter_->look();
-  cutter_->finish();
+  shift_->look();
+  shift_->finish();
   tell(true);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
   conclude(stopped);
@@ -532,58 +590,6 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
     return Outcome::kFailed;
   }
   return outcome(stopped);
-}
-
-void LiveSession::conclude(bool stopped) {
-  live_.status = source_status_;
-  live_.facts = cutter_->facts();
-  live_.dropped = queue_.dropped();
-  live_.duration_s = t_s_;
-  if (t_s_ > 0) live_.rate_hz = static_cast<double>(live_.facts.samples - 1) / t_s_;
-  if (!ages_ms_.empty()) {
-    std::sort(ages_ms_.begin(), ages_ms_.end());
-    live_.age_median_ms = static_cast<double>(ages_ms_[ages_ms_.size() / 2]);
-    live_.age_p99_ms = static_cast<double>(ages_ms_[ages_ms_.size() * 99 / 100]);
-  }
-  if (first_ && first_->sample.device_ns != AxisSample::kNoTime) {
-    live_.clock_offset_s = seconds(first_->sample.host_ns - first_->sample.device_ns);
-  }
-  if (const ProgramAhead* program = cutter_->program()) {
-    report_.program = program->summary();
-    if (!program->complete()) report_.program.stopped_early = true;
-    const bool open_ended = !report_.program.has_program_end && !report_.program.stopped_early;
-    // Of a program that was not read to its end the interpreter only says that it was stopped.
-    if (program->complete()) {
-      add_interpreter_findings(program->diagnostics(), open_ended, report_.findings);
-    }
-  }
-  report_.time_model = options_.log() ? "as logged" : "as it happened";
-  report_.motion.duration_s = t_s_;
-  report_.tools = cutter_->stage().tools();
-  report_.stock = stock_report(*stock_, stock_facts_);
-  if (const TorchStage* const torch = cutter_->stage().torch()) {
-    report_.sheet = sheet_report(*as_sheet(*stock_), *torch, options_.beam.density_kg_per_m3);
-  }
-  if (const PunchStage* const punch = cutter_->stage().punch()) {
-    report_.sheet = sheet_report(*as_sheet(*stock_), *punch, options_.beam.density_kg_per_m3);
-  }
-  report_.timing.total_s = seconds(Clock::now() - start_);
-  report_.peak_rss_mb = peak_rss_mb();
-  if (stopped && options_.log()) report_.partial_reason = "interrupted before the end of the log";
-  report_.live = live_;
-}
-
-Outcome LiveSession::outcome(bool stopped) const {
-  // A log that is stopped is not finished; a machine is watched until somebody stops.
-  if (stopped && options_.log()) return Outcome::kInterrupted;
-  const LiveReport& live = live_;
-  const bool gone = !options_.log() && last_state_ != LiveState::kLive;
-  // A machine that could not be asked while it stood has lost nothing; a damaged log has.
-  const bool damaged = options_.log() && live.status.errors > 0;
-  const bool lossy = live.dropped > 0 || live.status.lost > 0 || damaged || live.facts.gaps > 0 ||
-                     live.facts.incomplete > 0 || live.facts.wild > 0 || is_at_fault(live.status) ||
-                     gone;
-  return lossy ? Outcome::kLossy : Outcome::kFinished;
 }
 
 }  // namespace kerf

@@ -20,6 +20,7 @@
 #include "stock/blank.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_report.h"
+#include "twin/live/live_shift.h"
 #include "twin/live/sample_queue.h"
 #include "twin/live/source_faults.h"
 #include "twin/outcome.h"
@@ -41,6 +42,10 @@ const char* to_string(LiveState state);
 
 struct LiveOptions {
   std::optional<ProgramOptions> program;
+  /// Other programs that the machine may run, with the same settings: which one it is at each
+  /// start, its path tells.
+  std::vector<std::string> more_programs;
+  OnProgramEnd on_end = OnProgramEnd::kKeep;
   /// Without a program: where the tool table is, and its unit.
   std::string tool_table_path;
   bool inch_table = false;
@@ -70,6 +75,8 @@ struct LiveStatus {
   double age_s = 0;  ///< of the newest sample
   double t_s = 0;    ///< since the first sample, by its clock
   LivePlace place;
+  std::uint32_t run = 1;  ///< LiveRun's number
+  std::uint32_t part = 1;
   std::string file;            ///< of the program's line the machine is on
   double remaining_s = -1;     ///< of the program, by the plan; < 0: not known
   double collision_in_s = -1;  ///< the nearest of the warnings that are still ahead; < 0: none
@@ -90,6 +97,8 @@ class LiveObserver {
   virtual void on_status(const LiveStatus& status) = 0;
   virtual void on_finding(const Finding& finding, const std::vector<std::string>& files) = 0;
   virtual void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) = 0;
+  /// A run of a program is over, and another one has begun or the watch ends.
+  virtual void on_run(const LiveRun& run) { static_cast<void>(run); }
   /// Asked once, before the first sample: on_frame() is wanted.
   virtual bool wants_frames() const { return false; }
   /// After samples were taken, as soon as kFramePeriod has passed since the last call: for windows.
@@ -105,8 +114,15 @@ class LiveObserver {
   static constexpr double kTrail_mm = 0.05;
 };
 
+/// A sample with what lies between it and the one before.
+struct TappedSample {
+  const AxisSample& sample;
+  std::uint64_t lost = 0;         ///< that the source has lost
+  std::int64_t clock_set_ns = 0;  ///< by which this computer's clock was set; of logs 0
+};
+
 /// Takes every sample, in the thread that reads the source. For recorders.
-using SampleTap = std::function<void(const AxisSample&)>;
+using SampleTap = std::function<void(const TappedSample&)>;
 
 /// Two threads: one asks the source, the caller's cuts. A machine is never waited for nor made to
 /// wait: what comes faster than it can be cut is dropped and counted. A log waits.
@@ -143,7 +159,7 @@ class LiveSession {
 
   /// After run().
   Report& report() { return report_; }
-  const StockModel* stock() const { return stock_.get(); }
+  const StockModel* stock() const { return shift_ ? &shift_->stock() : stock_.get(); }
   const ToolSources& tool_sources() const { return tool_sources_; }
   std::string source_name() const { return source_->describe(); }
 
@@ -159,7 +175,10 @@ class LiveSession {
   std::string need_of_tilt(const Survey& survey) const;
   void read_source(std::stop_token stop);
   void pace(const AxisSample& sample, const std::stop_token& stop);
-  void measure_program(std::stop_token stop);
+  void measure_programs(std::stop_token stop);
+  double measure_program(const ShiftProgram& measured, const std::stop_token& stop);
+  std::vector<ShiftProgram> shift_programs();
+  TappedSample tapped(const ArrivedSample& arrived);
   void take(const ArrivedSample& arrived);
   double time_of(const ArrivedSample& arrived);
   void note_clocks(const ArrivedSample& arrived, double t_s);
@@ -175,11 +194,11 @@ class LiveSession {
   std::unique_ptr<PositionSource> source_;
   std::unique_ptr<Program> program_;
   StockChoice choice_;
-  std::unique_ptr<StockModel> stock_;
+  std::unique_ptr<StockModel> stock_;  ///< until there is a shift
   StockReport stock_facts_;
   ToolSources tool_sources_;
   CutLabels labels_;
-  std::unique_ptr<LiveCutter> cutter_;
+  std::unique_ptr<LiveShift> shift_;
   LiveObserver* observer_ = nullptr;
   SampleTap tap_;
   std::atomic<double> speed_{0};
@@ -190,7 +209,8 @@ class LiveSession {
   mutable std::mutex status_mutex_;  // of source_status_
   SourceStatus source_status_;
   SourceFaults source_faults_;
-  std::atomic<double> program_total_s_{-1};
+  /// How long each program takes; < 0: not known (yet).
+  std::vector<std::atomic<double>> program_total_s_;
 
   // of the cutting thread
   std::optional<ArrivedSample> first_;
@@ -207,15 +227,19 @@ class LiveSession {
   std::uint64_t frame_samples_ = 0;  ///< those that the last frame had
   std::vector<Vec3> trail_;          ///< since the last frame
   std::optional<Vec3> trail_end_;
-  std::size_t told_findings_ = 0;
+  std::size_t told_runs_ = 0;
+  std::vector<LiveShift::Told> fresh_;  ///< not told yet
+  std::uint64_t samples_ = 0;
   std::vector<AheadWarning> ahead_;  ///< warnings whose time has not come
   LiveReport live_;
   std::vector<float> ages_ms_;  ///< ring of the ages at which samples were cut
   std::size_t next_age_ = 0;
   std::int64_t host_offset_ns_ = 0;
   // of the source's thread
-  std::optional<std::int64_t> paced_from_ns_;  ///< stamp of the log when the speed last changed
-  std::optional<std::int64_t> paced_ns_;       ///< of the last sample
+  std::uint64_t tapped_lost_ = 0;
+  std::optional<std::int64_t> tapped_offset_ns_;  ///< of the clocks, at the last sample
+  std::optional<std::int64_t> paced_from_ns_;     ///< stamp of the log when the speed last changed
+  std::optional<std::int64_t> paced_ns_;          ///< of the last sample
   Clock::time_point paced_since_;
   double paced_speed_ = 0;
   Clock::time_point start_;

@@ -65,7 +65,11 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
                           std::span<const PathPiece> path) {
   end_s_ = timed.start_s + timed.duration_s;
   ++appended_;
-  if (!moves(motion) || !motion.start_known) return;
+  if (!moves(motion)) return;
+  if (!motion.start_known && pieces_.empty() && !found_) {
+    approach_line_ = motion.source.file == 0 ? static_cast<int>(motion.source.line) : 0;
+  }
+  if (!motion.start_known) return;
   const bool turns =
       motion.from_abc_deg != motion.to_abc_deg || motion.from_uvw_mm != motion.to_uvw_mm;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -97,6 +101,11 @@ double PathFollower::program_s() const {
 
 bool PathFollower::passed_all() const {
   return pieces_.empty() || (pieces_.size() == 1 && found_ && t_ >= 1);
+}
+
+double PathFollower::left_s() const {
+  if (pieces_.empty()) return 0;
+  return moved_s_ - pieces_.front().moved_s - (found_ ? t_ * pieces_.front().duration_s : 0);
 }
 
 PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
@@ -157,6 +166,19 @@ std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace&
   return first;
 }
 
+/// What its line tells of a machine that has not been found yet. On its way to the program's first
+/// place it says a line that may come again later, in a loop.
+int PathFollower::told_line(const FollowedPlace& place) const {
+  return found_ || place.line != approach_line_ ? place.line : -1;
+}
+
+bool PathFollower::has_line(int line) const {
+  return std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+    return piece.motion.source.file == 0 &&
+           piece.motion.source.line == static_cast<std::uint32_t>(line);
+  });
+}
+
 void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   for (std::size_t i = 0; i < to.piece; ++i) {
     const Piece& piece = pieces_.front();
@@ -179,12 +201,15 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   // What the machine says of itself goes first, but need not be so.
   std::optional<Candidate> at;
   const auto missed = [&] { return !at || at->distance_mm > options_.tolerance_mm; };
-  if (place.line > 0) at = search(place, end, place.line, place.tool);
-  if (missed() && place.tool >= 0) at = search(place, end, 0, place.tool);
-  if (missed()) at = search(place, end, 0, -1);
+  const int line = told_line(place);
+  if (line > 0) at = search(place, end, line, place.tool);
+  // One that begins in the midst comes by other places of the path on its way.
+  const bool by_line = !found_ && line > 0 && has_line(line);
+  if (missed() && !by_line && place.tool >= 0) at = search(place, end, 0, place.tool);
+  if (missed() && !by_line) at = search(place, end, 0, -1);
   // A machine that was out of sight may be anywhere, and says where.
-  if (missed() && place.line > 0) {
-    const auto far = search(place, {pieces_.size()}, place.line, place.tool);
+  if (missed() && line > 0) {
+    const auto far = search(place, {pieces_.size()}, line, place.tool);
     if (far && far->distance_mm <= options_.tolerance_mm) at = far;
   }
   if (!at) return point;

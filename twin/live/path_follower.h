@@ -128,6 +128,8 @@ class PathFollower {
   /// Program time of the end of what has been appended.
   double end_s() const { return end_s_; }
   bool passed_all() const;
+  /// Time in motion from the point found last to the end of what has been appended. s.
+  double left_s() const;
 
  private:
   struct Piece {
@@ -160,6 +162,8 @@ class PathFollower {
   PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
                         double to_t) const;
   Reach reach(const FollowedPlace& place) const;
+  int told_line(const FollowedPlace& place) const;
+  bool has_line(int line) const;
   std::optional<Candidate> search(const FollowedPlace& place, const Reach& reach, int line,
                                   int tool) const;
   void drive_to(const Candidate& to, const Drive& drive);
@@ -172,6 +176,7 @@ class PathFollower {
   double moved_s_ = 0;          ///< time in motion of all that was appended
   std::uint64_t appended_ = 0;  ///< motions
   bool found_ = false;
+  int approach_line_ = 0;         ///< of the first move, from wherever the machine was
   std::array<bool, 3> turned_{};  ///< by what has been appended
   std::array<bool, 3> slid_{};
 };

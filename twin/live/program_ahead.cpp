@@ -108,7 +108,8 @@ void ProgramAhead::step(const Motion& motion, const TimedStep& timed,
     has_moved_ = true;
     if (!motion.start_known) approach_line_ = static_cast<int>(motion.source.line);
   }
-  motions_.push_back({motion, timed.start_s, planned_s_});
+  motions_.push_back(
+      {motion, timed.start_s, planned_s_, timed, std::vector<PathPiece>(path.begin(), path.end())});
   follower_.append(motion, timed, path);
 }
 

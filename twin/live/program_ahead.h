@@ -22,11 +22,13 @@
 
 namespace kerf {
 
-/// A motion with its time by the plan.
+/// A motion with its time by the plan, and what the machine makes of it (StepSink).
 struct PlannedMotion {
   Motion motion;
   double start_s = 0;
   double end_s = 0;
+  TimedStep step;
+  std::vector<PathPiece> path;
 };
 
 /// Interprets in a thread of its own, which waits when it is far ahead; plans in the caller's, and

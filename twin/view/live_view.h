@@ -67,6 +67,7 @@ class LiveView final : public LiveObserver {
   void on_status(const LiveStatus& status) override;
   void on_finding(const Finding& finding, const std::vector<std::string>& files) override;
   void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override;
+  void on_run(const LiveRun& run) override { next_.on_run(run); }
   bool wants_frames() const override { return true; }
   void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
                 std::span<const Vec3> trail, std::span<const CutLabel> labels) override;

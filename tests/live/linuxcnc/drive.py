@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The DISPLAY of a headless LinuxCNC: homes it, runs one program to its end, and exits, which ends LinuxCNC.
+"""The DISPLAY of a headless LinuxCNC: homes it, runs one program to its end or a script of several, and exits, which ends
+LinuxCNC.
 
 /usr/bin/python3 by its full path: LinuxCNC's modules belong to the system's Python, not to one that comes first in PATH.
 
@@ -9,6 +10,14 @@ Environment:
   KERF_LIVE_READY     shell command to be waited for after homing, before the program starts (optional)
   KERF_LIVE_AT_END    shell command to be waited for while the machine still stands at the program's end (optional)
   KERF_LIVE_LIMIT_S   the program is aborted after this many seconds (300)
+  KERF_LIVE_SCRIPT    file with a step a line, in place of the one program (optional). Files lie beside it:
+                        run FILE [LINE]      to its end, from this line on
+                        abort FILE SECONDS   run, and aborted after so long
+                        pause FILE AT FOR    run to its end, held after AT seconds FOR seconds
+                        override PERCENT     of the feed
+                        mdi TEXT             one block, to its end
+                        wait SECONDS
+                      A step that is none, or does not come to its end, is the last one
 """
 import json
 import os
@@ -72,21 +81,25 @@ class Machine:
         stat = self.poll()
         return all(stat.homed[: stat.joints]) and stat.inpos
 
-    def run(self, program, limit_s):
-        """Seconds that the program took; None if it was cut off."""
+    def start(self, program, line=0):
         command = self.command
         command.mode(linuxcnc.MODE_AUTO)
         command.wait_complete()
         command.program_open(program)
         command.wait_complete()
-        begin = time.monotonic()
-        command.auto(linuxcnc.AUTO_RUN, 0)
+        command.auto(linuxcnc.AUTO_RUN, line)
         # Right after AUTO_RUN the status still says idle; a refused program stays idle and has left a message.
         wait_until(
             "the start of the program",
             lambda: self.poll().interp_state != linuxcnc.INTERP_IDLE or self.errors,
             5,
         )
+
+    def run(self, program, limit_s, line=0):
+        """Seconds that the program took; None if it was cut off."""
+        command = self.command
+        begin = time.monotonic()
+        self.start(program, line)
         if not wait_until("the end of the program", self.is_done, limit_s):
             command.abort()
             command.wait_complete()
@@ -103,6 +116,62 @@ class Machine:
         )
 
 
+    def run_and_abort(self, program, after_s):
+        self.start(program)
+        time.sleep(after_s)
+        self.command.abort()
+        self.command.wait_complete()
+        return wait_until("the abort", self.is_done, 10)
+
+    def run_and_pause(self, program, at_s, for_s, limit_s):
+        self.start(program)
+        time.sleep(at_s)
+        self.command.auto(linuxcnc.AUTO_PAUSE)
+        time.sleep(for_s)
+        self.command.auto(linuxcnc.AUTO_RESUME)
+        return wait_until("the end of the program", self.is_done, limit_s)
+
+    def mdi(self, text):
+        self.command.mode(linuxcnc.MODE_MDI)
+        self.command.wait_complete()
+        self.command.mdi(text)
+        self.command.wait_complete(60)
+        return wait_until("the end of the block", self.is_done, 60)
+
+    def step(self, words, folder, limit_s):
+        """True: it came to its end."""
+        kind, rest = words[0], words[1:]
+        if kind == "run":
+            line = int(rest[1]) if len(rest) > 1 else 0
+            return self.run(os.path.join(folder, rest[0]), limit_s, line) is not None
+        if kind == "abort":
+            return self.run_and_abort(os.path.join(folder, rest[0]), float(rest[1]))
+        if kind == "pause":
+            return self.run_and_pause(os.path.join(folder, rest[0]), float(rest[1]), float(rest[2]), limit_s)
+        if kind == "override":
+            self.command.feedrate(float(rest[0]) / 100)
+            self.command.wait_complete()
+            return True
+        if kind == "mdi":
+            return self.mdi(" ".join(rest))
+        if kind == "wait":
+            time.sleep(float(rest[0]))
+            return True
+        return False
+
+    def run_script(self, path, limit_s):
+        """Seconds that all its steps took; None if one of them failed."""
+        begin = time.monotonic()
+        with open(path, encoding="utf-8") as file:
+            steps = [line.split() for line in file if line.strip() and not line.startswith("#")]
+        for words in steps:
+            print("drive.py: %.2f s:" % (time.monotonic() - begin), " ".join(words), flush=True)
+            if not self.step(words, os.path.dirname(path), limit_s):
+                self.errors.append("step failed: " + " ".join(words))
+                return None
+        return time.monotonic() - begin
+
+
 def shell(name):
     if os.environ.get(name):
         subprocess.run(os.environ[name], shell=True, check=False)
@@ -117,7 +186,11 @@ def main():
     if result["homed"]:
         shell("KERF_LIVE_READY")
         limit_s = float(os.environ.get("KERF_LIVE_LIMIT_S", "300"))
-        result["program_s"] = machine.run(os.environ["KERF_LIVE_PROGRAM"], limit_s)
+        script = os.environ.get("KERF_LIVE_SCRIPT")
+        if script:
+            result["program_s"] = machine.run_script(script, limit_s)
+        else:
+            result["program_s"] = machine.run(os.environ["KERF_LIVE_PROGRAM"], limit_s)
         shell("KERF_LIVE_AT_END")
     with open(os.environ["KERF_LIVE_RESULT"], "w", encoding="utf-8") as file:
         json.dump(result, file)

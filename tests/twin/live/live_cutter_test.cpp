@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
 #include "tests/twin/live/live_shop.h"
+#include "twin/session_parts.h"
 
 namespace kerf {
 namespace {
@@ -337,6 +340,19 @@ TEST(LiveCutter, AStandingSpindleInTheStockIsFound) {
   ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSpindleOffContact});
 }
 
+TEST(LiveCutter, ASpindleThatWasToldToStopStillTurnsWhileTheAxesComeToAStand) {
+  // An abort: 40 ms later the axes stand. One that has stood for a second does not cut.
+  Watch watch;
+  for (int i = 0; i <= 20; ++i) watch.see({10 + 0.3 * i, 20, -1}, 0.01 * i, 1, false, 8000);
+  for (int i = 1; i <= 4; ++i) watch.see({16 + 0.1 * i, 20, -1}, 0.2 + 0.01 * i, 1, false, 0);
+  watch.removed_mm3();
+  EXPECT_TRUE(watch.ids().empty());
+  watch.see({16.4, 20, -1}, 0.5, 1, false, 0);
+  watch.see({20, 20, -1}, 0.6, 1, false, 0);
+  watch.removed_mm3();
+  EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kSpindleOffContact});
+}
+
 TEST(LiveCutter, AMachineBesideThePathIsFoundAndWhatItDoesIsCut) {
   const MotionList program = pocket();
   const RunningMachine machine(program.list());
@@ -408,6 +424,54 @@ TEST(LiveCutter, WhatTheProgramWouldDoIsToldBeforeItHappens) {
   EXPECT_GT(happens_s - watch.warnings[0].at_s, 1.9);
   // And it did happen.
   EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kRapidContact});
+}
+
+TEST(LiveCutter, NothingIsToldFartherAheadThanAskedFor) {
+  // Half a minute through the air, in one move; and then one that meets the workpiece at its end.
+  MotionList program;
+  program.at({-20, 20, 5}).tool(1).spindle(true).feed_rate(60);
+  program.traverse({-20, 20, 6}).feed({10, 20, 6}).traverse({10, 20, -2}).traverse({10, 20, 5});
+  program.spindle(false).feed({12, 20, 5}).feed({12, 20, -1});
+  const RunningMachine machine(program.list());
+  for (const double guard_s : {3.0, 10.0}) {
+    LiveCutOptions options;
+    options.guard_s = guard_s;
+    Watch watch(options, &program);
+    watch.run(machine, 20, true);
+    ASSERT_EQ(watch.warnings.size(), 2U);
+    for (const Watch::Told& told : watch.warnings) {
+      EXPECT_LE(told.warning.in_s, guard_s);
+      EXPECT_GT(told.warning.in_s, guard_s - 0.1) << told.at_s;
+      EXPECT_NEAR(told.warning.t_s, told.at_s, 0.06);
+    }
+  }
+}
+
+TEST(LiveCutter, WhatIsDearAheadOfAMachineItsPositionsDoNotWaitFor) {
+  // The first contact of a fine helix, with a spindle that stands: seconds.
+  MotionList program;
+  program.at({5, 20, 5}).tool(1).spindle(false).feed_rate(3000);
+  program.traverse({5, 20, 3}).traverse({20, 20, 2});
+  program.arc({20, 20, -4}, {15, 20, -1}, {0, 0, 1}, 2 * kPi * 40);
+  auto stock = block();
+  FindingLog log;
+  LiveCutOptions options;
+  options.frame.tool_length = ToolLengthFrom::kNone;
+  options.guard_s = 300;
+  LiveCutter cutter(*stock, cutters(), log, options,
+                    std::make_unique<ListedProgram>(program.list()));
+  const RunningMachine machine(program.list());
+  const double begun_s = thread_cpu_s();
+  std::size_t warnings = 0;
+  AxisSample sample = machine.sample(0.01, true);
+  for (int i = 0; warnings == 0 && i < 3000; ++i) {
+    cutter.take(sample, 0.01 * i, false);
+    cutter.look();
+    warnings = cutter.take_warnings().size();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(warnings, 1U);
+  EXPECT_LT(thread_cpu_s() - begun_s, 0.3);
 }
 
 TEST(LiveCutter, TheGuardLooksAtTheWorkpieceAsItReallyIs) {

@@ -222,6 +222,57 @@ TEST(SourceFaults, AreRewordedAsTheyGoOn) {
             "frames of the bus were lost: 7 cycles were without all axes, and dropped");
 }
 
+/// What it has lost comes with its samples.
+class LosingSource final : public PositionSource {
+ public:
+  Next next(AxisSample& sample, std::chrono::milliseconds patience) override {
+    if (next_ == 6) {
+      std::this_thread::sleep_for(patience);
+      return Next::kNothing;
+    }
+    sample = at(10, 20, 5, 0);
+    sample.device_ns = AxisSample::kNoTime;
+    sample.host_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                         std::chrono::system_clock::now().time_since_epoch())
+                         .count();
+    // An hour forward behind the third one.
+    if (next_ >= 3) sample.host_ns += std::int64_t{3'600'000'000'000};
+    if (next_ == 2) status_.lost = 21;
+    ++next_;
+    status_.state = SourceState::kReading;
+    return Next::kSample;
+  }
+  const SourceStatus& status() const override { return status_; }
+  std::string describe() const override { return "a source that loses"; }
+
+ private:
+  SourceStatus status_;
+  int next_ = 0;
+};
+
+TEST(LiveSession, WhatIsLostAndWhenTheClockWasSetIsTapped) {
+  LiveOptions options = with_block();
+  options.speed = 0;
+  options.for_s = 0.3;
+  Diagnostics diagnostics;
+  Outcome outcome = Outcome::kFailed;
+  auto session =
+      LiveSession::open(std::move(options), std::make_unique<LosingSource>(), diagnostics, outcome);
+  ASSERT_TRUE(session);
+  std::vector<std::uint64_t> lost;
+  std::vector<double> set_s;
+  session->set_tap([&](const TappedSample& tapped) {
+    lost.push_back(tapped.lost);
+    set_s.push_back(static_cast<double>(tapped.clock_set_ns) * 1e-9);
+  });
+  EXPECT_EQ(session->run({}, diagnostics), Outcome::kLossy);
+  EXPECT_EQ(lost, (std::vector<std::uint64_t>{0, 0, 21, 0, 0, 0}));
+  ASSERT_EQ(set_s.size(), 6U);
+  EXPECT_NEAR(set_s[3], 3600, 0.2);
+  for (const std::size_t i : {0, 1, 2, 4, 5}) EXPECT_EQ(set_s[i], 0) << i;
+  EXPECT_EQ(session->report().live->clock_steps, 1U);
+}
+
 TEST(LiveSession, AGapIsAFindingAndALossyResult) {
   Watched run(with_block(),
               std::make_unique<ListedSource>(std::vector{at(10, 20, 1, 0), at(20, 20, 1, 3)}));
@@ -292,7 +343,7 @@ TEST(LiveSession, EverySampleGoesThroughTheTap) {
   auto session = LiveSession::open(with_block(), std::make_unique<ListedSource>(samples),
                                    diagnostics, outcome);
   std::size_t tapped = 0;
-  session->set_tap([&](const AxisSample&) { ++tapped; });
+  session->set_tap([&](const TappedSample&) { ++tapped; });
   EXPECT_EQ(session->run({}, diagnostics), Outcome::kFinished);
   EXPECT_EQ(tapped, samples.size());
   EXPECT_EQ(session->report().live->facts.samples, samples.size());
@@ -339,15 +390,19 @@ TEST(SampleQueue, ALogWaitsForWhoTakesIt) {
 
 TEST(LiveJson, EventsAreLinesOfJson) {
   LiveStatus status;
+  const EventHead head{1795410000000000, 7, 1772357400000000123};
   status.state = LiveState::kStale;
   status.age_s = 0.7;
   status.place.known = true;
   status.place.tip_mm = {1, 2, 3};
   status.place.tool = 4;
-  const std::string line = status_json(status);
+  const std::string line = status_json(status, head);
   EXPECT_EQ(line.find('\n'), line.size() - 1);
   const auto json = nlohmann::json::parse(line);
   EXPECT_EQ(json["event"], "status");
+  EXPECT_EQ(json["instance_id"], 1795410000000000);
+  EXPECT_EQ(json["sequence"], 7);
+  EXPECT_EQ(json["time"], "2026-03-01T09:30:00.000000123Z");
   EXPECT_EQ(json["state"], "stale");
   EXPECT_EQ(json["age_ms"], 700);
   EXPECT_EQ(json["tip_mm"], (std::vector<double>{1, 2, 3}));
@@ -358,9 +413,13 @@ TEST(LiveJson, EventsAreLinesOfJson) {
   warning.finding.id = FindingId::kRapidContact;
   warning.finding.source.line = 7;
   warning.in_s = 2.5;
-  const auto ahead = nlohmann::json::parse(ahead_json(warning, {"part.ngc"}));
+  warning.t_s = 61.25;
+  const auto ahead = nlohmann::json::parse(ahead_json(warning, {"part.ngc"}, head));
   EXPECT_EQ(ahead["event"], "ahead");
   EXPECT_EQ(ahead["in_s"], 2.5);
+  EXPECT_EQ(ahead["t_s"], 61.25);
+  EXPECT_EQ(ahead["sequence"], 7);
+  EXPECT_EQ(ahead["time"], "2026-03-01T09:30:00.000000123Z");
   EXPECT_EQ(ahead["id"], "rapid-contact");
   EXPECT_EQ(ahead["file"], "part.ngc");
   EXPECT_EQ(ahead["line"], 7);
