@@ -392,8 +392,20 @@ void LiveSession::note_clocks(const ArrivedSample& arrived, double t_s) {
   if (options_.log()) return;
   const AxisSample& sample = arrived.sample;
   const std::int64_t offset_ns = sample.host_ns - steady_ns(arrived.arrival);
-  if (std::abs(seconds(offset_ns - host_offset_ns_)) > kClockStep_s) ++live_.clock_steps;
-  host_offset_ns_ = offset_ns;
+  // A single sample that is off was held up. A clock that was set stays so.
+  const auto is_off = [&](std::int64_t from_ns) {
+    return std::abs(seconds(offset_ns - from_ns)) > kClockStep_s;
+  };
+  if (!is_off(host_offset_ns_)) {
+    host_offset_ns_ = offset_ns;
+    odd_offset_ns_.reset();
+  } else if (odd_offset_ns_ && !is_off(*odd_offset_ns_)) {
+    ++live_.clock_steps;
+    host_offset_ns_ = offset_ns;
+    odd_offset_ns_.reset();
+  } else {
+    odd_offset_ns_ = offset_ns;
+  }
   if (sample.device_ns != AxisSample::kNoTime) {
     const double late_s = seconds(arrived.arrival - first_->arrival) - t_s;
     live_.jitter_ms = std::max(live_.jitter_ms, std::abs(late_s) * 1e3);

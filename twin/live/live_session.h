@@ -235,6 +235,7 @@ class LiveSession {
   std::vector<float> ages_ms_;  ///< ring of the ages at which samples were cut
   std::size_t next_age_ = 0;
   std::int64_t host_offset_ns_ = 0;
+  std::optional<std::int64_t> odd_offset_ns_;  ///< another one, of the last sample alone
   // of the source's thread
   std::uint64_t tapped_lost_ = 0;
   std::optional<std::int64_t> tapped_offset_ns_;  ///< of the clocks, at the last sample

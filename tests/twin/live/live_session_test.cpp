@@ -209,6 +209,27 @@ TEST(LiveSession, WhatIsWrongWithTheSourceIsToldOnceEach) {
   }
 }
 
+TEST(LiveSession, AnAnswerThatWasHeldUpIsNoClockThatWasSet) {
+  const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                  std::chrono::system_clock::now().time_since_epoch())
+                                  .count();
+  for (const bool is_set : {false, true}) {
+    std::vector<AxisSample> samples;
+    for (int i = 0; i < 10; ++i) {
+      AxisSample sample = at(10, 20, 1, 0);
+      sample.device_ns = AxisSample::kNoTime;
+      // One is 5 s off, or all from there on.
+      const bool is_off = is_set ? i >= 5 : i == 5;
+      sample.host_ns = now_ns - (is_off ? 5'000'000'000 : 0);
+      samples.push_back(sample);
+    }
+    LiveOptions options = with_block();
+    options.speed = 0;
+    Watched run(std::move(options), std::make_unique<ListedSource>(std::move(samples)));
+    EXPECT_EQ(run.report().live->clock_steps, is_set ? 1U : 0U);
+  }
+}
+
 TEST(SourceFaults, AreRewordedAsTheyGoOn) {
   SourceFaults faults;
   FindingLog log;
