@@ -333,12 +333,16 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   if (length_mm < kStill_mm && !turns) return;
   Motion motion;
   motion.spindle = spindle();
+  const auto turning_speed = [this](SpindleState state) {
+    const double rpm = std::abs(sample_.spindle_rpm);
+    return state != SpindleState::kStopped && rpm < kStanding_rpm ? std::abs(turning_rpm_) : rpm;
+  };
   // Without its beam a head is on its way.
   const bool travels = options_.beam && motion.spindle == SpindleState::kStopped;
   motion.kind = travels ? MotionKind::kTraverse : MotionKind::kFeed;
   motion.torch.spindles_on = motion.spindle != SpindleState::kStopped ? 1 : 0;
   motion.speed_said = !std::isnan(sample_.spindle_rpm);
-  motion.spindle_rpm = motion.speed_said ? std::abs(sample_.spindle_rpm) : 0;
+  motion.spindle_rpm = motion.speed_said ? turning_speed(motion.spindle) : 0;
   motion.tool = std::max(0, now.tool >= 0 ? now.tool : program_tool_);
   motion.source = {0, sample_.line > 0 ? static_cast<std::uint32_t>(sample_.line) : 0};
   motion.from_mm = from.tip_mm;
@@ -381,11 +385,15 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
   double planned_s = 0;
   for (const PathFollower::DrivenPart& part : driven_) planned_s += part.duration_s;
   const bool spindle_told = !std::isnan(sample_.spindle_rpm);
+  const auto turning_speed = [this](SpindleState state) {
+    const double rpm = std::abs(sample_.spindle_rpm);
+    return state != SpindleState::kStopped && rpm < kStanding_rpm ? std::abs(turning_rpm_) : rpm;
+  };
   for (auto& [motion, share_s, of_same_piece] : driven_) {
     if (sample_.tool >= 0) motion.tool = sample_.tool;
     if (spindle_told && !options_.beam) {
       motion.spindle = spindle();
-      motion.spindle_rpm = std::abs(sample_.spindle_rpm);
+      motion.spindle_rpm = turning_speed(motion.spindle);
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const double stands_deg = now.place.abc_deg[i];

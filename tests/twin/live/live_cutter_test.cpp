@@ -452,7 +452,7 @@ TEST(LiveCutter, WhatIsDearAheadOfAMachineItsPositionsDoNotWaitFor) {
   MotionList program;
   program.at({5, 20, 5}).tool(1).spindle(false).feed_rate(3000);
   program.traverse({5, 20, 3}).traverse({20, 20, 2});
-  program.arc({20, 20, -4}, {15, 20, -1}, {0, 0, 1}, 2 * kPi * 40);
+  program.arc({20, 20, -4}, {15, 20, -1}, {0, 0, 1}, 2 * kPi * 6);
   auto stock = block();
   FindingLog log;
   LiveCutOptions options;
