@@ -76,12 +76,12 @@ void rename_stdin(const StdinProgram& kept, Report& report, Diagnostics& diagnos
 }
 
 /// How one of the programs ended.
-struct RunEnd {
+struct RunVerdict {
   int code = kExitGood;
   bool interrupted = false;
 };
 
-RunEnd run_one(RunRequest request) {
+RunVerdict run_one(RunRequest request) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
   if (request.view && !has_display()) {
@@ -168,12 +168,12 @@ int run_command(const RunArguments& arguments) {
   }
   print(diagnostics);  // warnings about files
   if (arguments.programs.size() <= 1) return run_one(std::move(request)).code;
-  RunEnd worst;
+  RunVerdict worst;
   for (const std::string& program : arguments.programs) {
     RunRequest own = request;
     own.session.program.path = program;
     own.summary.command = own_command(arguments, program);
-    const RunEnd end = run_one(std::move(own));
+    const RunVerdict end = run_one(std::move(own));
     worst.code = std::max(worst.code, end.code);
     if (end.interrupted) break;
   }
