@@ -34,8 +34,8 @@ class ToolTrace {
   ///   tilted, or Z follows the part while it goes sideways, in passes side by side
   ///                              a ball; Z follows in single lines: a V-bit (letters, carvings)
   ///   lines at most kEngraved_mm deep, or of a drawing (many short ones, close together)
-  ///                              a V-bit (with a flat of 0.2 mm for etching, at most 0.15 mm deep);
-  ///                              a flat end mill that is no wider than they are apart,
+  ///                              a V-bit (with a flat of 0.2 mm for etching, at most 0.15 mm
+  ///                              deep); a flat end mill that is no wider than they are apart,
   ///                              where they are too deep for that
   ///   else a flat end mill, by the way from pass to pass; where there are single lines only, by
   ///   the size of the part, the depth, and the circles that it bores
