@@ -410,7 +410,7 @@ inline void add_bound(const Trial& a, const Trial& b, double bend_mm, Lane& boun
     const double meet = (fa - fb + gb * width) / most(gb - ga, kTiny);
     const double ends = least(fa, fb);
     const double inside = fa + ga * most(0.0, least(width, meet));
-    bound.at[l] = least(bound.at[l], (ga < 0) & (gb > 0) ? least(ends, inside) : ends);
+    bound.at[l] = least(bound.at[l], ((ga < 0) & (gb > 0)) ? least(ends, inside) : ends);
   }
 }
 

@@ -160,7 +160,8 @@ TEST_F(WindowScreenTest, ChangedRectanglesGiveTheSamePixelsAsAllOfTheWindow) {
     settle();
   }
   const Picture in_parts = window_->read();
-  for (const auto& [width, height] : {std::pair{1270, 790}, std::pair{kWidth, kHeight}}) {
+  for (const auto& size : {std::pair{1270, 790}, std::pair{kWidth, kHeight}}) {
+    const int width = size.first, height = size.second;
     ASSERT_TRUE(xdotool("search --onlyvisible --name kerf windowsize " + std::to_string(width) +
                         " " + std::to_string(height) + " >/dev/null"));
     ASSERT_TRUE(turn_until([&] { return window_->read().width_px == width; }));

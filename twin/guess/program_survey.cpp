@@ -40,8 +40,13 @@ SurveyWishes SurveyWishes::of(const SessionOptions& options, const ProgramFront&
   SurveyWishes wishes;
   wishes.margin_mm = options.margin_mm;
   wishes.blank = !front.blank;
-  // Standard input cannot be read again as a sheet's program.
-  wishes.sheet = options.program.path != "-" && !options.stock.additive && !options.stock.kind;
+  // Who speaks of cells or of cutters does not mean a sheet. Standard input cannot be read again as
+  // a sheet's program.
+  const bool mills = std::any_of(
+      front.tools.arguments.begin(), front.tools.arguments.end(),
+      [](const ToolShapeArgument& tool) { return !tool.cutter.spec().starts_with("kerf"); });
+  wishes.sheet = options.program.path != "-" && !options.stock.additive && !options.stock.kind &&
+                 options.stock.cell_mm == 0 && !mills;
   wishes.tools = front.tools.arguments.empty() && front.tools.table.empty();
   return wishes;
 }

@@ -461,6 +461,7 @@ TEST_F(LoadProgram, TellsHowFarItIsAndStopsWhenAsked) {
     fraction = progress.fraction;
   };
   const auto whole = load(control);
+  for (const Diagnostic& d : diagnostics_) ADD_FAILURE() << to_string(d);
   ASSERT_TRUE(whole);
   EXPECT_GT(calls, 10U);
   EXPECT_EQ(motions, whole->player.track->size());
