@@ -182,7 +182,7 @@ struct ToolPath::End {
 ToolPathTolerance ToolPathTolerance::of_cell(double cell_mm) {
   constexpr double kMost_mm = 0.01;
   const double least = std::min(cell_mm / 10, kMost_mm);
-  return {least, least, cell_mm / 10};
+  return {least, least, cell_mm / 5};
 }
 
 Result<ToolPath> ToolPath::create(MachineKinematics machine, const WorkpieceFrame& frame,

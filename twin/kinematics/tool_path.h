@@ -23,7 +23,7 @@ struct ToolPathTolerance {
   /// not, tip and top, at equal angles; 0: none. Ridges between turns may stand by so much.
   double turn_mm = 0;
 
-  /// A tenth of a cell; of tip and top at most 0.01 mm.
+  /// A tenth of a cell, of tip and top at most 0.01 mm; of turns a fifth.
   static ToolPathTolerance of_cell(double cell_mm);
 };
 
