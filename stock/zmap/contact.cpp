@@ -13,33 +13,43 @@ constexpr double kNone = ShrunkSweep::kNone;
 /// Tiles within so many cells of a cell count for it where they are hollow.
 constexpr int kAround = 2;
 
+/// t < 0: in a piece before.
 struct Found {
   double t = kNone;
   double depth = 0;
 };
 
-/// A convex tool on a straight piece of a move.
+/// A convex tool on a straight piece of a move. Goes on from what has been found.
 class Scan {
  public:
   Scan(const ContactField& field, const ConvexTool& tool, double tolerance, const Vec3& from,
-       const Vec3& step)
-      : grid_(field.grid), field_(field), sweep_{tool, tolerance, from, step} {
-    low_z_ = std::min(from.z, from.z + step.z) + surface_height(tool, 0) + tolerance;
+       const Vec3& step, const Found& found)
+      : grid_(field.grid), field_(field), sweep_{tool, tolerance, from, step}, found_(found) {
+    lowest_z_ = std::min(from.z, from.z + step.z);
+    low_z_ = lowest_z_ + surface_height(tool, 0) + tolerance;
+    half_diagonal_ = 0.5 * std::hypot(grid_.cell_x_mm(), grid_.cell_y_mm());
   }
   Found run();
 
  private:
   void scan_tile(int i0, int i1, int j0, int j1);
   bool tile_rises_above(const float* tile) const;
-  bool is_near(double x, double y) const;
-  void check_middle(double x, double y, double material);
-  void check_area(int i, int j, double x, double y);
+  double nearest(double x, double y) const;
+  /// Nothing is met earlier than at the start, and this not deeper than what was.
+  bool says_nothing_new(double material, double low) const {
+    return found_.t <= 0 &&
+           material - std::max(low, grid_.bounds_mm().min.z) <= found_.depth + 1e-9;
+  }
+  void check_middle(double x, double y, double near, double material);
+  void check_area(int i, int j, double x, double y, double near);
   bool is_hollow_around(int i, int j) const;
 
   const TileGrid& grid_;
   const ContactField& field_;
   ShrunkSweep sweep_;
-  double low_z_ = 0;  ///< nothing below is told
+  double lowest_z_ = 0;  ///< of the tip
+  double low_z_ = 0;     ///< nothing below is told
+  double half_diagonal_ = 0;
   Found found_;
 };
 
@@ -50,7 +60,11 @@ bool Scan::tile_rises_above(const float* tile) const {
   return above;
 }
 
-void Scan::check_middle(double x, double y, double material) {
+void Scan::check_middle(double x, double y, double near, double material) {
+  if (near > sweep_.reach()) return;
+  const double radius = std::min(near + sweep_.tolerance, sweep_.tool.radius);
+  const double low = lowest_z_ + surface_height(sweep_.tool, radius) + sweep_.tolerance;
+  if (material <= low || says_nothing_new(material + sweep_.tolerance, low)) return;
   double t0, t1;
   if (sweep_.reach() <= 0 || !sweep_.over(x, y, t0, t1)) return;
   const double t_low = sweep_.lowest(x, y, t0, t1);
@@ -62,16 +76,14 @@ void Scan::check_middle(double x, double y, double material) {
   if (t0 < found_.t) found_.t = std::min(found_.t, sweep_.first_below(x, y, material, t0, t_low));
 }
 
-/// Some point of the cell about (x, y) may be within the tool's radius of its way.
-bool Scan::is_near(double x, double y) const {
+/// How far the tool's axis stays from (x, y).
+double Scan::nearest(double x, double y) const {
   const double length2 = sweep_.step.x * sweep_.step.x + sweep_.step.y * sweep_.step.y;
   const double px = x - sweep_.from.x, py = y - sweep_.from.y;
   const double along =
       length2 > 0 ? std::clamp((px * sweep_.step.x + py * sweep_.step.y) / length2, 0.0, 1.0) : 0.0;
   const double dx = px - along * sweep_.step.x, dy = py - along * sweep_.step.y;
-  const double reach = sweep_.tool.radius +
-                       0.5 * (grid_.cell_x_mm() + grid_.cell_y_mm());  // above the half diagonal
-  return dx * dx + dy * dy <= reach * reach;
+  return std::sqrt(dx * dx + dy * dy);
 }
 
 /// With gaps below the heights the bound of TipTraces does not hold.
@@ -87,8 +99,11 @@ bool Scan::is_hollow_around(int i, int j) const {
   return false;
 }
 
-void Scan::check_area(int i, int j, double x, double y) {
-  if (!is_near(x, y)) return;
+void Scan::check_area(int i, int j, double x, double y, double near) {
+  const double top = static_cast<double>(grid_.height(i, j));
+  const double radius = std::min(std::max(0.0, near - half_diagonal_), sweep_.tool.radius);
+  const double low = lowest_z_ + surface_height(sweep_.tool, radius);
+  if (top - sweep_.tolerance <= low || says_nothing_new(top, low)) return;
   const double material = field_.traces.lower_bound_mm(grid_, i, j, sweep_.tolerance);
   if (material <= low_z_ || material <= grid_.bounds_mm().min.z + sweep_.tolerance) return;
   if (is_hollow_around(i, j)) return;
@@ -119,8 +134,10 @@ void Scan::scan_tile(int i0, int i1, int j0, int j1) {
       const double material = static_cast<double>(grid_.height(i, j));
       if (material <= low_z_ || material <= box.min.z) continue;
       const double x = box.min.x + (i + 0.5) * grid_.cell_x_mm();
-      if (field_.middles) check_middle(x, y, material);
-      check_area(i, j, x, y);
+      const double near = nearest(x, y);
+      if (near > sweep_.tool.radius + half_diagonal_) continue;
+      if (field_.middles) check_middle(x, y, near, material);
+      check_area(i, j, x, y, near);
     }
   }
 }
@@ -165,11 +182,9 @@ std::optional<Contact> find_first_contact(const ContactField& field,
   Vec3 from = move.from_mm;
   for (const Vec3& to : points) {
     Found first;
-    for (const ConvexTool& tool : tools) {
-      const Found found = Scan(field, tool, tolerance_mm, from, to - from).run();
-      first.t = std::min(first.t, found.t);
-      first.depth = std::max(first.depth, found.depth);
-    }
+    if (contact) first = {-1, contact->depth_mm};
+    for (const ConvexTool& tool : tools)
+      first = Scan(field, tool, tolerance_mm, from, to - from, first).run();
     if (first.t != kNone) {
       if (!contact) contact = Contact{from + first.t * (to - from), 0};
       contact->depth_mm = std::max(contact->depth_mm, first.depth);
