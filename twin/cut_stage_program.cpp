@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "twin/blank_choice.h"
 #include "twin/cut_stage.h"
 #include "twin/motion_geometry.h"
 
@@ -64,9 +63,6 @@ void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
 void CutStage::note_contact(const CheckedMove& move) {
   constexpr int kMostLooks = 100;
   if (touched_ || contact_looks_ == kMostLooks || !comes_near(move.motion)) return;
-  // What is wider than two cells as soon as it touches removes something of them.
-  const bool wide = half_width_mm(move.cutter, kContactTolerance_mm) > stock_.cell_mm();
-  if (wide && motion_moves_.is_upright(move.motion)) return;
   flush_whole();
   for (const ToolUse& use : uses_) touched_ = touched_ || use.removed_mm3 > 0;
   if (touched_) return;
