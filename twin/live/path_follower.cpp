@@ -205,6 +205,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (line > 0) at = search(place, end, line, place.tool);
   // One that begins in the midst comes by other places of the path on its way.
   const bool by_line = !found_ && line > 0 && has_line(line);
+  if (missed() && by_line) at = search(place, end, line, -1);  // with another tool in the spindle
   if (missed() && !by_line && place.tool >= 0) at = search(place, end, 0, place.tool);
   if (missed() && !by_line) at = search(place, end, 0, -1);
   // A machine that was out of sight may be anywhere, and says where.
