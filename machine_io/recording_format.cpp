@@ -1,9 +1,9 @@
 #include "machine_io/recording_format.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -12,24 +12,6 @@ namespace kerf {
 namespace {
 
 constexpr std::string_view kSumName = "crc32";
-
-/// table[k][b]: byte b, followed by k bytes of 0.
-constexpr std::array<std::array<std::uint32_t, 256>, 4> crc_tables() {
-  std::array<std::array<std::uint32_t, 256>, 4> table{};
-  for (std::uint32_t byte = 0; byte < 256; ++byte) {
-    std::uint32_t crc = byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-    table[0][byte] = crc;
-  }
-  for (std::size_t k = 1; k < table.size(); ++k) {
-    for (std::size_t byte = 0; byte < 256; ++byte) {
-      const std::uint32_t before = table[k - 1][byte];
-      table[k][byte] = (before >> 8U) ^ table[0][before & 0xFFU];
-    }
-  }
-  return table;
-}
-constexpr auto kCrcTables = crc_tables();
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
@@ -110,18 +92,8 @@ std::string_view position_column(CoordinateKind kind, std::size_t index) {
 }
 
 std::uint32_t crc32(std::uint32_t crc, std::string_view bytes) {
-  const auto byte_at = [&](std::size_t i) {
-    return std::uint32_t{static_cast<unsigned char>(bytes[i])};
-  };
-  crc = ~crc;
-  std::size_t i = 0;
-  for (; i + 4 <= bytes.size(); i += 4) {
-    crc ^= byte_at(i) | byte_at(i + 1) << 8U | byte_at(i + 2) << 16U | byte_at(i + 3) << 24U;
-    crc = kCrcTables[3][crc & 0xFFU] ^ kCrcTables[2][crc >> 8U & 0xFFU] ^
-          kCrcTables[1][crc >> 16U & 0xFFU] ^ kCrcTables[0][crc >> 24U];
-  }
-  for (; i < bytes.size(); ++i) crc = (crc >> 8U) ^ kCrcTables[0][(crc ^ byte_at(i)) & 0xFFU];
-  return ~crc;
+  return static_cast<std::uint32_t>(
+      crc32_z(crc, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 std::string recording_sum_line(std::uint32_t crc) {

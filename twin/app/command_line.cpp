@@ -1,17 +1,9 @@
 #include "twin/app/command_line.h"
 
-#include <algorithm>
-#include <cctype>
-#include <string_view>
+#include "base/shell_word.h"
 
 namespace kerf {
 namespace {
-
-/// What stands for itself in every shell.
-bool is_plain(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-         std::string_view("_-./:=,+@%").find(c) != std::string_view::npos;
-}
 
 class Line {
  public:
@@ -73,19 +65,6 @@ void add_torch(const TorchArguments& a, Line& line) {
 
 }  // namespace
 
-std::string shell_word(const std::string& text) {
-  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "'";
-}
-
 std::string command_line(const ViewArguments& a) {
   Line line("kerf view");
   const std::string& program = a.run.source.program;
@@ -103,6 +82,7 @@ std::string command_line(const ViewArguments& a) {
   line.option("--tolerance", a.tolerance);
   line.option("--draw", a.draw);
   line.flag("--full-redraw", a.no_local);
+  line.flag("--no-guess", a.run.no_guess);
   line.flag("--quiet", a.run.quiet);
   return line.text();
 }

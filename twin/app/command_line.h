@@ -10,7 +10,4 @@ namespace kerf {
 /// `kerf view` with what these arguments say, each word quoted where a POSIX shell needs it.
 std::string command_line(const ViewArguments& arguments);
 
-/// A word that a POSIX shell reads as this text.
-std::string shell_word(const std::string& text);
-
 }  // namespace kerf

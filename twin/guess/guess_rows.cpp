@@ -6,24 +6,10 @@
 #include <string_view>
 #include <utility>
 
+#include "base/shell_word.h"
+
 namespace kerf {
 namespace {
-
-/// As a shell takes it.
-std::string quoted(const std::string& argument) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=+@%";
-  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
-  std::string out = "'";
-  for (const char c : argument) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
 
 const ToolGuess* guess_of(const ToolSources& sources, int tool) {
   const auto found = std::find_if(sources.guesses.begin(), sources.guesses.end(),
@@ -91,10 +77,10 @@ SessionOptions with_sheet(const SessionOptions& options, const ProgramSurvey::Sh
 std::string command_with(std::span<const std::string> arguments, std::span<const GuessRow> rows) {
   std::string out;
   for (const std::string& argument : arguments) {
-    out += out.empty() ? quoted(argument) : " " + quoted(argument);
+    out += out.empty() ? shell_word(argument) : " " + shell_word(argument);
   }
   for (const GuessRow& row : rows) {
-    if (!row.option.empty()) out += fmt::format(" {} {}", row.option, quoted(row.value));
+    if (!row.option.empty()) out += fmt::format(" {} {}", row.option, shell_word(row.value));
   }
   return out;
 }

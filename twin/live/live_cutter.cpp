@@ -333,10 +333,6 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
   if (length_mm < kStill_mm && !turns) return;
   Motion motion;
   motion.spindle = spindle();
-  const auto turning_speed = [this](SpindleState state) {
-    const double rpm = std::abs(sample_.spindle_rpm);
-    return state != SpindleState::kStopped && rpm < kStanding_rpm ? std::abs(turning_rpm_) : rpm;
-  };
   // Without its beam a head is on its way.
   const bool travels = options_.beam && motion.spindle == SpindleState::kStopped;
   motion.kind = travels ? MotionKind::kTraverse : MotionKind::kFeed;
@@ -385,10 +381,6 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
   double planned_s = 0;
   for (const PathFollower::DrivenPart& part : driven_) planned_s += part.duration_s;
   const bool spindle_told = !std::isnan(sample_.spindle_rpm);
-  const auto turning_speed = [this](SpindleState state) {
-    const double rpm = std::abs(sample_.spindle_rpm);
-    return state != SpindleState::kStopped && rpm < kStanding_rpm ? std::abs(turning_rpm_) : rpm;
-  };
   for (auto& [motion, share_s, of_same_piece] : driven_) {
     if (sample_.tool >= 0) motion.tool = sample_.tool;
     if (spindle_told && !options_.beam) {
@@ -521,6 +513,12 @@ bool LiveCutter::finished() const {
 void LiveCutter::settle() {
   cut_run();
   stage_.complete();
+}
+
+/// What the machine says, or while it says next to nothing what it was told last.
+double LiveCutter::turning_speed(SpindleState state) const {
+  const double rpm = std::abs(sample_.spindle_rpm);
+  return state != SpindleState::kStopped && rpm < kStanding_rpm ? std::abs(turning_rpm_) : rpm;
 }
 
 /// Between programs a machine may have any tool, or, that has just been switched on, none that it

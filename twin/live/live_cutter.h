@@ -179,6 +179,7 @@ class LiveCutter {
   void take_sound(const AxisSample& sample, double t_s, bool lost);
   void adopt_program_frame();
   bool is_idle() const;
+  double turning_speed(SpindleState state) const;
   std::optional<Sighting> see(const AxisSample& sample, double t_s);
   static Finding finding_of(FindingId id, Severity severity, double t_s, const Vec3& place,
                             int tool);
