@@ -55,6 +55,7 @@ void set_type(const MachineKinematics& machine, int type, Motion& motion) {
 LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& log,
                        LiveCutOptions options, std::unique_ptr<Program> program)
     : stock_(stock),
+      tools_(tools),
       log_(log),
       options_(std::move(options)),
       frame_(options_.frame),
@@ -67,16 +68,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       join_after_s_(kJoin_s) {
   stage_.watch_machine();
   stage_.check_by(options_.checks);
-  if (program) {
-    ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
-    adopt_program_frame();
-    if (options_.guard_s > 0) {
-      guard_ = std::make_unique<LookAheadGuard>(
-          tools,
-          LookAheadGuard::Options{options_.timeline, options_.guard_s, options_.beam,
-                                  options_.turret, options_.checks, !options_.wait_for_program});
-    }
-  }
+  if (program) follow_program(std::move(program));
   if (options_.turret) {
     stage_.punch(options_.turret);
     strokes_.emplace(options_.turret);
@@ -84,6 +76,26 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
     stage_.burn(*options_.beam);
   }
   stage_.set_frame(work());
+}
+
+void LiveCutter::follow_program(std::unique_ptr<Program> program) {
+  ahead_ = std::make_unique<ProgramAhead>(std::move(program), options_.timeline, follower_);
+  adopt_program_frame();
+  if (!(options_.guard_s > 0)) return;
+  guard_ = std::make_unique<LookAheadGuard>(
+      tools_,
+      LookAheadGuard::Options{options_.timeline, options_.guard_s, options_.beam, options_.turret,
+                              options_.checks, !options_.wait_for_program});
+}
+
+void LiveCutter::read_again(std::unique_ptr<Program> program,
+                            std::function<std::unique_ptr<Program>()> reopen) {
+  guard_.reset();
+  ahead_->stop();
+  follower_ = PathFollower(options_.follow);
+  options_.reopen = std::move(reopen);
+  follow_program(std::move(program));
+  guard_stale_ = true;
 }
 
 void LiveCutter::adopt_program_frame() {
@@ -98,8 +110,11 @@ SpindleState LiveCutter::spindle() const {
   }
   double rpm = sample_.spindle_rpm;
   if (std::abs(rpm) < kStanding_rpm) {
-    // An abort stops spindle and axes together, and takes the axes some way.
-    const double coasts_s = sample_.program == ProgramState::kIdle ? kCoastsIdle_s : kCoasts_s;
+    // An abort stops spindle and axes together, and takes the axes some way. When it was nobody
+    // knows of a spindle that turned before the time out of sight.
+    const double unseen_s = before_ ? t_s_ - before_->t_s : 0;
+    const double coasts_s =
+        unseen_s + (sample_.program == ProgramState::kIdle ? kCoastsIdle_s : kCoasts_s);
     const bool coasts = !options_.beam && turning_until_s_ && t_s_ - *turning_until_s_ <= coasts_s;
     if (!coasts) return SpindleState::kStopped;
     rpm = turning_rpm_;
@@ -123,6 +138,12 @@ std::optional<double> LiveCutter::assumed_length_mm() const {
 const MachineKinematics* LiveCutter::switched_machine() const {
   const MachineKinematics* const machine = options_.timeline.kinematics.get();
   return machine && (machine->is_switchable() || machine->is_arm()) ? machine : nullptr;
+}
+
+std::optional<std::array<double, 9>> LiveCutter::start_at(const AxisSample& sample) const {
+  if (bounds_.fault_of(sample)) return std::nullopt;
+  const auto pose = frame_.pose_of(sample, assumed_length_mm(), 0);
+  return pose ? std::optional(frame_.machine_place_of(*pose)) : std::nullopt;
 }
 
 /// The machine as the sample shows it.
@@ -484,8 +505,11 @@ void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
     const Break gap = break_between(*before_, now, lost);
     was_fast_ = too_fast(*before_, now);
     period_s_ += kPeriodShare * (std::min(elapsed_s, options_.gap_s) - period_s_);
-    if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump);
-    way_seen = gap == Break::kNone || options_.gap == GapPolicy::kCut;
+    // Along its program, it was found again where it can have come to meanwhile.
+    const bool by_program =
+        gap == Break::kGap && point.on_path && point.in_reach && was_on_path_ && !options_.turret;
+    if (gap != Break::kNone) note_gap(*before_, now, gap == Break::kJump, by_program);
+    way_seen = gap == Break::kNone || options_.gap == GapPolicy::kCut || by_program;
     if (!way_seen) {
       guard_stale_ = true;
     } else if (options_.turret) {

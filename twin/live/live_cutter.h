@@ -130,6 +130,10 @@ class LiveCutter {
   void settle();
   void finish();
 
+  /// The program that it was made with, read from another start, before the machine has been found
+  /// on it.
+  void read_again(std::unique_ptr<Program> program,
+                  std::function<std::unique_ptr<Program>()> reopen);
   /// The workpiece was another cutter's before, which has done with it what goes before.
   void go_on_from(const LiveCutter& other) { stage_.go_on_from(other.stage_); }
   /// Where the machine was before the first sample: it is seen, and not counted.
@@ -158,6 +162,9 @@ class LiveCutter {
   const LivePlace& place() const { return place_; }
   const CutStage& stage() const { return stage_; }
   const ProgramAhead* program() const { return ahead_.get(); }
+  /// Where a program would begin that the machine starts there (LiveFrame::machine_place_of()).
+  /// Nothing if the sample does not tell.
+  std::optional<std::array<double, 9>> start_at(const AxisSample& sample) const;
   /// Where the workpiece lies in the machine.
   const WorkpieceFrame& work() const { return frame_.options().work; }
   /// What the look-ahead has found since the last call.
@@ -208,12 +215,13 @@ class LiveCutter {
   void note_limits(const Vec3& machine_mm, double t_s);
   bool drop_wild(const AxisSample& sample, double t_s);
   void note_wild(std::size_t count, double t_s);
-  void note_gap(const Sighting& before, const Sighting& now, bool jump);
+  void note_gap(const Sighting& before, const Sighting& now, bool jump, bool by_program);
   void note_turn(const Sighting& now);
   void note_unseen_axes(const Sighting& now);
   void note_unseen_beam(const Sighting& now);
   void note_tool(const Sighting& now, const FollowedPoint& point, double driven_mm);
   void note_off_path(const Sighting& now, const FollowedPoint& point);
+  bool is_by_hand(const FollowedPoint& point);
   void note_foreign_program(const Sighting& now, double duration_s);
   void cut_chord(const ProgramPlace& from, const Sighting& now, double duration_s, bool off_path);
   void cut_path(const Sighting& now, const FollowedPoint& point, double duration_s);
@@ -230,7 +238,10 @@ class LiveCutter {
   void punch_rest();
   void note_unseen_trigger(const Sighting& now);
 
+  void follow_program(std::unique_ptr<Program> program);
+
   StockModel& stock_;
+  const ToolSources& tools_;
   FindingLog& log_;
   LiveCutOptions options_;
   LiveFrame frame_;
@@ -274,8 +285,10 @@ class LiveCutter {
   std::vector<TorchMaterial> materials_;
   int length_told_ = 0;  ///< tool whose length is not known
   bool mismatch_told_ = false;
-  double mismatch_mm_ = 0;   ///< driven along the path with another tool than the program's
-  int program_tool_ = -1;    ///< where the machine was last on the path
+  double mismatch_mm_ = 0;  ///< driven along the path with another tool than the program's
+  int program_tool_ = -1;   ///< where the machine was last on the path
+  /// It has stood in no line, having gone so far along its path, and has not gone on.
+  std::optional<double> stood_mm_;
   double lost_sight_s_ = 0;  ///< a program runs, and its path has not been found, for so long
   double foreign_s_ = 0;     ///< the machine has cut, and never been on the path, for so long
   bool foreign_told_ = false;

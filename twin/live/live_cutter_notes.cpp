@@ -17,6 +17,8 @@ constexpr double kBeyond_s = 2.0;
 constexpr double kMismatch_mm = 1.0;
 /// A machine that says it runs the program for so long without being seen on its path is off it.
 constexpr double kNeverSeen_s = 1.0;
+/// A machine that has gone so far along its path goes on in its program. mm.
+constexpr double kGoesOn_mm = 2.0;
 /// An axis that has turned by less stands. Degrees.
 constexpr double kTurned_deg = 0.01;
 
@@ -113,7 +115,7 @@ void LiveCutter::note_wild(std::size_t count, double t_s) {
   log_.add(std::move(finding));
 }
 
-void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump) {
+void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump, bool by_program) {
   const double way_mm = way_between(before, now);
   const double elapsed_s = now.t_s - before.t_s;
   // A machine that is homed says that it is elsewhere, and has not moved.
@@ -129,9 +131,9 @@ void LiveCutter::note_gap(const Sighting& before, const Sighting& now, bool jump
       finding_of(FindingId::kSourceGap, harmless ? Severity::kNote : Severity::kWarning, now.t_s,
                  now.pose.origin_mm, now.tool);
   finding.source = place_.source;
-  const char* const what_then = options_.gap == GapPolicy::kCut
-                                    ? "the way between is cut all the same"
-                                    : "the way between is not cut (gap: cut would)";
+  const char* what_then = "the way between is not cut (gap: cut would)";
+  if (options_.gap == GapPolicy::kCut) what_then = "the way between is cut all the same";
+  if (by_program) what_then = "the way between is cut as the program has it";
   if (jump) {
     finding.text = fmt::format(
         "positions jump by {:.2f} mm within {:.3f} s, faster than the machine can be (homing? a "
@@ -190,10 +192,23 @@ void LiveCutter::note_tool(const Sighting& now, const FollowedPoint& point, doub
   log_.add(std::move(finding));
 }
 
+/// Moved by hand, or by a single block: no line of the program is to blame. A block by hand has a
+/// line in LinuxCNC, that of the last one that was read, and begins where the machine has stood.
+bool LiveCutter::is_by_hand(const FollowedPoint& point) {
+  if (sample_.line == 0) {
+    stood_mm_ = facts_.path_mm;
+    return true;
+  }
+  if (!stood_mm_ || sample_.line < 0) return false;
+  const bool named = follower_.comes_to(sample_.line);
+  const bool there = point.on_path && static_cast<std::uint32_t>(sample_.line) == point.source.line;
+  if (there || (named && facts_.path_mm > *stood_mm_ + kGoesOn_mm)) stood_mm_.reset();
+  return stood_mm_ && !named;
+}
+
 void LiveCutter::note_off_path(const Sighting& now, const FollowedPoint& point) {
   const bool searched = std::isfinite(point.distance_mm);
-  // Moved by hand, or by a single block: no line of the program is to blame.
-  const bool by_hand = sample_.line == 0;
+  const bool by_hand = is_by_hand(point);
   if (point.on_path || !searched || by_hand || follower_.passed_all() || finished()) {
     off_path_event_.reset();
     lost_sight_s_ = 0;

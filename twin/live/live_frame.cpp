@@ -166,6 +166,21 @@ Vec3 LiveFrame::tip_of(const Axes& axes, double tool_mm) const {
   return Vec3{cos_ * tip.x + sin_ * tip.y, cos_ * tip.y - sin_ * tip.x, tip.z} - work.g92_mm;
 }
 
+std::array<double, 9> LiveFrame::machine_place_of(const LivePose& pose) const {
+  const WorkpieceFrame& work = options_.work;
+  const Vec3 turned = pose.tip_mm + work.g92_mm;
+  const Vec3 there =
+      Vec3{cos_ * turned.x - sin_ * turned.y, sin_ * turned.x + cos_ * turned.y, turned.z} +
+      work.g5x_mm;
+  std::array<double, 9> place{there.x, there.y, there.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<int>(i);
+    if (pose.abc_known[i]) place[3 + i] = pose.abc_deg[i] + work.offset_abc_deg[i];
+    if (pose.uvw_known[i]) place[6 + i] = pose.uvw_mm[axis] + work.offset_uvw_mm[axis];
+  }
+  return place;
+}
+
 std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
                                            std::optional<double> program_length_mm,
                                            int type) const {

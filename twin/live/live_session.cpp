@@ -138,7 +138,9 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
   ShiftOptions shift{options_.cutting, shift_programs(), options_.on_end};
-  if (!shift.programs.empty()) shift.cutting.reopen = shift.programs[0].open;
+  if (!shift.programs.empty() && shift.programs[0].open) {
+    shift.cutting.reopen = [open = shift.programs[0].open] { return open({}); };
+  }
   program_total_s_ = std::vector<std::atomic<double>>(shift.programs.size());
   for (std::atomic<double>& total_s : program_total_s_) total_s = -1;
   shift_ = std::make_unique<LiveShift>(std::move(stock_), tools, report_.findings, std::move(shift),
@@ -156,8 +158,9 @@ std::vector<ShiftProgram> LiveSession::shift_programs() {
     ShiftProgram& program = programs.emplace_back(ShiftProgram{path, {}});
     if (path == "-") continue;
     program.open = [again = *options_.program, path,
-                    diameters = known_diameters(tool_sources_)]() mutable {
+                    diameters = known_diameters(tool_sources_)](const ProgramStart& start) mutable {
       again.path = path;
+      again.machine.start = start.value_or(std::array<double, 9>{});
       Diagnostics ignored;
       std::unique_ptr<Program> opened = Program::open(again, ignored);
       if (opened) opened->give_diameters(diameters);
@@ -342,7 +345,7 @@ void LiveSession::measure_programs(std::stop_token stop) {
 
 double LiveSession::measure_program(const ShiftProgram& measured, const std::stop_token& stop) {
   Diagnostics ignored;
-  const std::unique_ptr<Program> program = measured.open();
+  const std::unique_ptr<Program> program = measured.open({});
   if (!program) return -1;
   DurationSink sink;
   TimelineOptions timing = options_.cutting.timeline;

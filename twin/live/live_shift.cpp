@@ -1,6 +1,7 @@
 #include "twin/live/live_shift.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kerf {
@@ -17,6 +18,8 @@ constexpr double kScoutsAgain_s = 2.0;
 constexpr double kAlike_mm = 50.0;
 /// The run that seemed to be over is found again so much farther on: it has not come there.
 constexpr double kSkipped_s = 1.0;
+/// A machine that is nearer to where it was stands. mm, degrees.
+constexpr double kElsewhere_mm = 0.01;
 
 /// Adds what tools have done to what they had done.
 void add_uses(const std::vector<ToolUse>& uses, std::vector<ToolUse>& all) {
@@ -78,17 +81,63 @@ LiveShift::Run LiveShift::make_run(std::size_t program, StockModel& stock,
                                    std::unique_ptr<Program> opened) {
   Run run;
   run.program = program;
+  run.opened = start_;
   run.log = std::make_unique<FindingLog>();
   run.begin_s = t_s_;
   LiveCutOptions cutting = options_.cutting;
   cutting.seen_before = true;
-  cutting.reopen = options_.programs[program].open;
+  cutting.reopen = reopen(program);
   run.cutter = std::make_unique<LiveCutter>(stock, tools_, *run.log, cutting, std::move(opened));
   if (labels_) run.cutter->label_by(*labels_);
   return run;
 }
 
+/// From where the machine stood last; null: it cannot be.
+std::unique_ptr<Program> LiveShift::open(std::size_t program) const {
+  const bool is = program < options_.programs.size() && options_.programs[program].open;
+  return is ? options_.programs[program].open(start_) : nullptr;
+}
+
+/// While the machine runs no program, by what it says of itself, or as it stands.
+void LiveShift::see_start(const AxisSample& sample) {
+  const bool told = sample.program != ProgramState::kUnknown;
+  const bool idle =
+      told ? sample.program == ProgramState::kIdle : sample.line <= 0 && stands(sample);
+  const bool begins = std::exchange(was_idle_, idle) && !idle;
+  if (idle) {
+    if (const ProgramStart start = run_.cutter->start_at(sample)) start_ = start;
+  }
+  if (!begins) return;
+  const bool alone = options_.programs.size() == 1 && past_.empty();
+  if (alone && !run_.end_s) read_from_start(run_);
+  for (Run& scout : scouts_) read_from_start(scout);
+}
+
+bool LiveShift::stands(const AxisSample& sample) const {
+  const auto same = [](double a, double b) { return std::abs(a - b) < kElsewhere_mm; };
+  return !before_ || std::equal(sample.position.begin(), sample.position.end(),
+                                before_->first.position.begin(), same);
+}
+
+/// Anew, of a run that has not been seen on its program yet.
+void LiveShift::read_from_start(Run& run) {
+  const auto same = [](double a, double b) { return std::abs(a - b) < kElsewhere_mm; };
+  const std::array<double, 9> was = run.opened.value_or(std::array<double, 9>{});
+  if (!start_ || run.cutter->found()) return;
+  if (std::equal(was.begin(), was.end(), start_->begin(), same)) return;
+  std::unique_ptr<Program> opened = open(run.program);
+  if (!opened) return;
+  run.opened = start_;
+  run.cutter->read_again(std::move(opened), reopen(run.program));
+}
+
+/// As LiveCutOptions has it.
+std::function<std::unique_ptr<Program>()> LiveShift::reopen(std::size_t program) const {
+  return [open = options_.programs[program].open, start = start_] { return open(start); };
+}
+
 void LiveShift::take(const AxisSample& sample, double t_s, bool lost) {
+  see_start(sample);
   if (options_.on_end == OnProgramEnd::kNewBlank && !blank_ && can_begin()) {
     blank_ = stock_->snapshot();
   }
@@ -170,7 +219,7 @@ void LiveShift::end_run(double t_s) {
 /// One is known to have begun.
 void LiveShift::begin_next() {
   if (options_.programs.size() > 1) return begin_scouts();
-  std::unique_ptr<Program> opened = options_.programs[0].open();
+  std::unique_ptr<Program> opened = open(0);
   if (!opened) return;
   const bool new_part = blank_ && run_.finished;
   current().settle();
@@ -188,8 +237,7 @@ void LiveShift::begin_scouts() {
   current().settle();
   const bool new_part = blank_ && run_.finished;
   for (std::size_t i = 0; i < options_.programs.size(); ++i) {
-    std::unique_ptr<Program> opened =
-        options_.programs[i].open ? options_.programs[i].open() : nullptr;
+    std::unique_ptr<Program> opened = open(i);
     if (!opened) continue;
     std::unique_ptr<StockModel> stock = new_part ? blank_->snapshot() : stock_->snapshot();
     Run scout = make_run(i, *stock, std::move(opened));

@@ -2,6 +2,7 @@
 // again, on one blank or on one after the other.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,12 +23,15 @@
 
 namespace kerf {
 
+/// Where the machine stands when it begins a program: InterpreterSetup::start. Nothing: not known.
+using ProgramStart = std::optional<std::array<double, 9>>;
+
 /// A program that the machine may run.
 struct ShiftProgram {
   std::string path;
   /// Once more, from its beginning; null if that fails. May be empty: it is read but once, and a
   /// second run of it is not recognised (standard input).
-  std::function<std::unique_ptr<Program>()> open;
+  std::function<std::unique_ptr<Program>(const ProgramStart&)> open;
 };
 
 struct ShiftOptions {
@@ -46,6 +50,9 @@ struct ShiftOptions {
 /// have cut and found meanwhile, are forgotten. So a run that goes on is never cut short by a dwell
 /// or a loop: as long as it is on its path there are no scouts. Where there are several programs
 /// their scouts find out in the same way which of them a new run is.
+///
+/// A program is read from where the machine stood before it began: what is relative (G91), or goes
+/// back to where it began (G98), depends on it.
 ///
 /// One thread. Deterministic as LiveCutter is.
 class LiveShift {
@@ -97,6 +104,7 @@ class LiveShift {
     std::unique_ptr<FindingLog> log;
     std::unique_ptr<LiveCutter> cutter;
     std::size_t program = 0;
+    ProgramStart opened;  ///< the start from which its program was read
     std::uint32_t part = 1;
     double begin_s = 0;
     std::optional<double> end_s;
@@ -113,7 +121,12 @@ class LiveShift {
   };
   LiveCutter& current() { return *run_.cutter; }
   Run make_run(std::size_t program, StockModel& stock, std::unique_ptr<Program> opened);
+  std::unique_ptr<Program> open(std::size_t program) const;
   bool can_begin() const;
+  void see_start(const AxisSample& sample);
+  bool stands(const AxisSample& sample) const;
+  void read_from_start(Run& run);
+  std::function<std::unique_ptr<Program>()> reopen(std::size_t program) const;
   void see_state(const AxisSample& sample, double t_s);
   void see_line(const AxisSample& sample, double t_s);
   void end_run(double t_s);
@@ -145,6 +158,9 @@ class LiveShift {
   std::vector<Told> told_;                               ///< of runs that are over
   std::size_t told_count_ = 0;                           ///< of the present run's findings
   std::optional<std::pair<AxisSample, double>> before_;  ///< the last sample, and its time
+  ProgramStart start_;                                   ///< where the machine stood last
+  ProgramStart opened_;  ///< the start of the first run's program, as it was opened
+  bool was_idle_ = false;
   ProgramState state_ = ProgramState::kUnknown;
   bool rested_ = false;                ///< the machine has stood since it was on the path
   std::optional<double> off_since_s_;  ///< it is not on the path

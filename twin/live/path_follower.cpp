@@ -14,6 +14,12 @@ namespace {
 /// Before the machine has been found, it may start anywhere within so much of the program. s.
 constexpr double kFirstSearch_s = 5.0;
 
+/// One that was out of sight for longer may have passed the first place that it fits. s.
+constexpr double kHidden_s = 0.1;
+/// And shows it by then, s, by leaving the path by more than this, mm.
+constexpr double kHiddenFor_s = 10.0;
+constexpr double kAside_mm = 0.1;
+
 bool moves(const Motion& m) { return is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m); }
 
 }  // namespace
@@ -103,6 +109,15 @@ bool PathFollower::passed_all() const {
   return pieces_.empty() || (pieces_.size() == 1 && found_ && t_ >= 1);
 }
 
+bool PathFollower::comes_to(int line) const {
+  const double until_s = program_s() + kFirstSearch_s;
+  return std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+    const SourceRef& source = piece.motion.source;
+    return piece.start_s < until_s &&
+           (source.file != 0 || source.line == static_cast<std::uint32_t>(line));
+  });
+}
+
 double PathFollower::left_s() const {
   if (pieces_.empty()) return 0;
   return moved_s_ - pieces_.front().moved_s - (found_ ? t_ * pieces_.front().duration_s : 0);
@@ -121,13 +136,13 @@ PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& pla
 
 /// As far as the machine can have come. That may be within a piece: a full circle ends where it
 /// begins.
-PathFollower::Reach PathFollower::reach(const FollowedPlace& place) const {
+PathFollower::Reach PathFollower::reach(const FollowedPlace& place, double hidden_s) const {
   // How long the machine stands in a dwell or a tool change is not the path's business.
   const Piece& first = pieces_.front();
   const double ahead_s = found_
                              ? t_ * first.duration_s + unseen_s_ * options_.haste + options_.slack_s
                              : kFirstSearch_s;
-  const double latest_s = first.moved_s + ahead_s;
+  const double latest_s = first.moved_s + ahead_s + hidden_s;
   const int tool = pieces_.front().motion.tool;
   const bool tool_agrees = place.tool >= 0 && place.tool == tool;
   std::size_t end = 0;
@@ -179,6 +194,26 @@ bool PathFollower::has_line(int line) const {
   });
 }
 
+/// Exactly where the machine is, farther on than it can have come since it was last found.
+std::optional<PathFollower::Candidate> PathFollower::search_hidden(const FollowedPlace& place,
+                                                                   int line, const Candidate& at) {
+  seen_s_ += place.elapsed_s;
+  if (seen_s_ > kHiddenFor_s) hidden_s_ = 0;
+  if (hidden_s_ <= 0 || at.distance_mm <= kAside_mm) return std::nullopt;
+  const std::optional<Candidate> later =
+      search(place, reach(place, hidden_s_), std::max(line, 0), place.tool);
+  const bool is_it = later && later->distance_mm <= options_.ambiguity_mm;
+  return is_it ? later : std::nullopt;
+}
+
+/// The machine is at `at`, and can have come to `latest_s`.
+void PathFollower::note_hidden(double latest_s, const Candidate& at) {
+  if (unseen_s_ <= kHidden_s || !found_) return;
+  const Piece& piece = pieces_[at.piece];
+  hidden_s_ = std::max(0.0, latest_s - piece.moved_s - at.t * piece.duration_s);
+  seen_s_ = 0;
+}
+
 void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   for (std::size_t i = 0; i < to.piece; ++i) {
     const Piece& piece = pieces_.front();
@@ -197,7 +232,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   // Line 0: the machine runs no program yet.
   if (pieces_.empty() || (!found_ && place.line == 0)) return point;
   unseen_s_ += place.elapsed_s;
-  const Reach end = reach(place);
+  const Reach end = reach(place, 0);
   // What the machine says of itself goes first, but need not be so.
   std::optional<Candidate> at;
   const auto missed = [&] { return !at || at->distance_mm > options_.tolerance_mm; };
@@ -208,7 +243,11 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (missed() && by_line) at = search(place, end, line, -1);  // with another tool in the spindle
   if (missed() && !by_line && place.tool >= 0) at = search(place, end, 0, place.tool);
   if (missed() && !by_line) at = search(place, end, 0, -1);
+  if (at && found_) {
+    if (const auto later = search_hidden(place, line, *at)) at = later;
+  }
   // A machine that was out of sight may be anywhere, and says where.
+  point.in_reach = !missed();
   if (missed() && line > 0) {
     const auto far = search(place, {pieces_.size()}, line, place.tool);
     if (far && far->distance_mm <= options_.tolerance_mm) at = far;
@@ -237,6 +276,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   point.share = at->t;
   if (at->distance_mm > options_.tolerance_mm) return point;
   point.on_path = true;
+  if (point.in_reach) note_hidden(end.latest_s, *at);
   found_ = true;
   drive_to(*at, drive);
   unseen_s_ = 0;

@@ -71,6 +71,7 @@ std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
 /// Where the tip was found.
 struct FollowedPoint {
   bool on_path = false;
+  bool in_reach = false;   ///< as far on as the machine can have come; else by its line alone
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
   ProgramPlace place;      ///< on the path
@@ -100,6 +101,10 @@ struct FollowedPoint {
 /// on that line go first, and one that was out of sight is looked for on its line as far ahead as
 /// the path is known. Motions of another tool are beyond reach until the machine says that it
 /// has changed.
+///
+/// One that was out of sight may have passed the first place that it fits: a drill goes up and down
+/// the same hole. When it then leaves the path there, and is exactly on it where it can have come
+/// to, it is there.
 class PathFollower {
  public:
   explicit PathFollower(const FollowOptions& options) : options_(options) {}
@@ -128,6 +133,9 @@ class PathFollower {
   /// Program time of the end of what has been appended.
   double end_s() const { return end_s_; }
   bool passed_all() const;
+  /// Within the next seconds of its path it is on this line of the program, or in another file,
+  /// whose lines nobody knows.
+  bool comes_to(int line) const;
   /// Time in motion from the point found last to the end of what has been appended. s.
   double left_s() const;
 
@@ -161,7 +169,9 @@ class PathFollower {
   };
   PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
                         double to_t) const;
-  Reach reach(const FollowedPlace& place) const;
+  Reach reach(const FollowedPlace& place, double hidden_s) const;
+  std::optional<Candidate> search_hidden(const FollowedPlace& place, int line, const Candidate& at);
+  void note_hidden(double latest_s, const Candidate& at);
   int told_line(const FollowedPlace& place) const;
   bool has_line(int line) const;
   std::optional<Candidate> search(const FollowedPlace& place, const Reach& reach, int line,
@@ -172,6 +182,10 @@ class PathFollower {
   std::deque<Piece> pieces_;
   double t_ = 0;         ///< on pieces_[0]
   double unseen_s_ = 0;  ///< since the machine was last found on the path
+  /// The machine may be so much farther on than it was found, in time of motion, as it had been out
+  /// of sight; and how long ago that was. s.
+  double hidden_s_ = 0;
+  double seen_s_ = 0;
   double end_s_ = 0;
   double moved_s_ = 0;          ///< time in motion of all that was appended
   std::uint64_t appended_ = 0;  ///< motions

@@ -84,11 +84,13 @@ class Shift {
     options.cutting.wait_for_program = true;
     options.on_end = on_end;
     for (std::size_t i = 0; i < programs_.size(); ++i) {
-      options.programs.push_back({std::string(1, static_cast<char>('a' + i)), [this, i] {
-                                    return std::make_unique<ListedProgram>(programs_[i]);
-                                  }});
+      options.programs.push_back(
+          {std::string(1, static_cast<char>('a' + i)), [this, i](const ProgramStart& start) {
+             started_.push_back(start);
+             return std::make_unique<ListedProgram>(programs_[i]);
+           }});
     }
-    options.cutting.reopen = options.programs[0].open;
+    options.cutting.reopen = [open = options.programs[0].open] { return open({}); };
     shift_ = std::make_unique<LiveShift>(block(), cutters(), log_, options,
                                          std::make_unique<ListedProgram>(programs_[0]));
     machines_.reserve(programs_.size());
@@ -115,6 +117,7 @@ class Shift {
     for (double t = 0; t < seconds; t += kPeriod_s) see(tip_, 0, ProgramState::kIdle, tool);
   }
   void jog_up(double z) { jog({tip_.x, tip_.y, z}); }
+  void jog_up_as_line(double z, int line) { go({tip_.x, tip_.y, z}, line, ProgramState::kIdle); }
   /// By hand.
   void jog(const Vec3& to) { go(to, 0, ProgramState::kIdle); }
   /// The program, between two times of its plan; it is driven to where it begins.
@@ -139,6 +142,8 @@ class Shift {
   const std::vector<LiveRun>& runs() const { return shift_->past(); }
   double duration_s(std::size_t program) const { return machines_[program].duration_s(); }
   const FindingLog& log() const { return log_; }
+  /// Where the machine stood, of each time that a program was opened.
+  const std::vector<ProgramStart>& started() const { return started_; }
   std::size_t warnings() const { return warnings_.size(); }
   std::string said() const {
     std::string text;
@@ -170,6 +175,7 @@ class Shift {
   FindingLog log_;
   std::unique_ptr<LiveShift> shift_;
   std::vector<AheadWarning> warnings_;
+  std::vector<ProgramStart> started_;
   Vec3 tip_{-30, -30, 60};
   double t_s_ = 0;
 };
@@ -327,6 +333,43 @@ TEST(LiveShift, WhatIsDoneByHandBetweenProgramsIsCutAndNotOffThePath) {
   shift.jog({20, 35, 5});
   shift.finish();
   EXPECT_NEAR(shift.runs()[0].part_removed_mm3, removed_by({program}) + 2 * kPi * 4, 0.5);
+  EXPECT_EQ(shift.log().total(), 0U) << shift.said();
+}
+
+TEST(LiveShift, ABlockByHandThatHasALineIsNotOffThePathAfterAnAbort) {
+  // As LinuxCNC has it: a block by hand is of the line after the last that was read.
+  const std::vector<Motion> program = looped(slots(10));
+  Shift shift({program}, Says::kLine);
+  shift.stand(0.5);
+  shift.run(0, 0, 0.4 * shift.duration_s(0));
+  shift.jog_up_as_line(20, static_cast<int>(program.back().source.line) + 2);
+  shift.stand(0.5);
+  shift.run(0);
+  shift.finish();
+  expect_runs(shift, {{1, "a", RunEnd::kAborted}, {1, "a", RunEnd::kFinished}});
+  EXPECT_EQ(shift.log().total(), 0U) << shift.said();
+}
+
+TEST_P(EveryShift, AProgramIsReadFromWhereTheMachineStoodBeforeIt) {
+  const std::vector<Motion> program = looped(slots(10));
+  Shift shift({program}, GetParam());
+  shift.stand(0.5);
+  shift.jog({7, 35, 20});
+  shift.stand(0.5);
+  shift.run(0);
+  shift.jog({8, 36, 20});
+  shift.stand(0.5);
+  shift.run(0);
+  shift.finish();
+  expect_runs(shift, {{1, "a", RunEnd::kFinished}, {1, "a", RunEnd::kFinished}});
+  const auto opened_at = [&](double x, double y) {
+    return std::any_of(shift.started().begin(), shift.started().end(), [&](const ProgramStart& at) {
+      return at && std::abs((*at)[0] - x) < 0.02 && std::abs((*at)[1] - y) < 0.02 &&
+             std::abs((*at)[2] - 20) < 0.02;
+    });
+  };
+  EXPECT_TRUE(opened_at(7, 35));
+  EXPECT_TRUE(opened_at(8, 36));
   EXPECT_EQ(shift.log().total(), 0U) << shift.said();
 }
 
