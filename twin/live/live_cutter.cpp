@@ -113,8 +113,9 @@ SpindleState LiveCutter::spindle() const {
     // An abort stops spindle and axes together, and takes the axes some way. When it was nobody
     // knows of a spindle that turned before the time out of sight.
     const double unseen_s = before_ ? t_s_ - before_->t_s : 0;
-    const double coasts_s =
-        unseen_s + (sample_.program == ProgramState::kIdle ? kCoastsIdle_s : kCoasts_s);
+    const bool idle = sample_.program == ProgramState::kIdle ||
+                      (sample_.program == ProgramState::kUnknown && ahead_ && stood_mm_);
+    const double coasts_s = unseen_s + (idle ? kCoastsIdle_s : kCoasts_s);
     const bool coasts = !options_.beam && turning_until_s_ && t_s_ - *turning_until_s_ <= coasts_s;
     if (!coasts) return SpindleState::kStopped;
     rpm = turning_rpm_;
@@ -208,6 +209,7 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
                      options_.wait_for_program);
   const FollowedPlace place = place_of(now, elapsed_s);
   point = follower_.found() ? follower_.follow(place, drive()) : find(place);
+  if (!point.on_path) follow_by_length_before(place, now, point);
   if (point.on_path && point.kinematics_type != kinematics_type_) {
     take_kinematics(point.kinematics_type, place.without_length, now);
   }
@@ -221,10 +223,28 @@ FollowedPoint LiveCutter::follow(Sighting& now, double elapsed_s) {
   return point;
 }
 
+/// The controller applies another length than before, as at a program's end (M2), and has been on
+/// the path until then: out of sight it may have gone on before that.
+void LiveCutter::follow_by_length_before(const FollowedPlace& place, Sighting& now,
+                                         FollowedPoint& point) {
+  if (!before_ || !was_on_path_ || !now.length_is_applied || !before_->length_is_applied) return;
+  const double before_mm = before_->tool_length_mm + before_->real_shift_mm.z;
+  if (before_mm == now.tool_length_mm) return;
+  FollowedPlace as_before = place;
+  as_before.elapsed_s = 0;
+  const double change_mm = now.tool_length_mm - before_mm;
+  as_before.here.tip_mm += change_mm * place.here.along_tool;
+  for (ProgramPlace& one : as_before.by_type) one.tip_mm += change_mm * one.along_tool;
+  const FollowedPoint then = follower_.follow(as_before, drive());
+  if (!then.on_path) return;
+  point = then;
+  now.by_length_before = true;
+}
+
 /// On the path the tip is off as the program's is; elsewhere as the tool table has it.
 void LiveCutter::place_real_tip(Sighting& now, const FollowedPoint& point) {
   if (!now.length_is_applied) return;
-  if (point.on_path) now.real_shift_mm = point.tip_shift_mm;
+  if (point.on_path && !now.by_length_before) now.real_shift_mm = point.tip_shift_mm;
   now.place.tip_mm += now.real_shift_mm;
   now.tool_length_mm -= now.real_shift_mm.z;
 }
@@ -291,13 +311,18 @@ bool LiveCutter::too_fast(const Sighting& before, const Sighting& now) const {
          way_mm > kJumpFactor * options_.most_mm_per_s * (now.t_s - before.t_s + kBurst_s);
 }
 
+/// Time between two samples in which some are missing.
+bool LiveCutter::is_long(double elapsed_s) const {
+  return elapsed_s > std::max(kShortGap_s, kShortGapPeriods * period_s_);
+}
+
 LiveCutter::Break LiveCutter::break_between(const Sighting& before, const Sighting& now,
                                             bool lost) const {
   const double way_mm = way_between(before, now);
   if (way_mm < kGapMove_mm) return Break::kNone;
   const double elapsed_s = now.t_s - before.t_s;
   // A sample that is missing in a quick row is no gap: the way is as short as between slow ones.
-  const bool felt = lost && elapsed_s > std::max(kShortGap_s, kShortGapPeriods * period_s_);
+  const bool felt = lost && is_long(elapsed_s);
   if (felt || elapsed_s > options_.gap_s) return Break::kGap;
   // One jump is none of a machine; one after the other is a machine that is faster than is known.
   return too_fast(before, now) && !was_fast_ ? Break::kJump : Break::kNone;
@@ -491,6 +516,8 @@ void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   if (!options_.turret) note_turn(now);  // what turns there is the punch
   note_unseen_axes(now);
   note_tool(now, point, driven_mm);
+  // Out of sight it may have stood, and may be moved by hand.
+  if (is_long(elapsed_s) && !stood_mm_) stood_mm_ = facts_.path_mm;
   note_off_path(now, point);
   place_.off_path = off_path_event_.has_value();
   const bool first = !before_;

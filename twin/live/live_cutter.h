@@ -177,7 +177,8 @@ class LiveCutter {
     double t_s = 0;
     double tool_length_mm = 0;
     bool length_is_applied = false;  ///< LivePose's
-    Vec3 real_shift_mm{0};           ///< of it, while the tip is not on the program's path
+    bool by_length_before = false;  ///< it was found on the path by the length of the sample before
+    Vec3 real_shift_mm{0};          ///< of it, while the tip is not on the program's path
     int tool = -1;
     std::array<bool, 3> abc_known{};
     std::array<bool, 3> uvw_known{};
@@ -239,6 +240,8 @@ class LiveCutter {
   void note_unseen_trigger(const Sighting& now);
 
   void follow_program(std::unique_ptr<Program> program);
+  void follow_by_length_before(const FollowedPlace& place, Sighting& now, FollowedPoint& point);
+  bool is_long(double elapsed_s) const;
 
   StockModel& stock_;
   const ToolSources& tools_;
