@@ -6,10 +6,22 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
 namespace kerf {
+namespace {
+
+std::mutex g_living_mutex;
+/// Never destroyed: threads may still end when the process does.
+std::set<std::string>& living() {
+  static auto* const paths = new std::set<std::string>;
+  return *paths;
+}
+
+}  // namespace
 
 Result<PrivateFolder> PrivateFolder::create() {
   const char* const tmpdir = std::getenv("TMPDIR");
@@ -21,6 +33,8 @@ Result<PrivateFolder> PrivateFolder::create() {
   if (mkdtemp(path.data()) == nullptr) {
     return Error{fmt::format("cannot make a folder under {}: {}", parent, std::strerror(errno))};
   }
+  const std::lock_guard lock(g_living_mutex);
+  living().insert(path);
   return PrivateFolder(std::move(path));
 }
 
@@ -33,8 +47,19 @@ PrivateFolder& PrivateFolder::operator=(PrivateFolder&& other) noexcept {
 }
 
 PrivateFolder::~PrivateFolder() {
+  if (path_.empty()) return;
   std::error_code ignored;  // nobody is left to be told
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  std::filesystem::remove_all(path_, ignored);
+  const std::lock_guard lock(g_living_mutex);
+  living().erase(path_);
+}
+
+void remove_private_folders() {
+  const std::lock_guard lock(g_living_mutex);
+  for (const std::string& path : living()) {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
 }
 
 }  // namespace kerf

@@ -25,4 +25,8 @@ class PrivateFolder {
   std::string path_;  ///< empty after a move
 };
 
+/// Those of all that live, with all they hold: for the way out while they are still in use. Any
+/// thread; not from a signal handler.
+void remove_private_folders();
+
 }  // namespace kerf

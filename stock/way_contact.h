@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -15,12 +16,23 @@ struct WayContact {
   Contact contact;       ///< its depth: on all of them, of very many on some thousands
 };
 
+/// Who waits for a search.
+struct WayWatch {
+  std::stop_token stop;  ///< looked at every few moves
+  /// May be empty. Gets how much of the search is done, rising within 0 .. 1; same thread.
+  std::function<void(double)> on_share;
+
+  void tell(double share) const {
+    if (on_share) on_share(share);
+  }
+};
+
 /// Of moves that are one motion of one tool, as if none had cut before the next: as
 /// StockModel::first_contact(), whose depth is taken over all of them together where the model is a
-/// WaySearcher. Nothing, too, once `stop` is requested, which is looked at every few moves.
+/// WaySearcher. Nothing, too, once a stop is requested.
 std::optional<WayContact> first_contact_of(const StockModel& stock, const Cutter& cutter,
                                            std::span<const CutMove> moves, double tolerance_mm,
-                                           const std::stop_token& stop);
+                                           const WayWatch& watch);
 
 /// A model that does this better than move by move.
 class WaySearcher {
@@ -29,7 +41,7 @@ class WaySearcher {
   virtual std::optional<WayContact> first_contact_of(const Cutter& cutter,
                                                      std::span<const CutMove> moves,
                                                      double tolerance_mm,
-                                                     const std::stop_token& stop) const = 0;
+                                                     const WayWatch& watch) const = 0;
 };
 
 }  // namespace kerf

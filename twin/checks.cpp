@@ -129,7 +129,7 @@ bool Checks::may_touch(std::span<const CutMove> moves, const Cutter& cutter) con
 
 std::optional<Checks::Touch> Checks::first_touch(const CheckedMove& move) const {
   const std::optional<WayContact> met =
-      first_contact_of(stock_, move.cutter, move.moves, kContactTolerance_mm, stop_);
+      first_contact_of(stock_, move.cutter, move.moves, kContactTolerance_mm, watch_);
   if (!met) return std::nullopt;
   const double within = move.moves.size() == 1
                             ? fraction_of(move.motion, met->contact.tip_mm, move.step.length_mm)

@@ -4,13 +4,13 @@
 
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
+#include "stock/way_contact.h"
 #include "twin/finding.h"
 #include "twin/timeline.h"
 
@@ -61,8 +61,9 @@ class Checks {
 
   void set_options(const CheckOptions& options) { options_ = options; }
   const CheckOptions& options() const { return options_; }
-  /// Once requested, a search for contacts ends with nothing.
-  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+  /// Whom a search for the contacts of a traverse tells how far it is; and once a stop is
+  /// requested, it ends with nothing.
+  void watch_by(WayWatch watch) { watch_ = std::move(watch); }
 
   /// False if the cutter stays clear of the blank on the whole way. Cheap: boxes only.
   bool may_touch(const Motion& motion, double radius_mm) const;
@@ -116,7 +117,7 @@ class Checks {
   Box bounds_mm_;
   FindingLog& log_;
   CheckOptions options_;
-  std::stop_token stop_;
+  WayWatch watch_;
   std::optional<FindingLog::Handle> rapid_;
   std::optional<FindingLog::Handle> spindle_;
   std::optional<FindingLog::Handle> below_;

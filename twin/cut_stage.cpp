@@ -21,10 +21,13 @@ namespace {
 constexpr std::size_t kMovesPerCut = 4096;
 /// Motion::unknown_to: X, Y and Z.
 constexpr std::uint8_t kAllUnknown = 7;
-/// Of moves that cost much (tilted tools) fewer, so that a stop is seen in time: as many as take
-/// about so long.
+/// Of moves that cost much (tilted tools, long ways on fine cells) fewer, so that a stop is seen in
+/// time: as many as take about so long.
 constexpr double kCut_s = 0.05;
 constexpr std::size_t kLeastMovesPerCut = 1;
+constexpr double kSearchShare = 0.5;
+/// To begin with, while nobody knows: of upright tools.
+constexpr std::size_t kFirstMovesPerCut = 64;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 
@@ -49,7 +52,7 @@ CutStage::CutStage(StockModel& stock, ToolBook& tools, FindingLog& log,
       lengths_(stock.bounds_mm(), log),
       films_(stock, log),
       axis_limits_(options.limits, log),
-      moves_per_cut_(stock.takes_tilted_tools() ? kLeastMovesPerCut : kMovesPerCut) {
+      moves_per_cut_(stock.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
@@ -104,10 +107,19 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
   }
   ++stepped_;
   path_ = path;
+  work_searched_ = 0;
+  work_of_step_ = work_of(motion);
   if (!stop_now()) cut(motion, timed);
-  work_before_ += work_of(motion);
+  work_before_ += work_of_step_;
   if (work_done_) *work_done_ = work_before_;
   log_.set_muted(false);
+}
+
+/// Of a motion whose contacts are looked for that is half of what is to be done.
+void CutStage::note_search(double share) {
+  if (!work_done_ || !path_.empty()) return;
+  work_searched_ = kSearchShare * share * work_of_step_;
+  *work_done_ = work_before_ + work_searched_;
 }
 
 bool CutStage::stop_now() {
@@ -218,7 +230,7 @@ void CutStage::take_traverse(const Motion& m, const TimedStep& step) {
     check_length(m, step, false);
     return;
   }
-  divide(m);
+  if (!divide(m, step)) return;
   if (!comes_near(m)) {
     check_length(m, step, false);
     checks_.clear_traverse();
@@ -243,7 +255,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!m.start_known) return;
   if (!watched_) program_.feeds(m, step, mounted_->number);
   note_speed(m, step);
-  divide(m);
+  if (!divide(m, step)) return;
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
   if (!watched_) note_contact(move);
@@ -274,7 +286,7 @@ ProbeAnswer CutStage::answer(const ProbeQuestion& question) {
                               m.tool, m.tool);
     return unknown;
   }
-  divide(m);
+  divide(m, {});
   if (divided_.size() != 1) {
     unknown.why = "the tool or the workpiece turns";
     return unknown;
@@ -282,10 +294,12 @@ ProbeAnswer CutStage::answer(const ProbeQuestion& question) {
   return probe_contact(stock_, *mounted_->cutter, divided_[0], question.away);
 }
 
-/// What it is cut as.
-void CutStage::divide(const Motion& m) {
+/// What it is cut as. False: it turns so far that it cannot be.
+bool CutStage::divide(const Motion& m, const TimedStep& step) {
   divided_.clear();
-  motion_moves_.append(m, *mounted_->cutter, 0, divided_);
+  const bool done = motion_moves_.append(m, *mounted_->cutter, 0, divided_);
+  if (!done) report_endless_turn(m, step);
+  return done;
 }
 
 bool CutStage::comes_near(const Motion& m) const {
@@ -356,7 +370,7 @@ void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
   }
   for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
     if (stopped_) return;
-    divide(piece);
+    if (!divide(piece, part)) return;
     push_moves(piece, part, spindle_off);
   });
 }
@@ -385,7 +399,7 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
     if (stop_now()) return;
     if (work_done_ && path_.empty()) {
       const double share = static_cast<double>(pushed) / static_cast<double>(divided_.size());
-      *work_done_ = work_before_ + share * work_of(m);
+      *work_done_ = work_before_ + work_searched_ + share * (work_of_step_ - work_searched_);
     }
   }
 }
@@ -394,12 +408,10 @@ void CutStage::flush() {
   if (moves_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
   stock_.cut(*mounted_->cutter, moves_, reports_);
-  if (stock_.takes_tilted_tools()) {
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
-    moves_per_cut_ = static_cast<std::size_t>(std::clamp(
-        fits, static_cast<double>(kLeastMovesPerCut), static_cast<double>(kMovesPerCut)));
-  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
+  moves_per_cut_ = static_cast<std::size_t>(
+      std::clamp(fits, static_cast<double>(kLeastMovesPerCut), static_cast<double>(kMovesPerCut)));
   moves_.clear();
   collect_reports();
 }

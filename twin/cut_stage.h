@@ -105,7 +105,7 @@ class CutStage : private StepSink {
   /// Once `stop` is requested nothing more is cut; looked at before each motion, and within a
   /// motion of many moves. Before the first motion.
   void stop_by(std::stop_token stop) {
-    checks_.stop_by(stop);
+    checks_.watch_by({stop, [this](double share) { note_search(share); }});
     stop_ = std::move(stop);
   }
   /// Something that was taken has not been cut for that reason.
@@ -156,12 +156,13 @@ class CutStage : private StepSink {
   bool mount_for(const Motion& motion);
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
-  void divide(const Motion& motion);
+  bool divide(const Motion& motion, const TimedStep& step);
   bool comes_near(const Motion& motion) const;
   void note_reach(const Motion& motion);
   void check_turns(const Motion& motion, const TimedStep& step);
   void check_slides(const Motion& motion, const TimedStep& step);
   void report_ignored_turn(const Motion& motion, const TimedStep& step);
+  void report_endless_turn(const Motion& motion, const TimedStep& step);
   void report_assumptions(const Motion& motion);
   void report_rotary_faults(const TimedStep& step);
   void report_unknown_place(const Motion& motion, const TimedStep& step);
@@ -177,6 +178,7 @@ class CutStage : private StepSink {
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   bool stop_now();
+  void note_search(double share);
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
   void flush();        ///< hands the collected moves to the model
   void flush_whole();  ///< and completes those that it holds back
@@ -256,6 +258,8 @@ class CutStage : private StepSink {
   bool stopped_ = false;
   std::atomic<double>* work_done_ = nullptr;  ///< may be null
   double work_before_ = 0;                    ///< of the motions before the present one
+  double work_of_step_ = 0;
+  double work_searched_ = 0;  ///< of the present one, for its contacts
   std::size_t moves_per_cut_;
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order

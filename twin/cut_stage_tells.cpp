@@ -189,6 +189,24 @@ void CutStage::report_ignored_turn(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
+/// Of each such move: each is missing from the workpiece.
+void CutStage::report_endless_turn(const Motion& m, const TimedStep& step) {
+  double turns = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    turns = std::max(turns, std::abs(m.to_abc_deg[i] - m.from_abc_deg[i]) / 360);
+  Finding finding;
+  finding.id = FindingId::kRotaryIgnored;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.tool = m.tool;
+  finding.text = fmt::format(
+      "{:.6g} turns in one move, whose way in the workpiece is more than {} straight pieces: it is "
+      "not cut",
+      turns, ToolPath::kMostPieces);
+  finding.hint = "a slip of the pen? Otherwise fewer turns in a block, nearer to their axis";
+  log_.add(std::move(finding));
+}
+
 /// Once a tool: what it leaves at its deepest is narrower than two cells. Contacts and depths do
 /// not need cells; volumes, pictures and meshes do.
 void CutStage::report_coarse_cells() {

@@ -33,13 +33,13 @@ MotionMoves MotionMoves::of(const StockModel& stock,
   return moves;
 }
 
-void MotionMoves::append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
+bool MotionMoves::append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
                          std::vector<CutMove>& out) const {
   if (is_upright(motion)) {
     out.push_back(cut_move_from(motion, id));
-  } else {
-    path_->moves_of(motion, reach_mm(cutter), id, out);
+    return true;
   }
+  return path_->moves_of(motion, reach_mm(cutter), id, out);
 }
 
 double MotionMoves::reach_mm(const Cutter& cutter) {

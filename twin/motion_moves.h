@@ -43,8 +43,9 @@ class MotionMoves {
   /// Null: none.
   const PunchMoves* punch() const { return punch_ ? &*punch_ : nullptr; }
   /// Appends the moves of a motion that moves the tip, all with this id. Not of a torch or a punch:
-  /// whether that pierces or strikes the motions before tell (TorchMoves, PunchMoves).
-  void append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
+  /// whether that pierces or strikes the motions before tell (TorchMoves, PunchMoves). False, and
+  /// nothing is appended: there are too many (ToolPath::moves_of()).
+  bool append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
               std::vector<CutMove>& out) const;
 
   /// Of a machine over this model: as the machine moves, while nothing turns if the model does not

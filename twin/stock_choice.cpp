@@ -1,6 +1,7 @@
 #include "twin/stock_choice.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,16 +60,26 @@ double octree_cell_mm(const Blank& blank) {
   const Vec3 size = box.size();
   const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
   double cell = 0.01;
-  for (const double step : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0}) {
+  for (const double step : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
     if (area / (cell * cell) <= kMostOctreeCells) break;
     cell = step;
   }
-  return cell;
+  return std::min({cell, size.x, size.y, size.z});
 }
 
-std::size_t machine_memory_bytes() {
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+/// What this process may have: the machine's memory, or less (ulimit -v, a container's limit).
+std::size_t memory_allowed_bytes() {
+  double bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
+  for (const char* const file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    double most = 0;
+    if (std::ifstream(file) >> most && most > 0) bytes = std::min(bytes, most);
+  }
+  return static_cast<std::size_t>(bytes);
 }
 
 Created create_octree(const Blank& blank, const StockSettings& settings) {
@@ -77,7 +88,8 @@ Created create_octree(const Blank& blank, const StockSettings& settings) {
   options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank);
   options.threads = settings.threads;
   options.additive = settings.additive;
-  options.memory_limit_bytes = machine_memory_bytes();
+  // The rest is for what is made of it: meshes, pictures, copies for a view.
+  options.memory_limit_bytes = memory_allowed_bytes() / 3;
   return as_model(Octree::create(options));
 }
 

@@ -34,6 +34,11 @@ constexpr std::size_t kMovesAtOnce = 512, kSweepsAtOnce = 2048;
 /// Memory of a brick with surface, with room for slanting ones: where the surface is flat and along
 /// the axes it is a head of 200 and 64 crossings of 6 bytes (10 with ids).
 constexpr double kBrickBytes = 900;
+/// Of a column, beside its own bytes: two blocks of the heap.
+constexpr std::size_t kMallocBytes = 64;
+/// A tool has no upper end that a program would say, so an upright one cuts from its tip to the top
+/// of the blank, layer by layer.
+constexpr int kMostLayers = 20'000;
 /// A part has so many times the surface of its blank's box.
 constexpr double kPartSurface = 2;
 constexpr int kContactSteps = 24;
@@ -48,8 +53,11 @@ constexpr std::size_t kMostDepthMoves = 4096;
 double needed_bytes(const Lattice& lattice) {
   const double nx = lattice.cells[0], ny = lattice.cells[1], nz = lattice.cells[2];
   const double surface = 2 * (nx * ny + ny * nz + nz * nx) / (kBrick * kBrick);
-  const double tiles = nx * ny * nz / std::pow(kTileNodes, 3);
-  return kPartSurface * surface * kBrickBytes + tiles * sizeof(TileRef);
+  const double columns = static_cast<double>(lattice.tiles[0]) * lattice.tiles[1];
+  const double tiles = columns * lattice.tiles[2];
+  // Of each brick it is known what sweeps came near (BrickTree::note_reach()).
+  return kPartSurface * surface * kBrickBytes + columns * (sizeof(Column) + kMallocBytes) +
+         tiles * (sizeof(TileRef) + kBricksInTile);
 }
 
 std::string size_text(double bytes) {
@@ -64,6 +72,14 @@ double fitting_cell(const Box& box, double cell, double limit) {
     cell = (std::floor(cell / digit + 1e-9) + 1) * digit;
   }
   return cell;
+}
+
+/// The smallest cell, rounded up to two digits, of which no more than kMostLayers lie on each
+/// other.
+double layers_cell(double height_mm) {
+  const double cell = height_mm / kMostLayers;
+  const double digit = std::pow(10.0, std::floor(std::log10(cell)) - 1);
+  return std::ceil(cell / digit - 1e-9) * digit;
 }
 
 /// A box's bytes are counted before it is made: the numbers of nodes alone must fit in an int.
@@ -89,6 +105,12 @@ Done check(const OctreeOptions& options, const Box& box) {
         fmt::format("cell size {} mm is not allowed; the blank must not have more than a "
                     "million cells along an edge: at least {:.2g} mm",
                     cell, std::max({size.x, size.y, size.z}) / 1e6)};
+  }
+  if (size.z / cell > kMostLayers) {
+    return Error{
+        fmt::format("cell size {} mm makes {:.0f} layers of cells between the blank's floor and "
+                    "its top; {} are allowed, for which {:.2g} mm fits",
+                    cell, std::ceil(size.z / cell), kMostLayers, layers_cell(size.z))};
   }
   const double needed = needed_bytes(Lattice::over(box, cell));
   const double limit = static_cast<double>(options.memory_limit_bytes);
@@ -159,13 +181,14 @@ struct Octree::Impl {
   /// stopped.
   std::optional<BrickTree> loss_of(const std::vector<ToolBody>& tool,
                                    std::span<const CutMove> moves, double shrink_mm,
-                                   const std::stop_token& stop) const {
+                                   const WayWatch& watch) const {
     BrickTree copy = tree;
     WorkerPool alone(1);
     MoveTotals totals;
     const std::size_t each = kContactMoves * (1 + (moves.size() - 1) / kMostDepthMoves);
     for (std::size_t next = 0; next < moves.size(); next += each) {
-      if (stop.stop_requested()) return std::nullopt;
+      if (watch.stop.stop_requested()) return std::nullopt;
+      watch.tell(static_cast<double>(next) / static_cast<double>(moves.size()));
       const auto some = moves.subspan(next, std::min(kContactMoves, moves.size() - next));
       cut_tree(copy, sweeps_of(tool, some, shrink_mm), kernel, false, alone, std::span(&totals, 1),
                nullptr);
@@ -274,20 +297,26 @@ std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove
 std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
                                                    std::span<const CutMove> moves,
                                                    double tolerance_mm,
-                                                   const std::stop_token& stop) const {
+                                                   const WayWatch& watch) const {
   const Impl& m = *impl_;
   if (m.additive) return std::nullopt;
   const Result<std::vector<ToolBody>> tool = tool_bodies(cutter);
   assert(tool);
+  // Until the first contact each move is looked at once, from there on cut once or twice.
+  const double count = static_cast<double>(moves.size());
   std::size_t first = 0;
   while (first < moves.size()) {
-    if (stop.stop_requested()) return std::nullopt;
+    if (watch.stop.stop_requested()) return std::nullopt;
+    watch.tell(static_cast<double>(first) / count);
     const std::span<const CutMove> some =
         moves.subspan(first, std::min(kContactMoves, moves.size() - first));
     if (m.touches(*tool, some, tolerance_mm)) break;
     first += some.size();
   }
-  while (first < moves.size() && !m.touches(*tool, moves.subspan(first, 1), tolerance_mm)) ++first;
+  while (first < moves.size() && !m.touches(*tool, moves.subspan(first, 1), tolerance_mm)) {
+    if (watch.stop.stop_requested()) return std::nullopt;
+    ++first;
+  }
   if (first == moves.size()) return std::nullopt;
   double clear = 0, meets = 1;
   const auto touches_by = [&](double part) {
@@ -301,9 +330,15 @@ std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
   }
   // What the rest would remove, on copies.
   const std::span<const CutMove> rest = moves.subspan(first);
-  std::optional<BrickTree> drawn_in = m.loss_of(*tool, rest, tolerance_mm, stop), exact;
-  if (drawn_in && rest.size() <= kExactDepthMoves) exact = m.loss_of(*tool, rest, 0, stop);
-  if (!drawn_in || stop.stop_requested()) return std::nullopt;
+  const auto looked = [&](double done) {
+    watch.tell((static_cast<double>(first) + done * static_cast<double>(rest.size())) / count);
+  };
+  std::optional<BrickTree> drawn_in = m.loss_of(*tool, rest, tolerance_mm, {watch.stop, looked});
+  std::optional<BrickTree> exact;
+  if (drawn_in && rest.size() <= kExactDepthMoves) {
+    exact = m.loss_of(*tool, rest, 0, {watch.stop, {}});
+  }
+  if (!drawn_in || watch.stop.stop_requested()) return std::nullopt;
   const std::int32_t slack = static_cast<std::int32_t>(
       std::lround(tolerance_mm / m.tree.lattice().cell_mm.z * kEdgeParts));
   const double cells_depth_mm =

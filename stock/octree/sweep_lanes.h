@@ -219,17 +219,17 @@ struct TurnPath {
     }
   }
   void at(Trial& t) const {
-    Lane r, z, wx, wy, wz;
+    Lane r, z, wx, wy, wz, per;
     for (int l = 0; l < W; ++l) {
       const double s = t.s.at[l];
       const double x = p.x.at[l] - s * sweep.step.x, y = p.y.at[l] - s * sweep.step.y,
                    zz = p.z.at[l] - s * sweep.step.z;
       const double ax = sweep.w.x + s * sweep.turn.x, ay = sweep.w.y + s * sweep.turn.y,
                    az = sweep.w.z + s * sweep.turn.z;
-      const double inverse = 1 / std::sqrt(ax * ax + ay * ay + az * az);
-      wx.at[l] = ax * inverse;
-      wy.at[l] = ay * inverse;
-      wz.at[l] = az * inverse;
+      per.at[l] = 1 / std::sqrt(ax * ax + ay * ay + az * az);
+      wx.at[l] = ax * per.at[l];
+      wy.at[l] = ay * per.at[l];
+      wz.at[l] = az * per.at[l];
       z.at[l] = x * wx.at[l] + y * wy.at[l] + zz * wz.at[l];
       // Square to the spindle, not from |rel|^2 - z^2: nothing cancels.
       const double rx = x - z.at[l] * wx.at[l], ry = y - z.at[l] * wy.at[l],
@@ -248,15 +248,11 @@ struct TurnPath {
                    gz = t.z.at[l] * inverse + nz * wz.at[l];
       // The tool's point there moves with the tip and turns about it; a turn by w' carries
       // z * w + out to z * w' - (out . w') * w.
-      const double s = t.s.at[l];
-      const double ax = sweep.w.x + s * sweep.turn.x, ay = sweep.w.y + s * sweep.turn.y,
-                   az = sweep.w.z + s * sweep.turn.z;
-      const double per = 1 / std::sqrt(ax * ax + ay * ay + az * az);
       const double along =
           (sweep.turn.x * wx.at[l] + sweep.turn.y * wy.at[l] + sweep.turn.z * wz.at[l]);
-      const double tx = (sweep.turn.x - along * wx.at[l]) * per,
-                   ty = (sweep.turn.y - along * wy.at[l]) * per,
-                   tz = (sweep.turn.z - along * wz.at[l]) * per;
+      const double tx = (sweep.turn.x - along * wx.at[l]) * per.at[l],
+                   ty = (sweep.turn.y - along * wy.at[l]) * per.at[l],
+                   tz = (sweep.turn.z - along * wz.at[l]) * per.at[l];
       const double back = t.x.at[l] * tx + t.y.at[l] * ty + t.z.at[l] * tz;
       const double height = z.at[l];
       const double mx = sweep.step.x + height * tx - back * wx.at[l],

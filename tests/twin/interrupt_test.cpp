@@ -47,7 +47,12 @@ void expect_partial(const TestFolder& folder, const KerfResult& result) {
   EXPECT_EQ(report["findings"].back()["id"], "interrupted");
   EXPECT_NE(result.out.find("PARTIAL   interrupted before the end of the program"),
             std::string::npos);
-  EXPECT_EQ(listing(folder.file("out")), "part.json part.stl") << "no half-written file";
+  // The mesh of what was cut is written as far as that takes no longer than a stop may
+  // (stop_time_test.cpp).
+  const bool mesh =
+      result.err.find("not written: " + folder.file("out/part.stl")) == std::string::npos;
+  EXPECT_EQ(listing(folder.file("out")), mesh ? "part.json part.stl" : "part.json")
+      << "no half-written file";
   EXPECT_EQ(listing(folder.file("tmp")), "") << "no temporary folder";
 }
 
@@ -99,7 +104,6 @@ TEST(Interrupt, WithinALongMotion) {
   const auto sent = std::chrono::steady_clock::now();
   kerf.send(SIGTERM);
   expect_partial(folder, kerf.finish());
-  // The mesh is written within, too.
   EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
 }
 
@@ -124,7 +128,7 @@ TEST(Interrupt, WithinALongTraverse) {
     const auto sent = std::chrono::steady_clock::now();
     kerf.send(signal);
     expect_partial(folder, kerf.finish());
-    // The mesh is written within, too. It was minutes once.
+    // It was minutes once.
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(10));
   }
 }

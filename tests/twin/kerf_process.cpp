@@ -140,6 +140,21 @@ bool RunningKerf::wait_until(const std::function<bool()>& ready) const {
 
 void RunningKerf::send(int signal) const { kill(pid_, signal); }
 
+double RunningKerf::cpu_s() const {
+  const std::string stat = read_file("/proc/" + std::to_string(pid_) + "/stat");
+  std::istringstream fields(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+void RunningKerf::wait_for_end() const {
+  siginfo_t info{};
+  waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT);
+}
+
 std::string RunningKerf::err() const { return read_file(scratch_.file("err")); }
 
 KerfResult RunningKerf::finish() {

@@ -55,6 +55,10 @@ class RunningKerf {
   bool has_read_its_input() const;
   bool catches_interrupts() const;
   void send(int signal) const;
+  /// Processor time that it has used itself so far, without children; also once it has ended.
+  double cpu_s() const;
+  /// Waits for its end, and leaves the rest to finish().
+  void wait_for_end() const;
   /// What it has said there so far.
   std::string err() const;
   KerfResult finish();

@@ -445,6 +445,29 @@ TEST_F(ViewWindow, AnInterruptEndsIt) {
   }
 }
 
+/// The interpreter goes round without a move, or a blank is filled: nobody asks what the window
+/// wants.
+TEST_F(ViewWindow, ClosedWhileAProgramLoadsItEndsAtOnce) {
+  const std::string silent = folder_.write(
+      "silent.ngc", "G21 G90\n#1=0\no1 while [#1 LT 1e9]\n#1=[#1+1]\no1 endwhile\nM2\n");
+  const std::vector<std::vector<std::string>> commands = {
+      {"view", silent},
+      {"view", program_, "--stock", "cylinder:0,0,-300:0:400", "--model", "octree", "--cell",
+       "0.2"}};
+  for (const std::vector<std::string>& arguments : commands) {
+    kerf_ = std::make_unique<WindowedKerf>(call_of(arguments));
+    ASSERT_TRUE(kerf_->opens()) << (kerf_->has_ended() ? kerf_->finish().err : "");
+    const double spent_s = kerf_->process().cpu_s();
+    const auto begin = std::chrono::steady_clock::now();
+    kerf_->key("Q");
+    kerf_->process().wait_for_end();
+    // The window is drawn by this process, too, and the key comes by another one.
+    EXPECT_LE(kerf_->process().cpu_s() - spent_s, 0.8);
+    EXPECT_LE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+    expect_end(0);
+  }
+}
+
 TEST_F(ViewWindow, AProgramThatIsGoneIsStillShown) {
   open({"view", program_});
   const Picture start = settled();

@@ -37,6 +37,7 @@ class WindowedKerf {
   /// Takes pictures until one satisfies; false after a minute.
   bool shows(const std::function<bool(const Picture&)>& wanted);
   void send(int signal) const { kerf_.send(signal); }
+  const RunningKerf& process() const { return kerf_; }
   /// Where it keeps its settings; its screenshots go there, too.
   const std::string& home() const { return home_.path(); }
   /// It does nothing any more.

@@ -129,7 +129,13 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 }
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
-                   Report& report, Diagnostics& diagnostics) {
+                   Report& report, Diagnostics& diagnostics, std::atomic<unsigned>* dealt_with) {
+  const auto done_with = [&](const std::string& path) {
+    const auto all = paths.named();
+    for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
+      if (all[i].second == &path) *dealt_with |= 1u << i;
+    }
+  };
   const Clock::time_point start = Clock::now();
   const auto elapsed_s = [&] {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -139,24 +145,30 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
   if (stock && !paths.png.empty()) {
     note_failure(write_picture(paths.png, *stock, name, diagnostics), diagnostics);
+    done_with(paths.png);
   }
   if (stock && wants_mesh) {
     const Clock::time_point mesh_start = Clock::now();
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
     report.timing.mesh_s = std::chrono::duration<double>(Clock::now() - mesh_start).count();
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
+    done_with(paths.stl);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
+    done_with(paths.ply);
   }
   const Sheet* const sheet = stock && report.sheet ? as_sheet(*stock) : nullptr;
   if (stock && !paths.state.empty()) {
     note_failure(sheet ? save_sheet(*sheet, *report.sheet, report.program.files, paths.state)
                        : stock->save(paths.state),
                  diagnostics);
+    done_with(paths.state);
   }
   if (sheet) {
     std::vector<std::string> errors;
     write_outlines(*sheet, *report.sheet, paths.dxf, paths.svg, errors);
     for (std::string& error : errors) fault(diagnostics, std::move(error));
+    done_with(paths.dxf);
+    done_with(paths.svg);
   }
   if (!stock && (wants_mesh || !paths.png.empty() || !paths.state.empty())) {
     fault(diagnostics,
@@ -165,6 +177,17 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   report.timing.total_s += elapsed_s();
   report.peak_rss_mb = peak_rss_mb();
   if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
+}
+
+std::string names_left(const OutputPaths& paths, unsigned dealt_with) {
+  std::string names;
+  const auto all = paths.named();
+  for (unsigned i = 0; i < all.size(); ++i) {
+    const std::string& path = *all[i].second;
+    if (path.empty() || &path == &paths.json || (dealt_with >> i & 1u) != 0) continue;
+    names.append(names.empty() ? "" : ", ").append(path);
+  }
+  return names;
 }
 
 }  // namespace kerf

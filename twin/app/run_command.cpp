@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -18,6 +19,7 @@
 #include "twin/app/option_reader.h"
 #include "twin/app/progress_bar.h"
 #include "twin/app/stdin_program.h"
+#include "twin/app/stop_deadline.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/view_command.h"
 #include "twin/app/window_host.h"
@@ -75,6 +77,50 @@ void rename_stdin(const StdinProgram& kept, Report& report, Diagnostics& diagnos
   report.findings.rename_files([&](std::string text) { return kept.renamed(std::move(text)); });
 }
 
+/// For a disk that is slow while files are written, and for what a stop asks to end by itself.
+constexpr std::chrono::milliseconds kWritingPatience{1000}, kRunPatience{10'000};
+
+void print_results(const RunRequest& request, const Report& report) {
+  print_findings(report, request.quiet);
+  if (request.quiet) return;
+  kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
+              summary_text(report, request.summary));
+}
+
+/// The last words of a run that was interrupted where nothing looks at the stop: what is known, as
+/// a partial report; and which files there will not be.
+void tell_interrupted(const RunRequest& request, Report report, unsigned dealt_with,
+                      const char* where) {
+  if (report.partial_reason.empty()) {
+    report.partial_reason = fmt::format("interrupted {}", where);
+    Finding finding;
+    finding.id = FindingId::kInterrupted;
+    finding.severity = Severity::kNote;
+    finding.text = report.partial_reason;
+    report.findings.add(std::move(finding));
+  }
+  OutputPaths paths;
+  paths.json = request.outputs.json;
+  Diagnostics diagnostics;
+  write_outputs(paths, 0, nullptr, report, diagnostics);
+  print_results(request, report);
+  if (const std::string left = names_left(request.outputs, dealt_with); !left.empty()) {
+    Diagnostic d;
+    d.message = fmt::format("interrupted: not written: {}", left);
+    diagnostics.push_back(std::move(d));
+  }
+  print(diagnostics);
+}
+
+/// Of a run that has not come to a report of its own.
+Report report_of_nothing(const RunRequest& request) {
+  Report report;
+  report.version = KERF_VERSION;
+  report.program_path = request.session.program.path;
+  report.lines = request.session.lines;
+  return report;
+}
+
 /// How one of the programs ended.
 struct RunVerdict {
   int code = kExitGood;
@@ -98,6 +144,12 @@ RunVerdict run_one(RunRequest request) {
   std::stop_source stop;
   std::atomic<Session*> opened{nullptr};
   const StopSignals signals(stop, [&] { abandon(opened); });
+  std::optional<StopDeadline> deadline(std::in_place, stop.get_token(), kExitFailure);
+  deadline->set_last_words(
+      [&request, none = report_of_nothing(request)] {
+        tell_interrupted(request, none, 0, "before the end of the program");
+      },
+      kRunPatience);
   kept.take(request.session.program.path, stop.get_token(), diagnostics);
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
   Report none;
@@ -112,13 +164,16 @@ RunVerdict run_one(RunRequest request) {
   }
   rename_stdin(kept, session->report(), diagnostics);
   if (!has_error(diagnostics)) {
+    std::atomic<unsigned> dealt_with{0};
+    deadline->set_last_words(
+        [&request, &dealt_with, report = session->report()] {
+          tell_interrupted(request, report, dealt_with, "before all its files were written");
+        },
+        kWritingPatience);
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
-                  diagnostics);
-    print_findings(session->report(), request.quiet);
-    if (!request.quiet) {
-      kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
-                  summary_text(session->report(), request.summary));
-    }
+                  diagnostics, &dealt_with);
+    deadline->set_last_words({}, kWritingPatience);
+    print_results(request, session->report());
   }
   flush_console();
   print(diagnostics);
@@ -128,6 +183,7 @@ RunVerdict run_one(RunRequest request) {
   }
   session.reset();
   opened = nullptr;
+  deadline.reset();  // the window has its own
   const int shown = show_program(request, stop);
   return {shown == kExitGood ? code : shown, stop.stop_requested()};
 }

@@ -20,6 +20,7 @@
 #include "twin/app/live_command.h"
 #include "twin/app/option_reader.h"
 #include "twin/app/progress_bar.h"
+#include "twin/app/stop_deadline.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/view_load.h"
 #include "twin/app/view_work.h"
@@ -33,7 +34,9 @@
 namespace kerf {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{200};
+constexpr std::chrono::milliseconds kPatience{50};
+/// For what is drawn or written when a stop is asked for.
+constexpr std::chrono::milliseconds kViewPatience{2000};
 
 int in_window(std::optional<ViewArguments> arguments, const ViewRequest& request,
               std::stop_source& stop) {
@@ -43,6 +46,7 @@ int in_window(std::optional<ViewArguments> arguments, const ViewRequest& request
   options.is_local = request.local;
   options.road = request.window_road;
   ViewWork work(std::move(arguments), request, mailbox, commands, stop);
+  const StopDeadline deadline(stop.get_token(), kExitGood);
   const Result<int> code =
       work_beside_window(options, mailbox, commands, stop, [&work] { return work.run(); });
   if (code) return *code;
@@ -183,8 +187,10 @@ int view_command(const ViewArguments& arguments) {
   if (has_error(diagnostics)) return kExitFailure;
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
-  return request.wants_window() ? in_window(arguments, request, stop)
-                                : into_files(request, kind, stop);
+  if (request.wants_window()) return in_window(arguments, request, stop);
+  StopDeadline deadline(stop.get_token(), kExitFailure);
+  deadline.set_last_words([] { kerf::print(stderr, "kerf: interrupted\n"); }, kViewPatience);
+  return into_files(request, kind, stop);
 }
 
 }  // namespace kerf

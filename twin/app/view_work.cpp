@@ -47,7 +47,9 @@ ViewWork::ViewWork(std::optional<ViewArguments> arguments, ViewRequest request,
 int ViewWork::run() {
   if (has_program()) {
     announce({});
-    if (!load()) return view_exit_code(outcome_, diagnostics_);
+    if (!load()) {
+      return stop_.stop_requested() ? kExitGood : view_exit_code(outcome_, diagnostics_);
+    }
     if (stop_.stop_requested()) return kExitGood;
     if (request_.at_line > 0) view_->player().seek_line({0, request_.at_line});
     if (request_.at_end) view_->player().seek_end();

@@ -30,7 +30,8 @@ Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailb
                                CommandQueue& commands, std::stop_source& stop,
                                const std::function<int()>& work,
                                const std::function<void(const std::string&)>& on_loss) {
-  Result<Window> window = Window::create(options, &mailbox, &commands);
+  std::optional<Result<Window>> created = Window::create(options, &mailbox, &commands);
+  Result<Window>& window = *created;
   if (!window) return Error{window.error()};
   for (const Diagnostic& fault : window->settings_faults()) {
     kerf::print(stderr, "{}", to_string(fault));
@@ -51,13 +52,12 @@ Result<int> work_beside_window(const WindowOptions& options, SceneMailbox& mailb
   }
   // The work hears of it by the CloseCommand already, if it listens.
   if (trouble) {
-    if (on_loss) {
-      on_loss(*trouble);
-    } else {
-      stop.request_stop();
-    }
+    if (on_loss) on_loss(*trouble);
     commands.push(CloseCommand{});
   }
+  // It remembers its settings now: the work may be cut short.
+  created.reset();
+  if (!on_loss) stop.request_stop();
   worker.join();
   if (trouble && !on_loss) return Error{*trouble};
   return code;

@@ -473,41 +473,42 @@ double ToolPath::error_of(const Run& run, double t, double h, const End& from, c
   return std::max(tip / tolerance_.tip_mm, top / tolerance_.top_mm);
 }
 
-void ToolPath::moves_of(const Motion& motion, double reach_mm, std::uint64_t id,
+bool ToolPath::moves_of(const Motion& motion, double reach_mm, std::uint64_t id,
                         std::vector<CutMove>& out, std::vector<double>* ends) const {
+  const std::size_t before = out.size(), ends_before = ends != nullptr ? ends->size() : 0;
+  // False: there are too many.
   const auto add = [&](const CutMove& move, double end) {
     out.push_back(move);
     if (ends != nullptr) ends->push_back(end);
+    return out.size() - before <= kMostPieces;
   };
-  if (!motion.start_known || !moves_tip(motion)) return;
-  if (is_upright(motion)) {
-    add(cut_move_from(motion, id), 1);
-    return;
-  }
+  if (!motion.start_known || !moves_tip(motion)) return true;
+  if (is_upright(motion)) return add(cut_move_from(motion, id), 1);
   const Run run = run_of(motion);
   if (!run.bends) {
     CutMove move;
     move.id = id;
     rigid_move(run, motion, move);
-    add(move, 1);
-    return;
+    return add(move, 1);
   }
   const Kept kept = kept_turns(run, reach_mm);
   End from = end_of(run, 0);
-  if (kept.parts.empty()) {
-    divide(run, 0, 1, reach_mm, id, from, add);
-    return;
-  }
-  for (std::size_t n = 0; n < kept.parts.size(); ++n) {
+  bool all = !kept.parts.empty() || divide(run, 0, 1, reach_mm, id, from, add);
+  for (std::size_t n = 0; all && n < kept.parts.size(); ++n) {
     const bool last = n + 1 == kept.parts.size();
     const double begin = kept.parts[n].first / kept.turns;
     if (n > 0) {
       const End to = end_of(run, begin);
-      add(move_of(from, to, id), begin);
+      all = add(move_of(from, to, id), begin);
       from = to;
     }
-    divide(run, begin, last ? 1.0 : kept.parts[n].second / kept.turns, reach_mm, id, from, add);
+    all = all && divide(run, begin, last ? 1.0 : kept.parts[n].second / kept.turns, reach_mm, id,
+                        from, add);
   }
+  if (all) return true;
+  out.resize(before);
+  if (ends != nullptr) ends->resize(ends_before);
+  return false;
 }
 
 CutMove ToolPath::move_of(const End& from, const End& to, std::uint64_t id) {
@@ -520,9 +521,10 @@ CutMove ToolPath::move_of(const End& from, const End& to, std::uint64_t id) {
   return move;
 }
 
-/// From `from`, which is at `begin`, to `end`; `from` is there then.
+/// From `from`, which is at `begin`, to `end`; `from` is there then. False: add() was, and it is
+/// not.
 template <class Add>
-void ToolPath::divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
+bool ToolPath::divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
                       End& from, const Add& add) const {
   double t = begin;
   double pieces = 1;  // that the rest is thought to need
@@ -538,12 +540,13 @@ void ToolPath::divide(const Run& run, double begin, double end, double reach_mm,
       pieces = std::ceil(pieces * std::max(1.1, 1.02 * std::sqrt(error)));
     }
     t = pieces == 1 ? end : t + h;
-    add(move_of(from, to, id), t);
+    if (!add(move_of(from, to, id), t)) return false;
     from = to;
     // Longer ones where the path has become straighter.
     const double longer = error > 0 ? std::min(2.0, 0.95 / std::sqrt(error)) : 2.0;
     pieces = std::max(1.0, std::ceil((end - t) / (h * std::max(1.0, longer)) - kStill_mm));
   }
+  return true;
 }
 
 /// The turns of the axis that turns most: from one to the next only the other axes move the tool.

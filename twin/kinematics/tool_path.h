@@ -68,7 +68,8 @@ class ToolPath {
   /// Appends the moves of a motion that moves the tip, in order; each begins where the one before
   /// ends, bit for bit, also from one motion to the next. `reach_mm`: from the tip to the top of
   /// what cuts. All get `id`. A motion whose start is not known makes none. About a microsecond a
-  /// piece.
+  /// piece. False, and nothing is appended: it would be more than kMostPieces (wild turns far from
+  /// what they turn about), which bounds memory and time.
   ///
   /// Of a motion with turns in plenty (ToolPathTolerance::turn_mm) the tool goes from the end of
   /// one that is kept straight to the beginning of the next, at the same angle. The first and the
@@ -78,8 +79,10 @@ class ToolPath {
   /// of the motion that has the piece's from_mm, to_mm and arc.
   /// `ends`, if given, gets the fraction of the motion at which each move ends, 1 last: its share
   /// of the time.
-  void moves_of(const Motion& motion, double reach_mm, std::uint64_t id, std::vector<CutMove>& out,
+  bool moves_of(const Motion& motion, double reach_mm, std::uint64_t id, std::vector<CutMove>& out,
                 std::vector<double>* ends = nullptr) const;
+  /// 1000 turns to 5 um at 100 mm, 3000 to 10 um.
+  static constexpr std::size_t kMostPieces = 1'000'000;
 
   /// The tool at `fraction` in [0, 1] of the motion (of the angle, for arcs): the tip is the
   /// origin. Exact. The spindle goes along `pose.direction(machine().nose_from_tip)`.
@@ -137,7 +140,7 @@ class ToolPath {
   Kept kept_turns(const Run& run, double reach_mm) const;
   static CutMove move_of(const End& from, const End& to, std::uint64_t id);
   template <class Add>
-  void divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
+  bool divide(const Run& run, double begin, double end, double reach_mm, std::uint64_t id,
               End& from, const Add& add) const;
 
   MachineKinematics machine_;

@@ -1,5 +1,6 @@
 // Contacts of an octree: what cells are too coarse to show, ways of thousands of moves, and the
 // bound by which turns are told to miss a brick.
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
@@ -87,7 +88,16 @@ TEST(OctreeContact, ManyMovesAreOneWay) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_FALSE(
-      first_contact_of(*tree, make_cutter("flat:6"), moves, kTolerance_mm, stop.get_token()));
+      first_contact_of(*tree, make_cutter("flat:6"), moves, kTolerance_mm, {stop.get_token(), {}}));
+  // Who watches is told how far it is, again and again.
+  std::vector<double> shares;
+  first_contact_of(*tree, make_cutter("flat:6"), moves, kTolerance_mm,
+                   {{}, [&shares](double share) { shares.push_back(share); }});
+  EXPECT_GE(shares.size(), 10u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LT(shares.front(), 0.1);
+  EXPECT_GT(shares.back(), 0.8);
+  EXPECT_LE(shares.back(), 1);
   moves.resize(200);
   EXPECT_FALSE(first_contact_of(*tree, make_cutter("flat:6"), moves, kTolerance_mm, {}));
 }

@@ -277,11 +277,28 @@ TEST(OctreeModel, RefusesWhatItCannotHold) {
             "cell size 60 mm exceeds the blank, which is 100 x 100 x 50 mm; 0.05 to 0.5 suits most "
             "parts");
   EXPECT_EQ(error(0.01, 1'000'000'000),
-            "cell size 0.01 mm would need about 11.4 GB of memory; 1.0 GB are allowed, for which "
-            "0.034 mm fits");
-  EXPECT_EQ(error(0.034, 1'000'000'000), "");
+            "cell size 0.01 mm would need about 12.4 GB of memory; 1.0 GB are allowed, for which "
+            "0.035 mm fits");
+  EXPECT_EQ(error(0.035, 1'000'000'000), "");
   EXPECT_NE(error(1e-9, 1'000'000'000), "");
   EXPECT_TRUE(Octree::can_cut(make_cutter("dovetail:10:60:4")));
+}
+
+TEST(OctreeModel, RefusesWhatWouldTakeForEver) {
+  const auto error = [](const char* blank, double cell) {
+    OctreeOptions options;
+    options.blank = *parse_blank(blank);
+    options.cell_mm = cell;
+    options.memory_limit_bytes = std::size_t{8} << 30;
+    const auto tree = Octree::create(options);
+    return tree ? std::string() : tree.error();
+  };
+  // An upright tool without an end cuts through 50 010 layers with each of its moves: 27 s for six.
+  EXPECT_EQ(error("box:0,0,-20:100,60,100000", 2),
+            "cell size 2 mm makes 50010 layers of cells between the blank's floor and its top; "
+            "20000 are allowed, for which 5.1 mm fits");
+  EXPECT_EQ(error("box:0,0,-20:100,60,100000", 5.1), "");
+  EXPECT_EQ(error("box:0,0,0:100,60,20000", 1), "");
 }
 
 }  // namespace
