@@ -28,6 +28,11 @@ constexpr std::size_t kLeastMovesPerCut = 1;
 constexpr double kSearchShare = 0.5;
 /// To begin with, while nobody knows: of upright tools.
 constexpr std::size_t kFirstMovesPerCut = 64;
+/// Of tilted ones at most: moves in the air say nothing of those in the material behind them. An
+/// octree takes no more at once.
+constexpr std::size_t kMostTiltedMovesPerCut = 512;
+/// From one cut to the next at most so many times as many.
+constexpr double kGrowth = 4;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
 
@@ -410,8 +415,10 @@ void CutStage::flush() {
   stock_.cut(*mounted_->cutter, moves_, reports_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
+  const double grown = std::min(fits, kGrowth * static_cast<double>(moves_per_cut_));
+  const std::size_t most = stock_.takes_tilted_tools() ? kMostTiltedMovesPerCut : kMovesPerCut;
   moves_per_cut_ = static_cast<std::size_t>(
-      std::clamp(fits, static_cast<double>(kLeastMovesPerCut), static_cast<double>(kMovesPerCut)));
+      std::clamp(grown, static_cast<double>(kLeastMovesPerCut), static_cast<double>(most)));
   moves_.clear();
   collect_reports();
 }
