@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "stock/octree/blank_contact.h"
@@ -147,13 +148,55 @@ class ColumnPlan {
   std::vector<double> x_, y_, z_, f_;
 };
 
+/// Above this nothing of what an upright sweep takes depends on Z: there is only the wall of an
+/// endless tool. Infinity: there is no such height. Bits do not depend on Z either, as all that is
+/// multiplied with it is 0.
+double alike_above_mm(const Sweep& sweep) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const ToolBody& body = *sweep.body;
+  const bool upright = sweep.w == Vec3(0, 0, 1) && sweep.u.z == 0 && sweep.v.z == 0;
+  if (!body.endless || !upright || sweep.kind == Sweep::Kind::kSphere ||
+      sweep.kind == Sweep::Kind::kTurn)
+    return kNever;
+  double wall = kNever;  // its radius
+  for (int i = 0; i < body.count; ++i) {
+    const ToolElement& e = body.elements[i];
+    const bool vertical = e.arc ? e.n1r == 1 && e.n1z == 0 : e.nr == 1 && e.nz == 0;
+    if (vertical) wall = std::min(wall, e.arc ? e.center_r + e.radius : e.offset);
+  }
+  double height = 0;
+  for (int i = 0; i < body.count; ++i) {
+    const ToolElement& e = body.elements[i];
+    if (e.arc) {
+      if (e.n1r != 1 || e.n1z != 0 || !(e.n0z < 0)) return kNever;
+      height = std::max(height, e.center_z - e.center_r * (1 - e.n0r) / e.n0z);
+    } else if (e.nz > 0 || (e.nz == 0 && e.nr != 1)) {
+      return kNever;
+    } else if (e.nz < 0) {
+      height = std::max(height, (e.offset - wall) / e.nz);
+    }
+  }
+  constexpr double kMargin_mm = 0.1;
+  return sweep.origin_mm.z + std::max(0.0, sweep.length_w) + height + kMargin_mm;
+}
+
+std::vector<double> alike_above_mm(std::span<const Sweep> sweeps) {
+  std::vector<double> heights;
+  heights.reserve(sweeps.size());
+  for (const Sweep& sweep : sweeps) heights.push_back(alike_above_mm(sweep));
+  return heights;
+}
+
 /// Cuts one column of tiles after the other. One for each thread.
 class ColumnCutter {
  public:
-  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, const TurnGroups& groups, bool additive,
+  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, const TurnGroups& groups,
+               std::span<const Sweep> all, const std::vector<double>& alike_above_mm, bool additive,
                std::uint64_t version, std::size_t reports, bool seek_films)
       : tree_(tree),
         groups_(groups),
+        all_(all),
+        alike_above_mm_(alike_above_mm),
         additive_(additive),
         version_(version),
         plan_(tree, kernel),
@@ -171,6 +214,7 @@ class ColumnCutter {
     const int levels = tree_.lattice().tiles[2];
     changed_.assign(static_cast<std::size_t>(levels), false);
     for (int stack = 0; stack < kTileBricks * kTileBricks; ++stack) {
+      below_.is_known = false;
       for (int level = 0; level < levels; ++level) {
         if (plan_.at(level).empty()) continue;
         for (int layer = 0; layer < kTileBricks; ++layer)
@@ -202,10 +246,20 @@ class ColumnCutter {
     if (n == sweeps.size()) return;
     const BrickRef brick = state(column, level, number);
     if (brick.is_empty()) return;
+    const int bz = level * kTileBricks + number / (kTileBricks * kTileBricks);
+    find_reaching(sweeps, number);
+    if (is_as_below(brick, bz)) {
+      for (const Added& a : below_.added) add(a.report, a.volume, a.heights);
+      below_.bz = bz;
+      leave(column, level, number, below_.changed, below_.after, below_.reached);
+      return;
+    }
+    below_.is_known = false;
+    below_.added.clear();
     open_.open(brick);
-    cutter_.set_place(plan_.brick_x(number), plan_.brick_y(number),
-                      level * kTileBricks + number / (kTileBricks * kTileBricks));
+    cutter_.set_place(plan_.brick_x(number), plan_.brick_y(number), bz);
     bool changed = false;
+    bool films = false;
     is_gone_ = false;
     while (n < sweeps.size() && !is_gone_) {
       std::size_t end = n;
@@ -218,14 +272,52 @@ class ColumnCutter {
       // no crossing, before another piece cleared one of them. Now that there is a crossing, it is
       // seen that it lies within the former.
       if (move.size() > 1 && !is_gone_) cut_move(move, number);
+      films = films || !cutter_.films().empty();
       if (!cutter_.films().empty()) note_films(move, number, level);
     }
+    const BrickRef after = !changed   ? brick
+                           : is_gone_ ? BrickRef()
+                                      : open_.close(tree_.keeps_ids());
+    leave(column, level, number, changed, after, cutter_.reached());
+    if (films || !is_alike_from(bz)) return;
+    below_.is_known = true;
+    below_.bz = bz;
+    below_.sweeps = reaching_;
+    below_.before = brick;
+    below_.after = after;
+    below_.changed = changed;
+    below_.reached = cutter_.reached();
+  }
+
+  void leave(int column, int level, int number, bool changed, const BrickRef& after,
+             unsigned reached) {
     tree_.note_reach(plan_.brick_x(number), plan_.brick_y(number),
-                     level * kTileBricks + number / (kTileBricks * kTileBricks), cutter_.reached());
+                     level * kTileBricks + number / (kTileBricks * kTileBricks), reached);
     if (!changed) return;
-    tree_.own_tile(column, level, version_).bricks[number] =
-        is_gone_ ? BrickRef() : open_.close(tree_.keeps_ids());
+    tree_.own_tile(column, level, version_).bricks[number] = after;
     changed_[static_cast<std::size_t>(level)] = true;
+  }
+
+  /// Numbers of the sweeps that reach a brick, each twice, and one more if it takes it whole.
+  void find_reaching(const std::vector<TileSweep>& sweeps, int number) {
+    reaching_.clear();
+    for (const TileSweep& t : sweeps) {
+      const bool whole = (t.whole & bit(number)) != 0;
+      if (!whole && (t.some & bit(number)) == 0) continue;
+      reaching_.push_back(2 * static_cast<std::size_t>(t.sweep - all_.data()) + (whole ? 1 : 0));
+    }
+  }
+  /// Nothing that any of them takes from this layer of bricks on depends on Z.
+  bool is_alike_from(int bz) const {
+    if (additive_) return false;
+    const double low_mm = tree_.lattice().place_mm(2, bz * kBrick);
+    return std::all_of(reaching_.begin(), reaching_.end(),
+                       [&](std::size_t n) { return alike_above_mm_[n / 2] < low_mm; });
+  }
+  /// It will be what the one below it has become: the walls of a deep slot, layer by layer.
+  bool is_as_below(const BrickRef& brick, int bz) const {
+    return below_.is_known && below_.bz + 1 == bz && below_.before == brick &&
+           below_.sweeps == reaching_;
   }
 
   /// All pieces of one move, from the open brick. True if it has changed; is_gone_ if it is empty.
@@ -234,13 +326,13 @@ class ColumnCutter {
     for (const TileSweep& t : move) {
       // Nodes outside of the blank have to be told apart where material is added.
       if ((t.whole & bit(number)) != 0 && !additive_) {
-        add(t.sweep->report, open_.volume, open_.height_of);
+        add_own(t.sweep->report, open_.volume, open_.height_of);
         return is_gone_ = true;
       }
       if (((t.whole | t.some) & bit(number)) == 0) continue;
       if (!cutter_.apply(*t.sweep, open_, groups_.of(*t.sweep))) continue;
       changed = true;
-      add(t.sweep->report, cutter_.removed(), cutter_.removed_heights());
+      add_own(t.sweep->report, cutter_.removed(), cutter_.removed_heights());
       if (open_.top_node < 0) return is_gone_ = true;
     }
     return changed;
@@ -268,6 +360,14 @@ class ColumnCutter {
     films_.push_back(spot);
   }
 
+  void add_own(std::uint32_t report, std::int64_t volume, const std::int32_t* heights) {
+    add(report, volume, heights);
+    Added& added = below_.added.emplace_back();
+    added.report = report;
+    added.volume = volume;
+    std::copy_n(heights, kBrick * kBrick, added.heights);
+  }
+
   void add(std::uint32_t report, std::int64_t volume, const std::int32_t* heights) {
     totals_[report].volume += volume;
     std::int32_t* sums = heights_.data() + std::size_t{report} * kBrick * kBrick;
@@ -289,8 +389,28 @@ class ColumnCutter {
     touched_.clear();
   }
 
+  struct Added {
+    std::uint32_t report;
+    std::int64_t volume;
+    std::int32_t heights[kBrick * kBrick];
+  };
+  /// The brick that was cut last, below the one at work.
+  struct Below {
+    bool is_known = false;
+    int bz = 0;
+    std::vector<std::size_t> sweeps;
+    BrickRef before, after;
+    bool changed = false;
+    unsigned reached = 0;
+    std::vector<Added> added;
+  };
+
   BrickTree& tree_;
   const TurnGroups& groups_;
+  std::span<const Sweep> all_;
+  const std::vector<double>& alike_above_mm_;  ///< of all_
+  std::vector<std::size_t> reaching_;
+  Below below_;
   bool additive_;
   std::uint64_t version_;
   ColumnPlan plan_;
@@ -330,13 +450,15 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   for (std::size_t c = 0; c < lists.size(); ++c)
     if (!lists[c].empty()) columns.push_back(static_cast<int>(c));
   const TurnGroups groups(sweeps, tree.lattice());
+  const std::vector<double> alike = alike_above_mm(sweeps);
   tree.own_reach();
   const std::uint64_t version = next_version();
   std::atomic<std::size_t> next{0};
   std::vector<std::vector<MoveTotals>> parts(static_cast<std::size_t>(pool.threads()));
   std::vector<std::vector<FilmSpot>> spots(parts.size());
   pool.run([&](int thread) {
-    ColumnCutter cutter(tree, kernel, groups, additive, version, totals.size(), films != nullptr);
+    ColumnCutter cutter(tree, kernel, groups, sweeps, alike, additive, version, totals.size(),
+                        films != nullptr);
     for (std::size_t n = next++; n < columns.size(); n = next++)
       cutter.cut(columns[n], sweeps, lists[static_cast<std::size_t>(columns[n])]);
     parts[static_cast<std::size_t>(thread)] = cutter.totals();
