@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "stock/octree/blank_contact.h"
@@ -68,7 +69,8 @@ class ColumnPlan {
     any_ = false;
   }
 
-  void add(const Sweep& sweep) {
+  /// `alike_above_mm`: of the sweep.
+  void add(const Sweep& sweep, double alike_above_mm) {
     const TileRange range = tiles_of(tree_.lattice(), sweep.box_mm);
     int points = 0;
     levels_.clear();
@@ -94,7 +96,13 @@ class ColumnPlan {
         reached_.push_back(levels_[n]);
       }
     }
-    for (const int level : reached_) add_bricks(sweep, level);
+    alike_.reset();
+    for (const int level : reached_) {
+      if (alike_above_mm < tree_.lattice().place_mm(2, level * kTileNodes))
+        add_alike_bricks(sweep, level);
+      else
+        add_bricks(sweep, level);
+    }
   }
 
   bool any() const { return any_; }
@@ -114,11 +122,30 @@ class ColumnPlan {
     z_[static_cast<std::size_t>(n)] = z;
   }
 
+  /// Where nothing depends on Z: of the lowest of these levels all bricks are looked at, and those
+  /// above are reached as they are.
+  void add_alike_bricks(const Sweep& sweep, int level) {
+    if (!alike_) alike_ = reach_of(sweep, level, [](int) { return true; });
+    const TileRef& tile = tree_.tile(column_, level);
+    std::uint64_t there = ~std::uint64_t{0};
+    for (int b = 0; tile.get() && b < kBricksInTile; ++b)
+      if (tile->bricks[b].is_empty()) there &= ~bit(b);
+    const TileSweep reach{&sweep, alike_->whole & there, alike_->some & there};
+    if ((reach.whole | reach.some) != 0) lists_[static_cast<std::size_t>(level)].push_back(reach);
+  }
+
   void add_bricks(const Sweep& sweep, int level) {
     const TileRef& tile = tree_.tile(column_, level);
+    const TileSweep reach =
+        reach_of(sweep, level, [&](int b) { return !tile.get() || !tile->bricks[b].is_empty(); });
+    if ((reach.whole | reach.some) != 0) lists_[static_cast<std::size_t>(level)].push_back(reach);
+  }
+
+  template <class Wanted>
+  TileSweep reach_of(const Sweep& sweep, int level, const Wanted& wanted) {
     int bricks[kBricksInTile], points = 0;
     for (int b = 0; b < kBricksInTile; ++b) {
-      if (tile.get() && tile->bricks[b].is_empty()) continue;
+      if (!wanted(b)) continue;
       bricks[points] = b;
       const int bz = level * kTileBricks + b / (kTileBricks * kTileBricks);
       set_point(points++, middle(0, brick_x(b), kBrick), middle(1, brick_y(b), kBrick),
@@ -134,7 +161,7 @@ class ColumnPlan {
       else if (f <= clear + kReachMargin_mm)
         reach.some |= bit(bricks[n]);
     }
-    if ((reach.whole | reach.some) != 0) lists_[static_cast<std::size_t>(level)].push_back(reach);
+    return reach;
   }
 
   const BrickTree& tree_;
@@ -145,6 +172,7 @@ class ColumnPlan {
   std::vector<std::vector<TileSweep>> lists_;
   std::vector<bool> gone_;
   std::vector<int> levels_, reached_;
+  std::optional<TileSweep> alike_;
   std::vector<double> x_, y_, z_, f_;
 };
 
@@ -209,7 +237,7 @@ class ColumnCutter {
 
   void cut(int column, std::span<const Sweep> sweeps, std::span<const std::uint32_t> mine) {
     plan_.begin(column);
-    for (const std::uint32_t s : mine) plan_.add(sweeps[s]);
+    for (const std::uint32_t s : mine) plan_.add(sweeps[s], alike_above_mm_[s]);
     if (!plan_.any()) return;
     const int levels = tree_.lattice().tiles[2];
     changed_.assign(static_cast<std::size_t>(levels), false);
@@ -485,12 +513,13 @@ bool touches_tree(const BrickTree& tree, std::span<const BlankBody> blank,
   ColumnPlan plan(tree, kernel);
   BrickCutter cutter(tree.lattice(), kernel, false);
   BlankContact untouched(tree.lattice(), kernel, blank);
+  const std::vector<double> alike = alike_above_mm(sweeps);
   OpenBrick open;
   for (int column = 0; column < tree.lattice().column_count(); ++column) {
     const auto& mine = lists[static_cast<std::size_t>(column)];
     if (mine.empty()) continue;
     plan.begin(column);
-    for (const std::uint32_t s : mine) plan.add(sweeps[s]);
+    for (const std::uint32_t s : mine) plan.add(sweeps[s], alike[s]);
     for (int level = 0; level < tree.lattice().tiles[2]; ++level) {
       for (const TileSweep& t : plan.at(level)) {
         for (std::uint64_t bits = t.whole | t.some; bits != 0; bits &= bits - 1) {

@@ -284,6 +284,25 @@ TEST(OctreeModel, RefusesWhatItCannotHold) {
   EXPECT_TRUE(Octree::can_cut(make_cutter("dovetail:10:60:4")));
 }
 
+TEST(OctreeModel, TheWallsOfATallBlockAreAlikeAndShared) {
+  const auto slotted = [](const char* blank) {
+    auto tree = make_octree(blank, 1);
+    for (const char* tool : {"bull:6:1", "tslot:12:4:6"}) {
+      CutMove helix = line({20, 20, -3}, {20, 20, -5});
+      helix.arc = CutArc{{25, 20, -3}, {0, 0, 1}, 2 * kPi};
+      cut(*tree, make_cutter(tool), {line({10, 8, -3}, {50, 9, -4}), helix});
+    }
+    return tree;
+  };
+  const auto low = slotted("box:0,0,-20:60,40,100"), tall = slotted("box:0,0,-20:60,40,3000"),
+             taller = slotted("box:0,0,-20:60,40,6000");
+  // Above the heads it is the same cut for each mm, and what differs is held once.
+  const auto removed = [](const auto& tree) { return tree->blank_mm3() - tree->remaining_mm3(); };
+  EXPECT_NEAR((removed(taller) - removed(tall)) / 3000, (removed(tall) - removed(low)) / 2900,
+              1e-3);
+  EXPECT_LT(taller->unique_bytes(), 3 * low->unique_bytes() + 2'000'000);
+}
+
 TEST(OctreeModel, RefusesWhatWouldTakeForEver) {
   const auto error = [](const char* blank, double cell) {
     OctreeOptions options;
