@@ -397,6 +397,7 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
   for (CutMove& move : divided_) {
     move.id = id;
     moves_.push_back(move);
+    if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
     in_flight_.push_back(flight);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;

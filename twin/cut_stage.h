@@ -136,7 +136,8 @@ class CutStage : private StepSink {
   /// What is needed when a move's report comes back.
   struct InFlight {
     double duration_s = 0;
-    double start_s = 0;  ///< of its motion
+    double start_s = 0;   ///< of its motion
+    double cut_part = 1;  ///< of its time, where it is one of several moves: LoadMeter
     SourceRef source;
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
@@ -261,6 +262,7 @@ class CutStage : private StepSink {
   double work_of_step_ = 0;
   double work_searched_ = 0;  ///< of the present one, for its contacts
   std::size_t moves_per_cut_;
+  std::vector<double> cut_parts_;  ///< of divided_, where it is not one move
   std::vector<CutMove> moves_;
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;

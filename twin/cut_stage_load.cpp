@@ -22,16 +22,22 @@ constexpr double kLeastOfWindow = 0.5;
 /// long it really cuts, and how fast at most. Short ones are taken together (add_short_move). Of a
 /// program that is played nobody asks.
 void CutStage::measure(const Motion& m, const TimedStep& step, InFlight& flight) {
-  if (timed_ || holding_ || !is_feed(m) || divided_.size() != 1) return;
-  if (step.duration_s <= 0 || !LoadMeter::is_one_piece(divided_[0])) return;
+  cut_parts_.clear();
+  if (timed_ || holding_ || !is_feed(m) || divided_.empty() || step.duration_s <= 0) return;
   const Cutter& cutter = *mounted_->cutter;
+  if (divided_.size() > 1 || !LoadMeter::is_one_piece(divided_[0])) {
+    if (!load_meter_.affords(true) || !comes_near(m)) return;
+    flush();
+    load_meter_.cut_parts(cutter, divided_, cut_parts_);
+    return;
+  }
   flight.reach = load_meter_.reach(cutter, divided_[0], step.duration_s, step.peak_mm_per_min / 60);
   const bool lasts = step.duration_s >= kLongMove_s;
   if (!lasts && step.length_mm < kLeastOfWindow * load_meter_.window_mm(cutter)) return;
   if (!load_meter_.affords(lasts) || !comes_near(m)) return;
   flush();
-  const MotionLoad load = load_meter_.measure(cutter, divided_[0]);
   ToolUse& use = uses_[use_];
+  const MotionLoad load = load_meter_.measure(cutter, divided_[0], use.peak_mm3_per_s);
   use.cut_s += load.cut_s;
   use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, load.peak_mm3_per_s);
   flight.measured = true;
@@ -68,7 +74,7 @@ void CutStage::count_feed(ToolUse& use, const InFlight& move, const CutReport& r
     add_short_move(use, reach.part, report.removed_mm3, bound, front_mm);
   } else {
     use.gap_mm = std::numeric_limits<double>::infinity();
-    add_cutting(use, move.duration_s, report.removed_mm3, bound);
+    add_cutting(use, move.cut_part * move.duration_s, report.removed_mm3, bound);
   }
   const double mean = report.removed_mm3 * reach.speed_per_mm;
   use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, std::min(mean, bound));

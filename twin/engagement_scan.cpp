@@ -12,17 +12,24 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 /// What is thinner is not there: heights are floats.
 constexpr double kLeast_mm = 1e-4;
-constexpr int kLifts = 1024;
 /// What one look at the cutter's surface costs, and what a search for a place of it does, in places
 /// (Cost).
 constexpr double kLook = 0.3;
-constexpr double kSearch = 40 * kLook, kSlopedSearch = 120 * kLook;
+constexpr double kSearch = 2 * 26 * kLook, kQuickSearch = 4 * kLook;
+constexpr int kSearchSteps = 26;
 constexpr double kWholeTurn = 2 * kPi * (1 + 1e-9);
 constexpr double kSameRadius_mm = 1e-3;
 
 double wrapped(double angle) {
   const double turned = std::fmod(angle, 2 * kPi);
   return turned < 0 ? turned + 2 * kPi : turned;
+}
+
+/// 0, 1/2, 1/4, 3/4, 1/8 .. : shifts of rows that fall into step with no border.
+double halved_again(int row) {
+  double part = 0;
+  for (double bit = 0.5; row != 0; row >>= 1, bit /= 2) part += (row & 1) * bit;
+  return part;
 }
 
 /// Greatest radius at which the cutter is as low as its tip.
@@ -152,6 +159,7 @@ bool EngagementScan::pass_at(double nearest, double half, double from, double to
                              Pass& pass) const {
   pass.first = std::max(from, nearest - half);
   pass.last = std::min(to, nearest + half);
+  pass.middle = nearest;
   pass.nearest = std::clamp(nearest, pass.first, std::max(pass.first, pass.last));
   return pass.first < pass.last;
 }
@@ -163,7 +171,7 @@ int EngagementScan::passes(const Place& place, double from, double to, Pass (&fo
     if (rest <= 0) return 0;
     if (length_ == 0) {
       if (distance2(place, 0) >= radius_ * radius_) return 0;
-      found[0] = {from, to, to};
+      found[0] = {from, to, to, to};
       return 1;
     }
     return pass_at(place.along / length_, std::sqrt(rest) / length_, from, to, found[0]) ? 1 : 0;
@@ -270,7 +278,7 @@ void EngagementScan::each_place(Visit&& visit) {
   for (int row = 0; row < rows; ++row) {
     const double beside = inner + (row + 0.5) * row_mm;
     const int count = std::max(1, static_cast<int>(std::ceil(turn * beside / step)));
-    const double each = turn / count, shift = std::fmod(0.618 * row, 1.0);
+    const double each = turn / count, shift = halved_again(row);
     for (int k = 0; k < count; ++k) {
       cost_.looks += 1;
       const Place place{wrapped(first + (k + shift) * each), beside};
@@ -322,7 +330,7 @@ double EngagementScan::take_pass(const Place& place, const Pass& pass, double he
     rest = at_once;
   }
   const bool level = rise_ == 0;
-  if (level && beside_mm(place) < flat_radius_ && flat_radius_ >= radius_) return rest;
+  if (level && beside_mm(place) < flat_radius_ && is_flat()) return rest;
   const double end = rise_ < 0 ? pass.last : pass.nearest;
   double begin = pass.first;
   if (length_ == 0 && rise_ < 0) {
@@ -354,20 +362,51 @@ double EngagementScan::take_pass(const Place& place, const Pass& pass, double he
 /// Where the cutter's surface is lowest over the place; it falls before that and rises behind it.
 double EngagementScan::lowest_at(const Place& place, const Pass& pass) const {
   if (rise_ == 0) return pass.nearest;
+  if (is_flat()) return rise_ < 0 ? pass.last : pass.first;
+  constexpr double kGolden = 0.6180339887498949;
   double low = pass.first, high = pass.last;
-  for (int i = 0; i < 60; ++i) {
-    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-    (surface(place, a) <= surface(place, b) ? high : low) =
-        surface(place, a) <= surface(place, b) ? b : a;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double at_a = surface(place, a), at_b = surface(place, b);
+  for (int i = 0; i < kSearchSteps; ++i) {
+    if (at_a <= at_b) {
+      high = b, b = a, at_b = at_a;
+      a = high - kGolden * (high - low), at_a = surface(place, a);
+    } else {
+      low = a, a = b, at_a = at_b;
+      b = low + kGolden * (high - low), at_b = surface(place, b);
+    }
   }
   return 0.5 * (low + high);
+}
+
+/// On a level way: when the surface goes down through that height.
+double EngagementScan::level_crossing(const Place& place, const Pass& pass, double height) const {
+  const auto higher = std::upper_bound(lift_.begin(), lift_.end() - 1, height - z_);
+  const double k = static_cast<double>(higher - lift_.begin());
+  double radius = std::min(k, double{kLifts}) / lift_scale_;
+  if (higher != lift_.begin() && higher != lift_.end() - 1 && std::isfinite(*higher)) {
+    const double low = *(higher - 1), part = (height - z_ - low) / (*higher - low);
+    radius = (k - 1 + part) / lift_scale_;
+  }
+  const double beside = place.beside;
+  double half = 0;
+  if (!arc_) {
+    half = std::sqrt(std::max(0.0, radius * radius - beside * beside)) / length_;
+  } else {
+    const double cosine = (arc_radius_ * arc_radius_ + beside * beside - radius * radius) /
+                          std::max(2 * arc_radius_ * beside, 1e-9);
+    half = std::acos(std::clamp(cosine, -1.0, 1.0)) / sweep_;
+  }
+  return std::clamp(pass.middle - half, pass.first, pass.nearest);
 }
 
 double EngagementScan::first_below(const Place& place, const Pass& pass, double height) const {
   if (surface(place, pass.first) < height - kLeast_mm) return pass.first;
   double above = pass.first, below = lowest_at(place, pass);
   if (surface(place, below) >= height - kLeast_mm) return kNever;
-  for (int i = 0; i < 40; ++i) {
+  if (is_level()) return level_crossing(place, pass, height);
+  if (is_flat()) return std::clamp((height - z_) / rise_, above, below);
+  for (int i = 0; i < kSearchSteps; ++i) {
     const double middle = 0.5 * (above + below);
     (surface(place, middle) < height ? below : above) = middle;
   }
@@ -378,35 +417,44 @@ double EngagementScan::first_below(const Place& place, const Pass& pass, double 
 double EngagementScan::settled(const Place& place, const Pass& pass) const {
   const double lowest = lowest_at(place, pass), level = surface(place, lowest) + 1e-7;
   if (surface(place, pass.first) <= level) return pass.first;
+  if (is_level()) return level_crossing(place, pass, level);
+  if (is_flat()) return lowest;
   double above = pass.first, below = lowest;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < kSearchSteps; ++i) {
     const double middle = 0.5 * (above + below);
     (surface(place, middle) <= level ? below : above) = middle;
   }
   return below;
 }
 
+/// When what stands there begins to be removed, if that is before `best`; else kNever.
+double EngagementScan::begin_of(const Place& place, double height, double from, double to,
+                                double best) {
+  Pass found[3], square[3];
+  const double half = length_ > 0 ? half_along_ : 0;
+  const int count = passes(place, from_, to_, found);
+  if (count == 0 || found[0].first - half / std::max(length_, cell_) > best) return kNever;
+  double removed = kNever;
+  for (int k = 0; k < count && removed == kNever; ++k) {
+    if (found[k].last >= from) removed = first_below(place, found[k], height);
+  }
+  cost_.places += is_level() || is_flat() ? kQuickSearch : 2 * kSearch;
+  if (removed < from || removed > to) return kNever;
+  // Sides of the blank are where cells end; other walls are somewhere about their middles.
+  const Place edge = moved(place, -half, is_at_side(place) ? -half : 0);
+  const int edges = passes(edge, from_, to_, square);
+  double begin = removed;
+  for (int k = 0; k < edges; ++k) {
+    const double met = first_below(edge, square[k], height);
+    if (met >= from) begin = std::min(begin, met);
+  }
+  return begin;
+}
+
 double EngagementScan::find_begin(double from, double to) {
   double best = kNever;
-  const double half = length_ > 0 ? half_along_ : 0;
   each_cell(from, to, kNever, [&](const Place& place, double height, double) {
-    Pass found[3], square[3];
-    const int count = passes(place, from_, to_, found);
-    if (count == 0 || found[0].first - half / std::max(length_, cell_) > best) return;
-    double removed = kNever;
-    for (int k = 0; k < count && removed == kNever; ++k) {
-      if (found[k].last >= from) removed = first_below(place, found[k], height);
-    }
-    cost_.places += kSearch + (rise_ != 0 ? kSlopedSearch : 0);
-    if (removed < from || removed > to) return;
-    best = std::min(best, removed);
-    // Sides of the blank are where cells end; other walls are somewhere about their middles.
-    const Place edge = moved(place, -half, is_at_side(place) ? -half : 0);
-    const int edges = passes(edge, from_, to_, square);
-    for (int k = 0; k < edges; ++k) {
-      const double met = first_below(edge, square[k], height);
-      if (met >= from) best = std::min(best, met);
-    }
+    best = std::min(best, begin_of(place, height, from, to, best));
   });
   return best == kNever ? std::max(from, from_) : std::clamp(best, from_, to_);
 }
@@ -416,7 +464,8 @@ std::optional<double> EngagementScan::height_at(const Vec2& point) const {
   const double i = std::floor(at.x / heights_->cell_x_mm());
   const double j = std::floor(at.y / heights_->cell_y_mm());
   if (i < 0 || j < 0 || i >= heights_->nx() || j >= heights_->ny()) return std::nullopt;
-  return static_cast<double>(heights_->height(static_cast<int>(i), static_cast<int>(j)));
+  return behind_held(
+      point, static_cast<double>(heights_->height(static_cast<int>(i), static_cast<int>(j))));
 }
 
 /// Beyond the edge of what is swept there, a cell away, is material.
@@ -445,21 +494,28 @@ double EngagementScan::left_at(const Place& place, double removed_to) {
   return left;
 }
 
+/// When what stands there is removed and left, if that is behind `best`.
+double EngagementScan::end_of(const Place& place, double height, double from, double to,
+                              double best) {
+  Pass found[3];
+  const int count = passes(place, from_, to_, found);
+  for (int k = count - 1; k >= 0; --k) {
+    const Pass& pass = found[k];
+    if (pass.first > to || pass.last < best) continue;
+    cost_.places += is_level() || is_flat() ? kQuickSearch : 2 * kSearch;
+    const double lowest = surface(place, lowest_at(place, pass));
+    if (lowest >= height - kLeast_mm) continue;
+    const double removed_to = settled(place, pass);
+    if (removed_to < from || removed_to > to) continue;
+    best = std::max(best, length_ > 0 ? left_at(place, removed_to) : removed_to);
+  }
+  return best;
+}
+
 double EngagementScan::find_end(double from, double to) {
   double best = -kNever;
   each_cell(from, to, kNever, [&](const Place& place, double height, double) {
-    Pass found[3];
-    const int count = passes(place, from_, to_, found);
-    for (int k = count - 1; k >= 0; --k) {
-      const Pass& pass = found[k];
-      if (pass.first > to || pass.last < best) continue;
-      cost_.places += kSearch + (rise_ != 0 ? 2 * kSlopedSearch : 0);
-      const double lowest = surface(place, lowest_at(place, pass));
-      if (lowest >= height - kLeast_mm) continue;
-      const double removed_to = settled(place, pass);
-      if (removed_to < from || removed_to > to) continue;
-      best = std::max(best, length_ > 0 ? left_at(place, removed_to) : removed_to);
-    }
+    best = end_of(place, height, from, to, best);
   });
   return best == -kNever ? std::min(to, to_) : std::clamp(best, from_, to_);
 }
@@ -481,17 +537,22 @@ void EngagementScan::find_spans() {
   }
 }
 
+void EngagementScan::set_bins(double bin_mm) {
+  const double way_mm = (to_ - from_) * std::hypot(length_, rise_);
+  const int bins = std::clamp(static_cast<int>(std::ceil(way_mm / bin_mm)), 1, kMostBins);
+  bin_ = (to_ - from_) / bins;
+  bins_.assign(static_cast<std::size_t>(bins), 0.0);
+  cuts_.assign(static_cast<std::size_t>(bins), 0);
+}
+
 EngagementScan::Cost EngagementScan::run(const HeightGrid& heights, const Cutter& cutter,
                                          const CutMove& move, double from, double to,
                                          double bin_mm) {
   set(heights, cutter, move);
+  held_ = {};
   cost_ = {};
   from_ = from, to_ = to;
-  const double way_mm = (to - from) * std::hypot(length_, rise_);
-  const int bins = std::clamp(static_cast<int>(std::ceil(way_mm / bin_mm)), 1, kMostBins);
-  bin_ = (to - from) / bins;
-  bins_.assign(static_cast<std::size_t>(bins), 0.0);
-  cuts_.assign(static_cast<std::size_t>(bins), 0);
+  set_bins(bin_mm);
   const double apart = length_ > 0 ? 2 * bin_ * length_ : 16 * cell_;
   const double cells = length_ * 2 * radius_ / (cell_ * cell_);
   if (arc_ && cells > kMostPoints) {

@@ -50,6 +50,19 @@ class EngagementScan {
   Cost run(const HeightGrid& heights, const Cutter& cutter, const CutMove& move, double from,
            double to, double bin_mm);
 
+  /// The same from a few lanes along the way, some times cheaper: spans() are as exact, where what
+  /// is cut is no narrower than the lanes are apart (about a fortieth of the cutter in the middle,
+  /// less at its sides) and no shorter than `step_mm`; air of less than `gap_mm` is not seen.
+  /// bins_mm3() are good to some percent.
+  /// `held`: null, or a straight move of the same cutter that the heights may not have yet.
+  struct Lanes {
+    double bin_mm = 0, gap_mm = 0, step_mm = 0;
+    int count = 41;
+    const CutMove* held = nullptr;
+  };
+  Cost run_lanes(const HeightGrid& heights, const Cutter& cutter, const CutMove& move, double from,
+                 double to, const Lanes& lanes);
+
   std::span<const Span> spans() const { return spans_; }
   /// What is removed on each of equal parts of the way from `from` to `to`.
   std::span<const double> bins_mm3() const { return bins_; }
@@ -63,8 +76,11 @@ class EngagementScan {
   /// The cutter is over a place: parts of the way, and where it is nearest.
   struct Pass {
     double first = 0, nearest = 0, last = 0;
+    double middle = 0;  ///< where it is nearest, were the way longer
   };
 
+  bool is_flat() const { return flat_radius_ >= radius_; }
+  bool is_level() const { return rise_ == 0 && length_ > 0; }
   void set(const HeightGrid& heights, const Cutter& cutter, const CutMove& move);
   Place place_of(const Vec2& point) const;
   Vec2 point_of(const Place& place) const;
@@ -89,11 +105,36 @@ class EngagementScan {
   double lowest_at(const Place& place, const Pass& pass) const;
   double first_below(const Place& place, const Pass& pass, double height) const;
   double settled(const Place& place, const Pass& pass) const;
+  double level_crossing(const Place& place, const Pass& pass, double height) const;
   double left_at(const Place& place, double removed_to_mm);
   bool stands_beside(const Place& place, double tip_mm) const;
   bool is_at_side(const Place& place) const;
   std::optional<double> height_at(const Vec2& point) const;
+  double behind_held(const Vec2& point, double height) const;
   Box path_box(double from, double to) const;
+
+  struct Lane {
+    double beside = 0;    ///< mm, from the way
+    double width_mm = 0;  ///< for which it stands
+    double lowest = 0;    ///< when the cutter is lowest, after it is nearest: part of the way
+  };
+  /// What a look at a lane has found.
+  struct Look {
+    bool removed = false;
+    Place place{};  ///< the middle of the cell
+    double height = 0, depth = 0;
+    double when = 0;  ///< it is being removed
+  };
+  void set_bins(double bin_mm);
+  void lay_lanes(int count);
+  double lowest_behind(double beside) const;
+  bool lane_within(const Lane& lane, double& low, double& high) const;
+  Look look(const Lane& lane, double along);
+  void walk(const Lane& lane, double phase, double step);
+  void find_edge(const Lane& lane, double removed, double free, Look& last);
+  void merge_spans(double gap);
+  double begin_of(const Place& place, double height, double from, double to, double best);
+  double end_of(const Place& place, double height, double from, double to, double best);
 
   const HeightGrid* heights_ = nullptr;
   Motion motion_;  ///< of arcs
@@ -105,6 +146,7 @@ class EngagementScan {
   Vec2 center_{0};
   double arc_radius_ = 0, start_angle_ = 0, sweep_ = 0, turn_ = 1;
   double cell_ = 0, half_along_ = 0;
+  static constexpr int kLifts = 1024;
   std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
   double lift_scale_ = 0;
 
@@ -113,6 +155,12 @@ class EngagementScan {
   std::vector<double> bins_;
   std::vector<char> cuts_;
   std::vector<Span> spans_;
+  std::vector<Lane> lanes_;
+  /// The move that is held back; length 0: none.
+  struct Held {
+    Vec2 start{0}, direction{1, 0};
+    double length = 0, z = 0, rise = 0;
+  } held_;
 };
 
 }  // namespace kerf

@@ -2,7 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "twin/engagement_scan.h"
+#include "twin/lane_scan.h"
 #include "twin/motion_geometry.h"
 
 namespace kerf {
@@ -26,6 +32,27 @@ constexpr int kBinsOfWindow = 8;
 /// one that is cut: some times what they cost, since what is free must not show.
 constexpr double kCellsOfLook = 12;
 constexpr double kCellsOfPlace = 120;
+constexpr double kCellsOfLaneLook = 30;
+constexpr double kBlocksOfPoint = 0.2;
+constexpr double kCellsOfTile = 16;  ///< of the workpiece, that a snapshot has to hold
+/// Lanes along a move (EngagementScan::run_lanes), and when little is left to spend, which is when
+/// it is this part of what is free: then steps are so much longer, too.
+constexpr int kLanes = 41, kFewLanes = 21;
+constexpr double kFineShare = 0.5, kCoarser = 4;
+constexpr int kFewColumns = 9;
+constexpr double kFewRowsGrow = 2.5, kFewRowsOfDiameter = 0.25;
+/// Of what is cut may be spent on looking closely, beside what is free and LoadMeter::kShare.
+constexpr double kCloseShare = 0.01;
+LaneScan::Grain few_lanes() {
+  LaneScan::Grain grain;
+  grain.lanes = kFewColumns;
+  grain.row_grows = kFewRowsGrow;
+  grain.row_of_diameter = kFewRowsOfDiameter;
+  return grain;
+}
+
+/// Rates by lanes are good to this.
+constexpr double kRough = 0.04;
 
 Motion motion_of(const CutMove& move) {
   Motion motion;
@@ -51,8 +78,93 @@ CutMove part_of(const CutMove& whole, double from, double to) {
 
 }  // namespace
 
+const double LoadMeter::kFreeCells = 2e7;
+const double LoadMeter::kFreeBlocks = 1e6;
+const double LoadMeter::kShare = 0.03;
+
+struct LoadMeter::Impl {
+  struct Span {
+    double from = 0, to = 0;  ///< fraction of the way
+    double removed_mm3 = 0;
+    bool cuts() const { return removed_mm3 > 0; }
+  };
+  /// Time and speed at a fraction of the way.
+  struct Profile {
+    double length_mm = 0, duration_s = 0, speed_mm_per_s = 0, ramp_mm = 0, ramp_s = 0;
+    double at(double part) const;
+    double speed_at(double part) const;
+    double greatest_speed(double from, double to) const;
+  };
+  explicit Impl(const StockModel& stock)
+      : stock_(stock), left_looks_(free_cells()), left_cells_(free_cells()) {}
+  double free_cells() const { return stock_.takes_tilted_tools() ? kFreeBlocks : kFreeCells; }
+  double window_mm(const Cutter& cutter) const;
+  MotionReach reach(const Cutter& cutter, const CutMove& move, double duration_s,
+                    double speed_mm_per_s);
+  MotionLoad measure(const Cutter& cutter, const CutMove& move, double known);
+  bool scan(const Cutter& cutter, const CutMove& move, double known, MotionLoad& load);
+  void cut_parts(const Cutter& cutter, std::span<const CutMove> moves, std::vector<double>& parts);
+  bool may_be_fastest(double rough, double known) const;
+  const SolidPoints* points_of(const Cutter& cutter, const CutMove& move) const;
+  bool scan_points(const Cutter& cutter, const CutMove& move, double known, MotionLoad& load);
+  template <class Scan>
+  void take_spans(const Scan& scan, double window, MotionLoad& load);
+  double scanned_peak(std::span<const double> bins, double from, double to, double window);
+  bool is_hollow();
+  MotionLoad measure_by_pieces(const Cutter& cutter, const CutMove& move);
+  void clip(const Cutter& cutter, const CutMove& move);
+  FeedPart clipped_part(const CutMove& move) const;
+  double cut_part(StockModel& stock, double from, double to);
+  void cut_spans(const StockModel& before, double from, double to, int pieces);
+  double find_begin(const Span& span, const StockModel& before, double least);
+  double find_end(const Span& span, const StockModel& before, double least);
+  void add_run(std::size_t first, std::size_t end, double window, MotionLoad& load);
+  double peak(std::size_t first, std::size_t end, double window) const;
+
+  const StockModel& stock_;
+  double left_looks_;  ///< to spend on lanes along moves, in cells that are cut
+  double left_cells_;  ///< and on looking closely
+  EngagementScan scan_;
+  LaneScan lanes_;
+  std::vector<double> rates_;
+  std::optional<CutMove> asked_, held_;  ///< the last two that reach() was asked about
+  std::string asked_cutter_, held_cutter_;
+  std::optional<bool> hollow_;  ///< below its heights; asked when it is needed
+  Profile profile_;
+  double from_ = 0, to_ = 1;  ///< of the way, where the cutter is where the blank was
+  const Cutter* cutter_ = nullptr;
+  const CutMove* move_ = nullptr;
+  std::vector<Span> spans_;
+  std::vector<std::unique_ptr<StockModel>> before_;  ///< the workpiece before each of them
+  std::vector<CutMove> moves_;
+  std::vector<CutReport> reports_;
+};
+
+LoadMeter::LoadMeter(const StockModel& stock) : impl_(std::make_unique<Impl>(stock)) {}
+LoadMeter::~LoadMeter() = default;
+
+MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double duration_s,
+                             double speed_mm_per_s) {
+  return impl_->reach(cutter, move, duration_s, speed_mm_per_s);
+}
+
+bool LoadMeter::affords(bool lasts) const {
+  return impl_->left_looks_ >= (lasts ? 0 : impl_->free_cells() / 2);
+}
+
+double LoadMeter::window_mm(const Cutter& cutter) const { return impl_->window_mm(cutter); }
+
+MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move, double known_mm3_per_s) {
+  return impl_->measure(cutter, move, known_mm3_per_s);
+}
+
+void LoadMeter::cut_parts(const Cutter& cutter, std::span<const CutMove> moves,
+                          std::vector<double>& parts) {
+  impl_->cut_parts(cutter, moves, parts);
+}
+
 /// Up to full speed within ramp_mm, and down again.
-double LoadMeter::Profile::at(double part) const {
+double LoadMeter::Impl::Profile::at(double part) const {
   const double way = part * length_mm;
   if (ramp_mm <= 0) return part * duration_s;
   const double acceleration = speed_mm_per_s / ramp_s;
@@ -62,22 +174,22 @@ double LoadMeter::Profile::at(double part) const {
   return ramp_s + (way - ramp_mm) / speed_mm_per_s;
 }
 
-double LoadMeter::Profile::speed_at(double part) const {
+double LoadMeter::Impl::Profile::speed_at(double part) const {
   const double way = std::min(part, 1 - part) * length_mm;
   if (way >= ramp_mm) return speed_mm_per_s;
   return std::sqrt(2 * std::max(0.0, way) * speed_mm_per_s / ramp_s);
 }
 
-double LoadMeter::Profile::greatest_speed(double from, double to) const {
+double LoadMeter::Impl::Profile::greatest_speed(double from, double to) const {
   return speed_at(std::clamp(0.5, from, to));
 }
 
-double LoadMeter::window_mm(const Cutter& cutter) const {
+double LoadMeter::Impl::window_mm(const Cutter& cutter) const {
   return std::max(kWindowOfDiameter * 2 * cutter.radius_mm(), kWindowCells * stock_.cell_mm());
 }
 
 /// A straight way of an upright tool is in the blank's box between two of its points.
-void LoadMeter::clip(const Cutter& cutter, const CutMove& move) {
+void LoadMeter::Impl::clip(const Cutter& cutter, const CutMove& move) {
   from_ = 0, to_ = 1;
   if (move.arc || !move.is_vertical()) return;
   const Box box = stock_.bounds_mm();
@@ -101,7 +213,7 @@ void LoadMeter::clip(const Cutter& cutter, const CutMove& move) {
   to_ = std::max(from_, to_);
 }
 
-FeedPart LoadMeter::clipped_part(const CutMove& move) const {
+FeedPart LoadMeter::Impl::clipped_part(const CutMove& move) const {
   FeedPart part;
   part.known = true;
   part.near_mm = kNearCells * stock_.cell_mm();
@@ -126,10 +238,12 @@ FeedPart LoadMeter::clipped_part(const CutMove& move) const {
   return part;
 }
 
-MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double duration_s,
-                             double speed_mm_per_s) {
+MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, double duration_s,
+                                   double speed_mm_per_s) {
   MotionReach reach;
   if (cutter.undercuts()) hollow_ = true;
+  held_ = std::exchange(asked_, move.arc ? std::nullopt : std::optional(move));
+  held_cutter_ = std::exchange(asked_cutter_, cutter.spec());
   const double length_mm = length_of(move);
   profile_ = {};
   if (length_mm <= 0 || duration_s <= 0) return reach;
@@ -153,12 +267,13 @@ MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double d
     reach.disc_mm3_per_s = kPi * radius_mm * radius_mm * speed * std::abs(step.z) / length_mm;
   }
   const double swept_mm2 = diameter_mm * (level ? way_mm : std::min(way_mm, diameter_mm));
-  left_cells_ += kShare * swept_mm2 / (cell_mm * cell_mm);
+  left_looks_ += kShare * swept_mm2 / (cell_mm * cell_mm);
+  left_cells_ += kCloseShare * swept_mm2 / (cell_mm * cell_mm);
   return reach;
 }
 
 /// Finished: what the cutter's front takes must not wait for the next part.
-double LoadMeter::cut_part(StockModel& stock, double from, double to) {
+double LoadMeter::Impl::cut_part(StockModel& stock, double from, double to) {
   moves_.assign(1, part_of(*move_, from, to));
   reports_.clear();
   stock.cut(*cutter_, moves_, reports_);
@@ -171,7 +286,7 @@ double LoadMeter::cut_part(StockModel& stock, double from, double to) {
   return removed_mm3;
 }
 
-void LoadMeter::cut_spans(const StockModel& before, double from, double to, int pieces) {
+void LoadMeter::Impl::cut_spans(const StockModel& before, double from, double to, int pieces) {
   spans_.clear();
   before_.clear();
   const std::unique_ptr<StockModel> copy = before.snapshot();
@@ -186,7 +301,7 @@ void LoadMeter::cut_spans(const StockModel& before, double from, double to, int 
 }
 
 /// Of a span that cuts, and before which nothing does.
-double LoadMeter::find_begin(const Span& span, const StockModel& before, double least) {
+double LoadMeter::Impl::find_begin(const Span& span, const StockModel& before, double least) {
   const auto cuts = [&](double from, double to) {
     return cut_part(*before.snapshot(), from, to) > 0;
   };
@@ -200,7 +315,7 @@ double LoadMeter::find_begin(const Span& span, const StockModel& before, double 
 }
 
 /// Of a span that cuts, and behind which nothing does.
-double LoadMeter::find_end(const Span& span, const StockModel& before, double least) {
+double LoadMeter::Impl::find_end(const Span& span, const StockModel& before, double least) {
   std::unique_ptr<StockModel> state = before.snapshot();
   double from = span.from, to = span.to;
   while (to - from > least) {
@@ -219,7 +334,7 @@ double LoadMeter::find_end(const Span& span, const StockModel& before, double le
 }
 
 /// The windows that lie in a row are those of one stretch of cutting.
-double LoadMeter::peak(std::size_t first, std::size_t end, double window) const {
+double LoadMeter::Impl::peak(std::size_t first, std::size_t end, double window) const {
   double greatest = 0, all_mm3 = 0, mm3 = 0, from = spans_[first].from, to = from, density = 0;
   const auto end_run = [&] {
     const double way_mm = (to - from) * profile_.length_mm;
@@ -246,17 +361,20 @@ double LoadMeter::peak(std::size_t first, std::size_t end, double window) const 
   return greatest;
 }
 
-void LoadMeter::add_run(std::size_t first, std::size_t end, double window, MotionLoad& load) {
+void LoadMeter::Impl::add_run(std::size_t first, std::size_t end, double window, MotionLoad& load) {
   load.cut_s += profile_.at(spans_[end - 1].to) - profile_.at(spans_[first].from);
   load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, peak(first, end, window));
 }
 
 /// Something is, below the heights: an M-map's may say less than what is there. Asked once; what
 /// undercuts tells reach().
-bool LoadMeter::is_hollow(const HeightGrid& heights) {
+bool LoadMeter::Impl::is_hollow() {
   if (hollow_) return *hollow_;
   double sum_mm = 0;
   if (stock_.name() == "mmap") {
+    const std::unique_ptr<StockModel> whole = stock_.snapshot();
+    const std::shared_ptr<const HeightGrid> grid = whole->height_grid();
+    const HeightGrid& heights = *grid;
     const double floor = static_cast<double>(heights.floor_mm());
     for (int j = 0; j < heights.ny(); ++j) {
       for (int i = 0; i < heights.nx(); ++i) {
@@ -264,7 +382,7 @@ bool LoadMeter::is_hollow(const HeightGrid& heights) {
       }
     }
     const double all_mm3 = sum_mm * heights.cell_x_mm() * heights.cell_y_mm();
-    hollow_ = std::abs(all_mm3 - stock_.remaining_mm3()) > 1e-6 * all_mm3;
+    hollow_ = std::abs(all_mm3 - whole->remaining_mm3()) > 1e-6 * all_mm3;
   } else {
     hollow_ = false;
   }
@@ -273,14 +391,14 @@ bool LoadMeter::is_hollow(const HeightGrid& heights) {
 
 /// Of the windows within a stretch that is cut the greatest, together with its neighbours that are
 /// as great; or the rate of the whole stretch.
-double LoadMeter::scanned_peak(const EngagementScan::Span& span, double window) {
-  const std::span<const double> bins = scan_.bins_mm3();
+double LoadMeter::Impl::scanned_peak(std::span<const double> bins, double span_from, double span_to,
+                                     double window) {
   const double bin = (to_ - from_) / static_cast<double>(bins.size());
   const auto index = [&](double part) {
     const double at = std::floor((part - from_) / bin);
     return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bins.size() - 1)));
   };
-  const std::size_t first = index(span.from), last = index(span.to * (1 - 1e-12));
+  const std::size_t first = index(span_from), last = index(span_to * (1 - 1e-12));
   const auto rate = [&](double mm3, double from, double to) {
     return mm3 / ((to - from) * profile_.length_mm) * profile_.greatest_speed(from, to);
   };
@@ -294,10 +412,10 @@ double LoadMeter::scanned_peak(const EngagementScan::Span& span, double window) 
     const double to = from_ + static_cast<double>(b + 1) * bin;
     rates_.push_back(rate(mm3, to - static_cast<double>(n) * bin, to));
   }
-  if (span.to - span.from <= window + bin || rates_.empty()) {
+  if (span_to - span_from <= window + bin || rates_.empty()) {
     mm3 = 0;
     for (std::size_t b = first; b <= last; ++b) mm3 += bins[b];
-    return rate(mm3, span.from, span.to);
+    return rate(mm3, span_from, span_to);
   }
   const auto greatest = std::max_element(rates_.begin(), rates_.end());
   auto begin = greatest, end = greatest;
@@ -309,29 +427,118 @@ double LoadMeter::scanned_peak(const EngagementScan::Span& span, double window) 
 }
 
 /// False: the model, the cutter or the move is not one for it.
-bool LoadMeter::scan(const Cutter& cutter, const CutMove& move, MotionLoad& load) {
+bool LoadMeter::Impl::scan(const Cutter& cutter, const CutMove& move, double known,
+                           MotionLoad& load) {
   if (!EngagementScan::takes(cutter, move)) return false;
-  const std::shared_ptr<const HeightGrid> heights = stock_.snapshot()->height_grid();
-  if (!heights || is_hollow(*heights)) return false;
+  const std::shared_ptr<const HeightGrid> present = stock_.height_grid();
+  if (!present || is_hollow()) return false;
+  left_looks_ -= kCellsOfTile * static_cast<double>(stock_.tile_count());
   const double window = std::min(window_mm(cutter) / profile_.length_mm, to_ - from_);
-  const EngagementScan::Cost cost =
-      scan_.run(*heights, cutter, move, from_, to_, window * profile_.length_mm / kBinsOfWindow);
-  left_cells_ -= kCellsOfLook * cost.looks + kCellsOfPlace * cost.places +
-                 2 * static_cast<double>(stock_.tile_count());
-  for (const EngagementScan::Span& span : scan_.spans()) {
-    load.cut_s += profile_.at(span.to) - profile_.at(span.from);
-    load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, scanned_peak(span, window));
+  const double bin_mm = window * profile_.length_mm / kBinsOfWindow;
+  const bool fine = left_looks_ > kFineShare * free_cells();
+  EngagementScan::Lanes lanes;
+  lanes.bin_mm = bin_mm;
+  lanes.gap_mm = EngagementScan::kLeastGapBins * bin_mm;
+  lanes.step_mm = fine ? lanes.gap_mm : kCoarser * lanes.gap_mm;
+  lanes.count = fine ? kLanes : kFewLanes;
+  if (held_ && held_cutter_ == cutter.spec()) lanes.held = &*held_;
+  const EngagementScan::Cost looked = scan_.run_lanes(*present, cutter, move, from_, to_, lanes);
+  left_looks_ -= kCellsOfLaneLook * looked.looks + kCellsOfPlace * looked.places;
+  take_spans(scan_, window, load);
+  if (!may_be_fastest(load.peak_mm3_per_s, known)) {
+    load.peak_mm3_per_s = 0;
+    return true;
   }
+  // With what the model holds back.
+  const std::shared_ptr<const HeightGrid> heights = stock_.snapshot()->height_grid();
+  const EngagementScan::Cost cost = scan_.run(*heights, cutter, move, from_, to_, bin_mm);
+  left_cells_ -= kCellsOfLook * cost.looks + kCellsOfPlace * cost.places;
+  take_spans(scan_, window, load);
   return true;
 }
 
-MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move) {
-  MotionLoad load;
-  if (profile_.length_mm <= 0 || to_ <= from_) return load;
-  return scan(cutter, move, load) ? load : measure_by_pieces(cutter, move);
+template <class Scan>
+void LoadMeter::Impl::take_spans(const Scan& scan, double window, MotionLoad& load) {
+  load = {};
+  for (const auto& span : scan.spans()) {
+    load.cut_s += profile_.at(span.to) - profile_.at(span.from);
+    load.peak_mm3_per_s =
+        std::max(load.peak_mm3_per_s, scanned_peak(scan.bins_mm3(), span.from, span.to, window));
+  }
 }
 
-MotionLoad LoadMeter::measure_by_pieces(const Cutter& cutter, const CutMove& move) {
+/// A rate by lanes may exceed what is known, and a close look is affordable; for one that does it
+/// for certain something is borrowed.
+bool LoadMeter::Impl::may_be_fastest(double rough, double known) const {
+  const double least = rough / (1 + kRough) > known ? -free_cells() : 0;
+  return rough * (1 + kRough) > known && left_cells_ >= least;
+}
+
+/// Null: the model has none, or the move is not one for LaneScan.
+const SolidPoints* LoadMeter::Impl::points_of(const Cutter& cutter, const CutMove& move) const {
+  if (move.arc || cutter.footprint() != nullptr) return nullptr;
+  return dynamic_cast<const SolidPoints*>(&stock_.bare());
+}
+
+/// False: it cannot be done so. Rates that may be the greatest so far are looked at by pieces.
+bool LoadMeter::Impl::scan_points(const Cutter& cutter, const CutMove& move, double known,
+                                  MotionLoad& load) {
+  const SolidPoints* const solid = points_of(cutter, move);
+  if (solid == nullptr) return false;
+  from_ = 0, to_ = 1;
+  const double window = std::min(window_mm(cutter) / profile_.length_mm, 1.0);
+  LaneScan::Grain grain;
+  grain.bin_mm = window * profile_.length_mm / kBinsOfWindow;
+  grain.gap_mm = grain.step_mm = EngagementScan::kLeastGapBins * grain.bin_mm;
+  if (left_looks_ <= kFineShare * free_cells()) {
+    const LaneScan::Grain few = few_lanes();
+    grain = {grain.bin_mm, grain.gap_mm,  kCoarser * grain.step_mm,
+             few.lanes,    few.row_grows, few.row_of_diameter};
+  }
+  left_looks_ -= kBlocksOfPoint *
+                 lanes_.run(*solid, stock_.bounds_mm(), stock_.cell_mm(), cutter, move, grain);
+  take_spans(lanes_, window, load);
+  double exact = 0;
+  if (may_be_fastest(load.peak_mm3_per_s, known)) {
+    exact = measure_by_pieces(cutter, move).peak_mm3_per_s;
+  }
+  load.peak_mm3_per_s = exact;
+  return true;
+}
+
+MotionLoad LoadMeter::Impl::measure(const Cutter& cutter, const CutMove& move, double known) {
+  MotionLoad load;
+  if (profile_.length_mm <= 0 || to_ <= from_) return load;
+  if (scan(cutter, move, known, load) || scan_points(cutter, move, known, load)) return load;
+  return measure_by_pieces(cutter, move);
+}
+
+/// Each by lanes, as if the spindle kept its middle direction, and as if those before had not cut:
+/// what the cutter stands in when a move begins takes none of its time. Where turning is more than
+/// half of what a move does all of it counts.
+void LoadMeter::Impl::cut_parts(const Cutter& cutter, std::span<const CutMove> moves,
+                                std::vector<double>& parts) {
+  parts.assign(moves.size(), 1.0);
+  const double diameter_mm = 2 * cutter.radius_mm(), cell_mm = stock_.cell_mm();
+  for (std::size_t i = 0; i < moves.size() && left_looks_ >= 0; ++i) {
+    const CutMove& move = moves[i];
+    const SolidPoints* const solid = points_of(cutter, move);
+    const double length_mm = glm::length(move.to_mm - move.from_mm);
+    const double turned_mm = glm::length(move.axis_to - move.axis_from) * diameter_mm;
+    if (solid == nullptr || turned_mm > length_mm / 2 || length_mm <= 0) continue;
+    LaneScan::Grain grain = few_lanes();
+    grain.bin_mm = length_mm;
+    grain.gap_mm = EngagementScan::kLeastGapBins * window_mm(cutter) / kBinsOfWindow;
+    grain.step_mm = grain.gap_mm;
+    left_looks_ += kShare * diameter_mm * length_mm / (cell_mm * cell_mm);
+    left_looks_ -=
+        kBlocksOfPoint * lanes_.run(*solid, stock_.bounds_mm(), cell_mm, cutter, move, grain);
+    parts[i] = 0;
+    for (const LaneScan::Span& span : lanes_.spans()) parts[i] += span.to - span.from;
+  }
+}
+
+MotionLoad LoadMeter::Impl::measure_by_pieces(const Cutter& cutter, const CutMove& move) {
   MotionLoad load;
   cutter_ = &cutter;
   move_ = &move;

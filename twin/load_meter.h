@@ -2,14 +2,12 @@
 // partly in the air is no cutting for so long, and its mean rate is no peak.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "stock/stock_model.h"
-#include "twin/engagement_scan.h"
 #include "twin/tool_use.h"
 
 namespace kerf {
@@ -61,65 +59,32 @@ struct MotionReach {
 class LoadMeter {
  public:
   static constexpr int kPieces = 16;
-  static constexpr double kFreeCells = 4e7;
-  static constexpr double kFreeBlocks = 2e6;
-  static constexpr double kShare = 0.03;
+  static const double kFreeCells, kFreeBlocks, kShare;
 
-  explicit LoadMeter(const StockModel& stock) : stock_(stock), left_cells_(free_cells()) {}
+  explicit LoadMeter(const StockModel& stock);
+  ~LoadMeter();
 
   /// Of each feed move that is going to be cut (is_one_piece()) and lasts so long.
   /// `speed_mm_per_s`: the greatest on the way, 0: not known.
   MotionReach reach(const Cutter& cutter, const CutMove& move, double duration_s,
                     double speed_mm_per_s);
   /// There is something left to spend; the last half of what is free is for moves that last.
-  bool affords(bool lasts) const { return left_cells_ >= (lasts ? 0 : free_cells() / 2); }
+  bool affords(bool lasts) const;
   /// Of the move that reach() was asked about last; all before it has been given to the model.
-  MotionLoad measure(const Cutter& cutter, const CutMove& move);
+  /// Rates that cannot exceed `known_mm3_per_s` are not looked at closely.
+  MotionLoad measure(const Cutter& cutter, const CutMove& move, double known_mm3_per_s);
+  /// Of a motion that is cut as several moves, or while the spindle turns: for each of them the
+  /// part of its way on which it cuts. All before the motion has been given to the model. Of models
+  /// that do not tell all is taken to cut.
+  void cut_parts(const Cutter& cutter, std::span<const CutMove> moves, std::vector<double>& parts);
   /// Of the way, over which rates are taken.
   double window_mm(const Cutter& cutter) const;
   /// The spindle does not turn about on the way.
   static bool is_one_piece(const CutMove& move) { return move.axis_from == move.axis_to; }
 
  private:
-  struct Span {
-    double from = 0, to = 0;  ///< fraction of the way
-    double removed_mm3 = 0;
-    bool cuts() const { return removed_mm3 > 0; }
-  };
-  /// Time and speed at a fraction of the way.
-  struct Profile {
-    double length_mm = 0, duration_s = 0, speed_mm_per_s = 0, ramp_mm = 0, ramp_s = 0;
-    double at(double part) const;
-    double speed_at(double part) const;
-    double greatest_speed(double from, double to) const;
-  };
-  double free_cells() const { return stock_.takes_tilted_tools() ? kFreeBlocks : kFreeCells; }
-  bool scan(const Cutter& cutter, const CutMove& move, MotionLoad& load);
-  double scanned_peak(const EngagementScan::Span& span, double window);
-  bool is_hollow(const HeightGrid& heights);
-  MotionLoad measure_by_pieces(const Cutter& cutter, const CutMove& move);
-  void clip(const Cutter& cutter, const CutMove& move);
-  FeedPart clipped_part(const CutMove& move) const;
-  double cut_part(StockModel& stock, double from, double to);
-  void cut_spans(const StockModel& before, double from, double to, int pieces);
-  double find_begin(const Span& span, const StockModel& before, double least);
-  double find_end(const Span& span, const StockModel& before, double least);
-  void add_run(std::size_t first, std::size_t end, double window, MotionLoad& load);
-  double peak(std::size_t first, std::size_t end, double window) const;
-
-  const StockModel& stock_;
-  double left_cells_;
-  EngagementScan scan_;
-  std::vector<double> rates_;
-  std::optional<bool> hollow_;  ///< below its heights; asked when it is needed
-  Profile profile_;
-  double from_ = 0, to_ = 1;  ///< of the way, where the cutter is where the blank was
-  const Cutter* cutter_ = nullptr;
-  const CutMove* move_ = nullptr;
-  std::vector<Span> spans_;
-  std::vector<std::unique_ptr<StockModel>> before_;  ///< the workpiece before each of them
-  std::vector<CutMove> moves_;
-  std::vector<CutReport> reports_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kerf

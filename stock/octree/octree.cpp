@@ -350,6 +350,44 @@ std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
   return WayContact{first, {first_part(moves[first], meets).to_mm, depth_mm}};
 }
 
+/// By the nodes around it; where they differ by the planes of the crossings between them.
+bool Octree::solid_at(const Vec3& point_mm, double within_mm) const {
+  const Impl& m = *impl_;
+  const Lattice& lattice = m.tree.lattice();
+  std::array<int, 3> low{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double place = (point_mm[axis] - lattice.origin_mm[axis]) / lattice.cell_mm[axis];
+    if (!(place >= 0 && place < lattice.cells[a] + 1)) return false;
+    low[a] = static_cast<int>(place);
+  }
+  int solid = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int i = low[0] + (corner & 1), j = low[1] + (corner >> 1 & 1), k = low[2] + (corner >> 2);
+    const BrickRef& brick = m.tree.brick(i / kBrick, j / kBrick, k / kBrick);
+    if (brick.get() == nullptr) {
+      solid += brick.is_solid() ? 1 : 0;
+    } else {
+      solid += brick->columns[j % kBrick * kSide + i % kBrick] >> (k % kBrick) & 1;
+    }
+  }
+  if (solid == 0 || solid == 8) return (solid == 8) != m.additive;
+  thread_local HermiteGrid cell;
+  octree::gather(m.tree, m.additive, low, {2, 2, 2}, &cell);
+  const auto at = [](int n) { return static_cast<std::size_t>(n); };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::int32_t number = cell.edges[at(axis)][at(corner)];
+      if (number < 0) continue;
+      const HermiteCrossing& crossing = cell.crossings[at(number)];
+      Vec3 crossed = cell.origin_mm + Vec3(corner & 1, corner >> 1 & 1, corner >> 2) * cell.cell_mm;
+      crossed[axis] += static_cast<double>(crossing.t) * cell.cell_mm[axis];
+      if (glm::dot(Vec3(crossing.normal), point_mm - crossed) > -within_mm) return false;
+    }
+  }
+  return true;
+}
+
 std::unique_ptr<StockModel> Octree::snapshot() const {
   auto copy = std::make_unique<Impl>(impl_->tree);
   copy->additive = impl_->additive;

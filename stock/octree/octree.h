@@ -12,6 +12,7 @@
 
 #include "stock/blank.h"
 #include "stock/octree/hermite_grid.h"
+#include "stock/solid_points.h"
 #include "stock/stock_model.h"
 #include "stock/way_contact.h"
 
@@ -51,7 +52,7 @@ struct OctreeOptions {
 ///
 /// Sources: S. Frisken et al., "Adaptively sampled distance fields", SIGGRAPH 2000 (the field);
 /// T. Ju et al., "Dual contouring of Hermite data", SIGGRAPH 2002 (what is kept of it).
-class Octree final : public StockModel, public WaySearcher {
+class Octree final : public StockModel, public WaySearcher, public SolidPoints {
  public:
   /// Error if cell_mm is not finite or <= 0 or exceeds the blank, if more than 20 000 cells lie
   /// between the blank's floor and its top (a tool without an end cuts through them all), or if the
@@ -80,6 +81,7 @@ class Octree final : public StockModel, public WaySearcher {
   std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,
                                              double tolerance_mm,
                                              const WayWatch& watch) const override;
+  bool solid_at(const Vec3& point_mm, double within_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
   void keep_cut_ids(bool keep) override;

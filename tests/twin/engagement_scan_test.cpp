@@ -43,19 +43,26 @@ class EngagementScanTest : public testing::Test {
   void run(const Cutter& cutter, const CutMove& move, double bin_mm = 0.5) {
     ASSERT_TRUE(EngagementScan::takes(cutter, move));
     scan_.run(*stock_->snapshot()->height_grid(), cutter, move, 0, 1, bin_mm);
+    EngagementScan::Lanes lanes;
+    lanes.bin_mm = bin_mm;
+    lanes.gap_mm = lanes.step_mm = EngagementScan::kLeastGapBins * bin_mm;
+    lanes_.run_lanes(*stock_->snapshot()->height_grid(), cutter, move, 0, 1, lanes);
   }
   /// The only stretch: from and to in mm of a way of that length.
   void expect_span(double length_mm, double from_mm, double to_mm, double within_mm) {
-    ASSERT_EQ(scan_.spans().size(), 1U);
-    EXPECT_NEAR(scan_.spans()[0].from * length_mm, from_mm, within_mm);
-    EXPECT_NEAR(scan_.spans()[0].to * length_mm, to_mm, within_mm);
+    for (const EngagementScan* scan : {&scan_, &lanes_}) {
+      SCOPED_TRACE(scan == &scan_ ? "all cells" : "lanes");
+      ASSERT_EQ(scan->spans().size(), 1U);
+      EXPECT_NEAR(scan->spans()[0].from * length_mm, from_mm, within_mm);
+      EXPECT_NEAR(scan->spans()[0].to * length_mm, to_mm, within_mm);
+    }
   }
   double sum_mm3() const {
     return std::accumulate(scan_.bins_mm3().begin(), scan_.bins_mm3().end(), 0.0);
   }
 
   std::unique_ptr<ZMap> stock_;
-  EngagementScan scan_;
+  EngagementScan scan_, lanes_;
 };
 
 /// Flat and bull-nosed ones meet the block with their full radius, a ball of R5 with
@@ -93,11 +100,13 @@ TEST_F(EngagementScanTest, AnAirGapIsNotCut) {
   const Cutter flat = parse_shape("flat:10").value();
   cut(flat, line({25, -10, -2}, {25, 40, -2}));
   run(flat, line({-20, 15, -2}, {70, 15, -2}));
-  ASSERT_EQ(scan_.spans().size(), 2U);
-  EXPECT_NEAR(scan_.spans()[0].from * 90, 15, 0.02);
-  EXPECT_NEAR(scan_.spans()[0].to * 90, 40, kCell_mm / 2);
-  EXPECT_NEAR(scan_.spans()[1].from * 90, 45, kCell_mm / 2);
-  EXPECT_NEAR(scan_.spans()[1].to * 90, 70, 0.02);
+  for (const EngagementScan* scan : {&scan_, &lanes_}) {
+    ASSERT_EQ(scan->spans().size(), 2U);
+    EXPECT_NEAR(scan->spans()[0].from * 90, 15, 0.02);
+    EXPECT_NEAR(scan->spans()[0].to * 90, 40, kCell_mm / 2);
+    EXPECT_NEAR(scan->spans()[1].from * 90, 45, kCell_mm / 2);
+    EXPECT_NEAR(scan->spans()[1].to * 90, 70, 0.02);
+  }
 }
 
 /// Where it stopped before it goes on, and what it has cut it does not cut again.
@@ -106,6 +115,7 @@ TEST_F(EngagementScanTest, ASlotIsGoneOnWith) {
   cut(flat, line({-20, 15, -2}, {20, 15, -2}));
   run(flat, line({-20, 15, -2}, {20, 15, -2}));
   EXPECT_TRUE(scan_.spans().empty());
+  EXPECT_TRUE(lanes_.spans().empty());
   EXPECT_EQ(sum_mm3(), 0);
   run(flat, line({-20, 15, -2}, {30, 15, -2}));
   expect_span(50, 40, 50, kCell_mm / 2);
@@ -136,6 +146,48 @@ TEST_F(EngagementScanTest, APlungeCutsFromTheTopOn) {
   expect_span(10, 6, 10, 0.001);
   for (std::size_t bin = 12; bin < 20; ++bin) {
     EXPECT_NEAR(scan_.bins_mm3()[bin], kPi * 9 / 2, 0.01 * kPi * 9 / 2) << bin;
+  }
+}
+
+/// Lanes see the same stretches as all cells, within a cell and a half, for a tenth of the looks.
+TEST_F(EngagementScanTest, LanesSeeWhatAllCellsTell) {
+  for (const char* shape : {"flat:6", "ball:6", "bull:6:1", "vee:6:90"}) {
+    const Cutter cutter = parse_shape(shape).value();
+    for (const CutMove& move :
+         {line({-5, 5, -2}, {40, 20, -3}), line({40, 5, 1}, {10, 25, -1}),
+          line({20, -5, -2}, {21, 40, -2}), turn({20, 15, -1}, {20, 15, -3}, {15, 15, 0}, 2 * kPi),
+          turn({60, 5, -2}, {50, 15, -2}, {50, 5, 0}, kPi / 2)}) {
+      SCOPED_TRACE(shape);
+      make("box:0,0,-10:50,30,0", 0.1);
+      cut(cutter, line({25, 0, -2.5}, {25, 30, -2.5}));
+      run(cutter, move);
+      const double length_mm =
+          move.arc ? 10 * std::abs(move.arc->sweep_rad) : glm::length(move.to_mm - move.from_mm);
+      ASSERT_EQ(lanes_.spans().size(), scan_.spans().size());
+      for (std::size_t i = 0; i < scan_.spans().size(); ++i) {
+        EXPECT_NEAR(lanes_.spans()[i].from * length_mm, scan_.spans()[i].from * length_mm, 0.15);
+        EXPECT_NEAR(lanes_.spans()[i].to * length_mm, scan_.spans()[i].to * length_mm, 0.15);
+      }
+    }
+  }
+}
+
+/// A model may hold the last move back; its heights do not have it then.
+TEST_F(EngagementScanTest, WhatIsHeldBackIsCut) {
+  EngagementScan::Lanes lanes;
+  lanes.bin_mm = 0.5;
+  lanes.gap_mm = lanes.step_mm = 1.5;
+  for (const char* shape : {"flat:10", "ball:10"}) {
+    SCOPED_TRACE(shape);
+    const Cutter cutter = parse_shape(shape).value();
+    for (const double end_z : {-2.0, -3.0}) {
+      const CutMove held = line({-20, 15, -2}, {20, 15, end_z});
+      lanes.held = &held;
+      lanes_.run_lanes(*stock_->height_grid(), cutter, held, 0, 1, lanes);
+      double length = 0;
+      for (const EngagementScan::Span& span : lanes_.spans()) length += span.to - span.from;
+      EXPECT_LT(length * 40, 0.5);
+    }
   }
 }
 
