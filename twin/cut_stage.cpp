@@ -6,6 +6,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "twin/blank_choice.h"
@@ -35,6 +36,11 @@ constexpr std::size_t kMostTiltedMovesPerCut = 512;
 constexpr double kGrowth = 4;
 /// Rounded limits of an INI are no finding.
 constexpr double kOverFeed = 1.01;
+
+/// Of the moves of one motion, to share its time: as far as they go, and as they turn.
+double way_of(const CutMove& move) {
+  return glm::length(move.to_mm - move.from_mm) + glm::length(move.axis_to - move.axis_from);
+}
 
 /// Beams and punches go through whatever the length of the tool: they are taken as programmed.
 bool displaced(const Motion& motion) { return motion.length.tip_shift_mm != Vec3{0}; }
@@ -383,10 +389,10 @@ void CutStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
 /// Those of divide().
 void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_off) {
   const std::uint64_t id = labels_ ? labels_->number_of({mounted_->number, m.source}) : next_id_++;
-  const double share_s =
-      step.duration_s / static_cast<double>(std::max<std::size_t>(1, divided_.size()));
+  double ways = 0;
+  for (const CutMove& move : divided_) ways += way_of(move);
   InFlight flight;
-  flight.duration_s = share_s;
+  flight.duration_s = step.duration_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
   flight.use = use_;
@@ -398,6 +404,8 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
     move.id = id;
     moves_.push_back(move);
     if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
+    const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
+    flight.duration_s = step.duration_s * share;
     in_flight_.push_back(flight);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;

@@ -483,14 +483,16 @@ bool EngagementScan::is_at_side(const Place& place) const {
 double EngagementScan::left_at(const Place& place, double removed_to) {
   const double half = half_along_, beside = beside_mm(place);
   double outward = std::min(half, radius_ - beside - 1e-9);
-  if (beside + half > radius_ - cell_ && stands_beside(place, z_ + rise_ * removed_to)) {
-    outward = radius_ - beside - 1e-9;
-  }
+  const bool at_wall =
+      beside + half > radius_ - cell_ && stands_beside(place, z_ + rise_ * removed_to);
+  if (at_wall) outward = radius_ - beside - 1e-9;
   Pass square[3];
   const Place edge = moved(place, half, outward);
   const int edges = passes(edge, from_, to_, square);
   double left = removed_to;
   for (int k = 0; k < edges; ++k) left = std::max(left, settled(edge, square[k]));
+  // The way ends before the widest comes to the end of the wall.
+  if (edges == 0 && at_wall && !arc_ && edge.along > to_ * length_) left = to_;
   return left;
 }
 
