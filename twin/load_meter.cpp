@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "twin/engagement_scan.h"
@@ -32,13 +30,13 @@ constexpr int kBinsOfWindow = 8;
 /// one that is cut: some times what they cost, since what is free must not show.
 constexpr double kCellsOfLook = 12;
 constexpr double kCellsOfPlace = 120;
-constexpr double kCellsOfLaneLook = 30;
+constexpr double kCellsOfLaneLook = 36, kCellsOfArcLook = 120;
 constexpr double kBlocksOfPoint = 0.2;
 constexpr double kCellsOfTile = 16;  ///< of the workpiece, that a snapshot has to hold
 /// Lanes along a move (EngagementScan::run_lanes), and when little is left to spend, which is when
 /// it is this part of what is free: then steps are so much longer, too.
-constexpr int kLanes = 41, kFewLanes = 21;
-constexpr double kFineShare = 0.5, kCoarser = 4;
+constexpr int kLanes = 41, kFewLanes = 13;
+constexpr double kFineShare = 0.5, kCoarser = 6;
 constexpr int kFewColumns = 9;
 constexpr double kFewRowsGrow = 2.5, kFewRowsOfDiameter = 0.25;
 /// Of what is cut may be spent on looking closely, beside what is free and LoadMeter::kShare.
@@ -78,9 +76,9 @@ CutMove part_of(const CutMove& whole, double from, double to) {
 
 }  // namespace
 
-const double LoadMeter::kFreeCells = 2e7;
-const double LoadMeter::kFreeBlocks = 1e6;
-const double LoadMeter::kShare = 0.03;
+const double LoadMeter::kFreeCells = 8e6;
+const double LoadMeter::kFreeBlocks = 4e5;
+const double LoadMeter::kShare = 0.05;
 
 struct LoadMeter::Impl {
   struct Span {
@@ -127,8 +125,11 @@ struct LoadMeter::Impl {
   EngagementScan scan_;
   LaneScan lanes_;
   std::vector<double> rates_;
-  std::optional<CutMove> asked_, held_;  ///< the last two that reach() was asked about
-  std::string asked_cutter_, held_cutter_;
+  struct Asked {
+    Vec3 from_mm{0}, to_mm{0};
+    const void* cutter = nullptr;  ///< null: none, or an arc
+  };
+  Asked asked_, held_;          ///< the last two moves that reach() was asked about
   std::optional<bool> hollow_;  ///< below its heights; asked when it is needed
   Profile profile_;
   double from_ = 0, to_ = 1;  ///< of the way, where the cutter is where the blank was
@@ -242,8 +243,8 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
                                    double speed_mm_per_s) {
   MotionReach reach;
   if (cutter.undercuts()) hollow_ = true;
-  held_ = std::exchange(asked_, move.arc ? std::nullopt : std::optional(move));
-  held_cutter_ = std::exchange(asked_cutter_, cutter.spec());
+  held_ = asked_;
+  asked_ = {move.from_mm, move.to_mm, move.arc ? nullptr : cutter.profile().data()};
   const double length_mm = length_of(move);
   profile_ = {};
   if (length_mm <= 0 || duration_s <= 0) return reach;
@@ -260,7 +261,7 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
   // A move up or down sweeps its disc alone.
   const double diameter_mm = 2 * cutter.radius_mm();
   const Vec3 step = move.to_mm - move.from_mm;
-  const bool level = move.arc || std::hypot(step.x, step.y) > std::abs(step.z);
+  const bool level = move.arc || step.x * step.x + step.y * step.y > step.z * step.z;
   if (move.is_vertical()) {
     const double speed = profile_.speed_mm_per_s, radius_mm = cutter.radius_mm();
     reach.side_mm2_per_s = diameter_mm * speed;
@@ -441,9 +442,12 @@ bool LoadMeter::Impl::scan(const Cutter& cutter, const CutMove& move, double kno
   lanes.gap_mm = EngagementScan::kLeastGapBins * bin_mm;
   lanes.step_mm = fine ? lanes.gap_mm : kCoarser * lanes.gap_mm;
   lanes.count = fine ? kLanes : kFewLanes;
-  if (held_ && held_cutter_ == cutter.spec()) lanes.held = &*held_;
+  CutMove held;
+  held.from_mm = held_.from_mm, held.to_mm = held_.to_mm;
+  if (held_.cutter == cutter.profile().data()) lanes.held = &held;
   const EngagementScan::Cost looked = scan_.run_lanes(*present, cutter, move, from_, to_, lanes);
-  left_looks_ -= kCellsOfLaneLook * looked.looks + kCellsOfPlace * looked.places;
+  left_looks_ -= (move.arc ? kCellsOfArcLook : kCellsOfLaneLook) * looked.looks;
+  left_looks_ -= kCellsOfPlace * looked.places;
   take_spans(scan_, window, load);
   if (!may_be_fastest(load.peak_mm3_per_s, known)) {
     load.peak_mm3_per_s = 0;

@@ -30,20 +30,20 @@ struct MotionReach {
   double disc_mm3_per_s = 0;
 };
 
-/// Works out what a feed move is going to do to the workpiece as it is: from its heights
-/// (EngagementScan), and where these do not say it (tilted tools, undercuts, arcs that are none
-/// about Z) by cutting the move in pieces, in a snapshot that is thrown away. The workpiece is cut
-/// as a whole, and keeps its bits. What that costs is limited by counts, not by a clock, so the
-/// results are the same for any threads and batches: a measurement is made while those before have
-/// cost no more than kFreeCells (kFreeBlocks of models for tilted tools) and kShare of what was
-/// cut, in cells. What is not measured counts by its reach() and its neighbours
-/// (add_short_move()).
+/// Works out what a feed move is going to do to the workpiece as it is. When it cuts is told by a
+/// few lanes along the way: by heights (EngagementScan::run_lanes), by points where these do not
+/// say it (LaneScan: octrees). A rate that may be the greatest so far is looked at closely: by
+/// heights (EngagementScan::run); else, as all of a move that neither takes (undercuts in an M-map,
+/// arcs that are none about Z), by cutting in pieces, in a snapshot that is thrown away. The
+/// workpiece is cut as a whole, and keeps its bits. Costs are limited by counts, not by a clock, so
+/// results are the same for any threads and batches: kFreeCells (kFreeBlocks of models for tilted
+/// tools) and kShare of what was cut, in cells. What is not measured counts by its reach().
 ///
 /// By heights: begins and ends at the sides of a blank are exact, at walls that were cut before
 /// they are good to half a cell (to cell / 2 + sqrt(D * cell / 2) where the cutter runs along such
-/// a wall with its widest). Air of less than three eighths of a window is not seen. Of ways with
-/// more than EngagementScan::kMostPoints cells a part is looked at: volumes are then good to about
-/// 1 %, and walls that are cut across to some cells.
+/// a wall with its widest). Air of less than three eighths of a window is not seen (of six times
+/// that when little is left to spend); then only a rate that exceeds what is known by 4 % is looked
+/// at closely. By points: ends are good to a fortieth of a cell, of what is thicker than a cell.
 ///
 /// In pieces, up to kPieces: ends are searched by halves, to 0.2 % of the way that cuts or half a
 /// cell, whichever is more. A sliver thinner than half a cell is not there to be cut: cutting seems

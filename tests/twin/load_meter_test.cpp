@@ -93,7 +93,7 @@ TEST_F(LoadMeterTest, ReachIsWhereTheBlankWas) {
   EXPECT_EQ(meter_->reach(cutter_, beside, duration_s(beside), kSpeed).part.seconds, 0);
 }
 
-/// Half of the way is in the air: with 600 of them as with a few, though looking at all
+/// Half of the way is in the air: with 300 of them as with a few, though looking at all
 /// of them closely would cost more than cutting them.
 TEST_F(LoadMeterTest, ManyMovesAreMeasuredAsWellAsFew) {
   cut(line({20, 20, -2}, {45, 20, -2}));
@@ -101,13 +101,13 @@ TEST_F(LoadMeterTest, ManyMovesAreMeasuredAsWellAsFew) {
   // chord.
   const CutMove move = line({-5, 20, -2}, {45, 20, -2}), back = line({45, 20, 5}, {-5, 20, 5});
   double cut_s = 0;
-  for (int n = 0; n < 600; ++n) {
+  for (int n = 0; n < 300; ++n) {
     meter_->reach(cutter_, back, duration_s(back), kSpeed);
     meter_->reach(cutter_, move, duration_s(move), kSpeed);
     ASSERT_TRUE(meter_->affords(true)) << n;
     cut_s += meter_->measure(cutter_, move, 80).cut_s;
   }
-  EXPECT_NEAR(cut_s, 600 * 2.2, 600 * (kCell_mm / 2 + std::sqrt(4 * kCell_mm / 2)) / kSpeed);
+  EXPECT_NEAR(cut_s, 300 * 2.2, 300 * (kCell_mm / 2 + std::sqrt(4 * kCell_mm / 2)) / kSpeed);
 }
 
 /// Short moves are looked at while that costs next to nothing, and never more than is cut pays for.
@@ -119,7 +119,7 @@ TEST_F(LoadMeterTest, MeasuringIsPaidForByCutting) {
     if (meter_->affords(false)) ++short_ones;
     if (meter_->affords(true)) meter_->measure(cutter_, move, 80);
   }
-  EXPECT_GT(short_ones, 50);
+  EXPECT_GT(short_ones, 10);
   EXPECT_LT(short_ones, 3000);
   for (int n = 0; n < 30000; ++n) {
     meter_->reach(cutter_, bit, duration_s(bit), kSpeed);
