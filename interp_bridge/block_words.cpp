@@ -133,6 +133,7 @@ int code_of(const std::optional<double>& number) {
 struct Codes {
   bool g10 = false;
   int l = -1;
+  int p = 0;
 };
 
 void take_g(int code, BlockWords& words, Codes& codes) {
@@ -151,6 +152,13 @@ void take_g(int code, BlockWords& words, Codes& codes) {
     case 280:
     case 300:
       words.place = BlockWords::Place::kReference;
+      words.second_reference = code == 300;
+      break;
+    case 281:
+      words.store = BlockWords::Store::kFirst;
+      break;
+    case 301:
+      words.store = BlockWords::Store::kSecond;
       break;
     case 530:
       words.place = BlockWords::Place::kMachine;
@@ -171,7 +179,8 @@ void take_g(int code, BlockWords& words, Codes& codes) {
 }
 
 bool is_special(const BlockWords& words) {
-  return words.place != BlockWords::Place::kProgram || words.offset != BlockWords::Offset::kNone;
+  return words.place != BlockWords::Place::kProgram || words.offset != BlockWords::Offset::kNone ||
+         words.store != BlockWords::Store::kNone;
 }
 
 /// False: the line has no G10, G28, G30, G53, G92 and no M6. Most lines, so it is to be quick.
@@ -228,6 +237,7 @@ BlockWords words_of_block(std::string_view line) {
         if (!number) {
           words.computed = static_cast<std::uint8_t>(words.computed | 1U << (letter - 'x'));
         }
+        if (letter == 'z') words.z = number.value_or(0);
         break;
       case '@':
       case '^':
@@ -244,13 +254,28 @@ BlockWords words_of_block(std::string_view line) {
       case 'l':
         codes.l = code_of(number);
         break;
+      case 'p':
+        codes.p = number && *number >= 0 && *number < 100 ? static_cast<int>(*number) : -1;
+        break;
       default:
         break;
     }
   }
   if (codes.g10 && codes.l == 20) words.offset = BlockWords::Offset::kMachine;
   if (codes.g10 && codes.l == 200) words.offset = BlockWords::Offset::kTouchOff;
+  if (codes.g10) words.system = codes.p;
   return words;
+}
+
+bool may_store(std::string_view line) {
+  // G10 has an L, the others have a point.
+  const bool told = line.find_first_of(".lL") != line.npos;
+  return told && may_be_special(line);
+}
+
+bool stores(const BlockWords& words) {
+  return words.store != BlockWords::Store::kNone || words.offset == BlockWords::Offset::kMachine ||
+         words.offset == BlockWords::Offset::kTouchOff;
 }
 
 /// What is known of one file, and where it was read last.

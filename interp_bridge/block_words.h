@@ -33,16 +33,27 @@ struct BlockWords {
   /// G0 or G1, G2, G3, where the block has the word.
   enum class Speed : std::uint8_t { kUnsaid, kRapid, kFeed };
 
+  /// What it keeps for later, although it moves nothing and no canonical call comes of it.
+  enum class Store : std::uint8_t { kNone, kFirst, kSecond };  ///< G28.1; G30.1
+
   std::uint8_t named = 0;     ///< bit 0: it has an X word, 1: Y, 2: Z
   std::uint8_t computed = 0;  ///< .. whose number is an expression, or a parameter
   Place place = Place::kProgram;
   Offset offset = Offset::kNone;
   Speed speed = Speed::kUnsaid;
+  Store store = Store::kNone;
+  bool second_reference = false;  ///< of Place::kReference: G30
+  int system = 0;                 ///< P of a G10 L2 or L20, 0 the one in force; -1: computed
+  double z = 0;                   ///< number of its Z word, in the program's unit; 0 if computed
 };
 
 /// Words of one line of NC code. Comments, O-words and what stands in brackets do not count; a G, M
 /// or L word whose number is computed is passed over. About 100 ns.
 BlockWords words_of_block(std::string_view line);
+/// It may be one whose effect shows only later: G28.1, G30.1, G10 L2 and L20. About 5 ns.
+bool may_store(std::string_view line);
+/// It is.
+bool stores(const BlockWords& words);
 
 /// The words of the blocks that motions come from, read from the files as they are needed. A file
 /// is looked through once (31 MB: 0.1 s); what is kept of it are the lines that have to do with

@@ -33,11 +33,14 @@ using Clock = std::chrono::steady_clock;
 constexpr double kInchMm = 25.4;
 
 /// A row as `kerf-interp --tools` takes it: machine units, all digits.
-std::string tool_row(const ToolTableRow& row, double unit_mm, bool lengths) {
-  const Vec3 offset = lengths ? row.offset_mm / unit_mm : Vec3(0);
-  return fmt::format("{} {} {} {} {} 0 0 0 0 0 0 {} {} {} {}\n", row.tool, row.pocket, offset.x,
-                     offset.y, offset.z, row.diameter_mm / unit_mm, row.front_angle_deg,
-                     row.back_angle_deg, row.orientation);
+/// A B C stay 0: they are no lengths of a tip (ToolLengths).
+std::string tool_row(const ToolTableRow& row, double unit_mm, const InterpreterSetup& machine) {
+  const Vec3 offset = machine.tool_lengths ? row.offset_mm / unit_mm : Vec3(0);
+  Vec3 slides = machine.tool_lengths ? row.offset_uvw_mm / unit_mm : Vec3(0);
+  for (int i = 0; i < 3; ++i) slides[i] *= (machine.length_axes >> (6 + i) & 1) != 0 ? 1 : 0;
+  return fmt::format("{} {} {} {} {} 0 0 0 {} {} {} {} {} {} {}\n", row.tool, row.pocket, offset.x,
+                     offset.y, offset.z, slides.x, slides.y, slides.z, row.diameter_mm / unit_mm,
+                     row.front_angle_deg, row.back_angle_deg, row.orientation);
 }
 
 /// The INI of a machine that has none: subroutines may also stand where kerf was started, as on the
@@ -179,7 +182,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   const std::string tool_path = home + "/tools";
   std::ofstream tool_file(tool_path);
   const double unit_mm = machine.inch_machine ? kInchMm : 1.0;
-  for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine.tool_lengths);
+  for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine);
   if (!tool_file.flush()) return cannot_write(tool_path);
   const std::string torch_path = home + "/torch";
   std::ofstream torch_file(torch_path);
@@ -403,7 +406,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.diameters = std::move(diameters);
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
-  feeding.lengths.length_mm = known_lengths(tools_);
+  feeding.lengths.axes = static_cast<unsigned>(options_.machine.length_axes);
+  feeding.lengths.lengths = known_lengths(tools_, feeding.lengths.axes);
   feeding.lengths.calls = options_.machine.tool_lengths ? ToolLengthSetup::Calls::kTrue
                                                         : ToolLengthSetup::Calls::kHidden;
   feeding.lengths.table_unit_mm = options_.machine.inch_machine ? 25.4 : 1.0;

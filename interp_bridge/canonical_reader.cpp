@@ -58,6 +58,11 @@ bool CanonicalReader::take_line(std::string_view line) {
   parse_canonical_line(line, line_);
   switch (line_.kind) {
     case CanonicalLineKind::kCommand:
+      if (options_.numbered_source && line_.command.name == CanonicalName::kComment &&
+          line_.command.text == kStoreComment) {
+        feeder_.take_store(source_of(line_.command));
+        return true;
+      }
       return feeder_.take(line_.command, source_of(line_.command));
     case CanonicalLineKind::kUnknown:
       take_unknown();

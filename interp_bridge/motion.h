@@ -116,7 +116,7 @@ constexpr TorchTool torch_tool(const TorchState& torch) {
   return (torch.spindles_on & 4) != 0 ? TorchTool::kSpotting : TorchTool::kNone;
 }
 
-/// The tool length offset in force, where it is not the length of the tool in the spindle. 88
+/// The tool length offset in force, where it is not the length of the tool in the spindle. 144
 /// bytes.
 struct ToolLengthState {
   enum class Verdict : std::uint8_t {
@@ -128,9 +128,12 @@ struct ToolLengthState {
   Vec3 applied_mm{0};    ///< X Y Z of the offset in force, along the machine's axes
   Vec3 real_mm{0};       ///< of the tool in the spindle, by the tool table
   Vec3 tip_shift_mm{0};  ///< workpiece frame; in from_mm, to_mm and the arc's centre already
+  Vec3 uvw_off_mm{0};    ///< U V W: applied less real; in from_uvw_mm, to_uvw_mm if `displaces`
+  Vec3 abc_off_deg{0};   ///< A B C: the same. Where that leaves the tip is not reckoned with
   SourceRef set_at;      ///< G43 that set it after the tool change; line 0: none has
   std::int32_t offset_tool = -1;  ///< whose row is applied (H); -1: none's (G49), or not known
   Verdict verdict = Verdict::kSound;
+  bool displaces = false;  ///< the motion is that of the real tip, off by tip_shift_mm, uvw_off_mm
   bool operator==(const ToolLengthState&) const = default;
 };
 
@@ -176,6 +179,9 @@ struct Motion {
   /// kToolChange by M61: the program only says which tool is in the spindle. LinuxCNC 2.9 loses a
   /// straight feed (or a chain that G64 Q merges) that comes right before it.
   bool by_number = false;
+  /// G10 L0 has come since the step before, and nothing ahead of it that ends the chain of feeds:
+  /// LinuxCNC loses what it loses before M61.
+  bool table_reloaded = false;
   int tool = 0;  ///< tool number in the spindle, 0 = none
   /// The last T word, while no tool change has followed it; line 0: there is none that waits.
   int selected_tool = 0;

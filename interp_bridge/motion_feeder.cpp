@@ -96,9 +96,15 @@ void MotionFeeder::follow_block(CanonicalName name) {
   }
 }
 
+void MotionFeeder::take_store(SourceRef source) {
+  if (!options_.places.has_blocks) return;
+  const BlockWords* const block = blocks_.at(source, summary_.files, fold_.unplaced());
+  if (block != nullptr && stores(*block)) fold_.store(*block);
+}
+
 bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   source_ = source;
-  if (options_.places.followed || (options_.places.has_blocks && fold_.stands_on_workpiece())) {
+  if (options_.places.followed || (options_.places.has_blocks && fold_.needs_offset_blocks())) {
     follow_block(command.name);
   }
   if (command.spelling.empty() ||

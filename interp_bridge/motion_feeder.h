@@ -73,6 +73,8 @@ class MotionFeeder {
   void take_wait() { fold_.halt(); }
   /// M190 P: true if it is QtPlasmaC's, and the material is another now.
   bool take_material_change(double number, SourceRef source);
+  /// The block is about to be run, and may be one whose effect shows only later (stores()).
+  void take_store(SourceRef source);
   /// M100 to M199: true if it is one that SignalOptions names, and a step has been made of it.
   bool take_user_code(double number, SourceRef source);
   /// The program is about to probe: all motions before are handed over, then it is asked for. What

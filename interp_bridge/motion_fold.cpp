@@ -259,6 +259,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.io_halts = std::exchange(io_halts_, std::uint8_t{0});
   motion.chain_end = std::exchange(chain_end_, ChainEnd::kNone);
   motion.tool_prepare = std::exchange(tool_prepare_, ToolPrepare::kNone);
+  motion.table_reloaded = std::exchange(table_reloaded_, false);
   return motion;
 }
 
@@ -268,6 +269,9 @@ void MotionFold::halt() {
 }
 
 void MotionFold::note_waits(const CanonicalCommand& command) {
+  if (command.name == CanonicalName::kReloadTooldata) {
+    table_reloaded_ = table_reloaded_ || (halts_ == 0 && chain_end_ == ChainEnd::kNone);
+  }
   switch (queue_effect(command.name)) {
     case QueueEffect::kHaltsForIo:
       count_up(io_halts_);
@@ -296,15 +300,15 @@ void MotionFold::update_rpm() {
   rpm_ = std::min(rpm_, spindle.surface_max_rpm);
 }
 
-void MotionFold::move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg,
+void MotionFold::move_to(Motion& motion, Vec3 to_mm, const std::array<double, 3>& to_abc_deg,
                          const Vec3& to_uvw_mm) {
-  motion.to_mm = to_mm;
-  motion.to_abc_deg = to_abc_deg;
-  motion.to_uvw_mm = to_uvw_mm;
   if (follows_places_) {
     motion.unknown_to = unknown_ = unknown_after(motion, to_mm);
     motion.start_known = motion.start_known && unknown_ == 0;
   }
+  motion.to_mm = to_mm;
+  motion.to_abc_deg = to_abc_deg;
+  motion.to_uvw_mm = to_uvw_mm;
   if (!motion.start_known) {
     motion.from_mm = to_mm;
     motion.from_abc_deg = to_abc_deg;
@@ -360,6 +364,7 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
     io_halts_ = motion.io_halts;
     chain_end_ = motion.chain_end;
     tool_prepare_ = motion.tool_prepare;
+    table_reloaded_ = motion.table_reloaded;
     out.pop_back();
   }
   return FoldRemark::kNone;
@@ -500,6 +505,9 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
       plane_ = static_cast<CanonicalPlane>(command.integer(0));
       return true;
     case CanonicalName::kUseToolLengthOffset:
+      for (std::size_t i = 0; i < length_call_.size(); ++i) {
+        length_call_[i] = i < command.argument_count ? command.number(i) : 0;
+      }
       change_tool_length(command);
       // By how much only the probe knows.
       unknown_ |= probed_;

@@ -106,6 +106,10 @@ class MotionFold {
                      std::uint8_t zero_known);
   /// The block of the commands that follow; null: not known, as that of a listing. Outlives them.
   void set_block(const BlockWords* block) { block_ = block; }
+  /// Ahead of a block of which no command may come (stores()): G28.1 and G30.1 keep the place where
+  /// the machine stands, so that G28 and G30 lead to a known one; G10 L2 and L20 may set a system
+  /// that is in force later.
+  void store(const BlockWords& block);
   /// Axes of which it matters whether a block names them, and how.
   std::uint8_t unplaced() const { return unknown_ | probed_; }
   /// A probing move along these axes has ended nobody knows where. They are unknown until a block
@@ -115,7 +119,8 @@ class MotionFold {
   void lose(std::uint8_t axes);
   /// Behind a probing move that has come down on the workpiece.
   void stand_on_workpiece() { on_workpiece_ = true; }
-  bool stands_on_workpiece() const { return on_workpiece_; }
+  /// Blocks that set offsets are to be told (set_block()).
+  bool needs_offset_blocks() const { return on_workpiece_ || has_plate_; }
   /// Thickness of the touch plate that the probe stands on instead; 0: of none.
   double plate_mm() const { return plate_mm_; }
 
@@ -201,7 +206,7 @@ class MotionFold {
   void fix_workpiece_frame();
   Motion& append(MotionKind kind, SourceRef source, std::vector<Motion>& out);
   void note_waits(const CanonicalCommand& command);
-  void move_to(Motion& motion, const Vec3& to_mm, const std::array<double, 3>& to_abc_deg,
+  void move_to(Motion& motion, Vec3 to_mm, const std::array<double, 3>& to_abc_deg,
                const Vec3& to_uvw_mm);
   void set_feed(Motion& motion) const;
   void update_rpm();
@@ -218,7 +223,12 @@ class MotionFold {
   void fold_switch(const CanonicalCommand& command, SourceRef source, std::vector<Motion>& out);
   void change_tool_length(const CanonicalCommand& command);
   // motion_fold_places.cpp
-  std::uint8_t unknown_after(Motion& motion, const Vec3& to_mm);
+  std::uint8_t unknown_after(Motion& motion, Vec3& to_mm);
+  void store_reference(bool second);
+  void store_system(const BlockWords& block);
+  void store_plate(const BlockWords& block);
+  void enter_system(int system);
+  std::uint8_t go_to_stored(std::uint8_t axes, std::uint8_t lost, Vec3& to_mm);
   std::uint8_t changed_axes(const Vec3& to_mm) const;
   bool is_at_machine_place(const Motion& motion);
   void follow_offset(CanonicalName name, int system);
@@ -293,6 +303,7 @@ class MotionFold {
   std::uint8_t placed_before_probe_ = 0;  ///< how far a probe may go says not where it is
   bool on_workpiece_ = false;             ///< stand_on_workpiece(), and has not moved since
   double plate_mm_ = 0;
+  bool has_plate_ = false;  ///< one of systems_ has
   int g5x_index_ = 1;
   bool shifted_ = false;               ///< by G92
   std::uint8_t shift_floats_ = 0;      ///< the G92 was given where the axis was unknown
@@ -302,6 +313,25 @@ class MotionFold {
   std::uint8_t system_unrelated_ = 0;  ///< .. or G10 L20
   SourceRef reference_;                ///< the block of the last G28 or G30 ..
   int reference_moves_ = 0;            ///< .. and its moves so far
+  /// A place of the machine that the program has stored (G28.1, G30.1).
+  struct StoredPlace {
+    bool is_stored = false;
+    std::uint8_t known = 0;  ///< axes that were
+    Vec3 applied_mm{0};      ///< offset in force (ToolLengths)
+    std::array<double, 11> length_call{};
+  };
+  std::array<StoredPlace, 2> stored_places_{};
+  std::array<double, 11> length_call_{};  ///< the last USE_TOOL_LENGTH_OFFSET
+  /// What G10 has made of a work offset that is not in force.
+  struct StoredSystem {
+    std::uint8_t unrelated = 0;  ///< as system_unrelated_
+    std::uint8_t floats = 0;     ///< set where the tool stood, and that was unknown
+    double plate_mm = 0;         ///< its Z0 is so much higher: of a touch plate on the workpiece
+    bool operator==(const StoredSystem&) const = default;
+  };
+  static constexpr std::size_t kSystems = 10;  ///< G54 is 1, G59.3 is 9
+  std::array<StoredSystem, kSystems> systems_{};
+  std::array<StoredSystem, kSystems> systems_before_{};  ///< a G10 with a computed P
 
   int tool_ = 0;
   int selected_tool_ = 0;
@@ -328,6 +358,7 @@ class MotionFold {
   std::uint8_t io_halts_ = 0;
   ChainEnd chain_end_ = ChainEnd::kNone;
   ToolPrepare tool_prepare_ = ToolPrepare::kNone;
+  bool table_reloaded_ = false;
 
   TorchState torch_;
   /// M62, M63, M67 that wait for the next step that moves.

@@ -84,7 +84,9 @@ void MotionFold::place_tips(std::size_t first, std::vector<Motion>& out) const {
   if (lengths_.displaces()) {
     error_mm = state.applied_mm - state.real_mm;
     state.tip_shift_mm = along_work(error_mm);
+    state.displaces = true;
   }
+  const Vec3 slid_mm = state.displaces ? state.uvw_off_mm : Vec3{0};
   for (std::size_t i = first; i < out.size(); ++i) {
     Motion& motion = out[i];
     motion.length = state;
@@ -92,6 +94,9 @@ void MotionFold::place_tips(std::size_t first, std::vector<Motion>& out) const {
     motion.to_mm += state.tip_shift_mm;
     if (motion.kind == MotionKind::kArc) motion.arc.center_mm += state.tip_shift_mm;
     motion.tool_offset_mm -= error_mm;
+    motion.from_uvw_mm += slid_mm;
+    motion.to_uvw_mm += slid_mm;
+    motion.tool_offset_uvw_mm -= slid_mm;
   }
 }
 

@@ -86,7 +86,7 @@ bool MotionFold::is_at_machine_place(const Motion& motion) {
   return false;
 }
 
-std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
+std::uint8_t MotionFold::unknown_after(Motion& motion, Vec3& to_mm) {
   const std::uint8_t changed = changed_axes(to_mm);
   if (motion.kind == MotionKind::kProbe) placed_before_probe_ = placed_;
   if (block_ == nullptr) {
@@ -109,7 +109,8 @@ std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
       named = 0;
     }
   }
-  const std::uint8_t lost = to_machine & (without(kXyz, zero_known_) | unrelated);
+  std::uint8_t lost = to_machine & (without(kXyz, zero_known_) | unrelated);
+  if (to_machine != 0 && place == Place::kReference) lost = go_to_stored(to_machine, lost, to_mm);
   motion.to_machine_place = lost != 0;
   const std::uint8_t found = without(to_machine, lost | doubtful);
   placed_ |= found;
@@ -120,6 +121,90 @@ std::uint8_t MotionFold::unknown_after(Motion& motion, const Vec3& to_mm) {
   const std::uint8_t said = without(named | changed, to_machine | doubtful);
   placed_ |= without(said, unrelated);
   return without(unknown, said) | (said & unrelated);
+}
+
+void MotionFold::store(const BlockWords& block) {
+  if (block.store != BlockWords::Store::kNone) {
+    store_reference(block.store == BlockWords::Store::kSecond);
+  } else {
+    store_system(block);
+  }
+}
+
+void MotionFold::store_reference(bool second) {
+  StoredPlace& place = stored_places_[second ? 1 : 0];
+  place = {true, without(kXyz, unknown_), lengths_.applied_mm(), length_call_};
+  const bool turned = work_.rotation_deg != 0 || frame_.rotation_deg != 0;
+  if (turned && (place.known & kXy) != kXy) place.known &= kZ;
+}
+
+/// Which of `axes` go to an unknown place by G28 or G30; `lost`: where the program has not stored
+/// it. The interpreter knows it by its own coordinates of the machine, which hang together with the
+/// work as long as the axis is known.
+std::uint8_t MotionFold::go_to_stored(std::uint8_t axes, std::uint8_t lost, Vec3& to_mm) {
+  const StoredPlace& place = stored_places_[block_->second_reference ? 1 : 0];
+  if (!place.is_stored) return lost;
+  std::uint8_t known = place.known;
+  // Another tool's tip is elsewhere there. By how much is not known without a tool table.
+  if (!lengths_.checks() && place.length_call != length_call_) known = without(known, kZ);
+  if (lengths_.checks() && lengths_.is_hidden() && (axes & kZ) != 0) {
+    const Vec3 shift_mm = along_work(place.applied_mm - lengths_.applied_mm());
+    if (shift_mm != Vec3{0}) held_z_mm_ = program_from_work(to_mm).z;
+    to_mm += shift_mm;
+  }
+  return without(axes, known);
+}
+
+/// As look_for_plate(), of a system that is not in force: what the program says in the present one
+/// stays where it is.
+void MotionFold::store_plate(const BlockWords& block) {
+  if (block.system < 0 || (block.named & kZ) == 0) return;
+  double& plate_mm = systems_[static_cast<std::size_t>(block.system)].plate_mm;
+  plate_mm = 0;
+  if (!on_workpiece_ || block.offset != BlockWords::Offset::kTouchOff || (block.computed & kZ) != 0)
+    return;
+  const double said_mm = block.z * unit_mm_;
+  if (std::abs(position_mm_.z) > kSameTop_mm || said_mm < kLeastPlate_mm) return;
+  plate_mm = plate_mm_ = said_mm;
+  has_plate_ = true;
+}
+
+/// Of the system in force follow_offset() takes care.
+void MotionFold::store_system(const BlockWords& block) {
+  if (block.system == 0 || block.system == g5x_index_) return;
+  if (block.system >= static_cast<int>(kSystems)) return;
+  store_plate(block);
+  if (!follows_places_) return;
+  const bool touches_off = block.offset == BlockWords::Offset::kTouchOff;
+  std::uint8_t unrelated = block.computed & probed_;
+  if (touches_off) {
+    const bool plate = (block.computed & kZ) == 0 && block.z * unit_mm_ >= kLeastPlate_mm;
+    unrelated |= block.named & unknown_ & without(probed_, plate ? kZ : std::uint8_t{0});
+  }
+  const std::uint8_t floats =
+      touches_off ? block.named & without(unknown_, unrelated | probed_) : std::uint8_t{0};
+  systems_before_ = systems_;
+  for (int system = 1; system < static_cast<int>(kSystems); ++system) {
+    if (system == g5x_index_ || (block.system > 0 && system != block.system)) continue;
+    StoredSystem& set = systems_[static_cast<std::size_t>(system)];
+    // With a computed P it is one of them.
+    const std::uint8_t renewed = block.system > 0 ? block.named : std::uint8_t{0};
+    set.unrelated = without(set.unrelated, renewed) | unrelated;
+    set.floats = without(set.floats, renewed) | floats;
+  }
+}
+
+void MotionFold::enter_system(int system) {
+  const auto index = [](int number) {
+    return number >= 0 && number < static_cast<int>(kSystems) ? static_cast<std::size_t>(number)
+                                                              : std::size_t{0};
+  };
+  StoredSystem& left = systems_[index(g5x_index_)];
+  left.unrelated = system_unrelated_;
+  left.floats = 0;
+  const StoredSystem& entered = systems_[index(system)];
+  system_unrelated_ = entered.unrelated | (entered.floats & placed_);
+  g5x_index_ = system;
 }
 
 /// Where the tip stands, in the numbers of the offsets that have just been set.
@@ -150,14 +235,24 @@ void MotionFold::look_for_plate(bool is_shift) {
 /// An offset of the program has just changed.
 void MotionFold::follow_offset(CanonicalName name, int system) {
   const bool is_shift = name == CanonicalName::kSetG92Offset;
+  if (!is_shift && has_plate_ && system > 0 && system < static_cast<int>(kSystems)) {
+    // What the interpreter says of the system hangs on where it takes the tool to be.
+    double& plate_mm = systems_[static_cast<std::size_t>(system)].plate_mm;
+    const bool by_numbers = block_ != nullptr && block_->offset == BlockWords::Offset::kMachine &&
+                            (block_->named & kZ) != 0;
+    if (by_numbers) plate_mm = 0;
+    frame_.g5x_mm.z += plate_mm;
+  }
   look_for_plate(is_shift);
   if (!follows_places_) return;
   if (!is_shift && system != g5x_index_) {
-    g5x_index_ = system;
+    enter_system(system);
     zero_known_ = without(zero_known_, zero_by_program_);
     zero_by_program_ = 0;
   }
   if (block_ == nullptr) return;
+  // A G10 whose P is computed has set the system in force.
+  if (!is_shift && block_->system < 0) systems_ = systems_before_;
   const std::uint8_t named = block_->named;
   // What is not known of a probe: whatever the program computes, and a place that it has touched
   // itself. Only by a plate's height it says where the tool is.

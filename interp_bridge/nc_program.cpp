@@ -149,7 +149,8 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.has_tool_table = !options_.tool_table_path.empty();
   reading.feeder.diameters = told_diameters_;
   reading.feeder.max_commands = command_limit(options_, survey_.lines);
-  reading.feeder.lengths.length_mm = known_lengths(tools_);
+  reading.feeder.lengths.axes = static_cast<unsigned>(options_.machine.length_axes);
+  reading.feeder.lengths.lengths = known_lengths(tools_, reading.feeder.lengths.axes);
   reading.feeder.lengths.calls = ToolLengthSetup::Calls::kCoded;
   reading.feeder.lengths.table_unit_mm = kTableUnit_mm;
   reading.feeder.lengths.displaces = options_.machine.straight_axes;

@@ -41,6 +41,9 @@ enum class InterpreterChoice : std::uint8_t { kAuto, kBridge, kText };
 struct InterpreterSetup {
   bool inch_machine = false;  ///< unit of parameter file and tool table
   int axis_mask = 0x1ff;      ///< bit 0 is X .. bit 8 is W
+  /// Axes along which the tool table's offsets are lengths: those that the machine is known to
+  /// have.
+  int length_axes = 7;
   bool random_toolchanger = false;
   /// [EMCIO]TOOL_CHANGE_POSITION: X Y Z, X Y Z A B C or all nine, machine coordinates, mm and
   /// degrees. Empty: tools are changed where the machine stands. kerf-interp only.
@@ -259,6 +262,8 @@ struct ToolTableRow {
   double diameter_mm = 0;
   bool has_diameter = false;  ///< there is a D, be it D0
   Vec3 offset_mm{0};
+  Vec3 offset_abc_deg{0};
+  Vec3 offset_uvw_mm{0};
   double front_angle_deg = 0;  ///< I, lathe
   double back_angle_deg = 0;   ///< J, lathe
   int orientation = 0;         ///< Q, lathe: 0 to 9

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "interp_bridge/block_words.h"
 #include "interp_bridge/source_text.h"
 
 namespace kerf {
@@ -106,6 +107,16 @@ bool LineNumberer::number_line(std::string_view line, char*& out) {
   return true;
 }
 
+/// Ahead of line_, at out[used].
+void LineNumberer::note_store(std::string_view line, std::string& out, std::size_t& used) {
+  const char* const p = skip_blanks(line.data(), line.data() + line.size());
+  const bool slash = p != line.data() + line.size() && *p == '/';
+  const std::string note = fmt::format("{}{}({})\n", slash ? "/" : "", counter_, kStoreComment);
+  out.resize(std::max(out.size(), used + note.size()));
+  note.copy(out.data() + used, note.size());
+  used += note.size();
+}
+
 void LineNumberer::append(std::string_view text, std::string& out) {
   note_words(text);
   const char* p = text.data();
@@ -116,12 +127,22 @@ void LineNumberer::append(std::string_view text, std::string& out) {
         static_cast<const char*>(std::memchr(p, '\n', static_cast<std::size_t>(end - p)));
     const char* const stop = newline == nullptr ? end : newline;
     std::string_view line(p, static_cast<std::size_t>(stop - p));
-    const std::size_t needed = used + line.size() + counter_.size() + 2;
+    const bool is_store = may_store(line) && stores(words_of_block(line));
+    // A comment of the block's own would be printed instead; a longer line may be too long.
+    const bool shares = is_store && line.find_first_of("(;") == line.npos && line.size() < 100;
+    if (is_store && !shares) note_store(line, out, used);
+    const std::size_t needed =
+        used + line.size() + counter_.size() + kStoreComment.size() + 2 + std::size_t{2};
     if (out.size() < needed) out.resize(std::max(needed, used + text.size() + text.size() / 2));
     char* at = out.data() + used;
     // The CR of DOS lines only costs room.
     if (line.size() <= kMaxLineBytes && !line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (!number_line(line, at)) unnumbered_.push_back(line_);
+    if (shares) {
+      *at++ = '(';
+      copy(kStoreComment, at);
+      *at++ = ')';
+    }
     if (newline != nullptr) *at++ = '\n';
     used = static_cast<std::size_t>(at - out.data());
     advance();

@@ -26,6 +26,10 @@ inline constexpr std::size_t kMaxLineBytes = 252;
 
 SourceRef source_of_n(std::uint64_t n);
 
+/// What the copy says ahead of a block that keeps something for later, of which rs274 prints
+/// nothing (stores()). In its line or, where that has a comment, in one of its own with its number.
+inline constexpr std::string_view kStoreComment = "kerf: stores";
+
 /// Tools that a program asks for, by T, H and M61 Q words. A few more than it truly uses do no
 /// harm.
 struct NamedTools {
@@ -59,6 +63,7 @@ class LineNumberer {
 
  private:
   bool number_line(std::string_view line, char*& out);
+  void note_store(std::string_view line, std::string& out, std::size_t& used);
   void note_o_word(std::string_view after_o);
   void note_words(std::string_view text);
   void note_wait(std::string_view text, std::size_t at);

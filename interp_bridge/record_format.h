@@ -37,6 +37,8 @@ enum Code : std::uint8_t {
   kCaller = 0x78,  ///< after kError, innermost first: `line` called; count 1: index of its file
   kProbe = 0x7a,   ///< a probing move is about to begin: 0 to 3 for G38.2 to G38.5, then its end as
                    ///< a STRAIGHT_PROBE has it, nine numbers. kerf-interp waits for an Answer
+  kStore = 0x7b,   ///< the block at `line` is about to be run, and may be one of those whose effect
+                   ///< shows only later: G28.1, G30.1, G10
   kEnd = 0x79,     ///< the last record: 1 if the program ended by M2, M30 or %; blocks read
 };
 constexpr bool is_text(std::uint8_t code) {

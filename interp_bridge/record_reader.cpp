@@ -183,6 +183,9 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     case records::kAt:
       place_ = {file_, head.line};
       return true;
+    case records::kStore:
+      feeder_.take_store({file_, head.line});
+      return true;
     case records::kError:
       if (faults_.size() < kMaxNotes) faults_.emplace_back();
       faults_.back().place = place_ = {file_, head.line};

@@ -2,6 +2,7 @@
 // spindle is.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -18,6 +19,9 @@ inline constexpr double kSameLength_mm = 1e-3;
 /// wear up to this, and nothing to be told.
 inline constexpr double kMostWear_mm = 1.0;
 
+/// Along X Y Z A B C U V W: mm and degrees.
+using ToolOffset = std::array<double, 9>;
+
 /// What is known of lengths before the program runs.
 struct ToolLengthSetup {
   /// What USE_TOOL_LENGTH_OFFSET holds.
@@ -26,15 +30,16 @@ struct ToolLengthSetup {
     kHidden,  ///< it has lengths of 0; which row is meant stands behind the nine numbers
     kCoded,   ///< lengths of 0, and the row in U and W (rs274: coded_offset())
   };
-  std::map<int, Vec3> length_mm;  ///< of the tool table's rows; empty: nothing is checked
+  std::map<int, ToolOffset> lengths;  ///< of the tool table's rows; empty: nothing is checked
+  unsigned axes = 7;                  ///< bit 0 is X .. bit 8 is W: the others have no lengths
   Calls calls = Calls::kTrue;
   double table_unit_mm = 1;  ///< mm in one unit of SET_TOOL_TABLE_ENTRY
   double start_z_mm = 0;     ///< where the interpreter has the machine's Z at the start
   bool displaces = true;     ///< a wrong length moves the tip along X Y Z: straight axes
 };
 
-/// Of a tool table. Lengths that are all 0 are none.
-std::map<int, Vec3> known_lengths(const std::vector<ToolTableRow>& rows);
+/// Of a tool table, along these axes (ToolLengthSetup::axes). Lengths that are all 0 are none.
+std::map<int, ToolOffset> known_lengths(const std::vector<ToolTableRow>& rows, unsigned axes);
 
 /// Behind the nine numbers of USE_TOOL_LENGTH_OFFSET, as kerf-interp records it: how it came to be,
 /// and the tool whose row it is.
@@ -56,7 +61,9 @@ constexpr CodedOffset coded_offset(int tool) { return {static_cast<double>(tool)
 
 /// Follows a program's tools and offsets. The tip of the tool in the spindle is at the programmed
 /// place plus the applied offset less its real length. What the table does not know is taken to be
-/// right: an unlisted tool, an empty spindle, an offset whose row is not known.
+/// right: an unlisted tool, an empty spindle, an offset whose row is not known. Of A, B and C the
+/// interpreter knows no lengths (kTrue), and of U, V, W it does not where it has no such axes
+/// (rs274).
 ///
 /// The real length is the table's row, as the program may change it by G10 L1, L10 or L11. An
 /// offset that the program states itself for the tool in the spindle (G43.1; G43.2 upon the tool's
@@ -64,7 +71,7 @@ constexpr CodedOffset coded_offset(int tool) { return {static_cast<double>(tool)
 class ToolLengths {
  public:
   void set_up(ToolLengthSetup setup);
-  bool checks() const { return !setup_.length_mm.empty(); }
+  bool checks() const { return !setup_.lengths.empty(); }
 
   /// `by_hand`: M61, of which rs274 does not tell its own row of the spindle.
   void mount(int tool, bool by_hand);
@@ -78,9 +85,9 @@ class ToolLengths {
   /// Without tip_shift_mm.
   const ToolLengthState& state() const { return state_; }
   /// In force, X Y Z; and the interpreter does not know it.
-  const Vec3& applied_mm() const { return applied_mm_; }
+  Vec3 applied_mm() const { return {applied_[0], applied_[1], applied_[2]}; }
   bool is_hidden() const { return setup_.calls != ToolLengthSetup::Calls::kTrue; }
-  /// The tip is displaced by applied_mm less real_mm.
+  /// The tip is displaced by applied_mm less real_mm, and by uvw_off_mm.
   bool displaces() const {
     return state_.verdict == ToolLengthState::Verdict::kWrong && setup_.displaces;
   }
@@ -89,25 +96,26 @@ class ToolLengths {
   struct Call {
     OffsetOrigin origin = OffsetOrigin::kNone;
     int tool = -1;
-    Vec3 offset_mm{0};
+    ToolOffset offset{};
   };
   Call decode(const CanonicalCommand& command, double unit_mm);
-  Call decode_coded(const Vec3& offset_mm, double u, double w, double unit_mm);
-  void apply_hidden(const Call& call);
+  Call decode_coded(const ToolOffset& offset, double u, double w, double unit_mm);
+  void apply(const Call& call);
+  bool is_told(std::size_t axis) const;
   void judge();
 
   ToolLengthSetup setup_;
-  std::map<int, Vec3> hidden_mm_;  ///< the interpreter's own rows, where they are not 0 (G10)
+  std::map<int, ToolOffset> hidden_;  ///< the interpreter's own rows, where they are not 0 (G10)
   int tool_ = 0;
   int row_of_spindle_ = 0;  ///< tool that rs274 holds for the one in the spindle
-  Vec3 applied_mm_{0};
+  ToolOffset applied_{};
   bool applied_known_ = true;
   std::vector<int> rows_;  ///< whose rows make up the offset
   bool stated_ = false;    ///< or the program's own numbers
   bool stated_is_measured_ = false;
   bool of_this_tool_ = false;  ///< set since the tool came into the spindle
   SourceRef set_at_;
-  Vec3 call_mm_{0};  ///< of the last call
+  ToolOffset call_{};  ///< of the last call
   double call_u_ = 0;
   double call_w_ = 0;
   ToolLengthState state_;

@@ -192,8 +192,18 @@ bool RowParser::store(char letter, double value, std::size_t column, ToolTableRo
     case 'J':
       row.back_angle_deg = value;
       return true;
+    case 'A':
+    case 'B':
+    case 'C':
+      row.offset_abc_deg[letter - 'A'] = value;
+      return true;
+    case 'U':
+    case 'V':
+    case 'W':
+      row.offset_uvw_mm[letter - 'U'] = value;
+      return true;
     default:
-      return true;  // A B C U V W: a tip has no such offset in a model of X, Y, Z
+      return true;
   }
 }
 
@@ -253,6 +263,7 @@ Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagn
   for (ToolTableRow& row : rows) {
     row.diameter_mm *= unit_mm;
     row.offset_mm *= unit_mm;
+    row.offset_uvw_mm *= unit_mm;
   }
   return rows;
 }

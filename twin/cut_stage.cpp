@@ -43,7 +43,7 @@ double way_of(const CutMove& move) {
 }
 
 /// Beams and punches go through whatever the length of the tool: they are taken as programmed.
-bool displaced(const Motion& motion) { return motion.length.tip_shift_mm != Vec3{0}; }
+bool displaced(const Motion& motion) { return motion.length.displaces; }
 
 }  // namespace
 

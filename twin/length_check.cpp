@@ -33,6 +33,34 @@ std::string length_of(const Vec3& length_mm, const Vec3& other_mm) {
   return text + " mm";
 }
 
+/// "U2 W-10", of what is not nothing.
+std::string axes_text(const Vec3& v, const char* letters) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(v[axis]) <= kSameLength_mm) continue;
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ", letters[axis], number(v[axis]));
+  }
+  return text;
+}
+
+/// Axes other than X Y Z: "its tip is W-10 mm off, and it is turned A5 degrees from its place".
+std::string others_text(const ToolLengthState& state) {
+  std::string text;
+  const std::string slides = axes_text(state.uvw_off_mm, "UVW");
+  if (!slides.empty()) {
+    text = fmt::format("its tip is {} mm off{}", slides,
+                       state.displaces ? "" : " (cut as programmed)");
+  }
+  const std::string turns = axes_text(state.abc_off_deg, "ABC");
+  if (turns.empty()) return text;
+  return fmt::format("{}{}{} degrees are missing or too much, which is not cut", text,
+                     text.empty() ? "" : ", and ", turns);
+}
+
+bool differs_in_xyz(const ToolLengthState& state) {
+  return !axes_text(state.applied_mm - state.real_mm, "XYZ").empty();
+}
+
 std::string offset_text(const ToolLengthState& state) {
   const std::string applied = length_of(state.applied_mm, state.real_mm);
   const bool now = state.set_at.line != 0;
@@ -56,12 +84,33 @@ std::string result_text(const ToolLengthState& state) {
                      off_mm.z < 0 ? "lower" : "higher");
 }
 
+/// X Y Z are as the tool table has them.
+std::string other_axes_text(const Motion& motion, const std::string& others) {
+  const ToolLengthState& state = motion.length;
+  if (state.verdict == ToolLengthState::Verdict::kStated) {
+    return fmt::format(
+        "the program gives tool {} another offset itself (G43.1, G43.2) than the tool table: "
+        "{}{}{}; positions are taken as programmed",
+        motion.tool, axes_text(state.uvw_off_mm, "UVW"),
+        axes_text(state.uvw_off_mm, "UVW").empty() ? "" : " ", axes_text(state.abc_off_deg, "ABC"));
+  }
+  const bool now = state.set_at.line != 0;
+  const std::string applied =
+      state.offset_tool < 0 ? std::string("no tool length offset is in force (G43)")
+      : now                 ? fmt::format("G43 H{} is in force", state.offset_tool)
+            : fmt::format("the offset of tool {} is still in force", state.offset_tool);
+  return fmt::format("{}, and tool {} in the spindle has another one: {}", applied, motion.tool,
+                     others);
+}
+
 std::int64_t micrometres(double mm) { return std::llround(std::clamp(mm, -1e9, 1e9) * 1e3); }
 
 }  // namespace
 
 std::string length_text(const Motion& motion) {
   const ToolLengthState& state = motion.length;
+  const std::string others = others_text(state);
+  if (!differs_in_xyz(state)) return other_axes_text(motion, others);
   const std::string real = length_of(state.real_mm, state.applied_mm);
   if (state.verdict == ToolLengthState::Verdict::kStated) {
     return fmt::format(
@@ -69,8 +118,8 @@ std::string length_text(const Motion& motion) {
         "positions are taken as programmed",
         motion.tool, length_of(state.applied_mm, state.real_mm), real);
   }
-  return fmt::format("{}, and tool {} in the spindle is {} long: {}", offset_text(state),
-                     motion.tool, real, result_text(state));
+  return fmt::format("{}, and tool {} in the spindle is {} long: {}{}{}", offset_text(state),
+                     motion.tool, real, result_text(state), others.empty() ? "" : "; ", others);
 }
 
 bool LengthCheck::comes_near(const Motion& m, const Vec3& shift_mm, double radius_mm) const {
@@ -101,12 +150,11 @@ void LengthCheck::check(const Motion& m, const TimedStep& step, double radius_mm
   if (!matters(m, radius_mm, upright, touches)) return;
   const bool of_a_line = state.set_at.line != 0;
   const Vec3 off_mm = state.applied_mm - state.real_mm;
-  const Event event{m.tool,
-                    of_a_line ? state.set_at.file : 0,
-                    state.set_at.line,
-                    state.offset_tool,
-                    micrometres(off_mm.x),
-                    micrometres(off_mm.z)};
+  Event event{m.tool, of_a_line ? state.set_at.file : 0, state.set_at.line, state.offset_tool};
+  std::size_t at = 4;
+  for (const Vec3& off : {off_mm, state.abc_off_deg, state.uvw_off_mm}) {
+    for (int axis = 0; axis < 3; ++axis) event[at++] = micrometres(off[axis]);
+  }
   if (told_.size() >= kMostEvents || !told_.insert(event).second) return;
   Finding finding;
   finding.id = FindingId::kToolLength;

@@ -2,10 +2,10 @@
 // that is not its length.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include "base/geometry.h"
 #include "interp_bridge/motion.h"
@@ -42,8 +42,8 @@ class LengthCheck {
 
   Box blank_mm_;
   FindingLog& log_;
-  /// Tool, line, whose offset, the difference in um.
-  using Event = std::tuple<int, std::uint32_t, std::uint32_t, int, std::int64_t, std::int64_t>;
+  /// Tool, file, line, whose offset, the differences in um and thousandths of a degree.
+  using Event = std::array<std::int64_t, 13>;
   std::set<Event> told_;
 };
 

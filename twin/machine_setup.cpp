@@ -145,6 +145,7 @@ void read_axes(IniReader& reader, const std::string& letters, double unit_mm, Ma
     AxisLimits& out = limits.axes[axis];
     out.present = true;
     setup.interpreter.axis_mask |= 1 << axis;
+    setup.interpreter.length_axes |= 1 << axis;
     if (const auto value = axis_number(reader, letter, n, "MIN_LIMIT")) out.min = *value * unit;
     if (const auto value = axis_number(reader, letter, n, "MAX_LIMIT")) out.max = *value * unit;
     // What LinuxCNC takes where the INI has no such key: 1 unit/s, 1 unit/s2.

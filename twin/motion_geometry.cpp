@@ -32,11 +32,15 @@ ArcEnds arc_ends(const Motion& m) {
 
 Motion as_programmed(const Motion& motion) {
   Motion out = motion;
+  out.length = {};
+  if (!motion.length.displaces) return out;
   const Vec3 shift_mm = motion.length.tip_shift_mm;
   out.from_mm -= shift_mm;
   out.to_mm -= shift_mm;
-  out.tool_offset_mm += out.length.applied_mm - out.length.real_mm;
-  out.length = {};
+  out.from_uvw_mm -= motion.length.uvw_off_mm;
+  out.to_uvw_mm -= motion.length.uvw_off_mm;
+  out.tool_offset_mm += motion.length.applied_mm - motion.length.real_mm;
+  out.tool_offset_uvw_mm += motion.length.uvw_off_mm;
   if (out.kind == MotionKind::kArc) out.arc.center_mm -= shift_mm;
   return out;
 }

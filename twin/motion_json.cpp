@@ -106,6 +106,9 @@ void append_way(const Motion& m, std::string& out) {
     append_field("sweep_deg", m.arc.sweep_rad * 180 / kPi, out);
   }
   if (m.length.tip_shift_mm != Vec3(0)) append_vector("tip_off", m.length.tip_shift_mm, out);
+  if (m.length.displaces && m.length.uvw_off_mm != Vec3(0)) {
+    append_vector("tip_off_uvw", m.length.uvw_off_mm, out);
+  }
   if (m.kind == MotionKind::kTraverse) return;
   append_field("feed", m.feed_mm_per_min, out);
   if (m.feed_per_rev || m.kind == MotionKind::kThread) out += ",\"feed_per_rev\":true";

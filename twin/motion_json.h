@@ -22,6 +22,7 @@
 //     "tip_off": [0,0,-15]   the tool is not as long as its offset: so far off is the tip from
 //     where
 //                            the program has it, in from, to and center already
+//     "tip_off_uvw": [0,0,-15]   the same of U, V, W, in from_uvw and to_uvw
 //     "path": "exact-stop" | "exact-path"      G61.1, G61; "blend_mm", "merge_mm": G64 P Q
 #pragma once
 

@@ -69,30 +69,33 @@ bool held_back(const Motion& m) {
 void ProgramChecks::watch_lost_feed(const Motion& m, const TimedStep& step) {
   Held now{held_back(m), m.merge_tolerance_mm > 0, m.by_number, m.source, m.from_mm, step.start_s};
   const bool joined = m.halts == 0 && m.chain_end == ChainEnd::kNone;
-  if (m.by_number && last_.feed && joined) tell_lost(last_, m.source, m.tool);
+  if (m.by_number && last_.feed && joined) tell_lost(last_, "M61", m.source, m.tool);
+  if (m.table_reloaded && last_.feed) tell_lost(last_, "G10 L0", {}, m.tool);
   if (now.feed && last_.by_number && m.source == last_.source && m.source.line != 0) {
-    tell_lost(now, m.source, m.tool);
+    tell_lost(now, "M61", m.source, m.tool);
     now.feed = false;
   }
   last_ = now;
 }
 
-void ProgramChecks::tell_lost(const Held& feed, SourceRef m61, int tool) {
+/// `word` stands at `place`; its line 0: it comes behind the feed.
+void ProgramChecks::tell_lost(const Held& feed, const char* word, SourceRef place, int tool) {
   Finding finding;
   finding.id = FindingId::kFeedLost;
   finding.source = feed.source;
   finding.time_s = feed.start_s;
   finding.position_mm = feed.from_mm;
   finding.tool = tool;
-  const bool same_block = m61 == feed.source;
+  const bool same_block = place == feed.source;
   finding.text = fmt::format(
-      "LinuxCNC does not run this feed{}: M61 {}; the machine stays where it is, and what comes "
+      "LinuxCNC does not run this feed{}: {} {}; the machine stays where it is, and what comes "
       "next starts from there",
-      feed.merges ? ", nor feeds that G64 merges with it" : "",
-      same_block ? std::string("is in its block")
-                 : fmt::format("in line {} comes right after it", m61.line));
-  finding.hint = same_block ? "write M61 in a block of its own, behind G4 P0"
-                            : "write G4 P0 between the feed and M61";
+      feed.merges ? ", nor feeds that G64 merges with it" : "", word,
+      same_block        ? std::string("is in its block")
+      : place.line != 0 ? fmt::format("in line {} comes right after it", place.line)
+                        : std::string("comes right after it"));
+  finding.hint = same_block ? fmt::format("write {} in a block of its own, behind G4 P0", word)
+                            : fmt::format("write G4 P0 between the feed and {}", word);
   log_.add(std::move(finding));
 }
 

@@ -37,10 +37,10 @@ class ProgramChecks {
   /// program's end shows that no M6 comes. What is fetched ahead for a change to come is sound, and
   /// so is a last T word behind which nothing is fed.
   void feeds(const Motion& motion, const TimedStep& step, int tool);
-  /// feed-lost, of every motion: the straight feed before M61, or in its block. LinuxCNC (2.8 to
-  /// 2.10) holds a feed back until it knows whether the next one can be merged with it (G64 Q), and
-  /// M61, with which the program is read on from where the machine stands, forgets it. What ends
-  /// the chain in between (ChainEnd, another feed, a dwell) sends it. Not looked for: G10 L0, which
+  /// feed-lost, of every motion: the straight feed before M61 or G10 L0, or in the block of M61.
+  /// LinuxCNC (2.8 to 2.10) holds a feed back until it knows whether the next one can be merged
+  /// with it (G64 Q), and M61, with which the program is read on from where the machine stands,
+  /// forgets it. What ends the chain in between (ChainEnd, another feed, a dwell) sends it. G10 L0
   /// does the same.
   void watch_lost_feed(const Motion& motion, const TimedStep& step);
   /// The tool is changed.
@@ -91,7 +91,7 @@ class ProgramChecks {
     Vec3 from_mm{0};
     double start_s = 0;
   };
-  void tell_lost(const Held& feed, SourceRef m61, int tool);
+  void tell_lost(const Held& feed, const char* word, SourceRef place, int tool);
   void tell_not_changed();
   bool touches(const Cutter& cutter, const Vec3& tip, const Vec3& to) const;
 

@@ -143,7 +143,7 @@ void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves)
       const ResolvedTool& mounted = book_.mount(tool_, m.source.line);
       radius_mm_ = mounted.cutter ? mounted.cutter->radius_mm() : 0;
     }
-    if (m.length.tip_shift_mm != Vec3{0}) {
+    if (m.length.displaces) {
       // The blank is where the program works, not where a tool of another length does.
       guess_.add(as_programmed(m), radius_mm_);
     } else if (moves.is_upright(m)) {

@@ -247,7 +247,9 @@ void Session::complete_report(const CutStage& stage) {
   report_.tools = stage.tools();
   report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
-  report_.lengths_all_zero = !table.empty() && known_lengths(table).empty() && !front_.is_sheet();
+  const auto axes = static_cast<unsigned>(options_.program.machine.length_axes);
+  report_.lengths_all_zero =
+      !table.empty() && known_lengths(table, axes).empty() && !front_.is_sheet();
   report_.stock = stock_report(*stock(), front_.stock.facts);
   if (stage.torch() && as_sheet(*stock())) {
     report_.sheet =

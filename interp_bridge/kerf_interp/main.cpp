@@ -6,6 +6,7 @@
 #include <canon.hh>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <interp_base.hh>
 #include <interp_return.hh>
 #include <vector>
@@ -47,6 +48,19 @@ using Clock = std::chrono::steady_clock;
 constexpr unsigned kBlocksPerLook = 256;
 constexpr std::chrono::milliseconds kOldRecords{20};
 constexpr std::chrono::milliseconds kSignOfLife{200};
+
+/// Whether G28.1, G30.1 or G10 may be among the words; kerf reads them. Most blocks have neither
+/// "28", "30" nor "10".
+bool may_store(const char* text) {
+  for (const char* g = std::strpbrk(text, "gG"); g != nullptr; g = std::strpbrk(g, "gG")) {
+    for (++g; *g == ' ' || *g == '\t' || *g == '0';) ++g;
+    const char first = *g;
+    if (first != '1' && first != '2' && first != '3') continue;
+    for (++g; *g == ' ' || *g == '\t';) ++g;
+    if (*g == (first == '2' ? '8' : '0')) return true;
+  }
+  return false;
+}
 
 /// M100 to M199: a machine would start a program of that name, which is its own affair.
 void user_m(int number, double p, double q) {
@@ -102,6 +116,7 @@ class Runner {
       if (status_ == INTERP_ENDFILE) return true;
       line_ = interpreter_.sequence_number();
       recording().begin_block(line_);
+      note_store();
       if (!succeeded(interpreter_.execute())) return report(line_);
       if (!recording().refusal.empty()) return report_refusal();
       if (status_ == INTERP_EXIT) return true;
@@ -114,6 +129,15 @@ class Runner {
       }
       if (++blocks_ % kBlocksPerLook == 0) look_at_clock();
     }
+  }
+
+  /// No call comes of what a block keeps for later, so that it is told before it is run.
+  void note_store() {
+    std::array<char, 260> text;
+    text.front() = text.back() = 0;
+    interpreter_.line_text(text.data(), text.size() - 1);
+    if (!may_store(text.data())) return;
+    records_.numbers(records::kStore, recording().line_now(), {});
   }
 
   void follow_call(int level) {

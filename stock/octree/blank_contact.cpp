@@ -140,6 +140,24 @@ bool BlankContact::is_untouched_above(const BrickTree& tree, const Vec3& point_m
   return true;
 }
 
+double BlankContact::plunge_depth_mm(const BrickTree& tree, const Vec3& tip_mm) const {
+  if (bodies_.size() != 1) return 0;
+  const BlankBody& body = bodies_[0];
+  const Box& box = body.bounds_mm;
+  if (tip_mm.x <= box.min.x || tip_mm.x >= box.max.x || tip_mm.y <= box.min.y ||
+      tip_mm.y >= box.max.y) {
+    return 0;
+  }
+  if (body.kind != BlankBody::Kind::kBox) {
+    const double from_axis = std::hypot(tip_mm.x - body.center_mm.x, tip_mm.y - body.center_mm.y);
+    const double inner = body.kind == BlankBody::Kind::kTube ? body.inner_diameter_mm / 2 : -1;
+    if (body.axis != 'z' || from_axis >= body.diameter_mm / 2 || from_axis <= inner) return 0;
+  }
+  const Vec3 lowest{tip_mm.x, tip_mm.y, std::max(tip_mm.z, box.min.z)};
+  if (lowest.z >= box.max.z || !is_untouched_above(tree, lowest)) return 0;
+  return box.max.z - lowest.z;
+}
+
 double BlankContact::depth_mm(const BrickTree& tree, std::span<const Sweep> sweeps) {
   constexpr std::size_t kMostSweeps = 64;
   constexpr int kHalvings = 30;

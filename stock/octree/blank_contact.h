@@ -27,6 +27,10 @@ class BlankContact {
   /// How deep an upright tool goes below the top of a blank that is one box, at the most, where
   /// that is untouched from there to the top; 0: nowhere, or it is not known.
   double depth_mm(const BrickTree& tree, std::span<const Sweep> sweeps);
+  /// How much of a blank that is one upright body lies above `tip_mm`, to where a tool goes
+  /// straight down that is lowest at its axis; 0: none, something has been there, or it is not
+  /// known.
+  double plunge_depth_mm(const BrickTree& tree, const Vec3& tip_mm) const;
 
  private:
   /// Sets `found_mm` if there is a point.

@@ -65,6 +65,15 @@ std::string size_text(double bytes) {
   return mb < 1000 ? fmt::format("{:.0f} MB", std::ceil(mb)) : fmt::format("{:.1f} GB", mb / 1000);
 }
 
+bool is_lowest_at_axis(const Cutter& cutter) {
+  const std::span<const ProfilePiece> profile = cutter.profile();
+  if (profile.empty() || profile.front().r0 != 0) return false;
+  const double tip = profile.front().z0;
+  return std::all_of(profile.begin(), profile.end(), [tip](const ProfilePiece& piece) {
+    return std::min(piece.z0, piece.z1) >= tip;
+  });
+}
+
 /// The smallest cell, rounded up to two digits, that keeps within the limit.
 double fitting_cell(const Box& box, double cell, double limit) {
   while (needed_bytes(Lattice::over(box, cell)) > limit) {
@@ -139,6 +148,7 @@ struct Octree::Impl {
 
   std::string cutter_spec;
   std::vector<ToolBody> bodies;
+  bool lowest_at_axis = false;  ///< the cutter's tip is
 
   explicit Impl(BrickTree t) : tree(std::move(t)) {}
 
@@ -194,6 +204,17 @@ struct Octree::Impl {
                nullptr);
     }
     return copy;
+  }
+  /// A plunge whose depth the tip tells (plunge_mm()).
+  bool is_plunge(const CutMove& move) const {
+    return bodies_of_blank.size() == 1 && !additive && lowest_at_axis && move.is_vertical() &&
+           !move.arc && move.to_mm.x == move.from_mm.x && move.to_mm.y == move.from_mm.y &&
+           move.to_mm.z < move.from_mm.z && move.to_mm.z < tree.lattice().bounds_mm.max.z;
+  }
+  /// Before the move is cut, and after all that come before.
+  double plunge_mm(const CutMove& move) const {
+    if (!is_plunge(move)) return 0;
+    return BlankContact(tree.lattice(), kernel, bodies_of_blank).plunge_depth_mm(tree, move.to_mm);
   }
   DualField field() const {
     return {tree.lattice().origin_mm, tree.lattice().cell_mm,
@@ -258,6 +279,7 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
     assert(bodies);
     m.bodies = std::move(*bodies);
     m.cutter_spec = cutter.spec();
+    m.lowest_at_axis = is_lowest_at_axis(cutter);
   }
   const double sign = m.additive ? -1 : 1;
   std::vector<Sweep> sweeps;
@@ -267,8 +289,10 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (std::size_t first = 0; first < moves.size();) {
     sweeps.clear();
     std::size_t last = first;
+    const double plunge_mm = m.plunge_mm(moves[first]);
     for (; last < moves.size() && last - first < kMovesAtOnce && sweeps.size() < kSweepsAtOnce;
          ++last) {
+      if (last > first && m.is_plunge(moves[last])) break;
       const std::optional<CutMove> near = within_reach(moves[last], m.tree.lattice().bounds_mm);
       if (!near) continue;
       append_sweeps(m.bodies, *near, static_cast<std::uint32_t>(last - first), m.target(0), sweeps);
@@ -280,8 +304,9 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
     m.films.add(spots, m.face_mm2(), films);
     for (std::size_t i = 0; i < totals.size(); ++i) {
       m.removed += totals[i].volume;
-      reports.push_back({moves[first + i].id, sign * m.mm3(totals[i].volume),
-                         m.height_mm(totals[i].height), films[i]});
+      double depth_mm = m.height_mm(totals[i].height);
+      if (i == 0) depth_mm = std::max(depth_mm, plunge_mm);
+      reports.push_back({moves[first + i].id, sign * m.mm3(totals[i].volume), depth_mm, films[i]});
     }
     first = last;
   }

@@ -183,8 +183,13 @@ std::optional<Contact> find_first_contact(const ContactField& field,
   for (const Vec3& to : points) {
     Found first;
     if (contact) first = {-1, contact->depth_mm};
-    for (const ConvexTool& tool : tools)
+    for (const ConvexTool& tool : tools) {
       first = Scan(field, tool, tolerance_mm, from, to - from, first).run();
+      const RimTraces::Touch rim =
+          field.traces.rims().first_touch(tool, {from, to - from}, tolerance_mm);
+      first.t = std::min(first.t, rim.t);
+      first.depth = std::max(first.depth, rim.depth_mm);
+    }
     if (first.t != kNone) {
       if (!contact) contact = Contact{from + first.t * (to - from), 0};
       contact->depth_mm = std::max(contact->depth_mm, first.depth);

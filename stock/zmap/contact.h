@@ -18,8 +18,8 @@ struct ContactField {
   const TipTraces& traces;
   /// Whether something is hollow below the heights of a tile; null: nothing is.
   std::function<bool(std::size_t tile)> is_hollow;
-  /// False: only the second of the two below is looked for, where nothing is hollow. For the lower
-  /// side of a head, under which and above which a cutter ends.
+  /// False: of those below the first is not looked for, and where something is hollow the second is
+  /// not. For the lower side of a head, under which and above which a cutter ends.
   bool middles = true;
 };
 
@@ -27,11 +27,12 @@ struct ContactField {
 /// than `tolerance_mm` inside the cutter's sweep, or into which the cutter goes deeper than that: a
 /// tool that passes along a wall or floor it has just cut does not touch.
 ///
-/// Two things are told, and both are certain, whatever the cells:
+/// Three things are told, and all are certain, whatever the cells:
 ///  - The middle of a cell is material, and inside the sweep of the tool drawn in by the tolerance
 ///    (from its sides, and up from its bottom).
 ///  - Anywhere over a cell the whole tool goes deeper than the material that is there at least
 ///    (TipTraces), by more than the tolerance: the point of a vee that passes between the middles.
+///  - It enters a round side of the blank where nothing has come yet (RimTraces).
 /// Not told is what only happens between the middles, over a cell that was cut as deep somewhere
 /// already, or beside one: a wall that is entered by less than a cell.
 ///

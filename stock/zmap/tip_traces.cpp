@@ -38,6 +38,7 @@ TipTraces::TipTraces(const TipTraces& other)
       ny_(other.ny_),
       tiles_x_(other.tiles_x_),
       any_(other.any_),
+      rims_(other.rims_),
       slack_mm_(other.slack_mm_),
       tiles_(other.tiles_),
       own_(other.own_.size(), 0) {
@@ -86,8 +87,14 @@ double TipTraces::depth_mm(const TileGrid& grid, const Tip& tip, const CutMove& 
 void TipTraces::add(const Tip& tip, const CutMove& move) {
   slack_mm_ = std::max(slack_mm_, tip.rise_mm);
   const bool leaves = leaves_grid(move);
-  if (!tip.pointed && !leaves) return;
+  const double beyond_mm = move.arc ? 2 * glm::length(move.from_mm - move.arc->center_mm) +
+                                          glm::length(move.to_mm - move.from_mm)
+                                    : 0;
+  const bool rims =
+      !rims_.empty() && rims_.is_near(move.from_mm, move.to_mm, beyond_mm, tip.radius_mm);
+  if (!tip.pointed && !leaves && !rims) return;
   const auto add_way = [&](const Vec3& a, const Vec3& b) {
+    if (rims) rims_.add(a, b, tip.radius_mm, tip.low_mm);
     if (tip.pointed) trace(tip, a, b);
     if (leaves) trace_border(tip, a, b);
   };

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
+#include "stock/zmap/rim_traces.h"
 #include "stock/zmap/sweep_ops.h"
 #include "stock/zmap/tile_grid.h"
 
@@ -55,6 +56,11 @@ class TipTraces {
   using Way = std::pair<Vec3, Vec3>;
   double depth_mm(const TileGrid& grid, const Tip& tip, const CutMove& move,
                   const std::optional<Way>& held, double clear_mm) const;
+  /// Nothing is cut yet, and these are the bodies: their round sides are exact (RimTraces).
+  void follow_rims(std::span<const BlankBody> bodies) {
+    rims_ = RimTraces(bodies, std::max(cell_x_, cell_y_));
+  }
+  const RimTraces& rims() const { return rims_; }
   /// The move is cut. Arcs are taken as chords.
   void add(const Tip& tip, const CutMove& move);
   /// Nothing is known of what was cut before, as of a workpiece that was loaded: no bound holds.
@@ -96,6 +102,7 @@ class TipTraces {
   double x0_, y0_, cell_x_, cell_y_, half_diagonal_;
   int nx_, ny_, tiles_x_;
   bool any_ = false;
+  RimTraces rims_;
   double slack_mm_ = 0;  ///< greatest Tip::rise_mm of all that has cut
   std::vector<std::shared_ptr<Tile>> tiles_;
   mutable std::vector<std::uint8_t> own_;  ///< no copy has the tile

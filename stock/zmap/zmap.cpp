@@ -54,8 +54,9 @@ Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
   Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, "a Z-map");
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
-  return std::unique_ptr<ZMap>(new ZMap(
-      std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads)));
+  auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
+  impl->sweeper.follow_rims(options.blank.bodies);
+  return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 
 Done ZMap::can_cut(const Cutter& cutter) {

@@ -109,6 +109,26 @@ TEST_F(BlockFile, OnlySpecialBlocksWhereAllIsPlaced) {
   EXPECT_EQ(reader.at({0, 3}, files, 0)->place, Place::kToolChange);
 }
 
+TEST(BlockWords, WhatIsKeptForLater) {
+  using Store = BlockWords::Store;
+  EXPECT_EQ(words_of_block("G28.1").store, Store::kFirst);
+  EXPECT_EQ(words_of_block("g 30 . 1").store, Store::kSecond);
+  EXPECT_EQ(words_of_block("G28").store, Store::kNone);
+  EXPECT_TRUE(words_of_block("G30 Z0").second_reference);
+  const BlockWords offset = words_of_block("G10 L20 P2 Z-19.1 X#1");
+  EXPECT_TRUE(stores(offset));
+  EXPECT_EQ(offset.system, 2);
+  EXPECT_EQ(offset.z, -19.1);
+  EXPECT_EQ(words_of_block("G10 L2 P[#5220] X0").system, -1);
+  EXPECT_FALSE(stores(words_of_block("G10 L1 P1 Z5")));
+  for (const char* line : {"G28.1", "g 030.1", "G10L2P1", "N5 G10 P2 L20"}) {
+    EXPECT_TRUE(may_store(line)) << line;
+  }
+  for (const char* line : {"G1 X28.1 F30.1", "G17", "M6 T1", "(x)"}) {
+    EXPECT_FALSE(may_store(line)) << line;
+  }
+}
+
 TEST_F(BlockFile, AxesThatAreNeverNamed) {
   write("G0 X5 (Z5)\nG1 Y5 F100\nM2\n");
   EXPECT_EQ(BlockReader().named_in(path_), kX | kY);

@@ -23,6 +23,12 @@ TEST(LineNumberer, KeepsTheBlockDeleteSlashInFront) {
   EXPECT_EQ(numbered("/N8 G0 X5\n/ N9 G0 X6\n/G0\n / G1\n"), "/N1G0 X5\n/N2G0 X6\n/N3G0\n/N4G1\n");
 }
 
+TEST(LineNumberer, SaysOfABlockThatItKeepsSomething) {
+  EXPECT_EQ(numbered("G28.1\nG 30 .1 (here)\n/g10l2p2x5\nG10 L1 P1 Z5\nG28\n(G28.1)\n"),
+            "N1G28.1(kerf: stores)\nN2(kerf: stores)\nN2G 30 .1 (here)\n"
+            "/N3g10l2p2x5(kerf: stores)\nN4G10 L1 P1 Z5\nN5G28\nN6(G28.1)\n");
+}
+
 TEST(LineNumberer, LeavesWhatPrintsNothing) {
   EXPECT_EQ(numbered("%\n\n  \t\n;N5 comment\n %\n(c)\n"), "%\n\n  \t\n;N5 comment\n %\nN6(c)\n");
 }

@@ -22,7 +22,7 @@ struct Shop {
 
   explicit Shop(ToolLengthSetup::Calls calls) {
     ToolLengthSetup setup;
-    setup.length_mm = {{1, {0, 0, 60}}, {2, {0, 0, 75}}, {52, {0, 0, -0.1}}};
+    setup.lengths = {{1, {0, 0, 60}}, {2, {0, 0, 75}}, {52, {0, 0, -0.1}}};
     setup.calls = calls;
     setup.table_unit_mm = calls == ToolLengthSetup::Calls::kCoded ? 25.4 : 1;
     fold.set_lengths(setup);

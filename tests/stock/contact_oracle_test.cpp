@@ -1,4 +1,5 @@
 // Contacts and depths of the Z-map in cells that are coarse for the tools, against brute force.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
@@ -16,9 +17,9 @@ constexpr double kTolerance_mm = 0.01;
 constexpr double kMargin_mm = 0.0025;
 constexpr double kFloor_mm = -10;
 
-std::unique_ptr<ZMap> make_map(double cell) {
+std::unique_ptr<ZMap> make_map(double cell, const char* blank = "box:0,0,-10:24,24,0") {
   ZMapOptions options;
-  options.blank = *parse_blank("box:0,0,-10:24,24,0");
+  options.blank = *parse_blank(blank);
   options.cell_mm = cell;
   auto map = ZMap::create(options);
   EXPECT_TRUE(map) << map.error();
@@ -190,6 +191,58 @@ TEST(ContactOracle, TheGreatestDepthIsThatOfTheTip) {
       EXPECT_NEAR(reports[2].depth_mm, 2.0, 0.002) << shape << cell;
     }
   }
+}
+
+/// Of a tube about (12, 12): its side of radius 11, or its bore of 5; into it by `in` under
+/// `angle`.
+CutMove toward_side(bool bore, double radius, double angle, double in, double z) {
+  const Vec3 way(std::cos(angle), std::sin(angle), 0);
+  const Vec3 middle(12, 12, z);
+  const double off = bore ? 5 - radius + in : 11 + radius - in;
+  return line(middle + (bore ? 0.0 : 11 + 3 * radius) * way, middle + off * way);
+}
+
+TEST(RoundSides, AreToldFromTheToleranceOn) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> angle(0, 2 * kPi);
+  for (const double cell : {0.1, 0.37, 1.0}) {
+    const auto map = make_map(cell, "tube:12,12,-10:0:22:10");
+    for (const double radius : {0.25, 1.5, 3.0}) {
+      const auto cutter = parse_shape(fmt::format("flat:{}", 2 * radius));
+      for (int n = 0; n < 60; ++n) {
+        const bool bore = n % 2 == 0;
+        const double at = angle(random);
+        const auto touch = [&](double in) {
+          return map->first_contact(*cutter, toward_side(bore, radius, at, in, -2), kTolerance_mm);
+        };
+        ASSERT_TRUE(touch(0.0105)) << cell << " " << radius << " " << at;
+        EXPECT_NEAR(touch(0.0105)->depth_mm, 2, 1e-4);
+        ASSERT_FALSE(touch(0.0095)) << cell << " " << radius << " " << at;
+      }
+    }
+  }
+}
+
+TEST(RoundSides, TheWayBackIsFree) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> xy(-3, 27), z(-3, 0.5), part(0, 1);
+  int touched = 0;
+  for (const char* spec : {"flat:3", "flat:0.4", "ball:2", "vee:4:60", "drill:3:118"}) {
+    const auto cutter = parse_shape(spec);
+    for (const double cell : {0.3, 1.0}) {
+      const auto map = make_map(cell, "tube:12,12,-10:0:22:10");
+      for (int n = 0; n < 60; ++n) {
+        CutMove move = line(Vec3(xy(random), xy(random), z(random)), Vec3(0));
+        move.to_mm = Vec3(xy(random), xy(random), part(random) < 0.5 ? move.from_mm.z : z(random));
+        touched += map->first_contact(*cutter, move, kTolerance_mm) ? 1 : 0;
+        cut_all(*map, *cutter, {move});
+        const CutMove back = line(move.to_mm, move.from_mm);
+        ASSERT_FALSE(map->first_contact(*cutter, move, kTolerance_mm)) << spec << " " << n;
+        ASSERT_FALSE(map->first_contact(*cutter, back, kTolerance_mm)) << spec << " " << n;
+      }
+    }
+  }
+  EXPECT_GT(touched, 100);
 }
 
 /// A whole move and its halves: the same up to the rounding of where it is halved.

@@ -88,6 +88,11 @@ ProgramRequest understand_program(const ProgramArguments& a, OptionReader& reade
       if (a.kinematics) {
         request.turning_joints = turning_joints_of(*request.timeline.kinematics);
       }
+      for (const char letter : a.joints) {
+        const auto axis = std::find(kAxisLetters.begin(), kAxisLetters.end(), letter);
+        if (axis == kAxisLetters.end()) continue;
+        options.machine.length_axes |= 1 << (axis - kAxisLetters.begin());
+      }
     } else {
       reader.fault("machine.kinematics", machine.error());
     }

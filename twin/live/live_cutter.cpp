@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "interp_bridge/tool_lengths.h"
 #include "twin/motion_geometry.h"
 #include "twin/motion_nearest.h"
 #include "twin/stock_choice.h"
@@ -169,6 +170,7 @@ std::optional<LiveCutter::Sighting> LiveCutter::see(const AxisSample& sample, do
   now.tool_length_mm = pose->tool_length_mm;
   now.length_is_applied = pose->length_is_applied;
   now.real_shift_mm = pose->real_shift_mm;
+  now.length_checked = pose->length_checked;
   now.sample = sample;
   // A program that is followed knows better than a configuration that says one tool for all.
   const bool by_configuration = !ahead_ || program_tool_ < 0;
@@ -241,12 +243,41 @@ void LiveCutter::follow_by_length_before(const FollowedPlace& place, Sighting& n
   now.by_length_before = true;
 }
 
-/// On the path the tip is off as the program's is; elsewhere as the tool table has it.
+/// On the path the tip is off as the program's is, unless the machine has another tool or offset
+/// than the program; elsewhere as the tool table has it.
 void LiveCutter::place_real_tip(Sighting& now, const FollowedPoint& point) {
   if (!now.length_is_applied) return;
-  if (point.on_path && !now.by_length_before) now.real_shift_mm = point.tip_shift_mm;
+  const bool stated = point.stated_length_mm &&
+                      std::abs(*point.stated_length_mm - now.tool_length_mm) <= kMostWear_mm;
+  const bool checked = now.length_checked && now.sample.tool >= 0 && !stated;
+  const double off_mm = now.real_shift_mm.z - point.tip_shift_mm.z;
+  const bool other = now.by_length_before || (checked && std::abs(off_mm) > kMostWear_mm);
+  if (point.on_path && !other) {
+    now.real_shift_mm = point.tip_shift_mm;
+  }
   now.place.tip_mm += now.real_shift_mm;
   now.tool_length_mm -= now.real_shift_mm.z;
+}
+
+ToolLengthState LiveCutter::real_length_of(const Sighting& now) {
+  ToolLengthState length;
+  length.verdict = ToolLengthState::Verdict::kWrong;
+  length.real_mm = {0, 0, now.tool_length_mm};
+  length.applied_mm = length.real_mm + now.real_shift_mm;
+  length.tip_shift_mm = now.real_shift_mm;
+  length.displaces = true;
+  return length;
+}
+
+/// A motion of the program, by the tool and the offset that the machine really has.
+void LiveCutter::take_real_length(const Sighting& now, Motion& motion) {
+  const Vec3 more_mm = now.real_shift_mm - motion.length.tip_shift_mm;
+  if (!now.length_is_applied || now.by_length_before || more_mm == Vec3{0}) return;
+  motion.from_mm += more_mm;
+  motion.to_mm += more_mm;
+  if (motion.kind == MotionKind::kArc) motion.arc.center_mm += more_mm;
+  motion.tool_offset_mm = {0, 0, now.tool_length_mm};
+  motion.length = now.real_shift_mm == Vec3{0} ? ToolLengthState{} : real_length_of(now);
 }
 
 /// What the machine has behind it.
@@ -398,12 +429,7 @@ void LiveCutter::cut_chord(const ProgramPlace& from, const Sighting& now, double
     set_type(path->machine(), kinematics_type_, motion);
   }
   motion.tool_offset_mm = {0, 0, now.tool_length_mm};
-  if (now.real_shift_mm != Vec3{0}) {
-    motion.length.verdict = ToolLengthState::Verdict::kWrong;
-    motion.length.real_mm = motion.tool_offset_mm;
-    motion.length.applied_mm = motion.tool_offset_mm + now.real_shift_mm;
-    motion.length.tip_shift_mm = now.real_shift_mm;
-  }
+  if (now.real_shift_mm != Vec3{0}) motion.length = real_length_of(now);
   motion.feed_mm_per_min = duration_s > 0 ? 60 * length_mm / duration_s : 0;
   facts_.chord_mm += length_mm;
   double radius_mm = 0;
@@ -444,6 +470,7 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
       if (point.slid[axis] || !now.uvw_known[axis]) continue;
       motion.from_uvw_mm[i] = motion.to_uvw_mm[i] = now.place.uvw_mm[i];
     }
+    take_real_length(now, motion);
     facts_.path_mm += path_length_mm(motion);
     cut(motion, of_same_piece ? DrivenRun::Way::kNextPart : DrivenRun::Way::kPart,
         planned_s > 0 ? duration_s * share_s / planned_s : 0);
@@ -453,6 +480,9 @@ void LiveCutter::cut_path(const Sighting& now, const FollowedPoint& point, doubl
 /// Where the path is, with what the program has not turned where it really is.
 ProgramPlace LiveCutter::place_on_path(const Sighting& now, const FollowedPoint& point) {
   ProgramPlace place = point.place;
+  if (now.length_is_applied && !now.by_length_before) {
+    place.tip_mm += now.real_shift_mm - point.tip_shift_mm;
+  }
   for (std::size_t i = 0; i < 3; ++i) {
     if (!point.turned[i] && now.abc_known[i]) place.abc_deg[i] = now.place.abc_deg[i];
     const auto axis = static_cast<int>(i);

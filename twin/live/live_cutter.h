@@ -178,7 +178,10 @@ class LiveCutter {
     double tool_length_mm = 0;
     bool length_is_applied = false;  ///< LivePose's
     bool by_length_before = false;  ///< it was found on the path by the length of the sample before
-    Vec3 real_shift_mm{0};          ///< of it, while the tip is not on the program's path
+    /// Of it by the tool table. While the tip is on the program's path: as the program has it,
+    /// unless tool and offset of the machine are others.
+    Vec3 real_shift_mm{0};
+    bool length_checked = false;  ///< LivePose's
     int tool = -1;
     std::array<bool, 3> abc_known{};
     std::array<bool, 3> uvw_known{};
@@ -196,6 +199,8 @@ class LiveCutter {
   FollowedPlace place_of(const Sighting& now, double elapsed_s) const;
   FollowedPoint follow(Sighting& now, double elapsed_s);
   static void place_real_tip(Sighting& now, const FollowedPoint& point);
+  static void take_real_length(const Sighting& now, Motion& motion);
+  static ToolLengthState real_length_of(const Sighting& now);
   void check_passed(double until_s);
   void take_kinematics(int type, bool without_length, Sighting& now);
   static ProgramPlace place_on_path(const Sighting& now, const FollowedPoint& point);

@@ -143,10 +143,10 @@ double LiveFrame::length_of(const AxisSample& sample, std::optional<double> prog
 }
 
 /// Only of straight axes; of others the controller turns the tool with the length that it is told.
-Vec3 LiveFrame::real_shift_of(const AxisSample& sample, double applied_mm) const {
+std::optional<Vec3> LiveFrame::real_shift_of(const AxisSample& sample, double applied_mm) const {
   const auto& lengths = options_.table_length_mm;
   const auto row = lengths.find(tool_of(sample));
-  if (row == lengths.end() || row->first <= 0) return Vec3{0};
+  if (row == lengths.end() || row->first <= 0) return std::nullopt;
   const bool any =
       std::any_of(lengths.begin(), lengths.end(), [](const auto& one) { return one.second != 0; });
   const bool turned =
@@ -154,8 +154,8 @@ Vec3 LiveFrame::real_shift_of(const AxisSample& sample, double applied_mm) const
       std::any_of(options_.kinematics->types.begin(), options_.kinematics->types.end(),
                   [](const KinematicsType& type) { return type.mode != KinematicsMode::kAxes; });
   const double off_mm = applied_mm - row->second;
-  if (!any || turned || std::abs(off_mm) <= kMostWear_mm) return Vec3{0};
-  return {0, 0, off_mm};
+  if (!any || turned) return std::nullopt;
+  return std::abs(off_mm) <= kMostWear_mm ? Vec3{0} : Vec3{0, 0, off_mm};
 }
 
 /// Machine coordinates without the tool's length and the work offset.
@@ -188,7 +188,9 @@ std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
   if (!options_.workpiece_frame) {
     pose.tool_length_mm = length_of(sample, program_length_mm, pose);
     if (pose.length_is_applied) {
-      pose.real_shift_mm = real_shift_of(sample, pose.tool_length_mm);
+      const std::optional<Vec3> shift_mm = real_shift_of(sample, pose.tool_length_mm);
+      pose.length_checked = shift_mm.has_value();
+      pose.real_shift_mm = shift_mm.value_or(Vec3{0});
     }
   }
   const Axes axes = axes_of(sample, type, pose.tool_length_mm);

@@ -68,6 +68,7 @@ struct LivePose {
   /// are wear, or a tool that was measured.
   bool length_is_applied = false;
   Vec3 real_shift_mm{0};
+  bool length_checked = false;  ///< real_shift_mm is by the tool table; else 0 for want of a row
 };
 
 /// Turns samples into poses. One thread.
@@ -104,7 +105,7 @@ class LiveFrame {
   Vec3 tip_of(const Axes& axes, double tool_mm) const;
   double length_of(const AxisSample& sample, std::optional<double> program_length_mm,
                    LivePose& pose) const;
-  Vec3 real_shift_of(const AxisSample& sample, double applied_mm) const;
+  std::optional<Vec3> real_shift_of(const AxisSample& sample, double applied_mm) const;
 
   LiveFrameOptions options_;
   double cos_ = 1;

@@ -269,7 +269,11 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   if (place.machine) point.kinematics_type = place.machine->type_of(piece.motion);
   point.source = piece.motion.source;
   point.tool = piece.motion.tool;
-  point.tip_shift_mm = piece.motion.length.tip_shift_mm;
+  const ToolLengthState& length = piece.motion.length;
+  point.tip_shift_mm = length.tip_shift_mm;
+  if (length.verdict == ToolLengthState::Verdict::kStated) {
+    point.stated_length_mm = length.applied_mm.z;
+  }
   point.tool_length_mm = piece.motion.tool_offset_mm.z;
   point.program_s = piece.time_at(at->t);
   point.motion = piece.number;

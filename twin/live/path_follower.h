@@ -76,13 +76,14 @@ struct FollowedPoint {
                            ///< the part that was searched; infinite: there is no path to search
   ProgramPlace place;      ///< on the path
   Vec3 tip_shift_mm{0};    ///< of a wrong tool length there; in `place` already
-  int kinematics_type = 0;       ///< in force there, by the program
-  std::array<bool, 3> turned{};  ///< A, B, C: the program has turned it, up to there
-  std::array<bool, 3> slid{};    ///< U, V, W: the program has moved it
-  double tool_length_mm = 0;     ///< in force there, by the program
-  int tool = 0;                  ///< in the spindle there, by the program
-  SourceRef source;              ///< of the motion there
-  double program_s = 0;          ///< program time there, by the plan
+  std::optional<double> stated_length_mm;  ///< the program itself says it (kStated), in Z
+  int kinematics_type = 0;                 ///< in force there, by the program
+  std::array<bool, 3> turned{};            ///< A, B, C: the program has turned it, up to there
+  std::array<bool, 3> slid{};              ///< U, V, W: the program has moved it
+  double tool_length_mm = 0;               ///< in force there, by the program
+  int tool = 0;                            ///< in the spindle there, by the program
+  SourceRef source;                        ///< of the motion there
+  double program_s = 0;                    ///< program time there, by the plan
   /// Number of the motion there, of all that have been appended; and how far on it: a share of its
   /// way, or of that of the planned piece.
   std::uint64_t motion = 0;

@@ -251,10 +251,11 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.rapid} << 36 | std::uint64_t{m.unknown_from} << 37 |
       std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43 |
       std::uint64_t{m.speed_said} << 44;
-  const std::uint64_t stops = std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
-                              static_cast<std::uint64_t>(m.chain_end) << 16 |
-                              static_cast<std::uint64_t>(m.tool_prepare) << 24 |
-                              std::uint64_t{m.by_number} << 32;
+  const std::uint64_t stops =
+      std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
+      static_cast<std::uint64_t>(m.chain_end) << 16 |
+      static_cast<std::uint64_t>(m.tool_prepare) << 24 | std::uint64_t{m.by_number} << 32 |
+      std::uint64_t{m.table_reloaded} << 33 | std::uint64_t{m.length.displaces} << 34;
   const std::uint64_t tool = static_cast<std::uint32_t>(m.tool);
   const auto floats = [](float a, float b) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b);
@@ -287,6 +288,12 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
           bits(m.length.tip_shift_mm.x),
           bits(m.length.tip_shift_mm.y),
           bits(m.length.tip_shift_mm.z),
+          bits(m.length.uvw_off_mm.x),
+          bits(m.length.uvw_off_mm.y),
+          bits(m.length.uvw_off_mm.z),
+          bits(m.length.abc_off_deg.x),
+          bits(m.length.abc_off_deg.y),
+          bits(m.length.abc_off_deg.z),
           std::uint64_t{m.length.set_at.file} << 32 | m.length.set_at.line,
           std::uint64_t{static_cast<std::uint32_t>(m.length.offset_tool)} << 32 |
               static_cast<std::uint64_t>(m.length.verdict)};

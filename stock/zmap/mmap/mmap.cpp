@@ -84,8 +84,9 @@ Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
       make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, "an M-map");
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
-  return std::unique_ptr<MMap>(new MMap(
-      std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads)));
+  auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
+  impl->sweeper.follow_rims(options.blank.bodies);
+  return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 
 Done MMap::save(const std::string& path) const {

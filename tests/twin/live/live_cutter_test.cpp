@@ -750,5 +750,41 @@ TEST(LiveCutter, ToolLengthsOfTheProgramApplyWhereTheyAreInForce) {
   EXPECT_EQ(cutter.facts().off_path, 0U);
 }
 
+TEST(LiveCutter, AnOffsetThatIsNotTheToolsLengthMovesTheTipAlongAProgram) {
+  const std::vector<Motion> motions = pocket().list();
+  for (const double applied_mm : {50.0, 50.5, 45.0}) {
+    // The table has 50 for tool 2; half a mm is wear.
+    const double off_mm = applied_mm == 45 ? -5 : 0;
+    std::vector<Motion> real = motions;
+    for (Motion& m : real) {
+      if (m.tool != 2) continue;
+      m.from_mm.z += off_mm;
+      m.to_mm.z += off_mm;
+      m.arc.center_mm.z += off_mm;
+    }
+    const auto wanted = dry_run(real);
+    const RunningMachine machine(motions);
+    LiveCutOptions options;
+    options.frame.table_length_mm = {{1, 30}, {2, 50}};
+    options.gap_s = 10;
+    options.wait_for_program = true;
+    auto stock = block();
+    FindingLog log;
+    LiveCutter cutter(*stock, cutters(), log, options, std::make_unique<ListedProgram>(motions));
+    for (double t = 0; t < machine.duration_s() + 0.01; t += 0.01) {
+      AxisSample sample = machine.sample(std::min(t, machine.duration_s()));
+      sample.tool_offset_z_mm = sample.tool == 1 ? 30 : applied_mm;
+      sample.position[2] += sample.tool_offset_z_mm;
+      cutter.take(sample, t, false);
+    }
+    cutter.look();
+    EXPECT_LT(worst_difference_mm(*stock, *wanted), 2e-5) << applied_mm;
+    EXPECT_EQ(cutter.facts().off_path, 0U);
+    int told = 0;
+    for (const Finding& finding : log.kept()) told += finding.id == FindingId::kToolLength ? 1 : 0;
+    EXPECT_EQ(told, off_mm != 0 ? 1 : 0) << applied_mm;
+  }
+}
+
 }  // namespace
 }  // namespace kerf

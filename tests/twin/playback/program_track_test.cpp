@@ -39,14 +39,17 @@ std::vector<std::uint64_t> bits_of(const Motion& m) {
                              static_cast<std::int64_t>(m.chain_end),
                              static_cast<std::int64_t>(m.tool_prepare),
                              static_cast<std::int64_t>(m.by_number),
+                             static_cast<std::int64_t>(m.table_reloaded),
+                             static_cast<std::int64_t>(m.length.displaces),
                              static_cast<std::int64_t>(m.selected_tool),
                              static_cast<std::int64_t>(m.selected_at.file),
                              static_cast<std::int64_t>(m.selected_at.line)}) {
     bits.push_back(static_cast<std::uint64_t>(integer));
   }
-  for (const Vec3& v : {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm,
-                        m.from_uvw_mm, m.to_uvw_mm, m.tool_offset_uvw_mm, m.length.applied_mm,
-                        m.length.real_mm, m.length.tip_shift_mm}) {
+  for (const Vec3& v :
+       {m.from_mm, m.to_mm, m.arc.center_mm, m.arc.axis, m.tool_offset_mm, m.from_uvw_mm,
+        m.to_uvw_mm, m.tool_offset_uvw_mm, m.length.applied_mm, m.length.real_mm,
+        m.length.tip_shift_mm, m.length.uvw_off_mm, m.length.abc_off_deg}) {
     for (int axis = 0; axis < 3; ++axis) add(v[axis]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -92,6 +95,9 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.tool_offset_uvw_mm = random() % 9 == 0 ? Vec3{0, 0, 2.5} : Vec3{0};
     if (random() % 9 == 0) {
       m.length.verdict = static_cast<ToolLengthState::Verdict>(random() % 3);
+      m.length.displaces = random() % 2 == 0;
+      m.length.uvw_off_mm = vector();
+      m.length.abc_off_deg = vector();
       m.length.offset_tool = static_cast<int>(random() % 3) - 1;
       m.length.set_at = {0, static_cast<std::uint32_t>(random() % 3)};
       m.length.tip_shift_mm = {0, 0, random() % 2 == 0 ? -15.0 : 0.0};
@@ -116,6 +122,7 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.chain_end = static_cast<ChainEnd>(random() % 3);
     m.tool_prepare = static_cast<ToolPrepare>(random() % 4);
     m.by_number = random() % 9 == 0;
+    m.table_reloaded = random() % 9 == 0;
     if (random() % 20 == 0) m.selected_tool = static_cast<int>(random() % 1000) - 1;
     if (random() % 20 == 0) {
       m.selected_at = {static_cast<std::uint32_t>(random() % 3),
@@ -137,7 +144,7 @@ std::vector<Motion> wild_motions(std::size_t count) {
 }
 
 TEST(ProgramTrack, MotionsAndTimesComeOutBitForBit) {
-  ASSERT_EQ(sizeof(Motion), 448U) << "it has another field, which bits_of() must look at";
+  ASSERT_EQ(sizeof(Motion), 496U) << "it has another field, which bits_of() must look at";
   const std::vector<Motion> motions = wild_motions(5000);
   ProgramTrackBuilder builder;
   std::mt19937_64 random(8);
