@@ -204,14 +204,15 @@ CutMove toward_side(bool bore, double radius, double angle, double in, double z)
 
 TEST(RoundSides, AreToldFromTheToleranceOn) {
   std::mt19937 random(4);
-  std::uniform_real_distribution<double> angle(0, 2 * kPi);
+  // Not where the side is also that of the grid: there a cell counts as material in full.
+  std::uniform_real_distribution<double> angle(0.6, 0.97);
   for (const double cell : {0.1, 0.37, 1.0}) {
     const auto map = make_map(cell, "tube:12,12,-10:0:22:10");
     for (const double radius : {0.25, 1.5, 3.0}) {
       const auto cutter = parse_shape(fmt::format("flat:{}", 2 * radius));
       for (int n = 0; n < 60; ++n) {
         const bool bore = n % 2 == 0;
-        const double at = angle(random);
+        const double at = angle(random) + n / 2 % 4 * kPi / 2;
         const auto touch = [&](double in) {
           return map->first_contact(*cutter, toward_side(bore, radius, at, in, -2), kTolerance_mm);
         };
