@@ -26,7 +26,7 @@ constexpr std::string_view kForms =
     "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS";
 
 /// `form`: x,y,z or x,y.
-Result<Vec3> parse_point(std::string_view name, std::string_view text,
+Result<Vec3> parse_point(std::string_view name, std::string_view text, LengthUnit unit,
                          std::string_view form = "x,y,z") {
   const std::vector<std::string_view> parts = split(text, ',');
   const std::size_t axes = form.size() / 2 + 1;
@@ -36,9 +36,9 @@ Result<Vec3> parse_point(std::string_view name, std::string_view text,
   }
   Vec3 point(0);
   for (int axis = 0; axis < static_cast<int>(axes); ++axis) {
-    const Result<double> value = parse_within(fmt::format("{} {}", name, "XYZ"[axis]),
+    const Result<double> value = parse_length(fmt::format("{} {}", name, "XYZ"[axis]),
                                               trim(parts[static_cast<std::size_t>(axis)]),
-                                              -kMaxCoordinate_mm, kMaxCoordinate_mm, "mm");
+                                              -kMaxCoordinate_mm, kMaxCoordinate_mm, unit);
     if (!value) return Error{value.error()};
     point[axis] = *value;
   }
@@ -46,20 +46,21 @@ Result<Vec3> parse_point(std::string_view name, std::string_view text,
 }
 
 /// "" if low < high by at least kMinSize_mm.
-std::string order_fault(char axis, double low, double high) {
+std::string order_fault(char axis, double low, double high, LengthUnit unit) {
   if (high - low >= kMinSize_mm) return "";
-  return fmt::format("{} runs from {} to {}; the second must be at least {} mm above the first",
-                     axis, number_text(low), number_text(high), kMinSize_mm);
+  return fmt::format("{} runs from {} to {}; the second must be at least {} {} above the first",
+                     axis, length_number(low, unit), length_number(high, unit),
+                     length_number(kMinSize_mm, unit), name_of(unit));
 }
 
-Result<BlankBody> parse_box(const std::vector<std::string_view>& fields) {
+Result<BlankBody> parse_box(const std::vector<std::string_view>& fields, LengthUnit unit) {
   if (fields.size() != 3) return Error{"the form is box:x0,y0,z0:x1,y1,z1"};
-  const Result<Vec3> low = parse_point("first corner", fields[1]);
+  const Result<Vec3> low = parse_point("first corner", fields[1], unit);
   if (!low) return Error{low.error()};
-  const Result<Vec3> high = parse_point("second corner", fields[2]);
+  const Result<Vec3> high = parse_point("second corner", fields[2], unit);
   if (!high) return Error{high.error()};
   for (int axis = 0; axis < 3; ++axis) {
-    const std::string fault = order_fault("XYZ"[axis], (*low)[axis], (*high)[axis]);
+    const std::string fault = order_fault("XYZ"[axis], (*low)[axis], (*high)[axis], unit);
     if (!fault.empty()) return Error{fault};
   }
   BlankBody body;
@@ -76,7 +77,8 @@ std::optional<int> axis_index(std::string_view text) {
 }
 
 /// cylinder and tube: the point is the centre of the lower end, then the other end along the axis.
-Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool tube) {
+Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool tube,
+                              LengthUnit unit) {
   const std::size_t needed = tube ? 5 : 4;
   if (fields.size() != needed && fields.size() != needed + 1) {
     return Error{tube ? "the form is tube:x,y,z0:z1:d:inner[:axis]"
@@ -91,16 +93,16 @@ Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool 
     }
     axis = *index;
   }
-  const Result<Vec3> center = parse_point("centre", fields[1]);
+  const Result<Vec3> center = parse_point("centre", fields[1], unit);
   if (!center) return Error{center.error()};
   const char letter = "XYZ"[axis];
-  const Result<double> end = parse_within(fmt::format("end {}", letter), trim(fields[2]),
-                                          -kMaxCoordinate_mm, kMaxCoordinate_mm, "mm");
+  const Result<double> end = parse_length(fmt::format("end {}", letter), trim(fields[2]),
+                                          -kMaxCoordinate_mm, kMaxCoordinate_mm, unit);
   if (!end) return Error{end.error()};
-  const std::string fault = order_fault(letter, (*center)[axis], *end);
+  const std::string fault = order_fault(letter, (*center)[axis], *end, unit);
   if (!fault.empty()) return Error{fault};
   const Result<double> diameter =
-      parse_within("diameter", trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, "mm");
+      parse_length("diameter", trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, unit);
   if (!diameter) return Error{diameter.error()};
   BlankBody body;
   body.kind = tube ? BlankBody::Kind::kTube : BlankBody::Kind::kCylinder;
@@ -109,13 +111,13 @@ Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool 
   body.diameter_mm = *diameter;
   if (tube) {
     const Result<double> inner =
-        parse_within("inner diameter", trim(fields[4]), kMinSize_mm, kMaxCoordinate_mm, "mm");
+        parse_length("inner diameter", trim(fields[4]), kMinSize_mm, kMaxCoordinate_mm, unit);
     if (!inner) return Error{inner.error()};
     if (*inner >= *diameter) {
       return Error{
           fmt::format("inner diameter: {} is not allowed; must be less than the diameter, "
-                      "{} (mm)",
-                      number_text(*inner), number_text(*diameter))};
+                      "{} ({})",
+                      length_number(*inner, unit), length_number(*diameter, unit), name_of(unit))};
     }
     body.inner_diameter_mm = *inner;
   }
@@ -125,12 +127,12 @@ Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool 
   return body;
 }
 
-Result<BlankBody> parse_body(std::string_view text) {
+Result<BlankBody> parse_body(std::string_view text, LengthUnit unit) {
   const std::vector<std::string_view> fields = split(text, ':');
   const std::string kind = to_lower(trim(fields[0]));
-  if (kind == "box") return parse_box(fields);
-  if (kind == "cylinder") return parse_round(fields, false);
-  if (kind == "tube") return parse_round(fields, true);
+  if (kind == "box") return parse_box(fields, unit);
+  if (kind == "cylinder") return parse_round(fields, false, unit);
+  if (kind == "tube") return parse_round(fields, true, unit);
   if (kind == "stl") {
     return Error{fmt::format("{}: is not supported by this version; forms: {}", kind, kForms)};
   }
@@ -167,7 +169,7 @@ bool is_drawing(std::string_view file) {
 }
 
 /// `text`: behind "sheet:". A file name may hold any character, '+' and ':' too.
-Result<BlankSheet> parse_sheet(std::string_view text) {
+Result<BlankSheet> parse_sheet(std::string_view text, LengthUnit unit) {
   const std::size_t last = text.rfind(':');
   if (last == std::string_view::npos) return Error{std::string(kSheetForms)};
   const std::string_view outline = trim(text.substr(0, last));
@@ -180,19 +182,19 @@ Result<BlankSheet> parse_sheet(std::string_view text) {
     }
     const std::vector<std::string_view> corners = split(outline, ':');
     if (corners.size() != 2) return Error{std::string(kSheetForms)};
-    const Result<Vec3> low = parse_point("first corner", corners[0], "x,y");
+    const Result<Vec3> low = parse_point("first corner", corners[0], unit, "x,y");
     if (!low) return Error{low.error()};
-    const Result<Vec3> high = parse_point("second corner", corners[1], "x,y");
+    const Result<Vec3> high = parse_point("second corner", corners[1], unit, "x,y");
     if (!high) return Error{high.error()};
     for (int axis = 0; axis < 2; ++axis) {
-      const std::string fault = order_fault("XY"[axis], (*low)[axis], (*high)[axis]);
+      const std::string fault = order_fault("XY"[axis], (*low)[axis], (*high)[axis], unit);
       if (!fault.empty()) return Error{fault};
     }
     sheet.low_mm = Vec2(*low);
     sheet.high_mm = Vec2(*high);
   }
   const Result<double> thickness =
-      parse_within("thickness", trim(text.substr(last + 1)), kMinSize_mm, kMaxThickness_mm, "mm");
+      parse_length("thickness", trim(text.substr(last + 1)), kMinSize_mm, kMaxThickness_mm, unit);
   if (!thickness) return Error{thickness.error()};
   sheet.thickness_mm = *thickness;
   return sheet;
@@ -250,7 +252,7 @@ Box Blank::bounds_mm() const {
   return bounds;
 }
 
-Result<Blank> parse_blank(std::string_view spec) {
+Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
   spec = trim(spec);
   Blank blank;
   const std::size_t colon = spec.find(':');
@@ -262,7 +264,7 @@ Result<Blank> parse_blank(std::string_view spec) {
     return blank;
   }
   if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "sheet") {
-    Result<BlankSheet> sheet = parse_sheet(spec.substr(colon + 1));
+    Result<BlankSheet> sheet = parse_sheet(spec.substr(colon + 1), unit);
     if (!sheet) return Error{fmt::format("{}: {}", shown(spec), sheet.error())};
     blank.sheet = std::move(sheet.value());
     return blank;
@@ -272,7 +274,7 @@ Result<Blank> parse_blank(std::string_view spec) {
     return Error{fmt::format("{} bodies; at most {} are allowed", texts.size(), kMaxBodies)};
   }
   for (const std::string_view text : texts) {
-    Result<BlankBody> body = parse_body(text);
+    Result<BlankBody> body = parse_body(text, unit);
     if (!body) {
       return Error{text.empty() ? body.error() : fmt::format("{}: {}", shown(text), body.error())};
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/length_unit.h"
 #include "base/result.h"
 
 namespace kerf {
@@ -44,8 +45,8 @@ struct Blank {
 /// several of these joined by '+'; or state:FILE | sheet:x0,y0:x1,y1:THICKNESS |
 /// sheet:FILE.dxf:THICKNESS | sheet:FILE.svg:THICKNESS. stl: is named as not supported by this
 /// version. Zero or negative sizes, reversed corners, non-numbers are errors that show what was
-/// found and what is allowed. Reads no file.
-Result<Blank> parse_blank(std::string_view spec);
+/// found and what is allowed. Its numbers are in `unit`. Reads no file.
+Result<Blank> parse_blank(std::string_view spec, LengthUnit unit = LengthUnit::kMm);
 
 /// "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0": for messages.
 std::string describe(const Blank& blank);

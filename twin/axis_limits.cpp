@@ -114,8 +114,8 @@ void AxisLimitCheck::check_axis(std::size_t axis, const Reach& reach, const Moti
   const char* unit = is_rotary_axis(axis) ? "degrees" : "mm";
   const double place = below > above ? reach.min[axis] : reach.max[axis];
   std::string text = fmt::format(
-      "axis {} is sent to {:.3f} {}, {:.3f} beyond its limit of {:.3f} (machine coordinates)",
-      kAxisLetters[axis], place, unit, beyond, below > above ? limit.min : limit.max);
+      "axis {} is sent to {:.3f} {}, {:.3f} {} beyond its limit of {:.3f} {} (machine coordinates)",
+      kAxisLetters[axis], place, unit, beyond, unit, below > above ? limit.min : limit.max, unit);
   if (events_[axis]) {
     log_.reword(events_[axis]->finding, std::move(text));
     events_[axis]->beyond = beyond;

@@ -262,6 +262,8 @@ BlankGuess::Top BlankGuess::top(double lowest) const {
   return {lowest + std::min(kSkin_mm, room), true};
 }
 
+bool BlankGuess::is_skin() const { return has_feed_ && top(lowest_feed_mm_).skin; }
+
 Blank BlankGuess::blank() const {
   Box box = has_feed_ ? feeds_mm_ : all_mm_;
   if (box.empty()) box.extend(Vec3(0));

@@ -46,6 +46,8 @@ class BlankGuess {
   ///   the table)
   /// Without feed moves: around the ends of the traverses. Never empty.
   Blank blank() const;
+  /// blank() has its top just above the only level that is fed.
+  bool is_skin() const;
   /// False: not one move has been seen.
   bool has_moves() const { return !all_mm_.empty(); }
 

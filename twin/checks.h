@@ -27,6 +27,9 @@ struct CheckOptions {
   bool blank_guessed = false;
   /// How far below the floor of the blank the tip may go: into a spoilboard. mm.
   double below_mm = 0;
+  /// The blank is a skin that was guessed over the only level that is fed, and the program never
+  /// starts a spindle: a pen, a knife. What stands in that skin is no fault.
+  bool is_drawn = false;
 };
 
 /// What a finding about a contact rests on.

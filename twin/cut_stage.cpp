@@ -158,7 +158,7 @@ void CutStage::begin_reporting() {
   if (torch_) torch_->begin_reporting();
   if (punch_) punch_->begin_reporting();
   mounted_ = nullptr;
-  feed_missing_reported_ = false;
+  feed_missing_reported_ = drawn_told_ = false;
   machine_place_told_ = unknown_feed_told_ = false;
   over_feed_ = {};
   invented_limits_told_ = false;
@@ -273,7 +273,7 @@ void CutStage::take_feed(const Motion& m, const TimedStep& step) {
   note_depth(m, step);
   if (motion_moves_.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);
-  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, move);
+  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, step, move);
   if (ProgramChecks::is_drill(move.cutter) && !program_.drill_told() &&
       ProgramChecks::goes_sideways(m) && comes_near(m)) {
     flush_whole();

@@ -151,7 +151,8 @@ class CutStage : private StepSink {
   void cut(const Motion& motion, const TimedStep& step);
   void watch_program(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
-  void check_standing(const Motion& motion, const CheckedMove& move);
+  void check_standing(const Motion& motion, const TimedStep& step, const CheckedMove& move);
+  void report_drawn(const Motion& motion, const TimedStep& step);
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
@@ -235,6 +236,7 @@ class CutStage : private StepSink {
   std::uint64_t feed_moves_made_ = 0;  ///< of them, those that are no traverses
   /// spindle-off-contact of a program without any S word so far.
   std::optional<FindingLog::Handle> speed_unsaid_;
+  bool drawn_told_ = false;  ///< CheckOptions::is_drawn
   LoadMeter load_meter_;
   LengthCheck lengths_;
   FilmEvents films_;

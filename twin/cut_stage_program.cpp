@@ -30,6 +30,7 @@ void CutStage::watch_program(const Motion& m, const TimedStep& step) {
     program_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
     program_.end_tool();
   }
+  if (checks_.options().is_drawn) return;
   if (!cutter() || !program_.may_stop_in_part(m) || !motion_moves_.is_upright(m)) return;
   flush_whole();
   program_.check_stop(m, step, *mounted_->cutter, mounted_->number);
@@ -38,9 +39,13 @@ void CutStage::watch_program(const Motion& m, const TimedStep& step) {
 /// A spindle that is told to turn at no speed stands. Where the program has no S word at all its
 /// speed may be set by hand, at the spindle: that is told once, as a warning, unless the machine's
 /// INI is there or an S word comes after all.
-void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
+void CutStage::check_standing(const Motion& m, const TimedStep& step, const CheckedMove& move) {
   const bool unsaid = m.spindle != SpindleState::kStopped && !m.speed_said;
   if (unsaid && speed_unsaid_) return;
+  if (checks_.options().is_drawn) {
+    if (!std::exchange(drawn_told_, true)) report_drawn(m, step);
+    return;
+  }
   flush_whole();
   if (m.spindle == SpindleState::kStopped) {
     checks_.check_standing_spindle(move, "feed move touches the workpiece while the spindle stands",
@@ -56,6 +61,21 @@ void CutStage::check_standing(const Motion& m, const CheckedMove& move) {
         "how fast; is its speed set by hand?",
         limits_known_ ? Severity::kError : Severity::kWarning);
   }
+}
+
+/// Once, instead of warnings: with the spindle that a pen has not.
+void CutStage::report_drawn(const Motion& m, const TimedStep& step) {
+  Finding finding;
+  finding.id = FindingId::kSpindleOffContact;
+  finding.severity = Severity::kNote;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.tool = mounted_->number;
+  finding.text =
+      "no spindle is ever started, and the blank is a guess, a skin over the only level that is "
+      "fed: it is taken for a pen or a knife, and what stands in the skin is not told (--stock "
+      "SPEC gives the blank, and then it is)";
+  log_.add(std::move(finding));
 }
 
 /// In cells that are too coarse for it a groove may remove nothing: the geometry says whether a

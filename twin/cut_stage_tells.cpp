@@ -309,7 +309,7 @@ void CutStage::report_over_feed() {
   finding.time_s = over_feed_.time_s;
   finding.text = fmt::format(
       "{} feed move{} for more than the machine can do, the first for {:.0f} mm/min where it "
-      "can do {:.0f} ({})",
+      "can do {:.0f} mm/min ({})",
       over_feed_.count, over_feed_.count == 1 ? " asks" : "s ask", over_feed_.programmed_mm_per_min,
       over_feed_.allowed_mm_per_min, limits_origin_);
   log_.add(std::move(finding));

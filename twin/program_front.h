@@ -59,6 +59,7 @@ struct ProgramFront {
 
   bool blank_guessed = false;
   std::string guess_reason;  ///< of that
+  bool is_drawn = false;     ///< ProgramSurvey::is_drawn(), of a blank that was guessed
 
   bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };

@@ -70,8 +70,10 @@ struct Report {
 std::string json_text(const Report& report);
 
 struct SummaryOptions {
-  bool verbose = false;              ///< all that is known of how the run was made
-  std::vector<std::string> command;  ///< as it was written, kerf itself first: for what was guessed
+  bool verbose = false;  ///< all that is known of how the run was made
+  /// With what was guessed, in `units`; empty: it is not shown.
+  std::string command;
+  LengthUnit units = LengthUnit::kMm;
 };
 
 /// The page of text that `kerf run` prints: verdict, findings by severity (only counted; they are

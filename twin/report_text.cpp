@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "twin/report.h"
+#include "twin/shown_lengths.h"
 
 namespace kerf {
 namespace {
@@ -150,7 +151,7 @@ void add_live(std::string& out, const LiveReport& live) {
                      distance_text(f.path_mm), distance_text(f.chord_mm));
   if (f.on_path > 0) {
     out += fmt::format(
-        "followed  {} samples on the path, {:.3f} mm from it on average, {:.3f} at "
+        "followed  {} samples on the path, {:.3f} mm from it on average, {:.3f} mm at "
         "most; {} beside it, {:.2f} mm at most\n",
         f.on_path, f.following_sum_mm / static_cast<double>(f.on_path), f.following_max_mm,
         f.off_path, f.off_path_max_mm);
@@ -258,7 +259,8 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   }
   if (report.stock) add_stock(out, *report.stock);
   if (options.verbose) add_details(out, report);
-  return out + guess_text(report.guesses, options.command);
+  return in_unit(out, options.units) +
+         guess_text(rows_in(report.guesses, options.units), options.command);
 }
 
 }  // namespace kerf

@@ -200,7 +200,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   TimelineOptions timing = options_.timeline;
   if (beam) timing.holds = holds_of(options_.turret, beam);
   CutStage stage(*front_.stock.stock, book, report_.findings, timing);
-  stage.check_by({front_.blank_guessed, options_.below_mm});
+  stage.check_by({front_.blank_guessed, options_.below_mm, front_.is_drawn});
   if (beam && options_.turret) {
     stage.punch(options_.turret);
   } else if (beam) {

@@ -72,6 +72,7 @@ bool Session::take_guesses(const ProgramSurvey& survey, Diagnostics& diagnostics
     front_.blank = survey.blank();
     front_.blank_origin = "guessed";
     front_.blank_guessed = true;
+    front_.is_drawn = survey.is_drawn();
     front_.guess_reason = fmt::format("the feed moves plus {:g} mm", options_.margin_mm);
     if (auto warning = survey.warning(*front_.blank, front_.guess_reason)) {
       report_.findings.add(std::move(*warning));
@@ -106,14 +107,16 @@ bool Session::take_sheet(const ProgramSurvey::SheetGuess& guess, const ProgramSu
   return true;
 }
 
-/// A feed move of a tool of which nothing is known: it is guessed from all moves, and everything
-/// begins again.
+/// A feed move of a tool of which nothing is known, or its diameter alone: it is guessed from all
+/// moves, and everything begins again.
 void Session::watch_tools(std::span<const Motion> motions) {
   if (!open_tools_ || lacks_tool_) return;
   const bool described = !front_.tools.arguments.empty() || !front_.tools.table.empty();
   for (const Motion& m : motions) {
     const ResolvedTool* const tool = open_tools_->feeding(m);
-    if (!tool || tool->cutter || (described && m.tool != 0)) continue;
+    if (!tool) continue;
+    const bool is_open = !tool->cutter && !(described && m.tool != 0);
+    if (!is_open && !tool->is_size_alone()) continue;
     lacks_tool_ = true;
     return;
   }

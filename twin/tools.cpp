@@ -58,6 +58,7 @@ const ResolvedTool& ToolBook::mount(int tool, std::uint32_t line) {
   const auto known = tools_.find(tool);
   if (known != tools_.end() && known->second.cutter) return known->second;
   ResolvedTool resolved = tool == 0 ? resolve_empty_spindle(fresh_hint) : resolve(tool, fresh_hint);
+  drill_where_it_drills(resolved, tool);
   refuse_unfit(resolved);
   return tools_[tool] = std::move(resolved);
 }
@@ -155,9 +156,28 @@ bool ToolBook::from_table(ResolvedTool& out) const {
   return false;
 }
 
+bool ResolvedTool::is_size_alone() const {
+  return cutter && guessed && guess.empty() && !from_moves &&
+         kind_of(cutter->spec()) == std::string_view("flat");
+}
+
+/// `tool`: what the program calls it.
+void ToolBook::drill_where_it_drills(ResolvedTool& out, int tool) const {
+  if (!out.is_size_alone()) return;
+  for (const ToolGuess& guess : sources_.guesses) {
+    if (guess.tool != tool || !guess.of_known_size) continue;
+    Result<Cutter> cutter = parse_shape(guess.shape);
+    // The same tool may have had another comment where it came first.
+    if (!cutter || cutter->radius_mm() != out.cutter->radius_mm()) continue;
+    out.cutter = std::move(cutter.value());
+    out.guess = guess.reason;
+    return;
+  }
+}
+
 bool ToolBook::from_guess(ResolvedTool& out) const {
   for (const ToolGuess& guess : sources_.guesses) {
-    if (guess.tool != out.number) continue;
+    if (guess.tool != out.number || guess.of_known_size) continue;
     Result<Cutter> cutter = parse_shape(guess.shape);
     if (!cutter) return false;
     out.cutter = std::move(cutter.value());

@@ -20,6 +20,9 @@ struct ToolGuess {
   int tool = 0;        ///< 0: what is in the spindle before any tool change
   std::string shape;   ///< SHAPE text, parse_shape() accepts it
   std::string reason;  ///< "it only goes up and down"
+  /// Its diameter is known, from a comment or the tool table, and nothing but that: this is a
+  /// shape of that diameter.
+  bool of_known_size = false;
 };
 
 /// What is known of tools before the program starts.
@@ -45,13 +48,17 @@ struct ResolvedTool {
   bool from_moves = false;  ///< of ToolSources::guesses: guessed from what the program does with it
   bool assumed = false;     ///< the spindle was empty, and this is the only tool described
   std::string trouble;
+
+  /// Nothing but its diameter is known, and so a flat cutter was taken.
+  bool is_size_alone() const;
 };
 
 /// Answers "what is tool N" in the order: --tool; comments of the program that name it or stand in
 /// the block of its T word, where they disagree the first, guessed; comments at its tool change,
 /// guessed where they are not certainly about it (ToolHint::near) or several stand there; the
 /// remark in the tool table; a flat cutter of the tool table's diameter (guessed). Running text
-/// that names no tool comes after the tool table; last comes what was guessed from its moves. Never
+/// that names no tool comes after the tool table; last comes what was guessed from its moves, which
+/// also makes a drill of a tool of which nothing but the diameter is known. Never
 /// gives one tool for another, with one exception that is marked `assumed`: a program that cuts
 /// before any tool change has no tool number, and then the only tool that --tool describes (or,
 /// without
@@ -82,6 +89,7 @@ class ToolBook {
   void note_disagreement(ResolvedTool& out, const ToolHint& taken) const;
   bool from_table(ResolvedTool& out) const;
   bool from_guess(ResolvedTool& out) const;
+  void drill_where_it_drills(ResolvedTool& out, int tool) const;
   std::optional<std::size_t> take_nameless_hint(std::uint32_t line);
   void refuse_unfit(ResolvedTool& tool) const;
 

@@ -98,6 +98,20 @@ Result<double> parse_within(std::string_view name, std::string_view text, double
   return *value;
 }
 
+Result<double> parse_length(std::string_view name, std::string_view text, double low_mm,
+                            double high_mm, LengthUnit unit) {
+  if (unit == LengthUnit::kMm) return parse_within(name, text, low_mm, high_mm, name_of(unit));
+  const std::optional<double> value = parse_decimal(text);
+  if (!value) return Error{fmt::format("{}: '{}' is not a number", name, shown(text))};
+  const double mm = to_mm(*value, unit);
+  if (mm < low_mm || mm > high_mm) {
+    return Error{fmt::format("{}: {} is not allowed; must be from {:.4g} to {:.4g} ({})", name,
+                             number_text(*value), from_mm(low_mm, unit), from_mm(high_mm, unit),
+                             name_of(unit))};
+  }
+  return mm;
+}
+
 std::string did_you_mean(std::string_view text, std::span<const std::string_view> candidates) {
   std::size_t best = kMostEdits + 1;
   std::string_view match;
@@ -113,5 +127,12 @@ std::string did_you_mean(std::string_view text, std::span<const std::string_view
 }
 
 std::string number_text(double value) { return fmt::format("{}", value == 0 ? 0.0 : value); }
+
+std::string length_number(double mm, LengthUnit unit) {
+  if (unit == LengthUnit::kMm) return number_text(mm);
+  const double value = from_mm(mm, unit);
+  const double steps = std::abs(value) < 0.1 ? 1e6 : 1e4;
+  return number_text(std::round(value * steps) / steps);
+}
 
 }  // namespace kerf

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/length_unit.h"
 #include "base/result.h"
 
 namespace kerf {
@@ -34,11 +35,19 @@ std::optional<double> parse_decimal(std::string_view text);
 Result<double> parse_within(std::string_view name, std::string_view text, double low, double high,
                             std::string_view unit);
 
+/// The same for a length in `unit`, given and told; the bounds and the result are mm.
+Result<double> parse_length(std::string_view name, std::string_view text, double low_mm,
+                            double high_mm, LengthUnit unit);
+
 /// "; did you mean 'flat'?" for the candidate within two edits of `text`, "." if there is none:
 /// ends a sentence.
 std::string did_you_mean(std::string_view text, std::span<const std::string_view> candidates);
 
 /// Shortest text that reads back as the same value: "10", "0.1".
 std::string number_text(double value);
+
+/// A length for SHAPE and --stock texts in `unit`: of mm the shortest text, of inches as much of it
+/// as counts (0.0001 in, below 0.1 in two digits more).
+std::string length_number(double mm, LengthUnit unit);
 
 }  // namespace kerf

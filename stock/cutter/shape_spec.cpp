@@ -80,7 +80,7 @@ constexpr std::string_view kHelp =
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]   (mm, degrees)\n";
+    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]";
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -126,60 +126,63 @@ struct Body {
 
 // ---- options ----
 
-Result<Part> parse_part(std::string_view name, std::string_view text, bool length_needed) {
+Result<Part> parse_part(std::string_view name, std::string_view text, bool length_needed,
+                        LengthUnit unit) {
   const std::size_t cross = text.find_first_of("xX");
   Part part;
   const Result<double> diameter =
-      parse_within(fmt::format("{} diameter", name), text.substr(0, cross), kMinDiameter_mm,
-                   kMaxDiameter_mm, "mm");
+      parse_length(fmt::format("{} diameter", name), text.substr(0, cross), kMinDiameter_mm,
+                   kMaxDiameter_mm, unit);
   if (!diameter) return Error{diameter.error()};
   part.diameter_mm = *diameter;
   if (cross == std::string_view::npos) {
     if (length_needed) {
-      return Error{fmt::format("{}: '{}' has no length; write DxL (mm)", name, shown(text))};
+      return Error{
+          fmt::format("{}: '{}' has no length; write DxL ({})", name, shown(text), name_of(unit))};
     }
     return part;
   }
-  const Result<double> length = parse_within(fmt::format("{} length", name), text.substr(cross + 1),
-                                             kMinLength_mm, kMaxLength_mm, "mm");
+  const Result<double> length = parse_length(fmt::format("{} length", name), text.substr(cross + 1),
+                                             kMinLength_mm, kMaxLength_mm, unit);
   if (!length) return Error{length.error()};
   part.length_mm = *length;
   return part;
 }
 
-Done parse_holder(std::string_view text, Options& options) {
+Done parse_holder(std::string_view text, LengthUnit unit, Options& options) {
   const std::vector<std::string_view> sections = split(text, '+');
   if (sections.size() > kMaxHolderSections) {
     return Error{fmt::format("holder: {} sections; at most {} are allowed", sections.size(),
                              kMaxHolderSections)};
   }
   for (const std::string_view section : sections) {
-    const Result<Part> part = parse_part("holder", section, true);
+    const Result<Part> part = parse_part("holder", section, true, unit);
     if (!part) return Error{part.error()};
     options.holder.push_back(*part);
   }
   return std::monostate{};
 }
 
-Done parse_option(std::string_view name, std::string_view value, Options& options) {
+Done parse_option(std::string_view name, std::string_view value, LengthUnit unit,
+                  Options& options) {
   if (name == "flute") {
     if (options.flute_mm) return Error{"flute= is given twice"};
     const Result<double> flute =
-        parse_within("flute length", value, kMinLength_mm, kMaxLength_mm, "mm");
+        parse_length("flute length", value, kMinLength_mm, kMaxLength_mm, unit);
     if (!flute) return Error{flute.error()};
     options.flute_mm = *flute;
     return std::monostate{};
   }
   if (name == "shank") {
     if (options.shank) return Error{"shank= is given twice"};
-    const Result<Part> shank = parse_part("shank", value, false);
+    const Result<Part> shank = parse_part("shank", value, false, unit);
     if (!shank) return Error{shank.error()};
     options.shank = *shank;
     return std::monostate{};
   }
   if (name == "holder") {
     if (!options.holder.empty()) return Error{"holder= is given twice"};
-    return parse_holder(value, options);
+    return parse_holder(value, unit, options);
   }
   return Error{
       fmt::format("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=DxL[+DxL..]",
@@ -202,16 +205,30 @@ std::string options_text(const Options& options) {
   return text;
 }
 
+/// "32x20+40x25": numbers between x and +.
+std::string parts_in(std::string_view text, LengthUnit unit) {
+  std::string out;
+  while (true) {
+    const std::size_t end = std::min(text.find_first_of("xX+"), text.size());
+    const std::optional<double> mm = parse_decimal(text.substr(0, end));
+    out += mm ? length_number(*mm, unit) : std::string(text.substr(0, end));
+    if (end == text.size()) return out;
+    out += text[end];
+    text.remove_prefix(end + 1);
+  }
+}
+
 // ---- forms ----
 
 /// Reads parameter `index` of a form.
 class Values {
  public:
-  Values(const Form& form, std::span<const std::string_view> texts) : form_(form), texts_(texts) {}
+  Values(const Form& form, std::span<const std::string_view> texts, LengthUnit unit)
+      : form_(form), texts_(texts), unit_(unit) {}
   std::size_t count() const { return texts_.size(); }
   Result<double> diameter(std::size_t index, double low = kMinDiameter_mm,
                           double high = kMaxDiameter_mm) const {
-    return parse_within(form_.parameters[index], texts_[index], low, high, "mm");
+    return parse_length(form_.parameters[index], texts_[index], low, high, unit_);
   }
   Result<double> angle(std::size_t index, double high) const {
     return parse_within(form_.parameters[index], texts_[index], kMinAngle_deg, high, "degrees");
@@ -220,8 +237,9 @@ class Values {
   Result<double> below(std::size_t index, double limit, double low) const {
     const Result<double> value = detail(index, low, kMaxDiameter_mm);
     if (value && *value > limit - kMinDetail_mm) {
-      return Error{fmt::format("{}: {} is not allowed; must be less than diameter D, {} (mm)",
-                               form_.parameters[index], number_text(*value), number_text(limit))};
+      return Error{fmt::format("{}: {} is not allowed; must be less than diameter D, {} ({})",
+                               form_.parameters[index], length_number(*value, unit_),
+                               length_number(limit, unit_), name_of(unit_))};
     }
     return value;
   }
@@ -235,15 +253,16 @@ class Values {
   Result<double> detail(std::size_t index, double low, double high) const {
     const Result<double> value = diameter(index, low, high);
     if (value && *value > 0 && *value < kMinDetail_mm) {
-      return Error{fmt::format("{}: {} is not allowed; must be 0 or at least {} (mm)",
-                               form_.parameters[index], number_text(*value),
-                               number_text(kMinDetail_mm))};
+      return Error{fmt::format("{}: {} is not allowed; must be 0 or at least {} ({})",
+                               form_.parameters[index], length_number(*value, unit_),
+                               length_number(kMinDetail_mm, unit_), name_of(unit_))};
     }
     return value;
   }
 
   const Form& form_;
   std::span<const std::string_view> texts_;
+  LengthUnit unit_;
 };
 
 /// Radius of the flat bottom inside a corner arc; a flat that no model can see is none.
@@ -419,8 +438,8 @@ Result<Body> make_dovetail(const Values& values) {
 }
 
 Result<Body> make_body(const Form& form, std::span<const std::string_view> texts,
-                       const Options& options) {
-  const Values values(form, texts);
+                       const Options& options, LengthUnit unit) {
+  const Values values(form, texts, unit);
   if (form.name == "vee") return make_vee(values);
   if (form.name == "drill") return make_drill(values);
   if (form.name == "taper") return make_taper(values, options);
@@ -484,7 +503,7 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
   const auto merge = [&](std::string_view name, const std::optional<std::string>& text,
                          bool given) -> Done {
     if (!text || given) return std::monostate{};
-    return parse_option(name, *text, merged);
+    return parse_option(name, *text, LengthUnit::kMm, merged);  // the file is in mm
   };
   for (const Done& done : {merge("flute", file->flute, options.flute_mm.has_value()),
                            merge("shank", file->shank, options.shank.has_value()),
@@ -502,7 +521,7 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
 
 /// Splits "name:values:options". A profile's file name may hold colons: only the known options end
 /// it.
-Result<Cutter> parse_known(const Form& form, std::string_view rest) {
+Result<Cutter> parse_known(const Form& form, std::string_view rest, LengthUnit unit) {
   std::vector<std::string_view> values =
       rest.data() ? split(rest, ':') : std::vector<std::string_view>{};
   std::vector<std::string_view> option_texts;
@@ -522,7 +541,7 @@ Result<Cutter> parse_known(const Form& form, std::string_view rest) {
   for (auto text = option_texts.rbegin(); text != option_texts.rend(); ++text) {
     const std::size_t equals = text->find('=');
     const Done done =
-        parse_option(to_lower(text->substr(0, equals)), text->substr(equals + 1), options);
+        parse_option(to_lower(text->substr(0, equals)), text->substr(equals + 1), unit, options);
     if (!done) return Error{done.error()};
   }
   if (form.name == "profile") {
@@ -541,7 +560,7 @@ Result<Cutter> parse_known(const Form& form, std::string_view rest) {
   if (values.size() > form.required + form.optional) {
     return Error{fmt::format("{} values are too many; the form is {}", values.size(), form.text)};
   }
-  Result<Body> body = make_body(form, values, options);
+  Result<Body> body = make_body(form, values, options, unit);
   if (!body) return Error{body.error()};
   std::string spec = body->spec + options_text(options);
   return assemble(std::move(*body), options, std::move(spec));
@@ -549,7 +568,7 @@ Result<Cutter> parse_known(const Form& form, std::string_view rest) {
 
 }  // namespace
 
-Result<Cutter> parse_shape(std::string_view spec) {
+Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit) {
   spec = trim(spec);
   const std::size_t colon = spec.find(':');
   const std::string name = to_lower(spec.substr(0, colon));
@@ -562,7 +581,7 @@ Result<Cutter> parse_shape(std::string_view spec) {
     if (form.name != name) continue;
     const std::string_view rest =
         colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
-    Result<Cutter> cutter = parse_known(form, rest);
+    Result<Cutter> cutter = parse_known(form, rest, unit);
     if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
     return cutter;
   }
@@ -572,7 +591,36 @@ Result<Cutter> parse_shape(std::string_view spec) {
                   shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 
-Result<ToolShapeArgument> parse_tool_argument(std::string_view argument) {
+std::string shape_in(std::string_view spec, LengthUnit unit) {
+  const std::size_t colon = spec.find(':');
+  const auto form = std::find_if(kForms.begin(), kForms.end(), [&](const Form& known) {
+    return known.name == spec.substr(0, colon);
+  });
+  if (unit == LengthUnit::kMm || form == kForms.end() || colon == spec.npos) {
+    return std::string(spec);
+  }
+  const bool is_file = form->name == "profile";
+  std::string out(form->name);
+  std::size_t index = 0;
+  for (const std::string_view field : split(spec.substr(colon + 1), ':')) {
+    const std::size_t equals = field.find('=');
+    out += ':';
+    if (equals != field.npos && std::find(kOptionNames.begin(), kOptionNames.end(),
+                                          field.substr(0, equals)) != kOptionNames.end()) {
+      out +=
+          fmt::format("{}={}", field.substr(0, equals), parts_in(field.substr(equals + 1), unit));
+    } else if (is_file || (index < form->parameters.size() &&
+                           form->parameters[index].find("angle") != std::string_view::npos)) {
+      out += field;
+    } else {
+      out += parts_in(field, unit);
+    }
+    ++index;
+  }
+  return out;
+}
+
+Result<ToolShapeArgument> parse_tool_argument(std::string_view argument, LengthUnit unit) {
   const std::size_t equals = argument.find('=');
   const std::string_view number = trim(argument.substr(0, equals));
   int tool = 0;
@@ -582,11 +630,13 @@ Result<ToolShapeArgument> parse_tool_argument(std::string_view argument) {
     return Error{fmt::format("{}: not N=SHAPE with a tool number N; write for example 3=ball:6",
                              shown(argument))};
   }
-  Result<Cutter> cutter = parse_shape(argument.substr(equals + 1));
+  Result<Cutter> cutter = parse_shape(argument.substr(equals + 1), unit);
   if (!cutter) return Error{fmt::format("tool {}: {}", tool, cutter.error())};
   return ToolShapeArgument{tool, std::move(*cutter)};
 }
 
-std::string_view shape_help() { return kHelp; }
+std::string shape_help(LengthUnit unit) {
+  return fmt::format("{}   ({}, degrees)\n", kHelp, name_of(unit));
+}
 
 }  // namespace kerf

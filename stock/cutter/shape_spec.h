@@ -5,12 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "base/length_unit.h"
 #include "base/result.h"
 #include "stock/cutter/cutter.h"
 
 namespace kerf {
 
-/// SHAPE, in mm and degrees; letter case does not matter:
+/// SHAPE, in `unit` and degrees; letter case does not matter:
 ///     flat:D             end mill
 ///     ball:D             hemisphere of diameter D
 ///     bull:D:R           corner radius R from 0 to D/2 (D/2 is a ball)
@@ -38,19 +39,23 @@ namespace kerf {
 /// text has them.
 ///
 /// Ranges: diameters 0.001 to 1000 mm, lengths to 2000 mm. spec() of the result is the canonical
-/// text: shortest numbers, options in the order above; it parses to the same cutter. The error
+/// text: mm, shortest numbers, options in the order above; it parses to the same cutter. The error
 /// names the part that is wrong, what was found and what is allowed. Reads a file only for
 /// profile:.
-Result<Cutter> parse_shape(std::string_view spec);
+Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit = LengthUnit::kMm);
+
+/// A spec() with its lengths in `unit` (length_number()); what is no spec() stays as it is.
+std::string shape_in(std::string_view spec, LengthUnit unit);
 
 /// A `N=SHAPE` argument of --tool.
 struct ToolShapeArgument {
   int tool = 0;
   Cutter cutter;
 };
-Result<ToolShapeArgument> parse_tool_argument(std::string_view argument);
+Result<ToolShapeArgument> parse_tool_argument(std::string_view argument,
+                                              LengthUnit unit = LengthUnit::kMm);
 
 /// The SHAPE forms for --help and error messages, one a line.
-std::string_view shape_help();
+std::string shape_help(LengthUnit unit = LengthUnit::kMm);
 
 }  // namespace kerf

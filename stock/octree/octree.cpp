@@ -105,9 +105,10 @@ Done check(const OctreeOptions& options, const Box& box) {
     return Error{fmt::format("cell size {} mm is not allowed; must be above 0", cell)};
   const Vec3 size = box.size();
   if (cell > std::min({size.x, size.y, size.z})) {
-    return Error{fmt::format(
-        "cell size {} mm exceeds the blank, which is {} x {} x {} mm; 0.05 to 0.5 suits most parts",
-        cell, size.x, size.y, size.z)};
+    return Error{
+        fmt::format("cell size {} mm exceeds the blank, which is {} x {} x {} mm; 0.05 to 0.5 mm "
+                    "suits most parts",
+                    cell, size.x, size.y, size.z)};
   }
   if (!countable(box, cell)) {
     return Error{

@@ -92,7 +92,7 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
     return Error{fmt::format("cell size {} mm is not allowed; must be above 0", cell)};
   if (cell > std::min(size.x, size.y)) {
     return Error{fmt::format(
-        "cell size {} mm exceeds the blank, which is {} x {} mm; 0.05 to 0.2 suits most parts",
+        "cell size {} mm exceeds the blank, which is {} x {} mm; 0.05 to 0.2 mm suits most parts",
         cell, size.x, size.y)};
   }
   for (const BlankBody& body : blank.bodies) {

@@ -361,7 +361,8 @@ TEST(ZMapCreate, RefusesWithTheNumberFoundAndWhatIsAllowed) {
   EXPECT_EQ(fault("box:0,0,-5:10,20,0", std::nan("")),
             "cell size nan mm is not allowed; must be above 0");
   EXPECT_EQ(fault("box:0,0,-5:10,20,0", 11),
-            "cell size 11 mm exceeds the blank, which is 10 x 20 mm; 0.05 to 0.2 suits most parts");
+            "cell size 11 mm exceeds the blank, which is 10 x 20 mm; 0.05 to 0.2 mm "
+            "suits most parts");
   EXPECT_EQ(fault("box:0,0,-5:1000,2000,0", 0.005),
             "cell size 0.005 mm makes 200000 x 400000 cells and would take 320.0 GB of memory; at "
             "most 4.3 GB are allowed");

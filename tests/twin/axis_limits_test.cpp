@@ -48,26 +48,28 @@ TEST(AxisLimits, OneFindingAnEventWithItsWorst) {
                                  .feed({202, 0, 0})
                                  .feed({0, 0, 0})
                                  .feed({0, 0, -51.5});
-  EXPECT_EQ(found(program, kMiddle),
-            (Texts{"1: axis X is sent to 403.000 mm, 3.000 beyond its limit of 400.000 (machine "
-                   "coordinates)",
-                   "5: axis Z is sent to -101.500 mm, 1.500 beyond its limit of -100.000 (machine "
-                   "coordinates)"}));
+  EXPECT_EQ(
+      found(program, kMiddle),
+      (Texts{"1: axis X is sent to 403.000 mm, 3.000 mm beyond its limit of 400.000 mm (machine "
+             "coordinates)",
+             "5: axis Z is sent to -101.500 mm, 1.500 mm beyond its limit of -100.000 mm (machine "
+             "coordinates)"}));
 }
 
 TEST(AxisLimits, OffsetsRotationAndToolLengthCount) {
   // G92 X10 and a quarter turn: program X runs along the machine's Y.
   const WorkpieceFrame frame{.g5x_mm = {200, 150, -50}, .g92_mm = {10, 0, 0}, .rotation_deg = 90};
   EXPECT_EQ(found(MotionList().feed({139, 0, 0}), frame), Texts{});
-  EXPECT_EQ(found(MotionList().feed({142, 0, 0}), frame),
-            Texts{"1: axis Y is sent to 302.000 mm, 2.000 beyond its limit of 300.000 (machine "
-                  "coordinates)"});
+  EXPECT_EQ(
+      found(MotionList().feed({142, 0, 0}), frame),
+      Texts{"1: axis Y is sent to 302.000 mm, 2.000 mm beyond its limit of 300.000 mm (machine "
+            "coordinates)"});
   MotionList high;
   high.feed({0, 0, 20});
   Motion& last = high.last();
   last.tool_offset_mm = {0, 0, 40};
   EXPECT_EQ(found(high, kMiddle),
-            Texts{"1: axis Z is sent to 10.000 mm, 10.000 beyond its limit of 0.000 (machine "
+            Texts{"1: axis Z is sent to 10.000 mm, 10.000 mm beyond its limit of 0.000 mm (machine "
                   "coordinates)"});
 }
 
@@ -88,17 +90,18 @@ TEST(AxisLimits, ASecondaryAxisHasItsOffsets) {
   program.last().tool_offset_uvw_mm = {0, 0, -2};
   check.check(program.last(), {});
   ASSERT_EQ(log.kept().size(), 1u);
-  EXPECT_EQ(
-      log.kept()[0].text,
-      "axis W is sent to -52.000 mm, 2.000 beyond its limit of -50.000 (machine coordinates)");
+  EXPECT_EQ(log.kept()[0].text,
+            "axis W is sent to -52.000 mm, 2.000 mm beyond its limit of -50.000 mm (machine "
+            "coordinates)");
 }
 
 TEST(AxisLimits, AnArcReachesFartherThanItsEnds) {
   MotionList program;
   program.at({195, 10, 0}).arc({195, -10, 0}, {195, 0, 0}, {0, 0, 1}, -kPi);
-  EXPECT_EQ(found(program, kMiddle),
-            Texts{"1: axis X is sent to 405.000 mm, 5.000 beyond its limit of 400.000 (machine "
-                  "coordinates)"});
+  EXPECT_EQ(
+      found(program, kMiddle),
+      Texts{"1: axis X is sent to 405.000 mm, 5.000 mm beyond its limit of 400.000 mm (machine "
+            "coordinates)"});
   // The other way round it stays inside.
   MotionList back;
   back.at({195, 10, 0}).arc({195, -10, 0}, {195, 0, 0}, {0, 0, 1}, kPi);
@@ -109,9 +112,9 @@ TEST(AxisLimits, RotaryAxesInDegrees) {
   MotionList program;
   program.feed({1, 0, 0});
   program.last().to_abc_deg = {91, 0, 0};
-  EXPECT_EQ(found(program, kMiddle),
-            Texts{"1: axis A is sent to 91.000 degrees, 1.000 beyond its limit of 90.000 (machine "
-                  "coordinates)"});
+  EXPECT_EQ(found(program, kMiddle), Texts{"1: axis A is sent to 91.000 degrees, 1.000 degrees "
+                                           "beyond its limit of 90.000 degrees (machine "
+                                           "coordinates)"});
 }
 
 TEST(AxisLimits, WithoutLimitsNothingIsFound) {

@@ -105,7 +105,7 @@ TEST_F(BadInput, StockWithoutOrWithNegativeSize) {
 TEST_F(BadInput, CellLargerThanTheStockOrTooSmall) {
   expect(run({"part.canon", "--stock", box_, "--cell", "50"}), 2,
          "kerf: error: --cell: cell size 50 mm exceeds the blank, which is 30 x 20 mm; 0.05 to 0.2 "
-         "suits most parts\n");
+         "mm suits most parts\n");
   expect(
       run({"part.canon", "--stock", box_, "--cell", "0.0001"}), 2,
       "kerf: error: --cell: cell size 0.0001 mm makes 300000 x 200000 cells and would take 240.0 "

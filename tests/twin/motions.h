@@ -30,6 +30,10 @@ class MotionList {
     state_.torch.outputs = on ? state_.torch.outputs | bit : state_.torch.outputs & ~bit;
     return *this;
   }
+  MotionList& analog(unsigned n, double value) {
+    state_.torch.analog[n] = static_cast<float>(value);
+    return *this;
+  }
   MotionList& turned(std::array<double, 3> abc_deg) {
     state_.from_abc_deg = state_.to_abc_deg = abc_deg;
     return *this;

@@ -164,7 +164,7 @@ TEST(ReportText, HasItsDetailsByWish) {
       << text;
   EXPECT_EQ(text.find("X 60 mm/s"), text.npos);
   EXPECT_EQ(text.find("distance"), text.npos);
-  const std::string all = summary_text(r, {true, {}});
+  const std::string all = summary_text(r, {true, {}, LengthUnit::kMm});
   EXPECT_NE(
       all.find("program   120 lines, 4684 moves (0 arcs)\n"
                "distance  feed 12.35 m, traverse 0.0 mm\n"
@@ -178,7 +178,8 @@ TEST(ReportText, HasItsDetailsByWish) {
 TEST(ReportText, EndsWithWhatWasGuessed) {
   Report r = sample();
   r.guesses = {{"blank", "--stock", "box:0,0,-20:100,60,0", "the feed moves plus 5 mm"}};
-  const std::string text = summary_text(r, {false, {"kerf", "run", "part.ngc"}});
+  const std::string text =
+      summary_text(r, {false, "kerf run part.ngc --stock box:0,0,-20:100,60,0", LengthUnit::kMm});
   EXPECT_TRUE(
       text.ends_with("guessed   blank   box:0,0,-20:100,60,0 (the feed moves plus 5 mm)\n"
                      "          correct what is wrong, and run it again:\n"
@@ -187,6 +188,23 @@ TEST(ReportText, EndsWithWhatWasGuessed) {
   const Json json = Json::parse(json_text(r));
   EXPECT_EQ(json["guessed"][0]["option"], "--stock");
   EXPECT_EQ(json["guessed"][0]["value"], "box:0,0,-20:100,60,0");
+}
+
+TEST(ReportText, IsInInchesByWishAndTheJsonNever) {
+  Report r = sample();
+  r.guesses = {{"blank", "--stock", "box:0,0,-20:100,60,0", "the feed moves plus 5 mm"}};
+  const std::string text = summary_text(r, {true, "kerf run part.ngc", LengthUnit::kInch});
+  for (const char* const line :
+       {"removed   1.8307 in3 of 7.3228 in3 (25.0 %)\n", "tools     3   ball:0.2362 (--tool)\n",
+        "deepest cut 0.098 in, peak 0.1465 in3/min\n",
+        "stock     box 3.937 x 2.362 x 0.787 in, X0..3.937 Y0..2.362 Z-0.787..0 (--stock)\n",
+        "          zmap, cells of 0.002 in, 2.40 million\n",
+        "guessed   blank   box:0,0,-0.7874:3.937,2.3622,0 (the feed moves plus 0.197 in)\n",
+        "distance  feed 486.2 in, traverse 0 in\n"}) {
+    EXPECT_NE(text.find(line), text.npos) << line << "in\n" << text;
+  }
+  EXPECT_EQ(text.find("mm"), text.npos) << text;
+  EXPECT_EQ(Json::parse(json_text(r))["guessed"][0]["value"], "box:0,0,-20:100,60,0");
 }
 
 TEST(ReportText, MarksPartialRuns) {

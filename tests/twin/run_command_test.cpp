@@ -1,4 +1,5 @@
 // `kerf run` from the outside: exit codes, outputs, summary. Saved listings need no LinuxCNC.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -178,7 +179,7 @@ TEST_F(RunCommand, GuessedBlankIsNamedForFilesAndStdin) {
   EXPECT_EQ(input.err.substr(input.err.find(": warning")), guess);
 }
 
-TEST_F(RunCommand, LongFileWithoutBlankIsReadTwiceAndALongStdinRefused) {
+TEST_F(RunCommand, LongProgramWithoutBlankIsReadTwiceFromStdinToo) {
   std::string tail;
   for (int i = 0; i < 500'100; ++i) {
     tail += i % 2 == 0
@@ -191,12 +192,82 @@ TEST_F(RunCommand, LongFileWithoutBlankIsReadTwiceAndALongStdinRefused) {
   EXPECT_EQ(file.exit_code, 0) << file.err;
   EXPECT_EQ(json("r.json")["motion"]["moves"], 500'104);
   EXPECT_EQ(json("r.json")["stock"]["origin"], "guessed");
-  const KerfResult input = run({"-", "--tool", "1=flat:6", "--cell", "0.5"}, listing_text(tail));
-  EXPECT_EQ(input.exit_code, 2);
-  EXPECT_EQ(input.err,
-            "kerf: error: standard input has more than 500000 motions, too many to keep while the "
-            "blank is guessed from them\n"
-            "   hint: --stock SPEC gives the blank, and then any length will do\n");
+  const KerfResult input =
+      run({"-", "--tool", "1=flat:6", "--cell", "0.5", "--json", "s.json"}, listing_text(tail));
+  EXPECT_EQ(input.exit_code, 0) << input.err;
+  EXPECT_EQ(json("s.json")["motion"]["moves"], 500'104);
+  EXPECT_EQ(json("s.json")["stock"]["digest"], json("r.json")["stock"]["digest"]);
+}
+
+/// Of a torch, whose spindle goes with the cuts.
+std::string torch_listing() {
+  std::string text = "    1 N1     USE_LENGTH_UNITS(CANON_UNITS_MM)\n";
+  for (const char* const y : {"10", "20"}) {
+    text += fmt::format("    2 N2     STRAIGHT_TRAVERSE(10.0, {}.0, 0.0, 0.0, 0.0, 0.0)\n", y);
+    text += "    3 N3     START_SPINDLE_CLOCKWISE(0)\n    4 N4     SET_FEED_RATE(1000.0)\n";
+    text += fmt::format("    5 N5     STRAIGHT_FEED(50.0, {}.0, 0.0, 0.0, 0.0, 0.0)\n", y);
+    text += "    6 N6     STOP_SPINDLE_TURNING(0)\n";
+  }
+  return text + "    7 N7     PROGRAM_END()\n";
+}
+
+TEST_F(RunCommand, OfAListingOnStdinTheSameIsGuessedAsOfAFile) {
+  for (const std::string& text : {torch_listing(), listing_text()}) {
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{}, {"--stock", "box:-5,-5,-5:60,30,5"}}) {
+      folder_.write("a.canon", text);
+      std::vector<std::string> file{"a.canon", "--json", "file.json"};
+      std::vector<std::string> input{"-", "--json", "stdin.json"};
+      file.insert(file.end(), more.begin(), more.end());
+      input.insert(input.end(), more.begin(), more.end());
+      EXPECT_EQ(run(file).exit_code, 0);
+      EXPECT_EQ(run(input, text).exit_code, 0);
+      EXPECT_EQ(json("stdin.json")["guessed"], json("file.json")["guessed"]);
+      EXPECT_EQ(json("stdin.json")["stock"]["digest"], json("file.json")["stock"]["digest"]);
+      EXPECT_FALSE(json("file.json")["guessed"].is_null());
+    }
+  }
+  run({"-", "--json", "torch.json"}, torch_listing());
+  EXPECT_EQ(json("torch.json")["stock"]["model"], "sheet");
+}
+
+TEST_F(RunCommand, LengthsInInchesCutTheSameAsInMm) {
+  folder_.write("slot.canon", listing_text(kRapidAcross));
+  const std::vector<std::string> common{"slot.canon", "--mesh-tolerance", "0"};
+  std::vector<std::string> mm{"--stock", "box:-5.08,-5.08,-7.62:25.4,15.24,0",
+                              "--tool",  "1=flat:6.35",
+                              "--cell",  "0.127",
+                              "--below", "2.54",
+                              "--json",  "mm.json"};
+  std::vector<std::string> inch{"--units", "inch",        "--stock", "box:-0.2,-0.2,-0.3:1,0.6,0",
+                                "--tool",  "1=flat:0.25", "--cell",  "0.005",
+                                "--below", "0.1",         "--json",  "inch.json"};
+  mm.insert(mm.begin(), common.begin(), common.end());
+  inch.insert(inch.begin(), common.begin(), common.end());
+  const KerfResult in_mm = run(mm), in_inch = run(inch);
+  EXPECT_EQ(in_mm.exit_code, 1);
+  EXPECT_EQ(in_inch.exit_code, 1) << in_inch.err;
+  Json a = json("mm.json"), b = json("inch.json");
+  for (Json* report : {&a, &b}) {
+    report->erase("timing_s");
+    report->erase("peak_rss_mb");
+  }
+  EXPECT_EQ(a, b) << "a report is mm, findings and all";
+  EXPECT_NE(in_mm.err.find("1.00 mm deep"), std::string::npos) << in_mm.err;
+  EXPECT_NE(in_inch.err.find("0.039 in deep"), std::string::npos) << in_inch.err;
+  EXPECT_NE(in_inch.out.find("box 1.2 x 0.8 x 0.3 in"), std::string::npos) << in_inch.out;
+}
+
+TEST_F(RunCommand, WhatInchesMayBeIsToldInInches) {
+  const KerfResult cell = run(slot({"--units", "inch", "--below", "50"}));
+  EXPECT_EQ(cell.exit_code, 2);
+  EXPECT_NE(
+      cell.err.find("--below: 50 is not allowed; must be at least 0 and at most 39.3701 (in)"),
+      std::string::npos)
+      << cell.err;
+  const KerfResult unit = run(slot({"--units", "furlong"}));
+  EXPECT_EQ(unit.exit_code, 2);
+  EXPECT_EQ(unit.err, "kerf: error: --units: 'furlong' is not allowed; must be mm or inch\n");
 }
 
 TEST_F(RunCommand, SavedWorkpieceGoesOnInItsModel) {

@@ -64,6 +64,25 @@ TEST(CommandLine, SaysWhatTheArgumentsSay) {
             "--tool 1=flat:6 --tool 2=drill:5:118 --additive --beam '!m62:3'");
 }
 
+TEST(CommandLine, OfARunSaysWhatWasGuessed) {
+  RunArguments a;
+  a.kerf = "build/kerf";
+  a.source.program = "-";
+  a.source.units = "inch";
+  a.outputs.json = "r.json";
+  a.from_line = "7";
+  a.verbose = true;
+  EXPECT_EQ(command_line(a), "build/kerf run - --units inch --from-line 7 --json r.json --verbose");
+  a.work.below = "0.25";
+  const std::vector<GuessRow> rows{{"blank", "--stock", "box:0,0,-5:10,10,0", "by its moves"},
+                                   {"beam", "--beam", "m62:0", ""},
+                                   {"tool 1", "--tool", "1=flat:6", ""},
+                                   {"tool", "", "flat:3", "before the first tool change"}};
+  EXPECT_EQ(command_line(with_guesses(a, rows)),
+            "build/kerf run - --units inch --stock box:0,0,-5:10,10,0 --tool 1=flat:6 --below 0.25 "
+            "--beam m62:0 --from-line 7 --json r.json --verbose");
+}
+
 class ViewWorkTest : public testing::Test {
  protected:
   void start(const ViewArguments& arguments) {

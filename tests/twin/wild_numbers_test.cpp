@@ -82,7 +82,7 @@ TEST_F(WildNumbers, AWildReadingIsDroppedCountedAndTold) {
       "0.04,-19.6,1e11,-1\n0.05,-19.5,0,-1\n";
   const KerfResult result = replay(rows);
   EXPECT_EQ(result.exit_code, 3) << result.err;
-  EXPECT_NE(result.err.find("X reads -7.99694e+14 mm; no machine is beyond -100000 .. 100000"),
+  EXPECT_NE(result.err.find("X reads -7.99694e+14 mm; no machine is beyond -100000 .. 100000 mm"),
             result.err.npos)
       << result.err;
   const Json live = report()["live"];

@@ -18,7 +18,7 @@ namespace {
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) print_diagnostic(stderr, d);
   }
 }
 
@@ -59,7 +59,9 @@ class LineWriter : private StepSink {
 
 int canon_command(const CanonArguments& arguments) {
   Diagnostics diagnostics;
-  OptionReader reader(diagnostics);
+  OptionReader reader(diagnostics,
+                      understand_units(arguments.source.units, std::nullopt, diagnostics));
+  show_lengths_in(reader.unit());
   ProgramRequest request = understand_program(arguments.source, reader);
   if (has_error(diagnostics)) {
     print(diagnostics, arguments.quiet);
@@ -68,7 +70,7 @@ int canon_command(const CanonArguments& arguments) {
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
   StdinProgram kept;
-  kept.take(request.program.path, stop.get_token(), diagnostics);
+  kept.take(request.program.path, StdinProgram::Listings::kStreamed, stop.get_token(), diagnostics);
   const auto program =
       has_error(diagnostics) ? nullptr : Program::open(request.program, diagnostics);
   if (!program) {

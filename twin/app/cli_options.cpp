@@ -20,6 +20,11 @@ void add_program_options(CLI::App& command, ProgramArguments& a) {
                   "where the work zero (G54 ..) lies in the machine, for G53, G28, G30 and axes "
                   "that turn (default: the INI's parameter file; else it is not known)")
       ->type_name("X,Y,Z");
+  command
+      .add_option("--units", a.units,
+                  "of lengths that options give, and of what is shown (default mm; files that are "
+                  "read or written are not touched: JSON is mm)")
+      ->type_name("mm|inch");
   command.add_option("--tool-table", a.tool_table, "LinuxCNC tool table (tool.tbl)")
       ->type_name("FILE");
   command

@@ -26,7 +26,14 @@ class Line {
   std::string text_;
 };
 
+/// A name that begins like an option is none; "-" is standard input.
+void add_program_name(const std::string& program, Line& line) {
+  if (program.empty()) return;
+  line.word(program.front() == '-' && program != "-" ? "./" + program : program);
+}
+
 void add_program(const ProgramArguments& a, Line& line) {
+  line.option("--units", a.units);
   line.option("--ini", a.ini);
   line.option("--work-offset", a.work_offset);
   line.option("--tool-table", a.tool_table);
@@ -65,10 +72,29 @@ void add_torch(const TorchArguments& a, Line& line) {
 
 }  // namespace
 
+std::string command_line(const RunArguments& a) {
+  Line line(shell_word(a.kerf) + " run");
+  add_program_name(a.source.program, line);
+  line.option("--config", a.config);
+  line.options("--set", a.sets);
+  add_program(a.source, line);
+  add_work(a.work, line);
+  add_torch(a.torch, line);
+  line.option("--from-line", a.from_line);
+  line.option("--until-line", a.until_line);
+  line.option("--mesh-tolerance", a.mesh_tolerance);
+  for (const auto& [option, path] : a.outputs.named()) line.option(option, *path);
+  line.flag("--view", a.view);
+  line.option("--draw", a.draw);
+  line.flag("--no-guess", a.no_guess);
+  line.flag("--quiet", a.quiet);
+  line.flag("--verbose", a.verbose);
+  return line.text();
+}
+
 std::string command_line(const ViewArguments& a) {
-  Line line("kerf view");
-  const std::string& program = a.run.source.program;
-  if (!program.empty()) line.word(program.front() == '-' ? "./" + program : program);
+  Line line(shell_word(a.run.kerf) + " view");
+  add_program_name(a.run.source.program, line);
   line.option("--config", a.config);
   line.options("--set", a.sets);
   add_program(a.run.source, line);
@@ -80,11 +106,26 @@ std::string command_line(const ViewArguments& a) {
   line.option("--keyframes", a.keyframes);
   line.option("--compare", a.compare);
   line.option("--tolerance", a.tolerance);
+  line.option("--png", a.png);
+  line.option("--frames", a.frames);
+  line.option("--fps", a.fps);
+  line.option("--size", a.size);
+  line.option("--view", a.view);
   line.option("--draw", a.draw);
   line.flag("--full-redraw", a.no_local);
   line.flag("--no-guess", a.run.no_guess);
   line.flag("--quiet", a.run.quiet);
   return line.text();
+}
+
+RunArguments with_guesses(RunArguments a, std::span<const GuessRow> rows) {
+  for (const GuessRow& row : rows) {
+    if (row.option == "--stock") a.work.stock = row.value;
+    if (row.option == "--tool") a.work.tools.push_back(row.value);
+    if (row.option == "--beam") a.torch.beam = row.value;
+    if (row.option == "--kerf") a.torch.kerf = row.value;
+  }
+  return a;
 }
 
 }  // namespace kerf

@@ -6,12 +6,14 @@
 #include <string>
 
 #include "twin/app/exit_code.h"
+#include "twin/shown_lengths.h"
 
 namespace kerf {
 namespace {
 
 /// The first trouble of stdout and of stderr, errno; 0: none.
 std::atomic<int> g_trouble[2];
+std::atomic<LengthUnit> g_unit{LengthUnit::kMm};
 
 std::atomic<int>& trouble_of(std::FILE* stream) { return g_trouble[stream == stderr ? 1 : 0]; }
 
@@ -29,6 +31,18 @@ void print_text(std::FILE* stream, std::string_view text) {
   if (trouble_of(stream) != 0 || text.empty()) return;
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stream) != text.size()) note(stream, errno);
+}
+
+void show_lengths_in(LengthUnit unit) { g_unit = unit; }
+
+LengthUnit shown_unit() { return g_unit; }
+
+void print_lengths(std::FILE* stream, std::string_view text) {
+  print_text(stream, in_unit(text, shown_unit()));
+}
+
+void print_diagnostic(std::FILE* stream, const Diagnostic& diagnostic) {
+  print_text(stream, to_string(in_unit(diagnostic, shown_unit())));
 }
 
 void flush_console() {

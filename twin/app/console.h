@@ -8,6 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/diagnostic.h"
+#include "base/length_unit.h"
+
 namespace kerf {
 
 /// Writes to stdout or stderr; never throws for what the stream does. Any thread.
@@ -17,6 +20,15 @@ template <class... Args>
 void print(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
   print_text(stream, fmt::format(format, std::forward<Args>(args)...));
 }
+
+/// The unit of the lengths that print_lengths() and print_diagnostic() show; mm until it is set,
+/// which is done once, before anything is shown.
+void show_lengths_in(LengthUnit unit);
+LengthUnit shown_unit();
+
+/// A text of kerf's own, made in mm (in_unit()).
+void print_lengths(std::FILE* stream, std::string_view text);
+void print_diagnostic(std::FILE* stream, const Diagnostic& diagnostic);
 
 /// Everything is written now, as far as it can be.
 void flush_console();

@@ -30,7 +30,7 @@ namespace {
 
 void print(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) print_diagnostic(stderr, d);
   }
 }
 
@@ -273,7 +273,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   if (!request.quiet) {
     const bool stdout_taken = request.outputs.uses_stdout() || request.events == "-";
-    kerf::print(stdout_taken ? stderr : stdout, "{}", summary_text(session->report()));
+    print_lengths(stdout_taken ? stderr : stdout, summary_text(session->report()));
   }
   flush_console();
   print(diagnostics, request.quiet);
@@ -322,6 +322,7 @@ int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source
 int live_command(const LiveArguments& arguments, LiveCommand command) {
   Diagnostics diagnostics;
   LiveRequest request = understand_live(arguments, command, diagnostics);
+  show_lengths_in(request.units);
   if (has_error(diagnostics)) {
     print(diagnostics, false);
     return kExitUsage;

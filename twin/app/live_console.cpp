@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "twin/app/console.h"
+#include "twin/shown_lengths.h"
 
 namespace kerf {
 namespace {
@@ -125,7 +127,7 @@ void LiveConsole::on_status(const LiveStatus& status) {
     const bool waiting = status.state == LiveState::kWaiting;
     const std::string why =
         waiting && !status.source.trouble.empty() ? ": " + status.source.trouble : std::string();
-    say(fmt::format("kerf: {}{}\n", status_line(status), why));
+    say(fmt::format("kerf: {}{}\n", in_unit(status_line(status), shown_unit()), why));
     if (waiting) trouble_ = status.source.trouble;
   }
   state_told_ = true;
@@ -135,7 +137,7 @@ void LiveConsole::on_status(const LiveStatus& status) {
     wipe();
     return;
   }
-  kerf::print(stderr, "\r\033[K{:.100}", status_line(status));
+  kerf::print(stderr, "\r\033[K{:.100}", in_unit(status_line(status), shown_unit()));
   flush_console();
   drawn_ = true;
 }
@@ -148,7 +150,7 @@ void LiveConsole::on_finding(const Finding& finding, const std::vector<std::stri
     return;
   }
   ++printed_;
-  say(to_string(diagnostic_of(finding, files)));
+  say(to_string(in_unit(diagnostic_of(finding, files), shown_unit())));
 }
 
 void LiveConsole::on_warning(const AheadWarning& warning, const std::vector<std::string>& files) {
@@ -156,7 +158,7 @@ void LiveConsole::on_warning(const AheadWarning& warning, const std::vector<std:
   Diagnostic ahead = diagnostic_of(warning.finding, files);
   ahead.message = fmt::format("in {:.1f} s: {}", warning.in_s, ahead.message);
   // Each is one of a kind, and what kerf is there for.
-  say(to_string(ahead));
+  say(to_string(in_unit(std::move(ahead), shown_unit())));
 }
 
 /// The one that the watch ends with is in the report, and alone it is the whole watch.

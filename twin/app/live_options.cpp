@@ -114,7 +114,7 @@ void understand_cutting(const LiveArguments& a, const ProgramRequest& program,
   cutting.timeline.planner.with_path = work.planned_path.value_or(planned);
   cutting.follow = config.follow.options;
   cutting.follow.tolerance_mm =
-      reader.number("--off-path", a.off_path, kOffPath, cutting.follow.tolerance_mm);
+      reader.length_mm("--off-path", a.off_path, kOffPath, cutting.follow.tolerance_mm);
   cutting.guard_s =
       reader.number("--look-ahead", a.look_ahead, kLookAhead, config.follow.look_ahead_s);
   cutting.off_path_s = config.follow.off_path_s;
@@ -187,7 +187,8 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   std::optional<LiveConfig> config = read_config(a.config, a.sets, diagnostics);
   if (config) request.config = std::move(*config);
   const ConfigMachine& machine = request.config.machine;
-  OptionReader reader(diagnostics);
+  request.units = understand_units(a.source.units, request.config.units, diagnostics);
+  OptionReader reader(diagnostics, request.units);
   ProgramArguments source = a.source;
   const auto complete = [](std::string& given, const std::optional<std::string>& configured) {
     if (given.empty() && configured) given = *configured;
@@ -205,7 +206,7 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   WorkRequest work = understand_work(a.work, reader);
   LiveOptions& options = request.options;
   TorchArguments torch = a.torch;
-  complete_torch(request.config, torch);
+  complete_torch(request.config, request.units, torch);
   options.beam = understand_torch(torch, reader, program.program.torch);
   options.turret = understand_turret(torch, reader, program.program);
   // Where the machine stands when it starts the program is seen, not read from its INI.
@@ -259,8 +260,8 @@ LiveRequest understand_live(const LiveArguments& a, LiveCommand command, Diagnos
   adapt_source(request, request.config.source);
   request.cpu_limit_percent = reader.number("--cpu-limit", a.cpu_limit, kCpuLimit, 0);
   request.memory_limit_mb = reader.number("--memory-limit", a.memory_limit, kMemoryLimit, 0);
-  request.mesh_tolerance_mm = reader.number("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
-                                            request.mesh_tolerance_mm);
+  request.mesh_tolerance_mm = reader.length_mm("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
+                                               request.mesh_tolerance_mm);
   request.record = a.record;
   request.events = a.events;
   request.outputs = a.outputs;

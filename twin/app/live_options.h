@@ -49,7 +49,8 @@ struct LiveArguments {
 /// The same, understood.
 struct LiveRequest {
   LiveConfig config;
-  LiveOptions options;  ///< all but the frame, which the source has a say in
+  LiveOptions options;                 ///< all but the frame, which the source has a say in
+  LengthUnit units = LengthUnit::kMm;  ///< of what is shown
   bool inch_machine = false;
   std::string joint_letters;   ///< of the INI
   std::string parameter_path;  ///< of the INI

@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@
 #include "twin/app/exit_code.h"
 #include "twin/app/live_command.h"
 #include "twin/app/machine_command.h"
+#include "twin/app/option_reader.h"
 #include "twin/app/run_command.h"
 #include "twin/app/view_command.h"
 #include "twin/stock_choice.h"
@@ -150,6 +152,15 @@ int refuse_empty_values(const CLI::App& app) {
   return code;
 }
 
+int list_tools(const std::string& units) {
+  Diagnostics diagnostics;
+  const LengthUnit unit = understand_units(units, std::nullopt, diagnostics);
+  for (const Diagnostic& d : diagnostics) print_diagnostic(stderr, d);
+  if (has_error(diagnostics)) return kExitUsage;
+  kerf::print(stdout, "{}\n", shape_help(unit));
+  return kExitGood;
+}
+
 /// The commands with their arguments, and what each of them calls.
 struct Commands {
   explicit Commands(CLI::App& app) {
@@ -183,7 +194,9 @@ struct Commands {
         [] { return kExitUsage; });
     add_list(app, "models", "list the workpiece models", model_list());
     add_list(app, "sources", "list where positions may come from", kSources);
-    add_list(app, "tools", "list the tool shapes", fmt::format("{}\n", shape_help()));
+    CLI::App* const tools = add(app, "tools", "list the tool shapes", "Example:\n  kerf tools\n",
+                                [this] { return list_tools(tools_units); });
+    tools->add_option("--units", tools_units, "of the lengths (default mm)")->type_name("mm|inch");
   }
 
   std::vector<CLI::App*> all;
@@ -194,6 +207,7 @@ struct Commands {
   LiveArguments replay_arguments;
   CanonArguments canon_arguments;
   ConfigArguments config_arguments;
+  std::string tools_units;
 
  private:
   CLI::App* add(CLI::App& app, const char* name, const char* purpose, const std::string& footer,
@@ -242,8 +256,7 @@ int run(int argc, char** argv) {
   app.footer(std::string(kExamples) + "\n" + kExitCodes);
   app.allow_extras();
   Commands commands(app);
-  commands.run_arguments.command.assign(argv, argv + argc);
-  commands.view_arguments.run.command = commands.run_arguments.command;
+  if (argc > 0) commands.run_arguments.kerf = commands.view_arguments.run.kerf = argv[0];
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

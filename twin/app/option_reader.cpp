@@ -35,6 +35,18 @@ double OptionReader::number(const char* option, const std::string& text, const O
   return value;
 }
 
+double OptionReader::length_mm(const char* option, const std::string& text,
+                               const OptionRange& range_mm, double fallback_mm) {
+  if (text.empty()) return fallback_mm;
+  OptionRange range = range_mm;
+  range.least = from_mm(range.least, unit_);
+  range.most = from_mm(range.most, unit_);
+  range.unit = name_of(unit_);
+  const std::size_t faults = diagnostics_.size();
+  const double value = number(option, text, range, 0);
+  return diagnostics_.size() > faults ? fallback_mm : to_mm(value, unit_);
+}
+
 double OptionReader::whole_number(const char* option, const std::string& text,
                                   const OptionRange& range, double fallback) {
   const double value = number(option, text, range, fallback);
@@ -49,6 +61,17 @@ bool OptionReader::on_off(const char* option, const std::string& text, bool fall
     fault(option, fmt::format("'{}' is not allowed; on or off", text));
   }
   return text == "on";
+}
+
+LengthUnit understand_units(const std::string& text, std::optional<LengthUnit> configured,
+                            Diagnostics& diagnostics) {
+  if (text == "inch") return LengthUnit::kInch;
+  if (text == "mm") return LengthUnit::kMm;
+  if (!text.empty()) {
+    OptionReader(diagnostics)
+        .fault("--units", fmt::format("'{}' is not allowed; must be mm or inch", text));
+  }
+  return configured.value_or(LengthUnit::kMm);
 }
 
 }  // namespace kerf

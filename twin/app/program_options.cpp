@@ -26,14 +26,15 @@ std::uint16_t turning_joints_of(const MachineKinematics& machine) {
   return joints;
 }
 
-/// "10,20,-5.5"; nothing if it is not three numbers.
-std::optional<Vec3> three_numbers(const std::string& text) {
+/// "10,20,-5.5" as mm; nothing if it is not three lengths.
+std::optional<Vec3> three_lengths(const std::string& text, LengthUnit unit) {
   Vec3 out{0};
   const char* at = text.data();
   const char* const end = at + text.size();
   for (int i = 0; i < 3; ++i) {
     if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
     const auto [next, error] = std::from_chars(at, end, out[i]);
+    out[i] = to_mm(out[i], unit);
     if (error != std::errc() || !(std::abs(out[i]) <= kFar_mm)) return std::nullopt;
     at = next;
   }
@@ -45,11 +46,12 @@ std::optional<Vec3> three_numbers(const std::string& text) {
 std::optional<WorkpieceFrame> understand_work_offset(const ProgramArguments& a,
                                                      OptionReader& reader) {
   if (a.work_offset.empty()) return a.configured_offset;
-  const std::optional<Vec3> given = three_numbers(a.work_offset);
+  const std::optional<Vec3> given = three_lengths(a.work_offset, reader.unit());
   if (!given) {
     reader.fault("--work-offset",
-                 fmt::format("'{}' is not allowed; must be X,Y,Z in mm, each from {:g} to {:g}",
-                             a.work_offset, -kFar_mm, kFar_mm),
+                 fmt::format("'{}' is not allowed; must be X,Y,Z in {}, each from {:g} to {:g}",
+                             a.work_offset, name_of(reader.unit()),
+                             from_mm(-kFar_mm, reader.unit()), from_mm(kFar_mm, reader.unit())),
                  "as in --work-offset 150,60,-180: the work zero in machine coordinates");
     return a.configured_offset;
   }

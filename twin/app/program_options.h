@@ -21,6 +21,7 @@ struct ProgramArguments {
   std::string interp;
   std::string block_delete;
   std::string work_offset;  ///< X,Y,Z
+  std::string units;        ///< of lengths that options give, and of what is shown: mm, inch
   std::string max_commands;
   std::string max_seconds;
   std::string max_cpu_seconds;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "twin/app/command_line.h"
 #include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/app/option_reader.h"
@@ -31,7 +32,7 @@ namespace {
 constexpr std::size_t kFindingsShown = 20;
 
 void print(const Diagnostics& diagnostics) {
-  for (const Diagnostic& d : diagnostics) kerf::print(stderr, "{}", to_string(d));
+  for (const Diagnostic& d : diagnostics) print_diagnostic(stderr, d);
 }
 
 void print_findings(const Report& report, bool quiet) {
@@ -39,7 +40,7 @@ void print_findings(const Report& report, bool quiet) {
   for (const Finding& finding : report.findings.kept()) {
     if (quiet && finding.severity != Severity::kError) continue;
     if (++shown > kFindingsShown) break;
-    kerf::print(stderr, "{}", to_string(diagnostic_of(finding, report.program.files)));
+    print_diagnostic(stderr, diagnostic_of(finding, report.program.files));
   }
   if (shown > kFindingsShown) {
     kerf::print(stderr, "kerf: note: {} findings in all; --json FILE lists the first {}\n",
@@ -83,8 +84,10 @@ constexpr std::chrono::milliseconds kWritingPatience{1000}, kRunPatience{10'000}
 void print_results(const RunRequest& request, const Report& report) {
   print_findings(report, request.quiet);
   if (request.quiet) return;
+  const std::string command =
+      command_line(with_guesses(request.written, rows_in(report.guesses, request.units)));
   kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
-              summary_text(report, request.summary));
+              summary_text(report, {request.verbose, command, request.units}));
 }
 
 /// The last words of a run that was interrupted where nothing looks at the stop: what is known, as
@@ -127,6 +130,14 @@ struct RunVerdict {
   bool interrupted = false;
 };
 
+/// What nobody has said is guessed, or asked for, by a first reading.
+StdinProgram::Listings listings_of(const SessionOptions& session) {
+  const bool tools_known = !session.tools.empty() || !session.program.tool_table_path.empty();
+  const bool all_known = session.blank && (tools_known || is_sheet(*session.blank));
+  return all_known && session.guess ? StdinProgram::Listings::kStreamed
+                                    : StdinProgram::Listings::kKept;
+}
+
 RunVerdict run_one(RunRequest request) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
@@ -150,7 +161,8 @@ RunVerdict run_one(RunRequest request) {
         tell_interrupted(request, none, 0, "before the end of the program");
       },
       kRunPatience);
-  kept.take(request.session.program.path, stop.get_token(), diagnostics);
+  kept.take(request.session.program.path, listings_of(request.session), stop.get_token(),
+            diagnostics);
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
   Report none;
   rename_stdin(kept, session ? session->report() : none, diagnostics);
@@ -201,15 +213,6 @@ void refuse_shared_outputs(const RunArguments& arguments, Diagnostics& diagnosti
   if (arguments.view) reader.fault("--view", "one window, and there are several programs");
 }
 
-/// The command of one of several programs: without the others.
-std::vector<std::string> own_command(const RunArguments& arguments, const std::string& program) {
-  std::vector<std::string> command = arguments.command;
-  for (const std::string& other : arguments.programs) {
-    if (other != program) std::erase(command, other);
-  }
-  return command;
-}
-
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
@@ -217,6 +220,7 @@ int run_command(const RunArguments& arguments) {
   if (!arguments.programs.empty()) one.source.program = arguments.programs.front();
   Diagnostics diagnostics;
   RunRequest request = understand(one, diagnostics);
+  show_lengths_in(request.units);
   if (arguments.programs.size() > 1) refuse_shared_outputs(arguments, diagnostics);
   if (has_error(diagnostics)) {
     print(diagnostics);
@@ -228,7 +232,7 @@ int run_command(const RunArguments& arguments) {
   for (const std::string& program : arguments.programs) {
     RunRequest own = request;
     own.session.program.path = program;
-    own.summary.command = own_command(arguments, program);
+    own.written.source.program = program;
     const RunVerdict end = run_one(std::move(own));
     worst.code = std::max(worst.code, end.code);
     if (end.interrupted) break;

@@ -31,7 +31,7 @@ void note_sheet(SessionOptions& session) {
 
 }  // namespace
 
-void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
+void complete_arguments(const LiveConfig& config, LengthUnit unit, RunArguments& arguments) {
   ProgramArguments& source = arguments.source;
   if (source.ini.empty()) source.ini = config.machine.ini.value_or("");
   if (source.tool_table.empty()) source.tool_table = config.machine.tool_table.value_or("");
@@ -39,7 +39,7 @@ void complete_arguments(const LiveConfig& config, RunArguments& arguments) {
   source.kinematics = config.machine.kinematics;
   source.joints = config.machine.joints;
   source.configured_offset = config.machine.work_offset;
-  complete_torch(config, arguments.torch);
+  complete_torch(config, unit, arguments.torch);
 }
 
 void complete_session(const LiveConfig& config, const RunArguments& a, SessionOptions& session) {
@@ -56,9 +56,12 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
   RunArguments a = given;
   std::optional<LiveConfig> config;
   if (!a.config.empty() || !a.sets.empty()) config = read_config(a.config, a.sets, diagnostics);
-  if (config) complete_arguments(*config, a);
-  OptionReader reader(diagnostics);
   RunRequest request;
+  request.written = given;
+  request.units =
+      understand_units(a.source.units, config ? config->units : std::nullopt, diagnostics);
+  if (config) complete_arguments(*config, request.units, a);
+  OptionReader reader(diagnostics, request.units);
   SessionOptions& session = request.session;
   TorchOptions torch;
   session.beam = understand_torch(a.torch, reader, torch);
@@ -85,12 +88,12 @@ RunRequest understand(const RunArguments& given, Diagnostics& diagnostics) {
     reader.fault("--path", "planned is for cutting; a punch strikes where the program says");
   }
   read_lines(a, reader, session.lines);
-  request.mesh_tolerance_mm = reader.number("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
-                                            request.mesh_tolerance_mm);
+  request.mesh_tolerance_mm = reader.length_mm("--mesh-tolerance", a.mesh_tolerance, kMeshTolerance,
+                                               request.mesh_tolerance_mm);
   request.outputs = a.outputs;
   check_outline_wishes(request.session.blank, request.outputs, reader);
   request.quiet = a.quiet;
-  request.summary = {a.verbose, a.command};
+  request.verbose = a.verbose;
   session.guess = !a.no_guess;
   if (a.quiet && a.verbose) reader.fault("--verbose", "--quiet wants no summary at all");
   request.view = a.view;

@@ -34,7 +34,7 @@ struct RunArguments {
   bool quiet = false;
   bool verbose = false;
   bool no_guess = false;
-  std::vector<std::string> command;  ///< all of it as written, kerf itself first
+  std::string kerf = "kerf";  ///< by which name it was called
 };
 
 /// The same, understood.
@@ -47,11 +47,14 @@ struct RunRequest {
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
   bool quiet = false;
-  SummaryOptions summary;
+  bool verbose = false;
+  LengthUnit units = LengthUnit::kMm;  ///< of what is shown
+  RunArguments written;                ///< what all this was understood from
 };
 
 /// What the configuration says of machine, beam, tools and blank, where the command line does not.
-void complete_arguments(const LiveConfig& config, RunArguments& arguments);
+/// `unit`: of the arguments.
+void complete_arguments(const LiveConfig& config, LengthUnit unit, RunArguments& arguments);
 void complete_session(const LiveConfig& config, const RunArguments& arguments,
                       SessionOptions& session);
 

@@ -115,15 +115,20 @@ bool is_nc_text(std::string_view head) {
   return has_block;
 }
 
-void StdinProgram::take(std::string& path, const std::stop_token& stop, Diagnostics& diagnostics) {
-  if (path != "-" || !is_nc_text(head_of_stdin(stop))) return;
+void StdinProgram::take(std::string& path, Listings listings, const std::stop_token& stop,
+                        Diagnostics& diagnostics) {
+  if (path != "-") return;
+  const std::string head = head_of_stdin(stop);
+  const bool nc = is_nc_text(head);
+  if (stop.stop_requested() || (!nc && listings == Listings::kStreamed)) return;
   Result<PrivateFolder> folder = PrivateFolder::create();
   if (!folder) {
     diagnostics.push_back(fault(folder.error()));
     return;
   }
   folder_.emplace(std::move(*folder));
-  path_ = folder_->path() + "/stdin.ngc";
+  // What could not be looked at tells by its whole text what it is.
+  path_ = folder_->path() + (nc ? "/stdin.ngc" : head.empty() ? "/stdin" : "/stdin.canon");
   const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   const std::string trouble =
       file < 0 ? fmt::format("cannot be kept for the interpreter: {}", std::strerror(errno))

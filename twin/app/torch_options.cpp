@@ -43,25 +43,43 @@ void read_pin(const std::string& text, OptionReader& reader, TorchOptions& torch
   }
 }
 
+/// A trigger with the levels of its terms z<LEVEL as mm. What is no number stays, for a fault.
+std::string in_mm(const std::string& trigger, LengthUnit unit) {
+  if (unit == LengthUnit::kMm) return trigger;
+  std::string out;
+  for (const std::string_view term : split(trigger, '+')) {
+    const std::size_t less = term.find('<');
+    const auto level =
+        less == term.npos ? std::nullopt : parse_decimal(trim(term.substr(less + 1)));
+    out += out.empty() ? "" : "+";
+    out += level ? fmt::format("{}{}", term.substr(0, less + 1), to_mm(*level, unit))
+                 : std::string(term);
+  }
+  return out;
+}
+
 }  // namespace
 
-void complete_torch(const LiveConfig& whole, TorchArguments& arguments) {
+void complete_torch(const LiveConfig& whole, LengthUnit unit, TorchArguments& arguments) {
   const ConfigBeam& config = whole.beam;
   const auto text = [](std::string& given, const std::optional<std::string>& configured) {
     if (given.empty() && configured) given = *configured;
   };
-  const auto number = [](std::string& given, const std::optional<double>& configured) {
-    if (given.empty() && configured) given = fmt::format("{}", *configured);
+  const auto length = [unit](std::string& given, const std::optional<double>& configured_mm) {
+    if (given.empty() && configured_mm) given = fmt::format("{}", from_mm(*configured_mm, unit));
   };
-  number(arguments.density, config.density_kg_per_m3);
+  if (arguments.density.empty() && config.density_kg_per_m3) {
+    arguments.density = fmt::format("{}", *config.density_kg_per_m3);
+  }
   const bool burns = !arguments.beam.empty() || !arguments.kerf.empty() ||
                      !arguments.pierce.empty() || !arguments.slats.empty();
   if (!burns) text(arguments.turret, whole.turret);
   if (!arguments.turret.empty()) return;
+  arguments.beam_is_mm = arguments.beam.empty();
   text(arguments.beam, config.trigger);
-  number(arguments.kerf, config.kerf_mm);
-  number(arguments.pierce, config.pierce_mm);
-  number(arguments.slats, config.slats_mm);
+  length(arguments.kerf, config.kerf_mm);
+  length(arguments.pierce, config.pierce_mm);
+  length(arguments.slats, config.slats_mm);
   text(arguments.qtplasmac, config.qtplasmac);
   text(arguments.materials, config.materials);
 }
@@ -69,16 +87,17 @@ void complete_torch(const LiveConfig& whole, TorchArguments& arguments) {
 BeamOptions understand_torch(const TorchArguments& a, OptionReader& reader, TorchOptions& torch) {
   BeamOptions beam;
   if (!a.beam.empty()) {
-    const Result<BeamTrigger> trigger = BeamTrigger::parse(a.beam);
+    const Result<BeamTrigger> trigger =
+        BeamTrigger::parse(in_mm(a.beam, a.beam_is_mm ? LengthUnit::kMm : reader.unit()));
     if (trigger) {
       beam.trigger = *trigger;
     } else {
       reader.fault("--beam", trigger.error());
     }
   }
-  beam.kerf_mm = reader.number("--kerf", a.kerf, kKerf, 0);
-  beam.pierce_mm = reader.number("--pierce", a.pierce, kPierce, 0);
-  beam.slats_mm = reader.number("--slats", a.slats, kSlats, 0);
+  beam.kerf_mm = reader.length_mm("--kerf", a.kerf, kKerf, 0);
+  beam.pierce_mm = reader.length_mm("--pierce", a.pierce, kPierce, 0);
+  beam.slats_mm = reader.length_mm("--slats", a.slats, kSlats, 0);
   beam.density_kg_per_m3 = reader.number("--density", a.density, kDensity, beam.density_kg_per_m3);
   read_choice(a.qtplasmac, reader, torch);
   torch.materials_path = a.materials;

@@ -18,6 +18,7 @@ namespace kerf {
 /// The arguments as written. Empty = not given.
 struct TorchArguments {
   std::string beam;
+  bool beam_is_mm = false;  ///< it is a configuration's: a level in it is mm, whatever --units says
   std::string kerf;
   std::string pierce;
   std::string slats;
@@ -29,8 +30,8 @@ struct TorchArguments {
 };
 
 /// What is not given, as the configuration has it. Whoever asks for a punch wants no beam, and the
-/// reverse: of those the command line's alone counts.
-void complete_torch(const LiveConfig& config, TorchArguments& arguments);
+/// reverse: of those the command line's alone counts. `unit`: of the arguments.
+void complete_torch(const LiveConfig& config, LengthUnit unit, TorchArguments& arguments);
 
 /// The same, understood: what is cut with into the result, what the program is told of its machine
 /// into `torch`. Faults go to the reader.

@@ -160,6 +160,7 @@ int show_program(const RunRequest& run, std::stop_source& stop) {
 int view_command(const ViewArguments& arguments) {
   Diagnostics diagnostics;
   ViewRequest request = understand_view(arguments, diagnostics);
+  show_lengths_in(request.run.units);
   if (has_error(diagnostics)) {
     print_diagnostics(diagnostics, false);
     return kExitUsage;

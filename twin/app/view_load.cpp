@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "twin/app/command_line.h"
 #include "twin/app/console.h"
 #include "twin/app/exit_code.h"
 #include "twin/guess/guess_row.h"
@@ -33,8 +34,8 @@ Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stoc
     apart = apart || part.min[axis] > blank.max[axis] || part.max[axis] < blank.min[axis];
   }
   if (apart) {
-    doubt(fmt::format("lies beside the blank: X {:g} to {:g}, Y {:g} to {:g}, Z {:g} to {:g} mm; "
-                      "the blank is X {:g} to {:g}, Y {:g} to {:g}, Z {:g} to {:g}",
+    doubt(fmt::format("lies beside the blank: X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm; the blank is "
+                      "X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm",
                       part.min.x, part.max.x, part.min.y, part.max.y, part.min.z, part.max.z,
                       blank.min.x, blank.max.x, blank.min.y, blank.max.y, blank.min.z, blank.max.z),
           "the design part is taken as mm, in the coordinates that the program writes");
@@ -52,7 +53,7 @@ Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stoc
 
 void print_diagnostics(const Diagnostics& diagnostics, bool quiet) {
   for (const Diagnostic& d : diagnostics) {
-    if (!quiet || d.severity == Severity::kError) kerf::print(stderr, "{}", to_string(d));
+    if (!quiet || d.severity == Severity::kError) print_diagnostic(stderr, d);
   }
 }
 
@@ -108,14 +109,17 @@ std::unique_ptr<LoadedProgram> load_viewed(const ViewRequest& request, ViewKind 
 void print_faults(const LoadedProgram& loaded) {
   for (const Finding& remark : loaded.player.remarks) {
     if (remark.severity != Severity::kError) continue;
-    kerf::print(stderr, "{}", to_string(diagnostic_of(remark, loaded.player.track->files())));
+    print_diagnostic(stderr, diagnostic_of(remark, loaded.player.track->files()));
   }
   if (!loaded.partial_reason.empty()) kerf::print(stderr, "kerf: {}\n", loaded.partial_reason);
 }
 
 void print_guesses(const ViewRequest& request, const LoadedProgram& loaded) {
   if (request.run.quiet || loaded.guesses.empty()) return;
-  kerf::print(stderr, "{}", guess_text(loaded.guesses, request.run.summary.command));
+  const std::vector<GuessRow> rows = rows_in(loaded.guesses, request.run.units);
+  ViewArguments said = request.written;
+  said.run = with_guesses(std::move(said.run), rows);
+  kerf::print(stderr, "{}", guess_text(rows, command_line(said)));
 }
 
 int view_exit_code(Outcome outcome, const Diagnostics& diagnostics) {

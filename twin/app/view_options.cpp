@@ -93,7 +93,7 @@ void read_pictures(const ViewArguments& a, OptionReader& reader, ViewRequest& re
 void read_comparison(const ViewArguments& a, OptionReader& reader, ViewRequest& request) {
   request.compare = a.compare;
   request.tolerance_mm =
-      reader.number("--tolerance", a.tolerance, kTolerance, request.tolerance_mm);
+      reader.length_mm("--tolerance", a.tolerance, kTolerance, request.tolerance_mm);
   if (a.compare.empty() && !a.tolerance.empty()) {
     reader.fault("--tolerance", "there is no --compare DESIGN.stl");
   }
@@ -119,13 +119,18 @@ ViewRequest understand_view(const ViewArguments& a, Diagnostics& diagnostics) {
   ViewRequest request;
   const std::optional<LiveConfig> config = read_config(a.config, a.sets, diagnostics);
   RunArguments run = a.run;
-  if (config) complete_arguments(*config, run);
+  const LengthUnit units =
+      understand_units(a.run.source.units, config ? config->units : std::nullopt, diagnostics);
+  // What the configuration says of it is said now; a fault of the option comes once.
+  run.source.units = units == LengthUnit::kInch ? "inch" : "mm";
+  if (config) complete_arguments(*config, units, run);
   request.run = understand(run, diagnostics);
+  request.written = a;
   if (config) {
     complete_session(*config, run, request.run.session);
     if (config->machine.drawn.is_chosen()) request.run.machine = config->machine.drawn;
   }
-  OptionReader reader(diagnostics);
+  OptionReader reader(diagnostics, units);
   if (a.speed == "max") {
     request.speed = std::numeric_limits<double>::infinity();
   } else if (!a.speed.empty()) {

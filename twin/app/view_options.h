@@ -50,8 +50,9 @@ struct ViewRequest {
   std::string compare;                       ///< file of the design part
   std::shared_ptr<const DesignPart> design;  ///< read by the command, not here
   double tolerance_mm = 0.05;
-  bool local = true;    ///< the window redraws only where something changed
-  bool at_end = false;  ///< shown first, as after a dry run
+  bool local = true;      ///< the window redraws only where something changed
+  bool at_end = false;    ///< shown first, as after a dry run
+  ViewArguments written;  ///< what all this was understood from
   /// Nothing is drawn into files.
   bool wants_window() const { return png.empty() && film.folder.empty(); }
 };

@@ -7,8 +7,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "stock/cutter/shape_spec.h"
 #include "twin/app/command_line.h"
+#include "twin/app/console.h"
 #include "twin/app/exit_code.h"
+#include "twin/shown_lengths.h"
 #include "twin/stock_choice.h"
 
 namespace kerf {
@@ -29,7 +32,7 @@ std::optional<int> tool_number(const std::string& argument) {
 }
 
 std::string first_line(const Diagnostic& diagnostic) {
-  const std::string text = to_string(diagnostic);
+  const std::string text = to_string(in_unit(diagnostic, shown_unit()));
   return text.substr(0, text.find('\n'));
 }
 
@@ -224,13 +227,15 @@ void ViewWork::watch_inputs() {
 }
 
 void ViewWork::describe(const LoadedProgram& loaded) {
-  job_.stock_in_use = loaded.blank.description;
+  const LengthUnit unit = request_.run.units;
+  job_.stock_in_use = in_unit(loaded.blank.description, unit);
   if (!loaded.blank.origin.empty()) job_.stock_in_use += fmt::format(" ({})", loaded.blank.origin);
-  job_.cell_in_use = loaded.blank.cell_mm > 0 ? fmt::format("{:.4g}", loaded.blank.cell_mm) : "";
+  const double cell = from_mm(loaded.blank.cell_mm, unit);
+  job_.cell_in_use = cell > 0 ? fmt::format("{:.4g}", cell) : "";
   job_.model_in_use = loaded.blank.model;
   job_.tools.clear();
   for (const ProgramTool& tool : loaded.tools) {
-    job_.tools.push_back({tool.number, "", tool.shape, tool.origin});
+    job_.tools.push_back({tool.number, "", shape_in(tool.shape, unit), tool.origin});
   }
 }
 

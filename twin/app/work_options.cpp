@@ -29,7 +29,7 @@ void read_model(const WorkArguments& a, OptionReader& reader, WorkRequest& work)
 
 void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkRequest& work) {
   for (const std::string& text : arguments.tools) {
-    Result<ToolShapeArgument> tool = parse_tool_argument(text);
+    Result<ToolShapeArgument> tool = parse_tool_argument(text, reader.unit());
     if (!tool) {
       reader.fault("--tool", tool.error());
       continue;
@@ -57,7 +57,7 @@ void read_tools(const WorkArguments& arguments, OptionReader& reader, WorkReques
 
 void read_stock(const WorkArguments& arguments, OptionReader& reader, WorkRequest& work) {
   if (arguments.stock.empty()) return;
-  Result<Blank> blank = parse_blank(arguments.stock);
+  Result<Blank> blank = parse_blank(arguments.stock, reader.unit());
   if (blank) {
     work.blank = std::move(blank.value());
   } else {
@@ -99,9 +99,9 @@ WorkRequest understand_work(const WorkArguments& a, OptionReader& reader) {
   read_tools(a, reader, work);
   read_stock(a, reader, work);
   read_choices(a, reader, work);
-  work.stock.cell_mm = reader.number("--cell", a.cell, kCell, 0);
-  work.below_mm = reader.number("--below", a.below, kBelow, work.below_mm);
-  work.margin_mm = reader.number("--margin", a.margin, kMargin, work.margin_mm);
+  work.stock.cell_mm = reader.length_mm("--cell", a.cell, kCell, 0);
+  work.below_mm = reader.length_mm("--below", a.below, kBelow, work.below_mm);
+  work.margin_mm = reader.length_mm("--margin", a.margin, kMargin, work.margin_mm);
   work.stock.threads =
       static_cast<int>(reader.whole_number("--threads", a.threads, kThreads, default_threads()));
   return work;

@@ -210,6 +210,9 @@ std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
 }
 
 void read_workshop(const GroupReader& root, LiveConfig& config) {
+  if (const int word = root.word("units"); word >= 0) {
+    config.units = word == 1 ? LengthUnit::kInch : LengthUnit::kMm;
+  }
   read_machine(root.group("machine"), config.machine);
   read_stock(root.group("stock"), config.stock);
   read_tools(root.group("tools"), config.stock.model, config.tools);

@@ -63,7 +63,7 @@ std::string resolved_path(const ConfigNode& node, const std::string& path,
 std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
                           const ConfigFaults& faults);
 
-/// The groups machine, tools, stock, beam and follow, and turret.
+/// The groups machine, tools, stock, beam and follow, units and turret.
 void read_workshop(const GroupReader& root, LiveConfig& config);
 
 /// machine.model, machine.links and what belongs to them.

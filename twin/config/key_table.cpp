@@ -297,6 +297,13 @@ constexpr std::array kKeys{
             .type = T::kFile,
             .purpose = "material file of QtPlasmaC: kerf widths by number"},
 
+    KeySpec{.path = "units",
+            .type = T::kWord,
+            .words = "mm|inch",
+            .fallback = "mm",
+            .purpose = "of lengths that options give, and of what is shown; those of a "
+                       "configuration are mm"},
+
     KeySpec{.path = "turret",
             .type = T::kFile,
             .purpose = "sheets: the punch press instead of a beam, as --turret has it"},

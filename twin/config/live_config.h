@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/length_unit.h"
 #include "interp_bridge/motion.h"
 #include "machine_io/can/can_socket_source.h"
 #include "machine_io/hal/hal_source.h"
@@ -103,6 +104,8 @@ using ConfigSource =
 /// of maps are in mm already, whatever `units` the file had. Values not given are defaults, so an
 /// empty file (or none) is a LiveConfig{}.
 struct LiveConfig {
+  /// `units:` of what options give and of what is shown; lengths of a configuration are mm.
+  std::optional<LengthUnit> units;
   ConfigMachine machine;
   std::vector<ToolShapeArgument> tools;
   ConfigStock stock;

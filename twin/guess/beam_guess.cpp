@@ -45,6 +45,10 @@ void BeamWatch::add(const Motion& m) {
     if (mm > 0 && down != 0) slanted_mm_ += mm;
     if (mm == 0 && down > 0) plunged_mm_ += down;
     if (speeds_.size() < kMostSpeeds && m.spindle_rpm > 0) speeds_.insert(m.spindle_rpm);
+    for (unsigned n = 0; n < TorchState::kAnalogs; ++n) {
+      const float power = m.torch.analog[n];
+      if (powers_[n].size() < kMostSpeeds && power > 0) powers_[n].insert(power);
+    }
   }
   if (mm == 0) return;
   const bool turns = m.spindle != SpindleState::kStopped;
@@ -53,6 +57,9 @@ void BeamWatch::add(const Motion& m) {
   outputs_seen_ |= m.torch.outputs;
   for (unsigned n = 0; n < TorchState::kOutputs; ++n) {
     if ((outputs_seen_ >> n & 1) != 0) output_[n].add(m.torch.output(n), feed, mm);
+  }
+  for (unsigned n = 0; n < TorchState::kAnalogs; ++n) {
+    analog_[n].add(m.torch.analog[n] > 0, feed, mm);
   }
 }
 
@@ -68,11 +75,25 @@ std::optional<BeamGuess> BeamWatch::guess(bool is_qtplasmac) const {
     return BeamGuess{fmt::format("m62:{}", n), kLaserKerf_mm,
                      fmt::format("output {} is on where it feeds, off where it travels", n)};
   }
+  // A valve or a load may go with the cuts of a mill, which plunges.
+  for (unsigned n = 0; n < TorchState::kAnalogs && !(plunged_mm_ > 0); ++n) {
+    if (!analog_[n].is_beam() || analog_[n].starts < least) continue;
+    return BeamGuess{
+        fmt::format("m67:{}", n), kLaserKerf_mm,
+        fmt::format("analog output {} is above 0 where it feeds, 0 where it travels", n)};
+  }
   if (spindle_.is_beam() && spindle_.starts >= least) {
     return BeamGuess{"m3", dwells_lit_ ? kPlasmaKerf_mm : kLaserKerf_mm,
                      "the spindle is on where it feeds, off where it travels"};
   }
   if (z_moves_) return std::nullopt;
+  // Whether it is dark along rapids the program does not say: such machines see to it themselves.
+  for (unsigned n = 0; n < TorchState::kAnalogs; ++n) {
+    const bool varies = powers_[n].size() >= 2 || analog_[n].fed_off_mm > 0;
+    if (!(analog_[n].fed_on_mm > 0) || !varies) continue;
+    return BeamGuess{fmt::format("m67:{}+feed", n), kLaserKerf_mm,
+                     fmt::format("Z never moves, and analog output {} says how strong", n)};
+  }
   const double share = spindle_.fed_on_mm / fed_mm_;
   if (share > kMost && (speeds_.size() >= 2 || speed_.fed_off_mm > 0)) {
     return BeamGuess{"laser", kLaserKerf_mm, "Z never moves, and S says how strong"};

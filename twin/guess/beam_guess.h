@@ -19,7 +19,8 @@ struct BeamGuess {
 };
 
 /// Watches a program in its order. What says that a beam cuts: Z never goes down to cut, and the
-/// spindle, its speed, or one output is on while it feeds and off while it travels.
+/// spindle, its speed, or one output, digital or analog (M67), is on while it feeds and off while
+/// it travels; or Z never moves, and an analog output says how strong.
 class BeamWatch {
  public:
   void add(const Motion& motion);
@@ -44,7 +45,9 @@ class BeamWatch {
 
   Switched spindle_, speed_;
   Switched output_[TorchState::kOutputs];
-  std::uint64_t outputs_seen_ = 0;  ///< bits of those that have ever been set
+  Switched analog_[TorchState::kAnalogs];
+  std::set<float> powers_[TorchState::kAnalogs];  ///< above 0, of feeds; at most a few
+  std::uint64_t outputs_seen_ = 0;                ///< bits of those that have ever been set
   double fed_mm_ = 0;
   double slanted_mm_ = 0;  ///< of that, where Z changes on the way
   double plunged_mm_ = 0;  ///< fed straight down

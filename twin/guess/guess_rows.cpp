@@ -6,7 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/shell_word.h"
+#include "stock/cutter/scan.h"
+#include "twin/shown_lengths.h"
 
 namespace kerf {
 namespace {
@@ -74,26 +75,32 @@ SessionOptions with_sheet(const SessionOptions& options, const ProgramSurvey::Sh
   return out;
 }
 
-std::string command_with(std::span<const std::string> arguments, std::span<const GuessRow> rows) {
-  std::string out;
-  for (const std::string& argument : arguments) {
-    out += out.empty() ? shell_word(argument) : " " + shell_word(argument);
-  }
-  for (const GuessRow& row : rows) {
-    if (!row.option.empty()) out += fmt::format(" {} {}", row.option, shell_word(row.value));
+std::vector<GuessRow> rows_in(std::span<const GuessRow> rows, LengthUnit unit) {
+  std::vector<GuessRow> out(rows.begin(), rows.end());
+  for (GuessRow& row : out) {
+    row.reason = in_unit(row.reason, unit);
+    if (row.option == "--stock") {
+      if (const Result<Blank> blank = parse_blank(row.value)) row.value = stock_spec(*blank, unit);
+    } else if (row.option == "--kerf") {
+      if (const auto mm = parse_decimal(row.value)) row.value = length_number(*mm, unit);
+    } else if (row.option != "--beam") {
+      // "1=flat:6"; what no option can say is a shape alone.
+      const std::size_t shape = row.option.empty() ? 0 : row.value.find('=') + 1;
+      row.value = row.value.substr(0, shape) + shape_in(row.value.substr(shape), unit);
+    }
   }
   return out;
 }
 
-std::string guess_text(std::span<const GuessRow> rows, std::span<const std::string> arguments) {
+std::string guess_text(std::span<const GuessRow> rows, const std::string& command) {
   std::string out;
   for (const GuessRow& row : rows) {
     out += fmt::format("{:<9} {:<8}{}{}\n", out.empty() ? "guessed" : "", row.what, row.value,
                        row.reason.empty() ? "" : fmt::format(" ({})", row.reason));
   }
-  if (rows.empty() || arguments.empty()) return out;
+  if (rows.empty() || command.empty()) return out;
   out += "          correct what is wrong, and run it again:\n";
-  return out + fmt::format("          {}\n", command_with(arguments, rows));
+  return out + fmt::format("          {}\n", command);
 }
 
 }  // namespace kerf

@@ -7,6 +7,7 @@
 #include <regex>
 #include <utility>
 
+#include "stock/cutter/scan.h"
 #include "twin/blank_choice.h"
 #include "twin/motion_geometry.h"
 
@@ -74,11 +75,17 @@ void ProgramSurvey::add(std::span<const Motion> motions, const MotionMoves& move
   if (wishes_.blank) blank_.add(motions, moves);
   for (const Motion& m : motions) {
     beam_.add(m);
+    spindle_started_ = spindle_started_ || m.spindle != SpindleState::kStopped;
     const ResolvedTool* const tool = tools_.feeding(m);
     if (!tool) continue;
     if (fed_tools_.size() < kMostTools) fed_tools_.insert(m.tool);
     if (tool->cutter) {
       if (tool->guessed) half_known_.try_emplace(tool->number, tool->guess);
+      if (!tool->is_size_alone()) continue;
+      if (sized_tools_.size() >= kMostTools && !sized_tools_.contains(m.tool)) continue;
+      SizedTool& sized = sized_tools_[m.tool];
+      sized.diameter_mm = 2 * tool->cutter->radius_mm();
+      sized.trace.add(m, moves.is_upright(m));
     } else if (open_tools_.size() < kMostTools || open_tools_.contains(m.tool)) {
       open_tools_[m.tool].add(m, moves.is_upright(m));
     }
@@ -114,6 +121,7 @@ std::optional<ProgramSurvey::SheetGuess> ProgramSurvey::sheet(
 Blank ProgramSurvey::blank() const {
   BlankGuess wide = blank_.guess();
   for (const ToolGuess& guess : tools(wide.blank().bounds_mm().max.z)) {
+    if (guess.of_known_size) continue;
     const Result<Cutter> cutter = parse_shape(guess.shape);
     if (cutter) wide.widen(open_tools_.at(guess.tool).bounds_mm(), cutter->radius_mm());
   }
@@ -127,7 +135,16 @@ std::vector<ToolGuess> ProgramSurvey::tools(double top_mm) const {
     ShapeGuess guess = trace.guess(top_mm);
     out.push_back({number, std::move(guess.shape), std::move(guess.reason)});
   }
+  add_drills(top_mm, out);
   return out;
+}
+
+void ProgramSurvey::add_drills(double top_mm, std::vector<ToolGuess>& guesses) const {
+  for (const auto& [number, sized] : sized_tools_) {
+    if (!sized.trace.only_plunges(top_mm)) continue;
+    guesses.push_back({number, fmt::format("drill:{}:118", sized.diameter_mm),
+                       "only its diameter is known, and it only goes up and down", true});
+  }
 }
 
 std::vector<ToolGuess> ProgramSurvey::kerfs(const BeamGuess& beam) const {
@@ -179,18 +196,22 @@ Finding guess_warning(const Blank& blank, const std::string& reason) {
   return finding;
 }
 
-std::string stock_spec(const Blank& blank) {
+std::string stock_spec(const Blank& blank, LengthUnit unit) {
+  // Not more digits than a person writes; -0 is 0.
+  const auto number = [unit](double mm) {
+    return unit == LengthUnit::kMm ? fmt::format("{:.10g}", mm + 0.0) : length_number(mm, unit);
+  };
   if (blank.sheet && blank.sheet->file.empty()) {
     const BlankSheet& s = *blank.sheet;
-    return fmt::format("sheet:{:g},{:g}:{:g},{:g}:{:g}", s.low_mm.x, s.low_mm.y, s.high_mm.x,
-                       s.high_mm.y, s.thickness_mm);
+    return fmt::format("sheet:{},{}:{},{}:{}", number(s.low_mm.x), number(s.low_mm.y),
+                       number(s.high_mm.x), number(s.high_mm.y), number(s.thickness_mm));
   }
   const bool box = blank.state_file.empty() && !blank.sheet && blank.bodies.size() == 1 &&
                    blank.bodies[0].kind == BlankBody::Kind::kBox;
   if (!box) return {};
   const Box& b = blank.bodies[0].bounds_mm;
-  return fmt::format("box:{:.10g},{:.10g},{:.10g}:{:.10g},{:.10g},{:.10g}", b.min.x, b.min.y,
-                     b.min.z, b.max.x, b.max.y, b.max.z);
+  return fmt::format("box:{},{},{}:{},{},{}", number(b.min.x), number(b.min.y), number(b.min.z),
+                     number(b.max.x), number(b.max.y), number(b.max.z));
 }
 
 }  // namespace kerf

@@ -67,7 +67,10 @@ class ProgramSurvey {
                                   std::span<const TorchMaterial> materials) const;
   /// The blank that fits, wide enough for the tools of tools().
   Blank blank() const;
-  /// One shape for each tool of which nothing is known: of a box at `top_mm`.
+  /// blank() is a skin over what a pen draws or a knife cuts (CheckOptions::is_drawn).
+  bool is_drawn() const { return !spindle_started_ && blank_.guess().is_skin(); }
+  /// One shape for each tool of which nothing is known: of a box at `top_mm`. And a drill for each
+  /// of which the diameter alone is, if it only goes up and down in it.
   std::vector<ToolGuess> tools(double top_mm) const;
   /// A kerf for each tool that feeds.
   std::vector<ToolGuess> kerfs(const BeamGuess& beam) const;
@@ -77,22 +80,31 @@ class ProgramSurvey {
   std::optional<Finding> warning(const Blank& blank, const std::string& reason) const;
 
  private:
+  /// What is known of a tool is its size.
+  struct SizedTool {
+    ToolTrace trace;
+    double diameter_mm = 0;
+  };
+
   bool may_guess(int tool) const { return wishes_.tools || tool == 0; }
+  void add_drills(double top_mm, std::vector<ToolGuess>& guesses) const;
 
   SurveyWishes wishes_;
   OpenTools tools_;
   BlankSurvey blank_;
   BeamWatch beam_;
   std::map<int, ToolTrace> open_tools_;
+  std::map<int, SizedTool> sized_tools_;
   std::map<int, std::string> half_known_;  ///< guessed of what is known: why, a sentence
   std::set<int> fed_tools_;
+  bool spindle_started_ = false;
 };
 
 /// stock-guessed. `reason`: what it was made of.
 Finding guess_warning(const Blank& blank, const std::string& reason);
 
 /// "box:-5,-5,-10:105,65,0", what --stock takes. Boxes and rectangular sheets alone; empty for
-/// other blanks.
-std::string stock_spec(const Blank& blank);
+/// other blanks. Its numbers are in `unit`.
+std::string stock_spec(const Blank& blank, LengthUnit unit = LengthUnit::kMm);
 
 }  // namespace kerf

@@ -21,6 +21,8 @@ constexpr double kChord_rad = 0.2;
 /// Of what goes sideways, so much with Z: then Z follows the part. Ramps are less.
 constexpr double kFollows = 0.3;
 constexpr double kSideways_mm = 1e-6;
+/// What is fed so far over the blank touches nothing of it.
+constexpr double kClear_mm = 0.01;
 /// Of lines in a drawing: how far apart they may be, where they are engraved; and how deep copper
 /// is etched, however far apart.
 constexpr double kDrawn_mm = 1;
@@ -241,9 +243,15 @@ bool ToolTrace::is_drawing() const {
   return runs_ >= kFewLines && sideways_length_mm_ < 0.5 * size * static_cast<double>(runs_);
 }
 
+bool ToolTrace::only_plunges(double top_mm) const {
+  if (tilted_ || bounds_mm_.empty() || bounds_mm_.min.z >= top_mm) return false;
+  return sideways_mm_.empty() || sideways_mm_.min.z > top_mm + kClear_mm;
+}
+
 ShapeGuess ToolTrace::guess(double top_mm) const {
   const double depth = bounds_mm_.empty() ? 0 : std::max(0.0, top_mm - bounds_mm_.min.z);
-  if (!(sideways_length_mm_ > 0) && !tilted_) return drill(depth);
+  const bool upright = !tilted_ && !(sideways_length_mm_ > 0);
+  if (upright || only_plunges(top_mm)) return drill(depth);
   const double step = step_over_mm();
   const bool follows = slanted_length_mm_ > kFollows * sideways_length_mm_;
   if (tilted_) {

@@ -29,6 +29,10 @@ class ToolTrace {
   /// Of the feed moves, mm; empty: there are none.
   const Box& bounds_mm() const { return bounds_mm_; }
 
+  /// It goes down into the blank, whose top is at `top_mm`, and is never fed sideways in it, as
+  /// drills are; over it, it may be.
+  bool only_plunges(double top_mm) const;
+
   /// The cutter, with `top_mm` the top of the blank:
   ///   only up and down           a drill, by how deep and how close the holes are
   ///   tilted, or Z follows the part while it goes sideways, in passes side by side

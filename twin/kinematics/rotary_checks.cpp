@@ -149,10 +149,10 @@ void RotaryCheck::check_joints(const Motion& motion, double duration_s,
       if (below || value - limits.max > kTolerance) {
         const double limit = below ? limits.min : limits.max;
         add(RotaryFaultKind::kJointLimit, axis, motion,
-            fmt::format("the joint of {} is sent to {:.3f} {}, {:.3f} beyond its limit of {:.3f}, "
-                        "to hold a tool of {:.1f} mm there",
-                        kAxisLetters[axis], value, unit_of(axis), std::abs(value - limit), limit,
-                        motion.tool_offset_mm.z),
+            fmt::format("the joint of {} is sent to {:.3f} {}, {:.3f} {} beyond its limit of "
+                        "{:.3f} {}, to hold a tool of {:.1f} mm there",
+                        kAxisLetters[axis], value, unit_of(axis), std::abs(value - limit),
+                        unit_of(axis), limit, unit_of(axis), motion.tool_offset_mm.z),
             "a tool of another length, or another place for the part, keeps it within", out);
       }
       if (!before || duration_s <= 0 || limits.max_velocity <= 0) continue;
@@ -160,8 +160,8 @@ void RotaryCheck::check_joints(const Motion& motion, double duration_s,
       if (speed <= limits.max_velocity * kSpeedSlack) continue;
       add(RotaryFaultKind::kJointTooFast, axis, motion,
           fmt::format("the joint of {} would have to go at {:.1f} {}/s to follow the tip; its "
-                      "limit is {:.1f}, and LinuxCNC stops with a following error",
-                      kAxisLetters[axis], speed, unit_of(axis), limits.max_velocity),
+                      "limit is {:.1f} {}/s, and LinuxCNC stops with a following error",
+                      kAxisLetters[axis], speed, unit_of(axis), limits.max_velocity, unit_of(axis)),
           "a lower feed, or a part nearer to the axis that turns", out);
     }
     before = at;

@@ -77,7 +77,8 @@ void LiveCutter::note_limits(const Vec3& machine_mm, double t_s) {
   finding.severity = Severity::kWarning;
   finding.time_s = t_s;
   finding.text = fmt::format(
-      "{} stands at {:.2f}, beyond the limits of the machine ({:g} to {:g}): are these positions "
+      "{} stands at {:.2f} mm, beyond the limits of the machine ({:g} to {:g} mm): are these "
+      "positions "
       "of "
       "another machine, or in another unit?",
       "XYZ"[beyond], machine_mm[beyond], axis.min, axis.max);

@@ -43,12 +43,12 @@ std::optional<std::string> ReadingBounds::fault_of(const AxisSample& sample) con
     const Bound& bound = bounds_[i];
     const double value = sample.position[i];
     if (!sample.has(i) || (value >= bound.low && value <= bound.high)) continue;
-    return fmt::format("{} reads {:g} {}; no machine is beyond {:g} .. {:g}", bound.name, value,
-                       bound.unit, bound.low, bound.high);
+    return fmt::format("{} reads {:g} {}; no machine is beyond {:g} .. {:g} {}", bound.name, value,
+                       bound.unit, bound.low, bound.high, bound.unit);
   }
   const double offset_mm = sample.tool_offset_z_mm;
   if (std::isnan(offset_mm) || std::abs(offset_mm) <= kFarthest_mm) return std::nullopt;
-  return fmt::format("the tool's length reads {:g} mm; none is beyond {:g}", offset_mm,
+  return fmt::format("the tool's length reads {:g} mm; none is beyond {:g} mm", offset_mm,
                      kFarthest_mm);
 }
 

@@ -256,6 +256,7 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
     front.blank = survey.blank();
     front.blank_origin = "guessed";
     front.blank_guessed = true;
+    front.is_drawn = survey.is_drawn();
     front.guess_reason = fmt::format("the feed moves plus {:g} mm", options.margin_mm);
     if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
       remarks.add(std::move(*warning));
@@ -274,9 +275,13 @@ void describe_guessed(const ToolSources& sources, ToolBook::CutterCheck can_cut,
                       std::vector<ProgramTool>& tools) {
   ToolBook book(sources, can_cut);
   for (ProgramTool& tool : tools) {
-    if (!tool.shape.empty()) continue;
     for (const ToolGuess& guess : sources.guesses) {
-      if (guess.tool == tool.number) tool = described(book.mount(tool.number, 0), sources.table);
+      if (guess.tool != tool.number || tool.shape.empty() == guess.of_known_size) continue;
+      if (guess.of_known_size) {
+        tool.shape = guess.shape;
+      } else {
+        tool = described(book.mount(tool.number, 0), sources.table);
+      }
     }
   }
 }
@@ -348,7 +353,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   PlayerProgram& player = loaded->player;
   player.report_from = loading.report_from();
   // As Session has it.
-  player.checks = {front->blank_guessed, options.below_mm};
+  player.checks = {front->blank_guessed, options.below_mm, front->is_drawn};
   player.blank_kind = blank_kind;
   player.whole = !stopped && !(front->is_sheet() && loading.window().over());
   player.track = loading.build(loaded->summary.files);

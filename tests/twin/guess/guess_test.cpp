@@ -202,15 +202,72 @@ TEST(StockSpec, IsWhatStockTakes) {
 }
 
 TEST(GuessText, EndsWithTheCommandToCopy) {
-  const std::vector<std::string> command{"kerf", "run", "my part's.ngc"};
+  const std::string command = "kerf run part.ngc --stock box:0,0,-5:10,10,0";
   const std::vector<GuessRow> rows{{"blank", "--stock", "box:0,0,-5:10,10,0", "the feed moves"},
                                    {"tool", "", "flat:3", "before the first tool change"}};
   EXPECT_EQ(guess_text(rows, command),
             "guessed   blank   box:0,0,-5:10,10,0 (the feed moves)\n"
             "          tool    flat:3 (before the first tool change)\n"
             "          correct what is wrong, and run it again:\n"
-            "          kerf run 'my part'\\''s.ngc' --stock box:0,0,-5:10,10,0\n");
+            "          kerf run part.ngc --stock box:0,0,-5:10,10,0\n");
   EXPECT_EQ(guess_text({}, command), "");
+}
+
+TEST(GuessRows, AreTheSameInInches) {
+  const std::vector<GuessRow> rows{
+      {"blank", "--stock", "box:-5,0,-8:46,25.4,0", "the feed moves plus 5 mm"},
+      {"beam", "--beam", "m3", ""},
+      {"kerf", "--kerf", "1.5", "nothing says how wide"},
+      {"tool 2", "--tool", "2=drill:3.175:118", "the nearest holes are 12.7 mm apart"},
+      {"tool", "", "vee:12.7:60:0.2", "before the first tool change"}};
+  const std::vector<GuessRow> inch = rows_in(rows, LengthUnit::kInch);
+  EXPECT_EQ(inch[0].value, "box:-0.1969,0,-0.315:1.811,1,0");
+  EXPECT_EQ(inch[0].reason, "the feed moves plus 0.197 in");
+  EXPECT_EQ(inch[1].value, "m3");
+  EXPECT_EQ(inch[2].value, "0.059055");
+  EXPECT_EQ(inch[3].value, "2=drill:0.125:118");
+  EXPECT_EQ(inch[3].reason, "the nearest holes are 0.5 in apart");
+  EXPECT_EQ(inch[4].value, "vee:0.5:60:0.007874");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows_in(rows, LengthUnit::kMm)[i].value, rows[i].value);
+  }
+}
+
+TEST(BeamWatch, AnAnalogOutputMayBeTheBeam) {
+  MotionList list;
+  for (int i = 0; i < 3; ++i) {
+    list.analog(1, 0).traverse({0, 10.0 * i, 0}).analog(1, 80).feed({50, 10.0 * i, 0});
+  }
+  EXPECT_EQ(trigger_of(list), "m67:1");
+  MotionList powers;
+  for (int i = 0; i < 3; ++i) {
+    powers.traverse({0, 10.0 * i, 0}).analog(0, 20 + 20.0 * i).feed({50, 10.0 * i, 0});
+  }
+  EXPECT_EQ(trigger_of(powers), "m67:0+feed");
+  MotionList constant;
+  constant.analog(0, 50);
+  for (int i = 0; i < 3; ++i) constant.traverse({0, 10.0 * i, 0}).feed({50, 10.0 * i, 0});
+  EXPECT_EQ(trigger_of(constant), "feed") << "an output that never changes says nothing";
+}
+
+TEST(ToolTrace, WhatIsNeverFedSidewaysInTheBlankDrills) {
+  ToolTrace trace;
+  const MotionList drilled = MotionList()
+                                 .traverse({10, 10, 1})
+                                 .feed({10, 10, -2})
+                                 .feed({10, 10, 1})
+                                 .feed({30, 10, 1})
+                                 .feed({30, 10, -2});
+  for (const Motion& m : drilled.list()) {
+    if (m.kind == MotionKind::kFeed) trace.add(m, true);
+  }
+  EXPECT_TRUE(trace.only_plunges(0));
+  EXPECT_EQ(trace.guess(0).shape.substr(0, 6), "drill:");
+  EXPECT_FALSE(trace.only_plunges(1)) << "it is fed along the top";
+  EXPECT_FALSE(trace.only_plunges(-2)) << "it never comes down to that";
+  const MotionList slot = MotionList().traverse({30, 10, -2}).feed({40, 10, -2});
+  trace.add(slot.list().back(), true);
+  EXPECT_FALSE(trace.only_plunges(0));
 }
 
 }  // namespace

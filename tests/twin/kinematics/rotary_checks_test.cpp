@@ -95,8 +95,8 @@ TEST_F(RotaryChecks, AToolTooLongForTheTravel) {
   const auto faults = check(path, m);
   ASSERT_EQ(faults.size(), 1u);
   EXPECT_EQ(faults[0].kind, RotaryFaultKind::kJointLimit);
-  EXPECT_EQ(faults[0].text.rfind("the joint of Z is sent to 370.000 mm, 70.000 beyond its limit of "
-                                 "300.000, to hold a tool of -60.0 mm there",
+  EXPECT_EQ(faults[0].text.rfind("the joint of Z is sent to 370.000 mm, 70.000 mm beyond its limit "
+                                 "of 300.000 mm, to hold a tool of -60.0 mm there",
                                  0),
             0u)
       << faults[0].text;

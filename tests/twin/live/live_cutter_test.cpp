@@ -278,7 +278,7 @@ TEST(LiveCutter, PositionsOfAnotherMachineAreSuspected) {
   for (int i = 0; i < 30; ++i) watch.see({612.3, 20, 60}, 0.1 * i);
   ASSERT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kAxisLimit});
   EXPECT_EQ(watch.log().kept()[0].text,
-            "X stands at 612.30, beyond the limits of the machine (-250 to 250): are these "
+            "X stands at 612.30 mm, beyond the limits of the machine (-250 to 250 mm): are these "
             "positions of another machine, or in another unit?");
 }
 
