@@ -84,7 +84,8 @@ TEST_F(FirstHour, ViewSaysWhatItGuessesAndRefusesToByWish) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("guessed   blank   box:4,4,-8:46,16,0"), std::string::npos)
       << result.err;
-  EXPECT_NE(result.err.find("--stock box:4,4,-8:46,16,0 --tool 1=flat:1\n"), std::string::npos);
+  EXPECT_NE(result.err.find("kerf view slot.ngc --stock box:4,4,-8:46,16,0 --tool 1=flat:1 --png"),
+            std::string::npos);
   const KerfResult refused = kerf({"view", "slot.ngc", "--png", "view.png", "--no-guess"});
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
   EXPECT_NE(refused.err.find("--no-guess: nothing is known of tool 1"), std::string::npos)

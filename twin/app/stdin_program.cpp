@@ -134,6 +134,10 @@ void StdinProgram::take(std::string& path, Listings listings, const std::stop_to
       file < 0 ? fmt::format("cannot be kept for the interpreter: {}", std::strerror(errno))
                : spool(file, stop);
   if (file >= 0) close(file);
+  if (!nc && stop.stop_requested()) {
+    path_.clear();  // nothing of it will be read: a run of it ends at once, with its report
+    return;
+  }
   if (!trouble.empty()) {
     diagnostics.push_back(fault(trouble));
     return;

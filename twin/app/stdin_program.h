@@ -31,7 +31,8 @@ class StdinProgram {
   /// `path` "-": what is taken whole is in a file behind this, and `path` is that of the file.
   /// Waits for the first line. Of a terminal and of sockets nothing can be known before it is read:
   /// they are taken whole where a listing would be, else for a listing. Every other path is left as
-  /// it is, and so is "-" where `stop` is requested meanwhile. Faults are diagnostics.
+  /// it is, and so is "-" where `stop` is requested meanwhile (but for NC text, of which that is a
+  /// fault). Faults are diagnostics.
   void take(std::string& path, Listings listings, const std::stop_token& stop,
             Diagnostics& diagnostics);
 

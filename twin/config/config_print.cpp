@@ -188,7 +188,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
   printer.close();
   print_beam(printer, config.beam);
   printer.text("turret", config.turret);
-  if (config.units) printer.put("units", *config.units == LengthUnit::kInch ? "inch" : "mm");
+  printer.put("units", config.units == LengthUnit::kInch ? "inch" : "mm");
   printer.open("follow");
   printer.text("program", config.follow.program);
   if (config.follow.planned_path) {
