@@ -1,7 +1,10 @@
 // The machine in the picture, and what is asked of OpenGL itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
 
 #include "tests/viewer/scene_fixture.h"
 #include "viewer/window/gl_failure.h"
@@ -66,6 +69,95 @@ TEST_F(MachineTest, LiesBehindWhatIsBeforeIt) {
   hidden.looks[static_cast<std::size_t>(SceneObject::kMachine)].is_visible = false;
   draw(&scene, projection, hidden);
   EXPECT_EQ(differing_pixels(with, scene.read()), 0);
+}
+
+/// What the machine changes of the picture of the workpiece's middle: 0 to 255, the largest
+/// channel.
+int veil_of(SceneRenderer* scene, const Projection& projection, const DrawOptions& options) {
+  const auto middle = [&](bool with_machine) {
+    DrawOptions looks = options;
+    looks.looks[static_cast<std::size_t>(SceneObject::kMachine)].is_visible = with_machine;
+    EXPECT_TRUE(scene->draw(projection, looks));
+    const Picture picture = scene->read();
+    return at(picture, pixel_of(projection, scene->fit_box().min + 0.5 * scene->fit_box().size()));
+  };
+  const Color with = middle(true), without = middle(false);
+  return std::max(
+      {std::abs(with.r - without.r), std::abs(with.g - without.g), std::abs(with.b - without.b)});
+}
+
+TEST_F(MachineTest, WhatHidesTheWorkpieceIsSeenThrough) {
+  for (const bool perspective : {true, false}) {
+    SceneRenderer scene = renderer();
+    TestWorkpiece workpiece(64, 64);
+    SceneUpdate update = first_update(&workpiece);
+    update.machine = box_machine({{Vec3(-60, -60, 0), Vec3(60, 60, 10)}});
+    scene.apply(update);
+    camera_.set_perspective(perspective);
+    camera_.look_from(StandardView::kTop);
+    scene.apply(poses({{500, 500, 0}}));
+    EXPECT_EQ(veil_of(&scene, view_of(scene), everything_), 0) << "far away";
+    scene.apply(poses({{32, 32, 40}}));
+    const Projection projection = view_of(scene);
+    const int veil = veil_of(&scene, projection, everything_);
+    EXPECT_GT(veil, 5) << "it can still be seen";
+    EXPECT_LT(veil, 40);
+    // The same picture as drawn anew.
+    draw(&scene, projection, everything_);
+    const Picture faded = scene.read();
+    DrawOptions full = everything_;
+    full.is_local = false;
+    draw(&scene, projection, full);
+    EXPECT_EQ(differing_pixels(faded, scene.read()), 0);
+    // Below the workpiece it hides nothing and is opaque, behind the workpiece.
+    scene.apply(poses({{32, 32, -40}}));
+    EXPECT_EQ(veil_of(&scene, projection, everything_), 0);
+    // Without a workpiece to be seen it is as opaque as it is.
+    DrawOptions machine_alone = everything_;
+    machine_alone.looks[static_cast<std::size_t>(SceneObject::kWorkpiece)].is_visible = false;
+    scene.apply(poses({{32, 32, 40}}));
+    EXPECT_GT(veil_of(&scene, projection, machine_alone), 60);
+  }
+}
+
+TEST_F(MachineTest, ALinkFadesTheMoreItHides) {
+  SceneRenderer scene = renderer();
+  SceneUpdate update = first_update(&workpiece_);
+  update.machine = box_machine({{Vec3(-60, -60, 0), Vec3(60, 60, 10)}});
+  scene.apply(update);
+  camera_.look_from(StandardView::kTop);
+  camera_.fit(Box{Vec3(-80, -20, -40), Vec3(144, 84, 50)}, kSize_px);
+  const Projection projection = camera_.projection(scene.depth_box(), kSize_px);
+  // From the side until it covers a little, a part, and all of the workpiece of 64 mm. Where it is
+  // seen beside the workpiece: the point that all of its places cover.
+  const auto color_of_link = [&](float x) {
+    scene.apply(poses({{x, 32, 40}}));
+    EXPECT_TRUE(scene.draw(projection, everything_));
+    return at(scene.read(), pixel_of(projection, Vec3(-16, 32, 40)));
+  };
+  const Color whole = color_of_link(-74.0f);
+  EXPECT_EQ(color_of_link(-62.0f), whole) << "a few hundredths";
+  const Color some = color_of_link(-48.0f), all = color_of_link(20.0f);
+  EXPECT_NE(some, whole);
+  EXPECT_NE(some, all);
+}
+
+TEST_F(MachineTest, ALinkAroundTheEyeDoesNotHideTheWorkpiece) {
+  SceneRenderer scene = renderer();
+  SceneUpdate update = first_update(&workpiece_);
+  const Box column{Vec3(-1), Vec3(1)};
+  update.machine = box_machine({column});
+  scene.apply(update);
+  scene.apply(poses({{5000, 0, 0}}));
+  const Projection projection = view_of(scene);
+  const glm::mat4 world_from_view = glm::inverse(projection.view_from_world);
+  const glm::mat4 around_eye = world_from_view * glm::scale(glm::mat4(1.0f), glm::vec3(20.0f));
+  Moment moment;
+  moment.link_poses = {around_eye};
+  SceneUpdate news;
+  news.moment = std::make_shared<const Moment>(moment);
+  scene.apply(news);
+  EXPECT_EQ(veil_of(&scene, projection, everything_), 0);
 }
 
 TEST_F(MachineTest, AMoveCopiesOnlyWhatTheMovedLinkCovers) {

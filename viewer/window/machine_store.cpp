@@ -1,6 +1,9 @@
 #include "viewer/window/machine_store.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <numeric>
 #include <utility>
 
@@ -50,19 +53,38 @@ std::size_t MachineStore::upload(std::size_t budget_bytes) {
     const ShadedMesh shaded = shade_mesh(*link.mesh, {});
     link.buffers.load(shaded.vertices.data(), shaded.vertices.size() * sizeof(MeshVertex),
                       shaded.indices);
+    link.rays = MeshRays(link.mesh);
     link.has_changed = true;
     bytes += link.buffers.gpu_bytes();
   }
   return bytes;
 }
 
-ScreenRect MachineStore::take_changed(const Projection& projection) {
+float MachineStore::most_opacity_of(const Link& link) const {
+  if (!link.pose) return 1.0f;
+  const glm::dmat4 link_from_world = glm::inverse(glm::dmat4(*link.pose));
+  const auto in_link = [&](const Vec3& at) { return Vec3(link_from_world * glm::dvec4(at, 1.0)); };
+  double hidden = 0.0;
+  for (const SightLine& line : lines_) {
+    if (link.rays.hits(in_link(line.from_mm), in_link(line.to_mm))) hidden += line.share;
+  }
+  const double faded = std::clamp((hidden - kMayHide) / (kHidesAll - kMayHide), 0.0, 1.0);
+  return glm::mix(1.0f, kClearest, static_cast<float>(faded));
+}
+
+ScreenRect MachineStore::take_changed(const Projection& projection, const Box& part_mm) {
   ScreenRect changed = std::exchange(dropped_rect_, {});
+  const bool is_other_eye = projection != projection_ || !(part_mm == part_mm_);
+  if (is_other_eye) {
+    const double reach_mm = glm::length(bounds_mm().size()) + glm::length(part_mm.size());
+    lines_ = sight_lines(part_mm, projection, reach_mm);
+  }
   for (std::size_t i = 0; i < uploaded_; ++i) {
     Link& link = links_[i];
-    if (!std::exchange(link.has_changed, false) && projection == projection_) continue;
+    if (!std::exchange(link.has_changed, false) && !is_other_eye) continue;
     changed.extend(link.rect);
     link.rect = {};
+    link.most_opacity = most_opacity_of(link);
     if (link.pose && !link.box_mm.empty()) {
       link.rect = covered_rect(link.box_mm, {projection.clip_from_world * *link.pose,
                                              projection.view_from_world, projection.size_px});
@@ -70,16 +92,20 @@ ScreenRect MachineStore::take_changed(const Projection& projection) {
     changed.extend(link.rect);
   }
   projection_ = projection;
+  part_mm_ = part_mm;
   return changed;
 }
 
 void MachineStore::draw(const Projection& projection, const GlProgram& program, float opacity,
                         bool opaque_parts, const ScreenRect& rect) const {
+  const auto opacity_of = [opacity](const Link& link) {
+    return std::min(link.rgba.a * opacity, link.most_opacity);
+  };
   std::vector<std::pair<double, std::size_t>> order;  // by height above the plane of the eye
   for (std::size_t i = 0; i < uploaded_; ++i) {
     const Link& link = links_[i];
     if (!link.pose || !link.rect.intersects(rect)) continue;
-    if ((link.rgba.a * opacity >= 1.0f) != opaque_parts) continue;
+    if ((opacity_of(link) >= 1.0f) != opaque_parts) continue;
     const Vec3 middle = 0.5 * (link.box_mm.min + link.box_mm.max);
     const glm::vec4 seen = projection.view_from_world * *link.pose * glm::vec4(middle, 1.0f);
     order.emplace_back(static_cast<double>(seen.z), i);
@@ -89,7 +115,7 @@ void MachineStore::draw(const Projection& projection, const GlProgram& program, 
     const Link& link = links_[i];
     program.set("clip_from_model", projection.clip_from_world * *link.pose);
     program.set("view_from_model", projection.view_from_world * *link.pose);
-    program.set("rgba", glm::vec4(glm::vec3(link.rgba), link.rgba.a * opacity));
+    program.set("rgba", glm::vec4(glm::vec3(link.rgba), opacity_of(link)));
     link.buffers.draw_all();
   }
 }

@@ -13,13 +13,22 @@
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
 #include "viewer/window/mesh_buffers.h"
+#include "viewer/window/mesh_rays.h"
 #include "viewer/window/screen_rect.h"
+#include "viewer/window/sight_lines.h"
 
 namespace kerf {
 
-/// Links are drawn from when they are uploaded and their pose is known.
+/// Links are drawn from when they are uploaded and their pose is known. One that hides more of the
+/// workpiece than kMayHide, or that has the eye inside, fades: what is worked on is seen through
+/// it.
 class MachineStore {
  public:
+  /// Of the workpiece's box, as it is seen: from the first share on a link fades, at the second it
+  /// is as clear as it gets, with the opacity kClearest.
+  static constexpr double kMayHide = 0.05, kHidesAll = 0.35;
+  static constexpr float kClearest = 0.15f;
+
   void set_machine(std::shared_ptr<const SceneMachine> machine);
   /// One a link; links beyond have none.
   void set_poses(std::span<const glm::mat4> link_poses);
@@ -29,8 +38,10 @@ class MachineStore {
   std::size_t upload(std::size_t budget_bytes);
   bool has_waiting() const { return uploaded_ < links_.size(); }
 
-  /// Where the links that moved since the last call were and are. A new projection moves all.
-  ScreenRect take_changed(const Projection& projection);
+  /// Where the links that moved or faded since the last call were and are. A new projection moves
+  /// all. `part_mm`: what is to be seen; may be empty. A link whose place is another one, or all
+  /// of them with another eye, costs some ten microseconds.
+  ScreenRect take_changed(const Projection& projection, const Box& part_mm);
   /// With viewer/shaders/scene, in use, of which it sets matrices and colour. Only the links that
   /// touch `rect`: those that are opaque, or those that are seen through (by `opacity` or by their
   /// own colour), from back to front.
@@ -48,15 +59,21 @@ class MachineStore {
     Box box_mm;  // in its own frame
     std::optional<glm::mat4> pose;
     MeshBuffers buffers;
-    ScreenRect rect;  // at the last take_changed()
+    MeshRays rays;
+    float most_opacity = 1.0f;  // less where it hides the workpiece
+    ScreenRect rect;            // at the last take_changed()
     bool has_changed = false;
   };
+
+  float most_opacity_of(const Link& link) const;
 
   std::vector<Link> links_;
   std::vector<glm::mat4> poses_;
   std::size_t uploaded_ = 0;  // the first of the links
   ScreenRect dropped_rect_;   // of links that are no more
   Projection projection_;     // of the last take_changed()
+  Box part_mm_;
+  std::vector<SightLine> lines_;  // for those two
 };
 
 }  // namespace kerf

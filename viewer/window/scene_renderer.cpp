@@ -445,7 +445,9 @@ void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
     rect.extend(tool_rect);
   }
   tool_rect_ = tool_rect;
-  const ScreenRect machine_rect = machine_.take_changed(projection_);
+  const bool is_part_seen = setup_ && look(SceneObject::kWorkpiece).is_visible;
+  const ScreenRect machine_rect =
+      machine_.take_changed(projection_, is_part_seen ? setup_->bounds_mm : Box{});
   if (look(SceneObject::kMachine).is_visible) rect.extend(machine_rect);
   if (rect.empty()) return;
   changed_.extend(rect);
