@@ -276,12 +276,15 @@ struct ViewedJob {
   std::string command;              ///< The equal command line.
   /// Why what was asked for last is not shown; empty: it is.
   std::vector<std::string> faults;
+  bool is_fixed = false;  ///< A log or a machine: the command is there, the fields are not.
+  bool can_open = true;   ///< OpenCommand is obeyed.
 };
 
 /// Everything that changes from frame to frame, other than the workpiece.
 struct Moment {
   PlayState state = PlayState::kPaused;
-  double speed = 1.0;  ///< Of playing, times real time.
+  double speed = 1.0;      ///< Of playing, times real time.
+  bool is_behind = false;  ///< Cutting takes longer than this speed leaves it.
   double time_s = 0.0;
   int file = 0;                     ///< Into ProgramText::files.
   int line = 0;                     ///< 0: before the program.
@@ -316,7 +319,7 @@ struct SceneUpdate {
   std::optional<std::uint32_t> path_chunk_count;  ///< Chunks from this number on are dropped.
   std::vector<std::shared_ptr<const PathChunk>> path;
   std::shared_ptr<const SceneSetup> setup;
-  std::shared_ptr<const ViewedJob> job;  ///< Comes only where it can be changed.
+  std::shared_ptr<const ViewedJob> job;
   std::shared_ptr<const ToolShape> tool_shape;
   std::shared_ptr<const FindingList> findings;
   std::shared_ptr<const ProgramText> program;

@@ -76,7 +76,7 @@ struct RoadCommand {
 struct PickCommand {
   Vec3 point_mm{0.0};
 };
-/// Another program instead of this one.
+/// Another program instead of this one, or a log to be replayed.
 struct OpenCommand {
   std::string path;
 };

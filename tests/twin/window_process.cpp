@@ -110,7 +110,7 @@ Picture WindowedKerf::screenshot() {
   // A window that is not on the screen yet gets no keys: asked again.
   std::string path;
   for (int tries = 0; tries < 20 && path.empty() && !has_ended(); ++tries) {
-    key("s");
+    key("s Return");  // under the name that is proposed
     wait_for([&] { return !(path = picture_in(home_.path())).empty(); }, std::chrono::seconds(3));
   }
   Picture picture = read_png_file(path);

@@ -309,32 +309,6 @@ TEST_F(WindowTest, GoesToTheLineThatIsTyped) {
   EXPECT_EQ(seek->line, 307);
 }
 
-TEST_F(WindowTest, ScreenshotIsThePictureOfTheScene) {
-  const TemporaryFolder folder;
-  WindowOptions options;
-  options.picture_folder = folder.path();
-  open(options);
-  key("s");
-  std::string path;
-  ASSERT_TRUE(turn_until([&] {
-    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-      if (entry.path().extension() == ".png") path = entry.path().string();
-    }
-    return !path.empty();
-  }));
-  const Picture saved = read_png_file(path);
-  EXPECT_EQ(saved.rgb, window_->read_scene().rgb);
-  settle();
-  key("s");  // in the same second, perhaps: two pictures all the same
-  EXPECT_TRUE(turn_until([&] {
-    int pictures = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-      pictures += entry.path().extension() == ".png" ? 1 : 0;
-    }
-    return pictures == 2;
-  }));
-}
-
 TEST_F(WindowTest, ShrinksToOnePixelAndComesBack) {
   open();
   const Picture before = window_->read();

@@ -92,6 +92,12 @@ std::string command_line(const RunArguments& a) {
   return line.text();
 }
 
+std::string command_line(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  return line;
+}
+
 std::string command_line(const ViewArguments& a) {
   Line line(shell_word(a.run.kerf) + " view");
   add_program_name(a.run.source.program, line);

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "twin/app/run_options.h"
 #include "twin/app/view_options.h"
@@ -13,6 +14,8 @@ namespace kerf {
 /// `kerf run` and `kerf view` with what these arguments say, each word quoted where a POSIX shell
 /// needs it.
 std::string command_line(const RunArguments& arguments);
+/// The words, each quoted where a POSIX shell needs it.
+std::string command_line(const std::vector<std::string>& words);
 std::string command_line(const ViewArguments& arguments);
 
 /// The arguments, and what was guessed where they say nothing. `rows` in the unit of the arguments

@@ -18,12 +18,10 @@
 #include "twin/app/exit_code.h"
 #include "twin/app/good_neighbour.h"
 #include "twin/app/live_console.h"
+#include "twin/app/live_window.h"
 #include "twin/app/stop_signals.h"
 #include "twin/app/window_host.h"
 #include "twin/config/make_source.h"
-#include "twin/view/drawn_machine.h"
-#include "twin/view/live_view.h"
-#include "twin/view/player_scene.h"
 
 namespace kerf {
 namespace {
@@ -148,69 +146,6 @@ void close_sources(Recorder* recorder, const PositionSource* log, const std::str
   }
 }
 
-/// The path, text and times of the program beside the machine. What is wrong with it, the session
-/// says.
-std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::stop_token stop) {
-  SessionOptions options;
-  options.program = *request.options.program;
-  options.tools = request.options.tools;
-  options.blank = request.options.blank;
-  options.stock = request.options.stock;
-  options.timeline = request.options.cutting.timeline;
-  LoadControl control;
-  control.stop = std::move(stop);
-  Diagnostics ignored;
-  Outcome outcome = Outcome::kFailed;
-  const std::unique_ptr<LoadedProgram> loaded = load_program(options, control, ignored, outcome);
-  if (!loaded) return nullptr;
-  const ViewedProgram shown = viewed_program(*loaded, {});
-  auto program = std::make_unique<LiveProgram>();
-  program->track = loaded->player.track;
-  program->files = shown.files;
-  program->tools = shown.tools;
-  return program;
-}
-
-/// A window for what a session shows. Declared before the session, so that it ends after it.
-struct LiveWindow {
-  SceneMailbox mailbox{Window::wake};
-  CommandQueue commands;
-  /// The display is gone: the user has not closed the window.
-  std::atomic<bool> lost{false};
-};
-
-LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
-                             std::stop_source stop, const LiveWindow& window) {
-  LiveViewOptions options;
-  const std::string& program =
-      request.options.program ? request.options.program->path : std::string();
-  options.source_name = session.source_name();
-  options.title =
-      program.empty() ? options.source_name : std::filesystem::path(program).filename().string();
-  options.blank_mm = session.stock()->bounds_mm();
-  options.blank_outline = box_outline(options.blank_mm);
-  options.stock = session.stock()->snapshot();
-  options.tools = session.tool_sources();
-  WorkRoom room;
-  room.frame = request.options.cutting.frame.work;
-  room.blank_mm = options.blank_mm;
-  Diagnostics diagnostics;
-  options.machine = drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
-  print(diagnostics, request.quiet);
-  options.log = request.options.log();
-  options.speed = options.log ? request.options.speed : 1.0;
-  options.on_close = [stop, &window]() mutable {
-    if (!window.lost) stop.request_stop();
-  };
-  if (options.log) options.on_speed = [&session](double speed) { session.set_speed(speed); };
-  if (!program.empty() && program != "-") {
-    options.load_program = [&request](std::stop_token token) {
-      return load_live_program(request, std::move(token));
-    };
-  }
-  return options;
-}
-
 int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::stop_source& stop,
           LiveWindow* window) {
   Diagnostics diagnostics;
@@ -252,14 +187,18 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<LiveView> view;
+  std::optional<std::jthread> inputs;
   if (window) {
     session->keep_cut_ids();
-    view.emplace(view_options(request, *session, stop, *window), *observer, window->mailbox,
-                 window->commands);
+    view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
+                 window->commands());
     observer = &*view;
+    inputs.emplace(window->watch_inputs(request, *view, stop));
   }
   session->set_observer(observer);
   outcome = session->run(stop.get_token(), diagnostics);
+  // What was cut of a log whose round is over is nothing to be reported.
+  if (window && window->is_over()) return kExitGood;
   close_sources(recorder.get(), raw_source, request.record, diagnostics);
   if (console.events_error() != 0) {
     diagnostics.push_back(fault(
@@ -284,24 +223,47 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   return exit_code(outcome, session->report(), diagnostics);
 }
 
+/// Round after round, as the window asks for them.
+int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
+                 std::stop_source& stop, LiveWindow& window) {
+  while (true) {
+    int code = kExitGood;
+    {
+      std::stop_source round;
+      const std::stop_callback ends(stop.get_token(), [&round] { round.request_stop(); });
+      code = watch(request, std::move(source), round, &window);
+    }
+    std::optional<LiveRequest> next = window.take_next();
+    if (!next || stop.stop_requested()) return code;
+    Diagnostics diagnostics;
+    request = std::move(*next);
+    source = make_source(request.config, diagnostics);
+    print(diagnostics, request.quiet);
+    if (!source) return kExitFailure;
+  }
+}
+
 /// With a window, if one is wanted and there is a display; without one a machine is watched and a
 /// log replayed, too, unless the window is all that was asked for.
-int watch_in_window(LiveRequest& request, std::unique_ptr<PositionSource> source,
-                    std::stop_source& stop) {
+int watch_in_window(const LiveArguments& arguments, LiveCommand command, LiveRequest& request,
+                    std::unique_ptr<PositionSource> source, std::stop_source& stop) {
   const bool may_try = has_display() || request.needs_window;
   if (!request.window || !may_try) return watch(request, std::move(source), stop, nullptr);
-  LiveWindow window;
-  const auto go_on = [&](const std::string& reason) {
+  SceneMailbox mailbox(Window::wake);
+  CommandQueue commands;
+  LiveWindow window(mailbox, commands, arguments, command);
+  const bool quiet = request.quiet;
+  const auto go_on = [quiet](const std::string& reason) {
     Diagnostic d = fault(fmt::format("{}; going on without a window", reason));
     d.severity = Severity::kWarning;
     d.hint = "--no-view does not try one";
-    print({d}, request.quiet);
+    print({d}, quiet);
   };
   WindowOptions options;
   options.road = request.draw;
   const Result<int> code = work_beside_window(
-      options, window.mailbox, window.commands, stop,
-      [&] { return watch(request, std::move(source), stop, &window); },
+      options, mailbox, commands, stop,
+      [&] { return watch_rounds(request, std::move(source), stop, window); },
       [&](const std::string& reason) {
         window.lost = true;
         go_on(reason);
@@ -348,7 +310,28 @@ int live_command(const LiveArguments& arguments, LiveCommand command) {
   print(diagnostics, request.quiet);
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
   if (!source) return none_named ? kExitUsage : kExitFailure;
-  return watch_in_window(request, std::move(source), stop);
+  return watch_in_window(arguments, command, request, std::move(source), stop);
+}
+
+ShownLog show_log(const LiveArguments& arguments, SceneMailbox& mailbox, CommandQueue& commands,
+                  std::stop_source& stop, std::function<void()> on_start) {
+  ShownLog shown;
+  LiveRequest request = understand_live(arguments, LiveCommand::kReplay, shown.diagnostics);
+  check_shapes(request.config.machine.drawn, shown.diagnostics);
+  if (has_error(shown.diagnostics)) return shown;
+  std::unique_ptr<PositionSource> source = make_source(request.config, shown.diagnostics);
+  if (!source || has_error(shown.diagnostics)) return shown;
+  LiveWindow window(mailbox, commands, arguments, LiveCommand::kReplay);
+  bool has_started = false;
+  window.serve([&] {
+    if (!std::exchange(has_started, true)) on_start();
+  });
+  watch_rounds(request, std::move(source), stop, window);
+  shown.opened = window.opened();
+  if (!has_started) {
+    shown.diagnostics.push_back(fault(fmt::format("{} cannot be replayed", arguments.log)));
+  }
+  return shown;
 }
 
 }  // namespace kerf

@@ -43,7 +43,8 @@ struct LiveArguments {
   OutputPaths outputs;
   bool quiet = false;
   bool no_view = false;
-  bool in_window = false;  ///< `kerf view LOG`: with a window or not at all
+  bool in_window = false;            ///< `kerf view LOG`: with a window or not at all
+  std::vector<std::string> command;  ///< all of it as written, kerf itself first
 };
 
 /// The same, understood.

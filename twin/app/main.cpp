@@ -257,6 +257,9 @@ int run(int argc, char** argv) {
   app.allow_extras();
   Commands commands(app);
   if (argc > 0) commands.run_arguments.kerf = commands.view_arguments.run.kerf = argv[0];
+  commands.view_arguments.command.assign(argv, argv + argc);
+  commands.shadow_arguments.command = commands.view_arguments.command;
+  commands.replay_arguments.command = commands.view_arguments.command;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

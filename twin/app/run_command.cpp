@@ -138,7 +138,7 @@ StdinProgram::Listings listings_of(const SessionOptions& session) {
                                     : StdinProgram::Listings::kKept;
 }
 
-RunVerdict run_one(RunRequest request) {
+RunVerdict run_one(const RunArguments& arguments, RunRequest request) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
   if (request.view && !has_display()) {
@@ -196,7 +196,7 @@ RunVerdict run_one(RunRequest request) {
   session.reset();
   opened = nullptr;
   deadline.reset();  // the window has its own
-  const int shown = show_program(request, stop);
+  const int shown = show_program(arguments, request, stop);
   return {shown == kExitGood ? code : shown, stop.stop_requested()};
 }
 
@@ -227,13 +227,13 @@ int run_command(const RunArguments& arguments) {
     return kExitUsage;
   }
   print(diagnostics);  // warnings about files
-  if (arguments.programs.size() <= 1) return run_one(std::move(request)).code;
+  if (arguments.programs.size() <= 1) return run_one(one, std::move(request)).code;
   RunVerdict worst;
   for (const std::string& program : arguments.programs) {
     RunRequest own = request;
     own.session.program.path = program;
     own.written.source.program = program;
-    const RunVerdict end = run_one(std::move(own));
+    const RunVerdict end = run_one(one, std::move(own));
     worst.code = std::max(worst.code, end.code);
     if (end.interrupted) break;
   }

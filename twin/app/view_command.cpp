@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -38,6 +39,24 @@ constexpr std::chrono::milliseconds kPatience{50};
 /// For what is drawn or written when a stop is asked for.
 constexpr std::chrono::milliseconds kViewPatience{2000};
 
+/// Those by which a log is replayed that is given as the program.
+LiveArguments live_arguments(const ViewArguments& arguments) {
+  LiveArguments live;
+  live.config = arguments.config;
+  live.sets = arguments.sets;
+  live.log = arguments.run.source.program;
+  live.source = arguments.run.source;
+  live.source.program.clear();
+  live.work = arguments.run.work;
+  live.torch = arguments.run.torch;
+  live.speed = arguments.speed;
+  live.draw = arguments.draw;
+  live.quiet = arguments.run.quiet;
+  live.in_window = true;
+  live.command = arguments.command;
+  return live;
+}
+
 int in_window(std::optional<ViewArguments> arguments, const ViewRequest& request,
               std::stop_source& stop) {
   SceneMailbox mailbox(Window::wake);
@@ -45,7 +64,13 @@ int in_window(std::optional<ViewArguments> arguments, const ViewRequest& request
   WindowOptions options;
   options.is_local = request.local;
   options.road = request.window_road;
-  ViewWork work(std::move(arguments), request, mailbox, commands, stop);
+  const auto replay = [&](const ViewArguments& log, std::function<void()> on_start) {
+    LiveArguments live = live_arguments(log);
+    live.quiet = true;
+    live.command = {"kerf", "view", live.log};
+    return show_log(live, mailbox, commands, stop, std::move(on_start));
+  };
+  ViewWork work(std::move(arguments), request, mailbox, commands, stop, replay);
   const StopDeadline deadline(stop.get_token(), kExitGood);
   const Result<int> code =
       work_beside_window(options, mailbox, commands, stop, [&work] { return work.run(); });
@@ -131,30 +156,33 @@ int view_log(const ViewArguments& arguments) {
     print_diagnostics(diagnostics, false);
     return kExitUsage;
   }
-  LiveArguments live;
-  live.config = arguments.config;
-  live.sets = arguments.sets;
-  live.log = arguments.run.source.program;
-  live.source = arguments.run.source;
-  live.source.program.clear();
-  live.work = arguments.run.work;
-  live.torch = arguments.run.torch;
-  live.speed = arguments.speed;
-  live.draw = arguments.draw;
-  live.quiet = arguments.run.quiet;
-  live.in_window = true;
-  return live_command(live, LiveCommand::kReplay);
+  return live_command(live_arguments(arguments), LiveCommand::kReplay);
 }
 
 }  // namespace
 
-int show_program(const RunRequest& run, std::stop_source& stop) {
+int show_program(const RunArguments& arguments, const RunRequest& run, std::stop_source& stop) {
   ViewRequest request;
   request.run = run;
   request.run.quiet = true;  // the dry run has said it
   request.at_end = true;
   request.window_road = run.draw;
-  return in_window(std::nullopt, request, stop);
+  if (arguments.source.program != run.session.program.path) {  // standard input: gone
+    return in_window(std::nullopt, request, stop);
+  }
+  ViewArguments again;
+  again.config = arguments.config;
+  again.sets = arguments.sets;
+  again.draw = arguments.draw;
+  again.run = arguments;
+  again.run.config.clear();
+  again.run.sets.clear();
+  again.run.programs.clear();
+  again.run.outputs = {};
+  again.run.view = false;
+  again.run.draw.clear();
+  again.run.quiet = true;
+  return in_window(std::move(again), request, stop);
 }
 
 int view_command(const ViewArguments& arguments) {

@@ -16,7 +16,8 @@ namespace kerf {
 /// a report to make, goes on in the console). A log whose display is lost later is read to its end.
 int view_command(const ViewArguments& arguments);
 
-/// After a dry run: the program in a window, at its end. Error: there can be none.
-int show_program(const RunRequest& request, std::stop_source& stop);
+/// After a dry run: the program in a window, at its end; read again when its files change. Error:
+/// there can be none. A program of standard input is shown as it was read.
+int show_program(const RunArguments& arguments, const RunRequest& request, std::stop_source& stop);
 
 }  // namespace kerf

@@ -35,6 +35,7 @@ struct ViewArguments {
   std::string compare;
   std::string tolerance;
   bool no_local = false;
+  std::vector<std::string> command;  ///< all of it as written, kerf itself first
 };
 
 /// The arguments, understood.

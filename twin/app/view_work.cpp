@@ -39,12 +39,14 @@ std::string first_line(const Diagnostic& diagnostic) {
 }  // namespace
 
 ViewWork::ViewWork(std::optional<ViewArguments> arguments, ViewRequest request,
-                   SceneMailbox& mailbox, CommandQueue& commands, std::stop_source& stop)
+                   SceneMailbox& mailbox, CommandQueue& commands, std::stop_source& stop,
+                   Replay replay)
     : arguments_(std::move(arguments)),
       request_(std::move(request)),
       mailbox_(mailbox),
       commands_(commands),
       stop_(stop),
+      replay_(std::move(replay)),
       speed_(request_.speed) {}
 
 int ViewWork::run() {
@@ -71,23 +73,73 @@ int ViewWork::run() {
     }
     if (stop_.stop_requested() || !(asked || has_changed)) break;
     if (!arguments_) continue;
+    if (asked && is_log(*asked)) {
+      asked = replay_logs(std::move(*asked));
+      if (!asked) continue;
+    }
     is_same_program_ = true;
     if (asked) take(*asked);
     if (arguments_->run.source.program.empty()) {
       publish_job();
       continue;
     }
-    if (!(understand_again() && load()) && !stop_.stop_requested()) {
-      for (const Diagnostic& d : diagnostics_) {
-        if (d.severity != Severity::kError || job_.faults.size() >= kFaultsShown) continue;
-        job_.faults.push_back(first_line(d));
-      }
-      if (job_.faults.empty()) job_.faults.emplace_back("it cannot be shown");
-      tell(job_.faults.front());
-    }
+    if (!(understand_again() && load()) && !stop_.stop_requested()) tell_faults();
     publish_job();
   }
   return kExitGood;
+}
+
+void ViewWork::tell_faults() {
+  for (const Diagnostic& d : diagnostics_) {
+    if (d.severity != Severity::kError || job_.faults.size() >= kFaultsShown) continue;
+    job_.faults.push_back(first_line(d));
+  }
+  if (job_.faults.empty()) job_.faults.emplace_back("it cannot be shown");
+  tell(job_.faults.front());
+}
+
+bool ViewWork::is_log(const ViewerCommand& asked) const {
+  const auto* const open = std::get_if<OpenCommand>(&asked);
+  return open != nullptr && replay_ && view_kind_of(open->path) == ViewKind::kLog;
+}
+
+/// One log after the other; what is asked for when it is no log any more. Nothing: it cannot be
+/// replayed, or the window is closed.
+std::optional<ViewerCommand> ViewWork::replay_logs(ViewerCommand asked) {
+  while (is_log(asked)) {
+    ViewArguments log = *arguments_;
+    log.run.source.program = std::get<OpenCommand>(asked).path;
+    log.speed.clear();
+    WorkArguments& work = log.run.work;
+    // A log says nothing of the work: it is that of the program before it.
+    if (work.stock.empty()) work.stock = shown_blank_;
+    for (const JobTool& tool : job_.tools) {
+      const bool is_free = tool.number > 0 && tool.given.empty() && !tool.in_use.empty();
+      if (is_free) work.tools.push_back(fmt::format("{}={}", tool.number, tool.in_use));
+    }
+    const ShownLog shown = replay_(log, [this] {
+      view_.reset();
+      has_machine_ = true;  // maybe; what comes next takes it away
+      job_ = ViewedJob{};
+      arguments_->run.source.program.clear();
+      request_.run.session.program.path.clear();
+      watch_.clear();
+    });
+    if (has_error(shown.diagnostics)) {
+      diagnostics_ = shown.diagnostics;
+      print_diagnostics(diagnostics_, false);
+      job_.faults.clear();
+      tell_faults();
+      publish_job();
+      return std::nullopt;
+    }
+    if (!shown.opened) {
+      stop_.request_stop();
+      return std::nullopt;
+    }
+    asked = OpenCommand{*shown.opened};
+  }
+  return asked;
 }
 
 void ViewWork::take(const ViewerCommand& asked) {
@@ -230,6 +282,14 @@ void ViewWork::describe(const LoadedProgram& loaded) {
   const LengthUnit unit = request_.run.units;
   job_.stock_in_use = in_unit(loaded.blank.description, unit);
   if (!loaded.blank.origin.empty()) job_.stock_in_use += fmt::format(" ({})", loaded.blank.origin);
+  shown_blank_.clear();
+  if (loaded.player.blank) {
+    const Box box = loaded.player.blank->bounds_mm();
+    const auto shown = [unit](double mm) { return fmt::format("{:.4f}", from_mm(mm, unit)); };
+    shown_blank_ = fmt::format("box:{},{},{}:{},{},{}", shown(box.min.x), shown(box.min.y),
+                               shown(box.min.z), shown(box.max.x), shown(box.max.y),
+                               shown(box.max.z));
+  }
   const double cell = from_mm(loaded.blank.cell_mm, unit);
   job_.cell_in_use = cell > 0 ? fmt::format("{:.4g}", cell) : "";
   job_.model_in_use = loaded.blank.model;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "twin/app/file_watch.h"
+#include "twin/app/live_command.h"
 #include "twin/app/view_load.h"
 #include "twin/view/player_view.h"
 #include "viewer/scene_mailbox.h"
@@ -23,8 +25,10 @@ class ViewWork {
  public:
   /// `arguments`: from which the request can be understood again; none: what was asked for is shown
   /// and nothing else. The others must outlive it.
+  /// `replay` shows the log that is the arguments' program, where logs can be shown.
+  using Replay = std::function<ShownLog(const ViewArguments&, std::function<void()> on_start)>;
   ViewWork(std::optional<ViewArguments> arguments, ViewRequest request, SceneMailbox& mailbox,
-           CommandQueue& commands, std::stop_source& stop);
+           CommandQueue& commands, std::stop_source& stop, Replay replay = {});
 
   /// Until the window is closed; what the program is to end with.
   int run();
@@ -46,6 +50,9 @@ class ViewWork {
   bool understand_again();
   void take(const ViewerCommand& asked);
   std::optional<ViewerCommand> wait_without_program();
+  bool is_log(const ViewerCommand& asked) const;
+  std::optional<ViewerCommand> replay_logs(ViewerCommand asked);
+  void tell_faults();
   void replace_view(std::unique_ptr<LoadedProgram> loaded);
   Place place() const;
   void go_to(const Place& place);
@@ -61,11 +68,13 @@ class ViewWork {
   SceneMailbox& mailbox_;
   CommandQueue& commands_;
   std::stop_source& stop_;
+  Replay replay_;
   std::unique_ptr<PlayerView> view_;  ///< null: there is no program
   bool has_machine_ = false;          ///< in the window
   bool is_same_program_ = false;      ///< as the one that is shown
   std::optional<double> speed_;       ///< to play at, at once
   ViewedJob job_;
+  std::string shown_blank_;  ///< its box, as --stock has it; empty: there is none
   FileWatch watch_;
   Diagnostics diagnostics_;  ///< of the last reading
   Outcome outcome_ = Outcome::kFailed;

@@ -182,6 +182,12 @@ void LiveView::end(const StockModel* stock, std::span<const CutLabel> labels,
   if (thread_.joinable()) thread_.join();
 }
 
+void LiveView::tell(std::string notice) {
+  const std::lock_guard lock(mutex_);
+  news_.notice = std::move(notice);
+  arrived_.notify_one();
+}
+
 void LiveView::publish_start() {
   SceneUpdate update;
   update.clears = true;
@@ -194,6 +200,7 @@ void LiveView::publish_start() {
   if (options_.machine) {
     update.machine = std::make_shared<const SceneMachine>(scene_machine(*options_.machine));
   }
+  update.job = options_.job;
   update.moment = moment_now();
   mailbox_.publish(std::move(update));
 }
@@ -244,6 +251,9 @@ bool LiveView::obey(const ViewerCommand& command) {
         if constexpr (std::is_same_v<Command, CloseCommand>) {
           goes_on = false;
           if (options_.on_close) options_.on_close();
+        }
+        if constexpr (std::is_same_v<Command, OpenCommand>) {
+          if (options_.on_open) options_.on_open(c.path);
         }
         // A machine leads; a log can be held and hurried.
         if (!options_.log) return;
@@ -309,6 +319,10 @@ void LiveView::take_news(News& news) {
     show_program(*program_);
   }
   extend_path(news.trail);
+  if (news.notice) {
+    notice_ = std::move(*news.notice);
+    update_.moment = moment_now();
+  }
   if (!news.status) return;
   status_ = std::move(news.status);
   status_at_ = news.status_at;
@@ -364,7 +378,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->work_offset = options_.work_offset;
   if (!status_) {
     if (!options_.log) moment->source = SourceFreshness::kStale;
-    moment->notice = "waiting for positions";
+    moment->notice = notice_.empty() ? "waiting for positions" : notice_;
     return moment;
   }
   const LiveStatus& status = *status_;
@@ -383,6 +397,9 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   if (!std::isnan(place.spindle_rpm)) moment->spindle_rpm = place.spindle_rpm;
   moment->removed_mm3 = status.removed_mm3;
   moment->notice = notice_of(status);
+  if (moment->notice.empty() || status.state == LiveState::kEnded) {
+    moment->notice = notice_.empty() ? moment->notice : notice_;
+  }
   if (!place.known) return moment;
   moment->tool_pose = ToolPose{place.tip_mm, place.spindle};
   if (options_.machine) {

@@ -50,6 +50,10 @@ struct LiveViewOptions {
   /// The user closed the window, or changed the speed of a log.
   std::function<void()> on_close;
   std::function<void(double)> on_speed;
+  /// What can be copied; null: nothing.
+  std::shared_ptr<const ViewedJob> job;
+  /// Another file was asked for; empty: nothing is opened.
+  std::function<void(const std::string&)> on_open;
 };
 
 /// Takes what LiveSession shows and passes all of it on to another observer. The session's thread
@@ -72,6 +76,9 @@ class LiveView final : public LiveObserver {
   void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
                 std::span<const Vec3> trail, std::span<const CutLabel> labels) override;
 
+  /// Stays in the status line where nothing else is to be said there. From any thread.
+  void tell(std::string notice);
+
   /// Shows the workpiece as it was left, until the window is closed or `stop` is asked for.
   void end(const StockModel* stock, std::span<const CutLabel> labels, const std::stop_token& stop);
 
@@ -91,6 +98,7 @@ class LiveView final : public LiveObserver {
     std::vector<LabelUse> uses;          ///< of labels that have cut since they were told
     std::vector<NamedTool> tools;        ///< that are new among the labels
     std::unique_ptr<LiveProgram> program;
+    std::optional<std::string> notice;
   };
 
   void run(std::stop_token stop);
@@ -137,6 +145,7 @@ class LiveView final : public LiveObserver {
   double tool_length_mm_ = 0;
   WorkpieceFrame shown_work_;
   bool log_paused_ = false;
+  std::string notice_;  ///< of tell()
   bool has_rotary_ = false;
   bool has_slides_ = false;
   bool closed_ = false;

@@ -255,6 +255,7 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   const Motion& motion = state.motion;
   moment->state = play_state(state, track_->size());
   moment->speed = speed_;
+  moment->is_behind = state.behind || state.mode == PlayerMode::kRunning;
   moment->time_s = state.elapsed_s;
   moment->file = static_cast<int>(motion.source.file);
   moment->line = track_->empty() ? 0 : static_cast<int>(motion.source.line);

@@ -21,8 +21,10 @@ constexpr glm::vec2 kSize_px{560.0f, 420.0f};
 /// A folder with more is not made to be looked through; what is typed opens the rest.
 constexpr std::size_t kMostEntries = 5000;
 
-constexpr std::array kProgramEndings{".ngc", ".nc",  ".tap", ".gcode", ".cnc",  ".ncc",
-                                     ".gc",  ".iso", ".mpf", ".canon", ".kerf", ".eia"};
+/// Of programs, and of logs, which are replayed.
+constexpr std::array kProgramEndings{".ngc",  ".nc",  ".tap", ".gcode", ".cnc",
+                                     ".ncc",  ".gc",  ".iso", ".mpf",   ".canon",
+                                     ".kerf", ".eia", ".csv", ".log",   ".sam"};
 
 std::string in_small_letters(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -170,7 +172,8 @@ void draw_file_choice(const PanelContext& context, glm::vec2 window_px) {
 }
 
 void draw_empty_hint(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {
-  const bool is_empty = context.shown.job && context.shown.job->program.empty();
+  const ShownValues& shown = context.shown;
+  const bool is_empty = shown.job && shown.job->can_open && shown.job->program.empty();
   if (!is_empty || context.state->files.is_open) return;
   const glm::vec2 middle{0.5f * (room.left + window_px.x - room.right),
                          0.45f * (room.top + window_px.y - room.bottom)};

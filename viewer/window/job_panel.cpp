@@ -62,6 +62,19 @@ JobCommand command_of(const JobEdit& edit) {
   return command;
 }
 
+void draw_command(const PanelContext& context) {
+  const ViewedJob& job = *context.shown.job;
+  if (ImGui::Button(context.word(Text::kCopyCommand))) {
+    ImGui::SetClipboardText(job.command.c_str());
+    context.state->notice = context.word(Text::kCopied);
+  }
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::PushFont(context.fonts.mono);
+  ImGui::TextColored(theme::kDim, "%s", job.command.c_str());
+  ImGui::PopFont();
+  ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 JobEdit edit_of(const ViewedJob& job) {
@@ -79,6 +92,7 @@ void draw_job_tab(const PanelContext& context) {
     ImGui::TextColored(theme::kError, "%s", fault.c_str());
     ImGui::PopTextWrapPos();
   }
+  if (job.is_fixed) return draw_command(context);
   bool is_asked = draw_field(context, Text::kBlank, "##stock", &edit.stock);
   draw_in_use(context, job.stock_in_use);
   is_asked |= draw_field(context, Text::kCell, "##cell", &edit.cell);
@@ -99,15 +113,7 @@ void draw_job_tab(const PanelContext& context) {
   is_asked |= ImGui::Button(context.word(Text::kApply));
   if (is_asked) context.commands->push(command_of(edit));
   ImGui::SameLine();
-  if (ImGui::Button(context.word(Text::kCopyCommand))) {
-    ImGui::SetClipboardText(job.command.c_str());
-    context.state->notice = context.word(Text::kCopied);
-  }
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::PushFont(context.fonts.mono);
-  ImGui::TextColored(theme::kDim, "%s", job.command.c_str());
-  ImGui::PopFont();
-  ImGui::PopTextWrapPos();
+  draw_command(context);
 }
 
 }  // namespace kerf

@@ -78,6 +78,19 @@ struct FileChoice {
   bool shows_all = false;      ///< Else files whose names end as those of programs do.
 };
 
+/// Where a picture or a film is to go.
+struct PictureChoice {
+  enum class Kind { kScene, kWindow, kFilm };
+  bool is_open = false;
+  bool is_new =
+      false;  ///< Not drawn yet, or not since it was refused: the field is to be typed in.
+  bool is_accepted = false;
+  Kind kind = Kind::kScene;
+  std::string folder;  ///< Absolute.
+  std::string name;    ///< Being typed: a name in the folder, or a path.
+  std::string fault;   ///< Why it cannot be written there.
+};
+
 /// What is being written into the job's fields.
 struct JobEdit {
   std::string stock, cell, model;
@@ -96,6 +109,7 @@ struct PanelState {
   CodeScroll code;
   Inspection inspection;
   FileChoice files;
+  PictureChoice picture;
   bool searches = false;  ///< The field for it is there.
   bool search_is_new = false;
   std::string search;
@@ -136,6 +150,14 @@ void draw_line_question(const PanelContext& context, glm::vec2 window_px);
 /// Shows the list, beginning in the folder of the program, of the last one, or where kerf runs.
 void open_file_choice(const ShownValues& shown, const ViewSettings& settings, FileChoice* files);
 void draw_file_choice(const PanelContext& context, glm::vec2 window_px);
+/// Shows the question with a name that is free. `ending`: ".png"
+void open_picture_choice(PictureChoice::Kind kind, const std::string& folder,
+                         const std::string& ending, PictureChoice* choice);
+/// Esc is the window's; Enter and the button set is_accepted.
+void draw_picture_choice(const PanelContext& context, glm::vec2 window_px);
+/// The path that was chosen, its ending added where there is none; nothing, and why, where it
+/// cannot be written.
+std::optional<std::string> chosen_path(PictureChoice* choice, Language language);
 /// Where there is no program: that there is none, and how to get one.
 void draw_empty_hint(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 /// Blank, cells, model and tools, to be changed, and the command that is equal to them.

@@ -193,6 +193,12 @@ std::vector<Field> all_fields() {
                      [object](ViewSettings* s) { return &s->drawing.looks[object].is_visible; }));
     fields.push_back(opacity_field(object));
   }
+  fields.push_back({"picture.folder", [](const ViewSettings& s) { return s.picture_folder; },
+                    [](std::string_view value, ViewSettings* s) -> std::string {
+                      if (!value.empty() && value.front() != '/') return "an absolute path";
+                      s->picture_folder = value;
+                      return "";
+                    }});
   for (std::size_t place = 0; place < kMostRecent; ++place) fields.push_back(recent_field(place));
   return fields;
 }
@@ -235,6 +241,15 @@ std::optional<Diagnostic> read_line(std::string_view line, const std::vector<Fie
   }
   fault.message = fmt::format("'{}' is no setting of the window", name);
   return fault;
+}
+
+/// Absolute; empty if a line of the file cannot hold it.
+std::string kept_path(const std::string& path) {
+  std::error_code error;
+  const std::string absolute = std::filesystem::absolute(path, error).lexically_normal().string();
+  const bool can_be = !error && absolute.find_first_of("#\n\r") == std::string::npos &&
+                      trimmed(absolute) == absolute;
+  return can_be ? absolute : std::string();
 }
 
 }  // namespace
@@ -302,13 +317,14 @@ Done save_settings(const std::string& path, const ViewSettings& settings) {
   return file->commit();
 }
 
+void remember_picture_folder(const std::string& folder, ViewSettings* settings) {
+  const std::string absolute = kept_path(folder);
+  if (!absolute.empty()) settings->picture_folder = absolute;
+}
+
 void remember_program(const std::string& path, ViewSettings* settings) {
-  std::error_code error;
-  const std::string absolute = std::filesystem::absolute(path, error).lexically_normal().string();
-  if (error || absolute.find_first_of("#\n\r") != std::string::npos ||
-      trimmed(absolute) != absolute) {
-    return;
-  }
+  const std::string absolute = kept_path(path);
+  if (absolute.empty()) return;
   std::erase(settings->recent, absolute);
   settings->recent.insert(settings->recent.begin(), absolute);
   if (settings->recent.size() > kMostRecent) settings->recent.resize(kMostRecent);

@@ -39,6 +39,7 @@ struct ViewSettings {
   double info_width_px = 300.0;
   /// Programs that were shown, the newest first; at most kMostRecent. Absolute.
   std::vector<std::string> recent;
+  std::string picture_folder;  ///< Where a picture or a film was saved last; absolute, or empty.
   SectionChoice section;
   DrawOptions drawing;
 };
@@ -50,6 +51,8 @@ inline constexpr double kMaxPanel_px = 1200.0;
 
 /// Puts a program to the front. Names that a line of the file cannot hold are not remembered.
 void remember_program(const std::string& path, ViewSettings* settings);
+/// Likewise, where pictures go.
+void remember_picture_folder(const std::string& folder, ViewSettings* settings);
 
 inline constexpr double kMinTextScale = 0.75;
 inline constexpr double kMaxTextScale = 3.0;

@@ -49,6 +49,7 @@ constexpr std::array kShortcuts{
     Shortcut{"r", U'r', 0, Action::kNextRoad, Text::kNextRoad},
     Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
     Shortcut{"S", U'S', 0, Action::kWindowPicture, Text::kWindowPicture},
+    Shortcut{"F", U'F', 0, Action::kFilm, Text::kFilmWhat},
     Shortcut{"?", U'?', 0, Action::kHelp, Text::kShortcuts},
     Shortcut{"Ctrl+O", 0, GLFW_KEY_O, Action::kOpen, Text::kOpenWhat, true},
     Shortcut{"Ctrl+F", 0, GLFW_KEY_F, Action::kSearch, Text::kSearch, true},

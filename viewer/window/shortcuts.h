@@ -49,6 +49,7 @@ enum class Action {
   kNextRoad,
   kScreenshot,
   kWindowPicture,
+  kFilm,
   kHelp,
   kOpen,
   kSearch,

@@ -42,6 +42,7 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
 }
 
 Window::Impl::~Impl() {
+  if (film_) static_cast<void>(film_->finish());  // nobody is left to be told
   if (saving_.valid()) saving_.wait();
   if (window_ == nullptr) return;
   // A display that is gone takes no farewell: whoever talks to it waits for ever.
@@ -94,13 +95,19 @@ Done Window::Impl::open() {
   layer_.emplace();
   start_panels();
   install_callbacks();
+  tell_choices();
+  return std::monostate{};
+}
+
+/// How the workpiece is looked at, where that is not as it is by itself.
+void Window::Impl::tell_choices() {
+  told_detail_.reset();
   if (settings_.drawing.color_by != ColorBy::kPlain) {
     commands_.push(color_command(settings_, state_));
   }
   if (settings_.drawing.road != DrawRoad::kMesh) {
     commands_.push(RoadCommand{settings_.drawing.road});
   }
-  return std::monostate{};
 }
 
 void Window::Impl::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
@@ -212,10 +219,15 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
     state_.shows_help = false;
     state_.asks_for_line = false;
     state_.files.is_open = false;
+    state_.picture.is_open = false;
+    wants_picture_ = false;
     state_.searches = false;
     state_.code.found_line = 0;
     state_.notice.clear();
   }
+  // Also before the question is drawn for the first time.
+  const bool is_enter = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER;
+  if (state_.picture.is_open && is_enter && action == GLFW_PRESS) return accept_picture();
   if (takes_text()) return;
   const bool with_control = (mods & GLFW_MOD_CONTROL) != 0;
   if (const std::optional<Action> wanted = action_of_key(key, with_control)) act(*wanted);
@@ -224,7 +236,7 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
 /// Questions get what is typed also before they are drawn for the first time.
 bool Window::Impl::takes_text() const {
   return ImGui::GetIO().WantTextInput || state_.asks_for_line || state_.files.is_open ||
-         state_.search_is_new;
+         state_.search_is_new || (state_.picture.is_open && state_.picture.is_new);
 }
 
 void Window::Impl::on_drop(const std::string& path) {

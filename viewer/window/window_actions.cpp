@@ -1,11 +1,7 @@
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <filesystem>
 #include <limits>
 
 #include "viewer/window/window_impl.h"
@@ -20,18 +16,6 @@ constexpr double kDetailStep = 2.0;
 constexpr float kClearOpacity = 0.35f;
 /// A button that moved less than this while it was down has clicked, not dragged.
 constexpr float kClickSlack_px = 4.0f;
-
-/// A name that is free: the second, and a number if several pictures are taken in it.
-std::string free_picture_path(const std::string& folder) {
-  const std::string stem = fmt::format("{}/kerf-{:%Y%m%d-%H%M%S}", folder.empty() ? "." : folder,
-                                       fmt::localtime(std::time(nullptr)));
-  std::string path = stem + ".png";
-  std::error_code error;
-  for (int number = 2; std::filesystem::exists(path, error); ++number) {
-    path = fmt::format("{}-{}.png", stem, number);
-  }
-  return path.starts_with("./") ? path.substr(2) : path;
-}
 
 /// At one of the corners of what is shown a pixel shows half as much or twice as much.
 bool is_other_detail(const ViewDetail& before, const ViewDetail& now, const Box& box) {
@@ -147,10 +131,11 @@ void Window::Impl::act_on_panels(Action action) {
       break;
     }
     case Action::kScreenshot:
-      wants_picture_ = has_drawn();
-      break;
     case Action::kWindowPicture:
-      if (has_drawn()) save_picture(layer_->read());
+      if (has_drawn()) ask_for_picture(action == Action::kWindowPicture);
+      break;
+    case Action::kFilm:
+      if (has_drawn()) begin_or_end_film();
       break;
     case Action::kHelp:
       state_.shows_help = !state_.shows_help;
@@ -164,7 +149,7 @@ void Window::Impl::act_on_panels(Action action) {
       state_.search_is_new = true;
       break;
     case Action::kOpen:
-      if (shown_.job) {
+      if (shown_.job && shown_.job->can_open) {
         open_file_choice(shown_, settings_, &state_.files);
       } else {
         state_.notice = text(Text::kCannotOpen, settings_.language);
@@ -243,7 +228,7 @@ void Window::Impl::act_on_player(Action action) {
 }
 
 void Window::Impl::open_program(const std::string& path) {
-  if (shown_.job) {
+  if (shown_.job && shown_.job->can_open) {
     commands_.push(OpenCommand{path});
   } else {
     state_.notice = text(Text::kCannotOpen, settings_.language);
@@ -333,29 +318,6 @@ void Window::Impl::toggle_workpiece() {
   } else {
     workpiece.is_visible = false;
   }
-}
-
-void Window::Impl::save_picture(const Picture& picture) {
-  if (saving_.valid()) saving_.wait();
-  end_saving();
-  saving_path_ = free_picture_path(options_.picture_folder);
-  state_.notice = text(Text::kSaving, settings_.language);
-  // Packing takes longer than a frame may.
-  saving_ = std::async(std::launch::async, [picture, path = saving_path_] {
-    Done done = write_png(path, picture);
-    Platform::wake();
-    return done;
-  });
-}
-
-void Window::Impl::end_saving() {
-  if (!saving_.valid() || saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-    return;
-  }
-  const Done done = saving_.get();
-  state_.notice = done ? fmt::format("{} {}", text(Text::kSaved, settings_.language), saving_path_)
-                       : done.error();
-  touched();
 }
 
 }  // namespace kerf

@@ -28,6 +28,12 @@ constexpr Seconds kPanelInterval{0.05};
 /// After this long without a frame what was needed for drawing alone is given back. Shorter, and a
 /// hand that pauses at the mouse would have it taken anew.
 constexpr Seconds kRest{2.0};
+/// Pictures and cutting share the processor. While it is cut as fast as can be, cutting has so many
+/// times as long as the last picture took, but a picture comes at least so often.
+constexpr int kCutsPerDrawn = 6;
+constexpr std::chrono::milliseconds kLongestHold{250};
+/// How often it is looked whether a film is over.
+constexpr Seconds kFilmInterval{0.1};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
@@ -65,8 +71,11 @@ double Window::Impl::longest_sleep_s() const {
   if (is_hidden_) return 1.0;
   if (frames_to_draw_ > 0 || renderer_->has_waiting()) return 0.0;
   double longest_s = 1e9;
+  if (film_) longest_s = kFilmInterval.count();
+  if (waits_with_news())
+    longest_s = std::min(longest_s, Seconds(next_news_ - Clock::now()).count());
   if (panels_are_old_) {
-    longest_s = Seconds(last_panels_ + kPanelInterval - Clock::now()).count();
+    longest_s = std::min(longest_s, Seconds(last_panels_ + kPanelInterval - Clock::now()).count());
   }
   if (shown_.moment->source != SourceFreshness::kNone) {
     longest_s = std::min(longest_s, kAgeInterval.count());
@@ -83,9 +92,15 @@ void Window::Impl::wait(double longest_s) {
   }
 }
 
+/// While it goes as fast as it can be cut, and nobody touches the window.
+bool Window::Impl::waits_with_news() const {
+  return shown_.moment->is_behind && !film_ && frames_to_draw_ == 0 && Clock::now() < next_news_;
+}
+
 void Window::Impl::find_reasons_to_draw() {
   end_saving();
-  if (take_news()) {
+  watch_film();
+  if (!waits_with_news() && take_news()) {
     frames_to_draw_ = std::max(frames_to_draw_, 1);
     panels_are_old_ = true;
   }
@@ -109,12 +124,16 @@ bool Window::Impl::take_news() {
 
 void Window::Impl::apply(const SceneUpdate& update) {
   renderer_->apply(update);
-  if (update.clears) shown_.findings = std::make_shared<FindingList>();
+  if (update.clears) {
+    shown_.findings = std::make_shared<FindingList>();
+    tell_choices();  // it may be another one who shows it
+  }
   if (update.road) shown_.road = update.road;
   if (update.job) {
     shown_.job = update.job;
     state_.job = edit_of(*update.job);
-    const bool is_shown = !update.job->program.empty() && update.job->faults.empty();
+    const bool is_shown =
+        update.job->can_open && !update.job->program.empty() && update.job->faults.empty();
     if (is_shown) remember_program(update.job->program, &settings_);
     touched();
   }
@@ -197,6 +216,8 @@ Result<bool> Window::Impl::frame(double longest_wait_s) {
     if (!Platform::is_lost() && Platform::is_gone(window_)) return end();
     return give_up(done.error());
   }
+  const Clock::time_point end = Clock::now();
+  next_news_ = end + std::min<Clock::duration>(kCutsPerDrawn * (end - last_frame_), kLongestHold);
   return true;
 }
 
@@ -278,11 +299,8 @@ Done Window::Impl::draw() {
   settings_.drawing.section = section_plane(settings_.section);
   const Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
   if (Done done = renderer_->draw(wanted, settings_.drawing); !done) return done;
-  if (wants_picture_ && renderer_->is_full()) {
-    wants_picture_ = false;
-    save_picture(renderer_->read());
-    panels_are_old_ = true;  // the notice
-  }
+  if (wants_picture_ && renderer_->is_full()) take_picture();
+  if (film_) film_->show(renderer_->read());
   // Marks over a picture that came late go with it.
   if (renderer_->projection() != projection_ && !draws_panels) panels_are_old_ = true;
   projection_ = renderer_->projection();
@@ -342,6 +360,8 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   if (state_.shows_help) draw_help(context, display);
   if (state_.files.is_open) draw_file_choice(context, display);
   if (state_.asks_for_line) draw_line_question(context, display);
+  if (state_.picture.is_open) draw_picture_choice(context, display);
+  if (state_.picture.is_accepted) accept_picture();
   if (state_.action) act(*state_.action);
   state_.search_is_new = false;  // also if there is no room for the panel
   // Dear ImGui has seen these keys go down now.

@@ -3,18 +3,21 @@
 //     window.cpp          opening and closing, events
 //     window_frame.cpp    one turn: waiting, news, drawing
 //     window_actions.cpp  what keys, buttons and clicks do
+//     window_pictures.cpp pictures and films of it
 #pragma once
 
 #include <array>
 #include <chrono>
 #include <deque>
 #include <future>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "viewer/film_writer.h"
 #include "viewer/window/panel_change.h"
 #include "viewer/window/panel_layer.h"
 #include "viewer/window/panels.h"
@@ -58,6 +61,7 @@ class Window::Impl {
 
  private:
   // window.cpp
+  void tell_choices();
   void start_panels();
   void install_callbacks();
   void on_key(int key, int scancode, int action, int mods);
@@ -79,6 +83,7 @@ class Window::Impl {
   double longest_sleep_s() const;
   /// Nothing is drawn: gives back memory, once.
   void rest();
+  bool waits_with_news() const;
   void find_reasons_to_draw();
   bool take_news();
   void apply(const SceneUpdate& update);
@@ -92,6 +97,18 @@ class Window::Impl {
   void lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 window_px);
   void draw_panels(const PanelRoom& room, glm::vec2 display);
   void show(std::vector<ScreenRect> changed);
+
+  // window_pictures.cpp
+  std::string picture_folder() const;
+  void ask_for_picture(bool of_window);
+  void accept_picture();
+  void take_picture();
+  void save_taken();
+  void end_saving();
+  void begin_or_end_film();
+  void begin_film(const std::string& path);
+  void watch_film();
+  void end_film();
 
   // window_actions.cpp
   void move_camera();
@@ -107,8 +124,6 @@ class Window::Impl {
   void toggle(SceneObject object) { look(object).is_visible = !look(object).is_visible; }
   /// A key may come before the first frame.
   bool has_drawn() const { return last_frame_ != Clock::time_point{}; }
-  void save_picture(const Picture& picture);
-  void end_saving();
   ObjectLook& look(SceneObject object) {
     return settings_.drawing.looks[static_cast<std::size_t>(object)];
   }
@@ -153,8 +168,9 @@ class Window::Impl {
   std::string shown_age_;
   std::string title_;  // of the setup
   FrameCounter frame_counter_;
-  bool is_hidden_ = false;  // minimized
-  bool is_rested_ = false;  // since the last frame
+  bool is_hidden_ = false;         // minimized
+  bool is_rested_ = false;         // since the last frame
+  Clock::time_point next_news_{};  // while much is cut: not before
   bool was_closed_ = false;
 
   /// A click and the way to the next place may both happen within one slow frame: of what the mouse
@@ -174,8 +190,13 @@ class Window::Impl {
   std::vector<std::pair<int, int>> late_releases_;  // key, scancode
 
   bool wants_picture_ = false;  // of the scene, when it is there in full
+  std::optional<Picture> taken_;
+  std::string taken_path_;  // empty: its name is still asked for
   std::string saving_path_;
-  std::future<Done> saving_;
+  std::future<Done> saving_;  // of a picture or a film
+  std::unique_ptr<FilmWriter> film_;
+  bool film_has_moved_ = false;
+  Clock::time_point film_ends_{};  // none: the program goes on, or has not begun
 };
 
 }  // namespace kerf

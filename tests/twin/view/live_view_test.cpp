@@ -132,6 +132,38 @@ TEST_F(LiveViewTest, ShowsTheWorkpieceToolAndPlace) {
   EXPECT_TRUE(until([&] { return is_shown(); })) << "what was cut";
 }
 
+TEST_F(LiveViewTest, WhatIsToldStaysInTheStatusLine) {
+  open(options());
+  view_->tell("shop.ini has changed");
+  EXPECT_TRUE(moment([](const Moment& m) { return m.notice == "shop.ini has changed"; }));
+  frame(at({0, 0, 2}, 1));
+  EXPECT_TRUE(
+      moment([](const Moment& m) { return m.time_s == 1 && m.notice == "shop.ini has changed"; }));
+  // What is told of the machine comes before it.
+  LiveStatus off = at({0, 0, 2}, 2);
+  off.off_path_mm = 0.5;
+  frame(off);
+  EXPECT_TRUE(moment([](const Moment& m) { return m.notice == "off the path by 0.50 mm"; }));
+}
+
+TEST_F(LiveViewTest, OpeningIsAskedForWhereItCanBe) {
+  LiveViewOptions with = options();
+  std::string asked;
+  std::atomic<bool> is_asked{false};
+  with.on_open = [&](const std::string& path) {
+    asked = path;
+    is_asked = true;
+  };
+  auto job = std::make_shared<ViewedJob>();
+  job->command = "kerf replay run.csv";
+  with.job = job;
+  open(std::move(with));
+  EXPECT_TRUE(until([&] { return known_.job && known_.job->command == "kerf replay run.csv"; }));
+  commands_.push(OpenCommand{"other.csv"});
+  EXPECT_TRUE(until([&] { return is_asked.load(); }));
+  EXPECT_EQ(asked, "other.csv");
+}
+
 TEST_F(LiveViewTest, TheWayGrowsAcrossChunks) {
   open(options());
   const std::size_t points = 2 * kPathChunkSegments + 100;
