@@ -235,8 +235,9 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
 
 /// Questions get what is typed also before they are drawn for the first time.
 bool Window::Impl::takes_text() const {
-  return ImGui::GetIO().WantTextInput || state_.asks_for_line || state_.files.is_open ||
-         state_.search_is_new || (state_.picture.is_open && state_.picture.is_new);
+  const bool has_field = ImGui::GetIO().WantTextInput && frames_without_text_ == 0;
+  return has_field || state_.asks_for_line || state_.files.is_open || state_.search_is_new ||
+         (state_.picture.is_open && state_.picture.is_new);
 }
 
 void Window::Impl::on_drop(const std::string& path) {

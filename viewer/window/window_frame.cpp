@@ -364,6 +364,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   if (state_.picture.is_accepted) accept_picture();
   if (state_.action) act(*state_.action);
   state_.search_is_new = false;  // also if there is no room for the panel
+  frames_without_text_ = std::max(0, frames_without_text_ - 1);
   // Dear ImGui has seen these keys go down now.
   fresh_keys_.clear();
   for (const auto& [key, scancode] : late_releases_) {

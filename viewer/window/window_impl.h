@@ -189,7 +189,8 @@ class Window::Impl {
   std::set<int> fresh_keys_;
   std::vector<std::pair<int, int>> late_releases_;  // key, scancode
 
-  bool wants_picture_ = false;  // of the scene, when it is there in full
+  int frames_without_text_ = 0;  // Dear ImGui holds a field that is gone for one more
+  bool wants_picture_ = false;   // of the scene, when it is there in full
   std::optional<Picture> taken_;
   std::string taken_path_;  // empty: its name is still asked for
   std::string saving_path_;

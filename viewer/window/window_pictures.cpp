@@ -54,6 +54,7 @@ void Window::Impl::accept_picture() {
   touched();
   const std::optional<std::string> path = chosen_path(&state_.picture, settings_.language);
   if (!path) return;
+  frames_without_text_ = 2;
   remember_picture_folder(std::filesystem::path(*path).parent_path().string(), &settings_);
   if (state_.picture.kind == PictureChoice::Kind::kFilm) return begin_film(*path);
   taken_path_ = *path;
