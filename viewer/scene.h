@@ -188,6 +188,8 @@ enum class ColorBy {
 struct ColorLegendEntry {
   std::uint32_t color = 0;
   std::string text;  ///< "T3 flat 10", "120 mm3/s"
+  /// The text says this upper bound; a window that shows inches says it anew.
+  std::optional<double> mm3_per_s = std::nullopt;
 };
 
 /// For the modes that go by MeshPatch::cut_by (all from kTool to kLineRange): a colour for each
@@ -294,7 +296,9 @@ struct Moment {
   int tool = 0;
   std::string tool_name;       ///< "flat 10", "" if no tool.
   double spindle_rpm = 0.0;    ///< Negative: counter-clockwise.
-  double feed_mm_per_min = 0;  ///< Programmed or measured; 0 while traversing.
+  double feed_mm_per_min = 0;  ///< Programmed; 0 while traversing, or where nobody knows it.
+  /// Of a machine that is watched: from its positions of the last moments.
+  std::optional<double> measured_mm_per_min;
   bool is_traverse = false;
   std::string coolant;      ///< "mist", "flood", "".
   std::string work_offset;  ///< "G54"

@@ -82,7 +82,7 @@ void color_by_rate(std::span<const float> rates, CutColors& colors) {
   }
   for (std::size_t k = 0; k < kRates.size(); ++k) {
     if (k > 0 && upper[k] == upper[k - 1]) continue;
-    colors.legend.push_back({kRates[k], fmt::format("<= {:.3g} mm\u00b3/s", upper[k])});
+    colors.legend.push_back({kRates[k], fmt::format("<= {:.3g} mm\u00b3/s", upper[k]), upper[k]});
   }
 }
 

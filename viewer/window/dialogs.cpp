@@ -43,6 +43,34 @@ void draw_help(const PanelContext& context, glm::vec2 window_px) {
   ImGui::End();
 }
 
+void draw_first_keys(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room) {
+  // Below the middle, where a window without a program says how to get one.
+  const glm::vec2 at{0.5f * (room.left + window_px.x - room.right),
+                     window_px.y - room.bottom - 12.0f * context.scale};
+  ImGui::SetNextWindowPos({at.x, at.y}, ImGuiCond_Always, {0.5f, 1.0f});
+  ImGui::Begin("first keys", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::TextColored(theme::kGood, "%s", context.word(Text::kFirstKeys));
+  const bool has_player = context.shown.moment->state != PlayState::kFollowing;
+  const std::vector<const Shortcut*> keys = first_shortcuts(has_player);
+  constexpr std::size_t kColumns = 2;
+  if (ImGui::BeginTable("first keys", 2 * kColumns, ImGuiTableFlags_SizingFixedFit)) {
+    const std::size_t rows = (keys.size() + kColumns - 1) / kColumns;
+    for (std::size_t cell = 0; cell < rows * kColumns; ++cell) {
+      const std::size_t i = cell % kColumns * rows + cell / kColumns;
+      ImGui::TableNextColumn();
+      if (i < keys.size()) ImGui::TextColored(theme::kWarning, "%s", keys[i]->label);
+      ImGui::TableNextColumn();
+      if (i < keys.size()) ImGui::Text("%s    ", context.word(keys[i]->text));
+    }
+    ImGui::EndTable();
+  }
+  ImGui::TextColored(theme::kDim, "%s", context.word(Text::kFirstKeysHow));
+  ImGui::End();
+}
+
 void draw_line_question(const PanelContext& context, glm::vec2 window_px) {
   ImGui::SetNextWindowPos({0.5f * window_px.x, 0.4f * window_px.y}, ImGuiCond_Always, {0.5f, 0.5f});
   const std::string title = fmt::format("{}###line", context.word(Text::kGoToLine));

@@ -34,21 +34,23 @@ void draw_positions(const PanelContext& context) {
     figure(context.word(column), theme::kDim);
   }
   for (const AxisReadout& axis : moment.axes) {
-    const int digits = axis.is_rotary ? 2 : 3;
+    const auto figure_of = [&](double value) {
+      return axis.is_rotary ? fmt::format("{:.2f}", value) : context.measures.position(value);
+    };
     ImGui::PushFont(context.fonts.readout);
     ImGui::TableNextColumn();
     ImGui::TextColored(theme::kText, "%c", axis.name);
     ImGui::TableNextColumn();
-    figure(fmt::format("{:.{}f}", axis.work, digits), theme::kReadout);
+    figure(figure_of(axis.work), theme::kReadout);
     const float drop = context.fonts.readout->FontSize - context.fonts.mono->FontSize;
     ImGui::PopFont();
     ImGui::PushFont(context.fonts.mono);
     ImGui::TableNextColumn();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.7f * drop);
-    figure(fmt::format("{:.{}f}", axis.machine, digits), theme::kDim);
+    figure(figure_of(axis.machine), theme::kDim);
     ImGui::TableNextColumn();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.7f * drop);
-    figure(axis.to_go ? fmt::format("{:.{}f}", *axis.to_go, digits) : "-", theme::kDim);
+    figure(axis.to_go ? figure_of(*axis.to_go) : "-", theme::kDim);
     ImGui::PopFont();
   }
   ImGui::EndTable();
@@ -58,6 +60,21 @@ std::string tool_text(const PanelContext& context) {
   const Moment& moment = *context.shown.moment;
   if (moment.tool == 0 && moment.tool_name.empty()) return context.word(Text::kNoTool);
   return fmt::format("T{} {}", moment.tool, moment.tool_name);
+}
+
+/// As programmed; of a machine what it really does goes first.
+std::string feed_text(const PanelContext& context) {
+  const Moment& moment = *context.shown.moment;
+  const Measures& measures = context.measures;
+  const std::optional<double>& measured = moment.measured_mm_per_min;
+  if (moment.is_traverse) {
+    const char* const traverse = context.word(Text::kTraverse);
+    return measured ? fmt::format("{} ({})", measures.feed(*measured), traverse) : traverse;
+  }
+  if (!measured) return measures.feed(moment.feed_mm_per_min);
+  const bool is_programmed = moment.feed_mm_per_min > 0.0;
+  return is_programmed ? measures.feeds(*measured, moment.feed_mm_per_min)
+                       : measures.feed(*measured);
 }
 
 void draw_machine_values(const PanelContext& context) {
@@ -74,10 +91,9 @@ void draw_machine_values(const PanelContext& context) {
   line(Text::kTool, tool_text(context));
   const char* turn = moment.spindle_rpm > 0.0 ? " M3" : moment.spindle_rpm < 0.0 ? " M4" : "";
   line(Text::kSpindle, fmt::format("{:.0f} /min{}", std::abs(moment.spindle_rpm), turn));
-  line(Text::kFeed, moment.is_traverse ? std::string(context.word(Text::kTraverse))
-                                       : fmt::format("{:.0f} mm/min", moment.feed_mm_per_min));
+  line(Text::kFeed, feed_text(context));
   line(Text::kCoolant, moment.coolant.empty() ? "-" : moment.coolant);
-  line(Text::kRemoved, fmt::format("{:.1f} cm³", moment.removed_mm3 / 1000.0));
+  line(Text::kRemoved, context.measures.volume(moment.removed_mm3));
   ImGui::EndTable();
 }
 

@@ -102,6 +102,7 @@ struct JobEdit {
 struct PanelState {
   std::string notice;  ///< Of the window itself, in the status line.
   bool shows_help = false;
+  bool shows_first_keys = false;
   bool asks_for_line = false;
   int asked_line = 1;
   int first_line = 1;  ///< For ColorBy::kLineRange.
@@ -126,10 +127,12 @@ struct PanelContext {
   DrawRoad drawn_road;  ///< May be the mesh although another one was asked for.
   Box bounds_mm;        ///< Of the workpiece; may be empty.
   const Fonts& fonts;
-  float scale;  ///< Of everything: 1, 2
+  float scale;    ///< Of everything: 1, 2
+  bool is_light;  ///< The theme that is shown.
   ViewSettings* settings;
   PanelState* state;
   CommandQueue* commands;
+  Measures measures;
 
   const char* word(Text which) const { return text(which, settings->language); }
 };
@@ -146,6 +149,8 @@ void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelR
 void draw_info_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_help(const PanelContext& context, glm::vec2 window_px);
+/// Over the picture; takes no clicks.
+void draw_first_keys(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_line_question(const PanelContext& context, glm::vec2 window_px);
 /// Shows the list, beginning in the folder of the program, of the last one, or where kerf runs.
 void open_file_choice(const ShownValues& shown, const ViewSettings& settings, FileChoice* files);

@@ -60,7 +60,7 @@ void draw_answer(const PanelContext& context, const PickedPoint& picked) {
     }
   }
   if (picked.deviation_mm) {
-    row(context.word(Text::kDeviation), fmt::format("{:+.3f} mm", *picked.deviation_mm));
+    row(context.word(Text::kDeviation), context.measures.signed_length(*picked.deviation_mm));
   }
 }
 
@@ -72,12 +72,12 @@ void draw_picked(const PanelContext& context) {
   }
   if (!begin_rows(context, "picked")) return;
   const Vec3& at = *inspection.asked_mm;
-  row("X", fmt::format("{:.3f}", at.x));
-  row("Y", fmt::format("{:.3f}", at.y));
-  row("Z", fmt::format("{:.3f}", at.z));
+  row("X", context.measures.position(at.x));
+  row("Y", context.measures.position(at.y));
+  row("Z", context.measures.position(at.z));
   const Box& bounds = context.bounds_mm;
   if (!bounds.empty()) {
-    row(context.word(Text::kHeight), fmt::format("{:.3f} mm", at.z - bounds.min.z));
+    row(context.word(Text::kHeight), context.measures.length(at.z - bounds.min.z));
   }
   const PickedPoint* picked = context.shown.picked.get();
   if (picked != nullptr && glm::distance(picked->point_mm, at) <= kSamePoint_mm) {
@@ -102,10 +102,10 @@ void draw_measured(const PanelContext& context) {
   }
   if (begin_rows(context, "measured")) {
     const Vec3 between = inspection.ends_mm[1] - inspection.ends_mm[0];
-    row("dX", fmt::format("{:.3f} mm", between.x));
-    row("dY", fmt::format("{:.3f} mm", between.y));
-    row("dZ", fmt::format("{:.3f} mm", between.z));
-    row(context.word(Text::kDistance), fmt::format("{:.3f} mm", glm::length(between)));
+    row("dX", context.measures.length(between.x));
+    row("dY", context.measures.length(between.y));
+    row("dZ", context.measures.length(between.z));
+    row(context.word(Text::kDistance), context.measures.length(glm::length(between)));
     ImGui::EndTable();
   }
   if (ImGui::Button(context.word(Text::kClear))) inspection.ends_mm.clear();
@@ -149,7 +149,7 @@ void draw_inspection(const PanelContext& context, const Projection& projection,
   if (ends.size() == 2) {
     list->AddLine(ends[0], ends[1], kMeasured, 2.0f * context.scale);
     const std::string label =
-        fmt::format("{:.3f} mm", glm::distance(inspection.ends_mm[0], inspection.ends_mm[1]));
+        context.measures.length(glm::distance(inspection.ends_mm[0], inspection.ends_mm[1]));
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
     const ImVec2 at(std::round(0.5f * (ends[0].x + ends[1].x - size.x)),
                     std::round(0.5f * (ends[0].y + ends[1].y) - 1.6f * size.y));

@@ -81,9 +81,9 @@ class SceneRenderer::Impl {
   std::optional<Vec3> pick(glm::ivec2 px) const;
   Box fit_box() const;
   const Box& depth_box() const { return depth_box_; }
-  std::vector<ColorLegendEntry> legend() const {
+  std::vector<ColorLegendEntry> legend(const Measures& measures) const {
     if (road_ != DrawRoad::kMesh) return {};
-    return colors_.legend(shown_by_, scale_);
+    return colors_.legend(shown_by_, scale_, measures);
   }
   DrawRoad drawn_road() const { return road_; }
   const Projection& projection() const { return full_projection_; }
@@ -612,7 +612,9 @@ std::size_t SceneRenderer::easy_triangles() { return is_software() ? 20'000 : 0;
 Picture SceneRenderer::read() const { return impl_->read(); }
 std::optional<Vec3> SceneRenderer::pick(glm::ivec2 px) const { return impl_->pick(px); }
 Box SceneRenderer::fit_box() const { return impl_->fit_box(); }
-std::vector<ColorLegendEntry> SceneRenderer::legend() const { return impl_->legend(); }
+std::vector<ColorLegendEntry> SceneRenderer::legend(const Measures& measures) const {
+  return impl_->legend(measures);
+}
 const Box& SceneRenderer::depth_box() const { return impl_->depth_box(); }
 const DrawCounters& SceneRenderer::counters() const { return impl_->counters; }
 void SceneRenderer::reset_counters() { impl_->counters = {}; }

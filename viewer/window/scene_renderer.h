@@ -13,6 +13,7 @@
 #include "viewer/scene.h"
 #include "viewer/window/orbit_camera.h"
 #include "viewer/window/screen_rect.h"
+#include "viewer/window/units.h"
 
 namespace kerf {
 
@@ -129,7 +130,7 @@ class SceneRenderer {
   const Projection& projection() const;
 
   /// What the colours of the workpiece last drawn mean; empty if nothing.
-  std::vector<ColorLegendEntry> legend() const;
+  std::vector<ColorLegendEntry> legend(const Measures& measures = Measures(LengthUnit::kMm)) const;
 
   /// The pixels that draw() may have changed since the last call.
   ScreenRect take_changed();

@@ -139,6 +139,14 @@ std::vector<Field> choices() {
           [](const ViewSettings& s) { return s.drawing.path_tail > 0 ? 1 : 0; },
           [](int choice, ViewSettings* s) { s->drawing.path_tail = choice == 0 ? 0 : kTailMoves; }),
       switch_field("dark", [](ViewSettings* s) { return &s->drawing.is_dark; }),
+      choice_field(
+          "units", {"mm", "inch"}, [](const ViewSettings& s) { return static_cast<int>(s.units); },
+          [](int choice, ViewSettings* s) { s->units = static_cast<LengthUnit>(choice); }),
+      choice_field(
+          "theme", {"dark", "light", "system"},
+          [](const ViewSettings& s) { return static_cast<int>(s.theme); },
+          [](int choice, ViewSettings* s) { s->theme = static_cast<ThemeChoice>(choice); }),
+      switch_field("keys-seen", [](ViewSettings* s) { return &s->knows_keys; }),
       number_field(
           "tolerance", [](ViewSettings* s) { return &s->drawing.tolerance_mm; }, kMinTolerance_mm,
           kMaxTolerance_mm),

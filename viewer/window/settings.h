@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "viewer/window/scene_renderer.h"
 #include "viewer/window/texts.h"
+#include "viewer/window/units.h"
 
 namespace kerf {
 
@@ -19,6 +20,9 @@ struct SectionChoice {
   double offset_mm = 0.0;   ///< along the axis
 };
 
+/// Of panels and background. kSystem: as the desktop asks for; dark where it does not say.
+enum class ThemeChoice { kDark, kLight, kSystem };
+
 /// Stored as lines `name = value`:
 ///
 ///     width = 1280
@@ -29,6 +33,9 @@ struct ViewSettings {
   int width_px = 1280;  ///< of the window, on a display of scale 1; 320 to 16384
   int height_px = 800;
   Language language = Language::kEnglish;
+  LengthUnit units = LengthUnit::kMm;
+  ThemeChoice theme = ThemeChoice::kDark;
+  bool knows_keys = false;  ///< Has seen the first keys.
   bool is_perspective = true;
   bool shows_code = true;
   bool shows_info = true;

@@ -46,19 +46,40 @@ constexpr std::array kShortcuts{
     Shortcut{"i", U'i', 0, Action::kInfoPanel, Text::kInfoPanel},
     Shortcut{"d", U'd', 0, Action::kCounters, Text::kDrawing},
     Shortcut{"l", U'l', 0, Action::kLocalDrawing, Text::kLocalDrawing},
+    Shortcut{"U", U'U', 0, Action::kUnits, Text::kUnits},
     Shortcut{"r", U'r', 0, Action::kNextRoad, Text::kNextRoad},
     Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
     Shortcut{"S", U'S', 0, Action::kWindowPicture, Text::kWindowPicture},
     Shortcut{"F", U'F', 0, Action::kFilm, Text::kFilmWhat},
     Shortcut{"?", U'?', 0, Action::kHelp, Text::kShortcuts},
+    Shortcut{"F1", 0, GLFW_KEY_F1, Action::kFirstKeys, Text::kFirstKeys},
     Shortcut{"Ctrl+O", 0, GLFW_KEY_O, Action::kOpen, Text::kOpenWhat, true},
     Shortcut{"Ctrl+F", 0, GLFW_KEY_F, Action::kSearch, Text::kSearch, true},
     Shortcut{"Q", U'Q', 0, Action::kClose, Text::kClose},
 };
 
+/// The most useful first; the last ones are for where there is no player.
+constexpr std::array kFirst{Action::kPlayPause,   Action::kStepForward, Action::kFaster,
+                            Action::kNextFinding, Action::kGoToLine,    Action::kFit,
+                            Action::kIsometric,   Action::kTop,         Action::kMeasure,
+                            Action::kSection,     Action::kNextColors,  Action::kWorkpiece,
+                            Action::kCodePanel,   Action::kInfoPanel,   Action::kScreenshot};
+constexpr std::size_t kFirstCount = 10;
+
 }  // namespace
 
 std::span<const Shortcut> shortcuts() { return kShortcuts; }
+
+std::vector<const Shortcut*> first_shortcuts(bool has_player) {
+  std::vector<const Shortcut*> first;
+  for (const Action action : kFirst) {
+    if (first.size() == kFirstCount || (!has_player && is_for_player(action))) continue;
+    for (const Shortcut& shortcut : kShortcuts) {
+      if (shortcut.action == action) first.push_back(&shortcut);
+    }
+  }
+  return first;
+}
 
 std::optional<Action> action_of_character(char32_t character) {
   for (const Shortcut& shortcut : kShortcuts) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "viewer/window/texts.h"
 
@@ -46,11 +47,13 @@ enum class Action {
   kInfoPanel,
   kCounters,
   kLocalDrawing,
+  kUnits,
   kNextRoad,
   kScreenshot,
   kWindowPicture,
   kFilm,
   kHelp,
+  kFirstKeys,
   kOpen,
   kSearch,
   kClose,
@@ -68,6 +71,8 @@ struct Shortcut {
 };
 
 std::span<const Shortcut> shortcuts();
+/// The ten that a beginner needs first; beside a machine that leads, without the player's.
+std::vector<const Shortcut*> first_shortcuts(bool has_player);
 /// It changes what is played, not how it is looked at.
 constexpr bool is_for_player(Action action) { return action <= Action::kGoToLine; }
 std::optional<Action> action_of_character(char32_t character);

@@ -39,9 +39,13 @@ std::uint32_t packed(const glm::vec3& rgb) {
   return 0xff000000u | byte(rgb.z) << 16 | byte(rgb.y) << 8 | byte(rgb.x);
 }
 
-/// Digits after the point that tell the steps of a legend apart.
-int digits_for(double step) {
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(std::max(step, 1e-9)))), 0, 6);
+/// A legend that came in mm, in what is shown.
+std::vector<ColorLegendEntry> in_units(std::vector<ColorLegendEntry> entries,
+                                       const Measures& measures) {
+  for (ColorLegendEntry& entry : entries) {
+    if (entry.mm3_per_s) entry.text = measures.rate_up_to(*entry.mm3_per_s);
+  }
+  return entries;
 }
 
 }  // namespace
@@ -117,27 +121,30 @@ void SurfaceColors::bind(const GlProgram& program, ColorBy mode, const ColorScal
   }
 }
 
-std::vector<ColorLegendEntry> SurfaceColors::legend(ColorBy mode, const ColorScale& scale) const {
+std::vector<ColorLegendEntry> SurfaceColors::legend(ColorBy mode, const ColorScale& scale,
+                                                    const Measures& measures) const {
   std::vector<ColorLegendEntry> entries;
   const VertexData data = needs(mode);
   if (mode == ColorBy::kPlain) return entries;
-  if (data == VertexData::kCutBy) return colors_ ? colors_->legend : entries;
+  if (data == VertexData::kCutBy) {
+    return colors_ ? in_units(colors_->legend, measures) : entries;
+  }
   const Stops& stops = stops_of(mode);
   if (data == VertexData::kDeviation) {
     const double tolerance = scale.tolerance_mm;
-    const int digits = digits_for(tolerance);
+    const int digits = measures.digits_for(tolerance);
     const double full = kFullDeviation * tolerance;
     const std::array<std::string, 5> texts{
-        fmt::format("< {:.{}f} mm", -full, digits), fmt::format("{:.{}f} mm", -tolerance, digits),
-        fmt::format("0 mm"), fmt::format("{:+.{}f} mm", tolerance, digits),
-        fmt::format("> {:+.{}f} mm", full, digits)};
+        "< " + measures.length(-full, digits), measures.length(-tolerance, digits),
+        measures.length(0.0, 0), measures.signed_length(tolerance, digits),
+        "> " + measures.signed_length(full, digits)};
     for (std::size_t i = 0; i < stops.size(); ++i) entries.push_back({packed(stops[i]), texts[i]});
     return entries;
   }
   const double step = (scale.highest_mm - scale.lowest_mm) / (stops.size() - 1);
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const double z = scale.lowest_mm + step * static_cast<double>(i);
-    entries.push_back({packed(stops[i]), fmt::format("{:.{}f} mm", z, digits_for(step))});
+    entries.push_back({packed(stops[i]), measures.length(z, measures.digits_for(step))});
   }
   return entries;
 }

@@ -9,6 +9,7 @@
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
 #include "viewer/window/scene_programs.h"
+#include "viewer/window/units.h"
 
 namespace kerf {
 
@@ -43,7 +44,8 @@ class SurfaceColors {
   /// Sets what the program of paint(mode), in use now, takes its colours from.
   void bind(const GlProgram& program, ColorBy mode, const ColorScale& scale) const;
   /// Of an available mode; from low to high for scales. Empty for kPlain.
-  std::vector<ColorLegendEntry> legend(ColorBy mode, const ColorScale& scale) const;
+  std::vector<ColorLegendEntry> legend(ColorBy mode, const ColorScale& scale,
+                                       const Measures& measures) const;
 
   std::size_t gpu_bytes() const { return gpu_bytes_; }
 

@@ -43,11 +43,62 @@ ImFont* add_font(const char* name, float height_px) {
   return atlas->AddFontDefault(&config);
 }
 
-ImVec4 gray(float value, float alpha = 1.0f) {
-  return {value, value + 0.008f, value + 0.024f, alpha};
+/// Of a dark panel; of a light one what differs as much from its ground.
+ImVec4 shade(bool is_light, float value, float alpha = 1.0f) {
+  if (is_light) value = 1.04f - 0.75f * value;
+  return {value, value + 0.008f, value + (is_light ? 0.014f : 0.024f), alpha};
 }
 
 }  // namespace
+
+const theme::Palette theme::kDarkPalette{
+    .text = {0.87f, 0.88f, 0.90f, 1.0f},
+    .dim = {0.58f, 0.61f, 0.66f, 1.0f},
+    .good = {0.47f, 0.80f, 0.52f, 1.0f},
+    .warning = {0.95f, 0.72f, 0.32f, 1.0f},
+    .error = {0.96f, 0.45f, 0.40f, 1.0f},
+    .note = {0.53f, 0.73f, 0.95f, 1.0f},
+    .readout = {0.76f, 0.93f, 0.80f, 1.0f},
+    .motion_word = {0.60f, 0.78f, 0.98f, 1.0f},
+    .machine_word = {0.90f, 0.66f, 0.86f, 1.0f},
+    .feed_word = {0.95f, 0.78f, 0.50f, 1.0f},
+    .control_word = {0.62f, 0.86f, 0.78f, 1.0f},
+    .comment = {0.50f, 0.62f, 0.50f, 1.0f},
+    .found_line = IM_COL32(96, 82, 30, 255),
+    .accent = IM_COL32(78, 128, 188, 255),
+    .track = IM_COL32(56, 60, 68, 255),
+    .current_line = IM_COL32(52, 84, 62, 255),
+    .hovered_line = IM_COL32(50, 54, 62, 255),
+    .gutter = IM_COL32(30, 32, 36, 255),
+    .breakpoint = IM_COL32(214, 72, 62, 255),
+    .tool_mark = IM_COL32(226, 196, 104, 255),
+    .head = IM_COL32(240, 242, 245, 255),
+};
+
+// Each word at 4.5 : 1 or more on the panels, as the dark ones are.
+const theme::Palette theme::kLightPalette{
+    .text = {0.11f, 0.13f, 0.15f, 1.0f},
+    .dim = {0.36f, 0.39f, 0.43f, 1.0f},
+    .good = {0.10f, 0.45f, 0.18f, 1.0f},
+    .warning = {0.62f, 0.36f, 0.00f, 1.0f},
+    .error = {0.72f, 0.13f, 0.11f, 1.0f},
+    .note = {0.09f, 0.36f, 0.68f, 1.0f},
+    .readout = {0.04f, 0.33f, 0.16f, 1.0f},
+    .motion_word = {0.05f, 0.31f, 0.64f, 1.0f},
+    .machine_word = {0.53f, 0.13f, 0.48f, 1.0f},
+    .feed_word = {0.58f, 0.32f, 0.00f, 1.0f},
+    .control_word = {0.03f, 0.41f, 0.34f, 1.0f},
+    .comment = {0.31f, 0.44f, 0.31f, 1.0f},
+    .found_line = IM_COL32(255, 232, 140, 255),
+    .accent = IM_COL32(132, 178, 232, 255),
+    .track = IM_COL32(206, 210, 217, 255),
+    .current_line = IM_COL32(200, 232, 208, 255),
+    .hovered_line = IM_COL32(222, 226, 232, 255),
+    .gutter = IM_COL32(230, 232, 236, 255),
+    .breakpoint = IM_COL32(204, 52, 44, 255),
+    .tool_mark = IM_COL32(176, 128, 16, 255),
+    .head = IM_COL32(44, 48, 54, 255),
+};
 
 Fonts load_fonts(float scale) {
   ImGui::GetIO().Fonts->Clear();
@@ -59,9 +110,17 @@ Fonts load_fonts(float scale) {
   return fonts;
 }
 
-void set_style(float scale) {
+void set_style(float scale, bool is_light) {
+  theme::detail::shown = is_light ? theme::kLightPalette : theme::kDarkPalette;
   ImGui::GetStyle() = ImGuiStyle();
-  ImGui::StyleColorsDark();
+  if (is_light) {
+    ImGui::StyleColorsLight();
+  } else {
+    ImGui::StyleColorsDark();
+  }
+  const auto gray = [is_light](float value, float alpha = 1.0f) {
+    return shade(is_light, value, alpha);
+  };
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowPadding = {8.0f, 7.0f};
   style.FramePadding = {6.0f, 3.0f};
@@ -81,8 +140,8 @@ void set_style(float scale) {
   colors[ImGuiCol_TextDisabled] = theme::kDim;
   colors[ImGuiCol_WindowBg] = gray(0.135f);
   colors[ImGuiCol_ChildBg] = gray(0.135f);
-  colors[ImGuiCol_PopupBg] = gray(0.165f, 0.98f);
-  colors[ImGuiCol_Border] = gray(0.235f);
+  colors[ImGuiCol_PopupBg] = gray(is_light ? 0.08f : 0.165f, 0.98f);
+  colors[ImGuiCol_Border] = gray(is_light ? 0.36f : 0.235f);
   colors[ImGuiCol_FrameBg] = gray(0.205f);
   colors[ImGuiCol_FrameBgHovered] = gray(0.26f);
   colors[ImGuiCol_FrameBgActive] = gray(0.30f);
@@ -97,10 +156,12 @@ void set_style(float scale) {
   colors[ImGuiCol_Tab] = gray(0.175f);
   colors[ImGuiCol_TabHovered] = gray(0.32f);
   colors[ImGuiCol_TabActive] = gray(0.27f);
-  colors[ImGuiCol_CheckMark] = ImGui::ColorConvertU32ToFloat4(theme::kAccent);
-  colors[ImGuiCol_SliderGrab] = ImGui::ColorConvertU32ToFloat4(theme::kAccent);
+  // On light ground what words can stand on is too pale for a mark.
+  const ImVec4 mark = is_light ? theme::kNote : ImGui::ColorConvertU32ToFloat4(theme::kAccent);
+  colors[ImGuiCol_CheckMark] = mark;
+  colors[ImGuiCol_SliderGrab] = mark;
   colors[ImGuiCol_SliderGrabActive] = theme::kNote;
-  colors[ImGuiCol_Separator] = gray(0.235f);
+  colors[ImGuiCol_Separator] = gray(is_light ? 0.36f : 0.235f);
   colors[ImGuiCol_TableHeaderBg] = gray(0.135f);
 }
 

@@ -19,31 +19,42 @@ struct Fonts {
 Fonts load_fonts(float scale);
 
 /// Colours and distances, for this scale.
-void set_style(float scale);
+void set_style(float scale, bool is_light);
 
 namespace theme {
-inline const ImVec4 kText{0.87f, 0.88f, 0.90f, 1.0f};
-inline const ImVec4 kDim{0.58f, 0.61f, 0.66f, 1.0f};
-inline const ImVec4 kGood{0.47f, 0.80f, 0.52f, 1.0f};
-inline const ImVec4 kWarning{0.95f, 0.72f, 0.32f, 1.0f};
-inline const ImVec4 kError{0.96f, 0.45f, 0.40f, 1.0f};
-inline const ImVec4 kNote{0.53f, 0.73f, 0.95f, 1.0f};
-inline const ImVec4 kReadout{0.76f, 0.93f, 0.80f, 1.0f};
-// Words of a program.
-inline const ImVec4 kMotionWord{0.60f, 0.78f, 0.98f, 1.0f};
-inline const ImVec4 kMachineWord{0.90f, 0.66f, 0.86f, 1.0f};
-inline const ImVec4 kFeedWord{0.95f, 0.78f, 0.50f, 1.0f};
-inline const ImVec4 kControlWord{0.62f, 0.86f, 0.78f, 1.0f};
-inline const ImVec4 kComment{0.50f, 0.62f, 0.50f, 1.0f};
-inline constexpr ImU32 kFoundLine = IM_COL32(96, 82, 30, 255);
-inline constexpr ImU32 kAccent = IM_COL32(78, 128, 188, 255);
-inline constexpr ImU32 kTrack = IM_COL32(56, 60, 68, 255);
-inline constexpr ImU32 kCurrentLine = IM_COL32(52, 84, 62, 255);
-inline constexpr ImU32 kHoveredLine = IM_COL32(50, 54, 62, 255);
-inline constexpr ImU32 kGutter = IM_COL32(30, 32, 36, 255);
-inline constexpr ImU32 kBreakpoint = IM_COL32(214, 72, 62, 255);
-inline constexpr ImU32 kToolMark = IM_COL32(226, 196, 104, 255);
-inline constexpr ImU32 kHead = IM_COL32(240, 242, 245, 255);
+/// All colours of the panels, but those of Dear ImGui's own parts, which set_style() derives.
+struct Palette {
+  ImVec4 text, dim, good, warning, error, note, readout;
+  ImVec4 motion_word, machine_word, feed_word, control_word, comment;  ///< of a program
+  ImU32 found_line, accent, track, current_line, hovered_line, gutter, breakpoint, tool_mark, head;
+};
+extern const Palette kDarkPalette, kLightPalette;
+namespace detail {
+inline Palette shown;  ///< One window, one thread. set_style() chooses.
+}
+
+// By name, as they are now.
+inline const ImVec4& kText = detail::shown.text;
+inline const ImVec4& kDim = detail::shown.dim;
+inline const ImVec4& kGood = detail::shown.good;
+inline const ImVec4& kWarning = detail::shown.warning;
+inline const ImVec4& kError = detail::shown.error;
+inline const ImVec4& kNote = detail::shown.note;
+inline const ImVec4& kReadout = detail::shown.readout;
+inline const ImVec4& kMotionWord = detail::shown.motion_word;
+inline const ImVec4& kMachineWord = detail::shown.machine_word;
+inline const ImVec4& kFeedWord = detail::shown.feed_word;
+inline const ImVec4& kControlWord = detail::shown.control_word;
+inline const ImVec4& kComment = detail::shown.comment;
+inline const ImU32& kFoundLine = detail::shown.found_line;
+inline const ImU32& kAccent = detail::shown.accent;
+inline const ImU32& kTrack = detail::shown.track;
+inline const ImU32& kCurrentLine = detail::shown.current_line;
+inline const ImU32& kHoveredLine = detail::shown.hovered_line;
+inline const ImU32& kGutter = detail::shown.gutter;
+inline const ImU32& kBreakpoint = detail::shown.breakpoint;
+inline const ImU32& kToolMark = detail::shown.tool_mark;
+inline const ImU32& kHead = detail::shown.head;
 
 const ImVec4& of(Severity severity);
 }  // namespace theme

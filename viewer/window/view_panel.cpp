@@ -59,9 +59,11 @@ void draw_legend(const PanelContext& context) {
   const float side = ImGui::GetTextLineHeight();
   for (const ColorLegendEntry& entry : context.legend) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddRectFilled({at.x + 4.0f, at.y + 2.0f},
-                                              {at.x + 4.0f + 1.4f * side, at.y + side - 1.0f},
-                                              entry.color | 0xff000000u, 2.0f);
+    const float unit = context.scale;
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x + 4.0f * unit, at.y + 2.0f * unit},
+        {at.x + 4.0f * unit + 1.4f * side, at.y + side - unit}, entry.color | 0xff000000u,
+        2.0f * unit);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2.0f * side);
     ImGui::TextUnformatted(entry.text.c_str());
   }
@@ -103,10 +105,15 @@ void draw_colors(const PanelContext& context) {
   if (drawing.color_by == ColorBy::kLineRange) draw_line_range(context);
   if (drawing.color_by == ColorBy::kDeviation) {
     ImGui::SetNextItemWidth(120.0f * context.scale);
-    double value = drawing.tolerance_mm;
-    const std::string label = fmt::format("{} (mm)", context.word(Text::kTolerance));
-    if (ImGui::InputDouble(label.c_str(), &value, 0.005, 0.05, "%.3f")) {
-      drawing.tolerance_mm = std::clamp(value, kMinTolerance_mm, kMaxTolerance_mm);
+    const Measures& measures = context.measures;
+    double value = drawing.tolerance_mm / measures.mm_per_unit();
+    const std::string label =
+        fmt::format("{} ({})###tolerance", context.word(Text::kTolerance), measures.name());
+    const double step = measures.unit() == LengthUnit::kInch ? 0.0002 : 0.005;
+    const std::string format = fmt::format("%.{}f", measures.digits());
+    if (ImGui::InputDouble(label.c_str(), &value, step, 10.0 * step, format.c_str())) {
+      drawing.tolerance_mm =
+          std::clamp(value * measures.mm_per_unit(), kMinTolerance_mm, kMaxTolerance_mm);
     }
   }
   if (drawing.color_by != ColorBy::kPlain && context.legend.empty()) {
@@ -129,10 +136,15 @@ void draw_section(const PanelContext& context) {
     }
   }
   if (bounds.empty()) return;
-  const double low = bounds.min[section.axis], high = bounds.max[section.axis];
+  const Measures& measures = context.measures;
+  const double mm = measures.mm_per_unit();
+  const double low = bounds.min[section.axis] / mm, high = bounds.max[section.axis] / mm;
+  double offset = section.offset_mm / mm;
+  const std::string format = fmt::format("%.{}f {}", measures.digits() - 1, measures.name());
   ImGui::SetNextItemWidth(-1.0f);
-  if (ImGui::SliderScalar("##offset", ImGuiDataType_Double, &section.offset_mm, &low, &high,
-                          "%.2f mm", ImGuiSliderFlags_AlwaysClamp)) {
+  if (ImGui::SliderScalar("##offset", ImGuiDataType_Double, &offset, &low, &high, format.c_str(),
+                          ImGuiSliderFlags_AlwaysClamp)) {
+    section.offset_mm = offset * mm;
     section.is_on = true;
   }
   ImGui::Checkbox(context.word(Text::kSectionFlip), &section.is_flipped);
@@ -161,7 +173,9 @@ void draw_drawing(const PanelContext& context) {
   ViewSettings* settings = context.settings;
   draw_roads(context);
   ImGui::Checkbox(context.word(Text::kLocalDrawing), &settings->drawing.is_local);
+  ImGui::BeginDisabled(context.is_light);
   ImGui::Checkbox(context.word(Text::kDarkBackground), &settings->drawing.is_dark);
+  ImGui::EndDisabled();
   const DrawCounters& counters = context.counters;
   const auto line = [](const std::string& text) {
     ImGui::TextColored(theme::kDim, "%s", text.c_str());
@@ -183,18 +197,46 @@ void draw_drawing(const PanelContext& context) {
                    static_cast<double>(counters.waiting_bytes) / kMegabyte));
 }
 
+void draw_theme(const PanelContext& context) {
+  constexpr std::array kThemes{Text::kThemeDark, Text::kThemeLight, Text::kThemeSystem};
+  ThemeChoice& theme = context.settings->theme;
+  ImGui::SetNextItemWidth(150.0f * context.scale);
+  const std::string label = fmt::format("{}###theme", context.word(Text::kTheme));
+  if (!ImGui::BeginCombo(label.c_str(), context.word(kThemes[static_cast<std::size_t>(theme)]))) {
+    return;
+  }
+  for (std::size_t i = 0; i < kThemes.size(); ++i) {
+    const auto candidate = static_cast<ThemeChoice>(i);
+    if (ImGui::Selectable(context.word(kThemes[i]), candidate == theme)) theme = candidate;
+  }
+  ImGui::EndCombo();
+}
+
+void draw_units(const PanelContext& context) {
+  LengthUnit& units = context.settings->units;
+  for (const LengthUnit candidate : {LengthUnit::kMm, LengthUnit::kInch}) {
+    if (ImGui::RadioButton(Measures(candidate).name(), candidate == units)) units = candidate;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s  [U]", context.word(Text::kUnits));
+    ImGui::SameLine();
+  }
+}
+
 void draw_language(const PanelContext& context) {
   ViewSettings* settings = context.settings;
   ImGui::Separator();
+  draw_theme(context);
+  draw_units(context);
+  ImGui::Dummy({10.0f * context.scale, 0.0f});
+  ImGui::SameLine();
   for (int i = 0; i < kLanguageCount; ++i) {
     const auto candidate = static_cast<Language>(i);
     if (ImGui::RadioButton(std::string(code(candidate)).c_str(), candidate == settings->language)) {
       settings->language = candidate;
     }
-    ImGui::SameLine();
+    if (i + 1 < kLanguageCount) ImGui::SameLine();
   }
-  ImGui::SetNextItemWidth(86.0f * context.scale);
-  constexpr std::array kScales{0.85, 1.0, 1.25, 1.5, 2.0};
+  ImGui::SetNextItemWidth(150.0f * context.scale);
+  constexpr std::array kScales{0.85, 1.0, 1.25, 1.5, 2.0, 3.0};
   if (ImGui::BeginCombo(context.word(Text::kTextSize),
                         fmt::format("{:.0f} %", 100.0 * settings->text_scale).c_str())) {
     for (const double scale : kScales) {

@@ -38,6 +38,10 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
   if (!options.is_local) settings_.drawing.is_local = false;
   remembered_road_ = settings_.drawing.road;
   settings_.drawing.road = options.road.value_or(remembered_road_);
+  remembered_units_ = settings_.units;
+  settings_.units = options.units.value_or(remembered_units_);
+  // Where nothing is remembered they would come every time.
+  state_.shows_first_keys = !settings_.knows_keys && !options.settings_file.empty();
   state_.notice = first_line(settings_faults_);
 }
 
@@ -75,6 +79,7 @@ void Window::Impl::remember_settings() {
   }
   // What was asked for this time alone; another choice since is to be remembered.
   if (options_.road == settings_.drawing.road) settings_.drawing.road = remembered_road_;
+  if (options_.units == settings_.units) settings_.units = remembered_units_;
   // Nobody is left to be told; the next start has the settings of this one.
   static_cast<void>(save_settings(options_.settings_file, settings_));
 }
@@ -124,7 +129,7 @@ void Window::Impl::start_panels() {
   display_scale_ = std::clamp(options_.scale > 0.0f ? options_.scale : scale_x, 1.0f, kMostScale);
   ImGui_ImplGlfw_InitForOpenGL(window_, false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
-  set_scale();
+  set_looks();
   double x = 0.0, y = 0.0;
   glfwGetCursorPos(window_, &x, &y);
   mouse_at_ = {static_cast<float>(x), static_cast<float>(y)};
@@ -185,6 +190,7 @@ void Window::Impl::on_mouse_move(glm::vec2 at) {
 
 void Window::Impl::on_mouse_button(int button, bool is_down) {
   touched();
+  if (is_down) dismiss_first_keys();
   if (button >= static_cast<int>(mouse_is_down_.size())) return;
   // Where the last move led: glfwGetCursorPos() may be ahead of the events.
   const glm::vec2 at = mouse_events_.empty() ? mouse_at_ : mouse_events_.back().at;
@@ -215,6 +221,7 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
   if (action == GLFW_PRESS) fresh_keys_.insert(key);
   ImGui_ImplGlfw_KeyCallback(window_, key, scancode, action, mods);
   if (action == GLFW_RELEASE) return;
+  if (key != GLFW_KEY_F1) dismiss_first_keys();
   if (key == GLFW_KEY_ESCAPE) {
     state_.shows_help = false;
     state_.asks_for_line = false;
@@ -231,6 +238,12 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
   if (takes_text()) return;
   const bool with_control = (mods & GLFW_MOD_CONTROL) != 0;
   if (const std::optional<Action> wanted = action_of_key(key, with_control)) act(*wanted);
+}
+
+void Window::Impl::dismiss_first_keys() {
+  if (!state_.shows_first_keys) return;
+  state_.shows_first_keys = false;
+  settings_.knows_keys = true;
 }
 
 /// Questions get what is typed also before they are drawn for the first time.

@@ -26,10 +26,11 @@ struct WindowOptions {
   int width_px = 0;                             ///< 0: as remembered; both
   int height_px = 0;
   int max_frames_per_s = 60;
-  bool is_local = true;          ///< false: local drawing is off, whatever is remembered
-  std::optional<DrawRoad> road;  ///< Instead of the one that is remembered, which stays so.
-  float scale = 0.0f;            ///< Of letters and panels, 1 to 4; 0: that of the display.
-  std::string picture_folder;    ///< Where screenshots go; empty: the current folder.
+  bool is_local = true;             ///< false: local drawing is off, whatever is remembered
+  std::optional<DrawRoad> road;     ///< Instead of the one that is remembered, which stays so.
+  std::optional<LengthUnit> units;  ///< As `road`.
+  float scale = 0.0f;               ///< Of letters and panels, 1 to 4; 0: that of the display.
+  std::string picture_folder;       ///< Where screenshots go; empty: the current folder.
 };
 
 /// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at

@@ -140,6 +140,16 @@ void Window::Impl::act_on_panels(Action action) {
     case Action::kHelp:
       state_.shows_help = !state_.shows_help;
       break;
+    case Action::kFirstKeys:
+      if (state_.shows_first_keys) {
+        dismiss_first_keys();
+      } else {
+        state_.shows_first_keys = true;
+      }
+      break;
+    case Action::kUnits:
+      settings_.units = settings_.units == LengthUnit::kMm ? LengthUnit::kInch : LengthUnit::kMm;
+      break;
     case Action::kGoToLine:
       state_.asks_for_line = true;
       break;

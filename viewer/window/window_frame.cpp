@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "viewer/window/desktop_theme.h"
 #include "viewer/window/window_impl.h"
 
 namespace kerf {
@@ -233,14 +234,25 @@ Error Window::Impl::give_up(const std::string& reason) {
   return Error{reason};
 }
 
-void Window::Impl::set_scale() {
+bool Window::Impl::wants_light() {
+  if (settings_.theme != ThemeChoice::kSystem) return settings_.theme == ThemeChoice::kLight;
+  if (!desktop_is_light_) desktop_is_light_ = !desktop_is_dark().value_or(true);
+  return *desktop_is_light_;
+}
+
+void Window::Impl::set_looks() {
   const float scale = display_scale_ * static_cast<float>(settings_.text_scale);
-  if (scale == scale_) return;
-  scale_ = scale;
-  fonts_ = load_fonts(scale_);
-  ImGui_ImplOpenGL3_DestroyFontsTexture();
-  ImGui_ImplOpenGL3_CreateFontsTexture();
-  set_style(scale_);
+  const bool is_light = wants_light();
+  if (scale == scale_ && is_light == is_light_) return;
+  if (scale != scale_) {
+    scale_ = scale;
+    // Letters are drawn for their size, not blown up.
+    fonts_ = load_fonts(scale_);
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+  }
+  is_light_ = is_light;
+  set_style(scale_, is_light_);
   is_window_old_ = true;
   touched();
 }
@@ -272,7 +284,7 @@ Done Window::Impl::draw() {
   std::vector<ScreenRect> changed;
   const bool draws_panels = panels_are_due_;
   if (draws_panels) {
-    set_scale();
+    set_looks();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     // It has asked for the size.
@@ -298,7 +310,10 @@ Done Window::Impl::draw() {
   tell_detail();
   settings_.drawing.section = section_plane(settings_.section);
   const Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
-  if (Done done = renderer_->draw(wanted, settings_.drawing); !done) return done;
+  DrawOptions drawing = settings_.drawing;
+  // Among light panels a dark picture would be a hole.
+  drawing.is_dark = drawing.is_dark && !is_light_;
+  if (Done done = renderer_->draw(wanted, drawing); !done) return done;
   if (wants_picture_ && renderer_->is_full()) take_picture();
   if (film_) film_->show(renderer_->read());
   // Marks over a picture that came late go with it.
@@ -337,7 +352,8 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   shown_age_ = age_text(shown_.source_age_s());
   state_.frames_per_s = frame_counter_.frames_per_s();
   state_.action.reset();
-  legend_ = renderer_->legend();
+  const Measures measures(settings_.units);
+  legend_ = renderer_->legend(measures);
   DrawCounters counters = renderer_->counters();
   counters.gpu_bytes += layer_->gpu_bytes() + letter_bytes();
   const PanelContext context{.shown = shown_,
@@ -347,9 +363,11 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
                              .bounds_mm = renderer_->fit_box(),
                              .fonts = fonts_,
                              .scale = scale_,
+                             .is_light = is_light_,
                              .settings = &settings_,
                              .state = &state_,
-                             .commands = &commands_};
+                             .commands = &commands_,
+                             .measures = measures};
   draw_inspection(context, projection_, area_top_px_);
   draw_code_panel(context, display, room);
   draw_info_panel(context, display, room);
@@ -357,6 +375,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   draw_player_bar(context, display, room);
   draw_edges(context, display, room);
   draw_empty_hint(context, display, room);
+  if (state_.shows_first_keys) draw_first_keys(context, display, room);
   if (state_.shows_help) draw_help(context, display);
   if (state_.files.is_open) draw_file_choice(context, display);
   if (state_.asks_for_line) draw_line_question(context, display);

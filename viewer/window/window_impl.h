@@ -68,6 +68,7 @@ class Window::Impl {
   void on_character(unsigned character);
   void on_drop(const std::string& path);
   bool takes_text() const;
+  void dismiss_first_keys();
   void on_mouse_move(glm::vec2 at);
   void on_mouse_button(int button, bool is_down);
   void feed_mouse();
@@ -93,7 +94,9 @@ class Window::Impl {
   bool end();
   /// Nothing can be shown any more.
   Error give_up(const std::string& reason);
-  void set_scale();
+  /// Fonts, distances and colours, if the settings want others than there are.
+  void set_looks();
+  bool wants_light();
   void lay_out(const PanelRoom& room, glm::vec2 display, glm::ivec2 window_px);
   void draw_panels(const PanelRoom& room, glm::vec2 display);
   void show(std::vector<ScreenRect> changed);
@@ -134,6 +137,7 @@ class Window::Impl {
   ViewSettings settings_;
   Diagnostics settings_faults_;
   DrawRoad remembered_road_ = DrawRoad::kMesh;  // before WindowOptions::road
+  LengthUnit remembered_units_ = LengthUnit::kMm;
 
   Platform platform_;
   GLFWwindow* window_ = nullptr;
@@ -153,6 +157,8 @@ class Window::Impl {
   glm::vec2 area_top_px_{0.0f};      // upper left, from the upper left of the window
   float display_scale_ = 1.0f;
   float scale_ = 0.0f;  // of the panels
+  bool is_light_ = false;
+  std::optional<bool> desktop_is_light_;  // none: not looked yet
   bool wants_fit_ = true;
   bool is_fitted_ = false;  // nobody has moved the eye since
   bool pressed_in_picture_ = false;
