@@ -426,6 +426,7 @@ void LiveSession::take(const ArrivedSample& arrived) {
   newest_ = arrived;
   ++samples_;
   shift_->take(arrived.sample, t_s, lost);
+  measure_feed();
   if (options_.log()) return;
   const auto age_ms = static_cast<float>(seconds(Clock::now() - arrived.arrival) * 1e3);
   if (ages_ms_.size() < kAges) {
@@ -434,6 +435,13 @@ void LiveSession::take(const ArrivedSample& arrived) {
     ages_ms_[next_age_++ % kAges] = age_ms;
   }
   live_.age_max_ms = std::max(live_.age_max_ms, static_cast<double>(age_ms));
+}
+
+/// Without what turns, where the axes are: the tip changes places with a tool's length, too.
+void LiveSession::measure_feed() {
+  const LivePlace& place = shift_->cutter().place();
+  if (!place.known) return feed_meter_.forget();
+  feed_meter_.take(t_s_, place.turns ? place.tip_mm : place.machine_mm);
 }
 
 LiveState LiveSession::state_now(double age_s) const {
@@ -515,6 +523,7 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
   }
   status.dropped = queue_.dropped();
   status.samples = samples_;
+  if (state == LiveState::kLive) status.feed_mm_per_min = feed_meter_.mm_per_min();
   if (status.place.off_path) status.off_path_mm = status.place.distance_mm;
   status.removed_mm3 = run.removed_mm3;
   for (const LiveRun& past : shift_->past()) {

@@ -18,6 +18,7 @@
 #include "interp_bridge/program.h"
 #include "machine_io/position_source.h"
 #include "stock/blank.h"
+#include "twin/live/feed_meter.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_report.h"
 #include "twin/live/live_shift.h"
@@ -87,6 +88,9 @@ struct LiveStatus {
   WorkpieceFrame work;     ///< where the workpiece lies in the machine
   double off_path_mm = 0;  ///< while the tip is off the path
   double removed_mm3 = 0;
+  /// Of the tip on the part, from the positions (FeedMeter); none: the source is not live, or it is
+  /// not known yet.
+  std::optional<double> feed_mm_per_min;
 };
 
 /// Told from the thread in LiveSession::run().
@@ -183,6 +187,7 @@ class LiveSession {
   double time_of(const ArrivedSample& arrived);
   void note_clocks(const ArrivedSample& arrived, double t_s);
   void tell(bool ended);
+  void measure_feed();
   void extend_trail();
   void show_frame();
   LiveStatus status_now(LiveState state, double age_s);
@@ -232,6 +237,7 @@ class LiveSession {
   std::uint64_t samples_ = 0;
   std::vector<AheadWarning> ahead_;  ///< warnings whose time has not come
   LiveReport live_;
+  FeedMeter feed_meter_;
   std::vector<float> ages_ms_;  ///< ring of the ages at which samples were cut
   std::size_t next_age_ = 0;
   std::int64_t host_offset_ns_ = 0;

@@ -396,6 +396,12 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->tool_name = tool_name_;
   if (!std::isnan(place.spindle_rpm)) moment->spindle_rpm = place.spindle_rpm;
   moment->removed_mm3 = status.removed_mm3;
+  moment->measured_mm_per_min = status.feed_mm_per_min;
+  if (program_ && place.followed && !program_->track->empty()) {
+    const TrackPlace at = program_->track->place_at(place.program_s);
+    set_feed(program_->track->motion(std::min(at.motion, program_->track->size() - 1)),
+             moment.get());
+  }
   moment->notice = notice_of(status);
   if (moment->notice.empty() || status.state == LiveState::kEnded) {
     moment->notice = notice_.empty() ? moment->notice : notice_;

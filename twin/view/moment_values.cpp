@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "twin/motion_geometry.h"
+
 namespace kerf {
 namespace {
 
@@ -14,6 +16,12 @@ Vec3 turned(const Vec3& v, double angle_deg) {
 }
 
 }  // namespace
+
+void set_feed(const Motion& motion, Moment* moment) {
+  moment->is_traverse = is_traverse(motion);
+  moment->feed_mm_per_min =
+      motion.feed_mm_per_min * (motion.feed_per_rev ? motion.spindle_rpm : 1.0);
+}
 
 Vec3 machine_position(const WorkpieceFrame& frame, const Vec3& work_mm,
                       const Vec3& tool_offset_mm) {

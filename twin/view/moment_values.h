@@ -12,6 +12,9 @@
 
 namespace kerf {
 
+/// What the program wants of a motion that is under way.
+void set_feed(const Motion& motion, Moment* moment);
+
 /// Machine coordinates of a point of the workpiece frame, as the machine's own display shows them:
 /// those of the tip plus the tool offset in force.
 Vec3 machine_position(const WorkpieceFrame& frame, const Vec3& work_mm, const Vec3& tool_offset_mm);

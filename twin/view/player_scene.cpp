@@ -267,9 +267,7 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
     const bool clockwise = motion.spindle == SpindleState::kClockwise;
     moment->spindle_rpm = clockwise ? motion.spindle_rpm : -motion.spindle_rpm;
   }
-  moment->is_traverse = is_traverse(motion);
-  moment->feed_mm_per_min =
-      motion.feed_mm_per_min * (motion.feed_per_rev ? motion.spindle_rpm : 1.0);
+  set_feed(motion, moment.get());
   moment->coolant = coolant_text(motion.mist, motion.flood);
   moment->work_offset = shown_.work_offset;
   if (shown_.machine) {

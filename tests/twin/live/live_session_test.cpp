@@ -115,6 +115,29 @@ std::vector<std::optional<CutLabel>> labels_along(const LiveSession& session, do
   return out;
 }
 
+TEST(LiveSession, FeedIsThatOfThePositionsWhileTheyAreFresh) {
+  // 20 mm/s along X for a second, then 5 mm/s, a hundred samples a second; the tool table's length
+  // does not matter.
+  std::vector<AxisSample> samples;
+  for (int i = 0; i <= 200; ++i) {
+    const double t_s = 0.01 * i;
+    samples.push_back(at(t_s <= 1 ? 5 + 20 * t_s : 25 + 5 * (t_s - 1), 20, 1, t_s));
+  }
+  double most = 0, last = 0;
+  LiveOptions options = with_block();
+  options.speed = 2;  // a status in a tenth of a second
+  const Watched watched(std::move(options), std::make_unique<ListedSource>(samples), {},
+                        [&](const LiveStatus& status) {
+                          if (!status.feed_mm_per_min) return;
+                          most = std::max(most, *status.feed_mm_per_min);
+                          last = *status.feed_mm_per_min;
+                        });
+  ASSERT_EQ(watched.outcome, Outcome::kFinished);
+  EXPECT_NEAR(most, 1200, 1e-6);
+  EXPECT_NEAR(last, 300, 1e-6);
+  EXPECT_FALSE(watched.told.last.feed_mm_per_min) << "it has ended: nothing goes on";
+}
+
 TEST(LiveSession, TheWorkpieceKnowsWhoCutIt) {
   // The way there by tool 1 in lines 4 and 5, back lower in line 5 again, and by nobody's line.
   std::vector<AxisSample> samples = {at(10, 20, 1, 0),    at(10, 20, -1, 0.1), at(16, 20, -1, 0.2),

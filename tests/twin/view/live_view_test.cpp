@@ -263,6 +263,52 @@ TEST_F(LiveViewTest, TheProgramsPathTakesThePlaceOfTheTrail) {
   EXPECT_EQ(known_.moment->time_s, known_.timeline->duration_s + 1);
 }
 
+TEST_F(LiveViewTest, ShowsTheFeedThatIsBesideTheOneThatWasProgrammed) {
+  open(options());
+  LiveStatus status = at({1, 2, 3});
+  frame(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.tool_pose.has_value(); }));
+  EXPECT_FALSE(known_.moment->measured_mm_per_min) << "too little is known";
+  status.feed_mm_per_min = 1480;
+  frame(status);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.measured_mm_per_min == 1480; }));
+  EXPECT_EQ(known_.moment->feed_mm_per_min, 0) << "nobody has given a program";
+  EXPECT_FALSE(known_.moment->is_traverse);
+}
+
+TEST_F(LiveViewTest, ProgrammedFeedIsThatOfTheMotionUnderWay) {
+  MotionList program;
+  program.at({-5, 10, 5}).tool(1).spindle(true);
+  program.feed_rate(600).feed({5, 10, -2}).feed_rate(1500).feed({35, 10, -2}).traverse({35, 10, 5});
+  const std::shared_ptr<const ProgramTrack> track = test::track_of(program.list());
+  LiveViewOptions wanted = options();
+  wanted.load_program = [&track](const std::stop_token&) {
+    auto loaded = std::make_unique<LiveProgram>();
+    loaded->track = track;
+    return loaded;
+  };
+  open(std::move(wanted));
+  ASSERT_TRUE(until([&] { return static_cast<bool>(known_.timeline); }));
+  LiveStatus status = at({20, 10, -2});
+  status.feed_mm_per_min = 1410;
+  status.place.followed = true;
+  const auto shows = [&](std::size_t motion, double feed_mm_per_min, bool is_traverse) {
+    status.place.program_s = 0.5 * (track->start_s(motion) + track->end_s(motion));
+    frame(status);
+    return moment([&](const Moment& m) {
+      return m.measured_mm_per_min == 1410 && m.is_traverse == is_traverse &&
+             m.feed_mm_per_min == feed_mm_per_min;
+    });
+  };
+  EXPECT_TRUE(shows(1, 600, false));
+  EXPECT_TRUE(shows(2, 1500, false));
+  EXPECT_TRUE(shows(3, 0, true));
+  status.place.followed = false;
+  frame(status);
+  EXPECT_TRUE(moment([](const Moment& m) { return m.feed_mm_per_min == 0 && !m.is_traverse; }))
+      << "off the path nobody knows what was wanted";
+}
+
 TEST_F(LiveViewTest, ALogIsHeldAndHurried) {
   LiveViewOptions wanted = options();
   wanted.log = true;
