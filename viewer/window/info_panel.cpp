@@ -16,6 +16,20 @@ void figure(const std::string& text, const ImVec4& color) {
   ImGui::TextColored(color, "%s", text.c_str());
 }
 
+/// With as many digits as the rest of the table cell has room for: a long travel loses its
+/// thousandths, not its end.
+std::string fitting(const PanelContext& context, const AxisReadout& axis, double value) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  std::string text;
+  for (int digits = axis.is_rotary ? 2 : context.measures.digits(); digits >= 0; --digits) {
+    text = axis.is_rotary ? fmt::format("{:.{}f}", value, digits)
+                          : context.measures.length(value, digits);
+    text.resize(text.find_last_of("0123456789") + 1);  // the column's unit is known
+    if (ImGui::CalcTextSize(text.c_str()).x <= room) break;
+  }
+  return text;
+}
+
 void draw_positions(const PanelContext& context) {
   const Moment& moment = *context.shown.moment;
   if (moment.axes.empty() || !ImGui::BeginTable("positions", 4)) return;
@@ -34,9 +48,7 @@ void draw_positions(const PanelContext& context) {
     figure(context.word(column), theme::kDim);
   }
   for (const AxisReadout& axis : moment.axes) {
-    const auto figure_of = [&](double value) {
-      return axis.is_rotary ? fmt::format("{:.2f}", value) : context.measures.position(value);
-    };
+    const auto figure_of = [&](double value) { return fitting(context, axis, value); };
     ImGui::PushFont(context.fonts.readout);
     ImGui::TableNextColumn();
     ImGui::TextColored(theme::kText, "%c", axis.name);
@@ -86,7 +98,9 @@ void draw_machine_values(const PanelContext& context) {
     ImGui::TableNextColumn();
     ImGui::TextColored(theme::kDim, "%s", context.word(label));
     ImGui::TableNextColumn();
+    const bool is_cut_off = ImGui::CalcTextSize(value.c_str()).x > ImGui::GetContentRegionAvail().x;
     ImGui::TextUnformatted(value.c_str());
+    if (is_cut_off && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", value.c_str());
   };
   line(Text::kTool, tool_text(context));
   const char* turn = moment.spindle_rpm > 0.0 ? " M3" : moment.spindle_rpm < 0.0 ? " M4" : "";
