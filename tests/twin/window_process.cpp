@@ -106,11 +106,11 @@ void WindowedKerf::key(const std::string& name) const {
   EXPECT_TRUE(xdotool(fmt::format("key {}", name)));
 }
 
-Picture WindowedKerf::screenshot() {
+Picture WindowedKerf::screenshot(const std::string& by_key) {
   // A window that is not on the screen yet gets no keys: asked again.
   std::string path;
   for (int tries = 0; tries < 20 && path.empty() && !has_ended(); ++tries) {
-    key("s Return");  // under the name that is proposed
+    key(by_key + " Return");  // under the name that is proposed
     wait_for([&] { return !(path = picture_in(home_.path())).empty(); }, std::chrono::seconds(3));
   }
   Picture picture = read_png_file(path);

@@ -32,8 +32,9 @@ class WindowedKerf {
   void key(const std::string& name) const;
   /// One character after the other.
   void type(const std::string& text) const;
-  /// What the window shows, its panels included; by its own screenshot key.
-  Picture screenshot();
+  /// The picture in the window, by its own key; or what another key of it saves: "S" is the whole
+  /// window.
+  Picture screenshot(const std::string& by_key = "s");
   /// Takes pictures until one satisfies; false after a minute.
   bool shows(const std::function<bool(const Picture&)>& wanted);
   void send(int signal) const { kerf_.send(signal); }

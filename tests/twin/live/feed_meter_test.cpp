@@ -14,7 +14,9 @@ TEST(FeedMeter, StraightAtEvenSpeed) {
   for (int ms = 0; ms <= 500; ++ms) {
     const double s = 0.001 * ms;
     meter.take(s, {15.0 * s, 20.0 * s, 0.0});
-    if (ms < 50) EXPECT_FALSE(meter.mm_per_min()) << ms;
+    if (ms < 50) {
+      EXPECT_FALSE(meter.mm_per_min()) << ms;
+    }
   }
   ASSERT_TRUE(meter.mm_per_min());
   EXPECT_NEAR(*meter.mm_per_min(), 1500.0, 1e-6);
