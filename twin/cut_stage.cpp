@@ -412,8 +412,8 @@ void CutStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_o
     flush();
     if (stop_now()) return;
     if (work_done_ && path_.empty()) {
-      const double share = static_cast<double>(pushed) / static_cast<double>(divided_.size());
-      *work_done_ = work_before_ + work_searched_ + share * (work_of_step_ - work_searched_);
+      const double done = static_cast<double>(pushed) / static_cast<double>(divided_.size());
+      *work_done_ = work_before_ + work_searched_ + done * (work_of_step_ - work_searched_);
     }
   }
 }

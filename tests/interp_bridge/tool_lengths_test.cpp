@@ -116,7 +116,7 @@ TEST(ToolLengths, WhatNothingTellsIsTakenToBeRight) {
   EXPECT_EQ(shop.last().length, ToolLengthState{}) << "an offset without one";
   ToolTableRow row;
   row.tool = 1;
-  EXPECT_TRUE(known_lengths({row}).empty());
+  EXPECT_TRUE(known_lengths({row}, 7).empty());
 }
 
 TEST(ToolLengths, AHeightThatNobodyHasSaidIsNotMoved) {

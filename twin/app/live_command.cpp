@@ -261,6 +261,7 @@ int watch_in_window(const LiveArguments& arguments, LiveCommand command, LiveReq
   };
   WindowOptions options;
   options.road = request.draw;
+  if (request.units != LengthUnit::kMm) options.units = request.units;
   const Result<int> code = work_beside_window(
       options, mailbox, commands, stop,
       [&] { return watch_rounds(request, std::move(source), stop, window); },

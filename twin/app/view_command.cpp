@@ -64,6 +64,7 @@ int in_window(std::optional<ViewArguments> arguments, const ViewRequest& request
   WindowOptions options;
   options.is_local = request.local;
   options.road = request.window_road;
+  if (request.run.units != LengthUnit::kMm) options.units = request.run.units;
   const auto replay = [&](const ViewArguments& log, std::function<void()> on_start) {
     LiveArguments live = live_arguments(log);
     live.quiet = true;

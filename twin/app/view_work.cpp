@@ -286,9 +286,9 @@ void ViewWork::describe(const LoadedProgram& loaded) {
   if (loaded.player.blank) {
     const Box box = loaded.player.blank->bounds_mm();
     const auto shown = [unit](double mm) { return fmt::format("{:.4f}", from_mm(mm, unit)); };
-    shown_blank_ = fmt::format("box:{},{},{}:{},{},{}", shown(box.min.x), shown(box.min.y),
-                               shown(box.min.z), shown(box.max.x), shown(box.max.y),
-                               shown(box.max.z));
+    shown_blank_ =
+        fmt::format("box:{},{},{}:{},{},{}", shown(box.min.x), shown(box.min.y), shown(box.min.z),
+                    shown(box.max.x), shown(box.max.y), shown(box.max.z));
   }
   const double cell = from_mm(loaded.blank.cell_mm, unit);
   job_.cell_in_use = cell > 0 ? fmt::format("{:.4g}", cell) : "";
