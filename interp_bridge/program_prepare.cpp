@@ -115,6 +115,7 @@ void LineNumberer::note_store(std::string_view line, std::string& out, std::size
   out.resize(std::max(out.size(), used + note.size()));
   note.copy(out.data() + used, note.size());
   used += note.size();
+  ++added_;
 }
 
 void LineNumberer::append(std::string_view text, std::string& out) {
@@ -127,7 +128,8 @@ void LineNumberer::append(std::string_view text, std::string& out) {
         static_cast<const char*>(std::memchr(p, '\n', static_cast<std::size_t>(end - p)));
     const char* const stop = newline == nullptr ? end : newline;
     std::string_view line(p, static_cast<std::size_t>(stop - p));
-    const bool is_store = may_store(line) && stores(words_of_block(line));
+    const bool is_store =
+        may_store(line) && line.find(kStoreComment) == line.npos && stores(words_of_block(line));
     // A comment of the block's own would be printed instead; a longer line may be too long.
     const bool shares = is_store && line.find_first_of("(;") == line.npos && line.size() < 100;
     if (is_store && !shares) note_store(line, out, used);

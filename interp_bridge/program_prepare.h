@@ -55,6 +55,9 @@ class LineNumberer {
   std::uint32_t lines() const { return line_ - 1; }
   /// Lines that could not be numbered (too long, or a number would change their meaning), in order.
   const std::vector<std::uint32_t>& unnumbered() const { return unnumbered_; }
+  /// Lines of the copy that the text has not: each with a kStoreComment, and the number of the line
+  /// behind it.
+  std::uint32_t added() const { return added_; }
   /// Lower-case names of the subroutines that the file calls (o<name> call, M98 P) but does not
   /// define.
   std::set<std::string> missing_subroutines() const;
@@ -70,6 +73,7 @@ class LineNumberer {
   void advance();
 
   std::uint32_t line_ = 1;
+  std::uint32_t added_ = 0;
   std::string
       counter_;  ///< "N" and the number of the line, in text: counting up is cheaper than printing
   std::vector<std::uint32_t> unnumbered_;

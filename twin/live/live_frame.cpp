@@ -171,7 +171,7 @@ std::array<double, 9> LiveFrame::machine_place_of(const LivePose& pose) const {
   const Vec3 turned = pose.tip_mm + work.g92_mm;
   const Vec3 there =
       Vec3{cos_ * turned.x - sin_ * turned.y, sin_ * turned.x + cos_ * turned.y, turned.z} +
-      work.g5x_mm;
+      work.g5x_mm + Vec3{0, 0, pose.tool_length_mm};
   std::array<double, 9> place{there.x, there.y, there.z};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<int>(i);

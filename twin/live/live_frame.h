@@ -85,8 +85,8 @@ class LiveFrame {
   /// "Z", "X and Y", "joint 3": those without which there is no tip.
   std::string missing_axes(const AxisSample& sample) const;
 
-  /// Machine coordinates at which a program's numbers are those of the pose, with no tool length in
-  /// force: X Y Z A B C U V W. mm, degrees.
+  /// Machine coordinates of the pose, whatever tool length is in force: X Y Z A B C U V W. mm,
+  /// degrees.
   std::array<double, 9> machine_place_of(const LivePose& pose) const;
 
   int tool_of(const AxisSample& sample) const {

@@ -102,7 +102,8 @@ std::unique_ptr<Program> LiveShift::open(std::size_t program) const {
 void LiveShift::see_start(const AxisSample& sample) {
   const bool told = sample.program != ProgramState::kUnknown;
   const bool idle =
-      told ? sample.program == ProgramState::kIdle : sample.line <= 0 && stands(sample);
+      told ? sample.program == ProgramState::kIdle
+           : sample.line == 0 || (sample.line == AxisSample::kUnknown && stands(sample));
   const bool begins = std::exchange(was_idle_, idle) && !idle;
   if (idle) {
     if (const ProgramStart start = run_.cutter->start_at(sample)) start_ = start;

@@ -273,9 +273,10 @@ TEST(OctreeModel, RefusesWhatItCannotHold) {
     return tree ? std::string() : tree.error();
   };
   EXPECT_EQ(error(0, 1 << 30), "cell size 0 mm is not allowed; must be above 0");
-  EXPECT_EQ(error(60, 1 << 30),
-            "cell size 60 mm exceeds the blank, which is 100 x 100 x 50 mm; 0.05 to 0.5 suits most "
-            "parts");
+  EXPECT_EQ(
+      error(60, 1 << 30),
+      "cell size 60 mm exceeds the blank, which is 100 x 100 x 50 mm; 0.05 to 0.5 mm suits most "
+      "parts");
   EXPECT_EQ(error(0.01, 1'000'000'000),
             "cell size 0.01 mm would need about 12.4 GB of memory; 1.0 GB are allowed, for which "
             "0.035 mm fits");

@@ -33,6 +33,10 @@ TEST(LiveFrame, MachineCoordinatesBecomeThoseOfTheTip) {
   EXPECT_NEAR(c * w.x - s * w.y + 12.5, 100, 1e-9);
   EXPECT_NEAR(s * w.x + c * w.y - 7.25, 50, 1e-9);
   EXPECT_NEAR(w.z - 60 + 40, 20, 1e-9);
+  const std::array<double, 9> back = frame.machine_place_of(pose);
+  EXPECT_NEAR(back[0], 100, 1e-9);
+  EXPECT_NEAR(back[1], 50, 1e-9);
+  EXPECT_NEAR(back[2], 20, 1e-9);
 }
 
 TEST(LiveFrame, JointsAreTheAxesTheyMove) {
