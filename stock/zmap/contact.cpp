@@ -28,6 +28,7 @@ class Scan {
     lowest_z_ = std::min(from.z, from.z + step.z);
     low_z_ = lowest_z_ + surface_height(tool, 0) + tolerance;
     half_diagonal_ = 0.5 * std::hypot(grid_.cell_x_mm(), grid_.cell_y_mm());
+    floor_z_ = std::max(grid_.bounds_mm().min.z, static_cast<double>(grid_.floor_mm()));
   }
   Found run();
 
@@ -37,8 +38,7 @@ class Scan {
   double nearest(double x, double y) const;
   /// Nothing is met earlier than at the start, and this not deeper than what was.
   bool says_nothing_new(double material, double low) const {
-    return found_.t <= 0 &&
-           material - std::max(low, grid_.bounds_mm().min.z) <= found_.depth + 1e-9;
+    return found_.t <= 0 && material - std::max(low, floor_z_) <= found_.depth + 1e-9;
   }
   void check_middle(double x, double y, double near, double material);
   void check_area(int i, int j, double x, double y, double near);
@@ -50,6 +50,8 @@ class Scan {
   double lowest_z_ = 0;  ///< of the tip
   double low_z_ = 0;     ///< nothing below is told
   double half_diagonal_ = 0;
+  /// Of the blank, as a cell has it that is cut through: heights are floats, and may be above.
+  double floor_z_ = 0;
   Found found_;
 };
 
@@ -70,7 +72,7 @@ void Scan::check_middle(double x, double y, double near, double material) {
   const double t_low = sweep_.lowest(x, y, t0, t1);
   const double lowest = std::min(sweep_.height(x, y, t_low),
                                  std::min(sweep_.height(x, y, t0), sweep_.height(x, y, t1)));
-  const double bottom = std::max(lowest, grid_.bounds_mm().min.z);
+  const double bottom = std::max(lowest, floor_z_);
   if (material <= bottom) return;
   found_.depth = std::max(found_.depth, material - bottom + sweep_.tolerance);
   if (t0 < found_.t) found_.t = std::min(found_.t, sweep_.first_below(x, y, material, t0, t_low));
@@ -105,7 +107,7 @@ void Scan::check_area(int i, int j, double x, double y, double near) {
   const double low = lowest_z_ + surface_height(sweep_.tool, radius);
   if (top - sweep_.tolerance <= low || says_nothing_new(top, low)) return;
   const double material = field_.traces.lower_bound_mm(grid_, i, j, sweep_.tolerance);
-  if (material <= low_z_ || material <= grid_.bounds_mm().min.z + sweep_.tolerance) return;
+  if (material <= low_z_ || material <= floor_z_ + sweep_.tolerance) return;
   if (is_hollow_around(i, j)) return;
   // What is no deeper than the tolerance in the sides of the blank is not told.
   const double half_x = 0.5 * grid_.cell_x_mm(), half_y = 0.5 * grid_.cell_y_mm();
@@ -122,7 +124,7 @@ void Scan::check_area(int i, int j, double x, double y, double near) {
   const double t_low = area.lowest(t0, t1);
   const double bottom = area.height(t_low), level = material - sweep_.tolerance;
   if (bottom >= level) return;
-  found_.depth = std::max(found_.depth, material - std::max(bottom, grid_.bounds_mm().min.z));
+  found_.depth = std::max(found_.depth, material - std::max(bottom, floor_z_));
   if (t0 < found_.t) found_.t = std::min(found_.t, area.first_below(level, t0, t_low));
 }
 
