@@ -16,6 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -25,8 +27,8 @@ constexpr int kNameAttempts = 100;
 constexpr std::size_t kNameBytesKept = 200;
 
 Error failure(const std::string& path, int error_number) {
-  const std::string name = path == "-" ? "standard output" : path;
-  return Error{"writing " + name + ": " + std::generic_category().message(error_number)};
+  const std::string name = path == "-" ? tr("standard output") : path;
+  return Error{trf("writing {}: {}", name, std::generic_category().message(error_number))};
 }
 
 /// ".NAME.XXXXXX" in the folder of `target`. open() is used instead of mkstemp() because that
@@ -149,7 +151,7 @@ bool written_as_it_comes(const std::string& path) {
 }
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
-  if (path.empty()) return Error{"no file name given to write to"};
+  if (path.empty()) return Error{tr("no file name given to write to")};
   AtomicFile file;
   file.path_ = path;
   if (written_as_it_comes(path)) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -20,11 +22,11 @@ std::string printable(const std::string& text) {
 const char* to_string(Severity severity) {
   switch (severity) {
     case Severity::kNote:
-      return "note";
+      return tr_noop("note");
     case Severity::kWarning:
-      return "warning";
+      return tr_noop("warning");
     case Severity::kError:
-      return "error";
+      return tr_noop("error");
   }
   return "error";
 }
@@ -39,14 +41,14 @@ std::string to_string(const Diagnostic& d) {
     if (d.line > 0 && d.column > 0) out += fmt::format("{}:", d.column);
     out += " ";
   }
-  out += fmt::format("{}: {}\n", to_string(d.severity), printable(d.message));
+  out += fmt::format("{}: {}\n", tr(to_string(d.severity)), printable(d.message));
   if (!d.excerpt.empty()) {
     out += fmt::format("{:>6} | {}\n", d.line, printable(d.excerpt));
     if (d.column > 0)
       out += fmt::format("{:>6} | {}^\n", "",
                          std::string(static_cast<std::size_t>(d.column) - 1, ' '));
   }
-  if (!d.hint.empty()) out += fmt::format("   hint: {}\n", printable(d.hint));
+  if (!d.hint.empty()) out += trf("   hint: {}\n", printable(d.hint));
   return out;
 }
 

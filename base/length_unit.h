@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/units.h"
+
 namespace kerf {
 
 enum class LengthUnit : std::uint8_t { kMm, kInch };
 
 /// mm in one.
-constexpr double mm_of(LengthUnit unit) { return unit == LengthUnit::kInch ? 25.4 : 1.0; }
+constexpr double mm_of(LengthUnit unit) { return mm_of_unit(unit == LengthUnit::kInch); }
 
 /// "mm", "in".
 constexpr const char* name_of(LengthUnit unit) { return unit == LengthUnit::kInch ? "in" : "mm"; }

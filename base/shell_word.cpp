@@ -1,15 +1,16 @@
 #include "base/shell_word.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
+
+#include "base/text_scan.h"
 
 namespace kerf {
 namespace {
 
 /// What stands for itself in every shell.
 bool is_plain(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+  return is_letter(c) || is_digit(c) ||
          std::string_view("_-./:=,+@%").find(c) != std::string_view::npos;
 }
 

@@ -8,6 +8,9 @@
 #include <cstdlib>
 #include <optional>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -39,16 +42,16 @@ struct Name {
 };
 constexpr std::array<Name, 2> kNames = {{{"plasmac", "m3:0+!m62:3"}, {"laser", "m3+s+feed"}}};
 
-constexpr const char* kAllowed =
+constexpr const char* kAllowed = tr_noop(
     "allowed are m3, m3:0 to m3:7, m4, m7, m8, m62:0 to m62:63, m67:0 to m67:3, s, feed and "
-    "z<LEVEL in mm, joined by + and inverted by !; or plasmac, laser";
+    "z<LEVEL in mm, joined by + and inverted by !; or plasmac, laser");
 
 /// "12" below `count`.
 std::optional<int> index_of(std::string_view digits, int count) {
   if (digits.empty() || digits.size() > 2) return std::nullopt;
   int value = 0;
   for (const char c : digits) {
-    if (c < '0' || c > '9') return std::nullopt;
+    if (!is_digit(c)) return std::nullopt;
     value = value * 10 + (c - '0');
   }
   return value < count ? std::optional(value) : std::nullopt;
@@ -113,15 +116,15 @@ Result<BeamTrigger> BeamTrigger::parse(std::string_view text) {
   constexpr std::size_t kLongest = 200;
   constexpr std::size_t kShown = 60;
   const auto refuse = [&](std::string_view part) {
-    return Error{fmt::format("beam trigger '{}': {}; {}", text.substr(0, kShown),
-                             part.empty() ? "a condition is missing"
-                                          : fmt::format("'{}' is none", part.substr(0, kShown)),
-                             kAllowed)};
+    return Error{trf(
+        "beam trigger '{}': {}; {}", text.substr(0, kShown),
+        part.empty() ? tr("a condition is missing") : trf("'{}' is none", part.substr(0, kShown)),
+        tr(kAllowed))};
   };
   std::string bare;
   for (const char c : text.substr(0, kLongest + 1)) {
-    if (c == ' ' || c == '\t') continue;
-    bare += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    if (is_blank(c)) continue;
+    bare += to_lower(c);
   }
   if (bare.size() > kLongest) return refuse(bare);
   for (const Name& known : kNames) {

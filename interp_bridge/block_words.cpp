@@ -5,16 +5,13 @@
 #include <cstring>
 #include <optional>
 
+#include "base/text_scan.h"
+
 namespace kerf {
 namespace {
 
 constexpr std::uint8_t kAllThree = 7;
 constexpr std::uint32_t kFirstLine = 1;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
-bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
 
 /// Words of a block, one after the other: a letter, and its number unless that is computed.
 class WordScanner {
@@ -29,7 +26,7 @@ class WordScanner {
       if (*p_ == '(') {
         skip_past(')');
       } else if (is_letter(*p_) || *p_ == '@' || *p_ == '^') {
-        letter = lower(*p_++);
+        letter = to_lower(*p_++);
         number = read_number();
         return true;
       } else if (*p_ == '#' || *p_ == '[') {
@@ -42,7 +39,7 @@ class WordScanner {
 
  private:
   void skip_blanks() {
-    while (p_ != end_ && is_blank(*p_)) ++p_;
+    while (p_ != end_ && is_line_blank(*p_)) ++p_;
   }
   void skip_past(char closing) {
     while (p_ != end_ && *p_ != closing) ++p_;
@@ -85,7 +82,7 @@ class WordScanner {
     }
   }
   void skip_digits() {
-    while (p_ != end_ && (is_digit(*p_) || *p_ == '.' || is_blank(*p_))) ++p_;
+    while (p_ != end_ && (is_digit(*p_) || *p_ == '.' || is_line_blank(*p_))) ++p_;
   }
   std::optional<double> read_number() {
     skip_blanks();
@@ -97,7 +94,7 @@ class WordScanner {
     const char* at = p_;
     const bool minus = *at == '-';
     if (*at == '+' || *at == '-') ++at;
-    while (at != end_ && is_blank(*at)) ++at;
+    while (at != end_ && is_line_blank(*at)) ++at;
     if (at != end_ && (*at == '#' || *at == '[' || is_letter(*at))) {
       skip_value();
       return std::nullopt;
@@ -105,7 +102,7 @@ class WordScanner {
     double value = 0;
     double scale = 0;
     for (; at != end_; ++at) {
-      if (is_blank(*at)) continue;
+      if (is_line_blank(*at)) continue;
       if (*at == '.' && scale == 0) {
         scale = 1;
       } else if (is_digit(*at)) {
@@ -160,6 +157,9 @@ void take_g(int code, BlockWords& words, Codes& codes) {
     case 301:
       words.store = BlockWords::Store::kSecond;
       break;
+    case 520:
+      words.offset = BlockWords::Offset::kLocal;
+      break;
     case 530:
       words.place = BlockWords::Place::kMachine;
       break;
@@ -167,8 +167,10 @@ void take_g(int code, BlockWords& words, Codes& codes) {
       words.offset = BlockWords::Offset::kShift;
       break;
     case 921:
-    case 922:
       words.offset = BlockWords::Offset::kUnshift;
+      break;
+    case 922:
+      words.offset = BlockWords::Offset::kSuspend;
       break;
     case 923:
       words.offset = BlockWords::Offset::kReshift;
@@ -187,10 +189,10 @@ bool is_special(const BlockWords& words) {
 bool may_be_special(std::string_view line) {
   const char* const end = line.data() + line.size();
   for (const char* p = line.data(); p != end; ++p) {
-    const char letter = lower(*p);
+    const char letter = to_lower(*p);
     if (letter != 'g' && letter != 'm') continue;
     const char* at = p + 1;
-    while (at != end && (is_blank(*at) || *at == '0')) ++at;
+    while (at != end && (is_line_blank(*at) || *at == '0')) ++at;
     if (at == end) return false;
     if (letter == 'm') {
       if (*at == '6') return true;
@@ -198,7 +200,7 @@ bool may_be_special(std::string_view line) {
     }
     if (*at == '1' || *at == '2' || *at == '3' || *at == '5' || *at == '9') {
       ++at;
-      while (at != end && is_blank(*at)) ++at;
+      while (at != end && is_line_blank(*at)) ++at;
       if (at != end && is_digit(*at)) return true;
     }
   }
@@ -208,9 +210,9 @@ bool may_be_special(std::string_view line) {
 /// Whether such a block calls others: M98, O.. CALL.
 bool calls(std::string_view line) {
   for (std::size_t i = 0; i + 3 < line.size(); ++i) {
-    const char c = lower(line[i]);
-    if (c == 'c' && lower(line[i + 1]) == 'a' && lower(line[i + 2]) == 'l' &&
-        lower(line[i + 3]) == 'l') {
+    const char c = to_lower(line[i]);
+    if (c == 'c' && to_lower(line[i + 1]) == 'a' && to_lower(line[i + 2]) == 'l' &&
+        to_lower(line[i + 3]) == 'l') {
       return true;
     }
     if (c == 'm' && line[i + 1] == '9' && line[i + 2] == '8') return true;
@@ -312,9 +314,7 @@ void BlockReader::File::look_through() {
   line = kFirstLine;
   while (whole.next(text)) {
     while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      look_at(text.substr(0, end));
-      text.remove_prefix(std::min(end + 1, text.size()));
+      look_at(take_line(text));
       ++line;
     }
   }

@@ -25,7 +25,9 @@ struct BlockWords {
   enum class Offset : std::uint8_t {
     kNone,
     kShift,     ///< G92
-    kUnshift,   ///< G92.1, G92.2
+    kLocal,     ///< G52
+    kUnshift,   ///< G92.1
+    kSuspend,   ///< G92.2
     kReshift,   ///< G92.3
     kTouchOff,  ///< G10 L20
     kMachine,   ///< G10 L2

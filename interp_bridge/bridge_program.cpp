@@ -14,6 +14,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/child_listener.h"
 #include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/parameter_file.h"
@@ -30,8 +33,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kInchMm = 25.4;
-
 /// A row as `kerf-interp --tools` takes it: machine units, all digits.
 /// A B C stay 0: they are no lengths of a tip (ToolLengths).
 std::string tool_row(const ToolTableRow& row, double unit_mm, const InterpreterSetup& machine) {
@@ -44,7 +45,7 @@ std::string tool_row(const ToolTableRow& row, double unit_mm, const InterpreterS
 }
 
 /// The INI of a machine that has none: subroutines may also stand where kerf was started, as on the
-/// text road. A QtPlasmaC machine has three spindles: torch, scribe and spotting.
+/// text interpreter. A QtPlasmaC machine has three spindles: torch, scribe and spotting.
 std::string makeshift_ini(const std::string& folder, bool random_toolchanger, bool qtplasmac) {
   return fmt::format(
       "[RS274NGC]\nSUBROUTINE_PATH = {}\n[EMCIO]\nRANDOM_TOOLCHANGER = {}\n[TRAJ]\nSPINDLES = {}\n",
@@ -130,15 +131,13 @@ bool probes_from_reference(const std::string& path) {
   bool probes = false, goes = false;
   for (std::string_view text; pieces.next(text) && !(probes && goes);) {
     while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      const std::string_view line = text.substr(0, end);
+      const std::string_view line = take_line(text);
       const auto has = [&](std::string_view word) {
         return std::search(line.begin(), line.end(), word.begin(), word.end(),
                            [](char a, char b) { return (a | 0x20) == (b | 0x20); }) != line.end();
       };
       probes = probes || has("g38.");
       goes = goes || has("g28") || has("g30");
-      text.remove_prefix(std::min(end + 1, text.size()));
     }
   }
   return probes && goes;
@@ -151,37 +150,37 @@ Result<std::string> BridgeProgram::parameters_for(const std::string& home) const
   if (machine.parameter_path.empty() && !machine.work_offset) {
     if (!probes_from_reference(options_.path)) return home + "/none/parameters";
     constexpr double kAway_mm = 1;
-    const double away = kAway_mm / (machine.inch_machine ? kInchMm : 1.0);
+    const double away = kAway_mm / mm_of_unit(machine.inch_machine);
     ParameterFile references;
     for (const int z : {5163, 5183}) references.values[z] = away;
     std::ofstream file(path);
     if (file << references.text() << std::flush) return path;
-    return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
   }
   if (!machine.work_offset) {
     std::error_code error;
     fs::copy_file(machine.parameter_path, path, error);
     if (!error) return path;
-    return Error{fmt::format("cannot read {}: {}", machine.parameter_path, error.message())};
+    return Error{trf("cannot read {}: {}", machine.parameter_path, error.message())};
   }
   // The interpreter itself tells the faults of the file.
   Diagnostics ignored;
   const Result<ParameterFile> values =
-      parameters_of(machine, machine.inch_machine ? kInchMm : 1.0, ignored);
+      parameters_of(machine, mm_of_unit(machine.inch_machine), ignored);
   if (!values) return Error{values.error()};
   std::ofstream file(path);
   if (file << values->text() << std::flush) return path;
-  return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+  return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
 }
 
 Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& home) const {
   const InterpreterSetup& machine = options_.machine;
   const auto cannot_write = [](const std::string& path) {
-    return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
   };
   const std::string tool_path = home + "/tools";
   std::ofstream tool_file(tool_path);
-  const double unit_mm = machine.inch_machine ? kInchMm : 1.0;
+  const double unit_mm = mm_of_unit(machine.inch_machine);
   for (const ToolTableRow& row : tools_) tool_file << tool_row(row, unit_mm, machine);
   if (!tool_file.flush()) return cannot_write(tool_path);
   const std::string torch_path = home + "/torch";
@@ -217,7 +216,7 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
   if (!folder) return Error{folder.error()};
   const std::string home = folder->path() + "/home";
   if (mkdir(home.c_str(), 0700) != 0) {
-    return Error{fmt::format("cannot make the folder {}: {}", home, std::strerror(errno))};
+    return Error{trf("cannot make the folder {}: {}", home, std::strerror(errno))};
   }
   auto given = arguments(home);
   if (!given) return Error{given.error()};
@@ -240,7 +239,7 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
             : options_.machine.ini_text;
     std::ofstream ini(child.ini);
     if (!(ini << text << std::flush)) {
-      return Error{fmt::format("cannot write {}: {}", child.ini, std::strerror(errno))};
+      return Error{trf("cannot write {}: {}", child.ini, std::strerror(errno))};
     }
   }
   auto process = InterpreterProcess::start(child);
@@ -303,35 +302,36 @@ void BridgeProgram::report_fault(const InterpreterFault& fault, const Reading& r
   for (const SourceRef& caller : fault.callers) {
     // A call that fails is its own caller.
     if (caller.file >= files_.size() || (callers.empty() && caller == fault.place)) continue;
-    callers += fmt::format("{}{}:{}", callers.empty() ? "called from " : ", from ",
+    callers += fmt::format("{}{}:{}", callers.empty() ? tr("called from ") : tr(", from "),
                            files_[caller.file], caller.line);
   }
   if (!callers.empty()) {
     diagnostic.hint += diagnostic.hint.empty() ? callers : "; " + callers;
   }
   reading.diagnostics.push_back(std::move(diagnostic));
+  reading.summary.end_remarked = is_missing_end(message);
 }
 
 void BridgeProgram::report_exit(InterpreterProcess::Exit exit, const Reading& reading) const {
   for (const InterpreterFault& fault : reading.records.faults()) report_fault(fault, reading);
   if (exit.signal != 0) {
-    report(
-        Severity::kError, reading.records.place(),
-        fmt::format("kerf-interp was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
-        "--interp text uses rs274 instead", reading);
+    report(Severity::kError, reading.records.place(),
+           trf("kerf-interp was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
+           tr("--interp text uses rs274 instead"), reading);
     return;
   }
   if (!reading.records.ended()) {
     std::string said = reading.stderr_text.substr(0, reading.stderr_text.find('\n'));
     report(Severity::kError, reading.records.place(),
-           said.empty() ? fmt::format("kerf-interp ended with status {} in the middle", exit.status)
-                        : fmt::format("kerf-interp ended in the middle: {}", said),
-           "--interp text uses rs274 instead", reading);
+           said.empty() ? trf("kerf-interp ended with status {} in the middle", exit.status)
+                        : trf("kerf-interp ended in the middle: {}", said),
+           tr("--interp text uses rs274 instead"), reading);
     return;
   }
   if (reading.records.faults().empty() && !reading.summary.has_program_end) {
-    report(Severity::kWarning, reading.records.place(), "the program ended without M2, M30 or %",
-           {}, reading);
+    reading.summary.end_remarked = true;
+    report(Severity::kWarning, reading.records.place(),
+           tr("the program ended without M2, M30 or %"), {}, reading);
   }
 }
 
@@ -342,11 +342,11 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
   if (!records.damage().empty()) {
     session.process.kill();
     report(Severity::kError, records.place(),
-           fmt::format("the records of {} cannot be read: {}", kerf_interp_, records.damage()),
-           "kerf and kerf-interp must be of one version", reading);
+           trf("the records of {} cannot be read: {}", kerf_interp_, records.damage()),
+           tr("kerf and kerf-interp must be of one version"), reading);
     return;
   }
-  constexpr const char* kLoop = "a loop whose condition stays true?";
+  constexpr const char* kLoop = tr_noop("a loop whose condition stays true?");
   switch (ending) {
     case ChildEnding::kComplete:
       report_exit(session.process.wait(), reading);
@@ -355,21 +355,21 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
       break;
     case ChildEnding::kTooMany:
       report(Severity::kError, records.place(),
-             fmt::format("more than {} canonical commands; the program counts as endless",
-                         command_limit(options_, survey_.lines)),
-             kLoop, reading);
+             trf("more than {} canonical commands; the program counts as endless",
+                 command_limit(options_, survey_.lines)),
+             tr(kLoop), reading);
       break;
     case ChildEnding::kSilent:
       session.process.kill();
       report(Severity::kError, records.place(),
-             fmt::format("no motion or other command for {} s; the program counts as endless",
-                         options_.max_silent_s),
-             std::string("the interpreter is here; ") + kLoop, reading);
+             trf("no motion or other command for {} s; the program counts as endless",
+                 options_.max_silent_s),
+             std::string(tr("the interpreter is here; ")) + tr(kLoop), reading);
       break;
     case ChildEnding::kRepeating:
       session.process.kill();
       report(Severity::kError, records.place(), repeat_message(reading.feeder.repeats()),
-             std::string(kLoop) + " --max-seconds allows more", reading);
+             std::string(tr(kLoop)) + tr(" --max-seconds allows more"), reading);
       break;
     case ChildEnding::kTooLong:
       session.process.kill();
@@ -410,14 +410,14 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.lengths.lengths = known_lengths(tools_, feeding.lengths.axes);
   feeding.lengths.calls = options_.machine.tool_lengths ? ToolLengthSetup::Calls::kTrue
                                                         : ToolLengthSetup::Calls::kHidden;
-  feeding.lengths.table_unit_mm = options_.machine.inch_machine ? 25.4 : 1.0;
+  feeding.lengths.table_unit_mm = mm_of_unit(options_.machine.inch_machine);
   feeding.lengths.start_z_mm = options_.machine.start[2];
   feeding.lengths.displaces = options_.machine.straight_axes;
   feeding.torch = torch_;
   feeding.signals = options_.signals;
   feeding.follows_probes = follows_probes_;
   feeding.answer_probe = answer_probe_;
-  feeding.no_answer = "no blank is given, --stock does";
+  feeding.no_answer = tr("no blank is given, --stock does");
   feeding.materials = &materials_;
   const InterpreterSetup& machine = options_.machine;
   if (machine.start_known) feeding.start = machine.start;
@@ -444,8 +444,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   report_ending(ending, *session, reading);
   if (contents.changed()) {
     report(Severity::kError, {0, 0},
-           "the program was changed while it was read: this result is that of no program",
-           "run it again", reading);
+           tr("the program was changed while it was read: this result is that of no program"),
+           tr("run it again"), reading);
   }
   if (ending == ChildEnding::kComplete) progress_ = 1;
   summary.interpret_s = std::chrono::duration<double>(Clock::now() - begin).count();

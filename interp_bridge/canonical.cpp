@@ -6,6 +6,9 @@
 #include <cstring>
 #include <limits>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -108,8 +111,6 @@ constexpr std::array<double, 19> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1
 /// Nobody means a point farther off, and products of such numbers stay finite.
 constexpr double kLargestCoordinate = 1e15;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_name_start(char c) { return (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name_part(char c) { return is_name_start(c) || is_digit(c) || c == '.'; }
 
@@ -123,7 +124,7 @@ struct Cursor {
   bool done() const { return at == end; }
 };
 
-/// Anything that the fast road does not hold exactly: long numbers, exponents.
+/// Anything that the fast reader does not hold exactly: long numbers, exponents.
 bool parse_number_slowly(Cursor& cursor, const char* begin, double& value) {
   const bool plus = *begin == '+';
   const auto [end, error] = std::from_chars(begin + (plus ? 1 : 0), cursor.end, value);
@@ -238,7 +239,7 @@ const char* parse_string(Cursor& cursor, CanonicalCommand& command) {
   const char* last = cursor.end;
   while (last != cursor.at && is_blank(last[-1])) --last;
   if (last - cursor.at < 2 || *cursor.at != '"' || last[-1] != '"') {
-    return "expected a text in double quotes";
+    return tr("expected a text in double quotes");
   }
   command.text = {cursor.at + 1, static_cast<std::size_t>(last - cursor.at - 2)};
   cursor.at = cursor.end;
@@ -250,24 +251,24 @@ const char* parse_argument(char letter, Cursor& cursor, CanonicalCommand& comman
   double& slot = command.arguments[command.argument_count];
   switch (letter) {
     case 'n':
-      if (!parse_number(cursor, slot)) return "expected a number";
+      if (!parse_number(cursor, slot)) return tr("expected a number");
       break;
     case 'c':
-      if (!parse_number(cursor, slot)) return "expected a number";
-      if (std::abs(slot) > kLargestCoordinate) return "a coordinate beyond 1e15 is not allowed";
+      if (!parse_number(cursor, slot)) return tr("expected a number");
+      if (std::abs(slot) > kLargestCoordinate) return tr("a coordinate beyond 1e15 is not allowed");
       break;
     case 'i':
-      if (!parse_integer(cursor, slot)) return "expected a whole number";
+      if (!parse_integer(cursor, slot)) return tr("expected a whole number");
       break;
     case 'u':
-      if (!parse_units(cursor, slot)) return "expected CANON_UNITS_INCHES or CANON_UNITS_MM";
+      if (!parse_units(cursor, slot)) return tr("expected CANON_UNITS_INCHES or CANON_UNITS_MM");
       break;
     case 'p':
-      if (!parse_plane(cursor, slot)) return "expected CANON_PLANE_XY, _YZ or _XZ";
+      if (!parse_plane(cursor, slot)) return tr("expected CANON_PLANE_XY, _YZ or _XZ");
       break;
     case 'm':
       if (parse_control_mode(cursor, command)) return nullptr;
-      return "expected CANON_EXACT_STOP, CANON_EXACT_PATH or CANON_CONTINUOUS with a tolerance";
+      return tr("expected CANON_EXACT_STOP, CANON_EXACT_PATH or CANON_CONTINUOUS with a tolerance");
     case 's':
       return parse_string(cursor, command);
     default:  // r
@@ -293,17 +294,17 @@ const char* parse_arguments(const char* spec, Cursor& cursor, CanonicalCommand& 
       if (*spec != 'r') cursor.skip_blanks();
       if (optional && cursor.done()) return nullptr;
     } else if (!skip_separator(cursor)) {
-      return cursor.done() ? "an argument is missing" : "expected a comma or a blank";
+      return cursor.done() ? tr("an argument is missing") : tr("expected a comma or a blank");
     }
     first = false;
     const char* const begin = cursor.at;
     if (const char* fault = parse_argument(*spec, cursor, command)) {
       cursor.at = begin;
-      return cursor.done() ? "an argument is missing" : fault;
+      return cursor.done() ? tr("an argument is missing") : fault;
     }
   }
   cursor.skip_blanks();
-  return cursor.done() ? nullptr : "more arguments than the command has";
+  return cursor.done() ? nullptr : tr("more arguments than the command has");
 }
 
 bool argument_fits(char letter, double value) {
@@ -449,7 +450,7 @@ void parse_canonical_line(std::string_view line, CanonicalLine& out) {
     // A CANON_ERROR may go on in the next line; any other call ends in its line.
     out.kind = CanonicalLineKind::kMalformed;
     out.column = static_cast<int>(line.size()) + 1;
-    out.message = "the closing parenthesis is missing; the listing may have been cut off";
+    out.message = tr("the closing parenthesis is missing; the listing may have been cut off");
     return;
   }
   if (!known) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/translate.h"
 #include "interp_bridge/program_prepare.h"
 
 namespace kerf {
@@ -101,8 +102,8 @@ void CanonicalReader::take_unknown() {
   unknown.severity = Severity::kWarning;
   unknown.file = options_.listing_name;
   unknown.line = static_cast<int>(listing_line_);
-  unknown.message = fmt::format("unknown canonical command {}; it is counted and passed over",
-                                name.substr(0, kExcerptBytes));
+  unknown.message = trf("unknown canonical command {}; it is counted and passed over",
+                        name.substr(0, kExcerptBytes));
   diagnostics_.push_back(std::move(unknown));
 }
 
@@ -124,8 +125,7 @@ void CanonicalReader::finish() {
   if (malformed_ > kMaxMalformedReports) {
     Diagnostic more;
     more.file = options_.listing_name;
-    more.message =
-        fmt::format("{} more lines could not be read", malformed_ - kMaxMalformedReports);
+    more.message = trf("{} more lines could not be read", malformed_ - kMaxMalformedReports);
     diagnostics_.push_back(std::move(more));
   }
   feeder_.finish();

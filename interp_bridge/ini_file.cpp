@@ -1,48 +1,34 @@
 #include "interp_bridge/ini_file.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <unordered_set>
 #include <utility>
 
+#include "base/small_file.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "interp_bridge/ini_include.h"
-#include "interp_bridge/source_text.h"
 
 namespace kerf {
 namespace {
 
 // The INI and what it includes. An entry takes a hundred times the bytes of its line.
 constexpr std::size_t kMaxIniBytes = 1024 * 1024;
-constexpr std::size_t kMaxLineBytes = 255;  // LINELEN of LinuxCNC's inifile
-constexpr int kMaxContinuedLines = 20;      // its MAX_EXTEND_LINES
+constexpr std::size_t kMaxIniLineBytes = 255;  // LINELEN of LinuxCNC's inifile
+constexpr int kMaxContinuedLines = 20;         // its MAX_EXTEND_LINES
 constexpr std::size_t kMaxDiagnostics =
     50;  // of the text; a file that is no INI has no end of them
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kIncludeWord = "#INCLUDE";
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-/// `text` up to its first newline, which is taken off with it.
-std::string_view take_line(std::string_view& text) {
-  const std::string_view line = text.substr(0, text.find('\n'));
-  text.remove_prefix(std::min(text.size(), line.size() + 1));
-  return line;
-}
-
 /// Blank, or a comment.
 bool passes_over(std::string_view line) {
-  const std::string_view words = trimmed(line);
+  const std::string_view words = trim(line);
   return words.empty() || words[0] == '#' || words[0] == ';';
 }
 
@@ -55,7 +41,7 @@ bool is_include_line(std::string_view line) {
 /// What a diagnostic shows of a line.
 std::string excerpt_of(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
-  return std::string(line.substr(0, kMaxLineBytes));
+  return std::string(line.substr(0, kMaxIniLineBytes));
 }
 
 }  // namespace
@@ -148,15 +134,15 @@ void IniParser::finish() {
   if (logical_.parts > 0 && !passes_over(logical_.text)) {
     line_ = logical_.line;
     report(Severity::kWarning, 0, logical_.excerpt,
-           "a backslash joins the last line to nothing; LinuxCNC passes over it");
+           tr("a backslash joins the last line to nothing; LinuxCNC passes over it"));
   }
   if (unreported_ == 0) return;
   const bool is_ini = !ini_.sections_.empty();
   Diagnostic diagnostic;
   diagnostic.severity = is_ini ? worst_unreported_ : Severity::kError;
   diagnostic.file = ini_.files_[0];
-  diagnostic.message = fmt::format("{} more remarks about its lines{}", unreported_,
-                                   is_ini ? "" : "; this is not an INI");
+  diagnostic.message = trf("{} more remarks about its lines{}", unreported_,
+                           is_ini ? "" : tr("; this is not an INI"));
   diagnostics_.push_back(std::move(diagnostic));
 }
 
@@ -167,8 +153,8 @@ void IniParser::begin_file(std::string_view text, const std::string& path) {
   if (!text.starts_with(kByteOrderMark)) return;
   line_ = 1;
   report(Severity::kWarning, 1, {},
-         "the file begins with a byte order mark; LinuxCNC does not understand its first line",
-         "store it without one");
+         tr("the file begins with a byte order mark; LinuxCNC does not understand its first line"),
+         tr("store it without one"));
   line_ = 0;
 }
 
@@ -190,8 +176,8 @@ void IniParser::add_lines(std::string_view text) {
     if (is_include_line(line.substr(word))) {
       report(Severity::kWarning, word + 1, line,
              file_ == 0
-                 ? "no #INCLUDE stands at the start of a line; LinuxCNC takes this one for a "
-                   "comment"
+                 ? tr("no #INCLUDE stands at the start of a line; LinuxCNC takes this one for a "
+                      "comment")
                  : "#INCLUDE within an included file; LinuxCNC goes one level deep and takes "
                    "it for a comment");
     }
@@ -208,7 +194,7 @@ void IniParser::add_shell_lines(std::string_view text) {
     ++shell_line_;
     if (!line.complete) {
       report(Severity::kWarning, 0, line.raw,
-             "the last line has no newline; LinuxCNC passes over it in an INI with #INCLUDE");
+             tr("the last line has no newline; LinuxCNC passes over it in an INI with #INCLUDE"));
     } else if (line.word() == kIncludeWord) {
       include(line);
     } else {
@@ -217,8 +203,8 @@ void IniParser::add_shell_lines(std::string_view text) {
         line.text[line.word_bytes - 1] = ' ';
         if (!std::exchange(dos_line_ends, true)) {
           report(Severity::kError, 0, {},
-                 "the file has DOS line ends; LinuxCNC stops here in an INI with #INCLUDE",
-                 "store it with Unix line ends");
+                 tr("the file has DOS line ends; LinuxCNC stops here in an INI with #INCLUDE"),
+                 tr("store it with Unix line ends"));
         }
       }
       add_physical({.text = line.text, .excerpt = line.raw, .columns = &line.columns});
@@ -239,23 +225,22 @@ void IniParser::include(const ShellLine& line) {
     // A backslash at the end of the name joins the next line to this one.
     add_remark(fmt::format("# handle_includes(): <{}> CANNOT READ {}", shell_line_, named));
   };
-  if (line.rest().empty()) return complain(Severity::kWarning, 0, " names no file");
+  if (line.rest().empty()) return complain(Severity::kWarning, 0, tr(" names no file"));
   const std::size_t at = line.word_bytes + 1;
   const Result<std::string> name = shell_file_name(line.rest());
   if (!name) return complain(Severity::kError, at, ": " + name.error());
   named = *name;
-  if (named.empty()) return complain(Severity::kWarning, at, " names no file");
+  if (named.empty()) return complain(Severity::kWarning, at, tr(" names no file"));
   const std::string folder = std::filesystem::path(ini_.files_[0]).parent_path().string();
   const std::string path = resolve_ini_path(named, folder);
   const Result<std::string> text = includes_(path);
   if (!text) {
-    return complain(Severity::kWarning, at,
-                    fmt::format(": {}; LinuxCNC goes on without it", text.error()));
+    return complain(Severity::kWarning, at, trf(": {}; LinuxCNC goes on without it", text.error()));
   }
   if (text->size() > kMaxIniBytes - included_bytes_) {
     return complain(Severity::kError, at,
-                    fmt::format(": with {}, the included files are larger than {} MB", path,
-                                kMaxIniBytes / (1024 * 1024)));
+                    trf(": with {}, the included files are larger than {} MB", path,
+                        kMaxIniBytes / (1024 * 1024)));
   }
   included_bytes_ += text->size();
   add_included(*text, path, named);
@@ -275,8 +260,8 @@ void IniParser::add_included(std::string_view text, const std::string& path,
   if (!unended.empty()) {
     ++line_;
     report(Severity::kWarning, 0, unended,
-           "an included file without a newline at its end; LinuxCNC adds a remark of its own to "
-           "this line");
+           tr("an included file without a newline at its end; LinuxCNC adds a remark of its own to "
+              "this line"));
     add_physical({.text = std::string(unended) + end, .excerpt = unended});
   } else {
     add_remark(end);
@@ -289,22 +274,22 @@ void IniParser::add_physical(const Physical& line) {
   if (const std::size_t at = line.text.find('\0'); at != line.text.npos) {
     const int column = line.columns != nullptr ? (*line.columns)[at] : static_cast<int>(at) + 1;
     report(Severity::kError, static_cast<std::size_t>(column), line.excerpt,
-           "a byte of value 0; this is not text");
+           tr("a byte of value 0; this is not text"));
     return;
   }
   ini_.expanded_text_.append(line.text);
   if (line.has_newline) ini_.expanded_text_.push_back('\n');
-  if (line.text.size() > kMaxLineBytes) {
-    report(Severity::kWarning, kMaxLineBytes, line.excerpt,
-           fmt::format("a line of {} bytes; LinuxCNC takes what follows the first {} for another",
-                       line.text.size(), kMaxLineBytes));
+  if (line.text.size() > kMaxIniLineBytes) {
+    report(Severity::kWarning, kMaxIniLineBytes, line.excerpt,
+           trf("a line of {} bytes; LinuxCNC takes what follows the first {} for another",
+               line.text.size(), kMaxIniLineBytes));
   }
   Physical part = line;
-  for (std::string_view left = line.text; left.size() >= kMaxLineBytes;) {
-    part.text = left.substr(0, kMaxLineBytes);
+  for (std::string_view left = line.text; left.size() >= kMaxIniLineBytes;) {
+    part.text = left.substr(0, kMaxIniLineBytes);
     part.has_newline = false;
     add_part(part);
-    left.remove_prefix(kMaxLineBytes);
+    left.remove_prefix(kMaxIniLineBytes);
     part = {.text = left,
             .excerpt = line.excerpt,
             .has_columns = false,
@@ -317,18 +302,19 @@ void IniParser::add_part(Physical part) {
   const std::size_t carriage_return = part.text.find('\r');
   if (carriage_return != part.text.npos && carriage_return + 1 < part.text.size()) {
     report(Severity::kError, 0, part.excerpt,
-           "a carriage return within a line; LinuxCNC stops here");
+           tr("a carriage return within a line; LinuxCNC stops here"));
     return;
   }
   if (carriage_return != part.text.npos && !std::exchange(warned_of_line_ends_, true)) {
-    report(Severity::kWarning, 0, {}, "the file has DOS line ends", "store it with Unix line ends");
+    report(Severity::kWarning, 0, {}, tr("the file has DOS line ends"),
+           tr("store it with Unix line ends"));
   }
   const bool joined = logical_.parts > 0;
   const std::size_t bytes = part.text.size();
   if (!part.has_newline && bytes > 0 && (joined || (bytes > 1 && part.text[bytes - 2] == '\\'))) {
     report(Severity::kWarning, 0, part.excerpt,
-           "no newline behind a line that a backslash joins to another; LinuxCNC loses its last "
-           "byte");
+           tr("no newline behind a line that a backslash joins to another; LinuxCNC loses its last "
+              "byte"));
     part.text.remove_suffix(1);
     part.has_newline = true;
   }
@@ -339,17 +325,17 @@ void IniParser::add_part(Physical part) {
   append_part(part);
   if (continues && logical_.parts <= kMaxContinuedLines) return;
   if (continues) {
-    report(Severity::kError, 0, part.excerpt,
-           fmt::format("more than {} lines joined by backslashes; LinuxCNC stops here",
-                       kMaxContinuedLines));
+    report(
+        Severity::kError, 0, part.excerpt,
+        trf("more than {} lines joined by backslashes; LinuxCNC stops here", kMaxContinuedLines));
   } else {
     add_logical(logical_);
   }
-  const bool was_header = trimmed(logical_.text).starts_with('[');
+  const bool was_header = trim(logical_.text).starts_with('[');
   logical_ = {};
   if (!joined || !is_section || was_header) return;
   report(Severity::kWarning, 0, part.excerpt,
-         "a backslash joins this section to the line before; LinuxCNC finds it all the same");
+         tr("a backslash joins this section to the line before; LinuxCNC finds it all the same"));
   append_part(part);
   add_logical(logical_);
   logical_ = {};
@@ -357,15 +343,15 @@ void IniParser::add_part(Physical part) {
 
 /// A section that a backslash joins to the line before is found if it is the first of its name.
 bool IniParser::starts_section(std::string_view line) const {
-  const std::string_view words = trimmed(line);
+  const std::string_view words = trim(line);
   if (!words.starts_with('[')) return false;
   const std::size_t end = words.find(']');
-  return trimmed(logical_.text).empty() ||
+  return trim(logical_.text).empty() ||
          (end != words.npos && sections_.count(std::string(words.substr(1, end - 1))) == 0);
 }
 
 void IniParser::append_part(const Physical& part) {
-  if (trimmed(logical_.text).empty()) {
+  if (trim(logical_.text).empty()) {
     // Nothing so far but blanks: what counts stands here.
     logical_.file = file_;
     logical_.line = line_;
@@ -403,13 +389,13 @@ void IniParser::add_section(std::string_view text, const Logical& logical, std::
   const std::size_t end = text.find(']', at);
   if (end == text.npos) {
     report(Severity::kWarning, column, logical.excerpt,
-           "the ] of the section is missing; LinuxCNC finds no section of this name");
+           tr("the ] of the section is missing; LinuxCNC finds no section of this name"));
     return;
   }
   section_ = std::string(text.substr(at + 1, end - at - 1));
   if (!sections_.insert(section_).second) {
     report(Severity::kWarning, column, logical.excerpt,
-           fmt::format("[{}] stands a second time; LinuxCNC reads the first only", section_));
+           trf("[{}] stands a second time; LinuxCNC reads the first only", section_));
     return;
   }
   shadowed_ = false;
@@ -425,16 +411,16 @@ void IniParser::add_entry(std::string_view text, const Logical& logical, std::si
   if (!in_section_ || (equals == text.npos && key_end == text.npos)) {
     if (logical.line == 1 && text.starts_with(kByteOrderMark)) return;  // warned of
     report(Severity::kWarning, column, logical.excerpt,
-           equals == text.npos ? "neither [SECTION] nor KEY = value; LinuxCNC passes over it"
-                               : "a value before the first [SECTION]; LinuxCNC does not find it");
+           equals == text.npos
+               ? tr("neither [SECTION] nor KEY = value; LinuxCNC passes over it")
+               : tr("a value before the first [SECTION]; LinuxCNC does not find it"));
     return;
   }
   if (equals == text.npos) {
     report(Severity::kWarning, column, logical.excerpt,
-           fmt::format("neither [SECTION] nor KEY = value; LinuxCNC looks for no {} behind it",
-                       entry.key));
+           trf("neither [SECTION] nor KEY = value; LinuxCNC looks for no {} behind it", entry.key));
   } else {
-    entry.value = std::string(trimmed(text.substr(equals + 1)));
+    entry.value = std::string(trim(text.substr(equals + 1)));
     const std::size_t value_at = text.find_first_not_of(kBlanks, equals + 1);
     entry.value_column = column_of(logical, value_at == text.npos ? equals : value_at);
   }
@@ -486,28 +472,6 @@ std::vector<const IniEntry*> IniFile::find_all(std::string_view section, std::st
 
 bool IniFile::has_section(std::string_view section) const {
   return std::find(sections_.begin(), sections_.end(), section) != sections_.end();
-}
-
-Result<std::string> read_small_file(const std::string& path, std::size_t max_bytes) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    return Error{fmt::format("cannot read {}: {}", path, std::strerror(errno))};
-  }
-  if (!S_ISREG(status.st_mode)) {
-    return Error{fmt::format("cannot read {}: it is not a regular file", path)};
-  }
-  TextPieces pieces(path);
-  std::string text;
-  std::string_view piece;
-  while (pieces.next(piece)) {
-    text += piece;
-    if (text.size() > max_bytes) {
-      return Error{
-          fmt::format("cannot read {}: larger than {} MB", path, max_bytes / (1024 * 1024))};
-    }
-  }
-  if (!pieces.error().empty()) return Error{pieces.error()};
-  return text;
 }
 
 std::string resolve_ini_path(std::string_view path, const std::string& folder) {

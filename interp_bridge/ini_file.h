@@ -84,9 +84,6 @@ class IniFile {
   std::string expanded_text_;
 };
 
-/// The text of a regular file of at most `max_bytes`. Error: "cannot read NAME: REASON".
-Result<std::string> read_small_file(const std::string& path, std::size_t max_bytes);
-
 /// `~/` becomes $HOME, as LinuxCNC expands the paths of its INI; a relative path becomes one in
 /// `folder`. "." and ".." are worked out by text.
 std::string resolve_ini_path(std::string_view path, const std::string& folder);

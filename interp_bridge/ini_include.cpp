@@ -4,14 +4,13 @@
 
 #include <cstdlib>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-bool is_name_character(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-}
+bool is_name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
 /// A byte, and whether a backslash stood before it.
 struct ShellByte {
@@ -54,8 +53,8 @@ Result<std::string> variable(std::string_view words, std::size_t& at) {
   while (end < words.size() && is_name_character(words[end])) ++end;
   const bool closed = !braces || (end < words.size() && words[end] == '}');
   // Digits and signs name what the script was called with.
-  if (end == start || !closed || (words[start] >= '0' && words[start] <= '9')) {
-    return Error{"the shell gives '$' a meaning that is not followed here"};
+  if (end == start || !closed || is_digit(words[start])) {
+    return Error{tr("the shell gives '$' a meaning that is not followed here")};
   }
   const char* const value = std::getenv(std::string(words.substr(start, end - start)).c_str());
   at = braces ? end : end - 1;
@@ -115,12 +114,12 @@ Result<std::string> shell_file_name(std::string_view words) {
                (quote == 0 || std::string_view("$`\"\\").find(words[at + 1]) != words.npos)) {
       name += words[++at];
     } else if (c == '`' || (quote == 0 && kShellSigns.find(c) != kShellSigns.npos)) {
-      return Error{fmt::format("the shell gives '{}' a meaning that is not followed here", c)};
+      return Error{trf("the shell gives '{}' a meaning that is not followed here", c)};
     } else {
       name += c;
     }
   }
-  if (quote != 0) return Error{fmt::format("the quote {} is not closed", quote)};
+  if (quote != 0) return Error{trf("the quote {} is not closed", quote)};
   return name;
 }
 

@@ -21,6 +21,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
+
 extern char** environ;
 
 namespace kerf {
@@ -156,7 +158,7 @@ std::string find_executable(const std::string& name) {
 
 Result<InterpreterProcess> InterpreterProcess::start(const InterpreterProcessOptions& options) {
   const auto error = [&](int number) {
-    return Error{fmt::format("cannot start {}: {}", options.executable, std::strerror(number))};
+    return Error{trf("cannot start {}: {}", options.executable, std::strerror(number))};
   };
   Pipe listing;
   Pipe out;

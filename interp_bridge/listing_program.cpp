@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/translate.h"
 #include "interp_bridge/canonical_reader.h"
 #include "interp_bridge/program_kinds.h"
 
@@ -73,8 +74,7 @@ bool ListingProgram::read_all(int fd, CanonicalReader& reader, const std::stop_t
     if (got == 0) return true;
     if (got < 0) {
       if (errno == EINTR || errno == EAGAIN) continue;
-      report(Severity::kError, fmt::format("cannot be read: {}", std::strerror(errno)), {},
-             diagnostics);
+      report(Severity::kError, trf("cannot be read: {}", std::strerror(errno)), {}, diagnostics);
       return true;
     }
     bytes_read_ += static_cast<std::uint64_t>(got);
@@ -91,8 +91,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.interpreter = "canon";
   const int fd = is_stdin() ? STDIN_FILENO : ::open(options_.path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) {
-    report(Severity::kError, fmt::format("cannot be read: {}", std::strerror(errno)), {},
-           diagnostics);
+    report(Severity::kError, trf("cannot be read: {}", std::strerror(errno)), {}, diagnostics);
     return summary;
   }
   CanonicalReaderOptions reading;
@@ -107,7 +106,7 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   reading.feeder.signals = options_.signals;
   reading.feeder.places.has_blocks = false;
   reading.feeder.follows_probes = follows_probes_;
-  reading.feeder.no_answer = "a listing was written without a workpiece";
+  reading.feeder.no_answer = tr("a listing was written without a workpiece");
   reading.feeder.materials = &materials_;
   CanonicalReader reader(std::move(reading), sink, summary, diagnostics);
   const bool complete = read_all(fd, reader, stop, diagnostics);
@@ -117,18 +116,19 @@ ProgramSummary ListingProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.program_lines = static_cast<std::size_t>(reader.listing_lines());
   if (reader.feeder().too_many_commands()) {
     report(Severity::kError,
-           fmt::format("more than {} canonical commands; the program counts as endless", limit), {},
+           trf("more than {} canonical commands; the program counts as endless", limit), {},
            diagnostics);
   } else if (complete && reader.commands() == 0) {
     const bool empty = reader.listing_lines() == 0;
     report(Severity::kError,
-           empty ? "is empty; canonical text of rs274 is expected"
-                 : "no line of it is a canonical command of rs274",
-           "rs274 -v /nonexistent/x.var -g part.ngc | kerf run -", diagnostics);
+           empty ? tr("is empty; canonical text of rs274 is expected")
+                 : tr("no line of it is a canonical command of rs274"),
+           tr("rs274 -v /nonexistent/x.var -g part.ngc | kerf run -"), diagnostics);
   } else if (complete && !summary.has_program_end) {
+    summary.end_remarked = true;
     report(Severity::kWarning,
-           "the listing has no program end (PROGRAM_END or FINISH): the program has none, or an "
-           "error stopped rs274",
+           tr("the listing has no program end (PROGRAM_END or FINISH): the program has none, or an "
+              "error stopped rs274"),
            {}, diagnostics);
   }
   const auto end = std::chrono::steady_clock::now();

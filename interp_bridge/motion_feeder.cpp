@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "base/translate.h"
 #include "interp_bridge/probe_branches.h"
 #include "interp_bridge/source_text.h"
 #include "interp_bridge/wild_motion.h"
@@ -21,16 +22,16 @@ constexpr std::chrono::milliseconds kOldBatch{40};
 constexpr std::size_t kMaxForeignLines = 100;
 constexpr std::size_t kMaxForeignBytes = 500;
 constexpr std::size_t kMaxUnknownNames = 100;
-constexpr std::size_t kExcerptBytes = 200;
+constexpr std::size_t kRecordExcerptBytes = 200;
 constexpr int kMaxMaterialRemarks = 20;
 constexpr unsigned kAllAxes = 7;
 /// Blocks with G41 or G42 that are read again for their D.
 constexpr int kMaxCompensationLooks = 100;
 
 std::string values_of(const TorchMaterial& material) {
-  return fmt::format("{:g} mm/min, kerf {:g} mm, cut at {:g} mm, pierced at {:g} mm for {:g} s",
-                     material.feed_mm_per_min, material.kerf_width_mm, material.cut_height_mm,
-                     material.pierce_height_mm, material.pierce_delay_s);
+  return trf("{:g} mm/min, kerf {:g} mm, cut at {:g} mm, pierced at {:g} mm for {:g} s",
+             material.feed_mm_per_min, material.kerf_width_mm, material.cut_height_mm,
+             material.pierce_height_mm, material.pierce_delay_s);
 }
 
 /// Whose diameter the block of a G41 or G42 names by D; none: that of the tool in the spindle. -1:
@@ -119,6 +120,7 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   const FoldRemark said = fold_.fold(command, source_, batch_);
   if (said != FoldRemark::kNone) remark(said);
   if (options_.follows_probes) follow_probing(command, before);
+  if (options_.places.has_blocks && fold_.follows_places()) options_.places.followed = true;
   return took(before);
 }
 
@@ -134,7 +136,7 @@ bool MotionFeeder::ask_probe(const CanonicalCommand& command, bool away, SourceR
   answer = {};
   if (motions.size() != 1 || !motions[0].start_known ||
       (!options_.start && (moved_axes(motions[0]) & ~probe_.said) != 0)) {
-    answer.why = "where it begins is not known";
+    answer.why = tr("where it begins is not known");
   } else if (options_.answer_probe) {
     answer = options_.answer_probe({motions[0], away});
   }
@@ -167,7 +169,7 @@ void MotionFeeder::note_plate() {
   note.source = source_;
   note.is_sentence = true;
   note.count = 1;
-  note.text = fmt::format(
+  note.text = trf(
       "the program calls the top of the workpiece, where the probe has met it, Z{:.2f}: a touch "
       "plate of that thickness is taken to lie on it, and Z0 to be the top",
       fold_.plate_mm());
@@ -228,12 +230,13 @@ void MotionFeeder::note_unknown_probe() {
   note.source = source_;
   note.is_sentence = true;
   note.count = 1;
-  note.text = fmt::format("what the probe meets is not known ({}); ", why);
-  note.text += !probe_.all_unknown
-                   ? "tool lengths that the program makes of it are taken for true, and nothing is "
-                     "cut or checked until a block says in plain numbers where the tool is"
-                   : "from here on nothing is cut or checked, since what the program does hangs "
-                     "on it";
+  note.text = trf("what the probe meets is not known ({}); ", why);
+  note.text +=
+      !probe_.all_unknown
+          ? tr("tool lengths that the program makes of it are taken for true, and nothing is "
+               "cut or checked until a block says in plain numbers where the tool is")
+          : tr("from here on nothing is cut or checked, since what the program does hangs "
+               "on it");
   summary_.notes.push_back(std::move(note));
   probe_.note = summary_.notes.size();
 }
@@ -256,8 +259,8 @@ void MotionFeeder::refuse_wild(std::size_t first) {
     if (fault.empty()) continue;
     batch_.resize(i);
     refused_ = true;
-    Diagnostic wild = at_source(Severity::kError, fault + ": no machine has such a number");
-    wild.hint = "a slip of the pen, or an offset or a unit (G20, G21) that is not meant?";
+    Diagnostic wild = at_source(Severity::kError, fault + tr(": no machine has such a number"));
+    wild.hint = tr("a slip of the pen, or an offset or a unit (G20, G21) that is not meant?");
     diagnostics_.push_back(std::move(wild));
     return;
   }
@@ -304,17 +307,16 @@ Diagnostic MotionFeeder::at_source(Severity severity, std::string message) const
 
 void MotionFeeder::remark(FoldRemark said) {
   if (said == FoldRemark::kSplineLost && splines_lost_++ == 0) {
-    Diagnostic lost =
-        at_source(Severity::kWarning,
-                  "a spline (G5, G5.1, G5.2) is not cut: LinuxCNC's listing holds its "
-                  "number of points only");
-    lost.hint = "the move after a spline is not cut either, since its start is not known";
+    Diagnostic lost = at_source(
+        Severity::kWarning, tr("a spline (G5, G5.1, G5.2) is not cut: LinuxCNC's listing holds its "
+                               "number of points only"));
+    lost.hint = tr("the move after a spline is not cut either, since its start is not known");
     diagnostics_.push_back(std::move(lost));
   }
   if (said == FoldRemark::kArcPlaneUnknown && !std::exchange(plane_reported_, true)) {
     diagnostics_.push_back(
         at_source(Severity::kWarning,
-                  "an arc in a plane other than XY, YZ and XZ (G17, G19, G18) is not cut"));
+                  tr("an arc in a plane other than XY, YZ and XZ (G17, G19, G18) is not cut")));
   }
 }
 
@@ -322,7 +324,7 @@ void MotionFeeder::remark_on_text(const CanonicalCommand& command) {
   if (options_.torch.qtplasmac && command.name == CanonicalName::kComment) edit_material(command);
   if (command.name == CanonicalName::kCanonError) {
     diagnostics_.push_back(
-        at_source(Severity::kError, std::string(command.text.substr(0, kExcerptBytes))));
+        at_source(Severity::kError, std::string(command.text.substr(0, kRecordExcerptBytes))));
     return;
   }
   constexpr std::string_view kCompensation = "interpreter: cutter radius compensation on";
@@ -348,16 +350,14 @@ void MotionFeeder::remark_on_compensation() {
     diagnostics_.push_back(at_source(Severity::kWarning, doubt->second));
     return;
   }
-  Diagnostic unknown = at_source(
-      Severity::kWarning,
-      fmt::format(
-          "cutter radius compensation (G41, G42) {}: the radius counts as 0",
-          options_.has_tool_table
-              ? fmt::format("with tool {}, whose diameter the tool table does not have", tool)
-              : "without a tool table"));
-  unknown.hint = fmt::format(
-      "give the machine's table with --tool-table{}",
-      tool > 0 ? fmt::format(", or the tool with --tool {}=SHAPE", tool) : std::string());
+  Diagnostic unknown =
+      at_source(Severity::kWarning,
+                trf("cutter radius compensation (G41, G42) {}: the radius counts as 0",
+                    options_.has_tool_table
+                        ? trf("with tool {}, whose diameter the tool table does not have", tool)
+                        : tr("without a tool table")));
+  unknown.hint = trf("give the machine's table with --tool-table{}",
+                     tool > 0 ? trf(", or the tool with --tool {}=SHAPE", tool) : std::string());
   diagnostics_.push_back(std::move(unknown));
 }
 
@@ -388,12 +388,12 @@ void MotionFeeder::edit_material(const CanonicalCommand& comment) {
   const bool malformed = done == MaterialTable::Edit::kMalformed;
   Diagnostic remark = at_source(
       malformed ? Severity::kWarning : Severity::kNote,
-      malformed ? fmt::format("the material comment is not understood{}{}",
-                              materials_.complaint().empty() ? "" : ": ", materials_.complaint())
-                : fmt::format("the material comment has no {}; what it does not say is the default "
-                              "material's ({})",
-                              materials_.complaint(), values_of(materials_.rows()[0])));
-  remark.hint = "as in (o=0, na=Steel 3mm, ph=3.0, pd=0.1, ch=1.5, fr=3000, kw=1.2)";
+      malformed ? trf("the material comment is not understood{}{}",
+                      materials_.complaint().empty() ? "" : ": ", materials_.complaint())
+                : trf("the material comment has no {}; what it does not say is the default "
+                      "material's ({})",
+                      materials_.complaint(), values_of(materials_.rows()[0])));
+  remark.hint = tr("as in (o=0, na=Steel 3mm, ph=3.0, pd=0.1, ch=1.5, fr=3000, kw=1.2)");
   diagnostics_.push_back(std::move(remark));
 }
 
@@ -406,11 +406,11 @@ bool MotionFeeder::take_material_change(double number, SourceRef source) {
   const bool known = materials_.select(wanted);
   material_changed();
   if (known || ++material_remarks_ > kMaxMaterialRemarks) return true;
-  Diagnostic unknown = at_source(
-      Severity::kWarning,
-      fmt::format("M190 P{}: there is no material {}; the default's values are taken ({})", wanted,
-                  wanted, values_of(materials_.rows()[0])));
-  unknown.hint = "QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI";
+  Diagnostic unknown =
+      at_source(Severity::kWarning,
+                trf("M190 P{}: there is no material {}; the default's values are taken ({})",
+                    wanted, wanted, values_of(materials_.rows()[0])));
+  unknown.hint = tr("QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI");
   diagnostics_.push_back(std::move(unknown));
   return true;
 }
@@ -436,9 +436,9 @@ void MotionFeeder::remark_on_defaults() {
   note.severity = Severity::kNote;
   if (!summary_.files.empty()) note.file = summary_.files[0];
   note.line = static_cast<int>(torch.text.hal_line);
-  note.message = fmt::format("no file tells of the material; QtPlasmaC's own default is taken ({})",
-                             values_of(materials_.rows()[0]));
-  note.hint = "QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI";
+  note.message = trf("no file tells of the material; QtPlasmaC's own default is taken ({})",
+                     values_of(materials_.rows()[0]));
+  note.hint = tr("QtPlasmaC keeps its materials in MACHINE_material.cfg beside the INI");
   diagnostics_.push_back(std::move(note));
 }
 
@@ -478,7 +478,7 @@ void MotionFeeder::finish() {
     Diagnostic more;
     more.severity = Severity::kWarning;
     if (!summary_.files.empty()) more.file = summary_.files[0];
-    more.message = fmt::format("{} splines were not cut", splines_lost_);
+    more.message = trf("{} splines were not cut", splines_lost_);
     diagnostics_.push_back(std::move(more));
   }
 }

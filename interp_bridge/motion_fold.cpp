@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
+#include "base/units.h"
+
 namespace kerf {
 namespace {
-
-constexpr double kInchMm = 25.4;
 
 /// rs274 prints four decimals of the program's unit.
 constexpr double kPrintResolution = 1e-4;
@@ -85,7 +85,7 @@ std::pair<double, double> cos_sin(double degrees) {
         {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
     return kQuarters[static_cast<std::size_t>(static_cast<std::int64_t>(quarter) & 3)];
   }
-  const double radians = degrees * (kPi / 180.0);
+  const double radians = degrees * kRadPerDeg;
   return {std::cos(radians), std::sin(radians)};
 }
 
@@ -239,6 +239,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.flood = flood_;
   motion.mist = mist_;
   on_workpiece_ = false;
+  held_axes_ = 0;
   motion.start_known = position_known_ && unknown_ == 0;
   motion.unknown_from = motion.unknown_to = unknown_;
   motion.from_mm = position_mm_;
@@ -270,7 +271,9 @@ void MotionFold::halt() {
 
 void MotionFold::note_waits(const CanonicalCommand& command) {
   if (command.name == CanonicalName::kReloadTooldata) {
-    table_reloaded_ = table_reloaded_ || (halts_ == 0 && chain_end_ == ChainEnd::kNone);
+    const bool joined = halts_ == 0 && chain_end_ == ChainEnd::kNone;
+    table_reloaded_ = table_reloaded_ || joined;
+    if (joined) lose_held_feed(held_axes_);
   }
   switch (queue_effect(command.name)) {
     case QueueEffect::kHaltsForIo:
@@ -347,6 +350,7 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
   take_synchronised_outputs();
   if (kind == MotionKind::kFeed && only_pierces(source, out)) return FoldRemark::kNone;
   overburn_from_mm_.reset();
+  const std::uint8_t held_before = held_axes_;
   Motion& motion = append(kind, source, out);
   const Vec3 from_mm = position_mm_, from_uvw_mm = uvw_mm_;
   const std::array<double, 3> from_abc_deg = abc_deg_;
@@ -366,6 +370,8 @@ FoldRemark MotionFold::fold_straight(MotionKind kind, const CanonicalCommand& co
     tool_prepare_ = motion.tool_prepare;
     table_reloaded_ = motion.table_reloaded;
     out.pop_back();
+  } else if (kind == MotionKind::kFeed) {
+    hold_back(motion, held_before);
   }
   return FoldRemark::kNone;
 }
@@ -417,13 +423,18 @@ FoldRemark MotionFold::fold_arc(const CanonicalCommand& command, SourceRef sourc
   const bool full_circle = std::abs(sweep_rad) > 2 * kPi - kFullTurnFuzz_rad &&
                            glm::length(end - start) <= 3 * resolution_mm;
   begin_arc(straight ? 0.0 : 2 * glm::length(start), full_circle);
+  const std::uint8_t held_before = held_axes_;
   Motion& motion = append(straight ? MotionKind::kFeed : MotionKind::kArc, source, out);
   move_to(motion, work_from_program(end_mm), work_abc(&command.arguments[6]), work_uvw(command, 9));
   set_feed(motion);
-  if (straight) return FoldRemark::kNone;
+  if (straight) {
+    hold_back(motion, held_before);
+    return FoldRemark::kNone;
+  }
   motion.arc.center_mm = work_from_program(center_mm);
   motion.arc.axis = same_frame_ ? normal : turned(normal, turn_cos_, turn_sin_);
   motion.arc.sweep_rad = motion.start_known ? sweep_rad : 0.0;
+  hold_back(motion, held_before);
   if (full_circle && hole_active_ && modes_.overburn) append_overburn(Motion(motion), out);
   return FoldRemark::kNone;
 }
@@ -436,7 +447,7 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   halt();
   const Vec3 bottom_mm = work_from_program(scaled(command, 0));
   const bool top_known = position_known_ && unknown_ == 0;
-  const std::uint8_t unknown_at_top = unknown_;
+  const Unknowns place_at_top = place_;
   const Vec3 top_mm = position_mm_;
   const auto abc_deg = abc_deg_;
   Motion& down = append(MotionKind::kThread, source, out);
@@ -445,8 +456,11 @@ void MotionFold::fold_rigid_tap(const CanonicalCommand& command, SourceRef sourc
   if (!top_known) {
     // Back to where it came from, which nobody has said.
     position_known_ = follows_places_;
-    if (follows_places_) position_mm_ = top_mm;
-    unknown_ = unknown_at_top;
+    if (follows_places_) {
+      position_mm_ = top_mm;
+      place_ = place_at_top;
+      settle();
+    }
     return;
   }
   Motion& up = append(MotionKind::kThread, source, out);
@@ -477,7 +491,7 @@ void MotionFold::change_tool_length(const CanonicalCommand& command) {
 bool MotionFold::fold_frame(const CanonicalCommand& command) {
   switch (command.name) {
     case CanonicalName::kUseLengthUnits: {
-      constexpr std::array<double, 3> kUnits_mm = {kInchMm, 1.0, 10.0};
+      constexpr std::array<double, 3> kUnits_mm = {kMmPerInch, 1.0, 10.0};
       const double unit_mm = kUnits_mm[static_cast<std::size_t>(command.integer(0))];
       if (unit_mm != unit_mm_) position_as_printed_ = false;
       unit_mm_ = unit_mm;
@@ -510,7 +524,7 @@ bool MotionFold::fold_frame(const CanonicalCommand& command) {
       }
       change_tool_length(command);
       // By how much only the probe knows.
-      unknown_ |= probed_;
+      lose_place(probed_);
       return true;
     default:
       return false;
@@ -529,12 +543,13 @@ void MotionFold::choose_spindle() {
   note_spindles();
 }
 
-/// M2 stops all spindles before it ends the program: those that it found turning are told with the
-/// end, so that it can be seen whether the program has stopped them itself.
+/// M2 stops all spindles before it ends the program, which is seen by the mode that it sets with
+/// each: those that it found turning are told with the end, so that it can be seen whether the
+/// program has stopped them itself.
 void MotionFold::append_program_end(SourceRef source, std::vector<Motion>& out) {
   const auto stopped = spindles_;
   for (Spindle& spindle : spindles_) {
-    if (spindle.stopped_from != SpindleState::kStopped) spindle.state = spindle.stopped_from;
+    if (spindle.ended_from != SpindleState::kStopped) spindle.state = spindle.ended_from;
   }
   choose_spindle();
   append(MotionKind::kProgramEnd, source, out);
@@ -565,8 +580,9 @@ bool MotionFold::fold_spindle(const CanonicalCommand& command) {
     case CanonicalName::kSetSpindleMode:
       // Surface speed is m/min in G21 and ft/min in G20.
       return for_each([&](Spindle& spindle) {
+        if (stop_before_) spindle.ended_from = spindle.stopped_from;
         spindle.surface_max_rpm = command.number(1);
-        spindle.surface_unit_mm = unit_mm_ == kInchMm ? 304.8 : 1000.0;
+        spindle.surface_unit_mm = unit_mm_ == kMmPerInch ? 304.8 : 1000.0;
       });
     default:
       return false;
@@ -642,6 +658,8 @@ bool MotionFold::fold_event(const CanonicalCommand& command, SourceRef source,
       const auto row = static_cast<std::size_t>(std::max(0, command.integer(0)));
       tool_ = row < tool_by_index_.size() ? tool_by_index_[row] : command.integer(0);
       if (command.argument_count > 1) tool_ = command.integer(1);
+      if (halts_ == 0 && chain_end_ == ChainEnd::kNone) lose_held_feed(held_axes_);
+      numbered_at_ = source;
       append(MotionKind::kToolChange, source, out).by_number = true;
       selected_at_ = {};
       return true;
@@ -675,6 +693,7 @@ FoldRemark MotionFold::fold(const CanonicalCommand& command, SourceRef source,
 
 FoldRemark MotionFold::fold_command(const CanonicalCommand& command, SourceRef source,
                                     std::vector<Motion>& out) {
+  stop_before_ = std::exchange(stop_came_, command.name == CanonicalName::kStopSpindleTurning);
   switch (command.name) {
     case CanonicalName::kStraightFeed: {
       const bool thread = synchronised_ && !synchronised_by_speed_;

@@ -17,6 +17,7 @@
 #include "interp_bridge/filter_modes.h"
 #include "interp_bridge/motion.h"
 #include "interp_bridge/tool_lengths.h"
+#include "interp_bridge/unknown_sum.h"
 
 namespace kerf {
 
@@ -110,8 +111,10 @@ class MotionFold {
   /// the machine stands, so that G28 and G30 lead to a known one; G10 L2 and L20 may set a system
   /// that is in force later.
   void store(const BlockWords& block);
+  /// Some axes may be unknown from here on (lose(), a lost feed).
+  bool follows_places() const { return follows_places_; }
   /// Axes of which it matters whether a block names them, and how.
-  std::uint8_t unplaced() const { return unknown_ | probed_; }
+  std::uint8_t unplaced() const { return unknown_ | probed_ | unrelated_; }
   /// A probing move along these axes has ended nobody knows where. They are unknown until a block
   /// says in plain numbers where the tool is, as after start_unknown(); what the program computes
   /// may come from the probe, and says nothing any more. Tool lengths that it states are taken for
@@ -182,16 +185,18 @@ class MotionFold {
     double speed = 0;            ///< rpm; under G96 m/min or ft/min
     double surface_max_rpm = 0;  ///< > 0: G96
     double surface_unit_mm = 0;  ///< mm in one unit of surface speed: 1000 or 304.8
-    /// How it turned when it was last told to stop.
+    /// How it turned when it was last told to stop ..
     SpindleState stopped_from = SpindleState::kStopped;
+    /// .. and when the program's end stopped it.
+    SpindleState ended_from = SpindleState::kStopped;
 
     void start(SpindleState direction) {
       state = direction;
-      stopped_from = SpindleState::kStopped;
+      stopped_from = ended_from = SpindleState::kStopped;
     }
     void stop() {
       stopped_from = state;
-      state = SpindleState::kStopped;
+      state = ended_from = SpindleState::kStopped;
     }
   };
   static constexpr std::size_t kMaxSpindles = 8;  ///< EMCMOT_MAX_SPINDLES
@@ -227,15 +232,22 @@ class MotionFold {
   void store_reference(bool second);
   void store_system(const BlockWords& block);
   void store_plate(const BlockWords& block);
-  void enter_system(int system);
-  std::uint8_t go_to_stored(std::uint8_t axes, std::uint8_t lost, Vec3& to_mm);
+  void go_to_stored(std::uint8_t axes, Vec3& to_mm);
+  void go_to_machine(std::uint8_t axes);
+  void follow_offset_words(bool is_shift);
+  void touch_off(std::uint8_t axes, std::uint8_t doubtful, bool by_shift);
+  void stand_on_plate(std::uint8_t axes, bool plate);
+  UnknownSum unsaid(bool doubtful) { return UnknownSum::of(++unsaid_, doubtful); }
+  void lose_place(std::uint8_t axes);
+  void hold_back(const Motion& feed, std::uint8_t held_before);
+  void lose_held_feed(std::uint8_t axes);
+  void place_in(const UnknownSum& place, int axis);
+  void settle();
   std::uint8_t changed_axes(const Vec3& to_mm) const;
   bool is_at_machine_place(const Motion& motion);
   void follow_offset(CanonicalName name, int system);
-  void take_as_known_here(std::uint8_t axes, bool by_g92);
   double said_height_mm() const;
   void look_for_plate(bool is_shift);
-  void relate_shift();
   void adopt_frame();
   void note_distance_mode(std::string_view comment);
   FoldRemark fold_command(const CanonicalCommand& command, SourceRef source,
@@ -291,11 +303,20 @@ class MotionFold {
   bool position_as_printed_ =
       true;  ///< no change of frame or unit since: equal digits mean equal points
 
-  // Axes as bits, where start_unknown() was called.
+  // Where start_unknown() or lose() was called. Axes as bits.
+  /// Of X, Y, Z.
+  using Unknowns = std::array<UnknownSum, 3>;
   bool follows_places_ = false;
   bool incremental_ = false;  ///< G91
   const BlockWords* block_ = nullptr;
-  std::uint8_t unknown_ = 0;
+  int unsaid_ = 0;               ///< amounts that nobody has said, so far
+  Unknowns place_{};             ///< where the machine stands
+  Unknowns work_place_{};        ///< the workpiece frame, of axes that are placed_
+  Unknowns machine_place_{};     ///< the machine's zero, of axes whose zero_known_ is not set
+  Unknowns shift_{};             ///< what the last G92 adds
+  Unknowns in_force_{};          ///< the offsets in force
+  std::uint8_t unknown_ = 0;     ///< where the machine stands is not known in the workpiece frame
+  std::uint8_t unrelated_ = 0;   ///< nor is it what a number of the program means there
   std::uint8_t placed_ = 0;      ///< at least once
   std::uint8_t zero_known_ = 0;  ///< where the machine's zero is
   std::uint8_t zero_by_program_ = 0;
@@ -305,40 +326,38 @@ class MotionFold {
   double plate_mm_ = 0;
   bool has_plate_ = false;  ///< one of systems_ has
   int g5x_index_ = 1;
-  bool shifted_ = false;               ///< by G92
-  std::uint8_t shift_floats_ = 0;      ///< the G92 was given where the axis was unknown
-  std::uint8_t work_floats_ = 0;       ///< the workpiece frame is that of such a G92
-  std::uint8_t shift_unrelated_ = 0;   ///< present numbers and those of the workpiece frame have
-                                       ///< nothing to do with each other, for G92 ..
-  std::uint8_t system_unrelated_ = 0;  ///< .. or G10 L20
-  SourceRef reference_;                ///< the block of the last G28 or G30 ..
-  int reference_moves_ = 0;            ///< .. and its moves so far
+  bool shifted_ = false;     ///< by G92
+  SourceRef reference_;      ///< the block of the last G28 or G30 ..
+  int reference_moves_ = 0;  ///< .. and its moves so far
   /// A place of the machine that the program has stored (G28.1, G30.1).
   struct StoredPlace {
     bool is_stored = false;
-    std::uint8_t known = 0;  ///< axes that were
-    Vec3 applied_mm{0};      ///< offset in force (ToolLengths)
+    Unknowns place{};
+    Vec3 applied_mm{0};  ///< offset in force (ToolLengths)
     std::array<double, 11> length_call{};
   };
   std::array<StoredPlace, 2> stored_places_{};
   std::array<double, 11> length_call_{};  ///< the last USE_TOOL_LENGTH_OFFSET
-  /// What G10 has made of a work offset that is not in force.
-  struct StoredSystem {
-    std::uint8_t unrelated = 0;  ///< as system_unrelated_
-    std::uint8_t floats = 0;     ///< set where the tool stood, and that was unknown
-    double plate_mm = 0;         ///< its Z0 is so much higher: of a touch plate on the workpiece
-    bool operator==(const StoredSystem&) const = default;
+  std::uint8_t held_axes_ = 0;  ///< moved by the last step, a feed that LinuxCNC may hold back
+  SourceRef numbered_at_;       ///< the last M61
+  /// What G10 has made of a work offset.
+  struct System {
+    Unknowns place{};     ///< of its zero
+    double plate_mm = 0;  ///< its Z0 is so much higher: of a touch plate on the workpiece
   };
   static constexpr std::size_t kSystems = 10;  ///< G54 is 1, G59.3 is 9
-  std::array<StoredSystem, kSystems> systems_{};
-  std::array<StoredSystem, kSystems> systems_before_{};  ///< a G10 with a computed P
+  System& system_in_force() { return systems_[static_cast<std::size_t>(g5x_index_) % kSystems]; }
+  std::array<System, kSystems> systems_{};
+  std::array<System, kSystems> systems_before_{};  ///< a G10 with a computed P
 
   int tool_ = 0;
   int selected_tool_ = 0;
   SourceRef selected_at_;  ///< line 0: a change has followed
   bool speed_said_ = false;
   std::array<Spindle, kMaxSpindles> spindles_{};
-  std::size_t spindle_ = 0;  ///< the one that motions speak of: the first that turns
+  bool stop_came_ = false;    ///< STOP_SPINDLE_TURNING is this command ..
+  bool stop_before_ = false;  ///< .. and the one before
+  std::size_t spindle_ = 0;   ///< the one that motions speak of: the first that turns
   double rpm_ = 0;
   bool flood_ = false;
   bool mist_ = false;

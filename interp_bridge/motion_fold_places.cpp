@@ -2,6 +2,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/units.h"
+#include "interp_bridge/held_feed.h"
 #include "interp_bridge/motion_fold.h"
 
 namespace kerf {
@@ -41,9 +43,13 @@ void MotionFold::start_unknown(const std::array<double, 9>& machine_position, st
                                std::uint8_t zero_known) {
   stands_at_ = machine_position;
   follows_places_ = true;
-  unknown_ = axes;
   placed_ = without(kXyz, axes);
   zero_known_ = zero_known;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes & kX << i) != 0) place_[i] = unsaid(false);
+    machine_place_[i] = unsaid(false);
+  }
+  settle();
 }
 
 void MotionFold::lose(std::uint8_t axes) {
@@ -53,8 +59,69 @@ void MotionFold::lose(std::uint8_t axes) {
   }
   placed_ &= placed_before_probe_ | ~axes;
   probed_ |= axes;
-  unknown_ |= axes;
+  lose_place(axes);
   lengths_.take_stated_as_measured();
+}
+
+/// `held_before`: held_axes_ ahead of it.
+void MotionFold::hold_back(const Motion& feed, std::uint8_t held_before) {
+  if (!is_held_back(feed)) return;
+  const bool joined = feed.halts == 0 && feed.chain_end == ChainEnd::kNone;
+  if (joined && feed.merge_tolerance_mm > 0) held_axes_ = held_before;
+  for (int i = 0; i < 3; ++i) {
+    const bool turns = feed.kind == MotionKind::kArc && i < 2;
+    const bool moved = turns || feed.from_mm[i] != feed.to_mm[i];
+    if (moved) held_axes_ = static_cast<std::uint8_t>(held_axes_ | kX << i);
+  }
+  if (feed.source == numbered_at_ && feed.source.line != 0) lose_held_feed(held_axes_);
+}
+
+/// M61 or G10 L0 has come: the feed is forgotten, and the program is read on from where the machine
+/// stands. How far it has come is not known here, since feeds may have been merged.
+void MotionFold::lose_held_feed(std::uint8_t axes) {
+  if (axes == 0) return;
+  if (!follows_places_) {
+    follows_places_ = true;
+    placed_ = placed_before_probe_ = zero_known_ = kXyz;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes & kX << i) != 0) place_[i] = unsaid(false);
+  }
+  settle();
+}
+
+/// It is somewhere else, and what is there has nothing to do with the workpiece.
+void MotionFold::lose_place(std::uint8_t axes) {
+  if (axes == 0) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes & kX << i) != 0) place_[i] = unsaid(true);
+  }
+  settle();
+}
+
+/// After any change of places or offsets.
+void MotionFold::settle() {
+  const System& system = system_in_force();
+  unknown_ = unrelated_ = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto bit = static_cast<std::uint8_t>(kX << i);
+    in_force_[i] = system.place[i];
+    if (shifted_) in_force_[i] = in_force_[i] + shift_[i];
+    const bool placed = (placed_ & bit) != 0;
+    if (!placed || place_[i] != work_place_[i]) unknown_ |= bit;
+    if (placed && in_force_[i] != work_place_[i]) unrelated_ |= bit;
+  }
+}
+
+/// The axis stands at such a place now. The first one of which something is known is what the
+/// workpiece lies in.
+void MotionFold::place_in(const UnknownSum& place, int axis) {
+  const auto bit = static_cast<std::uint8_t>(kX << axis);
+  const auto i = static_cast<std::size_t>(axis);
+  place_[i] = place;
+  if ((placed_ & bit) != 0 || place.is_doubtful() || place != in_force_[i]) return;
+  work_place_[i] = place;
+  placed_ |= bit;
 }
 
 std::uint8_t MotionFold::changed_axes(const Vec3& to_mm) const {
@@ -89,17 +156,16 @@ bool MotionFold::is_at_machine_place(const Motion& motion) {
 std::uint8_t MotionFold::unknown_after(Motion& motion, Vec3& to_mm) {
   const std::uint8_t changed = changed_axes(to_mm);
   if (motion.kind == MotionKind::kProbe) placed_before_probe_ = placed_;
-  if (block_ == nullptr) {
-    placed_ |= changed;
-    return without(unknown_, changed);
-  }
-  const std::uint8_t unrelated = shift_unrelated_ | system_unrelated_;
-  const std::uint8_t doubtful = block_->computed & probed_;
-  std::uint8_t unknown = unknown_ | doubtful;
-  std::uint8_t named = agrees(block_->speed, motion.kind) ? block_->named : std::uint8_t{0};
-  const Place place = block_->place;
+  const bool has_block = block_ != nullptr;
+  const std::uint8_t doubtful = has_block ? block_->computed & probed_ : 0;
+  std::uint8_t named = 0;
   std::uint8_t to_machine = 0;
-  if (is_at_machine_place(motion)) {
+  Place place = Place::kProgram;
+  if (has_block) {
+    named = agrees(block_->speed, motion.kind) ? block_->named : std::uint8_t{0};
+    place = block_->place;
+  }
+  if (has_block && is_at_machine_place(motion)) {
     to_machine = changed;
     if (place == Place::kMachine) to_machine |= named;
     if (place == Place::kReference) to_machine |= named != 0 ? named : kXyz;
@@ -109,18 +175,40 @@ std::uint8_t MotionFold::unknown_after(Motion& motion, Vec3& to_mm) {
       named = 0;
     }
   }
-  std::uint8_t lost = to_machine & (without(kXyz, zero_known_) | unrelated);
-  if (to_machine != 0 && place == Place::kReference) lost = go_to_stored(to_machine, lost, to_mm);
-  motion.to_machine_place = lost != 0;
-  const std::uint8_t found = without(to_machine, lost | doubtful);
-  placed_ |= found;
-  unknown = without(unknown, found) | lost;
-  if (incremental_ && place != Place::kMachine) return unknown;
-  // An axis that moves without being named is one that a block before has placed (cycles), or that
-  // compensation has held back.
-  const std::uint8_t said = without(named | changed, to_machine | doubtful);
-  placed_ |= without(said, unrelated);
-  return without(unknown, said) | (said & unrelated);
+  if (to_machine != 0) {
+    if (place == Place::kReference) {
+      go_to_stored(to_machine, to_mm);
+    } else {
+      go_to_machine(to_machine);
+    }
+    settle();
+    motion.to_machine_place = (to_machine & unknown_) != 0;
+  }
+  if (!has_block || !incremental_ || place == Place::kMachine) {
+    // An axis that moves without being named is one that a block before has placed (cycles), or
+    // that compensation has held back. Or rs274 has found out that its probe has backed off.
+    std::uint8_t moved = changed;
+    for (std::size_t i = 0; has_block && i < 3; ++i) {
+      if (place_[i].is_doubtful()) moved = without(moved, static_cast<std::uint8_t>(kX << i));
+    }
+    const std::uint8_t said = without(named | moved, to_machine | doubtful);
+    for (int i = 0; i < 3; ++i) {
+      if ((said & kX << i) != 0) place_in(in_force_[static_cast<std::size_t>(i)], i);
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((doubtful & kX << i) != 0) place_[i] = unsaid(true);
+  }
+  settle();
+  return unknown_;
+}
+
+void MotionFold::go_to_machine(std::uint8_t axes) {
+  for (int i = 0; i < 3; ++i) {
+    if ((axes & kX << i) == 0) continue;
+    const bool known = (zero_known_ & kX << i) != 0;
+    place_in(known ? UnknownSum() : machine_place_[static_cast<std::size_t>(i)], i);
+  }
 }
 
 void MotionFold::store(const BlockWords& block) {
@@ -132,27 +220,33 @@ void MotionFold::store(const BlockWords& block) {
 }
 
 void MotionFold::store_reference(bool second) {
-  StoredPlace& place = stored_places_[second ? 1 : 0];
-  place = {true, without(kXyz, unknown_), lengths_.applied_mm(), length_call_};
+  StoredPlace& stored = stored_places_[second ? 1 : 0];
+  stored = {true, place_, lengths_.applied_mm(), length_call_};
   const bool turned = work_.rotation_deg != 0 || frame_.rotation_deg != 0;
-  if (turned && (place.known & kXy) != kXy) place.known &= kZ;
+  if (!turned || (unknown_ & kXy) == 0) return;
+  stored.place[0] = unsaid(false);
+  stored.place[1] = unsaid(false);
 }
 
-/// Which of `axes` go to an unknown place by G28 or G30; `lost`: where the program has not stored
-/// it. The interpreter knows it by its own coordinates of the machine, which hang together with the
-/// work as long as the axis is known.
-std::uint8_t MotionFold::go_to_stored(std::uint8_t axes, std::uint8_t lost, Vec3& to_mm) {
-  const StoredPlace& place = stored_places_[block_->second_reference ? 1 : 0];
-  if (!place.is_stored) return lost;
-  std::uint8_t known = place.known;
+/// G28 or G30: where the program has stored the place it is the one at which the machine stood. The
+/// interpreter knows it by its own coordinates of the machine.
+void MotionFold::go_to_stored(std::uint8_t axes, Vec3& to_mm) {
+  const StoredPlace& stored = stored_places_[block_->second_reference ? 1 : 0];
+  if (!stored.is_stored) {
+    go_to_machine(axes);
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if ((axes & kX << i) != 0) place_in(stored.place[static_cast<std::size_t>(i)], i);
+  }
+  if ((axes & kZ) == 0) return;
   // Another tool's tip is elsewhere there. By how much is not known without a tool table.
-  if (!lengths_.checks() && place.length_call != length_call_) known = without(known, kZ);
-  if (lengths_.checks() && lengths_.is_hidden() && (axes & kZ) != 0) {
-    const Vec3 shift_mm = along_work(place.applied_mm - lengths_.applied_mm());
+  if (!lengths_.checks() && stored.length_call != length_call_) place_[2] = unsaid(false);
+  if (lengths_.checks() && lengths_.is_hidden()) {
+    const Vec3 shift_mm = along_work(stored.applied_mm - lengths_.applied_mm());
     if (shift_mm != Vec3{0}) held_z_mm_ = program_from_work(to_mm).z;
     to_mm += shift_mm;
   }
-  return without(axes, known);
 }
 
 /// As look_for_plate(), of a system that is not in force: what the program says in the present one
@@ -175,36 +269,30 @@ void MotionFold::store_system(const BlockWords& block) {
   if (block.system >= static_cast<int>(kSystems)) return;
   store_plate(block);
   if (!follows_places_) return;
-  const bool touches_off = block.offset == BlockWords::Offset::kTouchOff;
-  std::uint8_t unrelated = block.computed & probed_;
-  if (touches_off) {
-    const bool plate = (block.computed & kZ) == 0 && block.z * unit_mm_ >= kLeastPlate_mm;
-    unrelated |= block.named & unknown_ & without(probed_, plate ? kZ : std::uint8_t{0});
-  }
-  const std::uint8_t floats =
-      touches_off ? block.named & without(unknown_, unrelated | probed_) : std::uint8_t{0};
   systems_before_ = systems_;
-  for (int system = 1; system < static_cast<int>(kSystems); ++system) {
-    if (system == g5x_index_ || (block.system > 0 && system != block.system)) continue;
-    StoredSystem& set = systems_[static_cast<std::size_t>(system)];
-    // With a computed P it is one of them.
-    const std::uint8_t renewed = block.system > 0 ? block.named : std::uint8_t{0};
-    set.unrelated = without(set.unrelated, renewed) | unrelated;
-    set.floats = without(set.floats, renewed) | floats;
+  const bool touches_off = block.offset == BlockWords::Offset::kTouchOff;
+  const std::uint8_t doubtful = block.computed & probed_;
+  const bool plate = (block.computed & kZ) == 0 && block.z * unit_mm_ >= kLeastPlate_mm;
+  if (touches_off) stand_on_plate(without(block.named, doubtful), plate);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((block.named & kX << i) == 0) continue;
+    UnknownSum place = touches_off ? place_[i] : UnknownSum();
+    if (touches_off && shifted_) place = place - shift_[i];
+    if ((doubtful & kX << i) != 0) place = unsaid(true);
+    for (int system = 1; system < static_cast<int>(kSystems); ++system) {
+      if (system == g5x_index_ || (block.system > 0 && system != block.system)) continue;
+      UnknownSum& of_system = systems_[static_cast<std::size_t>(system)].place[i];
+      // With a computed P it is one of them.
+      const bool sure = block.system > 0 || of_system == place;
+      of_system = sure ? place : unsaid(true);
+    }
   }
 }
 
-void MotionFold::enter_system(int system) {
-  const auto index = [](int number) {
-    return number >= 0 && number < static_cast<int>(kSystems) ? static_cast<std::size_t>(number)
-                                                              : std::size_t{0};
-  };
-  StoredSystem& left = systems_[index(g5x_index_)];
-  left.unrelated = system_unrelated_;
-  left.floats = 0;
-  const StoredSystem& entered = systems_[index(system)];
-  system_unrelated_ = entered.unrelated | (entered.floats & placed_);
-  g5x_index_ = system;
+/// What a probe has met that nobody knows says nothing. But where the program calls it by the
+/// height of a touch plate that lies on the workpiece.
+void MotionFold::stand_on_plate(std::uint8_t axes, bool plate) {
+  if (plate && (axes & kZ) != 0 && place_[2].is_doubtful()) place_[2] = unsaid(false);
 }
 
 /// Where the tip stands, in the numbers of the offsets that have just been set.
@@ -246,70 +334,77 @@ void MotionFold::follow_offset(CanonicalName name, int system) {
   look_for_plate(is_shift);
   if (!follows_places_) return;
   if (!is_shift && system != g5x_index_) {
-    enter_system(system);
+    g5x_index_ = system;
     zero_known_ = without(zero_known_, zero_by_program_);
     zero_by_program_ = 0;
   }
-  if (block_ == nullptr) return;
+  if (block_ != nullptr) follow_offset_words(is_shift);
+  settle();
+}
+
+/// .. by the words of its block.
+void MotionFold::follow_offset_words(bool is_shift) {
   // A G10 whose P is computed has set the system in force.
   if (!is_shift && block_->system < 0) systems_ = systems_before_;
   const std::uint8_t named = block_->named;
-  // What is not known of a probe: whatever the program computes, and a place that it has touched
-  // itself. Only by a plate's height it says where the tool is.
-  std::uint8_t doubtful = block_->computed & probed_;
-  if (block_->offset != BlockWords::Offset::kMachine) {
-    const std::uint8_t plate = said_height_mm() >= kLeastPlate_mm ? kZ : std::uint8_t{0};
-    doubtful |= named & unknown_ & without(probed_, plate);
-  }
+  const std::uint8_t doubtful = block_->computed & probed_;
   switch (block_->offset) {
     case BlockWords::Offset::kNone:
       return;
     case BlockWords::Offset::kShift:
       if (!is_shift) return;
-      shifted_ = true;
-      // Where the axis is known the new numbers hang together with those of the workpiece frame.
-      shift_floats_ = without(shift_floats_, named) | (named & (unknown_ | work_floats_));
-      system_unrelated_ |= doubtful;
-      take_as_known_here(without(named & unknown_, doubtful), true);
-      return relate_shift();
+      if (!std::exchange(shifted_, true)) shift_ = {};
+      return touch_off(named, doubtful, true);
+    case BlockWords::Offset::kLocal:
+      if (!is_shift) return;
+      if (!std::exchange(shifted_, true)) shift_ = {};
+      for (std::size_t i = 0; i < 3; ++i) {
+        if ((named & kX << i) == 0) continue;
+        shift_[i] = (doubtful & kX << i) != 0 ? unsaid(true) : UnknownSum();
+      }
+      return;
     case BlockWords::Offset::kUnshift:
+      shift_ = {};
       shifted_ = false;
-      return relate_shift();
+      return;
+    case BlockWords::Offset::kSuspend:
+      shifted_ = false;
+      return;
     case BlockWords::Offset::kReshift:
       shifted_ = true;
-      return relate_shift();
+      return;
     case BlockWords::Offset::kTouchOff:
-      if (is_shift) return;
-      system_unrelated_ |= doubtful;
-      take_as_known_here(without(named & unknown_, doubtful), false);
+      if (!is_shift) touch_off(named, doubtful, false);
       return;
     case BlockWords::Offset::kMachine:
       if (is_shift) return;
-      if (probed_ != 0) system_unrelated_ = without(system_unrelated_, named) | doubtful;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if ((named & kX << i) == 0) continue;
+        system_in_force().place[i] = (doubtful & kX << i) != 0 ? unsaid(true) : UnknownSum();
+      }
       zero_by_program_ |= without(named, placed_ | zero_known_);
       zero_known_ |= zero_by_program_;
       return;
   }
 }
 
-/// The program has given numbers to a place that is not known in the machine: from here on they are
-/// what is known. If the axis had others before, the two have nothing to do with each other.
-void MotionFold::take_as_known_here(std::uint8_t axes, bool by_g92) {
-  if (axes == 0) return;
+/// The program has given numbers to the place where the machine stands: what is known of it is now
+/// known of the offset. An axis that nothing has placed before is placed by it.
+void MotionFold::touch_off(std::uint8_t axes, std::uint8_t doubtful, bool by_shift) {
   if (work_fixed_) adopt_frame();
-  const std::uint8_t fresh = without(axes, placed_);
-  if (by_g92) work_floats_ |= fresh;
-  if (!by_g92) system_unrelated_ |= axes & placed_;
-  placed_ |= fresh;
-  unknown_ = without(unknown_, fresh);
-  zero_known_ = without(zero_known_, fresh);
-}
-
-void MotionFold::relate_shift() {
-  const std::uint8_t floats = shifted_ ? shift_floats_ : std::uint8_t{0};
-  // A second G92 at an unknown place is another one than that of the workpiece frame.
-  const std::uint8_t lost = shifted_ ? floats & unknown_ : std::uint8_t{0};
-  shift_unrelated_ = placed_ & ((floats ^ work_floats_) | lost);
+  stand_on_plate(without(axes, doubtful), said_height_mm() >= kLeastPlate_mm);
+  System& system = system_in_force();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((axes & kX << i) == 0) continue;
+    const UnknownSum place = (doubtful & kX << i) != 0 ? unsaid(true) : place_[i];
+    if (by_shift) {
+      shift_[i] = place - system.place[i];
+    } else {
+      system.place[i] = shifted_ ? place - shift_[i] : place;
+    }
+    in_force_[i] = place;
+    if ((doubtful & kX << i) == 0) place_in(place, static_cast<int>(i));
+  }
 }
 
 /// The workpiece frame is that in which the program first writes: of an axis that no block has
@@ -319,8 +414,8 @@ void MotionFold::adopt_frame() {
   std::uint8_t free = without(kXyz, placed_);
   if (turned && (free & kXy) != kXy) free &= kZ;
   if (free == 0) return;
-  const auto cosine = [](double degrees) { return std::cos(degrees * (kPi / 180)); };
-  const auto sine = [](double degrees) { return std::sin(degrees * (kPi / 180)); };
+  const auto cosine = [](double degrees) { return std::cos(degrees * kRadPerDeg); };
+  const auto sine = [](double degrees) { return std::sin(degrees * kRadPerDeg); };
   double degrees = work_.rotation_deg;
   const Vec3 machine_mm =
       turned_by(position_mm_ + work_.g92_mm, cosine(degrees), sine(degrees)) + work_.g5x_mm;

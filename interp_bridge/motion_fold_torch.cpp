@@ -4,12 +4,12 @@
 #include <glm/geometric.hpp>
 #include <string_view>
 
+#include "base/units.h"
 #include "interp_bridge/motion_fold.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kInchMm = 25.4;
 /// What the filter has where the program says nothing: up to which diameter a circle is a hole, how
 /// far it is run on, how corners are blended; in programs in mm and in inches.
 constexpr double kLargestHole_mm = 32;
@@ -17,7 +17,7 @@ constexpr double kLargestHole_in = 1.26;
 constexpr double kOverburn_mm = 4;
 constexpr double kOverburn_in = 0.157;
 constexpr float kBlend_mm = 0.1F;
-constexpr float kBlendInchMachine_mm = 0.004F * 25.4F;
+constexpr float kBlendInchMachine_mm = 0.004F * static_cast<float>(kMmPerInch);
 
 /// How a COMMENT of the interpreter about G41, G42 and G40 begins; "on left", "off" follow.
 constexpr std::string_view kCompensation = "interpreter: cutter radius compensation ";
@@ -122,7 +122,7 @@ void MotionFold::note_spindles() {
 
 double MotionFold::hole_limit_mm() const {
   if (modes_.largest_diameter >= 0) return double{modes_.largest_diameter} * unit_mm_;
-  return unit_mm_ == kInchMm ? kLargestHole_in * kInchMm : kLargestHole_mm;
+  return unit_mm_ == kMmPerInch ? kLargestHole_in * kMmPerInch : kLargestHole_mm;
 }
 
 void MotionFold::end_hole() {
@@ -151,7 +151,7 @@ void MotionFold::return_from_overburn(SourceRef source, std::vector<Motion>& out
 
 void MotionFold::append_overburn(const Motion& hole, std::vector<Motion>& out) {
   const double length_mm = modes_.overburn_length >= 0 ? double{modes_.overburn_length} * unit_mm_
-                           : unit_mm_ == kInchMm       ? kOverburn_in * kInchMm
+                           : unit_mm_ == kMmPerInch    ? kOverburn_in * kMmPerInch
                                                        : kOverburn_mm;
   Vec3 radius_mm = hole.to_mm - hole.arc.center_mm;
   radius_mm -= glm::dot(radius_mm, hole.arc.axis) * hole.arc.axis;

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <utility>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/canonical_reader.h"
 #include "interp_bridge/child_listener.h"
 #include "interp_bridge/interpreter_process.h"
@@ -29,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 /// The second run of a program that fell silent need not wait as long to call it so.
 constexpr double kSilenceAgain_s = 2.0;
 /// rs274 2.9 reads tables and parameters in inches, whatever the machine.
-constexpr double kTableUnit_mm = 25.4;
+constexpr double kTableUnit_mm = kMmPerInch;
 
 class NcProgram final : public Program {
  public:
@@ -58,6 +60,10 @@ class NcProgram final : public Program {
     std::string copy_path() const { return folder.path() + "/nc/" + prepared.main_name; }
   };
   Result<Session> start_session() const;
+  /// rs274 is given the machine's work offsets.
+  bool has_parameters() const {
+    return options_.machine.work_offset || !options_.machine.parameter_path.empty();
+  }
   std::vector<std::string> rs274_arguments(const PreparedProgram& prepared, const std::string& home,
                                            const std::string& table_path) const;
   CanonicalReaderOptions reader_options(const Session& session) const;
@@ -88,7 +94,7 @@ Result<NcProgram::Session> NcProgram::start_session() const {
   const std::string home = folder->path() + "/home";
   for (const std::string& path : {nc, home}) {
     if (mkdir(path.c_str(), 0700) != 0) {
-      return Error{fmt::format("cannot make the folder {}: {}", path, std::strerror(errno))};
+      return Error{trf("cannot make the folder {}: {}", path, std::strerror(errno))};
     }
   }
   auto prepared = prepare_program(options_.path, nc);
@@ -97,17 +103,18 @@ Result<NcProgram::Session> NcProgram::start_session() const {
   const std::string table_path = folder->path() + "/tool.tbl";
   std::ofstream table_file(table_path);
   if (!(table_file << table.text << std::flush)) {
-    return Error{fmt::format("cannot write {}: {}", table_path, std::strerror(errno))};
+    return Error{trf("cannot write {}: {}", table_path, std::strerror(errno))};
   }
-  if (options_.machine.work_offset) {
-    InterpreterSetup machine;
-    machine.work_offset = options_.machine.work_offset;
-    Diagnostics ignored;
-    const Result<ParameterFile> values = parameters_of(machine, kTableUnit_mm, ignored);
+  if (has_parameters()) {
+    const double unit_mm = options_.machine.inch_machine ? kTableUnit_mm : 1.0;
+    Diagnostics ignored;  // LinuxCNC reads what it can, too
+    Result<ParameterFile> values = parameters_of(options_.machine, unit_mm, ignored);
+    if (!values) return Error{values.error()};
+    values->scale_lengths(unit_mm / kTableUnit_mm);
     const std::string path = home + "/x.var";
     std::ofstream file(path);
-    if (!values || !(file << values->text() << std::flush)) {
-      return Error{fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+    if (!(file << values->text() << std::flush)) {
+      return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
     }
   }
   InterpreterProcessOptions child;
@@ -135,7 +142,7 @@ std::vector<std::string> NcProgram::rs274_arguments(const PreparedProgram& prepa
   const std::string program = name.front() == '-' ? "./" + name : name;
   // No var file: a path that cannot exist is not written either. (rs274 replaces its var file, even
   // /dev/null.)
-  const std::string parameters = home + (options_.machine.work_offset ? "/x.var" : "/none/x.var");
+  const std::string parameters = home + (has_parameters() ? "/x.var" : "/none/x.var");
   arguments.insert(arguments.end(), {"-t", table_path, "-v", parameters, "-g", program});
   return arguments;
 }
@@ -157,10 +164,9 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
   const InterpreterSetup& machine = options_.machine;
-  reading.feeder.places = {
-      machine.unknown_places, {}, machine.work_offset.has_value(), machine.z_matters};
+  reading.feeder.places = {machine.unknown_places, {}, has_parameters(), machine.z_matters};
   reading.feeder.follows_probes = follows_probes_;
-  reading.feeder.no_answer = "rs274 cannot ask, --interp bridge can";
+  reading.feeder.no_answer = tr("rs274 cannot ask, --interp bridge can");
   return reading;
 }
 
@@ -176,8 +182,8 @@ void NcProgram::report(Severity severity, SourceRef place, std::string message, 
 }
 
 std::string NcProgram::silence_message(const Session& session) const {
-  std::string message = fmt::format(
-      "no motion or other command for {} s; the program counts as endless", options_.max_silent_s);
+  std::string message = trf("no motion or other command for {} s; the program counts as endless",
+                            options_.max_silent_s);
   std::uint64_t left = session.process.read_offset(session.copy_path());
   std::size_t line = 1;
   TextPieces pieces(session.copy_path());
@@ -188,7 +194,7 @@ std::string NcProgram::silence_message(const Session& session) const {
     left -= read.size();
   }
   if (line > 1 && line < session.prepared.lines) {
-    message += fmt::format(" (rs274 has read up to line {} at most)", line);
+    message += trf(" (rs274 has read up to line {} at most)", line);
   }
   return message;
 }
@@ -219,18 +225,20 @@ void NcProgram::report_exit(InterpreterProcess::Exit exit, CanonicalReader& read
                             Diagnostics& diagnostics) const {
   if (exit.signal != 0) {
     report(Severity::kError, reader.feeder().last_source(),
-           fmt::format("rs274 was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
-           {}, summary, diagnostics);
+           trf("rs274 was ended by signal {} ({})", exit.signal, strsignal(exit.signal)), {},
+           summary, diagnostics);
     return;
   }
   if (exit.status != 0) {
     diagnostics.push_back(interpreter_diagnostic(
         stderr_text, summary.files, reader.feeder().last_source(), summary.program_lines));
+    summary.end_remarked = is_missing_end(parse_interpreter_message(stderr_text).message);
     return;
   }
   if (!summary.has_program_end) {
+    summary.end_remarked = true;
     report(Severity::kWarning, reader.feeder().last_source(),
-           "the program ended without M2, M30 or %", {}, summary, diagnostics);
+           tr("the program ended without M2, M30 or %"), {}, summary, diagnostics);
   }
 }
 
@@ -247,14 +255,15 @@ void NcProgram::report_ending(ChildEnding ending, Session& session, CanonicalRea
       break;
     case ChildEnding::kTooMany:
       report(Severity::kError, place,
-             fmt::format("more than {} canonical commands; the program counts as endless",
-                         command_limit(options_, survey_.lines)),
-             "a loop whose condition stays true?", summary, diagnostics);
+             trf("more than {} canonical commands; the program counts as endless",
+                 command_limit(options_, survey_.lines)),
+             tr("a loop whose condition stays true?"), summary, diagnostics);
       break;
     case ChildEnding::kRepeating:
       session.process.kill();
       report(Severity::kError, place, repeat_message(reader.feeder().repeats()),
-             "a loop whose condition stays true? --max-seconds allows more", summary, diagnostics);
+             tr("a loop whose condition stays true? --max-seconds allows more"), summary,
+             diagnostics);
       break;
     case ChildEnding::kTooLong:
       session.process.kill();
@@ -264,8 +273,8 @@ void NcProgram::report_ending(ChildEnding ending, Session& session, CanonicalRea
       const std::string message = silence_message(session);
       session.process.kill();
       report(Severity::kError, source_before_silence(session, stop), message,
-             "this line did something last; a loop behind it whose condition stays true?", summary,
-             diagnostics);
+             tr("this line did something last; a loop behind it whose condition stays true?"),
+             summary, diagnostics);
       break;
     }
   }
@@ -293,8 +302,7 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   if (waits.count > 0 && !reading.feeder.torch.qtplasmac) {
     summary.notes.push_back(
         {waits.first,
-         fmt::format(
-             "rs274's text tells nothing of M66 ({} in the program): that the machine stops "
+         trf("rs274's text tells nothing of M66 ({} in the program): that the machine stops "
              "for it is not reckoned with; --interp bridge does",
              waits.count),
          1, true});

@@ -8,10 +8,15 @@
 #include <fstream>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
 // Numbers of LinuxCNC's parameters (manual: "Numbered parameters").
+constexpr int kG28First = 5161;
+constexpr int kG30First = 5181;
 constexpr int kG92Active = 5210;
 constexpr int kG92First = 5211;
 constexpr int kWorkOffset = 5220;
@@ -21,7 +26,7 @@ constexpr int kRotation = 9;  // after the nine axes
 constexpr int kMostParameters = 5602;
 
 const char* skip_blanks(const char* at, const char* end) {
-  while (at != end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+  while (at != end && is_line_blank(*at)) ++at;
   return at;
 }
 
@@ -45,10 +50,6 @@ bool read_line(const std::string& text, Line& line, int& column) {
   at = skip_blanks(value.ptr, end);
   column = static_cast<int>(at - begin) + 1;
   return at == end;
-}
-
-bool is_blank(const std::string& text) {
-  return text.find_first_not_of(" \t\r") == std::string::npos;
 }
 
 }  // namespace
@@ -85,6 +86,17 @@ void ParameterFile::set_frame(int index, const WorkpieceFrame& frame, double uni
   values.try_emplace(kWorkOffset, 1);
 }
 
+void ParameterFile::scale_lengths(double factor) {
+  const auto scale_axes = [&](int first) {
+    for (const int axis : {0, 1, 2, 6, 7, 8}) {
+      const auto found = values.find(first + axis);
+      if (found != values.end()) found->second *= factor;
+    }
+  };
+  for (const int first : {kG28First, kG30First, kG92First}) scale_axes(first);
+  for (int i = 0; i < kWorkOffsets; ++i) scale_axes(kWorkOffsetFirst + i * kWorkOffsetStride);
+}
+
 std::string ParameterFile::text() const {
   std::string out;
   for (const auto& [number, value] : values) out += fmt::format("{} {:.17g}\n", number, value);
@@ -95,29 +107,29 @@ Result<ParameterFile> read_parameter_file(const std::string& path, Diagnostics& 
   errno = 0;
   std::ifstream file(path);
   const auto unreadable = [&] {
-    return Error{fmt::format("reading {}: {}", path, std::strerror(errno != 0 ? errno : EIO))};
+    return Error{trf("reading {}: {}", path, std::strerror(errno != 0 ? errno : EIO))};
   };
   if (!file) return unreadable();
   ParameterFile out;
   std::string text;
   int before = 0;
   for (int number = 1; std::getline(file, text); ++number) {
-    if (is_blank(text)) continue;
+    if (trim(text, is_line_blank).empty()) continue;
     Line line;
     Diagnostic fault;
     fault.severity = Severity::kWarning;
     fault.file = path;
     fault.line = number;
     if (!read_line(text, line, fault.column)) {
-      fault.message = "is not a parameter: a number from 1 to 5601 and its value are expected";
+      fault.message = tr("is not a parameter: a number from 1 to 5601 and its value are expected");
       fault.excerpt = text.substr(0, 80);
       diagnostics.push_back(std::move(fault));
       continue;
     }
     if (line.number <= before) {
       fault.column = 1;
-      fault.message = fmt::format("parameter {} after {}: LinuxCNC wants them in rising order",
-                                  line.number, before);
+      fault.message =
+          trf("parameter {} after {}: LinuxCNC wants them in rising order", line.number, before);
       fault.excerpt = text.substr(0, 80);
       diagnostics.push_back(std::move(fault));
     }

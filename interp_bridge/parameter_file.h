@@ -28,6 +28,8 @@ struct ParameterFile {
   WorkpieceFrame frame(int index, double unit_mm) const;
   /// Work offset `index` becomes that of `frame`, whose G92 does not count.
   void set_frame(int index, const WorkpieceFrame& frame, double unit_mm);
+  /// Lengths times `factor`: G28, G30, G92 and the work offsets; not their angles.
+  void scale_lengths(double factor);
   /// As LinuxCNC reads it, with all digits.
   std::string text() const;
 };

@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -31,7 +33,7 @@ Result<PrivateFolder> PrivateFolder::create() {
           .string();
   std::string path = parent + "/kerf-XXXXXX";
   if (mkdtemp(path.data()) == nullptr) {
-    return Error{fmt::format("cannot make a folder under {}: {}", parent, std::strerror(errno))};
+    return Error{trf("cannot make a folder under {}: {}", parent, std::strerror(errno))};
   }
   const std::lock_guard lock(g_living_mutex);
   living().insert(path);

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text_scan.h"
+
 namespace kerf {
 namespace {
 
@@ -39,7 +41,7 @@ std::string bare(std::string_view line) {
     } else if (c == ';') {
       break;
     } else if (c > ' ') {
-      out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      out += to_lower(c);
     }
   }
   return out;
@@ -64,8 +66,8 @@ Line line_of(std::string_view raw) {
     if (end < text.size() && text[end] == '<') {
       end = std::min(text.find('>', end), text.size() - 1) + 1;
       name = text.substr(at, end - at);
-    } else if (end < text.size() && text[end] >= '0' && text[end] <= '9') {
-      while (end < text.size() && text[end] >= '0' && text[end] <= '9') ++end;
+    } else if (end < text.size() && is_digit(text[end])) {
+      while (end < text.size() && is_digit(text[end])) ++end;
       name = text.substr(at, end - at);
     } else if (end < text.size() && text[end] == '[') {
       end = closing(text, end) + 1;

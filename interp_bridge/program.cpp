@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/interpreter_process.h"
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/tool_table.h"
@@ -26,28 +28,23 @@ void report(Diagnostics& diagnostics, const std::string& file, std::string messa
   diagnostics.push_back(std::move(diagnostic));
 }
 
-bool ends_with(const std::string& text, std::string_view tail) {
-  return text.size() >= tail.size() &&
-         text.compare(text.size() - tail.size(), tail.npos, tail) == 0;
-}
-
 bool is_regular_file(const std::string& path, Diagnostics& diagnostics) {
   struct stat status {};
   if (path.empty()) {
-    report(diagnostics, {}, "no program is named");
+    report(diagnostics, {}, tr("no program is named"));
     return false;
   }
   if (stat(path.c_str(), &status) != 0) {
-    report(diagnostics, path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    report(diagnostics, path, trf("cannot be read: {}", std::strerror(errno)));
     return false;
   }
   if (S_ISDIR(status.st_mode)) {
-    report(diagnostics, path, "is a folder; a program is an NC file or a canonical listing");
+    report(diagnostics, path, tr("is a folder; a program is an NC file or a canonical listing"));
     return false;
   }
   if (!S_ISREG(status.st_mode)) {
-    report(diagnostics, path, "is not a regular file",
-           "canonical text from a pipe is read from stdin: -");
+    report(diagnostics, path, tr("is not a regular file"),
+           tr("canonical text from a pipe is read from stdin: -"));
     return false;
   }
   return true;
@@ -56,12 +53,12 @@ bool is_regular_file(const std::string& path, Diagnostics& diagnostics) {
 /// Reads the whole text once. False: it is not a program, which has been reported.
 bool survey_file(const std::string& path, TextSurvey& survey, Diagnostics& diagnostics) {
   TextPieces pieces(path);
-  TextSurveyor surveyor(ends_with(path, ".canon"));
+  TextSurveyor surveyor(path.ends_with(".canon"));
   std::string_view piece;
   while (pieces.next(piece)) {
     if (surveyor.survey().bytes == 0 && piece.substr(0, 2) == "\x1f\x8b") {
-      report(diagnostics, path, "is compressed (gzip); a program is plain text",
-             "gunzip it first, or pipe a listing: zcat part.canon.gz | kerf run -");
+      report(diagnostics, path, tr("is compressed (gzip); a program is plain text"),
+             tr("gunzip it first, or pipe a listing: zcat part.canon.gz | kerf run -"));
       return false;
     }
     surveyor.add(piece);
@@ -69,14 +66,14 @@ bool survey_file(const std::string& path, TextSurvey& survey, Diagnostics& diagn
   }
   survey = surveyor.take();
   if (!pieces.error().empty()) {
-    report(diagnostics, path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    report(diagnostics, path, trf("cannot be read: {}", std::strerror(errno)));
   } else if (survey.nul_line != 0) {
-    report(diagnostics, path, "is not text: it holds a NUL byte", "a program is plain text",
+    report(diagnostics, path, tr("is not text: it holds a NUL byte"), tr("a program is plain text"),
            survey.nul_line);
   } else if (survey.bytes == 0) {
-    report(diagnostics, path, "is empty");
+    report(diagnostics, path, tr("is empty"));
   } else if (survey.blank) {
-    report(diagnostics, path, "is empty: it holds only white space");
+    report(diagnostics, path, tr("is empty: it holds only white space"));
   } else {
     return true;
   }
@@ -90,7 +87,7 @@ bool read_tools(const ProgramOptions& options, std::vector<ToolTableRow>& rows,
   if (options.tool_table_path.empty()) return true;
   Diagnostics row_faults;
   auto read = read_tool_table(options.tool_table_path, row_faults,
-                              options.machine.inch_machine ? 25.4 : 1.0);
+                              mm_of_unit(options.machine.inch_machine));
   if (read) {
     rows = std::move(*read);
     return true;
@@ -147,20 +144,20 @@ std::unique_ptr<Program> open_kind(const ProgramOptions& options, bool from_stdi
                                  std::move(survey), std::move(torch));
     }
     if (options.interpreter == InterpreterChoice::kBridge) {
-      report(diagnostics, {},
-             "kerf-interp was not found: neither beside kerf, nor in ../lib/kerf, nor in PATH",
-             "it is built where linuxcnc-uspace-dev and libboost-dev are installed; --interp text "
-             "does without");
+      report(
+          diagnostics, {},
+          tr("kerf-interp was not found: neither beside kerf, nor in ../lib/kerf, nor in PATH"),
+          tr("it is built where linuxcnc-uspace-dev and libboost-dev are installed; --interp text "
+             "does without"));
       return nullptr;
     }
   }
   std::string rs274 = find_executable(options.rs274_path);
   if (rs274.empty()) {
-    report(
-        diagnostics, {},
-        fmt::format("LinuxCNC's interpreter was not found: no executable {}{}", options.rs274_path,
-                    options.rs274_path.find('/') == std::string::npos ? " in PATH" : ""),
-        "sudo apt install --no-remove linuxcnc-uspace");
+    report(diagnostics, {},
+           trf("LinuxCNC's interpreter was not found: no executable {}{}", options.rs274_path,
+               options.rs274_path.find('/') == std::string::npos ? tr(" in PATH") : ""),
+           tr("sudo apt install --no-remove linuxcnc-uspace"));
     return nullptr;
   }
   return make_nc_program(options, std::move(rs274), std::move(tools), std::move(survey),
@@ -201,16 +198,15 @@ std::unique_ptr<Program> Program::open(const ProgramOptions& options, Diagnostic
 
 std::string repeat_message(const RepeatWatch& repeats) {
   const double days = repeats.machine_s() / 86'400;
-  return fmt::format(
+  return trf(
       "the last {} commands are all repetitions, and {}; the program counts as endless",
       repeats.commands(),
-      days < 1 ? std::string("move nothing")
-               : fmt::format("would take the machine {:.3g} days", days));
+      days < 1 ? std::string(tr("move nothing")) : trf("would take the machine {:.3g} days", days));
 }
 
 std::string cpu_message(const ProgramOptions& options) {
-  return fmt::format("the interpreter has used {:g} s of processor time (--max-cpu-seconds)",
-                     options.max_cpu_s);
+  return trf("the interpreter has used {:g} s of processor time (--max-cpu-seconds)",
+             options.max_cpu_s);
 }
 
 }  // namespace kerf

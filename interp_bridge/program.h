@@ -177,6 +177,7 @@ struct ProgramSummary {
   std::vector<std::string> foreign_lines;
   std::uint64_t foreign_line_count = 0;
   bool has_program_end = false;    ///< M2, M30 or a closing %
+  bool end_remarked = false;       ///< the last diagnostic of the run says that it has none
   bool has_rotary_motion = false;  ///< any A, B or C motion
   std::vector<ProgramNote> notes;  ///< first 100 different ones
   std::uint64_t lost_splines = 0;  ///< whose points the listing does not hold

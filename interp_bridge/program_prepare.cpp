@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "interp_bridge/block_words.h"
 #include "interp_bridge/source_text.h"
 
@@ -21,11 +23,6 @@ namespace {
 /// LinuxCNC's tool table holds 1000 rows.
 constexpr std::size_t kMaxNamedTools = 900;
 constexpr int kLargestToolNumber = 99'999;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
 
 const char* skip_blanks(const char* p, const char* end) {
   while (p != end && is_blank(*p)) ++p;
@@ -161,7 +158,7 @@ void LineNumberer::note_o_word(std::string_view after_o) {
   std::string name;
   if (p != end && *p == '<') {
     for (++p; p != end && *p != '>'; ++p) {
-      if (!is_blank(*p)) name += lower(*p);
+      if (!is_blank(*p)) name += to_lower(*p);
     }
     if (p == end) return;
     ++p;
@@ -171,7 +168,7 @@ void LineNumberer::note_o_word(std::string_view after_o) {
   if (name.empty()) return;
   p = skip_blanks(p, end);
   std::string keyword;
-  for (; p != end && is_letter(*p); ++p) keyword += lower(*p);
+  for (; p != end && is_letter(*p); ++p) keyword += to_lower(*p);
   if (keyword == "call")
     called_.insert(std::move(name));
   else if (keyword == "sub" || keyword.empty())
@@ -195,7 +192,7 @@ void LineNumberer::note_words(std::string_view text) {
       if (hit != begin && is_letter(hit[-1])) continue;  // in a word of a comment
       const std::string_view after(p, static_cast<std::size_t>(end - p));
       const long number = read_number(after);
-      if (lower(letter) == 'm') {
+      if (to_lower(letter) == 'm') {
         if (number == 66) note_wait(text, static_cast<std::size_t>(hit - begin));
         if (number != 61 && number != 98) continue;
         const std::string_view line = after.substr(0, after.find('\n'));
@@ -263,7 +260,7 @@ class Copy {
   }
   Done result() const {
     if (error_ == 0) return std::monostate{};
-    return Error{fmt::format("writing {}: {}", path_, std::strerror(error_))};
+    return Error{trf("writing {}: {}", path_, std::strerror(error_))};
   }
 
  private:

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -88,7 +90,7 @@ bool RecordReader::received(std::size_t bytes) {
   if (!begun_) {
     if (filled_ < sizeof records::kMagic) return true;
     if (std::memcmp(at, records::kMagic, sizeof records::kMagic) != 0) {
-      return refuse("it does not begin as the records of this version of kerf-interp do");
+      return refuse(tr("it does not begin as the records of this version of kerf-interp do"));
     }
     begun_ = true;
     at += sizeof records::kMagic;
@@ -108,9 +110,9 @@ bool RecordReader::received(std::size_t bytes) {
 }
 
 bool RecordReader::take(const records::Head& head, const char* payload) {
-  if (ended_) return refuse("records behind the last one");
+  if (ended_) return refuse(tr("records behind the last one"));
   if (records::is_text(head.code) && head.count > records::kMaxText) {
-    return refuse("a text too long");
+    return refuse(tr("a text too long"));
   }
   const std::uint8_t name = head.code & std::uint8_t{0x7f};
   if (name < kCanonicalNameCount) return take_command(head, payload);
@@ -123,7 +125,7 @@ bool RecordReader::take_command(const records::Head& head, const char* payload) 
   command_.argument_count = 0;
   command_.text = {};
   if (records::is_text(head.code) != carries_text(command_.name)) {
-    return refuse("a command of the wrong form");
+    return refuse(tr("a command of the wrong form"));
   }
   if (records::is_text(head.code)) {
     command_.text = {payload, head.count};
@@ -133,13 +135,13 @@ bool RecordReader::take_command(const records::Head& head, const char* payload) 
     return feeder_.take(command_, place_);
   }
   if (head.count > CanonicalCommand::kMaxArguments)
-    return refuse("a command with too many numbers");
+    return refuse(tr("a command with too many numbers"));
   const auto given = static_cast<std::uint8_t>(head.count);
   command_.argument_count = full_count(command_.name, given);
   std::memcpy(command_.arguments.data(), payload, std::size_t{8} * given);
   for (std::size_t i = given; i < command_.argument_count; ++i) command_.arguments[i] = 0;
   if (!canonical_arguments_fit(command_) || !tool_fits(command_)) {
-    return refuse("a command whose numbers do not fit");
+    return refuse(tr("a command whose numbers do not fit"));
   }
   return feeder_.take(command_, place_);
 }
@@ -151,7 +153,7 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     case records::kSpline:
       return take_spline(head, payload);
     case records::kUserM:
-      if (head.count != 3) return refuse("a user M-code whose numbers do not fit");
+      if (head.count != 3) return refuse(tr("a user M-code whose numbers do not fit"));
       feeder_.take_wait();
       if (number_at(payload, 0) == kMaterialCode &&
           feeder_.take_material_change(number_at(payload, 1), {file_, head.line})) {
@@ -166,15 +168,15 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
                              number_at(payload, 2)));
       return true;
     case records::kWait:
-      if (head.count != 4) return refuse("an M66 whose numbers do not fit");
+      if (head.count != 4) return refuse(tr("an M66 whose numbers do not fit"));
       if (feeder_.is_qtplasmac() && number_at(payload, 0) == kMaterialInput &&
           number_at(payload, 1) == records::kDigitalInput) {
         return true;  // the wait for M190, which is done
       }
       feeder_.take_wait();
-      note(head, fmt::format("M66 of {} input {:g}",
-                             number_at(payload, 1) == records::kDigitalInput ? "digital" : "analog",
-                             number_at(payload, 0)));
+      note(head, number_at(payload, 1) == records::kDigitalInput
+                     ? trf("M66 of digital input {:g}", number_at(payload, 0))
+                     : trf("M66 of analog input {:g}", number_at(payload, 0)));
       return true;
     case records::kRotary:
       return true;
@@ -192,14 +194,14 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       faults_.back().message.assign(payload, head.count);
       return true;
     case records::kEcho:
-      if (faults_.empty()) return refuse("a block without its error");
+      if (faults_.empty()) return refuse(tr("a block without its error"));
       faults_.back().echo.assign(payload, head.count);
       return true;
     case records::kCaller: {
-      if (faults_.empty() || head.count != 1) return refuse("a caller without an error");
+      if (faults_.empty() || head.count != 1) return refuse(tr("a caller without an error"));
       const double file = number_at(payload, 0);
       if (!(file >= 0 && file < static_cast<double>(summary_.files.size()))) {
-        return refuse("a caller in an unknown file");
+        return refuse(tr("a caller in an unknown file"));
       }
       if (faults_.back().callers.size() < kMaxCallers) {
         faults_.back().callers.push_back({static_cast<std::uint32_t>(file), head.line});
@@ -210,16 +212,16 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       ended_ = true;
       return true;
     default:
-      return refuse("a record of unknown kind");
+      return refuse(tr("a record of unknown kind"));
   }
 }
 
 bool RecordReader::take_file(const records::Head& head, std::string_view name) {
   std::vector<std::string>& files = summary_.files;
   if (name.empty() ? head.line >= files.size() : head.line != files.size()) {
-    return refuse("a file out of order");
+    return refuse(tr("a file out of order"));
   }
-  if (files.size() >= kMaxFiles) return refuse("too many files");
+  if (files.size() >= kMaxFiles) return refuse(tr("too many files"));
   if (!name.empty()) files.push_back(file_names_(std::string(name)));
   file_ = head.line;
   return true;
@@ -227,7 +229,7 @@ bool RecordReader::take_file(const records::Head& head, std::string_view name) {
 
 bool RecordReader::take_spline(const records::Head& head, const char* payload) {
   place_ = {file_, head.line};
-  if (head.count < 4 || head.count % 3 != 1) return refuse("a spline whose numbers do not fit");
+  if (head.count < 4 || head.count % 3 != 1) return refuse(tr("a spline whose numbers do not fit"));
   const double order = number_at(payload, 0);
   points_.clear();
   for (std::size_t i = 1; i < head.count; i += 3) {
@@ -240,7 +242,7 @@ bool RecordReader::take_spline(const records::Head& head, const char* payload) {
 
 bool RecordReader::take_probe(const records::Head& head, const char* payload) {
   constexpr std::uint16_t kNumbers = 10;
-  if (!give_answer_ || head.count != kNumbers) return refuse("a question that nobody expects");
+  if (!give_answer_ || head.count != kNumbers) return refuse(tr("a question that nobody expects"));
   place_ = {file_, head.line};
   const double kind = number_at(payload, 0);
   command_.name = CanonicalName::kStraightProbe;
@@ -249,7 +251,7 @@ bool RecordReader::take_probe(const records::Head& head, const char* payload) {
   std::memcpy(command_.arguments.data(), payload + sizeof(double),
               sizeof(double) * command_.argument_count);
   if (!(kind >= 0 && kind <= 3) || !canonical_arguments_fit(command_)) {
-    return refuse("a question whose numbers do not fit");
+    return refuse(tr("a question whose numbers do not fit"));
   }
   ProbeAnswer answer;
   if (!feeder_.ask_probe(command_, kind >= 2, place_, answer)) return false;

@@ -1,18 +1,17 @@
 #include "interp_bridge/rs274_messages.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <optional>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/source_text.h"
 
 namespace kerf {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Said on every run, or of the var file that we keep from being written.
 bool is_routine(std::string_view line) {
@@ -70,25 +69,26 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
 std::string hint_for(const std::string& message) {
   const auto has = [&](const char* part) { return message.find(part) != message.npos; };
   if (has("seeking o-word")) {
-    return "a subroutine that the program calls must be in it, or in NAME.ngc beside it";
+    return tr("a subroutine that the program calls must be in it, or in NAME.ngc beside it");
   }
-  if (has("Bad character '\\357'")) return "store the program without a byte order mark";
+  if (has("Bad character '\\357'")) return tr("store the program without a byte order mark");
   if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
-    return "rs274 knows the axes X Y Z A B C only";
+    return tr("rs274 knows the axes X Y Z A B C only");
   }
   if (has("#<_hal[") && has("not defined")) {
-    return "a dry run has no HAL; of its pins kerf-interp (--interp bridge) knows those of "
-           "QtPlasmaC, "
-           "rs274 none";
+    return tr(
+        "a dry run has no HAL; of its pins kerf-interp (--interp bridge) knows those of "
+        "QtPlasmaC, rs274 none");
   }
   if (has("Unknown m code used: M190")) {
-    return "kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material";
+    return tr("kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material");
   }
   if (has("Start point too close to probe point")) {
-    return "where the machine stands then (G28, G30, G53, or at the start) is not known; an INI "
-           "says it (--ini)";
+    return tr(
+        "where the machine stands then (G28, G30, G53, or at the start) is not known; an INI "
+        "says it (--ini)");
   }
-  if (has("not found in the tool table")) return "give the machine's table with --tool-table";
+  if (has("not found in the tool table")) return tr("give the machine's table with --tool-table");
   return {};
 }
 
@@ -117,8 +117,7 @@ namespace {
 std::vector<std::string_view> telling_lines(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    const std::string_view line = take_line(text);
     if (!is_routine(line)) lines.push_back(line);
   }
   return lines;
@@ -127,12 +126,7 @@ std::vector<std::string_view> telling_lines(std::string_view text) {
 std::string joined(const std::vector<std::string_view>& lines) {
   std::string text;
   for (std::string_view line : lines) {
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) {
-      line.remove_suffix(1);
-    }
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.front()))) {
-      line.remove_prefix(1);
-    }
+    line = trim(line, is_space);
     if (line.empty()) continue;
     if (!text.empty()) text += "; ";
     text += line;
@@ -155,19 +149,22 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
   return result;
 }
 
+bool is_missing_end(std::string_view message) {
+  return message.starts_with("File ended with no percent sign");
+}
+
 Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
                              const std::vector<std::string>& files, std::size_t program_lines) {
   Diagnostic diagnostic;
-  constexpr std::string_view kNoEnd = "File ended with no percent sign";
-  if (message.substr(0, kNoEnd.size()) == kNoEnd) {
+  if (is_missing_end(message)) {
     diagnostic.severity = Severity::kWarning;
     diagnostic.file = files.empty() ? "" : files[0];
     diagnostic.line = static_cast<int>(program_lines);
-    diagnostic.message = "the program has no end: " + message;
-    diagnostic.hint = "end it with M2 or M30, or put it between two lines of %";
+    diagnostic.message = trf("the program has no end: {}", message);
+    diagnostic.hint = tr("end it with M2 or M30, or put it between two lines of %");
     return diagnostic;
   }
-  diagnostic.message = message.empty() ? "the interpreter stopped without a message" : message;
+  diagnostic.message = message.empty() ? tr("the interpreter stopped without a message") : message;
   if (const auto line = line_in(message)) place.line = *line;
   if (place.file < files.size()) {
     diagnostic.file = files[place.file];
@@ -191,7 +188,7 @@ Diagnostic interpreter_diagnostic(std::string_view stderr_text,
     place.line = find_line(files[place.file], said.echo, place.line);
   }
   if (said.message.empty()) {
-    return placed_diagnostic("rs274 stopped without a message", place, files, program_lines);
+    return placed_diagnostic(tr("rs274 stopped without a message"), place, files, program_lines);
   }
   return placed_diagnostic(without_our_numbers(said.message), place, files, program_lines);
 }

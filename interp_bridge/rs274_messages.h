@@ -19,6 +19,9 @@ struct InterpreterMessage {
 };
 InterpreterMessage parse_interpreter_message(std::string_view stderr_text);
 
+/// Whether LinuxCNC's words, which it says in no other language, are of a missing program end.
+bool is_missing_end(std::string_view message);
+
 /// The diagnostic of a run that ended with exit status 1. `files` as in ProgramSummary;
 /// `last_source` is where the last command came from, for lines without a number; `program_lines`
 /// is the length of files[0]. A missing program end is a warning (LinuxCNC would stop there too,

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "interp_bridge/canonical.h"
 
 namespace kerf {
@@ -24,36 +26,23 @@ constexpr std::size_t kMaxLaterComments = 1000;
 /// one.
 constexpr std::size_t kLinesToTellListing = 40;
 
-std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
-
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f'; }
-
-bool is_blank_text(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), is_space);
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
+/// Form feeds, too: old listings have them between pages.
+bool is_page_blank(char c) { return is_text_blank(c) || c == '\f'; }
 
 bool contains_word(std::string_view text, std::string_view lower_case_word) {
   const auto found =
       std::search(text.begin(), text.end(), lower_case_word.begin(), lower_case_word.end(),
-                  [](char a, char b) { return lower(a) == b; });
+                  [](char a, char b) { return to_lower(a) == b; });
   return found != text.end();
 }
 
 /// M6 or M06 of the code, as posts write it.
 bool changes_tool(std::string_view line) {
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    if (lower(line[i]) != 'm') continue;
+    if (to_lower(line[i]) != 'm') continue;
     std::size_t digit = i + 1;
     if (line[digit] == '0' && digit + 1 < line.size()) ++digit;
-    const bool ends = digit + 1 >= line.size() || line[digit + 1] < '0' || line[digit + 1] > '9';
+    const bool ends = digit + 1 >= line.size() || !is_digit(line[digit + 1]);
     if (line[digit] == '6' && ends) return true;
   }
   return false;
@@ -70,7 +59,7 @@ bool is_hint(std::string_view comment) {
 TextPieces::TextPieces(const std::string& path)
     : path_(path), fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
   if (fd_ < 0)
-    error_ = fmt::format("cannot read {}: {}", path, std::strerror(errno));
+    error_ = trf("cannot read {}: {}", path, std::strerror(errno));
   else
     buffer_.resize(kPieceBytes);
 }
@@ -87,7 +76,7 @@ void TextPieces::fill() {
     } else if (got == 0) {
       at_end_ = true;
     } else if (errno != EINTR) {
-      error_ = fmt::format("cannot read {}: {}", path_, std::strerror(errno));
+      error_ = trf("cannot read {}: {}", path_, std::strerror(errno));
       at_end_ = true;
     }
   }
@@ -119,10 +108,8 @@ std::string line_of_file(const std::string& path, std::uint32_t line) {
       before += here;
       continue;
     }
-    for (; before + 1 < line && !piece.empty(); ++before) {
-      piece.remove_prefix(std::min(piece.size(), first_line(piece).size() + 1));
-    }
-    std::string_view text = first_line(piece).substr(0, kExcerptBytes);
+    for (; before + 1 < line && !piece.empty(); ++before) take_line(piece);
+    std::string_view text = take_line(piece).substr(0, kExcerptBytes);
     if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
     return std::string(text);
   }
@@ -138,7 +125,7 @@ void TextSurveyor::add(std::string_view text) {
     }
   }
   survey_.bytes += text.size();
-  if (survey_.blank) survey_.blank = is_blank_text(text);
+  if (survey_.blank) survey_.blank = trim(text, is_page_blank).empty();
   if (nonblank_lines_ < kLinesToTellListing && !survey_.listing) decide_kind(text);
   add_lines(text);
   if (survey_.listing) return;
@@ -154,21 +141,19 @@ TextSurvey TextSurveyor::take() {
 
 void TextSurveyor::decide_kind(std::string_view text) {
   while (!text.empty() && nonblank_lines_ < kLinesToTellListing && !survey_.listing) {
-    const std::string_view line = first_line(text);
-    if (!is_blank_text(line)) {
+    const std::string_view line = take_line(text);
+    if (!trim(line, is_page_blank).empty()) {
       ++nonblank_lines_;
       survey_.listing = looks_canonical(line);
     }
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
   }
 }
 
 void TextSurveyor::add_lines(std::string_view text) {
   while (!text.empty() && survey_.lines < kHeaderLines) {
-    const std::string_view line = first_line(text);
+    const std::string_view line = take_line(text);
     ++survey_.lines;
     add_comments(line, static_cast<std::uint32_t>(survey_.lines), false);
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
   }
   if (text.empty()) return;
   if (!survey_.listing) add_later_lines(text);
@@ -203,7 +188,7 @@ void TextSurveyor::add_later_lines(std::string_view text) {
 
 void TextSurveyor::add_comments(std::string_view line, std::uint32_t number, bool only_hints) {
   const auto keep = [&](std::string_view comment) {
-    comment = trimmed(comment);
+    comment = trim(comment, is_page_blank);
     if (comment.empty() || (only_hints && !is_hint(comment))) return;
     survey_.comments.push_back({{0, number}, std::string(comment)});
   };

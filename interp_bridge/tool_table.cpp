@@ -1,23 +1,21 @@
 #include "interp_bridge/tool_table.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <set>
 
-#include "interp_bridge/source_text.h"
+#include "base/small_file.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/tool_lengths.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kInchMm = 25.4;
 constexpr std::size_t kMaxRows = 1000;     // CANON_POCKETS_MAX
 constexpr std::size_t kMaxRowBytes = 255;  // CANON_TOOL_ENTRY_LEN - 1
 constexpr int kLargestToolNumber = 99'999;
@@ -25,9 +23,6 @@ constexpr std::size_t kMaxTableBytes = 4 * 1024 * 1024;
 
 /// A program that computes its tool numbers may ask for any; these are given rows.
 constexpr int kComputedTools = 99;
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - ('a' - 'A')) : c; }
 
 /// One row being read.
 class RowParser {
@@ -69,18 +64,17 @@ bool RowParser::report(Severity severity, std::size_t column, std::string messag
 bool RowParser::parse(ToolTableRow& row) {
   const std::size_t semicolon = line_.find(';');
   std::string_view words = line_.substr(0, semicolon);
-  if (words.find_first_not_of(" \t\r") == words.npos) return false;
+  if (trim(words, is_line_blank).empty()) return false;
   if (line_.size() > kMaxRowBytes) {
-    return report(
-        Severity::kError, kMaxRowBytes,
-        fmt::format("a row of {} bytes; at most {} are allowed", line_.size(), kMaxRowBytes));
+    return report(Severity::kError, kMaxRowBytes,
+                  trf("a row of {} bytes; at most {} are allowed", line_.size(), kMaxRowBytes));
   }
   if (!parse_words(words, row)) return false;
   for (const char letter : {'T', 'P'}) {
     if (seen_.find(letter) == seen_.npos) {
       return report(
-          Severity::kError, 0, fmt::format("the row has no {} word; it is skipped", letter),
-          "a row is T<tool> P<pocket> and any of X Y Z A B C U V W D I J Q, then ;remark");
+          Severity::kError, 0, trf("the row has no {} word; it is skipped", letter),
+          tr("a row is T<tool> P<pocket> and any of X Y Z A B C U V W D I J Q, then ;remark"));
     }
   }
   if (semicolon != line_.npos) {
@@ -95,17 +89,17 @@ bool RowParser::parse(ToolTableRow& row) {
 
 bool RowParser::parse_words(std::string_view words, ToolTableRow& row) {
   if (const std::size_t tab = words.find('\t'); tab != words.npos) {
-    report(Severity::kWarning, tab, "a tab separates the words; LinuxCNC 2.9 skips such a row",
-           "put blanks in place of tabs");
+    report(Severity::kWarning, tab, tr("a tab separates the words; LinuxCNC 2.9 skips such a row"),
+           tr("put blanks in place of tabs"));
   }
   if (words.size() >= 2 && words.back() == '\r' && is_blank(words[words.size() - 2])) {
     report(Severity::kWarning, words.size() - 2,
-           "a blank before the carriage return; LinuxCNC 2.9 skips such a row",
-           "store the table with Unix line ends");
+           tr("a blank before the carriage return; LinuxCNC 2.9 skips such a row"),
+           tr("store the table with Unix line ends"));
   }
   std::size_t at = 0;
   while (at < words.size()) {
-    if (is_blank(words[at]) || words[at] == '\r') {
+    if (is_line_blank(words[at])) {
       ++at;
       continue;
     }
@@ -117,31 +111,27 @@ bool RowParser::parse_words(std::string_view words, ToolTableRow& row) {
 }
 
 bool RowParser::parse_word(std::string_view word, std::size_t column, ToolTableRow& row) {
-  const char letter = upper(word.front());
+  const char letter = to_upper(word.front());
   if (std::string_view("TPXYZABCUVWDIJQ").find(letter) == std::string_view::npos) {
     const bool printable = word.front() > ' ' && word.front() < 0x7f;
-    return report(Severity::kError, column,
-                  fmt::format("unknown word {}; the row is skipped",
-                              printable ? std::string(1, word.front()) : "?"),
-                  "a row is T<tool> P<pocket> and any of X Y Z A B C U V W D I J Q, then ;remark");
+    return report(
+        Severity::kError, column,
+        trf("unknown word {}; the row is skipped", printable ? std::string(1, word.front()) : "?"),
+        tr("a row is T<tool> P<pocket> and any of X Y Z A B C U V W D I J Q, then ;remark"));
   }
   std::string_view digits = word.substr(1);
   if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
   if (digits.empty()) {
-    return report(Severity::kError, column + 1,
-                  fmt::format("{} has no value; the row is skipped", letter),
-                  "no blank may stand between the letter and its number");
+    return report(Severity::kError, column + 1, trf("{} has no value; the row is skipped", letter),
+                  tr("no blank may stand between the letter and its number"));
   }
   double value = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value) || std::abs(value) > 1e9) {
+  if (!read_number(digits, value) || !std::isfinite(value) || std::abs(value) > 1e9) {
     return report(Severity::kError, column + 1,
-                  fmt::format("{}{}: not a number; the row is skipped", letter, digits));
+                  trf("{}{}: not a number; the row is skipped", letter, digits));
   }
   if (seen_.find(letter) != seen_.npos) {
-    return report(Severity::kError, column,
-                  fmt::format("{} stands twice; the row is skipped", letter));
+    return report(Severity::kError, column, trf("{} stands twice; the row is skipped", letter));
   }
   seen_ += letter;
   return store(letter, value, column, row);
@@ -152,24 +142,24 @@ bool RowParser::store(char letter, double value, std::size_t column, ToolTableRo
   switch (letter) {
     case 'T':
       if (!whole || value < 0 || value > kLargestToolNumber) {
-        return report(Severity::kError, column + 1,
-                      fmt::format("tool number {}; must be a whole number from 0 to {}", value,
-                                  kLargestToolNumber));
+        return report(
+            Severity::kError, column + 1,
+            trf("tool number {}; must be a whole number from 0 to {}", value, kLargestToolNumber));
       }
       row.tool = static_cast<int>(value);
       return true;
     case 'P':
       if (!whole || value < 0 || value > kLargestToolNumber) {
         return report(Severity::kError, column + 1,
-                      fmt::format("pocket number {}; must be a whole number from 0 to {}", value,
-                                  kLargestToolNumber));
+                      trf("pocket number {}; must be a whole number from 0 to {}", value,
+                          kLargestToolNumber));
       }
       row.pocket = static_cast<int>(value);
       return true;
     case 'Q':
       if (!whole || value < 0 || value > 9) {
         return report(Severity::kError, column + 1,
-                      fmt::format("orientation {}; must be a whole number from 0 to 9", value));
+                      trf("orientation {}; must be a whole number from 0 to 9", value));
       }
       row.orientation = static_cast<int>(value);
       return true;
@@ -215,8 +205,7 @@ std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::str
   std::set<int> tools;
   int number = 0;
   while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    const std::string_view line = take_line(text);
     ToolTableRow row;
     row.line = ++number;
     if (!RowParser(line, number, path, diagnostics).parse(row)) continue;
@@ -225,12 +214,12 @@ std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::str
     fault.line = number;
     if (!tools.insert(row.tool).second) {
       fault.severity = Severity::kWarning;
-      fault.message = fmt::format("tool {} has a row already; the first one counts", row.tool);
+      fault.message = trf("tool {} has a row already; the first one counts", row.tool);
       diagnostics.push_back(std::move(fault));
       continue;
     }
     if (rows.size() == kMaxRows) {
-      fault.message = fmt::format("more than {} rows; LinuxCNC holds no more", kMaxRows);
+      fault.message = trf("more than {} rows; LinuxCNC holds no more", kMaxRows);
       diagnostics.push_back(std::move(fault));
       break;
     }
@@ -241,25 +230,12 @@ std::vector<ToolTableRow> parse_tool_table(std::string_view text, const std::str
 
 Result<std::vector<ToolTableRow>> read_tool_table(const std::string& path, Diagnostics& diagnostics,
                                                   double unit_mm) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    return Error{fmt::format("cannot read {}: {}", path, std::strerror(errno))};
-  }
-  if (!S_ISREG(status.st_mode)) {
-    return Error{fmt::format("cannot read {}: it is not a regular file", path)};
-  }
-  TextPieces pieces(path);
-  std::string text;
-  std::string_view piece;
-  while (pieces.next(piece)) {
-    text += piece;
-    if (text.size() > kMaxTableBytes) {
-      return Error{fmt::format("cannot read {}: larger than {} MB, not a tool table", path,
-                               kMaxTableBytes / (1024 * 1024))};
-    }
-  }
-  if (!pieces.error().empty()) return Error{pieces.error()};
-  std::vector<ToolTableRow> rows = parse_tool_table(text, path, diagnostics);
+  const Result<std::string> text =
+      read_small_file(path, kMaxTableBytes,
+                      trf("cannot read {}: larger than {} MB, not a tool table", path,
+                          kMaxTableBytes / (1024 * 1024)));
+  if (!text) return Error{text.error()};
+  std::vector<ToolTableRow> rows = parse_tool_table(*text, path, diagnostics);
   for (ToolTableRow& row : rows) {
     row.diameter_mm *= unit_mm;
     row.offset_mm *= unit_mm;
@@ -285,16 +261,16 @@ std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, b
     if (!row.has_diameter) {
       row.diameter_mm = diameter.mm;
       told.known.insert(row.tool);
-      told.doubts[row.tool] = fmt::format(
+      told.doubts[row.tool] = trf(
           "the tool table has no diameter for tool {}, and the machine would compensate by none; "
           "{:g} mm is taken, as its shape has it",
           row.tool, diameter.mm);
     } else if (diameter.by_argument && row.diameter_mm != 0 &&
                std::abs(std::abs(row.diameter_mm) - diameter.mm) > kEqual_mm) {
-      told.doubts[row.tool] = fmt::format(
-          "cutter radius compensation goes by the tool table: {:g} mm for tool {}; --tool has "
-          "{:g} mm",
-          row.diameter_mm, row.tool, diameter.mm);
+      told.doubts[row.tool] =
+          trf("cutter radius compensation goes by the tool table: {:g} mm for tool {}; --tool has "
+              "{:g} mm",
+              row.diameter_mm, row.tool, diameter.mm);
     }
   }
   for (const auto& [tool, diameter] : missing) {
@@ -307,7 +283,7 @@ std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, b
     row.added = true;
     told.known.insert(tool);
     if (!has_table) continue;
-    told.doubts[tool] = fmt::format(
+    told.doubts[tool] = trf(
         "the tool table does not have tool {}; for compensation {:g} mm is taken, as its shape has "
         "it",
         tool, diameter.mm);
@@ -326,10 +302,10 @@ InterpreterToolTable interpreter_tool_table(const std::vector<ToolTableRow>& row
     if (!present.insert(row.tool).second) return;
     table.tool_by_index.push_back(row.tool);
     const CodedOffset code = coded_offset(row.tool);
-    table.text +=
-        fmt::format("T{} P{} U{:.10f} W{:.10f} D{:.10f} I{:.6f} J{:.6f} Q{}\n", row.tool,
-                    row.pocket, code.u_mm / kInchMm, code.w_mm / kInchMm, row.diameter_mm / kInchMm,
-                    row.front_angle_deg, row.back_angle_deg, row.orientation);
+    table.text += fmt::format("T{} P{} U{:.10f} W{:.10f} D{:.10f} I{:.6f} J{:.6f} Q{}\n", row.tool,
+                              row.pocket, code.u_mm / kMmPerInch, code.w_mm / kMmPerInch,
+                              row.diameter_mm / kMmPerInch, row.front_angle_deg, row.back_angle_deg,
+                              row.orientation);
     pocket = std::max(pocket, row.pocket);
   };
   for (const ToolTableRow& row : rows) add(row);

@@ -6,18 +6,13 @@
 #include <cstdlib>
 #include <utility>
 
+#include "base/text_scan.h"
+
 namespace kerf {
 namespace {
 
 constexpr std::size_t kLongestNumber = 64;
 constexpr std::size_t kLongestName = 100;
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 struct Word {
   std::string_view key;
@@ -71,12 +66,6 @@ constexpr std::array<Pin, 12> kPins = {{
     {"", "cut_mode-f", &TorchMaterial::cut_mode, false},
 }};
 
-bool take_prefix(std::string_view& text, std::string_view prefix) {
-  if (text.substr(0, prefix.size()) != prefix) return false;
-  text.remove_prefix(prefix.size());
-  return true;
-}
-
 bool read_whole(std::string_view text, double least, double most, int& value) {
   double number = 0;
   if (!read_material_number(text, number)) return false;
@@ -98,12 +87,12 @@ struct Words {
 bool read_words(std::string_view comment, double unit_mm, Words& words, std::string& complaint) {
   while (!comment.empty()) {
     const std::size_t comma = std::min(comment.find(','), comment.size());
-    const std::string_view item = trimmed(comment.substr(0, comma));
+    const std::string_view item = trim(comment.substr(0, comma), is_line_blank);
     comment.remove_prefix(std::min(comment.size(), comma + 1));
     const std::size_t equals = item.find('=');
     if (equals == item.npos) continue;  // more of a name, as QtPlasmaC passes over it
-    const std::string_view key = trimmed(item.substr(0, equals));
-    const std::string_view value = trimmed(item.substr(equals + 1));
+    const std::string_view key = trim(item.substr(0, equals), is_line_blank);
+    const std::string_view value = trim(item.substr(equals + 1), is_line_blank);
     complaint = std::string(item.substr(0, kLongestName));
     if (key == "o") {
       if (!read_whole(value, 0, 2, words.operation)) return false;
@@ -133,7 +122,7 @@ bool read_words(std::string_view comment, double unit_mm, Words& words, std::str
 }  // namespace
 
 bool read_material_number(std::string_view text, double& value) {
-  text = trimmed(text);
+  text = trim(text, is_line_blank);
   if (text.empty() || text.size() > kLongestNumber) return false;
   const std::string digits(text);
   char* end = nullptr;
@@ -192,7 +181,7 @@ bool MaterialTable::select(int number) {
 
 MaterialTable::Edit MaterialTable::edit(std::string_view comment, double unit_mm) {
   complaint_.clear();
-  comment = trimmed(comment);
+  comment = trim(comment, is_line_blank);
   if (comment.substr(0, 2) != "o=") return Edit::kNone;
   Words words;
   if (!read_words(comment, unit_mm, words, complaint_)) return Edit::kMalformed;

@@ -9,25 +9,21 @@
 #include <iterator>
 #include <utility>
 
+#include "base/small_file.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/ini_file.h"
 
 namespace kerf {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{4} << 20;
-constexpr std::size_t kExcerptBytes = 200;
-constexpr double kInchMm = 25.4;
+constexpr std::size_t kSetupExcerptBytes = 200;
 /// No torch pierces from so near, and none from so far: inches that are taken for mm, and the
 /// reverse. Handbooks have 1.5 to 10 mm.
 constexpr double kNearestPierce_mm = 0.5;
 constexpr double kFarthestPierce_mm = 30;
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// Keys of the two files, in one table: `prefs` is that of [DEFAULT MATERIAL].
 struct MaterialKey {
@@ -101,12 +97,14 @@ class KeyLines {
       line_ = text_.substr(0, end);
       text_.remove_prefix(std::min(text_.size(), end + 1));
       ++number_;
-      const std::string_view line = trimmed(line_);
+      const std::string_view line = trim(line_, is_line_blank);
       if (line.empty() || line.front() == '#' || line.front() == ';') continue;
       is_section_ = line.front() == '[' && line.back() == ']';
       const std::size_t equals = line.find('=');
-      key_ = is_section_ ? line.substr(1, line.size() - 2) : trimmed(line.substr(0, equals));
-      value_ = is_section_ || equals == line.npos ? "" : trimmed(line.substr(equals + 1));
+      key_ = is_section_ ? line.substr(1, line.size() - 2)
+                         : trim(line.substr(0, equals), is_line_blank);
+      value_ =
+          is_section_ || equals == line.npos ? "" : trim(line.substr(equals + 1), is_line_blank);
       return true;
     }
     return false;
@@ -119,7 +117,7 @@ class KeyLines {
   bool number(double& out) {
     if (read_material_number(value_, out)) return true;
     const auto at = static_cast<int>(value_.empty() ? line_.size() : value_.data() - line_.data());
-    warn(fmt::format("{}: '{}' is not a number", shown(key_), shown(value_)), at + 1);
+    warn(trf("{}: '{}' is not a number", shown(key_), shown(value_)), at + 1);
     return false;
   }
   void warn(std::string message, int column = 0) {
@@ -130,7 +128,7 @@ class KeyLines {
     diagnostic.line = number_;
     diagnostic.column = column;
     diagnostic.message = std::move(message);
-    if (column > 0 && line_.size() < kExcerptBytes) diagnostic.excerpt = std::string(line_);
+    if (column > 0 && line_.size() < kSetupExcerptBytes) diagnostic.excerpt = std::string(line_);
     diagnostics_.push_back(std::move(diagnostic));
   }
   static std::string_view shown(std::string_view text) { return text.substr(0, 60); }
@@ -156,7 +154,8 @@ class MaterialSection {
     for (const MaterialKey& key : kMaterialKeys) row_.*key.value = 0;
   }
   void take(double unit_mm) {
-    if (lines_.key() == "NAME") row_.name = std::string(lines_.value().substr(0, kExcerptBytes));
+    if (lines_.key() == "NAME")
+      row_.name = std::string(lines_.value().substr(0, kSetupExcerptBytes));
     for (std::size_t i = 0; i < kMaterialKeys.size(); ++i) {
       const MaterialKey& key = kMaterialKeys[i];
       if (lines_.key() != key.key) continue;
@@ -171,8 +170,7 @@ class MaterialSection {
   void finish(std::vector<TorchMaterial>& rows) {
     for (std::size_t i = 0; i < kMaterialKeys.size(); ++i) {
       if (!kMaterialKeys[i].mandatory || has_[i]) continue;
-      lines_.warn(
-          fmt::format("material {} has no {}; 0 is taken", row_.number, kMaterialKeys[i].key));
+      lines_.warn(trf("material {} has no {}; 0 is taken", row_.number, kMaterialKeys[i].key));
     }
     if (row_.number == 0) {
       rows[0] = std::move(row_);
@@ -190,10 +188,10 @@ class MaterialSection {
         is_inch ? height_mm > kFarthestPierce_mm : height_mm > 0 && height_mm < kNearestPierce_mm;
     if (!wrong || std::exchange(doubted_, true)) return;
     lines_.warn(
-        fmt::format("material {} is pierced from {:.3g} mm: this looks like {} in a file that is "
-                    "read in {}, the unit of the machine ([TRAJ]LINEAR_UNITS of its INI; mm "
-                    "without one)",
-                    row_.number, height_mm, is_inch ? "mm" : "inches", is_inch ? "inches" : "mm"),
+        trf("material {} is pierced from {:.3g} mm: this looks like {} in a file that is "
+            "read in {}, the unit of the machine ([TRAJ]LINEAR_UNITS of its INI; mm "
+            "without one)",
+            row_.number, height_mm, is_inch ? "mm" : tr("inches"), is_inch ? tr("inches") : "mm"),
         1);
   }
 
@@ -278,7 +276,7 @@ void parse_plasma_prefs(std::string_view text, const std::string& path, double u
 }
 
 bool read_torch_sources(const TorchSources& sources, TorchRun& run, Diagnostics& diagnostics) {
-  const double unit_mm = sources.inch_machine ? kInchMm : 1.0;
+  const double unit_mm = mm_of_unit(sources.inch_machine);
   run.inch_machine = sources.inch_machine;
   run.materials.assign(1, TorchMaterial{});
   for (const ParameterPin& pin : kParameterPins) {

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/text_scan.h"
 #include "interp_bridge/torch_setup.h"
 
 namespace kerf {
@@ -11,13 +12,10 @@ namespace {
 
 constexpr std::size_t kMaxChanges = 100'000;
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
 /// True if `text` begins with `word`, which is in lower case.
 bool begins(std::string_view text, std::string_view word) {
   return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(),
-                                                  [](char a, char b) { return a == lower(b); });
+                                                  [](char a, char b) { return a == to_lower(b); });
 }
 
 /// As the filter compares it: from `at` to the comment, in lower case, without blanks.
@@ -26,7 +24,7 @@ std::string bare(std::string_view text) {
   std::string out;
   for (const char c : text.substr(0, kLongest)) {
     if (c == '(' || c == ';' || c == '\n') break;
-    if (!is_blank(c)) out += lower(c);
+    if (!is_line_blank(c)) out += to_lower(c);
   }
   return out;
 }
@@ -36,8 +34,8 @@ bool begins_line(std::string_view text, std::size_t at) {
   bool number = false;
   while (at > 0 && text[at - 1] != '\n') {
     const char c = text[--at];
-    if (is_blank(c) || (c >= '0' && c <= '9') || c == '.') continue;
-    if (lower(c) != 'n' || number) return false;
+    if (is_line_blank(c) || is_digit(c) || c == '.') continue;
+    if (to_lower(c) != 'n' || number) return false;
     number = true;
   }
   return true;

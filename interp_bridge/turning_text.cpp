@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "base/text_scan.h"
+
 namespace kerf {
 namespace {
 
 constexpr std::size_t kMaxTools = 1000;
 constexpr int kLargest = 99'999;
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
 
 void set_first(std::uint32_t& line, std::uint32_t now) {
   if (line == 0) line = now;
@@ -20,7 +17,7 @@ void set_first(std::uint32_t& line, std::uint32_t now) {
 /// Tenths of the number at `at`, which is moved behind it: 7 is 70, 7.1 is 71. -1: none is there.
 int read_tenths(std::string_view line, std::size_t& at) {
   std::size_t p = at;
-  while (p < line.size() && is_blank(line[p])) ++p;
+  while (p < line.size() && is_line_blank(line[p])) ++p;
   if (p == line.size() || !is_digit(line[p])) return -1;
   int value = 0;
   for (; p < line.size() && is_digit(line[p]) && value <= kLargest; ++p) {
@@ -45,7 +42,7 @@ bool has_q_word(std::string_view line) {
       at = skip_enclosed(line, at, c == '(' ? ')' : '>');
       continue;
     }
-    if (lower(c) == 'q' && (at == 0 || !is_letter(line[at - 1]))) return true;
+    if (to_lower(c) == 'q' && (at == 0 || !is_letter(line[at - 1]))) return true;
     ++at;
   }
   return false;
@@ -59,19 +56,18 @@ void TurningScanner::add(std::string_view text) {
       words_.whole = false;
       return;
     }
-    const std::string_view line = text.substr(0, text.find('\n'));
+    const std::string_view line = take_line(text);
     ++line_;
     add_line(line);
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
   }
 }
 
 void TurningScanner::add_line(std::string_view line) {
   std::size_t at = 0;
-  while (at < line.size() && is_blank(line[at])) ++at;
-  if (at == line.size() || line[at] == '/' || lower(line[at]) == 'o') return;
+  while (at < line.size() && is_line_blank(line[at])) ++at;
+  if (at == line.size() || line[at] == '/' || to_lower(line[at]) == 'o') return;
   while (at < line.size()) {
-    const char c = lower(line[at]);
+    const char c = to_lower(line[at]);
     if (c == ';') return;
     if (c == '(' || c == '<') {
       at = skip_enclosed(line, at, c == '(' ? ')' : '>');

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -21,8 +23,8 @@ bool within(const std::array<double, 3>& v, double most) {
 }
 
 std::string place(char axis, double value, double most, const char* unit) {
-  return fmt::format("{} is at {:.15g} {}; {:.15g} {} are the most, either way", axis, value, unit,
-                     most, unit);
+  return trf("{} is at {:.15g} {}; {:.15g} {} are the most, either way", axis, value, unit, most,
+             unit);
 }
 
 std::string place(const char* axes, const Vec3& at) {
@@ -43,22 +45,20 @@ std::string turn(const std::array<double, 3>& abc_deg) {
 
 std::string arc(const Motion& m) {
   if (!within(m.arc.center_mm, kFarthestArcCenter_mm)) {
-    return fmt::format(
+    return trf(
         "the arc's centre is at {:.15g}, {:.15g}, {:.15g} mm; {:.15g} mm are the "
         "most, either way",
         m.arc.center_mm.x, m.arc.center_mm.y, m.arc.center_mm.z, kFarthestArcCenter_mm);
   }
   const double turns = std::abs(m.arc.sweep_rad) / (2 * kPi);
   if (!within(turns, kMostArcTurns)) {
-    return fmt::format("the arc has {:.15g} turns; {:.15g} are the most", std::round(turns),
-                       kMostArcTurns);
+    return trf("the arc has {:.15g} turns; {:.15g} are the most", std::round(turns), kMostArcTurns);
   }
   const double radius =
       std::max(glm::length(m.from_mm - m.arc.center_mm), glm::length(m.to_mm - m.arc.center_mm));
   const double length_mm = radius * std::abs(m.arc.sweep_rad);
   if (within(length_mm, kLongestArc_mm)) return {};
-  return fmt::format("the arc is {:.6g} mm long; {:.15g} mm are the most", length_mm,
-                     kLongestArc_mm);
+  return trf("the arc is {:.6g} mm long; {:.15g} mm are the most", length_mm, kLongestArc_mm);
 }
 
 }  // namespace
@@ -77,8 +77,7 @@ std::string wild_number_of(const Motion& m) {
   }
   if (m.kind == MotionKind::kArc) return arc(m);
   if (m.kind == MotionKind::kDwell && !within(m.duration_s, kLongestDwell_s)) {
-    return fmt::format("a dwell of {:.15g} s; {:.15g} s are the most", m.duration_s,
-                       kLongestDwell_s);
+    return trf("a dwell of {:.15g} s; {:.15g} s are the most", m.duration_s, kLongestDwell_s);
   }
   return {};
 }

@@ -40,7 +40,9 @@ struct AxisSample {
   std::uint16_t fresh = 0;  ///< bit i: position[i] was read for this sample
   std::int32_t tool = kUnknown;     ///< tool number in the spindle, 0 = none
   std::int32_t trigger = kUnknown;  ///< of a punch: 0 off, else on
-  std::int32_t line = kUnknown;     ///< program line that the machine says it is on; 0 = idle
+  /// The controller has ended and begun again since the sample before: nothing of it ran meanwhile.
+  bool restarted = false;
+  std::int32_t line = kUnknown;  ///< program line that the machine says it is on; 0 = idle
   ProgramState program = ProgramState::kUnknown;
   double tool_offset_z_mm = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
   double spindle_rpm = std::numeric_limits<double>::quiet_NaN();       ///< signed; NaN: not given

@@ -15,6 +15,8 @@
 #include <mutex>
 #include <thread>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "machine_io/recording_format.h"
 
 namespace kerf {
@@ -63,27 +65,26 @@ int write_all(int fd, const char* data, std::size_t size, std::size_t& written) 
 /// A file that may be written: new, or there and empty, or a device.
 Result<int> open_new(const std::string& path) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOCTTY, 0666);
-  if (fd < 0) return Error{fmt::format("recording {}: {}", path, error_text(errno))};
+  if (fd < 0) return Error{trf("recording {}: {}", path, error_text(errno))};
   struct stat info {};
   if (::fstat(fd, &info) != 0) {
     const int number = errno;
     ::close(fd);
-    return Error{fmt::format("recording {}: {}", path, error_text(number))};
+    return Error{trf("recording {}: {}", path, error_text(number))};
   }
   if (S_ISREG(info.st_mode) && info.st_size != 0) {
     ::close(fd);
     return Error{
-        fmt::format("recording {}: the file is there already ({} bytes), and a recording is never "
-                    "overwritten; name another file or remove this one",
-                    path, static_cast<std::int64_t>(info.st_size))};
+        trf("recording {}: the file is there already ({} bytes), and a recording is never "
+            "overwritten; name another file or remove this one",
+            path, static_cast<std::int64_t>(info.st_size))};
   }
   return fd;
 }
 
 bool is_key(const std::string& key) {
   const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.';
+    return is_letter(c) || is_digit(c) || c == '-' || c == '_' || c == '.';
   };
   return !key.empty() && std::all_of(key.begin(), key.end(), allowed);
 }
@@ -93,16 +94,16 @@ bool is_key(const std::string& key) {
 std::vector<std::string> validate(const RecordingHead& head) {
   std::vector<std::string> faults;
   if (head.axes == 0 || head.axes >> kMaxPositions != 0) {
-    faults.push_back(fmt::format(
-        "axes: {:#x} found, at least one of the bits 0 to 8 and no other allowed", head.axes));
+    faults.push_back(
+        trf("axes: {:#x} found, at least one of the bits 0 to 8 and no other allowed", head.axes));
   }
   for (const auto& [key, value] : head.extra) {
     if (key == "source" || key == "units" || key == "coordinates" || key == "start" ||
         key == "sums") {
-      faults.push_back(fmt::format("extra: the key {} is one of the format's own", key));
+      faults.push_back(trf("extra: the key {} is one of the format's own", key));
     } else if (!is_key(key)) {
-      faults.push_back(fmt::format(
-          "extra: '{}' is not allowed as a key; letters, digits, '-', '_' and '.' are", key));
+      faults.push_back(
+          trf("extra: '{}' is not allowed as a key; letters, digits, '-', '_' and '.' are", key));
     }
   }
   return faults;
@@ -171,6 +172,7 @@ struct Recorder::Writer {
   std::atomic<std::uint64_t> lost{0};
   mutable std::mutex trouble_mutex;
   std::string trouble;
+  int cause = 0;  ///< errno of `trouble`
 };
 
 void Recorder::Writer::append_lost(std::uint64_t count) {
@@ -185,6 +187,7 @@ bool Recorder::Writer::drain() {
     if (slot.lost_before != 0) append_lost(slot.lost_before);
     if (slot.clock_set_ns != 0)
       block += fmt::format("{}{:+}\n", kRecordingClock, slot.clock_set_ns);
+    if (slot.sample.restarted) block += fmt::format("{}\n", kRecordingRestarted);
     char line[RecordingLines::kLongestLine_bytes];
     block.append(line, static_cast<std::size_t>(lines.append(slot.sample, line) - line));
     ++block_samples;
@@ -245,8 +248,9 @@ void Recorder::Writer::fail(int error_number) {
   // Devices and pipes cannot be cut back; nothing is there to cut back either.
   [[maybe_unused]] const int ignored = ::ftruncate(fd, file_bytes);
   const std::lock_guard lock(trouble_mutex);
-  trouble = fmt::format("recording {}: {}; {} samples are kept", path, error_text(error_number),
-                        samples.load(std::memory_order_relaxed));
+  cause = error_number;
+  trouble = trf("recording {}: {}; {} samples are kept", path, error_text(error_number),
+                samples.load(std::memory_order_relaxed));
   failed.store(true, std::memory_order_release);
 }
 
@@ -279,7 +283,7 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path,
                                                    const RecordingHead& head,
                                                    std::size_t queue_bytes) {
   if (const auto faults = validate(head); !faults.empty()) {
-    return Error{fmt::format("recording {}: {}", path, faults.front())};
+    return Error{trf("recording {}: {}", path, faults.front())};
   }
   std::size_t slots = kFewestSlots;
   while (slots * 2 * sizeof(Writer::Slot) <= queue_bytes) slots *= 2;
@@ -290,7 +294,7 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path,
   if (event < 0) {
     const int number = errno;
     ::close(*file);
-    return Error{fmt::format("recording {}: {}", path, error_text(number))};
+    return Error{trf("recording {}: {}", path, error_text(number))};
   }
   RecordingHead dated = head;
   dated.sums = true;
@@ -302,10 +306,10 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path,
   writer->append_sum();
   if (!writer->write_block()) {
     // A head without samples tells nobody anything.
-    const std::string text = writer->trouble.substr(0, writer->trouble.rfind(';'));
+    const int cause = writer->cause;
     struct stat info {};
     if (::fstat(writer->fd, &info) == 0 && S_ISREG(info.st_mode)) ::unlink(path.c_str());
-    return Error{text};
+    return Error{trf("recording {}: {}", path, error_text(cause))};
   }
   writer->thread = std::thread([w = writer.get()] { w->run(); });
   return std::unique_ptr<Recorder>(new Recorder(std::move(writer)));

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/text_scan.h"
+
 namespace kerf {
 namespace {
 
@@ -103,8 +105,7 @@ std::string recording_sum_line(std::uint32_t crc) {
 bool parse_recording_sum(std::string_view line, std::uint32_t& crc) {
   if (!line.starts_with(kRecordingSum)) return false;
   line.remove_prefix(kRecordingSum.size());
-  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), crc, 16);
-  return error == std::errc() && end == line.data() + line.size() && line.size() == 8;
+  return read_number(line, crc, 16) && line.size() == 8;
 }
 
 std::string iso_time(std::int64_t since_1970_ns) {

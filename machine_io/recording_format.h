@@ -17,6 +17,7 @@ inline constexpr std::string_view kRecordingMagic = "# kerf-recording/1";
 inline constexpr std::string_view kRecordingLost = "# lost ";
 inline constexpr std::string_view kRecordingSum = "# sum ";
 inline constexpr std::string_view kRecordingClock = "# clock ";
+inline constexpr std::string_view kRecordingRestarted = "# restarted";
 inline constexpr std::string_view kRecordingEnd = "# end samples=";
 
 /// "idle", "running", "paused"; "-" for kUnknown.

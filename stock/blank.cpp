@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "base/suggest.h"
+#include "base/translate.h"
 #include "stock/cutter/scan.h"
 
 namespace kerf {
@@ -20,10 +22,10 @@ constexpr double kMaxThickness_mm = 1000;
 
 constexpr std::array<std::string_view, 6> kKinds = {"box",   "cylinder", "tube",
                                                     "state", "stl",      "sheet"};
-constexpr std::string_view kForms =
+constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
     "state:FILE, "
-    "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS";
+    "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS");
 
 /// `form`: x,y,z or x,y.
 Result<Vec3> parse_point(std::string_view name, std::string_view text, LengthUnit unit,
@@ -31,8 +33,8 @@ Result<Vec3> parse_point(std::string_view name, std::string_view text, LengthUni
   const std::vector<std::string_view> parts = split(text, ',');
   const std::size_t axes = form.size() / 2 + 1;
   if (parts.size() != axes) {
-    return Error{fmt::format("{}: '{}' has {} {}; must be {}", name, shown(text), parts.size(),
-                             parts.size() == 1 ? "value" : "values", form)};
+    return Error{trf("{}: '{}' has {} {}; must be {}", name, shown(text), parts.size(),
+                     parts.size() == 1 ? tr("value") : tr("values"), form)};
   }
   Vec3 point(0);
   for (int axis = 0; axis < static_cast<int>(axes); ++axis) {
@@ -48,16 +50,16 @@ Result<Vec3> parse_point(std::string_view name, std::string_view text, LengthUni
 /// "" if low < high by at least kMinSize_mm.
 std::string order_fault(char axis, double low, double high, LengthUnit unit) {
   if (high - low >= kMinSize_mm) return "";
-  return fmt::format("{} runs from {} to {}; the second must be at least {} {} above the first",
-                     axis, length_number(low, unit), length_number(high, unit),
-                     length_number(kMinSize_mm, unit), name_of(unit));
+  return trf("{} runs from {} to {}; the second must be at least {} {} above the first", axis,
+             length_number(low, unit), length_number(high, unit), length_number(kMinSize_mm, unit),
+             name_of(unit));
 }
 
 Result<BlankBody> parse_box(const std::vector<std::string_view>& fields, LengthUnit unit) {
-  if (fields.size() != 3) return Error{"the form is box:x0,y0,z0:x1,y1,z1"};
-  const Result<Vec3> low = parse_point("first corner", fields[1], unit);
+  if (fields.size() != 3) return Error{tr("the form is box:x0,y0,z0:x1,y1,z1")};
+  const Result<Vec3> low = parse_point(tr("first corner"), fields[1], unit);
   if (!low) return Error{low.error()};
-  const Result<Vec3> high = parse_point("second corner", fields[2], unit);
+  const Result<Vec3> high = parse_point(tr("second corner"), fields[2], unit);
   if (!high) return Error{high.error()};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string fault = order_fault("XYZ"[axis], (*low)[axis], (*high)[axis], unit);
@@ -81,28 +83,27 @@ Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool 
                               LengthUnit unit) {
   const std::size_t needed = tube ? 5 : 4;
   if (fields.size() != needed && fields.size() != needed + 1) {
-    return Error{tube ? "the form is tube:x,y,z0:z1:d:inner[:axis]"
-                      : "the form is cylinder:x,y,z0:z1:d[:axis]"};
+    return Error{tube ? tr("the form is tube:x,y,z0:z1:d:inner[:axis]")
+                      : tr("the form is cylinder:x,y,z0:z1:d[:axis]")};
   }
   int axis = 2;
   if (fields.size() > needed) {
     const std::optional<int> index = axis_index(fields.back());
     if (!index) {
-      return Error{
-          fmt::format("axis: '{}' is not an axis; must be x, y or z", shown(fields.back()))};
+      return Error{trf("axis: '{}' is not an axis; must be x, y or z", shown(fields.back()))};
     }
     axis = *index;
   }
-  const Result<Vec3> center = parse_point("centre", fields[1], unit);
+  const Result<Vec3> center = parse_point(tr("centre"), fields[1], unit);
   if (!center) return Error{center.error()};
   const char letter = "XYZ"[axis];
-  const Result<double> end = parse_length(fmt::format("end {}", letter), trim(fields[2]),
+  const Result<double> end = parse_length(trf("end {}", letter), trim(fields[2]),
                                           -kMaxCoordinate_mm, kMaxCoordinate_mm, unit);
   if (!end) return Error{end.error()};
   const std::string fault = order_fault(letter, (*center)[axis], *end, unit);
   if (!fault.empty()) return Error{fault};
   const Result<double> diameter =
-      parse_length("diameter", trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, unit);
+      parse_length(tr("diameter"), trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, unit);
   if (!diameter) return Error{diameter.error()};
   BlankBody body;
   body.kind = tube ? BlankBody::Kind::kTube : BlankBody::Kind::kCylinder;
@@ -111,13 +112,13 @@ Result<BlankBody> parse_round(const std::vector<std::string_view>& fields, bool 
   body.diameter_mm = *diameter;
   if (tube) {
     const Result<double> inner =
-        parse_length("inner diameter", trim(fields[4]), kMinSize_mm, kMaxCoordinate_mm, unit);
+        parse_length(tr("inner diameter"), trim(fields[4]), kMinSize_mm, kMaxCoordinate_mm, unit);
     if (!inner) return Error{inner.error()};
     if (*inner >= *diameter) {
       return Error{
-          fmt::format("inner diameter: {} is not allowed; must be less than the diameter, "
-                      "{} ({})",
-                      length_number(*inner, unit), length_number(*diameter, unit), name_of(unit))};
+          trf("inner diameter: {} is not allowed; must be less than the diameter, "
+              "{} ({})",
+              length_number(*inner, unit), length_number(*diameter, unit), name_of(unit))};
     }
     body.inner_diameter_mm = *inner;
   }
@@ -134,13 +135,14 @@ Result<BlankBody> parse_body(std::string_view text, LengthUnit unit) {
   if (kind == "cylinder") return parse_round(fields, false, unit);
   if (kind == "tube") return parse_round(fields, true, unit);
   if (kind == "stl") {
-    return Error{fmt::format("{}: is not supported by this version; forms: {}", kind, kForms)};
+    return Error{trf("{}: is not supported by this version; forms: {}", kind, tr(kForms))};
   }
-  if (kind == "state") return Error{"state:FILE stands alone; it cannot be added to other bodies"};
-  if (kind == "sheet") return Error{"a sheet stands alone; it cannot be added to other bodies"};
-  if (kind.empty()) return Error{fmt::format("no stock is given; forms: {}", kForms)};
-  return Error{fmt::format("unknown stock '{}'{} Forms: {}", shown(kind),
-                           did_you_mean(kind, kKinds), kForms)};
+  if (kind == "state")
+    return Error{tr("state:FILE stands alone; it cannot be added to other bodies")};
+  if (kind == "sheet") return Error{tr("a sheet stands alone; it cannot be added to other bodies")};
+  if (kind.empty()) return Error{trf("no stock is given; forms: {}", tr(kForms))};
+  return Error{
+      trf("unknown stock '{}'{} Forms: {}", shown(kind), did_you_mean(kind, kKinds), tr(kForms))};
 }
 
 /// Parts at each '+' that begins a new body: the '+' of a number is followed by a digit or a point.
@@ -159,9 +161,9 @@ std::vector<std::string_view> split_bodies(std::string_view text) {
   return bodies;
 }
 
-constexpr std::string_view kSheetForms =
+constexpr const char* kSheetForms = tr_noop(
     "the form is sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS or "
-    "sheet:FILE.svg:THICKNESS";
+    "sheet:FILE.svg:THICKNESS");
 
 bool is_drawing(std::string_view file) {
   const std::string lower = to_lower(file);
@@ -171,20 +173,20 @@ bool is_drawing(std::string_view file) {
 /// `text`: behind "sheet:". A file name may hold any character, '+' and ':' too.
 Result<BlankSheet> parse_sheet(std::string_view text, LengthUnit unit) {
   const std::size_t last = text.rfind(':');
-  if (last == std::string_view::npos) return Error{std::string(kSheetForms)};
+  if (last == std::string_view::npos) return Error{tr(kSheetForms)};
   const std::string_view outline = trim(text.substr(0, last));
   BlankSheet sheet;
   if (is_drawing(outline)) {
     sheet.file = std::string(outline);
   } else {
     if (split_bodies(text).size() > 1) {
-      return Error{"a sheet stands alone; it cannot be added to other bodies"};
+      return Error{tr("a sheet stands alone; it cannot be added to other bodies")};
     }
     const std::vector<std::string_view> corners = split(outline, ':');
-    if (corners.size() != 2) return Error{std::string(kSheetForms)};
-    const Result<Vec3> low = parse_point("first corner", corners[0], unit, "x,y");
+    if (corners.size() != 2) return Error{tr(kSheetForms)};
+    const Result<Vec3> low = parse_point(tr("first corner"), corners[0], unit, "x,y");
     if (!low) return Error{low.error()};
-    const Result<Vec3> high = parse_point("second corner", corners[1], unit, "x,y");
+    const Result<Vec3> high = parse_point(tr("second corner"), corners[1], unit, "x,y");
     if (!high) return Error{high.error()};
     for (int axis = 0; axis < 2; ++axis) {
       const std::string fault = order_fault("XY"[axis], (*low)[axis], (*high)[axis], unit);
@@ -193,8 +195,8 @@ Result<BlankSheet> parse_sheet(std::string_view text, LengthUnit unit) {
     sheet.low_mm = Vec2(*low);
     sheet.high_mm = Vec2(*high);
   }
-  const Result<double> thickness =
-      parse_length("thickness", trim(text.substr(last + 1)), kMinSize_mm, kMaxThickness_mm, unit);
+  const Result<double> thickness = parse_length(tr("thickness"), trim(text.substr(last + 1)),
+                                                kMinSize_mm, kMaxThickness_mm, unit);
   if (!thickness) return Error{thickness.error()};
   sheet.thickness_mm = *thickness;
   return sheet;
@@ -211,8 +213,8 @@ std::string describe(const BlankBody& body) {
   };
   if (body.kind == BlankBody::Kind::kBox) {
     const Vec3 size = body.bounds_mm.size();
-    return fmt::format("box {} x {} x {} mm, {} {} {}", rounded(size.x), rounded(size.y),
-                       rounded(size.z), range(0), range(1), range(2));
+    return trf("box {} x {} x {} mm, {} {} {}", rounded(size.x), rounded(size.y), rounded(size.z),
+               range(0), range(1), range(2));
   }
   const int axis = body.axis - 'x';
   std::string center;
@@ -221,23 +223,23 @@ std::string describe(const BlankBody& body) {
   }
   const std::string length = rounded(high[axis] - low[axis]);
   if (body.kind == BlankBody::Kind::kTube) {
-    return fmt::format("tube diameter {} / {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
-                       rounded(body.inner_diameter_mm), length, "XYZ"[axis], center, range(axis));
+    return trf("tube diameter {} / {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
+               rounded(body.inner_diameter_mm), length, "XYZ"[axis], center, range(axis));
   }
-  return fmt::format("cylinder diameter {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
-                     length, "XYZ"[axis], center, range(axis));
+  return trf("cylinder diameter {} x {} mm along {}, {}{}", rounded(body.diameter_mm), length,
+             "XYZ"[axis], center, range(axis));
 }
 
 std::string describe(const BlankSheet& sheet) {
   const std::string thickness = rounded(sheet.thickness_mm);
   if (!sheet.file.empty()) {
-    return fmt::format("sheet {} mm thick, outline from {}, Z-{}..0", thickness, shown(sheet.file),
-                       thickness);
+    return trf("sheet {} mm thick, outline from {}, Z-{}..0", thickness, shown(sheet.file),
+               thickness);
   }
   const Vec2 size = sheet.high_mm - sheet.low_mm;
-  return fmt::format("sheet {} x {} x {} mm, X{}..{} Y{}..{} Z-{}..0", rounded(size.x),
-                     rounded(size.y), thickness, rounded(sheet.low_mm.x), rounded(sheet.high_mm.x),
-                     rounded(sheet.low_mm.y), rounded(sheet.high_mm.y), thickness);
+  return trf("sheet {} x {} x {} mm, X{}..{} Y{}..{} Z-{}..0", rounded(size.x), rounded(size.y),
+             thickness, rounded(sheet.low_mm.x), rounded(sheet.high_mm.x), rounded(sheet.low_mm.y),
+             rounded(sheet.high_mm.y), thickness);
 }
 
 }  // namespace
@@ -259,7 +261,7 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
   if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "state") {
     // A file name may hold any character, '+' and ':' too.
     const std::string_view file = trim(spec.substr(colon + 1));
-    if (file.empty()) return Error{"state:: the file name is missing; the form is state:FILE"};
+    if (file.empty()) return Error{tr("state:: the file name is missing; the form is state:FILE")};
     blank.state_file = std::string(file);
     return blank;
   }
@@ -271,7 +273,7 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
   }
   const std::vector<std::string_view> texts = split_bodies(spec);
   if (texts.size() > kMaxBodies) {
-    return Error{fmt::format("{} bodies; at most {} are allowed", texts.size(), kMaxBodies)};
+    return Error{trf("{} bodies; at most {} are allowed", texts.size(), kMaxBodies)};
   }
   for (const std::string_view text : texts) {
     Result<BlankBody> body = parse_body(text, unit);
@@ -284,8 +286,7 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
 }
 
 std::string describe(const Blank& blank) {
-  if (!blank.state_file.empty())
-    return fmt::format("workpiece saved in {}", shown(blank.state_file));
+  if (!blank.state_file.empty()) return trf("workpiece saved in {}", shown(blank.state_file));
   if (blank.sheet) return describe(*blank.sheet);
   std::string text;
   for (const BlankBody& body : blank.bodies) {

@@ -10,8 +10,8 @@ class SolidPoints {
  public:
   virtual ~SolidPoints() = default;
   /// The point is material, and deeper than `within_mm` (a small part of a cell) inside. Of what is
-  /// thinner than a cell, and at edges within one, less may be told than is there, never more. Some
-  /// tens of nanoseconds, some hundreds beside the surface.
+  /// thinner than a cell less may be told than is there; beside what is rounded outward more, by
+  /// cell^2 / 8r. Some tens of nanoseconds, some hundreds beside the surface.
   virtual bool solid_at(const Vec3& point_mm, double within_mm) const = 0;
 };
 

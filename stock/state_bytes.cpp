@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "base/atomic_file.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -36,10 +37,10 @@ bool read_numbers(std::optional<std::string_view> line, T* out, int count) {
 /// Of the largest model that fits a memory of 16 GB.
 constexpr std::size_t kMostStateBytes = std::size_t{16} << 30;
 
-Error unreadable(const std::string& path) { return Error{fmt::format("{}: cannot be read", path)}; }
+Error unreadable(const std::string& path) { return Error{trf("{}: cannot be read", path)}; }
 
 Error damaged_head(const StateHead& head, const std::string& name) {
-  return Error{fmt::format("{}: the head is damaged near byte {}", name, head.position())};
+  return Error{trf("{}: the head is damaged near byte {}", name, head.position())};
 }
 
 /// False for bytes that are shorter than a checksum.
@@ -103,7 +104,7 @@ Result<std::string> read_state_bytes(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (std::filesystem::is_directory(status)) {
-    return Error{fmt::format("{}: is a folder, not a saved workpiece", path)};
+    return Error{trf("{}: is a folder, not a saved workpiece", path)};
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{fmt::format("{}: {}", path, std::strerror(errno))};
@@ -118,7 +119,7 @@ Result<std::string> read_state_bytes(const std::string& path) {
     bytes.append(piece.data(), static_cast<std::size_t>(in.gcount()));
     if (bytes.size() > kMostStateBytes) {
       return Error{
-          fmt::format("{}: longer than {} GB; no saved workpiece is", path, kMostStateBytes >> 30)};
+          trf("{}: longer than {} GB; no saved workpiece is", path, kMostStateBytes >> 30)};
     }
   }
   if (in.bad()) return unreadable(path);
@@ -127,8 +128,7 @@ Result<std::string> read_state_bytes(const std::string& path) {
 
 Result<std::string> model_of_state(std::string_view bytes, const std::string& name) {
   if (bytes.substr(0, kStateMagic.size()) != kStateMagic)
-    return Error{
-        fmt::format("{}: not a saved workpiece (it must begin with \"kerf-state/1\")", name)};
+    return Error{trf("{}: not a saved workpiece (it must begin with \"kerf-state/1\")", name)};
   StateHead head(bytes);
   head.line("kerf-state/1");
   const auto model = head.line("model");
@@ -142,7 +142,7 @@ Result<StateHead> head_of_state(std::string_view bytes, const std::string& name,
   const Result<std::string> found = model_of_state(bytes, name);
   if (!found) return Error{found.error()};
   if (*found != model)
-    return Error{fmt::format("{}: a workpiece of the model {}, not of {}", name, *found, model)};
+    return Error{trf("{}: a workpiece of the model {}, not of {}", name, *found, model)};
   StateHead head(bytes);
   head.line("kerf-state/1");
   head.line("model");
@@ -154,8 +154,7 @@ Result<std::string_view> data_of_state(const StateHead& head, const std::string&
   const std::string_view bytes = head.bytes();
   // The checksum may overlap the head of a file that is made up.
   if (!has_right_checksum(bytes) || bytes.size() < head.position() + kStateHashBytes) {
-    return Error{
-        fmt::format("{}: the checksum does not match: the file is damaged or cut short", name)};
+    return Error{trf("{}: the checksum does not match: the file is damaged or cut short", name)};
   }
   return bytes.substr(head.position(), bytes.size() - head.position() - kStateHashBytes);
 }

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "base/translate.h"
+
 namespace kerf {
 
 Done StockModel::save(const std::string& path) const {
-  return Error{fmt::format("{}: a workpiece of the model {} cannot be saved; --stl keeps its shape",
-                           path, name())};
+  return Error{
+      trf("{}: a workpiece of the model {} cannot be saved; --stl keeps its shape", path, name())};
 }
 
 }  // namespace kerf

@@ -10,13 +10,15 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/height_grid.h"
 #include "base/mesh_patch.h"
 #include "base/result.h"
 #include "base/triangle_mesh.h"
 #include "stock/cutter/cutter.h"
+#include "surface/height_grid.h"
 
 namespace kerf {
+
+class Sheet;
 
 /// Circular part of a CutMove: the tip turns about the axis through `center_mm` along `axis` (unit
 /// vector) by `sweep_rad` (right-hand rule), and moves along the axis linearly in angle. If start
@@ -132,6 +134,8 @@ class StockModel {
 
   /// The model itself, where this one only stands before another.
   virtual const StockModel& bare() const { return *this; }
+  /// The sheet that this is, or stands before; null: it is another model.
+  virtual const Sheet* sheet() const { return nullptr; }
 
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank

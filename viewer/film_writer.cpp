@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
+
 extern char** environ;
 
 namespace kerf {
@@ -37,8 +39,6 @@ std::string program_path() {
   }
   return "";
 }
-
-bool ends_with(const std::string& path, const char* ending) { return path.ends_with(ending); }
 
 /// Yuv with half the colours wants even edges.
 std::vector<std::string> words_for(const std::string& program, const std::string& path,
@@ -64,7 +64,7 @@ std::vector<std::string> words_for(const std::string& program, const std::string
                                  "-pix_fmt",
                                  "yuv420p"};
   const std::vector<std::string> packing =
-      ends_with(path, ".webm")
+      path.ends_with(".webm")
           ? std::vector<std::string>{"-c:v", "libvpx-vp9", "-b:v",     "0",  "-crf",
                                      "32",   "-deadline",  "realtime", "-f", "webm"}
           : std::vector<std::string>{"-c:v",     "libx264",   "-crf",       "20", "-preset",
@@ -79,7 +79,7 @@ std::vector<std::string> words_for(const std::string& program, const std::string
 bool FilmWriter::is_possible() { return !program_path().empty(); }
 
 bool FilmWriter::can_be_named(const std::string& path) {
-  return ends_with(path, ".mp4") || ends_with(path, ".webm");
+  return path.ends_with(".mp4") || path.ends_with(".webm");
 }
 
 FilmWriter::FilmWriter(std::string path, Picture first, std::function<void()> on_end)
@@ -100,11 +100,11 @@ Result<std::unique_ptr<FilmWriter>> FilmWriter::start(const std::string& path, P
 
 Done FilmWriter::launch() {
   const std::string program = program_path();
-  if (program.empty()) return Error{"ffmpeg is not installed"};
+  if (program.empty()) return Error{tr("ffmpeg is not installed")};
   std::array<int, 2> ends{};
   errors_ = std::tmpfile();
   if (errors_ == nullptr || pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return Error{fmt::format("starting ffmpeg: {}", std::strerror(errno))};
+    return Error{trf("starting ffmpeg: {}", std::strerror(errno))};
   }
   pipe_ = ends[1];
   std::vector<std::string> words = words_for(program, path_, part_path_, width_px_, height_px_);
@@ -126,7 +126,7 @@ Done FilmWriter::launch() {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   close(ends[0]);
-  if (error != 0) return Error{fmt::format("starting {}: {}", program, std::strerror(error))};
+  if (error != 0) return Error{trf("starting {}: {}", program, std::strerror(error))};
   process_ = process;
   return std::monostate{};
 }
@@ -221,7 +221,7 @@ Done FilmWriter::finish() {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::filesystem::remove(part_path_, error);
     const std::string said = complaint();
-    return Error{fmt::format("ffmpeg: {}", said.empty() ? "it failed" : said)};
+    return Error{fmt::format("ffmpeg: {}", said.empty() ? tr("it failed") : said)};
   }
   std::filesystem::rename(part_path_, path_, error);
   if (error) return Error{fmt::format("{}: {}", path_, error.message())};

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -31,8 +33,8 @@ std::string egl_error() { return fmt::format("EGL error 0x{:04X}", eglGetError()
 
 /// A context of `display`, current on this thread; on error nothing stays initialized.
 Result<EGLContext> make_current_context(EGLDisplay display) {
-  if (display == EGL_NO_DISPLAY) return Error{"not offered"};
-  if (!eglInitialize(display, nullptr, nullptr)) return Error{"cannot start: " + egl_error()};
+  if (display == EGL_NO_DISPLAY) return Error{tr("not offered")};
+  if (!eglInitialize(display, nullptr, nullptr)) return Error{tr("cannot start: ") + egl_error()};
   const auto fail = [display](const std::string& reason) {
     eglTerminate(display);
     return Error{reason};
@@ -40,16 +42,16 @@ Result<EGLContext> make_current_context(EGLDisplay display) {
   const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
   if (!has_extension(extensions, "EGL_KHR_create_context") ||
       !has_extension(extensions, "EGL_KHR_surfaceless_context")) {
-    return fail("cannot draw without a window");
+    return fail(tr("cannot draw without a window"));
   }
-  if (!eglBindAPI(EGL_OPENGL_API)) return fail("has no desktop OpenGL");
+  if (!eglBindAPI(EGL_OPENGL_API)) return fail(tr("has no desktop OpenGL"));
   EGLConfig config = EGL_NO_CONFIG_KHR;
   if (!has_extension(extensions, "EGL_KHR_no_config_context")) {
     const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                              EGL_NONE};
     EGLint count = 0;
     if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0) {
-      return fail("has no OpenGL configuration");
+      return fail(tr("has no OpenGL configuration"));
     }
   }
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION_KHR,
@@ -60,17 +62,17 @@ Result<EGLContext> make_current_context(EGLDisplay display) {
                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
                                EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
-  if (context == EGL_NO_CONTEXT) return fail("no OpenGL 3.3 core context: " + egl_error());
+  if (context == EGL_NO_CONTEXT) return fail(tr("no OpenGL 3.3 core context: ") + egl_error());
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
-    const std::string reason = "context cannot be used: " + egl_error();
+    const std::string reason = tr("context cannot be used: ") + egl_error();
     eglDestroyContext(display, context);
     return fail(reason);
   }
   if (epoxy_gl_version() < kMinGlVersion) {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    return fail(fmt::format("OpenGL {}.{} is too old, 3.3 is needed", epoxy_gl_version() / 10,
-                            epoxy_gl_version() % 10));
+    return fail(trf("OpenGL {}.{} is too old, 3.3 is needed", epoxy_gl_version() / 10,
+                    epoxy_gl_version() % 10));
   }
   return context;
 }
@@ -86,15 +88,15 @@ bool egl_library_exists() {
 }  // namespace
 
 Result<GlContext> GlContext::create_offscreen() {
-  constexpr std::string_view kHint =
-      " (Debian packages: libegl1 libegl-mesa0 libgl1-mesa-dri; no graphics card is needed)";
+  constexpr const char* kHint = tr_noop(
+      " (Debian packages: libegl1 libegl-mesa0 libgl1-mesa-dri; no graphics card is needed)");
   if (!egl_library_exists()) {
-    return Error{fmt::format("no OpenGL for pictures: libEGL.so.1 is not installed{}", kHint)};
+    return Error{trf("no OpenGL for pictures: libEGL.so.1 is not installed{}", tr(kHint))};
   }
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!has_extension(client, "EGL_EXT_platform_base")) {
-    return Error{fmt::format(
-        "no OpenGL for pictures: EGL has no driver that works without a window{}", kHint)};
+    return Error{
+        trf("no OpenGL for pictures: EGL has no driver that works without a window{}", tr(kHint))};
   }
   std::string reasons;
   const auto attempt = [&reasons](const std::string& name, EGLDisplay display) {
@@ -108,7 +110,8 @@ Result<GlContext> GlContext::create_offscreen() {
     // exists.
     EGLDisplay display =
         eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (EGLContext context = attempt("surfaceless platform", display); context != EGL_NO_CONTEXT) {
+    if (EGLContext context = attempt(tr("surfaceless platform"), display);
+        context != EGL_NO_CONTEXT) {
       return GlContext(display, context);
     }
   }
@@ -120,14 +123,13 @@ Result<GlContext> GlContext::create_offscreen() {
     for (EGLint i = 0; i < count; ++i) {
       EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT,
                                                     devices[static_cast<std::size_t>(i)], nullptr);
-      if (EGLContext context = attempt(fmt::format("device {}", i), display);
-          context != EGL_NO_CONTEXT) {
+      if (EGLContext context = attempt(trf("device {}", i), display); context != EGL_NO_CONTEXT) {
         return GlContext(display, context);
       }
     }
   }
-  if (reasons.empty()) reasons = "EGL has no driver that works without a window";
-  return Error{fmt::format("no OpenGL for pictures: {}{}", reasons, kHint)};
+  if (reasons.empty()) reasons = tr("EGL has no driver that works without a window");
+  return Error{trf("no OpenGL for pictures: {}{}", reasons, tr(kHint))};
 }
 
 GlContext::GlContext(GlContext&& other) noexcept

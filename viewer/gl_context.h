@@ -12,7 +12,7 @@ namespace kerf {
 /// object made in it. One at a time: EGL displays are shared by the whole process.
 class GlContext {
  public:
-  /// Error: every road that was tried, each with its reason, and the packages to install.
+  /// Error: every draw mode that was tried, each with its reason, and the packages to install.
   static Result<GlContext> create_offscreen();
 
   GlContext(GlContext&& other) noexcept;

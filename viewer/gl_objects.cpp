@@ -90,6 +90,9 @@ void GlProgram::set(const char* uniform, int value) const { glUniform1i(location
 void GlProgram::set(const char* uniform, float value) const {
   glUniform1f(location(uniform), value);
 }
+void GlProgram::set(const char* uniform, const glm::ivec2& value) const {
+  glUniform2iv(location(uniform), 1, glm::value_ptr(value));
+}
 void GlProgram::set(const char* uniform, const glm::vec2& value) const {
   glUniform2fv(location(uniform), 1, glm::value_ptr(value));
 }

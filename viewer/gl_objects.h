@@ -55,6 +55,7 @@ class GlProgram {
   void use() const { glUseProgram(name_); }
   void set(const char* uniform, int value) const;  ///< Also the unit of a sampler.
   void set(const char* uniform, float value) const;
+  void set(const char* uniform, const glm::ivec2& value) const;
   void set(const char* uniform, const glm::vec2& value) const;
   void set(const char* uniform, const glm::vec3& value) const;
   void set(const char* uniform, const glm::vec4& value) const;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 
+#include "base/translate.h"
 #include "viewer/shaders/shaders.h"
 
 namespace kerf {
@@ -91,8 +92,8 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_px);
   if (std::max(sampled_px.x, sampled_px.y) > largest_px) {
     return Error{
-        fmt::format("a picture of {} x {} pixels is too large for this OpenGL; each side may be {}",
-                    picture_px.x, picture_px.y, largest_px / kSamples)};
+        trf("a picture of {} x {} pixels is too large for this OpenGL; each side may be {}",
+            picture_px.x, picture_px.y, largest_px / kSamples)};
   }
   allocate_texture(sampled_normals_, GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV,
                    sampled_px, GL_NEAREST);
@@ -125,9 +126,9 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
   attach(GL_COLOR_ATTACHMENT0, edge_strengths_);
   all_complete = complete() && all_complete;
   if (!all_complete || glGetError() != GL_NO_ERROR) {
-    return Error{fmt::format(
-        "this OpenGL ({}) cannot make the buffers for a picture of {} x {} pixels",
-        reinterpret_cast<const char*>(glGetString(GL_RENDERER)), picture_px.x, picture_px.y)};
+    return Error{trf("this OpenGL ({}) cannot make the buffers for a picture of {} x {} pixels",
+                     reinterpret_cast<const char*>(glGetString(GL_RENDERER)), picture_px.x,
+                     picture_px.y)};
   }
   return std::monostate{};
 }

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "base/translate.h"
 #include "viewer/annotations.h"
 #include "viewer/camera.h"
 #include "viewer/gl_context.h"
@@ -41,12 +42,11 @@ Result<Picture> draw_part(const PartPatches& part, const PictureOptions& options
   const glm::ivec2 size_px(options.width_px, options.height_px);
   if (std::min(size_px.x, size_px.y) < kMinSize_px ||
       std::max(size_px.x, size_px.y) > kMaxSize_px) {
-    return Error{
-        fmt::format("a picture of {} x {} pixels is not allowed; each side must be {} to {}",
-                    size_px.x, size_px.y, kMinSize_px, kMaxSize_px)};
+    return Error{trf("a picture of {} x {} pixels is not allowed; each side must be {} to {}",
+                     size_px.x, size_px.y, kMinSize_px, kMaxSize_px)};
   }
   if (part.bounds_mm.empty() && options.blank_mm.empty()) {
-    return Error{"nothing to draw: the part is empty and no blank is given"};
+    return Error{tr("nothing to draw: the part is empty and no blank is given")};
   }
   const Annotations annotations(options.blank_mm, part.bounds_mm, kEyeDirection, size_px);
   const std::vector<Vec3> points_mm = annotations.points_to_fit();
@@ -79,15 +79,15 @@ Result<Picture> draw_part(const PartPatches& part, const PictureOptions& options
   strokes->draw(annotations.layout(camera, options.caption), size_px, renderer->depths());
   Picture picture = read_framebuffer(framebuffer.name(), size_px);
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-    return Error{fmt::format("OpenGL error 0x{:04X} while drawing a picture of {} x {} pixels",
-                             error, size_px.x, size_px.y)};
+    return Error{trf("OpenGL error 0x{:04X} while drawing a picture of {} x {} pixels", error,
+                     size_px.x, size_px.y)};
   }
   return picture;
 }
 
 Done write_png(const std::string& path, const Picture& picture) {
   Result<std::vector<std::uint8_t>> bytes = encode_png(picture);
-  if (!bytes) return Error{fmt::format("writing {}: {}", path, bytes.error())};
+  if (!bytes) return Error{trf("writing {}: {}", path, bytes.error())};
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return Error{file.error()};
   file->write(bytes->data(), bytes->size());

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <csetjmp>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -17,7 +19,7 @@ void append(png_structp png, png_bytep data, png_size_t size) {
   try {
     bytes->insert(bytes->end(), data, data + size);
   } catch (const std::bad_alloc&) {
-    png_error(png, "out of memory");  // Back to setjmp: no exception may cross the C library.
+    png_error(png, tr("out of memory"));  // Back to setjmp: no exception may cross the C library.
   }
 }
 
@@ -56,7 +58,7 @@ Result<std::vector<std::uint8_t>> encode_png(const Picture& picture) {
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool written = info && write_image(png, info, picture, &bytes);
   png_destroy_write_struct(png ? &png : nullptr, info ? &info : nullptr);
-  if (!written) return Error{"out of memory while compressing a picture"};
+  if (!written) return Error{tr("out of memory while compressing a picture")};
   return bytes;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -22,8 +24,7 @@ Done RenderTarget::allocate(glm::ivec2 size_px) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth_.name(),
                          0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    return Error{
-        fmt::format("OpenGL cannot draw a picture of {} x {} pixels", size_px.x, size_px.y)};
+    return Error{trf("OpenGL cannot draw a picture of {} x {} pixels", size_px.x, size_px.y)};
   }
   size_px_ = size_px;
   return std::monostate{};

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
 namespace kerf {
 namespace {
-
-constexpr int kRimSegments = 64;
 
 /// Of elements with the same key only the last stays.
 template <class Element, class Key>
@@ -28,18 +25,6 @@ void replace_if(std::shared_ptr<const Value>* older, std::shared_ptr<const Value
 
 }  // namespace
 
-std::vector<std::shared_ptr<const PathChunk>> path_chunks(const std::vector<PathVertex>& vertices) {
-  std::vector<std::shared_ptr<const PathChunk>> chunks;
-  for (std::size_t first = 0; first + 1 < vertices.size(); first += kPathChunkSegments) {
-    const std::size_t count = std::min(kPathChunkSegments + 1, vertices.size() - first);
-    const auto begin = vertices.begin() + static_cast<std::ptrdiff_t>(first);
-    chunks.push_back(std::make_shared<const PathChunk>(
-        PathChunk{static_cast<std::uint32_t>(chunks.size()),
-                  {begin, begin + static_cast<std::ptrdiff_t>(count)}}));
-  }
-  return chunks;
-}
-
 std::vector<LineSegment> box_outline(const Box& box) {
   std::vector<LineSegment> lines;
   if (box.empty()) return lines;
@@ -52,26 +37,6 @@ std::vector<LineSegment> box_outline(const Box& box) {
     for (const unsigned axis : {1u, 2u, 4u}) {
       if ((from & axis) == 0) lines.push_back({corner(from), corner(from | axis)});
     }
-  }
-  return lines;
-}
-
-std::vector<LineSegment> cylinder_outline(const Vec3& base_mm, char axis, double radius_mm,
-                                          double height_mm) {
-  const int along = axis == 'X' ? 0 : axis == 'Y' ? 1 : 2;
-  const auto rim = [&](int step, double height) {
-    const double angle = 2.0 * kPi * step / kRimSegments;
-    Vec3 p = base_mm;
-    p[along] += height;
-    p[(along + 1) % 3] += radius_mm * std::cos(angle);
-    p[(along + 2) % 3] += radius_mm * std::sin(angle);
-    return glm::vec3(p);
-  };
-  std::vector<LineSegment> lines;
-  for (int step = 0; step < kRimSegments; ++step) {
-    lines.push_back({rim(step, 0.0), rim(step + 1, 0.0)});
-    lines.push_back({rim(step, height_mm), rim(step + 1, height_mm)});
-    if (step % (kRimSegments / 4) == 0) lines.push_back({rim(step, 0.0), rim(step, height_mm)});
   }
   return lines;
 }
@@ -119,7 +84,7 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
   keep_last(&older->path, [](const PathChunk& chunk) { return chunk.index; });
   replace_if(&older->heights, std::move(newer.heights));
   replace_if(&older->cut_moves, std::move(newer.cut_moves));
-  replace_if(&older->road, std::move(newer.road));
+  replace_if(&older->draw_mode, std::move(newer.draw_mode));
   replace_if(&older->job, std::move(newer.job));
   replace_if(&older->setup, std::move(newer.setup));
   replace_if(&older->tool_shape, std::move(newer.tool_shape));

@@ -17,9 +17,10 @@
 
 #include "base/diagnostic.h"
 #include "base/geometry.h"
-#include "base/height_grid.h"
+#include "base/length_unit.h"
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "surface/height_grid.h"
 
 namespace kerf {
 
@@ -63,9 +64,6 @@ struct PathChunk {
   std::vector<PathVertex> vertices;
 };
 
-/// Cuts a path into chunks.
-std::vector<std::shared_ptr<const PathChunk>> path_chunks(const std::vector<PathVertex>& vertices);
-
 struct LineSegment {
   glm::vec3 from_mm{0.0f};
   glm::vec3 to_mm{0.0f};
@@ -73,9 +71,6 @@ struct LineSegment {
 
 /// The twelve edges; none if the box is empty.
 std::vector<LineSegment> box_outline(const Box& box);
-/// Both rims and four lines along the axis ('X', 'Y' or 'Z'), which runs from base_mm by height_mm.
-std::vector<LineSegment> cylinder_outline(const Vec3& base_mm, char axis, double radius_mm,
-                                          double height_mm);
 
 /// A frame drawn as three arrows: machine zero, a work offset.
 struct SceneFrame {
@@ -105,7 +100,12 @@ struct SceneFinding {
   int line = 0;      ///< 1-based; 0 = none.
   double time_s = 0.0;
   std::optional<Vec3> position_mm;  ///< Where a marker is drawn.
-  std::string text;                 ///< One line, already in the user's language.
+  std::string text;                 ///< One line, already in the user's language; mm.
+  std::string inch_text = {};       ///< The same in inches; empty: as `text`.
+
+  const std::string& text_in(LengthUnit unit) const {
+    return unit == LengthUnit::kInch && !inch_text.empty() ? inch_text : text;
+  }
 };
 
 struct FindingList {
@@ -204,33 +204,33 @@ struct CutColors {
 
 /// How the workpiece gets into the picture. All three draw it at the same place; tool, path, marks
 /// and machine are drawn over and into each in the same way.
-enum class DrawRoad {
+enum class DrawMode {
   kMesh,     ///< SceneUpdate::patches: with colours, section and deviations.
   kRaycast,  ///< SceneUpdate::heights, by rays on the CPU.
   kCsg,      ///< SceneUpdate::cut_moves, subtracted from the blank in the picture.
 };
 
-/// What a road cannot do with the workpiece there is.
-enum class RoadLimit {
+/// What a draw mode cannot do with the workpiece there is.
+enum class DrawLimit {
   kNone,
-  kNoHeights,  ///< Rays need one height a cell; RoadAnswer::detail names the model.
+  kNoHeights,  ///< Rays need one height a cell; DrawAnswer::detail names the model.
   kCompared,   ///< Deviations from a design part are drawn by mesh alone.
-  kNoBox,      ///< CSG begins with a full Z-map; RoadAnswer::detail says what the blank is.
+  kNoBox,      ///< CSG begins with a full Z-map; DrawAnswer::detail says what the blank is.
   kTilted,     ///< CSG cuts with upright tools, and here tools or workpiece turn.
-  kTool,       ///< A tool cannot be subtracted; RoadAnswer::detail says which and why.
+  kTool,       ///< A tool cannot be subtracted; DrawAnswer::detail says which and why.
   kWatched,    ///< CSG has no moves of a machine that is watched.
-  kNewest,     ///< CSG shows the newest moves: those since RoadAnswer::line, and what it has kept.
+  kNewest,     ///< CSG shows the newest moves: those since DrawAnswer::line, and what it has kept.
 };
 
-/// The answer to a RoadCommand, and again whenever it becomes another one.
-struct RoadAnswer {
-  DrawRoad road = DrawRoad::kMesh;  ///< That was asked for.
-  RoadLimit limit = RoadLimit::kNone;
+/// The answer to a DrawModeCommand, and again whenever it becomes another one.
+struct DrawAnswer {
+  DrawMode draw_mode = DrawMode::kMesh;  ///< That was asked for.
+  DrawLimit limit = DrawLimit::kNone;
   std::string detail;
   int line = 0;
-  /// Else the values for this road do not come, those for the mesh do.
-  bool is_drawn() const { return limit == RoadLimit::kNone || limit == RoadLimit::kNewest; }
-  bool operator==(const RoadAnswer&) const = default;
+  /// Else the values for this draw mode do not come, those for the mesh do.
+  bool is_drawn() const { return limit == DrawLimit::kNone || limit == DrawLimit::kNewest; }
+  bool operator==(const DrawAnswer&) const = default;
 };
 
 /// The blank and the moves that cut it (viewer/csg/cut_moves.h).
@@ -270,8 +270,9 @@ struct JobTool {
 
 /// What is cut out of what, in the words of the command line; for the window to show and to change.
 struct ViewedJob {
-  std::string program;             ///< Its file; empty: none is open.
-  std::string stock, cell, model;  ///< As given; empty: chosen by itself.
+  std::string program;                ///< Its file; empty: none is open.
+  std::string stock, cell, model;     ///< As given; empty: chosen by itself.
+  LengthUnit unit = LengthUnit::kMm;  ///< Of the lengths in all of these.
   std::string stock_in_use, cell_in_use, model_in_use;
   std::vector<JobTool> tools;       ///< By number.
   std::vector<std::string> models;  ///< That can be given.
@@ -319,7 +320,7 @@ struct SceneUpdate {
   std::vector<std::shared_ptr<const MeshPatch>> patches;
   std::shared_ptr<const HeightGrid> heights;      ///< Of the whole workpiece.
   std::shared_ptr<const CutMoves> cut_moves;      ///< All that are shown.
-  std::shared_ptr<const RoadAnswer> road;         ///< The answer to a RoadCommand.
+  std::shared_ptr<const DrawAnswer> draw_mode;    ///< The answer to a DrawModeCommand.
   std::optional<std::uint32_t> path_chunk_count;  ///< Chunks from this number on are dropped.
   std::vector<std::shared_ptr<const PathChunk>> path;
   std::shared_ptr<const SceneSetup> setup;

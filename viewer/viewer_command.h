@@ -67,10 +67,10 @@ struct ColorCommand {
   int first_line = 0;  ///< Of the main program, for kLineRange.
   int last_line = 0;
 };
-/// By which road the workpiece is to be drawn: its values are wanted from now on. The answer is
-/// SceneUpdate::road.
-struct RoadCommand {
-  DrawRoad road = DrawRoad::kMesh;
+/// In which draw mode the workpiece is to be drawn: its values are wanted from now on. The answer
+/// is SceneUpdate::draw_mode.
+struct DrawModeCommand {
+  DrawMode draw_mode = DrawMode::kMesh;
 };
 /// Who cut this point of the surface last.
 struct PickCommand {
@@ -85,14 +85,16 @@ struct JobCommand {
   std::string stock, cell, model;
   std::vector<std::pair<int, std::string>> tools;  ///< number and SHAPE text, those that are given
 };
+/// The same program once more: its findings are to be told in another language.
+struct ReadAgainCommand {};
 struct CloseCommand {};  ///< The window was closed; the last command that comes.
 
 using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
                  SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
                  NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
-                 DetailCommand, ColorCommand, RoadCommand, PickCommand, OpenCommand, JobCommand,
-                 CloseCommand>;
+                 DetailCommand, ColorCommand, DrawModeCommand, PickCommand, OpenCommand, JobCommand,
+                 ReadAgainCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/units.h"
+
 namespace kerf::interp {
 namespace {
 
@@ -156,7 +158,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kUnits:
         if (value != "mm" && value != "inch") return fault("--units: mm or inch");
-        world.units_per_mm = value == "mm" ? 1.0 : 1 / 25.4;
+        world.units_per_mm = value == "mm" ? 1.0 : 1 / kerf::kMmPerInch;
         // As LinuxCNC starts: in the units of the machine.
         world.units = value == "mm" ? CANON_UNITS_MM : CANON_UNITS_INCHES;
         break;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/units.h"
 #include "interp_bridge/torch_materials.h"
 
 namespace kerf::interp {
@@ -69,7 +70,7 @@ class World {
     if (index >= 0 && output < kAnalogOutputs) analog_outputs[output] = value;
   }
 
-  double unit_mm() const { return units == CANON_UNITS_INCHES ? 25.4 : 1.0; }
+  double unit_mm() const { return kerf::mm_of_unit(units == CANON_UNITS_INCHES); }
 
   // ---- Frames
   // ---------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "base/translate.h"
 #include "interp_bridge/timing/lookahead.h"
 #include "interp_bridge/timing/merge.h"
 #include "interp_bridge/timing/schedule.h"
@@ -445,15 +446,19 @@ std::string TrajectoryPlanner::time_model() const {
     axes += fmt::format("{}{} {:g} {}/s {:g} {}/s2", axes.empty() ? "" : ", ", kAxisLetters[i],
                         axis.max_velocity, unit, axis.max_acceleration, unit);
   }
-  std::string cap = "no cap on the path's speed";
+  std::string cap = tr("no cap on the path's speed");
   if (std::isfinite(impl_->rates.linear_cap)) {
-    cap = fmt::format("at most {:g} mm/s along the path", impl_->rates.linear_cap);
+    cap = trf("at most {:g} mm/s along the path", impl_->rates.linear_cap);
   }
-  return fmt::format(
-      "LinuxCNC 2.9 trajectory planner, limits of {}: {}, {}, servo period {:g} ms; tool change "
-      "{} I/O periods of {:g} s and {:g} s, spindle start {:g} s, M0 and M1 no time",
-      impl_->options.limits_origin, axes, cap, impl_->rates.cycle_s * 1000.0, kToolChangeLooks,
-      impl_->limits.io_period_s, impl_->options.tool_change_s, impl_->options.spindle_start_s);
+  // What stands before the first ": " is its short form, in every language.
+  const std::string what = trf("LinuxCNC 2.9 trajectory planner, limits of {}",
+                               tr(impl_->options.limits_origin.c_str()));
+  const std::string figures =
+      trf("{}, {}, servo period {:g} ms; tool change {} I/O periods of {:g} s and {:g} s, spindle "
+          "start {:g} s, M0 and M1 no time",
+          axes, cap, impl_->rates.cycle_s * 1000.0, kToolChangeLooks, impl_->limits.io_period_s,
+          impl_->options.tool_change_s, impl_->options.spindle_start_s);
+  return fmt::format("{}: {}", what, figures);
 }
 
 }  // namespace kerf

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "base/translate.h"
 #include "interp_bridge/machine_limits.h"
 #include "interp_bridge/motion.h"
 
@@ -15,7 +16,7 @@ namespace kerf {
 /// simulated machine, whose spindle is at speed at once; a real machine is slower.
 struct PlannerOptions {
   /// What the limits are, for time_model(): "mill.ini", or "a small mill (no INI given)".
-  std::string limits_origin = "a small mill (no INI given)";
+  std::string limits_origin = tr_noop("a small mill (no INI given)");
   /// A tool change, beyond the handshake of task and I/O: kToolChangeLooks periods of
   /// [EMCIO]CYCLE_TIME, 0.2 to 0.3 s with the usual 0.1 s.
   double tool_change_s = 0;

@@ -81,6 +81,21 @@ CanCycle::Verdict CanCycle::close() {
     widest_ns_ = 0;
     return Verdict::kShifted;
   }
+  if (may_be_of_two()) {
+    late_axes_ = 0;
+    for (std::size_t i = after; i < count_; ++i) {
+      late_axes_ = static_cast<std::uint16_t>(late_axes_ | frames_[i].axes);
+    }
+    doubted_ = 1 + (last_ns() - first_ns() - span_ns_ + period_ns_ / 2) / period_ns_;
+    ++doubts_;
+    before_ns_ = last_ns();
+    start_ns_ = 0;
+    widest_ns_ = 0;
+    sync_before_ = false;
+    clear();
+    return Verdict::kDoubted;
+  }
+  doubts_ = 0;
   learn();
   widest_ns_ = widest_ns;
   after_widest_ = widest_ns > 0 ? frames_[after].axes : 0;
@@ -88,6 +103,20 @@ CanCycle::Verdict CanCycle::close() {
   start_ns_ = first_ns();
   clear();
   return Verdict::kWhole;
+}
+
+/// Of the complete cycle that is gathered: it takes much longer than the others.
+bool CanCycle::may_be_of_two() const {
+  return is_cyclic() && calm_ >= kCalm && synced_ < kLearnt && doubts_ < kMostIncomplete &&
+         4 * (period_ns_ - span_ns_) >= period_ns_ && period_ns_ - span_ns_ >= kLeastPause_ns &&
+         last_ns() - first_ns() > span_ns_ + period_ns_ / 2;
+}
+
+bool CanCycle::is_doubt_true(std::int64_t next_ns) {
+  if (next_ns < doubted_until_ns()) return false;
+  missing_ += static_cast<int>(doubted_);
+  missing_axes_ = late_axes_;
+  return true;
 }
 
 /// Of the complete cycle that is gathered.
@@ -108,6 +137,15 @@ void CanCycle::learn() {
   for (std::size_t i = 0; i < count_; ++i) order[i] = frames_[i].axes;
   run_ = order == order_ ? std::min(run_ + 1, kLearnt) : 0;
   order_ = order;
+  const std::int64_t span_ns = last_ns() - first_ns();
+  const auto is_calm = [this](std::int64_t off_ns) { return 8 * std::abs(off_ns) <= period_ns_; };
+  if (run_ == 0 || !is_calm(span_ns - span_ns_) ||
+      (start_ns_ != 0 && !is_calm(first_ns() - start_ns_ - period_ns_))) {
+    calm_ = 0;
+  } else {
+    calm_ = std::min(calm_ + 1, kCalm);
+  }
+  span_ns_ = run_ == 0 ? span_ns : span_ns_ + (span_ns - span_ns_) / 8;
   if (start_ns_ != 0) learn_period(first_ns() - start_ns_);
 }
 

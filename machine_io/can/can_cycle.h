@@ -2,6 +2,7 @@
 // and stamps, no values.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,10 +17,12 @@ namespace kerf {
 /// complete and in one order, the bus is cyclic: then a frame that is missing is noticed, because
 /// its axis comes next out of its order and twice its period after its last frame. (A late frame
 /// alone proves nothing: stamps of a busy computer are late by any time, but keep their order. Nor
-/// does another order: drives with clocks of their own overtake each other. So three frames that
-/// are lost in a row, without a SYNC and without the kernel's word, can still mix one sample.)
-/// Drives that send only what changes never come so, or stop coming so: then nothing is noticed,
-/// nor held against them.
+/// does another order: drives with clocks of their own overtake each other.) Where as many are lost
+/// in a row as there are axes, what is left is in order: then a cycle takes a period longer than it
+/// should, and on a bus whose stamps have been calm it is doubted. If the pause behind it is that
+/// between two cycles, it is of two; a frame that was late has made that pause shorter. Drives that
+/// send only what changes never come so, or stop coming so: then nothing is noticed, nor held
+/// against them.
 ///
 /// Who begins to listen in the middle of a cycle gathers parts of two. That shows by the pause
 /// between two cycles, when it lies within what is gathered, kShifts times in a row, as long and at
@@ -34,6 +37,9 @@ class CanCycle {
   /// A pause between two cycles is as long as this, where it is looked for. (Frames that follow
   /// each other without a pause have none that means anything.)
   static constexpr std::int64_t kLeastPause_ns = 500'000;
+  /// Complete cycles in a row, each within an eighth of a period of what it should be, that make
+  /// stamps calm.
+  static constexpr int kCalm = 16;
   /// So many incomplete cycles in a row are no lost frames: the drives send otherwise now.
   static constexpr int kMostIncomplete = 4;
 
@@ -56,16 +62,25 @@ class CanCycle {
   bool ends_at_sync();
 
   enum class Verdict : std::uint8_t {
-    kWhole,   ///< all of one cycle
-    kShifted  ///< parts of two cycles: what is gathered now is the newer part
+    kWhole,    ///< all of one cycle
+    kShifted,  ///< parts of two cycles: what is gathered now is the newer part
+    kDoubted   ///< perhaps of two cycles: is_doubt_true() says so when the next frame comes
   };
-  /// Of a cycle that is complete. kWhole: nothing is gathered any more.
+  /// Of a cycle that is complete. kWhole, kDoubted: nothing is gathered any more.
   Verdict close();
   /// Of one that is not. True: the bus is cyclic, and a frame is missing.
   bool close_incomplete();
   /// Frames that were missing from the cycles between the last two complete ones, of a cyclic bus.
   int take_missing() { return std::exchange(missing_, 0); }
   std::uint16_t missing_axes() const { return missing_axes_; }
+
+  /// The cycle that was doubted is parts of two: the next frame comes (`next_ns`), or is waited for
+  /// still, so long after it. The frames that were lost are those of take_missing() then.
+  bool is_doubt_true(std::int64_t next_ns);
+  /// Behind this stamp it is.
+  std::int64_t doubted_until_ns() const {
+    return before_ns_ + std::max<std::int64_t>(0, 3 * period_ns_ / 4 - span_ns_);
+  }
 
   /// The last complete cycle may be parts of two: it has such a pause ..
   bool has_pause() const { return widest_ns_ >= kLeastPause_ns; }
@@ -92,6 +107,7 @@ class CanCycle {
   bool is_out_of_order(std::uint16_t axes) const;
   void learn();
   void learn_period(std::int64_t interval_ns);
+  bool may_be_of_two() const;
   void clear();
 
   std::uint16_t axes_;
@@ -111,8 +127,13 @@ class CanCycle {
   std::uint16_t after_widest_ = 0;  ///< .. and the axes of the frame behind that
   int shifts_ = 0;                  ///< complete cycles in a row that were like that
   std::int64_t period_ns_ = 0;
-  int odd_ = 0;  ///< periods in a row that were others
-  int run_ = 0;  ///< complete cycles in a row in the same order
+  std::int64_t span_ns_ = 0;     ///< from the first frame of a cycle to its last
+  std::int64_t doubted_ = 0;     ///< cycles that the doubted one is parts of
+  int doubts_ = 0;               ///< cycles in a row that were doubted
+  int calm_ = 0;                 ///< cycles in a row that came and ended when they should
+  std::uint16_t late_axes_ = 0;  ///< those behind its longest pause
+  int odd_ = 0;                  ///< periods in a row that were others
+  int run_ = 0;                  ///< complete cycles in a row in the same order
   std::array<std::uint16_t, kMaxPositions> order_{};  ///< that order
   int synced_ = 0;  ///< complete cycles in a row with a SYNC before and none inside
   bool sync_before_ = false;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -62,31 +64,31 @@ std::vector<std::string> validate(const CanMap& map, const std::string& key) {
     faults.insert(faults.end(), of_signal.begin(), of_signal.end());
   }
   if (std::none_of(map.axes.begin(), map.axes.end(), [](const auto& a) { return a.has_value(); })) {
-    faults.push_back(fmt::format("{}: no axis is mapped; at least one of {} is needed", key,
-                                 fmt::join(map.axis_keys, ", ")));
+    faults.push_back(trf("{}: no axis is mapped; at least one of {} is needed", key,
+                         fmt::join(map.axis_keys, ", ")));
   }
   for (std::size_t i = 0; i < signals.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (!same_place(*signals[i].second, *signals[k].second)) continue;
-      faults.push_back(fmt::format(
-          "{0}.{1}: reads the same bits of frame {2} as {0}.{3}", key, signals[i].first,
-          can_id_text(signals[i].second->id, signals[i].second->extended), signals[k].first));
+      faults.push_back(
+          trf("{0}.{1}: reads the same bits of frame {2} as {0}.{3}", key, signals[i].first,
+              can_id_text(signals[i].second->id, signals[i].second->extended), signals[k].first));
     }
   }
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     const CanAxisRange& range = map.ranges[i];
     if (range.min && range.max && !(*range.min < *range.max)) {
-      faults.push_back(fmt::format("{}.{}.max: {} is not allowed; must be above min {}", key,
-                                   map.axis_keys[i], *range.max, *range.min));
+      faults.push_back(trf("{}.{}.max: {} is not allowed; must be above min {}", key,
+                           map.axis_keys[i], *range.max, *range.min));
     }
   }
   if (map.sync_id < -1 || map.sync_id > static_cast<int>(kMaxStandardCanId)) {
-    faults.push_back(fmt::format(
-        "{}.sync_id: {} is not allowed; must be 0 to 0x7FF, or -1 for none", key, map.sync_id));
+    faults.push_back(
+        trf("{}.sync_id: {} is not allowed; must be 0 to 0x7FF, or -1 for none", key, map.sync_id));
   }
   if (!(map.gather_ms >= kLeastGather_ms && map.gather_ms <= kMostGather_ms)) {
-    faults.push_back(fmt::format("{}.gather_ms: {} is not allowed; must be {} to {} ms", key,
-                                 map.gather_ms, kLeastGather_ms, kMostGather_ms));
+    faults.push_back(trf("{}.gather_ms: {} is not allowed; must be {} to {} ms", key, map.gather_ms,
+                         kLeastGather_ms, kMostGather_ms));
   }
   return faults;
 }
@@ -147,6 +149,7 @@ void CanAssembler::forget() {
   for (Slot& slot : slots_) slot.at_ns = AxisSample::kNoTime;
   cycle_.forget();
   held_count_ = 0;
+  is_doubted_ = false;
   is_first_ = true;
   ready_count_ = 0;
   newest_ns_ = AxisSample::kNoTime;
@@ -206,6 +209,7 @@ CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t devic
     forget();
     stepped = true;
   }
+  if (axes != 0 && is_doubted_) settle_doubt(device_ns);
   if (std::exchange(is_broken_, false) && !cycle_.is_empty()) close_incomplete();
   if (axes != 0 && held_count_ > 0 && cycle_.is_empty() && !cycle_.seems_shifted(device_ns)) {
     release_held();
@@ -227,9 +231,16 @@ CanAssembler::Taken CanAssembler::push(const CanFrame& frame, std::int64_t devic
 /// A whole cycle is gathered.
 void CanAssembler::close() {
   const AxisSample sample = gathered_sample();
-  if (cycle_.close() == CanCycle::Verdict::kShifted) {
+  const CanCycle::Verdict verdict = cycle_.close();
+  if (verdict == CanCycle::Verdict::kShifted) {
     // What was held is of two cycles, too.
     held_count_ = 0;
+    return;
+  }
+  if (verdict == CanCycle::Verdict::kDoubted) {
+    release_held();
+    doubted_ = sample;
+    is_doubted_ = true;
     return;
   }
   const bool is_first = std::exchange(is_first_, false);
@@ -254,12 +265,23 @@ void CanAssembler::release_held() {
   held_count_ = 0;
 }
 
+/// A frame of the next cycle has come, or none comes any more.
+void CanAssembler::settle_doubt(std::int64_t next_ns) {
+  is_doubted_ = false;
+  if (!cycle_.is_doubt_true(next_ns)) {
+    make_ready(doubted_);
+    return;
+  }
+  incomplete_ += static_cast<std::uint64_t>(cycle_.take_missing());
+}
+
 void CanAssembler::make_ready(const AxisSample& sample) {
   assert(ready_count_ < ready_.size());
   ready_[ready_count_++] = sample;
 }
 
 void CanAssembler::flush() {
+  if (is_doubted_) settle_doubt(std::numeric_limits<std::int64_t>::max());
   if (cycle_.is_empty()) {
     release_held();
   } else {
@@ -317,27 +339,25 @@ std::string CanAssembler::incomplete_text() const {
     if ((cycle_.missing_axes() >> i & 1U) == 0) continue;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", names_[i]);
   }
-  return fmt::format("a cycle of the bus came without {} and was dropped (a frame was lost?)",
-                     names);
+  return trf("a cycle of the bus came without {} and was dropped (a frame was lost?)", names);
 }
 
 std::string CanAssembler::unfit_text() const {
   const CanSignal& signal = slots_[unfit_.slot].signal;
-  const std::string what = fmt::format("frame {} has ", can_id_text(signal.id, signal.extended));
+  const std::string what = trf("frame {} has ", can_id_text(signal.id, signal.extended));
   const std::string& name = names_[unfit_.slot];
   switch (unfit_.fit) {
     case CanFit::kTooShort:
-      return fmt::format("{}{} bytes, too few for {}: {} bits from bit {} on", what, unfit_.length,
-                         name, signal.bits.length, signal.bits.start_bit);
+      return trf("{}{} bytes, too few for {}: {} bits from bit {} on", what, unfit_.length, name,
+                 signal.bits.length, signal.bits.start_bit);
     case CanFit::kNotFinite:
-      return fmt::format("{}no finite number in {}; is its type or byte order another?", what,
-                         name);
+      return trf("{}no finite number in {}; is its type or byte order another?", what, name);
     case CanFit::kValue:
       if (unfit_.slot < kMaxPositions) {
-        return fmt::format("{}{:g} in {}, beyond min or max and what a machine may overshoot", what,
-                           unfit_.value, name);
+        return trf("{}{:g} in {}, beyond min or max and what a machine may overshoot", what,
+                   unfit_.value, name);
       }
-      return fmt::format("{}{} in {}, which must be 0 or above", what, unfit_.value, name);
+      return trf("{}{} in {}, which must be 0 or above", what, unfit_.value, name);
     case CanFit::kOther:
       break;
   }

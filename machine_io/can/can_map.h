@@ -96,11 +96,12 @@ class CanAssembler {
   void flush();
 
   /// True while some axes of a sample have come and others are waited for.
-  bool is_gathering() const { return !cycle_.is_empty() || held_count_ > 0; }
+  bool is_gathering() const { return !cycle_.is_empty() || held_count_ > 0 || is_doubted_; }
 
   /// The stamp behind which a frame no longer belongs to what is being gathered.
   std::int64_t gather_end_ns() const {
-    return cycle_.is_empty() ? cycle_.seems_shifted_until_ns() : cycle_.first_ns() + gather_ns_;
+    if (!cycle_.is_empty()) return cycle_.first_ns() + gather_ns_;
+    return is_doubted_ ? cycle_.doubted_until_ns() : cycle_.seems_shifted_until_ns();
   }
 
   std::int64_t gather_ns() const { return gather_ns_; }
@@ -142,14 +143,14 @@ class CanAssembler {
   };
 
   static constexpr std::size_t kMostHeld = CanCycle::kShifts - 1;
-  static constexpr std::size_t kMostReady = kMostHeld + 2;
+  static constexpr std::size_t kMostReady = kMostHeld + 3;
 
   void add(std::size_t slot, const CanSignal& signal);
   bool is_sync(const CanFrame& frame) const;
-  void take_axes(std::uint16_t axes, std::int64_t device_ns);
   void close();
   void close_incomplete();
   void release_held();
+  void settle_doubt(std::int64_t next_ns);
   AxisSample gathered_sample() const;
   void make_ready(const AxisSample& sample);
   bool is_known(const Slot& slot) const;  // at the time of the sample being gathered
@@ -170,6 +171,9 @@ class CanAssembler {
   std::size_t held_count_ = 0;
   bool is_first_ = true;
   bool is_broken_ = false;
+  /// The last one, while the next frame is waited for that says whether it is of one cycle.
+  AxisSample doubted_;
+  bool is_doubted_ = false;
 
   std::array<AxisSample, kMostReady> ready_;
   std::size_t ready_count_ = 0;

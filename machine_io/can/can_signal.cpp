@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -54,15 +56,14 @@ double number_of(std::uint64_t raw, CanType type, int length) {
 
 void check_bits(const CanBits& bits, const std::string& key, std::vector<std::string>& faults) {
   if (bits.length < 1 || bits.length > 64) {
-    faults.push_back(
-        fmt::format("{}.length: {} is not allowed; must be 1 to 64 bits", key, bits.length));
+    faults.push_back(trf("{}.length: {} is not allowed; must be 1 to 64 bits", key, bits.length));
   } else if (bits.start_bit < 0 || bits.start_bit >= kMaxCanBytes * 8) {
-    faults.push_back(fmt::format("{}.start: bit {} is not allowed; must be 0 to {}", key,
-                                 bits.start_bit, kMaxCanBytes * 8 - 1));
+    faults.push_back(trf("{}.start: bit {} is not allowed; must be 0 to {}", key, bits.start_bit,
+                         kMaxCanBytes * 8 - 1));
   } else if (!can_bits_fit(bits, kMaxCanBytes)) {
     faults.push_back(
-        fmt::format("{}: {} bits from bit {} on end in byte {}; a frame has at most bytes 0 to {}",
-                    key, bits.length, bits.start_bit, bytes_needed(bits) - 1, kMaxCanBytes - 1));
+        trf("{}: {} bits from bit {} on end in byte {}; a frame has at most bytes 0 to {}", key,
+            bits.length, bits.start_bit, bytes_needed(bits) - 1, kMaxCanBytes - 1));
   }
 }
 
@@ -124,15 +125,6 @@ std::optional<CanTypeName> can_type_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::string can_type_names() {
-  std::string names;
-  for (const NamedType& known : kTypes) {
-    if (!names.empty()) names += ", ";
-    names += known.name;
-  }
-  return names;
-}
-
 std::string can_id_text(std::uint32_t id, bool extended) {
   return extended ? fmt::format("0x{:08X} (extended)", id) : fmt::format("0x{:03X}", id);
 }
@@ -140,42 +132,40 @@ std::string can_id_text(std::uint32_t id, bool extended) {
 std::vector<std::string> validate(const CanSignal& signal, const std::string& key) {
   std::vector<std::string> faults;
   if (signal.id > kMaxExtendedCanId) {
-    faults.push_back(fmt::format("{}.id: 0x{:X} is not allowed; must be 0 to 0x{:X}", key,
-                                 signal.id,
-                                 signal.extended ? kMaxExtendedCanId : kMaxStandardCanId));
+    faults.push_back(trf("{}.id: 0x{:X} is not allowed; must be 0 to 0x{:X}", key, signal.id,
+                         signal.extended ? kMaxExtendedCanId : kMaxStandardCanId));
   } else if (!signal.extended && signal.id > kMaxStandardCanId) {
     faults.push_back(
-        fmt::format("{}.id: 0x{:X} is not allowed; must be 0 to 0x{:X}, or say that it is extended",
-                    key, signal.id, kMaxStandardCanId));
+        trf("{}.id: 0x{:X} is not allowed; must be 0 to 0x{:X}, or say that it is extended", key,
+            signal.id, kMaxStandardCanId));
   }
   check_bits(signal.bits, key, faults);
   const int wanted = signal.type == CanType::kFloat32   ? 32
                      : signal.type == CanType::kFloat64 ? 64
                                                         : signal.bits.length;
   if (signal.bits.length != wanted) {
-    faults.push_back(fmt::format("{}.length: {} is not allowed; float{} has {} bits", key,
-                                 signal.bits.length, wanted, wanted));
+    faults.push_back(trf("{}.length: {} is not allowed; float{} has {} bits", key,
+                         signal.bits.length, wanted, wanted));
   }
   if (signal.mux) {
     check_bits(signal.mux->bits, key + ".mux", faults);
     if (signal.mux->value != low_bits(signal.mux->value, std::max(1, signal.mux->bits.length))) {
-      faults.push_back(fmt::format("{}.mux.value: {} is not allowed; {} bits hold no such number",
-                                   key, signal.mux->value, signal.mux->bits.length));
+      faults.push_back(trf("{}.mux.value: {} is not allowed; {} bits hold no such number", key,
+                           signal.mux->value, signal.mux->bits.length));
     }
   }
   if (!std::isfinite(signal.scale) || signal.scale == 0.0) {
-    faults.push_back(fmt::format("{}.scale: {} is not allowed; must be a number other than 0", key,
-                                 signal.scale));
+    faults.push_back(
+        trf("{}.scale: {} is not allowed; must be a number other than 0", key, signal.scale));
   }
   if (!std::isfinite(signal.offset)) {
-    faults.push_back(
-        fmt::format("{}.offset: {} is not allowed; must be a number", key, signal.offset));
+    faults.push_back(trf("{}.offset: {} is not allowed; must be a number", key, signal.offset));
   }
   if (signal.max_age_ms != 0.0 &&
       !(signal.max_age_ms >= 1.0 && signal.max_age_ms <= kLongestAge_ms)) {
     faults.push_back(
-        fmt::format("{}.max_age_ms: {} is not allowed; must be 1 to {:.0f}, or 0 for never too old",
-                    key, signal.max_age_ms, kLongestAge_ms));
+        trf("{}.max_age_ms: {} is not allowed; must be 1 to {:.0f}, or 0 for never too old", key,
+            signal.max_age_ms, kLongestAge_ms));
   }
   return faults;
 }

@@ -106,9 +106,6 @@ struct CanTypeName {
 /// int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64, int and uint.
 std::optional<CanTypeName> can_type_named(std::string_view name);
 
-/// Those names, for messages: "int8, uint8, ...".
-std::string can_type_names();
-
 /// "0x381", or "0x00000381 (extended)".
 std::string can_id_text(std::uint32_t id, bool extended);
 

@@ -17,6 +17,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -45,32 +47,32 @@ int poll_timeout_ms(Clock::time_point until) {
 std::string error_frame_text(const can_frame& frame, const std::string& interface) {
   const canid_t id = frame.can_id;
   if ((id & CAN_ERR_BUSOFF) != 0) {
-    return fmt::format(
+    return trf(
         "bus-off: the controller has left the bus after too many errors (wrong bit rate, wiring, "
         "termination?); 'ip link set {} type can restart-ms 100' lets it come back",
         interface);
   }
-  if ((id & CAN_ERR_RESTARTED) != 0) return "the controller was restarted";
+  if ((id & CAN_ERR_RESTARTED) != 0) return tr("the controller was restarted");
   if ((id & CAN_ERR_CRTL) != 0) {
     const unsigned what = frame.data[1];
     if ((what & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
-      return "the controller's receive buffer overran: frames are lost";
+      return tr("the controller's receive buffer overran: frames are lost");
     }
     if ((what & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
-      return "error passive: more than 127 errors on the bus";
+      return tr("error passive: more than 127 errors on the bus");
     }
     if ((what & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING)) != 0) {
-      return "error warning: more than 96 errors on the bus";
+      return tr("error warning: more than 96 errors on the bus");
     }
-    if ((what & CAN_ERR_CRTL_ACTIVE) != 0) return "the controller is error active again";
-    return "the controller reports a problem";
+    if ((what & CAN_ERR_CRTL_ACTIVE) != 0) return tr("the controller is error active again");
+    return tr("the controller reports a problem");
   }
-  if ((id & CAN_ERR_ACK) != 0) return "no node acknowledged a frame";
-  if ((id & CAN_ERR_TRX) != 0) return "the transceiver reports a wiring fault";
-  if ((id & (CAN_ERR_PROT | CAN_ERR_BUSERROR)) != 0) return "a protocol error on the bus";
-  if ((id & CAN_ERR_LOSTARB) != 0) return "lost arbitration";
-  if ((id & CAN_ERR_TX_TIMEOUT) != 0) return "a transmission of this computer timed out";
-  return fmt::format("error frame 0x{:X}", id & CAN_ERR_MASK);
+  if ((id & CAN_ERR_ACK) != 0) return tr("no node acknowledged a frame");
+  if ((id & CAN_ERR_TRX) != 0) return tr("the transceiver reports a wiring fault");
+  if ((id & (CAN_ERR_PROT | CAN_ERR_BUSERROR)) != 0) return tr("a protocol error on the bus");
+  if ((id & CAN_ERR_LOSTARB) != 0) return tr("lost arbitration");
+  if ((id & CAN_ERR_TX_TIMEOUT) != 0) return tr("a transmission of this computer timed out");
+  return trf("error frame 0x{:X}", id & CAN_ERR_MASK);
 }
 
 /// One filter for each id of the map.
@@ -145,7 +147,7 @@ std::vector<std::string> validate(const CanSourceOptions& options) {
   const std::string& name = options.interface;
   if (name.empty() || name.size() > kLongestInterface ||
       name.find_first_of("/ \t\n:") != name.npos || name.find('\0') != name.npos) {
-    faults.push_back(fmt::format(
+    faults.push_back(trf(
         "interface: '{}' is not allowed; must be the name of a network interface, 1 to {} bytes",
         name, kLongestInterface));
   }
@@ -153,8 +155,7 @@ std::vector<std::string> validate(const CanSourceOptions& options) {
   faults.insert(faults.end(), of_map.begin(), of_map.end());
   const auto check = [&faults](const char* key, int value, int least, int most) {
     if (value >= least && value <= most) return;
-    faults.push_back(
-        fmt::format("{}: {} is not allowed; must be {} to {}", key, value, least, most));
+    faults.push_back(trf("{}: {} is not allowed; must be {} to {}", key, value, least, most));
   };
   check("receive_buffer_bytes", options.receive_buffer_bytes, kLeastBuffer, kLargestBuffer);
   check("retry_first_ms", options.retry_first_ms, 1, kLongestRetry_ms);
@@ -256,12 +257,12 @@ bool CanSource::Reader::bind_interface(int socket) {
   address.can_ifindex = static_cast<int>(if_nametoindex(options_.interface.c_str()));
   // Index 0 would be every interface at once.
   if (address.can_ifindex == 0) {
-    lose("there is no such network interface (yet)");
+    lose(tr("there is no such network interface (yet)"));
     return false;
   }
   if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return true;
-  lose(errno == ENODEV ? "is no CAN interface, or has just gone"
-                       : fmt::format("cannot be bound: {}", std::strerror(errno)));
+  lose(errno == ENODEV ? tr("is no CAN interface, or has just gone")
+                       : trf("cannot be bound: {}", std::strerror(errno)));
   return false;
 }
 
@@ -285,22 +286,22 @@ bool CanSource::Reader::try_open() {
   socket_ = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (socket_ < 0) {
     if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-      lose(fmt::format("no socket: {}", std::strerror(errno)));
+      lose(trf("no socket: {}", std::strerror(errno)));
     } else {
-      fail(fmt::format("this computer gives no CAN socket ({}); 'modprobe can-raw' may help",
-                       std::strerror(errno)));
+      fail(trf("this computer gives no CAN socket ({}); 'modprobe can-raw' may help",
+               std::strerror(errno)));
     }
     return false;
   }
   if (!set_up(socket_)) {
-    fail(fmt::format("the CAN socket cannot be set up: {}", std::strerror(errno)));
+    fail(trf("the CAN socket cannot be set up: {}", std::strerror(errno)));
     return false;
   }
   if (!bind_interface(socket_)) return false;
   dropped_ = 0;
   batch_size_ = 0;
   batch_at_ = 0;
-  say("no frame with a mapped id has come yet");
+  say(tr("no frame with a mapped id has come yet"));
   is_silent_ = true;
   return true;
 }
@@ -349,11 +350,11 @@ void CanSource::Reader::read_failed(int fault) {
   if (fault == ENETDOWN) {
     // The socket stays good: frames come again when the interface is up again.
     status_.state = SourceState::kConnecting;
-    say(fmt::format("the interface is down; 'ip link set {} up' brings it up", options_.interface));
+    say(trf("the interface is down; 'ip link set {} up' brings it up", options_.interface));
     return;
   }
-  lose(fault == ENODEV ? "the interface was removed"
-                       : fmt::format("cannot be read: {}", std::strerror(fault)));
+  lose(fault == ENODEV ? tr("the interface was removed")
+                       : trf("cannot be read: {}", std::strerror(fault)));
 }
 
 void CanSource::Reader::count_dropped(const FrameRemarks& remarks) {
@@ -363,9 +364,9 @@ void CanSource::Reader::count_dropped(const FrameRemarks& remarks) {
   status_.lost += more;
   assembler_.frames_lost();
   say(
-      fmt::format("{} frames were lost: the receive queue was full (is net.core.rmem_max too "
-                  "small?)",
-                  more));
+      trf("{} frames were lost: the receive queue was full (is net.core.rmem_max too "
+          "small?)",
+          more));
 }
 
 void CanSource::Reader::take_error(std::size_t index) {
@@ -392,7 +393,7 @@ void CanSource::Reader::take(std::size_t index) {
   count_dropped(remarks);
   if (bytes != CAN_MTU && bytes != CANFD_MTU) {
     ++status_.errors;
-    say(fmt::format("a frame of {} bytes, neither CAN nor CAN FD", bytes));
+    say(trf("a frame of {} bytes, neither CAN nor CAN FD", bytes));
     return;
   }
   if ((frames_[index].can_id & CAN_ERR_FLAG) != 0) {
@@ -418,7 +419,7 @@ void CanSource::Reader::take(std::size_t index) {
       break;
     case CanAssembler::Taken::kClockStepped:
       ++status_.disordered;
-      say("the clock of this computer was set back");
+      say(tr("the clock of this computer was set back"));
       break;
     case CanAssembler::Taken::kNotMapped:
     case CanAssembler::Taken::kTaken:

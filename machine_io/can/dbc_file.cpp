@@ -10,6 +10,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -19,9 +22,7 @@ constexpr std::uint64_t kLongestTransport = 1785;      // bytes; SAE J1939-21: 2
 constexpr std::size_t kExcerptBytes = 200;
 constexpr std::size_t kNamesInMessage = 6;
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
+bool is_name_start(char c) { return is_letter(c) || c == '_'; }
 
 std::string utf8_of_latin1(std::string_view bytes) {
   std::string text;
@@ -62,7 +63,8 @@ struct LineCursor {
   bool take_name(std::string_view& name, const char* what) {
     skip_blanks();
     std::size_t end = at;
-    while (end < line.size() && (is_letter(line[end]) || (end > at && is_digit(line[end])))) ++end;
+    while (end < line.size() && (is_name_start(line[end]) || (end > at && is_digit(line[end]))))
+      ++end;
     if (end == at || end - at > DbcFile::kMaxNameBytes) return expected = what, false;
     name = line.substr(at, end - at);
     at = end;
@@ -103,13 +105,13 @@ struct SignalLine {
 
 bool take_mux(LineCursor& cursor, SignalLine& out) {
   if (cursor.peek(':')) return true;
-  constexpr const char* kWhat = "M, m and a number, or ':'";
+  constexpr const char* kWhat = tr_noop("M, m and a number, or ':'");
   if (cursor.peek('m')) {
     ++cursor.at;
     out.is_multiplexed = true;
     if (cursor.at >= cursor.line.size() || !is_digit(cursor.line[cursor.at]) ||
-        !cursor.take_count(out.mux_value, kWhat)) {
-      return cursor.expected = kWhat, false;
+        !cursor.take_count(out.mux_value, tr(kWhat))) {
+      return cursor.expected = tr(kWhat), false;
     }
     if (cursor.at < cursor.line.size() && cursor.line[cursor.at] == 'M') {
       ++cursor.at;
@@ -118,22 +120,24 @@ bool take_mux(LineCursor& cursor, SignalLine& out) {
     return true;
   }
   out.is_multiplexor = true;
-  return cursor.take('M', kWhat);
+  return cursor.take('M', tr(kWhat));
 }
 
 /// What follows "SG_". Limits, unit and receivers may be missing.
 bool take_signal(LineCursor& cursor, SignalLine& out) {
-  if (!cursor.take_name(out.name, "the signal's name, at most 128 letters, digits and _") ||
+  if (!cursor.take_name(out.name, tr("the signal's name, at most 128 letters, digits and _")) ||
       !take_mux(cursor, out) || !cursor.take(':', "':'") ||
-      !cursor.take_count(out.start, "the start bit") || !cursor.take('|', "'|'") ||
-      !cursor.take_count(out.length, "the length in bits") || !cursor.take('@', "'@'") ||
-      !cursor.take_count(out.order, "the byte order, 0 or 1")) {
+      !cursor.take_count(out.start, tr("the start bit")) || !cursor.take('|', "'|'") ||
+      !cursor.take_count(out.length, tr("the length in bits")) || !cursor.take('@', "'@'") ||
+      !cursor.take_count(out.order, tr("the byte order, 0 or 1"))) {
     return false;
   }
   out.is_signed = cursor.peek('-');
   if (!cursor.take(out.is_signed ? '-' : '+', "'+' or '-'") || !cursor.take('(', "'('") ||
-      !cursor.take_number(out.scale, "the factor, a finite number") || !cursor.take(',', "','") ||
-      !cursor.take_number(out.offset, "the offset, a finite number") || !cursor.take(')', "')'")) {
+      !cursor.take_number(out.scale, tr("the factor, a finite number")) ||
+      !cursor.take(',', "','") ||
+      !cursor.take_number(out.offset, tr("the offset, a finite number")) ||
+      !cursor.take(')', "')'")) {
     return false;
   }
   if (cursor.peek('[')) {
@@ -143,7 +147,8 @@ bool take_signal(LineCursor& cursor, SignalLine& out) {
   }
   if (cursor.peek('"')) {
     const std::size_t close = cursor.line.find('"', cursor.at + 1);
-    if (close == cursor.line.npos) return cursor.expected = "the '\"' that ends the unit", false;
+    if (close == cursor.line.npos)
+      return cursor.expected = tr("the '\"' that ends the unit"), false;
     out.unit = cursor.line.substr(cursor.at + 1, close - cursor.at - 1);
   }
   return true;
@@ -212,15 +217,15 @@ void DbcReader::report(Severity severity, std::size_t column, std::string messag
     diagnostic = {};
     diagnostic.file = path_;
     diagnostic.line = number_;
-    diagnostic.message = fmt::format("{} faults; the rest is not read", kMaxDbcDiagnostics - 1);
-    diagnostic.hint = "is it a DBC file?";
+    diagnostic.message = trf("{} faults; the rest is not read", kMaxDbcDiagnostics - 1);
+    diagnostic.hint = tr("is it a DBC file?");
     next_ = text_.size();
   }
   diagnostics_.push_back(std::move(diagnostic));
 }
 
 void DbcReader::report_expected(const LineCursor& cursor) {
-  report(Severity::kError, cursor.at, fmt::format("{} is missing here", cursor.expected));
+  report(Severity::kError, cursor.at, trf("{} is missing here", cursor.expected));
 }
 
 bool DbcReader::next_line() {
@@ -255,7 +260,7 @@ void DbcReader::pass_over(std::size_t from) {
   }
   line_ = first_line;
   number_ = first_number;
-  report(Severity::kError, opened, "a text begins in this statement and never ends");
+  report(Severity::kError, opened, tr("a text begins in this statement and never ends"));
 }
 
 void DbcReader::statement() {
@@ -289,15 +294,15 @@ void DbcReader::message(LineCursor& cursor) {
   std::string_view name;
   std::uint64_t bytes = 0;
   const auto id_column = [&] { return line_.find_first_of("0123456789"); };
-  if (!cursor.take_count(id, "the message's id, a decimal number") ||
-      !cursor.take_name(name, "the message's name, at most 128 letters, digits and _") ||
+  if (!cursor.take_count(id, tr("the message's id, a decimal number")) ||
+      !cursor.take_name(name, tr("the message's name, at most 128 letters, digits and _")) ||
       !cursor.take(':', "':'")) {
     report_expected(cursor);
     return;
   }
   cursor.skip_blanks();
   const std::size_t bytes_column = cursor.at;
-  if (!cursor.take_count(bytes, "the message's length in bytes")) {
+  if (!cursor.take_count(bytes, tr("the message's length in bytes"))) {
     report_expected(cursor);
     return;
   }
@@ -306,21 +311,21 @@ void DbcReader::message(LineCursor& cursor) {
   const std::uint64_t plain_id = extended_ ? id & ~std::uint64_t{kExtendedFlag} : id;
   if (plain_id > (extended_ ? kMaxExtendedCanId : kMaxStandardCanId)) {
     report(Severity::kError, id_column(),
-           fmt::format("{} is no message id; allowed are 0 to {}, and {} to {} for extended ones",
-                       id, kMaxStandardCanId, kExtendedFlag, kExtendedFlag | kMaxExtendedCanId));
+           trf("{} is no message id; allowed are 0 to {}, and {} to {} for extended ones", id,
+               kMaxStandardCanId, kExtendedFlag, kExtendedFlag | kMaxExtendedCanId));
     return;
   }
   id_ = static_cast<std::uint32_t>(plain_id);
   if (bytes > kMaxCanBytes) {
     const bool possible = bytes <= kLongestTransport;
     report(possible ? Severity::kWarning : Severity::kError, bytes_column,
-           fmt::format("a message of {} bytes; a frame has at most {}: its signals are left out",
-                       bytes, kMaxCanBytes));
+           trf("a message of {} bytes; a frame has at most {}: its signals are left out", bytes,
+               kMaxCanBytes));
     return;
   }
   if (!first_signal_.emplace(message_key(id_, extended_), file_.signals_.size()).second) {
     report(Severity::kError, id_column(),
-           fmt::format("a second message with the id {}; the first one counts", id));
+           trf("a second message with the id {}; the first one counts", id));
     return;
   }
   in_ = In::kMessage;
@@ -332,7 +337,7 @@ void DbcReader::message(LineCursor& cursor) {
 void DbcReader::signal(LineCursor& cursor) {
   if (in_ == In::kSkipped) return;
   if (in_ == In::kNothing) {
-    report(Severity::kError, line_.find('S'), "a signal outside of a message");
+    report(Severity::kError, line_.find('S'), tr("a signal outside of a message"));
     return;
   }
   SignalLine parts;
@@ -343,8 +348,8 @@ void DbcReader::signal(LineCursor& cursor) {
   const std::size_t column = static_cast<std::size_t>(parts.name.data() - line_.data());
   if (parts.order > 1) {
     report(Severity::kError, column,
-           fmt::format("byte order {} of {}; allowed are 1 (little-endian) and 0 (big-endian)",
-                       parts.order, parts.name));
+           trf("byte order {} of {}; allowed are 1 (little-endian) and 0 (big-endian)", parts.order,
+               parts.name));
     return;
   }
   CanBits bits;
@@ -353,18 +358,18 @@ void DbcReader::signal(LineCursor& cursor) {
   bits.length = static_cast<int>(std::min<std::uint64_t>(parts.length, 65));
   if (bits.length < 1 || bits.length > 64) {
     report(Severity::kError, column,
-           fmt::format("{} has {} bits; allowed are 1 to 64", parts.name, parts.length));
+           trf("{} has {} bits; allowed are 1 to 64", parts.name, parts.length));
     return;
   }
   if (!can_bits_fit(bits, bytes_)) {
     report(Severity::kError, column,
-           fmt::format("{}: {} bits from bit {} on do not fit into the {} bytes of {}", parts.name,
-                       parts.length, parts.start, bytes_, message_name_));
+           trf("{}: {} bits from bit {} on do not fit into the {} bytes of {}", parts.name,
+               parts.length, parts.start, bytes_, message_name_));
     return;
   }
   if (file_.signals_.size() == DbcFile::kMaxSignals) {
     report(Severity::kError, column,
-           fmt::format("more than {} signals; the rest is not read", DbcFile::kMaxSignals));
+           trf("more than {} signals; the rest is not read", DbcFile::kMaxSignals));
     next_ = text_.size();
     return;
   }
@@ -403,14 +408,13 @@ void DbcReader::end_message() {
   const int number = std::exchange(number_, message_line_);
   const std::string_view line = std::exchange(line_, {});
   if (multiplexors == 0) {
-    report(
-        Severity::kError, kExcerptBytes,
-        fmt::format("{} has multiplexed signals (m0 ...) but no multiplexor (M)", message_name_));
+    report(Severity::kError, kExcerptBytes,
+           trf("{} has multiplexed signals (m0 ...) but no multiplexor (M)", message_name_));
   } else if (nested || multiplexors > 1) {
     report(Severity::kWarning, kExcerptBytes,
-           fmt::format("{}: extended multiplexing is not read; its multiplexed signals are left "
-                       "out",
-                       message_name_));
+           trf("{}: extended multiplexing is not read; its multiplexed signals are left "
+               "out",
+               message_name_));
   }
   number_ = number;
   line_ = line;
@@ -432,21 +436,21 @@ void DbcReader::value_type(LineCursor& cursor) {
   std::uint64_t id = 0;
   std::string_view name;
   std::uint64_t type = 0;
-  if (!cursor.take_count(id, "the message's id, a decimal number") ||
-      !cursor.take_name(name, "the signal's name")) {
+  if (!cursor.take_count(id, tr("the message's id, a decimal number")) ||
+      !cursor.take_name(name, tr("the signal's name"))) {
     report_expected(cursor);
     return;
   }
   const std::size_t column = static_cast<std::size_t>(name.data() - line_.data());
   if (cursor.peek(':')) ++cursor.at;  // older files have none
-  if (!cursor.take_count(type, "the value type, 0 to 2")) {
+  if (!cursor.take_count(type, tr("the value type, 0 to 2"))) {
     report_expected(cursor);
     return;
   }
   if (type > 2) {
-    report(Severity::kError, column,
-           fmt::format("value type {} of {}; allowed are 0 (integer), 1 (float32), 2 (float64)",
-                       type, name));
+    report(
+        Severity::kError, column,
+        trf("value type {} of {}; allowed are 0 (integer), 1 (float32), 2 (float64)", type, name));
     return;
   }
   const bool extended = (id & kExtendedFlag) != 0;
@@ -460,7 +464,7 @@ void DbcReader::value_type(LineCursor& cursor) {
     const int length = type == 1 ? 32 : 64;
     if (candidate.signal.bits.length != length) {
       report(Severity::kError, column,
-             fmt::format("{} is a float{} of {} bits", name, length, candidate.signal.bits.length));
+             trf("{} is a float{} of {} bits", name, length, candidate.signal.bits.length));
       return;
     }
     candidate.signal.type = type == 1 ? CanType::kFloat32 : CanType::kFloat64;
@@ -472,7 +476,7 @@ DbcFile DbcReader::read() {
   file_.path_ = path_;
   if (text_.size() > DbcFile::kMaxFileBytes) {
     report(Severity::kError, kExcerptBytes,
-           fmt::format("more than {} MiB, which no DBC file has", DbcFile::kMaxFileBytes >> 20U));
+           trf("more than {} MiB, which no DBC file has", DbcFile::kMaxFileBytes >> 20U));
     return std::move(file_);
   }
   if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
@@ -496,7 +500,7 @@ DbcFile read_dbc_file(const std::string& path, Diagnostics& diagnostics) {
   if (!in.is_open() || in.bad()) {
     Diagnostic diagnostic;
     diagnostic.file = path;
-    diagnostic.message = "the DBC file cannot be read";
+    diagnostic.message = tr("the DBC file cannot be read");
     diagnostics.push_back(std::move(diagnostic));
     return {};
   }
@@ -520,14 +524,13 @@ Result<DbcSignal> DbcFile::find(std::string_view name) const {
   const std::size_t listed = std::min(near.size(), kNamesInMessage);
   const std::string names = fmt::format(
       "{}{}", fmt::join(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(listed), ", "),
-      near.size() > listed ? fmt::format(" and {} more", near.size() - listed) : "");
+      near.size() > listed ? trf(" and {} more", near.size() - listed) : "");
   if (found.size() > 1) {
-    return Error{fmt::format("{}: {} signals are called {}: {}{}", path_, found.size(), name, names,
-                             dot == name.npos ? "; write Message.Signal" : "")};
+    return Error{trf("{}: {} signals are called {}: {}{}", path_, found.size(), name, names,
+                     dot == name.npos ? tr("; write Message.Signal") : "")};
   }
-  return Error{
-      fmt::format("{}: no signal is called {}; there {}", path_, name,
-                  near.empty() ? fmt::format("are {} others", signals_.size()) : "is " + names)};
+  return Error{trf("{}: no signal is called {}; there {}", path_, name,
+                   near.empty() ? trf("are {} others", signals_.size()) : trf("is {}", names))};
 }
 
 }  // namespace kerf

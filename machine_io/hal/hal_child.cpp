@@ -15,6 +15,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -90,14 +92,14 @@ Result<HalChild> HalChild::start(const std::string& executable,
   Ends records;
   Ends messages;
   if (!open_socket(status) || !open_pipe(records) || !open_pipe(messages)) {
-    return Error{fmt::format("cannot open a pipe to {}: {}", executable, std::strerror(errno))};
+    return Error{trf("cannot open a pipe to {}: {}", executable, std::strerror(errno))};
   }
   HalChild child;
   const int error =
       spawn(child.pid_, executable, arguments, {status.theirs, records.theirs, messages.theirs});
   if (error != 0) {
     child.pid_ = -1;
-    return Error{fmt::format("cannot start {}: {}", executable, std::strerror(error))};
+    return Error{trf("cannot start {}: {}", executable, std::strerror(error))};
   }
   child.status_fd_ = std::exchange(status.ours, -1);
   child.records_fd_ = std::exchange(records.ours, -1);

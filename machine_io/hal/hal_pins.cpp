@@ -79,7 +79,7 @@ std::unique_ptr<HalPins> HalPins::attach(std::string& trouble) {
   const std::string name = "kerf-hal-" + std::to_string(getpid());
   pins->component_ = hal_init(name.c_str());
   if (pins->component_ < 0) {
-    trouble = "HAL does not take the component " + name + ": " + std::strerror(-pins->component_);
+    trouble = filled_in(HalMessage::kNoComponent, name + ": " + std::strerror(-pins->component_));
     return nullptr;
   }
   for (std::uint32_t joint = 0; joint < kMostJoints; ++joint) {
@@ -109,7 +109,7 @@ bool HalPins::create_status_pins(std::string& trouble) {
   if (hal_get_pin_value_by_name("kerf.alive", &type, &value, &connected) == 0) return true;
   auto* pins = static_cast<StatusPins*>(hal_malloc(sizeof(StatusPins)));
   if (pins == nullptr) {
-    trouble = "HAL's shared memory is full";
+    trouble = filled_in(HalMessage::kHalFull);
     return false;
   }
   const int results[] = {
@@ -125,7 +125,7 @@ bool HalPins::create_status_pins(std::string& trouble) {
   };
   for (const int result : results) {
     if (result == 0) continue;
-    trouble = std::string("HAL does not take a pin kerf.*: ") + std::strerror(-result);
+    trouble = filled_in(HalMessage::kNoPin, std::strerror(-result));
     return false;
   }
   status_pins_ = pins;

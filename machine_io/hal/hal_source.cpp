@@ -14,7 +14,10 @@
 #include <mutex>
 #include <optional>
 #include <string_view>
+#include <utility>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "machine_io/hal/hal_child.h"
 
 namespace kerf {
@@ -91,28 +94,46 @@ AxisSample sample_of(const HalSampleRecord& record, const HalSettings& settings)
   return sample;
 }
 
+/// What kerf-hal says, in the language in use. What is not in its list stays as it is: HAL's own
+/// words, and those of the system.
+std::string in_language(std::string_view said) {
+  for (int i = 0; i < static_cast<int>(HalMessage::kCount_); ++i) {
+    const auto message = static_cast<HalMessage>(i);
+    const HalTextParts parts = parts_of(message);
+    if (!parts.has_detail && said == parts.before) return tr(text_of(message));
+    const std::size_t around = parts.before.size() + parts.after.size();
+    if (!parts.has_detail || said.size() < around || !said.starts_with(parts.before) ||
+        !said.ends_with(parts.after)) {
+      continue;
+    }
+    const std::string detail = in_language(said.substr(parts.before.size(), said.size() - around));
+    return formatted(text_of(message), tr(text_of(message)), fmt::make_format_args(detail));
+  }
+  return std::string(said);
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const HalSettings& settings) {
   std::vector<std::string> faults;
   if (!(settings.rate_hz >= HalSettings::kLowestRate_hz &&
         settings.rate_hz <= HalSettings::kHighestRate_hz)) {
-    faults.push_back(fmt::format("source.rate_hz: {} found, {} to {} allowed (readings per second)",
-                                 settings.rate_hz, HalSettings::kLowestRate_hz,
-                                 HalSettings::kHighestRate_hz));
+    faults.push_back(trf("source.rate_hz: {} found, {} to {} allowed (readings per second)",
+                         settings.rate_hz, HalSettings::kLowestRate_hz,
+                         HalSettings::kHighestRate_hz));
   }
-  if (settings.mm_per_unit != 1.0 && settings.mm_per_unit != 25.4) {
-    faults.push_back(fmt::format("source.mm_per_unit: {} found, 1 (mm) or 25.4 (inch) allowed",
-                                 settings.mm_per_unit));
+  if (settings.mm_per_unit != 1.0 && settings.mm_per_unit != kMmPerInch) {
+    faults.push_back(
+        trf("source.mm_per_unit: {} found, 1 (mm) or 25.4 (inch) allowed", settings.mm_per_unit));
   }
   if (settings.rotary_joints >> kMaxPositions != 0) {
-    faults.push_back(fmt::format("source.rotary_joints: bits {:#x} found, joints 0 to {} allowed",
-                                 settings.rotary_joints, kMaxPositions - 1));
+    faults.push_back(trf("source.rotary_joints: bits {:#x} found, joints 0 to {} allowed",
+                         settings.rotary_joints, kMaxPositions - 1));
   }
   if (!settings.kerf_hal_path.empty() && find_kerf_hal(settings.kerf_hal_path).empty()) {
     faults.push_back(
-        fmt::format("source.kerf_hal_path: {} found, the path of an executable kerf-hal allowed",
-                    settings.kerf_hal_path));
+        trf("source.kerf_hal_path: {} found, the path of an executable kerf-hal allowed",
+            settings.kerf_hal_path));
   }
   return faults;
 }
@@ -154,6 +175,7 @@ struct HalSource::Reading {
   std::optional<HalChild> child;
   bool child_has_spoken = false;  ///< at least one record
   bool ever_spoken = false;
+  bool is_gone = false;  ///< LinuxCNC has ended since the last record
   Clock::time_point last_bytes;
   Clock::time_point retry_at;  ///< without a child
   milliseconds pause = kShortestPause;
@@ -183,8 +205,8 @@ void HalSource::Reading::start_child() {
   const std::string path = find_kerf_hal(settings.kerf_hal_path);
   if (path.empty()) {
     return fail(settings.kerf_hal_path.empty()
-                    ? "kerf-hal is not installed (it is built where linuxcnc-uspace-dev is)"
-                    : fmt::format("{} is no executable file", settings.kerf_hal_path));
+                    ? tr("kerf-hal is not installed (it is built where linuxcnc-uspace-dev is)")
+                    : trf("{} is no executable file", settings.kerf_hal_path));
   }
   Result<HalChild> started = HalChild::start(path, {"--rate", fmt::format("{}", settings.rate_hz)});
   if (!started) return fail(started.error());
@@ -219,25 +241,25 @@ void HalSource::Reading::child_has_ended() {
   const bool torn = end != begin;
   const HalChild::Exit exit = child->end();
   read_messages();
-  if (torn) return end_child("kerf-hal ended in the middle of a record", true);
+  if (torn) return end_child(tr("kerf-hal ended in the middle of a record"), true);
   if (exit.signal != 0) {
     return end_child(
-        fmt::format("kerf-hal was ended by signal {} ({})", exit.signal, strsignal(exit.signal)),
-        true);
+        trf("kerf-hal was ended by signal {} ({})", exit.signal, strsignal(exit.signal)), true);
   }
   switch (exit.status) {
     case kHalExitAsked:
-      return end_child("LinuxCNC has ended (it asked kerf-hal to end)", false);
+      is_gone = ever_spoken;
+      return end_child(tr("LinuxCNC has ended (it asked kerf-hal to end)"), false);
     case kHalExitNoLinuxCnc:
-      return end_child(last_message.empty() ? "no LinuxCNC runs" : last_message, false);
+      is_gone = ever_spoken;
+      return end_child(last_message.empty() ? tr("no LinuxCNC runs") : last_message, false);
     case kHalExitUsage:
-      return fail(fmt::format("kerf-hal does not understand kerf ({}): both must be of one version",
-                              last_message));
+      return fail(
+          trf("kerf-hal does not understand kerf ({}): both must be of one version", last_message));
     default:
-      return end_child(last_message.empty()
-                           ? fmt::format("kerf-hal ended with status {}", exit.status)
-                           : last_message,
-                       true);
+      return end_child(
+          last_message.empty() ? trf("kerf-hal ended with status {}", exit.status) : last_message,
+          true);
   }
 }
 
@@ -254,7 +276,8 @@ void HalSource::Reading::read_messages() {
       if (message.size() < kLongestLine) message.push_back(letter);
       continue;
     }
-    last_message = message.starts_with(kName) ? message.substr(kName.size()) : message;
+    const bool is_named = message.starts_with(kName);
+    last_message = is_named ? in_language(std::string_view(message).substr(kName.size())) : message;
     status.trouble = last_message;
     message.clear();
   }
@@ -276,7 +299,7 @@ void HalSource::Reading::wait_for_child(Clock::time_point deadline) {
   if (waits[1].revents != 0) read_messages();
   if (waits[0].revents == 0) {
     if (Clock::now() >= silence_ends) {
-      end_child(fmt::format("kerf-hal has been silent for {} s", kSilence.count() / 1000), true);
+      end_child(trf("kerf-hal has been silent for {} s", kSilence.count() / 1000), true);
     }
     return;
   }
@@ -298,17 +321,18 @@ bool HalSource::Reading::take_record() {
   HalSampleRecord next;
   std::memcpy(&next, buffer.data() + begin, sizeof(next));
   begin += sizeof(next);
-  if (const char* fault = head_fault(next)) {
+  if (const auto fault = head_fault(next)) {
+    const char* const what = tr(text_of(*fault));
     if (next.magic == kHalSampleMagic) {
-      fail(fmt::format("kerf-hal sent {}: kerf and kerf-hal must be of one version", fault));
+      fail(trf("kerf-hal sent {}: kerf and kerf-hal must be of one version", what));
     } else {
-      end_child(fmt::format("kerf-hal sent {}", fault), true);
+      end_child(trf("kerf-hal sent {}", what), true);
     }
     return false;
   }
   const std::uint64_t expected = child_has_spoken ? record.sequence + 1 : next.sequence;
   if (next.sequence < expected || (child_has_spoken && next.monotonic_ns < record.monotonic_ns)) {
-    end_child("kerf-hal sent a record older than the one before", true);
+    end_child(tr("kerf-hal sent a record older than the one before"), true);
     return false;
   }
   status.lost += next.sequence - expected;
@@ -338,6 +362,7 @@ PositionSource::Next HalSource::next(AxisSample& sample, milliseconds patience) 
     if (reading.child && !reading.has_record()) reading.wait_for_child(deadline);
     if (reading.take_record()) {
       sample = sample_of(reading.record, reading.settings);
+      sample.restarted = std::exchange(reading.is_gone, false);
       return Next::kSample;
     }
   } while (Clock::now() < deadline);
@@ -347,7 +372,7 @@ PositionSource::Next HalSource::next(AxisSample& sample, milliseconds patience) 
 const SourceStatus& HalSource::status() const { return reading_->status; }
 
 std::string HalSource::describe() const {
-  return fmt::format("LinuxCNC's HAL at {} Hz", reading_->settings.rate_hz);
+  return trf("LinuxCNC's HAL at {} Hz", reading_->settings.rate_hz);
 }
 
 void HalSource::show(const HalStatus& status) {

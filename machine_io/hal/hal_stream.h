@@ -7,7 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <type_traits>
+
+#include "machine_io/hal/hal_messages.h"
 
 namespace kerf {
 
@@ -98,13 +101,13 @@ struct HalStatusRecord {
 };
 static_assert(sizeof(HalStatusRecord) == 32 && std::is_trivially_copyable_v<HalStatusRecord>);
 
-/// Why a record's head is not one of this version; nullptr if it is.
+/// Why a record's head is not one of this version; nothing if it is.
 template <class Record>
-const char* head_fault(const Record& record) {
-  if (record.magic != Record{}.magic) return "not a record (wrong first four bytes)";
-  if (record.version != kHalStreamVersion) return "a record of another version";
-  if (record.bytes != sizeof(Record)) return "a record of another length";
-  return nullptr;
+std::optional<HalMessage> head_fault(const Record& record) {
+  if (record.magic != Record{}.magic) return HalMessage::kNoRecord;
+  if (record.version != kHalStreamVersion) return HalMessage::kOtherVersion;
+  if (record.bytes != sizeof(Record)) return HalMessage::kOtherLength;
+  return std::nullopt;
 }
 
 /// Exit statuses of kerf-hal.

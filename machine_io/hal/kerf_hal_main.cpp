@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -19,6 +18,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/text_scan.h"
 #include "machine_io/hal/hal_pins.h"
 
 namespace kerf {
@@ -46,6 +46,10 @@ void complain(const std::string& message) {
   std::fprintf(stderr, "kerf-hal: %s\n", message.c_str());
 }
 
+void complain(HalMessage message, std::string_view detail = {}) {
+  complain(filled_in(message, detail));
+}
+
 /// The rate, or nothing if the arguments are wrong (said).
 std::optional<double> rate_from(std::string_view text) {
   double rate = 0.0;
@@ -53,7 +57,7 @@ std::optional<double> rate_from(std::string_view text) {
   const auto [stopped, error] = std::from_chars(text.data(), end, rate);
   const bool is_number = error == std::errc() && stopped == end;
   if (is_number && rate >= kLowestRate_hz && rate <= kHighestRate_hz) return rate;
-  complain("--rate " + std::string(text) + ": a number of readings per second, 1 to 1000");
+  complain(HalMessage::kRateRange, text);
   return std::nullopt;
 }
 
@@ -76,8 +80,8 @@ class StatusInput {
     for (; filled_ - used >= sizeof(HalStatusRecord); used += sizeof(HalStatusRecord)) {
       HalStatusRecord record;
       std::memcpy(&record, buffer_.data() + used, sizeof(record));
-      if (const char* fault = head_fault(record)) {
-        complain(std::string("stdin holds ") + fault + "; the pins kerf.* stay stale");
+      if (const auto fault = head_fault(record)) {
+        complain(HalMessage::kBadStatus, text_of(*fault));
         open_ = false;
         return std::nullopt;
       }
@@ -158,7 +162,7 @@ class Server {
     const HalPins::Reading reading = pins_.read(record_);
     const std::int64_t now = record_.monotonic_ns;
     if (reading == HalPins::Reading::kNoJoints) {
-      complain("LinuxCNC has no joints (it is starting or ending)");
+      complain(HalMessage::kNoJoints);
       return kHalExitNoLinuxCnc;
     }
     if (last_status_ns_ && now - *last_status_ns_ > kHalStatusTimeout_ns) {
@@ -169,7 +173,7 @@ class Server {
     if (reading == HalPins::Reading::kServoStill) {
       if (!still_since_ns_) still_since_ns_ = now;
       if (now - *still_since_ns_ < kServoPatience_ns) return std::nullopt;
-      complain("LinuxCNC's servo thread stands still (LinuxCNC was killed, or HAL is stopped)");
+      complain(HalMessage::kServoStill);
       return kHalExitNoLinuxCnc;
     }
     still_since_ns_.reset();
@@ -210,7 +214,7 @@ int serve(HalPins& pins, const Descriptors& fds) {
 
 int run(double rate_hz) {
   if (isatty(STDOUT_FILENO) != 0) {
-    complain("stdout is a terminal, the records are binary (kerf-hal --help)");
+    complain(HalMessage::kTerminal);
     return kHalExitUsage;
   }
   Descriptors fds;
@@ -220,11 +224,10 @@ int run(double rate_hz) {
     case HalPresence::kRunning:
       break;
     case HalPresence::kNone:
-      complain("no LinuxCNC runs on this computer");
+      complain(HalMessage::kNoLinuxCnc);
       return kHalExitNoLinuxCnc;
     case HalPresence::kForbidden:
-      complain(std::string("the running LinuxCNC belongs to another user: ") +
-               std::strerror(errno) + "; run as the user who started it");
+      complain(HalMessage::kForbidden, std::strerror(errno));
       return kHalExitTrouble;
   }
   std::string trouble;
@@ -233,14 +236,10 @@ int run(double rate_hz) {
     complain(trouble);
     return kHalExitTrouble;
   }
-  if (pins->taken()) {
-    complain(
-        "the pins kerf.* are those of another component (another kerf, or one that was killed and "
-        "stays until LinuxCNC restarts): positions are read, findings are not shown");
-  }
+  if (pins->taken()) complain(HalMessage::kPinsTaken);
   fds.timer = open_timer(rate_hz);
   if (fds.records < 0 || fds.signals < 0 || fds.timer < 0) {
-    complain(std::string("cannot open timer or signals: ") + std::strerror(errno));
+    complain(HalMessage::kNoTimer, std::strerror(errno));
     return kHalExitTrouble;
   }
   return serve(*pins, fds);
@@ -258,9 +257,9 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (argument != "--rate" || i + 1 == argc) {
-      kerf::complain(argument == "--rate"
-                         ? "--rate: a number must follow"
-                         : "unknown argument " + std::string(argument) + " (kerf-hal --help)");
+      const bool is_rate = argument == "--rate";
+      kerf::complain(is_rate ? kerf::HalMessage::kRateMissing : kerf::HalMessage::kUnknownArgument,
+                     argument);
       return kerf::kHalExitUsage;
     }
     const std::optional<double> rate = kerf::rate_from(argv[++i]);

@@ -1,5 +1,7 @@
 #include "machine_io/logs/candump_line.h"
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "machine_io/logs/number_text.h"
 
 namespace kerf {
@@ -10,7 +12,7 @@ constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kLatestTime = 9'000'000'000 * kNsPerSecond;  // in the year 2255
 
 int hex_value(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
+  if (is_digit(c)) return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
@@ -27,19 +29,19 @@ struct Reader {
     return false;
   }
   char here() const { return at < text.size() ? text[at] : '\0'; }
-  bool is_at_end_of_word() const { return at >= text.size() || here() == ' ' || here() == '\t'; }
+  bool is_at_end_of_word() const { return at >= text.size() || is_blank(here()); }
   void skip_blanks() {
-    while (here() == ' ' || here() == '\t') ++at;
+    while (is_blank(here())) ++at;
   }
 
   bool read_stamp(CandumpLine& line) {
-    if (here() != '(') return fail("'(' and the time in seconds are expected here");
+    if (here() != '(') return fail(tr("'(' and the time in seconds are expected here"));
     const std::size_t close = text.find(')', at);
-    if (close == std::string_view::npos) return fail("the time has no ')'");
+    if (close == std::string_view::npos) return fail(tr("the time has no ')'"));
     ++at;
     if (!parse_stamp(text.substr(at, close - at), kNsPerSecond, line.time_ns) || line.time_ns < 0 ||
         line.time_ns > kLatestTime) {
-      return fail("the time in seconds is expected here, as in (1795210989.363816)");
+      return fail(tr("the time in seconds is expected here, as in (1795210989.363816)"));
     }
     at = close + 1;
     return true;
@@ -50,7 +52,7 @@ struct Reader {
     const std::size_t begin = at;
     while (!is_at_end_of_word()) ++at;
     line.interface = text.substr(begin, at - begin);
-    if (line.interface.empty()) return fail("the interface is expected here, as in can0");
+    if (line.interface.empty()) return fail(tr("the interface is expected here, as in can0"));
     skip_blanks();
     return true;
   }
@@ -64,7 +66,7 @@ struct Reader {
     const std::size_t digits = at - begin;
     if (here() != '#' || (digits != 3 && digits != 8)) {
       at = begin;
-      return fail("3 or 8 hexadecimal digits and '#' are expected here, as in 381#3706");
+      return fail(tr("3 or 8 hexadecimal digits and '#' are expected here, as in 381#3706"));
     }
     ++at;
     frame.error = digits == 8 && (id & kErrorFrameBit) != 0;
@@ -74,7 +76,7 @@ struct Reader {
         digits == 3 ? kMaxStandardCanId : kMaxExtendedCanId | (frame.error ? kErrorFrameBit : 0U);
     if (id > most) {
       at = begin;
-      return fail("the identifier is too large: 7FF is the last of 3 digits, 1FFFFFFF of 8");
+      return fail(tr("the identifier is too large: 7FF is the last of 3 digits, 1FFFFFFF of 8"));
     }
     return true;
   }
@@ -86,17 +88,17 @@ struct Reader {
       if (here() == '_' && !frame.fd && frame.length == 8) break;
       const int high = hex_value(here());
       const int low = at + 1 < text.size() ? hex_value(text[at + 1]) : -1;
-      if (high < 0 || low < 0) return fail("two hexadecimal digits per byte are expected here");
-      if (frame.length == most) return fail("more bytes than a frame holds");
+      if (high < 0 || low < 0) return fail(tr("two hexadecimal digits per byte are expected here"));
+      if (frame.length == most) return fail(tr("more bytes than a frame holds"));
       frame.data[frame.length++] = static_cast<std::uint8_t>(high << 4 | low);
       at += 2;
     }
     if (here() == '_') {
       ++at;
-      if (hex_value(here()) < 9) return fail("a length code of 9 to F is expected behind '_'");
+      if (hex_value(here()) < 9) return fail(tr("a length code of 9 to F is expected behind '_'"));
       ++at;
     }
-    return is_at_end_of_word() || fail("the frame does not end here as it should");
+    return is_at_end_of_word() || fail(tr("the frame does not end here as it should"));
   }
 
   bool read_remote(CanFrame& frame) {
@@ -104,14 +106,15 @@ struct Reader {
     frame.remote = true;
     if (here() >= '0' && here() <= '8') ++at;
     if (here() == '_') at += 2;
-    return is_at_end_of_word() || fail("a length of 0 to 8 is expected behind R");
+    return is_at_end_of_word() || fail(tr("a length of 0 to 8 is expected behind R"));
   }
 
   bool read_frame(CanFrame& frame) {
     if (!read_id(frame)) return false;
     if (here() == '#') {
       ++at;
-      if (hex_value(here()) < 0) return fail("the flags of CAN FD are expected here: one digit");
+      if (hex_value(here()) < 0)
+        return fail(tr("the flags of CAN FD are expected here: one digit"));
       ++at;
       frame.fd = true;
     } else if (here() == 'R' || here() == 'r') {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "base/translate.h"
 #include "machine_io/can/can_map.h"
 #include "machine_io/logs/candump_line.h"
 #include "machine_io/logs/log_lines.h"
@@ -77,9 +78,8 @@ class CandumpFrames final : public LogLines {
   bool take_complaint(std::string& text) override {
     if (is_watching_ && frames_ != 0 && (is_ended_ || frames_ >= kFramesToTell)) {
       is_watching_ = false;
-      text =
-          fmt::format("none of the {} frames{} has an id of the map ({}); the log has {}", frames_,
-                      interface_.empty() ? "" : " of " + interface_, wanted_ids(), found_ids());
+      text = trf("none of the {} frames{} has an id of the map ({}); the log has {}", frames_,
+                 interface_.empty() ? "" : trf(" of {}", interface_), wanted_ids(), found_ids());
       return true;
     }
     if (complaint_.empty()) return false;
@@ -119,9 +119,8 @@ class CandumpFrames final : public LogLines {
       return;
     }
     has_two_ = true;
-    complaint_ =
-        fmt::format("frames of the map come from {} and from {}; source.interface chooses one",
-                    first_interface_, line_.interface);
+    complaint_ = trf("frames of the map come from {} and from {}; source.interface chooses one",
+                     first_interface_, line_.interface);
   }
 
   std::string wanted_ids() const {
@@ -145,7 +144,7 @@ class CandumpFrames final : public LogLines {
                       can_id_text(often[i].second.first, often[i].second.second), often[i].first);
     }
     if (often.size() > kMostIdsShown) {
-      text += fmt::format(" and {} more", often.size() - kMostIdsShown);
+      text += trf(" and {} more", often.size() - kMostIdsShown);
     }
     return text;
   }

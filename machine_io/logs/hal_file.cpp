@@ -2,12 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "machine_io/logs/log_source.h"
 
 namespace kerf {
@@ -34,9 +35,7 @@ std::vector<Command> split_commands(std::string_view text) {
   bool is_continued = false;
   int number = 0;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    std::string_view line = take_line(text);
     ++number;
     if (line.ends_with('\r')) line.remove_suffix(1);
     const bool continues = line.ends_with('\\');
@@ -96,8 +95,8 @@ class Collector {
       count = std::max(count, found_.signal_of_column.rbegin()->first + 1);
     }
     if (count == 0 || found_.signal_of_column.empty()) {
-      fail(0, 0, fmt::format("nothing is connected to {}N here", prefix_),
-           "name the .hal file that has the sampler's net lines, or give the pins themselves");
+      fail(0, 0, trf("nothing is connected to {}N here", prefix_),
+           tr("name the .hal file that has the sampler's net lines, or give the pins themselves"));
     }
     if (has_error(diagnostics_)) return {};
     std::vector<std::string> pins(count);
@@ -137,15 +136,13 @@ class Collector {
     }
     const std::string_view digits = std::string_view(pin.text).substr(prefix_.size());
     std::size_t column = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), column);
-    if (error != std::errc() || end != digits.data() + digits.size() || column >= kMostPins) {
-      fail(command.line, pin.column, fmt::format("{} is no pin of a sampler", pin.text), "");
+    if (!read_number(digits, column) || column >= kMostPins) {
+      fail(command.line, pin.column, trf("{} is no pin of a sampler", pin.text), "");
       return;
     }
     if (found_.configured && column >= *found_.configured) {
       fail(command.line, pin.column,
-           fmt::format("{}: cfg= gives channel {} only {} pins", pin.text, channel_,
-                       *found_.configured),
+           trf("{}: cfg= gives channel {} only {} pins", pin.text, channel_, *found_.configured),
            "");
       return;
     }
@@ -194,7 +191,7 @@ std::vector<std::string> pins_from_hal_file(const std::string& path, int channel
   std::ostringstream text;
   if (in) text << in.rdbuf();
   if (!in) {
-    diagnostics.push_back({Severity::kError, path, 0, 0, "the file cannot be read", {}, {}});
+    diagnostics.push_back({Severity::kError, path, 0, 0, tr("the file cannot be read"), {}, {}});
     return {};
   }
   return pins_from_hal_text(text.str(), path, channel, diagnostics);

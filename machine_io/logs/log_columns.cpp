@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "machine_io/logs/number_text.h"
 #include "machine_io/recording_format.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 /// More are no log of a machine.
 constexpr std::size_t kMostColumns = 1000;
 constexpr std::string_view kAxisLetters = "xyzabcuvw";
@@ -50,21 +52,13 @@ constexpr std::array<Unit, 13> kUnits{{
     {"rpm", Quantity::kSpeed},
 }};
 
-constexpr std::string_view kUnitsAllowed =
-    "mm, um, m, in or inch for lengths, deg for angles, s, ms, us or ns for times";
+constexpr const char* kUnitsAllowed =
+    tr_noop("mm, um, m, in or inch for lengths, deg for angles, s, ms, us or ns for times");
 
 const Unit* unit_named(std::string_view name) {
   const auto it = std::find_if(kUnits.begin(), kUnits.end(),
                                [name](const Unit& unit) { return unit.name == name; });
   return it == kUnits.end() ? nullptr : &*it;
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return out;
 }
 
 std::optional<std::size_t> joint_number(std::string_view text) {
@@ -76,12 +70,6 @@ std::optional<std::size_t> axis_number(std::string_view text) {
   if (text.size() != 1) return std::nullopt;
   const std::size_t at = kAxisLetters.find(text[0]);
   return at == std::string_view::npos ? std::nullopt : std::optional(at);
-}
-
-bool take_prefix(std::string_view& text, std::string_view prefix) {
-  if (!text.starts_with(prefix)) return false;
-  text.remove_prefix(prefix.size());
-  return true;
 }
 
 /// joint.N.pos-fb and the like.
@@ -175,14 +163,15 @@ bool is_unit_fit(const Meaning& meaning, const Unit& unit) {
 
 /// "x [mm]", "x(mm)", "x_mm", "x".
 std::optional<Named> read_column_name(std::string_view text) {
-  const std::string whole = lower(trim_blanks(text));
+  const std::string whole = to_lower(trim(text, is_blank));
   const std::string_view name = whole;
   if (const auto meaning = read_name(name)) return Named{*meaning, nullptr, {}};
   const std::size_t bracket = name.find_first_of("[(");
   if (bracket != std::string_view::npos && (name.back() == ']' || name.back() == ')')) {
-    const auto meaning = read_name(trim_blanks(name.substr(0, bracket)));
+    const auto meaning = read_name(trim(name.substr(0, bracket), is_blank));
     if (!meaning) return std::nullopt;
-    const std::string_view unit = trim_blanks(name.substr(bracket + 1, name.size() - bracket - 2));
+    const std::string_view unit =
+        trim(name.substr(bracket + 1, name.size() - bracket - 2), is_blank);
     const Unit* known = unit_named(unit);
     return Named{*meaning, known, known == nullptr ? std::string(unit) : std::string()};
   }
@@ -261,8 +250,8 @@ void check_units(const std::vector<ColumnName>& names, const AllNamed& named,
     const bool is_fit = unit == nullptr || is_unit_fit(named[i]->meaning, *unit);
     if (named[i]->unknown_unit.empty() && is_fit) continue;
     faults.push_back({names[i].column,
-                      fmt::format("column '{}': the unit is not one that fits; allowed are {}",
-                                  names[i].text, kUnitsAllowed),
+                      trf("column '{}': the unit is not one that fits; allowed are {}",
+                          names[i].text, tr(kUnitsAllowed)),
                       ""});
   }
 }
@@ -277,11 +266,10 @@ bool is_taken(const std::vector<ColumnName>& names, const AllNamed& named, std::
     if (other == i || !named[other] || !is_same_thing(named[other]->meaning, mine)) continue;
     if (named[other]->meaning.rank < mine.rank) return false;
     if (named[other]->meaning.rank > mine.rank || other > i) continue;
-    faults.push_back(
-        {names[i].column,
-         fmt::format("columns '{}' and '{}' are the same thing: which is meant is not clear",
-                     names[other].text, names[i].text),
-         "rename the one that is not wanted"});
+    faults.push_back({names[i].column,
+                      trf("columns '{}' and '{}' are the same thing: which is meant is not clear",
+                          names[other].text, names[i].text),
+                      tr("rename the one that is not wanted")});
     break;  // once a column
   }
   return true;
@@ -293,9 +281,9 @@ bool find_columns(const std::vector<ColumnName>& names, const LogSettings& setti
                   LogColumns& found, std::vector<ColumnFault>& faults) {
   if (names.size() > kMostColumns) {
     faults.push_back({0,
-                      fmt::format("the header has {} columns; {} are the most that kerf reads",
-                                  names.size(), kMostColumns),
-                      "is this a log of positions?"});
+                      trf("the header has {} columns; {} are the most that kerf reads",
+                          names.size(), kMostColumns),
+                      tr("is this a log of positions?")});
     return false;
   }
   AllNamed named;
@@ -304,15 +292,16 @@ bool find_columns(const std::vector<ColumnName>& names, const LogSettings& setti
   if (std::none_of(named.begin(), named.end(), is_position)) {
     faults.push_back(
         {names.empty() ? 0 : names.front().column,
-         fmt::format("none of the columns is a position; found: {}", list_of(names)),
-         "allowed are x y z a b c u v w, j0 to j8, joint0 to joint8 and HAL's joint.N.pos-fb, "
-         "joint.N.pos-cmd, axis.L.pos-cmd; with a unit, if wanted: x_mm, \"x [in]\", x(mm)"});
+         trf("none of the columns is a position; found: {}", list_of(names)),
+         tr("allowed are x y z a b c u v w, j0 to j8, joint0 to joint8 and HAL's joint.N.pos-fb, "
+            "joint.N.pos-cmd, axis.L.pos-cmd; with a unit, if wanted: x_mm, \"x [in]\", x(mm)")});
     return false;
   }
   found.kind = better_kind(named);
   if (!found.kind) {
-    faults.push_back({0, "there are columns for joints and for axes: which are meant is not clear",
-                      "rename those that are not wanted"});
+    faults.push_back({0,
+                      tr("there are columns for joints and for axes: which are meant is not clear"),
+                      tr("rename those that are not wanted")});
     return false;
   }
   for (std::size_t i = 0; i < named.size(); ++i) {
@@ -363,7 +352,7 @@ std::vector<ColumnName> split_header(std::string_view line, char delimiter) {
         is_quoted = !is_quoted;
       }
     }
-    name.text = trim_blanks(name.text);
+    name.text = trim(name.text, is_blank);
     names.push_back(std::move(name));
     if (at >= line.size()) return names;
     ++at;

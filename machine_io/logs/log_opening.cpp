@@ -7,6 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "machine_io/logs/candump_line.h"
 #include "machine_io/logs/number_text.h"
 #include "machine_io/recording_format.h"
@@ -14,7 +16,7 @@
 namespace kerf {
 namespace {
 
-constexpr std::size_t kLongestExcerpt = 160;
+constexpr std::size_t kLongestHead = 160;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::chrono::milliseconds kAsLongAsItTakes{-1};
 
@@ -27,17 +29,19 @@ struct Magic {
 constexpr std::array<Magic, 8> kMagics{{
     {"\xFD"
      "7zXZ",
-     "compressed (xz)", "xz -dc FILE gives the text; '-' reads it from a pipe"},
-    {"\x1F\x8B", "compressed (gzip)", "gzip -dc FILE gives the text; '-' reads it from a pipe"},
-    {"\x28\xB5\x2F\xFD", "compressed (zstd)",
-     "zstd -dc FILE gives the text; '-' reads it from a pipe"},
-    {"BZh", "compressed (bzip2)", "bzip2 -dc FILE gives the text; '-' reads it from a pipe"},
-    {"PK\x03\x04", "a zip archive or a spreadsheet", "export the sheet as CSV"},
-    {"\xFF\xFE", "UTF-16 text", "save it as UTF-8"},
-    {"\xFE\xFF", "UTF-16 text", "save it as UTF-8"},
+     tr_noop("compressed (xz)"), tr_noop("xz -dc FILE gives the text; '-' reads it from a pipe")},
+    {"\x1F\x8B", tr_noop("compressed (gzip)"),
+     tr_noop("gzip -dc FILE gives the text; '-' reads it from a pipe")},
+    {"\x28\xB5\x2F\xFD", tr_noop("compressed (zstd)"),
+     tr_noop("zstd -dc FILE gives the text; '-' reads it from a pipe")},
+    {"BZh", tr_noop("compressed (bzip2)"),
+     tr_noop("bzip2 -dc FILE gives the text; '-' reads it from a pipe")},
+    {"PK\x03\x04", tr_noop("a zip archive or a spreadsheet"), tr_noop("export the sheet as CSV")},
+    {"\xFF\xFE", tr_noop("UTF-16 text"), tr_noop("save it as UTF-8")},
+    {"\xFE\xFF", tr_noop("UTF-16 text"), tr_noop("save it as UTF-8")},
     {"\x7F"
      "ELF",
-     "a program", ""},
+     tr_noop("a program"), ""},
 }};
 
 std::size_t count_words(std::string_view line) {
@@ -53,13 +57,13 @@ std::size_t count_words(std::string_view line) {
 
 /// Numbers between blanks, as halsampler writes them.
 bool is_row_of_numbers(std::string_view line) {
-  line = trim_blanks(line);
+  line = trim(line, is_blank);
   if (line.empty()) return false;
   while (!line.empty()) {
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
     double value = 0.0;
     if (!parse_double(line.substr(0, end), value)) return false;
-    line = trim_blanks(line.substr(end));
+    line = trim(line.substr(end), is_blank);
   }
   return true;
 }
@@ -77,7 +81,7 @@ class Opening {
 
   bool run() {
     if (!next_line()) {
-      return has_faults_ ? false : fail(0, "the file is empty", "");
+      return has_faults_ ? false : fail(0, tr("the file is empty"), "");
     }
     if (line_.starts_with(kByteOrderMark)) line_.remove_prefix(kByteOrderMark.size());
     if (!is_text()) return false;
@@ -86,9 +90,9 @@ class Opening {
         (settings_.format == LogFormat::kAuto && is_recording)) {
       return open_recording();
     }
-    while (trim_blanks(line_).empty() || line_.front() == '#' || line_ == "overrun") {
+    while (trim(line_, is_blank).empty() || line_.front() == '#' || line_ == "overrun") {
       if (!next_line()) {
-        return has_faults_ ? false : fail(0, "the file holds no samples, only comments", "");
+        return has_faults_ ? false : fail(0, tr("the file holds no samples, only comments"), "");
       }
     }
     switch (settings_.format == LogFormat::kAuto ? detect() : settings_.format) {
@@ -105,7 +109,7 @@ class Opening {
   bool fail(int column, std::string message, std::string hint) {
     Diagnostic diagnostic{Severity::kError,   name_, line_number(),  column,
                           std::move(message), {},    std::move(hint)};
-    if (column > 0 && line_.size() <= kLongestExcerpt) diagnostic.excerpt = line_;
+    if (column > 0 && line_.size() <= kLongestHead) diagnostic.excerpt = line_;
     diagnostics_.push_back(std::move(diagnostic));
     has_faults_ = true;
     return false;
@@ -126,12 +130,12 @@ class Opening {
       case LineReader::Got::kTooLong:
         line_ = {};
         return fail(0,
-                    fmt::format("a line of more than {} bytes; this is no log that kerf reads",
-                                LogSource::kLongestLine_bytes),
+                    trf("a line of more than {} bytes; this is no log that kerf reads",
+                        LogSource::kLongestLine_bytes),
                     "");
       case LineReader::Got::kFault:
         line_ = {};
-        return fail(0, fmt::format("reading failed: {}", reader_.fault()), "");
+        return fail(0, trf("reading failed: {}", reader_.fault()), "");
       default:
         line_ = {};
         return false;
@@ -142,7 +146,7 @@ class Opening {
     for (const Magic& magic : kMagics) {
       if (line_.starts_with(magic.bytes)) {
         line_ = {};
-        return fail(0, fmt::format("the file is {}, not text", magic.what), magic.hint);
+        return fail(0, trf("the file is {}, not text", tr(magic.what)), tr(magic.hint));
       }
     }
     const auto is_control = [](char c) {
@@ -151,16 +155,16 @@ class Opening {
     };
     if (std::any_of(line_.begin(), line_.end(), is_control)) {
       line_ = {};
-      return fail(0, "the file is not text: there are control characters in its first line",
-                  "kerf reads its recordings, CSV, halsampler's output and candump -l or -L");
+      return fail(0, tr("the file is not text: there are control characters in its first line"),
+                  tr("kerf reads its recordings, CSV, halsampler's output and candump -l or -L"));
     }
     return true;
   }
 
   LogFormat detect() const {
     if (!settings_.pins.empty()) return LogFormat::kHalsampler;
-    const std::string_view text = trim_blanks(line_);
-    if (text.size() > 1 && text[0] == '(' && text[1] >= '0' && text[1] <= '9') {
+    const std::string_view text = trim(line_, is_blank);
+    if (text.size() > 1 && text[0] == '(' && is_digit(text[1])) {
       return LogFormat::kCandump;
     }
     return is_row_of_numbers(line_) ? LogFormat::kHalsampler : LogFormat::kCsv;
@@ -172,8 +176,7 @@ class Opening {
     for (const std::string& name : columns.ignored) {
       list += fmt::format("{}{}", list.empty() ? "" : ", ", name);
     }
-    notes_.push_back(
-        {Severity::kNote, name_, 0, 0, fmt::format("{} not read: {}", what, list), {}, {}});
+    notes_.push_back({Severity::kNote, name_, 0, 0, trf("{} not read: {}", what, list), {}, {}});
   }
 
   bool read_header(const LogSettings& settings, char delimiter, LogColumns& columns) {
@@ -185,13 +188,14 @@ class Opening {
       return false;
     }
     if (!columns.has_time) {
-      return fail(1, "none of the columns is a time",
-                  "allowed are t, time, timestamp, t_device and t_host; seconds, or with a unit: "
-                  "t_ms, \"t [us]\", t_ns");
+      return fail(
+          1, tr("none of the columns is a time"),
+          tr("allowed are t, time, timestamp, t_device and t_host; seconds, or with a unit: "
+             "t_ms, \"t [us]\", t_ns"));
     }
     log_.contents.positions = columns.positions;
     log_.contents.kind = columns.kind;
-    note_ignored(columns, "columns");
+    note_ignored(columns, tr("columns"));
     return true;
   }
 
@@ -206,33 +210,33 @@ class Opening {
 
   bool open_recording() {
     log_.contents.format = LogFormat::kRecording;
-    if (is_unended_) return fail(0, "the recording is cut off in its head", "");
+    if (is_unended_) return fail(0, tr("the recording is cut off in its head"), "");
     if (line_ != kRecordingMagic) {
-      return fail(1, fmt::format("the first line has to be '{}'", kRecordingMagic),
-                  "this version of kerf reads kerf-recording/1 alone");
+      return fail(1, trf("the first line has to be '{}'", kRecordingMagic),
+                  tr("this version of kerf reads kerf-recording/1 alone"));
     }
     RecordingHead head;
     bool has_coordinates = false;
     while (true) {
       if (!next_line() || is_unended_) {
-        return has_faults_ ? false : fail(0, "the recording is cut off in its head", "");
+        return has_faults_ ? false : fail(0, tr("the recording is cut off in its head"), "");
       }
       if (!line_.starts_with('#')) break;
       if (!read_recording_head_line(line_, head)) {
-        return fail(1, "this is no line of a recording's head, or its value is not allowed",
-                    "units: mm; coordinates: joints or axes, machine or workpiece; start: "
-                    "2026-03-01T09:30:00.000000000Z");
+        return fail(1, tr("this is no line of a recording's head, or its value is not allowed"),
+                    tr("units: mm; coordinates: joints or axes, machine or workpiece; start: "
+                       "2026-03-01T09:30:00.000000000Z"));
       }
       has_coordinates |= line_.starts_with("# coordinates: ");
     }
     LogColumns columns;
     if (!read_header(LogSettings{}, ',', columns)) return false;
-    if (!has_coordinates) return fail(0, "the head has no line '# coordinates: '", "");
+    if (!has_coordinates) return fail(0, tr("the head has no line '# coordinates: '"), "");
     if (columns.kind != head.kind) {
       return fail(1,
-                  fmt::format("the columns are {}, but the head says {}",
-                              columns.kind == CoordinateKind::kJoints ? "joints" : "axes",
-                              head.kind == CoordinateKind::kJoints ? "joints" : "axes"),
+                  trf("the columns are {}, but the head says {}",
+                      columns.kind == CoordinateKind::kJoints ? "joints" : "axes",
+                      head.kind == CoordinateKind::kJoints ? "joints" : "axes"),
                   "");
     }
     if (head.sums && !is_head_whole()) return false;
@@ -247,13 +251,13 @@ class Opening {
     const std::uint32_t sum = std::exchange(log_.sum, 0);
     std::uint32_t found = 0;
     if (!next_line() || is_unended_) {
-      return has_faults_ ? false : fail(0, "the recording is cut off in its head", "");
+      return has_faults_ ? false : fail(0, tr("the recording is cut off in its head"), "");
     }
     log_.sum = 0;
     if (parse_recording_sum(line_, found) && found == sum) return true;
-    return fail(1, "the recording's head is damaged: its sum is wrong",
-                "what the positions are is not certain; kerf reads the file without the line "
-                "'# sums: crc32', and checks nothing then");
+    return fail(1, tr("the recording's head is damaged: its sum is wrong"),
+                tr("what the positions are is not certain; kerf reads the file without the line "
+                   "'# sums: crc32', and checks nothing then"));
   }
 
   void keep_line() {
@@ -265,9 +269,9 @@ class Opening {
   bool open_halsampler() {
     log_.contents.format = LogFormat::kHalsampler;
     if (settings_.pins.empty()) {
-      return fail(1, "these are halsampler's numbers, and which pins they are is not said",
-                  "source.pins: the HAL pins in the order of the columns, or source.pins_from: "
-                  "the .hal file with the sampler's net lines");
+      return fail(1, tr("these are halsampler's numbers, and which pins they are is not said"),
+                  tr("source.pins: the HAL pins in the order of the columns, or source.pins_from: "
+                     "the .hal file with the sampler's net lines"));
     }
     std::vector<ColumnName> names;
     for (const std::string& pin : settings_.pins) names.push_back({pin, 0});
@@ -276,7 +280,7 @@ class Opening {
     if (!find_columns(names, settings_, columns, faults)) {
       for (const ColumnFault& fault : faults) {
         diagnostics_.push_back(
-            {Severity::kError, {}, 0, 0, "source.pins: " + fault.message, {}, fault.hint});
+            {Severity::kError, {}, 0, 0, tr("source.pins: ") + fault.message, {}, fault.hint});
       }
       return false;
     }
@@ -290,14 +294,14 @@ class Opening {
     const std::size_t pins = names.size();
     if (words != pins && words != pins + 1) {
       return fail(1,
-                  fmt::format("{} values found; {} pins are given, so {} are allowed, or {} with "
-                              "the sample number of halsampler -t",
-                              words, pins, pins, pins + 1),
-                  "source.pins must name every pin of the sampler, in its order");
+                  trf("{} values found; {} pins are given, so {} are allowed, or {} with "
+                      "the sample number of halsampler -t",
+                      words, pins, pins, pins + 1),
+                  tr("source.pins must name every pin of the sampler, in its order"));
     }
     log_.contents.positions = columns.positions;
     log_.contents.kind = columns.kind;
-    note_ignored(columns, "pins");
+    note_ignored(columns, tr("pins"));
     log_.lines = make_halsampler_lines(std::move(columns), words == pins + 1, settings_.period_s);
     keep_line();
     return true;
@@ -311,13 +315,14 @@ class Opening {
       const bool is_screen = line_.find("   [") != std::string_view::npos ||
                              line_.find("  [") != std::string_view::npos;
       return fail(fault.column, fault.text,
-                  is_screen ? "this is what candump shows on the screen; candump -l writes a log, "
-                              "candump -L shows one"
-                            : "");
+                  is_screen
+                      ? tr("this is what candump shows on the screen; candump -l writes a log, "
+                           "candump -L shows one")
+                      : "");
     }
     if (!settings_.can_map) {
-      return fail(1, "this is a log of candump, and what its frames mean is not said",
-                  "source.map: the id, byte and type of each position");
+      return fail(1, tr("this is a log of candump, and what its frames mean is not said"),
+                  tr("source.map: the id, byte and type of each position"));
     }
     for (std::size_t i = 0; i < kMaxPositions; ++i) {
       if (!settings_.can_map->axes[i]) continue;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
 #include "machine_io/can/can_map.h"
 #include "machine_io/logs/line_reader.h"
 #include "machine_io/logs/log_lines.h"
@@ -86,30 +87,29 @@ int open_file(const std::string& path, bool& is_waited_for, std::string& why) {
 std::vector<std::string> validate(const LogSettings& settings) {
   std::vector<std::string> faults;
   if (settings.path.empty()) {
-    faults.push_back("source.path: empty; a file is needed, or '-' for standard input");
+    faults.push_back(tr("source.path: empty; a file is needed, or '-' for standard input"));
   }
   if (!(settings.period_s >= kLeastPeriod_s && settings.period_s <= kMostPeriod_s)) {
-    faults.push_back(
-        fmt::format("source.period_s: {} found, 0.000001 to 10 allowed (seconds per sample)",
-                    settings.period_s));
+    faults.push_back(trf("source.period_s: {} found, 0.000001 to 10 allowed (seconds per sample)",
+                         settings.period_s));
   }
   if (settings.rotary_joints >> kMaxPositions != 0) {
-    faults.push_back(fmt::format("source.rotary_joints: {:#x} found, bits 0 to 8 allowed",
-                                 settings.rotary_joints));
+    faults.push_back(
+        trf("source.rotary_joints: {:#x} found, bits 0 to 8 allowed", settings.rotary_joints));
   }
   const bool is_auto = settings.format == LogFormat::kAuto;
   if (settings.format == LogFormat::kHalsampler && settings.pins.empty()) {
     faults.push_back(
-        "source.pins: none; halsampler needs the HAL pins in the order of the columns");
+        tr("source.pins: none; halsampler needs the HAL pins in the order of the columns"));
   }
   if (settings.format != LogFormat::kHalsampler && !is_auto && !settings.pins.empty()) {
-    faults.push_back("source.pins: only for halsampler; other formats name their columns");
+    faults.push_back(tr("source.pins: only for halsampler; other formats name their columns"));
   }
   if (settings.format == LogFormat::kCandump && !settings.can_map) {
-    faults.push_back("source.map: none; candump needs the id, byte and type of each position");
+    faults.push_back(tr("source.map: none; candump needs the id, byte and type of each position"));
   }
   if (settings.format != LogFormat::kCandump && !is_auto && settings.can_map) {
-    faults.push_back("source.map: only for candump; other formats name their columns");
+    faults.push_back(tr("source.map: only for candump; other formats name their columns"));
   }
   if (settings.can_map) {
     for (std::string& fault : validate(*settings.can_map, "source.map")) {
@@ -151,11 +151,11 @@ class LogSource::Reading {
           take_unended(line);
           break;
         case LineReader::Got::kTooLong:
-          damaged({0, fmt::format("a line of more than {} bytes", kLongestLine_bytes), 0}, line);
+          damaged({0, trf("a line of more than {} bytes", kLongestLine_bytes), 0}, line);
           break;
         case LineReader::Got::kFault:
           status_.state = SourceState::kFailed;
-          status_.trouble = fmt::format("reading {}: {}", name_, reader_.fault());
+          status_.trouble = trf("reading {}: {}", name_, reader_.fault());
           is_at_end_ = true;
           return Next::kEnd;
         case LineReader::Got::kEnd:
@@ -193,7 +193,7 @@ class LogSource::Reading {
     status_.trouble = fmt::format("{}:{}: {}", name_, reader_.line_number(), message);
     if (described_ > kMostDescribed) return;
     if (described_++ == kMostDescribed) {
-      note(Severity::kNote, 0, "further lines that could not be used are only counted", {});
+      note(Severity::kNote, 0, tr("further lines that could not be used are only counted"), {});
       return;
     }
     const bool is_short = column > 0 && line.size() <= kLongestExcerpt;
@@ -223,9 +223,9 @@ class LogSource::Reading {
     status_.damaged += part_.size() - part_at_;
     status_.lost += part_.size() - part_at_;
     describe_line(1,
-                  fmt::format("the {} samples before this line are damaged: their sum is wrong; "
-                              "they are dropped",
-                              part_.size() - part_at_),
+                  trf("the {} samples before this line are damaged: their sum is wrong; "
+                      "they are dropped",
+                      part_.size() - part_at_),
                   line);
     part_at_ = part_good_;
     log_.lines->forget_values();
@@ -307,15 +307,15 @@ class LogSource::Reading {
     }
     take(line);
     note(Severity::kNote, 0,
-         "the last line has no line end; if the log was cut off there, its last value may be short",
+         tr("the last line has no line end; if the log was cut off there, its last value may be "
+            "short"),
          {});
   }
 
   void check_count(std::uint64_t count) {
     if (count == rows_) return;
     ++status_.errors;
-    describe_line(1, fmt::format("the end line says {} samples, {} could be read", count, rows_),
-                  {});
+    describe_line(1, trf("the end line says {} samples, {} could be read", count, rows_), {});
   }
 
   void complain() {
@@ -331,12 +331,10 @@ class LogSource::Reading {
     log_.lines->end();
     complain();
     if (contents().format == LogFormat::kRecording && !has_end_line_) {
-      std::string text =
-          fmt::format("cut off after {} samples{}", rows_,
-                      is_torn_ ? "; the piece of a line behind them is dropped" : "");
+      std::string text = trf("cut off after {} samples{}", rows_,
+                             is_torn_ ? tr("; the piece of a line behind them is dropped") : "");
       if (const std::size_t unsummed = part_.size() - part_good_; unsummed > 0) {
-        text +=
-            fmt::format("; the last {} have no sum that tells whether they are damaged", unsummed);
+        text += trf("; the last {} have no sum that tells whether they are damaged", unsummed);
         part_good_ = part_.size();
       }
       status_.trouble = fmt::format("{}: {}", name_, text);
@@ -350,7 +348,8 @@ class LogSource::Reading {
     if (clock_notes_++ == kMostDescribed) return;
     if (clock_notes_ > kMostDescribed) return;
     note(Severity::kWarning, 0,
-         "the log's clock was set back here, or another log begins: samples follow on the new time",
+         tr("the log's clock was set back here, or another log begins: samples follow on the new "
+            "time"),
          {});
   }
 
@@ -395,7 +394,8 @@ class LogSource::Reading {
     if (++standing_run_ < kStanding) return;
     status_.standing += standing_run_ == kStanding ? kStanding : 1;
     if (standing_run_ != kStanding) return;
-    describe_line(0, "the device's clock stands still: its stamp is that of the line before", {});
+    describe_line(0, tr("the device's clock stands still: its stamp is that of the line before"),
+                  {});
   }
 
   /// False: not in its order.
@@ -424,8 +424,8 @@ class LogSource::Reading {
     disordered_ = sample;
     ++status_.disordered;
     if (status_.disordered <= kMostDescribed) {
-      status_.trouble = fmt::format("{}:{}: the stamp is before that of an earlier line", name_,
-                                    reader_.line_number());
+      status_.trouble =
+          trf("{}:{}: the stamp is before that of an earlier line", name_, reader_.line_number());
     }
     return false;
   }
@@ -489,7 +489,7 @@ std::unique_ptr<LogSource> LogSource::open(LogSettings settings, Diagnostics& di
     diagnostics.push_back({Severity::kError, {}, 0, 0, fault, {}, {}});
   }
   if (!faults.empty()) return nullptr;
-  const std::string name = settings.path == "-" ? "standard input" : settings.path;
+  const std::string name = settings.path == "-" ? tr("standard input") : settings.path;
   bool is_waited_for = false;
   std::string why;
   const int fd = open_file(settings.path, is_waited_for, why);

@@ -1,5 +1,6 @@
 #include "machine_io/logs/number_text.h"
 
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -8,8 +9,6 @@ namespace {
 
 constexpr std::uint64_t kLargestTime =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool stamp_from_double(std::string_view text, std::int64_t ns_per_unit, std::int64_t& time_ns) {
   double value = 0.0;
@@ -42,8 +41,7 @@ bool take_fraction(std::string_view digits, std::int64_t ns_per_unit, std::uint6
 }  // namespace
 
 bool parse_count(std::string_view text, std::int32_t& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size()) return true;
+  if (read_number(text, value)) return true;
   double number = 0.0;
   if (!parse_double(text, number) || number != std::floor(number)) return false;
   if (!(std::abs(number) <= std::numeric_limits<std::int32_t>::max())) return false;

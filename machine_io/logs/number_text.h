@@ -1,24 +1,18 @@
 // machine_io/logs/number_text.h - numbers in logs: exact, from any locale, nothing allocated.
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <string_view>
 
-namespace kerf {
+#include "base/text_scan.h"
 
-inline std::string_view trim_blanks(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
+namespace kerf {
 
 /// The whole of `text` as a number; "+1", "1e3", "nan" and "inf" are some.
 inline bool parse_double(std::string_view text, double& value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   // Out of range is also what a number too small for a double gives; a log that has such is broken.
-  return error == std::errc() && end == text.data() + text.size();
+  return read_number(text, value);
 }
 
 /// The whole of `text` as a count: "17", also "17.0" as spreadsheets write it; "-1" is one.

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "machine_io/logs/log_lines.h"
 #include "machine_io/logs/number_text.h"
 #include "machine_io/recording_format.h"
@@ -73,17 +75,17 @@ const char* wanted(ColumnRole role) {
   switch (role) {
     case ColumnRole::kHostTime:
     case ColumnRole::kDeviceTime:
-      return "a time";
+      return tr("a time");
     case ColumnRole::kTool:
-      return "a tool number";
+      return tr("a tool number");
     case ColumnRole::kLine:
-      return "a line number";
+      return tr("a line number");
     case ColumnRole::kTrigger:
-      return "0 or 1";
+      return tr("0 or 1");
     case ColumnRole::kProgram:
-      return "idle, running or paused";
+      return tr("idle, running or paused");
     default:
-      return "a number";
+      return tr("a number");
   }
 }
 
@@ -133,8 +135,8 @@ class DelimitedRows final : public Rows {
 
   LineMeaning read(std::string_view line, LineRemark& remark) override {
     if (line.empty() || line.front() == '#') return read_comment(line, remark);
-    if (is_ended_) return damaged(remark, 0, "there is something behind the end line");
-    if (trim_blanks(line).empty()) return LineMeaning::kNothing;
+    if (is_ended_) return damaged(remark, 0, tr("there is something behind the end line"));
+    if (trim(line, is_blank).empty()) return LineMeaning::kNothing;
     return read_row(line, remark);
   }
 
@@ -142,12 +144,15 @@ class DelimitedRows final : public Rows {
   LineMeaning read_comment(std::string_view line, LineRemark& remark) {
     if (!is_recording_) return LineMeaning::kNothing;
     if (line.starts_with(kRecordingClock)) return read_clock(line, remark);
+    if (line == kRecordingRestarted) {
+      is_restarted_ = true;
+      return LineMeaning::kNothing;
+    }
     const bool is_lost = line.starts_with(kRecordingLost);
     if (!is_lost && !line.starts_with(kRecordingEnd)) return LineMeaning::kNothing;
     line.remove_prefix(is_lost ? kRecordingLost.size() : kRecordingEnd.size());
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), remark.count);
-    if (error != std::errc() || end != line.data() + line.size()) {
-      return damaged(remark, 0, "a count of samples is expected here");
+    if (!read_number(line, remark.count)) {
+      return damaged(remark, 0, tr("a count of samples is expected here"));
     }
     is_ended_ = !is_lost;
     return is_lost ? LineMeaning::kLost : LineMeaning::kEnd;
@@ -158,11 +163,9 @@ class DelimitedRows final : public Rows {
     line.remove_prefix(kRecordingClock.size());
     if (line.starts_with('+')) line.remove_prefix(1);
     std::int64_t by_ns = 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), by_ns);
     std::int64_t set_ns = 0;
-    if (error != std::errc() || end != line.data() + line.size() ||
-        __builtin_add_overflow(clock_set_ns_, by_ns, &set_ns)) {
-      return damaged(remark, 0, "nanoseconds by which the clock was set are expected here");
+    if (!read_number(line, by_ns) || __builtin_add_overflow(clock_set_ns_, by_ns, &set_ns)) {
+      return damaged(remark, 0, tr("nanoseconds by which the clock was set are expected here"));
     }
     clock_set_ns_ = set_ns;
     return LineMeaning::kNothing;
@@ -173,33 +176,32 @@ class DelimitedRows final : public Rows {
     std::size_t at = 0;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (at > line.size()) {
-        return damaged(
-            remark, line.size(),
-            fmt::format("{} cells found, {} expected as in the header", i, columns_.size()));
+        return damaged(remark, line.size(),
+                       trf("{} cells found, {} expected as in the header", i, columns_.size()));
       }
       const std::size_t begin_at = at;
       std::string_view cell;
       if (!take_cell(line, at, cell)) {
-        return damaged(remark, begin_at, "the quotation mark is not closed in this line");
+        return damaged(remark, begin_at, tr("the quotation mark is not closed in this line"));
       }
       if (cell.empty() || columns_[i].role == ColumnRole::kIgnored) continue;
       if (!read_any(cell, columns_[i])) {
         return damaged(remark, begin_at,
-                       fmt::format("'{}' is not {}", shown(cell), wanted(columns_[i].role)));
+                       trf("'{}' is not {}", shown(cell), wanted(columns_[i].role)));
       }
     }
     // A delimiter behind the last cell is a habit of some programs.
-    if (at < line.size() && !trim_blanks(line.substr(at)).empty()) {
-      return damaged(remark, at,
-                     fmt::format("more cells than the {} of the header", columns_.size()));
+    if (at < line.size() && !trim(line.substr(at), is_blank).empty()) {
+      return damaged(remark, at, trf("more cells than the {} of the header", columns_.size()));
     }
     if (trial_.host_ns == AxisSample::kNoTime && trial_.device_ns == AxisSample::kNoTime) {
-      return damaged(remark, 0, "the line has no time");
+      return damaged(remark, 0, tr("the line has no time"));
     }
     if (trial_.host_ns != AxisSample::kNoTime &&
         __builtin_sub_overflow(trial_.host_ns, clock_set_ns_, &trial_.host_ns)) {
-      return damaged(remark, 0, "the time is beyond what there is");
+      return damaged(remark, 0, tr("the time is beyond what there is"));
     }
+    trial_.restarted = std::exchange(is_restarted_, false);
     return accept();
   }
 
@@ -211,7 +213,7 @@ class DelimitedRows final : public Rows {
     std::size_t size = 0;
     while (size < left && begin[size] != delimiter_ && begin[size] != '"') ++size;
     if (size < left && begin[size] == '"') return take_quoted(line, at, cell);
-    cell = trim_blanks(std::string_view(begin, size));
+    cell = trim(std::string_view(begin, size), is_blank);
     at += size + 1;
     return true;
   }
@@ -227,7 +229,7 @@ class DelimitedRows final : public Rows {
       if (close + 1 >= line.size() || line[close + 1] != '"') break;
       close += 2;
     }
-    cell = trim_blanks(line.substr(open + 1, close - open - 1));
+    cell = trim(line.substr(open + 1, close - open - 1), is_blank);
     const std::size_t end = std::min(line.find(delimiter_, close), line.size());
     at = end + 1;
     return true;
@@ -246,6 +248,7 @@ class DelimitedRows final : public Rows {
   char delimiter_;
   bool is_recording_;
   bool is_ended_ = false;
+  bool is_restarted_ = false;      ///< before the next sample
   std::int64_t clock_set_ns_ = 0;  ///< of the computer that recorded, so far
 };
 
@@ -257,7 +260,7 @@ class HalsamplerRows final : public Rows {
         period_ns_(static_cast<std::int64_t>(std::llround(period_s * 1e9))) {}
 
   LineMeaning read(std::string_view line, LineRemark& remark) override {
-    const std::string_view words = trim_blanks(line);
+    const std::string_view words = trim(line, is_blank);
     if (words.empty() || words.front() == '#') return LineMeaning::kNothing;
     if (words == "overrun") {
       // With numbers, their gap says how many.
@@ -272,17 +275,16 @@ class HalsamplerRows final : public Rows {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::string_view cell = take_word(line, at);
       if (cell.empty()) {
-        return damaged(
-            remark, line.size(),
-            fmt::format("{} values found, {} expected, one for each pin", i, columns_.size()));
+        return damaged(remark, line.size(),
+                       trf("{} values found, {} expected, one for each pin", i, columns_.size()));
       }
       if (!read_cell(cell, columns_[i], trial_)) {
         return damaged(remark, at - cell.size(),
-                       fmt::format("'{}' is not {}", shown(cell), wanted(columns_[i].role)));
+                       trf("'{}' is not {}", shown(cell), wanted(columns_[i].role)));
       }
     }
     if (!take_word(line, at).empty()) {
-      return damaged(remark, at - 1, fmt::format("more values than the {} pins", columns_.size()));
+      return damaged(remark, at - 1, trf("more values than the {} pins", columns_.size()));
     }
     if (!is_numbered_) number = next_number_;
     return place(number, remark);
@@ -294,12 +296,11 @@ class HalsamplerRows final : public Rows {
   bool take_number(std::string_view line, std::size_t& at, std::int64_t& number,
                    LineRemark& remark) {
     const std::string_view word = take_word(line, at);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error == std::errc() && end == word.data() + word.size() && number >= 0 &&
+    if (read_number(word, number) && number >= 0 &&
         number < std::numeric_limits<std::int64_t>::max() / period_ns_) {
       return true;
     }
-    damaged(remark, at - word.size(), fmt::format("'{}' is not a sample number", shown(word)));
+    damaged(remark, at - word.size(), trf("'{}' is not a sample number", shown(word)));
     return false;
   }
 

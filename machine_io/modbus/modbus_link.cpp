@@ -5,6 +5,8 @@
 
 #include <cerrno>
 
+#include "base/translate.h"
+
 namespace kerf {
 
 ModbusLink::~ModbusLink() { close(); }
@@ -48,7 +50,7 @@ void ModbusLink::note(const PollRead& read, const std::string& what) {
 
 void ModbusLink::note_errno(const PollRead& read, int error) {
   if (error == ETIMEDOUT) {
-    note(read, fmt::format("no answer within {} ms", settings_.timeout_ms));
+    note(read, trf("no answer within {} ms", settings_.timeout_ms));
   } else {
     note(read, modbus_strerror(error));
   }
@@ -56,8 +58,8 @@ void ModbusLink::note_errno(const PollRead& read, int error) {
 
 ModbusLink::Answer ModbusLink::refused(const PollRead& read, int code) {
   exception_code_ = code;
-  note(read, fmt::format("the device answers with exception {} ({})", code,
-                         modbus_strerror(MODBUS_ENOBASE + code)));
+  note(read, trf("the device answers with exception {} ({})", code,
+                 modbus_strerror(MODBUS_ENOBASE + code)));
   return Answer::kException;
 }
 

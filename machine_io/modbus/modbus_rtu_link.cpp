@@ -30,6 +30,7 @@
 #include <cerrno>
 #include <string>
 
+#include "base/translate.h"
 #include "machine_io/modbus/modbus_link.h"
 
 namespace kerf {
@@ -37,10 +38,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Longest quiet time when nothing ever comes late. Longer only delays the recovery of a line that
-/// was cut.
-constexpr milliseconds kLongestSilence{2000};
-/// The same where trials can be told apart: then it only keeps a line free that nobody answers on.
+/// Longest quiet time when nothing ever comes late. It keeps a line free that nobody answers on.
+/// Longer only delays the recovery: where trials cannot be told apart, the quiet time behind the
+/// first answer is this and two timeouts. (Shorter than a late answer is late, it is safe as well:
+/// what counts is that it is longer than questions lie apart.)
 constexpr milliseconds kLongestPause{500};
 /// Of registers that trials can ask for.
 constexpr int kLeastNumbers = 4;
@@ -120,7 +121,7 @@ modbus_t* RtuLink::create() const {
 ModbusLink::Answer RtuLink::ask(const PollRead& read, std::uint16_t* words) {
   int pending = 0;
   if (ioctl(descriptor(), FIONREAD, &pending) == 0 && pending > 0) {
-    note(read, "bytes arrived without being asked for");
+    note(read, tr("bytes arrived without being asked for"));
     errno = EMBBADDATA;
     return Answer::kBroken;
   }
@@ -161,8 +162,8 @@ void RtuLink::begin(Phase phase) {
 void RtuLink::heard_bytes() {
   const auto late = std::chrono::ceil<milliseconds>(SteadyClock::now() - asked_at_);
   if (late > timeout()) {
-    note(fmt::format("{}: bytes arrive after timeout_ms {} has passed; is it too short?",
-                     settings_.device, settings_.timeout_ms));
+    note(trf("{}: bytes arrive after timeout_ms {} has passed; is it too short?", settings_.device,
+             settings_.timeout_ms));
     heard_late_ = true;
   }
   // After a trial they prove that the quiet time before it was too short.
@@ -240,8 +241,7 @@ bool RtuLink::try_out() {
       return false;
     }
     if (by_parts) ++unanswered_;
-    const milliseconds longest = asks_parts() ? kLongestPause : kLongestSilence;
-    quiet_ = std::max(quiet_, std::min(2 * quiet_, longest));
+    quiet_ = std::max(quiet_, std::min(2 * quiet_, kLongestPause));
   }
   begin(answered ? Phase::kQuietAfterTrial : Phase::kQuietBeforeTrial);
   if (heard_late_) note(before);
@@ -254,7 +254,7 @@ ModbusLink::Settling RtuLink::settle(SteadyClock::time_point deadline) {
     const bool needs_trial = phase_ == Phase::kQuietBeforeTrial;
     switch (listen(tried ? longest_gap_ + timeout() : quiet_, deadline)) {
       case Line::kGone:
-        note(fmt::format("{}: the line is gone", settings_.device));
+        note(trf("{}: the line is gone", settings_.device));
         close();
         return Settling::kBroken;
       case Line::kDeadline:

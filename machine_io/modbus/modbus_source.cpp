@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
 #include "machine_io/modbus/modbus_link.h"
 #include "machine_io/modbus/poll_plan.h"
 #include "machine_io/modbus/poll_schedule.h"
@@ -82,11 +83,11 @@ std::string_view allowed(Extra what) {
     case Extra::kTool:
     case Extra::kLine:
     case Extra::kTrigger:
-      return "a whole number, 0 or more";
+      return tr("a whole number, 0 or more");
     case Extra::kSpindle:
-      return "-1e6 to 1e6 rpm";
+      return tr("-1e6 to 1e6 rpm");
     default:
-      return "-1e4 to 1e4 mm";
+      return tr("-1e4 to 1e4 mm");
   }
 }
 
@@ -215,7 +216,7 @@ bool ModbusSource::Poller::read_all() {
         back_off_.reset();
         const int code = link_->exception_code();
         if (read.has_gaps && (code == kIllegalAddress || code == kIllegalValue)) {
-          status_.trouble += "; from now on without the registers between";
+          status_.trouble += tr("; from now on without the registers between");
           plan_ = plan_reads(wanted_, 0);
           words_.resize(plan_.words);
         }
@@ -239,9 +240,8 @@ bool ModbusSource::Poller::read_whole_cycle() {
     if (value_of(last) == value_of(last - 1)) return true;
   }
   const std::size_t last = wanted_.size() - 1;
-  failed(fmt::format(
-      "{} answers in a row are of two cycles: counter_begun reads {:.0f}, counter {:.0f}",
-      kMostTornAnswers, value_of(last - 1), value_of(last)));
+  failed(trf("{} answers in a row are of two cycles: counter_begun reads {:.0f}, counter {:.0f}",
+             kMostTornAnswers, value_of(last - 1), value_of(last)));
   return false;
 }
 
@@ -266,7 +266,7 @@ bool ModbusSource::Poller::counter_moved() {
   ++status_.duplicates;
   if (now - counter_moved_ >= kCounterPatience) {
     status_.state = SourceState::kConnecting;
-    status_.trouble = fmt::format(
+    status_.trouble = trf(
         "the counter stands at {:.0f} for {:.0f} s: the device answers but its program does not "
         "run",
         value, std::chrono::duration<double>(now - counter_moved_).count());
@@ -277,8 +277,8 @@ bool ModbusSource::Poller::counter_moved() {
 bool ModbusSource::Poller::fill_extra(AxisSample& sample, Extra what, double value,
                                       const std::uint16_t* words) {
   if (!is_plausible(what, value)) {
-    failed(fmt::format("{} reads {:.6g}, raw {:04X} ...: must be {}",
-                       kExtraKeys[static_cast<std::size_t>(what)], value, words[0], allowed(what)));
+    failed(trf("{} reads {:.6g}, raw {:04X} ...: must be {}",
+               kExtraKeys[static_cast<std::size_t>(what)], value, words[0], allowed(what)));
     return false;
   }
   switch (what) {
@@ -336,8 +336,8 @@ bool ModbusSource::Poller::poll(AxisSample& sample) {
   sample.host_ns = host_ns;
   if (host_stamp_.stepped_back_ns() > 0) {
     ++status_.disordered;
-    status_.trouble = fmt::format("this computer's clock was set back by {:.3f} s",
-                                  static_cast<double>(host_stamp_.stepped_back_ns()) * 1e-9);
+    status_.trouble = trf("this computer's clock was set back by {:.3f} s",
+                          static_cast<double>(host_stamp_.stepped_back_ns()) * 1e-9);
   }
   ++status_.samples;
   status_.state = SourceState::kReading;
@@ -373,10 +373,10 @@ const SourceStatus& ModbusSource::status() const { return poller_->status_; }
 std::string ModbusSource::describe() const {
   const ModbusSettings& s = poller_->settings_;
   if (s.rtu) {
-    return fmt::format("modbus rtu {} {} {}{}{} unit {}", s.device, s.baud, s.data_bits, s.parity,
-                       s.stop_bits, s.unit);
+    return trf("modbus rtu {} {} {}{}{} unit {}", s.device, s.baud, s.data_bits, s.parity,
+               s.stop_bits, s.unit);
   }
-  return fmt::format("modbus tcp {}:{} unit {}", s.host, s.port, s.unit);
+  return trf("modbus tcp {}:{} unit {}", s.host, s.port, s.unit);
 }
 
 }  // namespace kerf

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <string>
 
+#include "base/translate.h"
 #include "machine_io/modbus/modbus_link.h"
 
 namespace kerf {
@@ -69,8 +70,8 @@ ModbusLink::Answer TcpLink::ask(const PollRead& read, std::uint16_t* words) {
   // What is there before the question cannot be its answer.
   std::uint8_t early = 0;
   const ssize_t pending = recv(descriptor(), &early, 1, MSG_PEEK | MSG_DONTWAIT);
-  if (pending > 0) return broken(read, "the device sends without being asked");
-  if (pending == 0) return broken(read, "the device closed the connection");
+  if (pending > 0) return broken(read, tr("the device sends without being asked"));
+  if (pending == 0) return broken(read, tr("the device closed the connection"));
 
   transaction_ = (transaction_ + 1) & 0xffffU;
   const auto address = static_cast<unsigned>(read.address);
@@ -102,24 +103,23 @@ ModbusLink::Answer TcpLink::ask(const PollRead& read, std::uint16_t* words) {
 }
 
 ModbusLink::Answer TcpLink::judge(const PollRead& read, std::size_t size, std::uint16_t* words) {
-  if (size < kExceptionBytes) return broken(read, "the answer is too short");
+  if (size < kExceptionBytes) return broken(read, tr("the answer is too short"));
   const std::uint8_t* reply = reply_.data();
   if (word_at(reply) != transaction_) {
-    return broken(read,
-                  fmt::format("answer to question {} instead of {}", word_at(reply), transaction_));
+    return broken(read, trf("answer to question {} instead of {}", word_at(reply), transaction_));
   }
   if (word_at(reply + 2) != 0) {
-    return broken(read, fmt::format("not Modbus: protocol {} instead of 0", word_at(reply + 2)));
+    return broken(read, trf("not Modbus: protocol {} instead of 0", word_at(reply + 2)));
   }
   if (word_at(reply + 4) != size - 6) {
-    return broken(read, fmt::format("the answer's length {} does not fit its {} bytes",
-                                    word_at(reply + 4), size - 6));
+    return broken(read, trf("the answer's length {} does not fit its {} bytes", word_at(reply + 4),
+                            size - 6));
   }
   const int unit = reply[6];
   if (settings_.unit != 0 && settings_.unit != 255 && unit != settings_.unit) {
-    return broken(read, fmt::format("unit {} answers instead of unit {}; is unit {} right, or 255 "
-                                    "for a device that does not use it?",
-                                    unit, settings_.unit, unit));
+    return broken(read, trf("unit {} answers instead of unit {}; is unit {} right, or 255 "
+                            "for a device that does not use it?",
+                            unit, settings_.unit, unit));
   }
   const unsigned function = reply[7];
   const auto asked = static_cast<unsigned>(read.table);
@@ -127,11 +127,11 @@ ModbusLink::Answer TcpLink::judge(const PollRead& read, std::size_t size, std::u
     return refused(read, reply[8]);
   }
   if (function != asked) {
-    return broken(read, fmt::format("answer with function {} instead of {}", function, asked));
+    return broken(read, trf("answer with function {} instead of {}", function, asked));
   }
   const auto count = static_cast<std::size_t>(read.count);
   if (reply[8] != 2 * count || size != kExceptionBytes + 2 * count) {
-    return broken(read, fmt::format("answer of {} bytes instead of {}", reply[8], 2 * count));
+    return broken(read, trf("answer of {} bytes instead of {}", reply[8], 2 * count));
   }
   for (std::size_t i = 0; i < count; ++i) {
     words[i] = static_cast<std::uint16_t>(word_at(reply + kExceptionBytes + 2 * i));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -129,10 +131,10 @@ void ReadingCheck::complain(std::size_t axis, const AxisReading& reading, std::s
   std::string raw;
   for (std::size_t i = 0; i < words; ++i) raw += fmt::format(" {:04X}", reading.raw[axis][i]);
   const std::string found =
-      fmt::format("{} reads {:.6g}, raw{}", kAxisKeys[axis], reading.value[axis], raw);
+      trf("{} reads {:.6g}, raw{}", kAxisKeys[axis], reading.value[axis], raw);
   if (cure) suspicious_until_ = reading.time + kSuspicion;
-  trouble_ = cure ? fmt::format("positions jump beyond machine limits; is word_order {}? ({}: {})",
-                                name_of(*cure), found, what)
+  trouble_ = cure ? trf("positions jump beyond machine limits; is word_order {}? ({}: {})",
+                        name_of(*cure), found, what)
                   : fmt::format("{}: {}", found, what);
 }
 
@@ -141,14 +143,13 @@ bool ReadingCheck::values_are_good(const AxisReading& reading) {
   for (std::size_t i = 0; i < kMaxPositions; ++i) {
     if (!settings_.axes[i]) continue;
     if (absurd(reading.value[i]) || tiny(i, reading)) {
-      complain(i, reading, "not a position", cure_for_values(reading));
+      complain(i, reading, tr("not a position"), cure_for_values(reading));
       return false;
     }
     if (outside(i, reading.value[i])) {
       const ModbusAxisRange& range = settings_.ranges[i];
-      const std::string what =
-          fmt::format("outside {} .. {}", range.min ? fmt::to_string(*range.min) : "",
-                      range.max ? fmt::to_string(*range.max) : "");
+      const std::string what = trf("outside {} .. {}", range.min ? fmt::to_string(*range.min) : "",
+                                   range.max ? fmt::to_string(*range.max) : "");
       complain(i, reading, what,
                far_outside(i, reading.value[i]) ? cure_for_values(reading) : std::nullopt);
       return false;
@@ -174,7 +175,7 @@ bool ReadingCheck::accept(const AxisReading& reading) {
       continue;
     }
     const std::string what =
-        fmt::format("jumps from {:.6g}; kept back until another agrees", last_->value[i]);
+        trf("jumps from {:.6g}; kept back until another agrees", last_->value[i]);
     const bool ask = jumps_ >= kJumpsBeforeAsking && candidate_;
     complain(i, reading, what, ask ? cure_for_jumps(reading) : std::nullopt);
     break;

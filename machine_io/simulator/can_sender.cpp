@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/translate.h"
 #include "machine_io/simulator/register_layout.h"
 
 namespace kerf {
@@ -100,9 +101,7 @@ std::size_t CanEncoder::encode(const ServedState& served, double since_last_s,
 }
 
 Result<std::unique_ptr<CanSender>> CanSender::open(const std::string& interface, CanLayout layout) {
-  const auto failed = [&] {
-    return Error{fmt::format("opening {}: {}", interface, std::strerror(errno))};
-  };
+  const auto failed = [&] { return Error{trf("opening {}: {}", interface, std::strerror(errno))}; };
   const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (fd < 0) return failed();
   std::unique_ptr<CanSender> sender(new CanSender(fd, layout));

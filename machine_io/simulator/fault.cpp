@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <system_error>
+
+#include "base/text_scan.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -19,22 +20,6 @@ constexpr int kMaxException = 11;  // of the Modbus specification
 
 /// A time on the edge of a window is in or out by the rule's own numbers, not by rounding.
 constexpr double kEdge_s = 1e-9;
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const std::size_t end = text.find(':');
-    parts.push_back(text.substr(0, end));
-    if (end == text.npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
-template <class Number>
-bool read_number(std::string_view text, Number& value) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && stop == text.data() + text.size();
-}
 
 std::optional<FaultKind> kind_of(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
@@ -51,8 +36,8 @@ Error fault_error(std::string_view text, std::string reason) {
 std::string read_value(const std::vector<std::string_view>& parts, int most, const char* meaning,
                        int& value) {
   if (parts.size() > 1 && read_number(parts[1], value) && value >= 1 && value <= most) return "";
-  return fmt::format("{} needs {}: a whole number from 1 to {}, as in {}:{}", parts[0], meaning,
-                     most, parts[0], most == kMaxDelay_ms ? 200 : 4);
+  return trf("{} needs {}: a whole number from 1 to {}, as in {}:{}", parts[0], meaning, most,
+             parts[0], most == kMaxDelay_ms ? 200 : 4);
 }
 
 }  // namespace
@@ -60,10 +45,10 @@ std::string read_value(const std::vector<std::string_view>& parts, int most, con
 const char* to_string(FaultKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
 Result<FaultRule> parse_fault(std::string_view text) {
-  const std::vector<std::string_view> parts = split(text);
+  const std::vector<std::string_view> parts = split(text, ':');
   const auto kind = kind_of(parts[0]);
   if (!kind) {
-    return Error{fmt::format("'{}' is no fault; allowed: {}", parts[0], fmt::join(kNames, ", "))};
+    return Error{trf("'{}' is no fault; allowed: {}", parts[0], fmt::join(kNames, ", "))};
   }
   FaultRule rule;
   rule.kind = *kind;
@@ -75,23 +60,23 @@ Result<FaultRule> parse_fault(std::string_view text) {
     if (!wrong.empty()) return fault_error(text, wrong);
     next = 2;
   }
-  if (parts.size() > next + 2) return fault_error(text, "too many parts; KIND:period:duration");
+  if (parts.size() > next + 2) return fault_error(text, tr("too many parts; KIND:period:duration"));
   if (parts.size() > next) {
     if (!read_number(parts[next], rule.period_s) || !(rule.period_s >= 0) ||
         rule.period_s > kMaxPeriod_s) {
-      return fault_error(text, fmt::format("the period '{}' is not allowed; must be at least 0 (0: "
-                                           "always) and at most {:g} (s)",
-                                           parts[next], kMaxPeriod_s));
+      return fault_error(text, trf("the period '{}' is not allowed; must be at least 0 (0: "
+                                   "always) and at most {:g} (s)",
+                                   parts[next], kMaxPeriod_s));
     }
     if (rule.period_s > 0 && rule.period_s <= rule.duration_s) rule.duration_s = rule.period_s / 2;
   }
   if (parts.size() > next + 1) {
-    if (rule.period_s == 0) return fault_error(text, "with a period of 0 there is no duration");
+    if (rule.period_s == 0) return fault_error(text, tr("with a period of 0 there is no duration"));
     if (!read_number(parts[next + 1], rule.duration_s) || !(rule.duration_s > 0) ||
         !(rule.duration_s < rule.period_s)) {
-      return fault_error(text, fmt::format("the duration '{}' is not allowed; must be above 0 and "
-                                           "less than the period (s)",
-                                           parts[next + 1]));
+      return fault_error(text, trf("the duration '{}' is not allowed; must be above 0 and "
+                                   "less than the period (s)",
+                                   parts[next + 1]));
     }
   }
   return rule;

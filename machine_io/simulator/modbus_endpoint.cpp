@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -51,7 +53,7 @@ std::string bound_address(int fd, int& port) {
 
 Done ModbusTcpEndpoint::open() {
   const std::string service = std::to_string(end_.port);
-  const std::string what = fmt::format("listening on {}:{}", end_.host, end_.port);
+  const std::string what = trf("listening on {}:{}", end_.host, end_.port);
   addrinfo wanted = {};
   wanted.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
 #include "machine_io/simulator/modbus_endpoint.h"
 #include "machine_io/simulator/register_layout.h"
 
@@ -62,7 +63,7 @@ Result<std::unique_ptr<ModbusServer>> ModbusServer::open(std::unique_ptr<ModbusE
   server->answering_->mapping.reset(modbus_mapping_new(0, 0, kRegisterCount, kRegisterCount));
   server->stop_fd_ = eventfd(0, EFD_CLOEXEC);
   if (!server->answering_->mapping || server->stop_fd_ < 0) {
-    return Error{fmt::format("starting a Modbus server: {}", std::strerror(errno))};
+    return Error{trf("starting a Modbus server: {}", std::strerror(errno))};
   }
   server->thread_ = std::thread([raw = server.get()] { raw->run(); });
   return server;

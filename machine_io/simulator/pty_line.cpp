@@ -12,6 +12,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -29,15 +31,15 @@ bool leads_to(const std::string& link, const std::string& device) {
 Done make_link(const std::string& link, const std::string& device) {
   struct stat found = {};
   if (lstat(link.c_str(), &found) == 0 && !S_ISLNK(found.st_mode)) {
-    return Error{fmt::format("{} exists and is no symbolic link", link)};
+    return Error{trf("{} exists and is no symbolic link", link)};
   }
   const std::string temporary = fmt::format("{}.{}.new", link, getpid());
   unlink(temporary.c_str());
   if (symlink(device.c_str(), temporary.c_str()) != 0) {
-    return system_error_of("making the link " + link);
+    return system_error_of(tr("making the link ") + link);
   }
   if (rename(temporary.c_str(), link.c_str()) != 0) {
-    const Error error = system_error_of("making the link " + link);
+    const Error error = system_error_of(tr("making the link ") + link);
     unlink(temporary.c_str());
     return error;
   }
@@ -52,7 +54,7 @@ Result<PtyLine> PtyLine::open(const std::string& link) {
   std::array<char, 128> name{};
   if (line.master_fd_ < 0 || grantpt(line.master_fd_) != 0 || unlockpt(line.master_fd_) != 0 ||
       ptsname_r(line.master_fd_, name.data(), name.size()) != 0) {
-    return system_error_of("opening a pseudo terminal");
+    return system_error_of(tr("opening a pseudo terminal"));
   }
   line.device_ = name.data();
   line.slave_fd_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -62,7 +64,7 @@ Result<PtyLine> PtyLine::open(const std::string& link) {
   }
   cfmakeraw(&mode);
   if (tcsetattr(line.slave_fd_, TCSANOW, &mode) != 0) {
-    return system_error_of("setting up " + line.device_);
+    return system_error_of(tr("setting up ") + line.device_);
   }
   if (!link.empty()) {
     if (const Done made = make_link(link, line.device_); !made) return Error{made.error()};

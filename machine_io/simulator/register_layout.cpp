@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -29,7 +31,7 @@ Word held(double value) {
 
 }  // namespace
 
-const char* const kRegisterHelp =
+const char* const kRegisterHelp = tr_noop(
     "Modbus registers, the same by functions 3 and 4; CDAB = low word first, ABCD = high first:\n"
     "    0, 2 .. 10     X Y Z A B C    int32   CDAB  0.001 mm, 0.001 degrees\n"
     "   12              tool           uint16        0 = none\n"
@@ -40,7 +42,7 @@ const char* const kRegisterHelp =
     "  100, 102 .. 110  X Y Z A B C    float32 ABCD  mm, degrees\n"
     "  112              tool offset Z  float32 ABCD  mm\n"
     "  114              spindle speed  float32 ABCD  rpm\n"
-    "19 to 99 read as 0, above 115: exception 2. Whatever would write: exception 1.\n";
+    "19 to 99 read as 0, above 115: exception 2. Whatever would write: exception 1.\n");
 
 std::int32_t thousandths(double value) {
   if (std::isnan(value)) return std::numeric_limits<std::int32_t>::min();

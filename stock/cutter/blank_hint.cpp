@@ -4,14 +4,14 @@
 #include <initializer_list>
 #include <map>
 
+#include "base/text_scan.h"
+#include "base/units.h"
 #include "stock/blank.h"
-#include "stock/cutter/scan.h"
 #include "stock/cutter/tool_hints.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr std::size_t kLongestComment = 512;
 
 /// Millimetres as text; nine decimals keep converted inches free of rounding noise.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -15,7 +17,7 @@ using Kind = ProfilePiece::Kind;
 constexpr double kJoinTolerance_mm = 1e-6;
 /// No coordinate of a real cutter is beyond it; keeps every square in the formulas well inside
 /// double.
-constexpr double kMaxCoordinate_mm = 1e4;
+constexpr double kMaxProfile_mm = 1e4;
 constexpr double kMaxArcRadius_mm = 1e6;
 
 bool within(double value, double limit) { return std::isfinite(value) && std::abs(value) <= limit; }
@@ -45,20 +47,20 @@ double lowest_mm(const ProfilePiece& piece) {
 std::string arc_fault(const ProfilePiece& arc) {
   if (!within(arc.center_r, kMaxArcRadius_mm) || !within(arc.center_z, kMaxArcRadius_mm) ||
       !within(arc.radius, kMaxArcRadius_mm) || arc.radius <= 0) {
-    return fmt::format("the arc radius is {}; must be above 0 and at most {} (mm)", arc.radius,
-                       kMaxArcRadius_mm);
+    return trf("the arc radius is {}; must be above 0 and at most {} (mm)", arc.radius,
+               kMaxArcRadius_mm);
   }
   for (const bool outer : {false, true}) {
     const double r = outer ? arc.r1 : arc.r0;
     const double z = outer ? arc.z1 : arc.z0;
     const double distance = std::hypot(r - arc.center_r, z - arc.center_z);
     if (std::abs(distance - arc.radius) > kJoinTolerance_mm) {
-      return fmt::format("the {} end is {} mm from the centre, but the arc radius is {} mm",
-                         outer ? "outer" : "inner", distance, arc.radius);
+      return trf("the {} end is {} mm from the centre, but the arc radius is {} mm",
+                 outer ? tr("outer") : tr("inner"), distance, arc.radius);
     }
     if (arc.convex ? z > arc.center_z + kJoinTolerance_mm : z < arc.center_z - kJoinTolerance_mm) {
-      return fmt::format("the arc turns back past the {} end; split or shorten it",
-                         outer ? "outer" : "inner");
+      return trf("the arc turns back past the {} end; split or shorten it",
+                 outer ? tr("outer") : tr("inner"));
     }
   }
   return "";
@@ -68,16 +70,15 @@ std::string arc_fault(const ProfilePiece& arc) {
 /// or "".
 std::string ends_fault(const ProfilePiece& piece, double r, double z) {
   for (const double value : {piece.r0, piece.z0, piece.r1, piece.z1}) {
-    if (!within(value, kMaxCoordinate_mm)) {
-      return fmt::format("{} is not allowed; coordinates are at most {} mm", value,
-                         kMaxCoordinate_mm);
+    if (!within(value, kMaxProfile_mm)) {
+      return trf("{} is not allowed; coordinates are at most {} mm", value, kMaxProfile_mm);
     }
   }
   if (std::hypot(piece.r0 - r, piece.z0 - z) > kJoinTolerance_mm) {
-    return fmt::format("starts at R{} Z{}, but must start at R{} Z{}", piece.r0, piece.z0, r, z);
+    return trf("starts at R{} Z{}, but must start at R{} Z{}", piece.r0, piece.z0, r, z);
   }
   if (std::hypot(piece.r1 - piece.r0, piece.z1 - piece.z0) <= kJoinTolerance_mm) {
-    return "has no length";
+    return tr("has no length");
   }
   return "";
 }
@@ -87,8 +88,8 @@ std::string piece_fault(const ProfilePiece& piece, double r, double z) {
   std::string fault = ends_fault(piece, r, z);
   if (!fault.empty()) return fault;
   if (piece.r1 < piece.r0 - kJoinTolerance_mm) {
-    return fmt::format("the radius falls from {} to {} mm; it must not fall from the tip upward",
-                       piece.r0, piece.r1);
+    return trf("the radius falls from {} to {} mm; it must not fall from the tip upward", piece.r0,
+               piece.r1);
   }
   return piece.kind == Kind::kArc ? arc_fault(piece) : "";
 }
@@ -109,31 +110,31 @@ std::string upper_piece_fault(const ProfilePiece& piece, double r, double z) {
   std::string fault = ends_fault(piece, r, z);
   if (!fault.empty()) return fault;
   if (piece.r1 > piece.r0 + kJoinTolerance_mm) {
-    return fmt::format("the radius rises from {} to {} mm; above the head it must not rise again",
-                       piece.r0, piece.r1);
+    return trf("the radius rises from {} to {} mm; above the head it must not rise again", piece.r0,
+               piece.r1);
   }
   if (piece.z1 < piece.z0 - kJoinTolerance_mm) {
-    return fmt::format("the height falls from {} to {} mm; the upper side must not fall", piece.z0,
-                       piece.z1);
+    return trf("the height falls from {} to {} mm; the upper side must not fall", piece.z0,
+               piece.z1);
   }
   if (piece.kind != Kind::kArc) return "";
   const bool passes_side = piece.convex ? piece.r1 < piece.center_r - kJoinTolerance_mm
                                         : piece.r0 > piece.center_r + kJoinTolerance_mm;
-  if (passes_side) return "the arc turns back downward; split or shorten it";
+  if (passes_side) return tr("the arc turns back downward; split or shorten it");
   return arc_fault(turned_over(piece));
 }
 
 }  // namespace
 
 Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> pieces) {
-  if (pieces.empty()) return Error{"profile: has no pieces; at least one is needed"};
+  if (pieces.empty()) return Error{tr("profile: has no pieces; at least one is needed")};
   double r = 0;
   double z = pieces.front().z0;
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     ProfilePiece& piece = pieces[i];
     const std::string fault = piece_fault(piece, r, z);
-    if (!fault.empty()) return Error{fmt::format("profile piece {}: {}", i + 1, fault)};
+    if (!fault.empty()) return Error{trf("profile piece {}: {}", i + 1, fault)};
     // Join exactly: a gap within the tolerance would leave a ring without height.
     piece.r0 = r;
     piece.z0 = z;
@@ -143,10 +144,9 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
     lowest = std::min(lowest, lowest_mm(piece));
   }
   if (std::abs(lowest) > kJoinTolerance_mm) {
-    return Error{
-        fmt::format("profile: the lowest point is at Z{}; it must be at Z0, the tip", lowest)};
+    return Error{trf("profile: the lowest point is at Z{}; it must be at Z0, the tip", lowest)};
   }
-  if (r <= kJoinTolerance_mm) return Error{"profile: the last radius is 0; it must be above 0"};
+  if (r <= kJoinTolerance_mm) return Error{tr("profile: the last radius is 0; it must be above 0")};
   Cutter cutter;
   cutter.spec_ = std::move(spec);
   cutter.pieces_ = std::move(pieces);
@@ -154,13 +154,13 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
 }
 
 Done Cutter::set_upper_profile(std::vector<ProfilePiece> pieces) {
-  if (pieces.empty()) return Error{"upper profile: has no pieces; at least one is needed"};
+  if (pieces.empty()) return Error{tr("upper profile: has no pieces; at least one is needed")};
   double r = radius_mm();
   double z = pieces_.back().z1;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     ProfilePiece& piece = pieces[i];
     const std::string fault = upper_piece_fault(piece, r, z);
-    if (!fault.empty()) return Error{fmt::format("upper profile piece {}: {}", i + 1, fault)};
+    if (!fault.empty()) return Error{trf("upper profile piece {}: {}", i + 1, fault)};
     piece.r0 = r;
     piece.z0 = z;
     piece.r1 = std::min(piece.r1, r);
@@ -169,9 +169,9 @@ Done Cutter::set_upper_profile(std::vector<ProfilePiece> pieces) {
     z = piece.z1;
   }
   if (r <= kJoinTolerance_mm || r >= radius_mm() - kJoinTolerance_mm) {
-    return Error{fmt::format(
-        "upper profile: the neck has radius {}; must be above 0 and below the head's, {} (mm)", r,
-        radius_mm())};
+    return Error{
+        trf("upper profile: the neck has radius {}; must be above 0 and below the head's, {} (mm)",
+            r, radius_mm())};
   }
   upper_pieces_ = std::move(pieces);
   neck_radius_mm_ = r;

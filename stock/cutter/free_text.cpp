@@ -8,13 +8,14 @@
 #include <initializer_list>
 #include <vector>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "stock/cutter/shape_spec.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr double kDrillAngle_deg = 118;
 constexpr double kVeeAngle_deg = 90;
 /// Of V-bits whose text has an angle only. Engraving uses the tip.
@@ -34,13 +35,6 @@ struct Quantity {
   bool fraction = false;
   Label label = Label::kNone;
 };
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
-
-bool contains(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
 
 bool contains_any(std::string_view text, std::initializer_list<std::string_view> parts) {
   return std::any_of(parts.begin(), parts.end(),
@@ -317,7 +311,7 @@ ShapeText draft_shape(const CutterFacts& facts, double diameter) {
       return {fmt::format("vee:{}:{}{}", d, number_text(angle),
                           facts.tip_mm > 0 ? fmt::format(":{}", size_text(facts.tip_mm)) : ""),
               !facts.angle_deg,
-              fmt::format("its angle is not given, {:g} degrees are assumed", kVeeAngle_deg)};
+              trf("its angle is not given, {:g} degrees are assumed", kVeeAngle_deg)};
     }
     case CutterKind::kLollipop:
       return {fmt::format("lollipop:{}:{}", d, size_text(diameter / 2)), true,
@@ -394,7 +388,7 @@ std::optional<ShapeText> shape_from_facts(const CutterFacts& facts) {
   ShapeText text = draft_shape(facts, facts.diameter_mm.value_or(kVeeDiameter_mm));
   if (!facts.diameter_mm) {
     text.guessed = true;
-    text.guess = fmt::format("its diameter is not given, {:g} mm are assumed", kVeeDiameter_mm);
+    text.guess = trf("its diameter is not given, {:g} mm are assumed", kVeeDiameter_mm);
   }
   if (!text.guessed) text.guess.clear();
   const Result<Cutter> cutter = parse_shape(text.shape);

@@ -10,6 +10,9 @@
 #include <fstream>
 #include <utility>
 
+#include "base/small_file.h"
+#include "base/suggest.h"
+#include "base/translate.h"
 #include "stock/cutter/scan.h"
 
 namespace kerf {
@@ -33,23 +36,23 @@ class Reader {
   Done read_line(const Words& words) {
     const std::string keyword = to_lower(words[0]);
     if (keyword == "line") return read_piece(words, 3, "line R Z");
-    if (keyword == "arc") return read_piece(words, 5, "arc R Z RADIUS cw|ccw");
+    if (keyword == "arc") return read_piece(words, 5, tr("arc R Z RADIUS cw|ccw"));
     if (keyword == "start") return read_start(words);
     if (keyword == "upper") return read_upper(words);
     if (keyword == "flute") return read_option(words, file_.flute);
     if (keyword == "shank") return read_option(words, file_.shank);
     if (keyword == "holder") return read_option(words, file_.holder);
     return Error{
-        fmt::format("unknown keyword '{}'{} Allowed: line, arc, start, upper, flute, shank, holder",
-                    shown(words[0]), did_you_mean(words[0], kKeywords))};
+        trf("unknown keyword '{}'{} Allowed: line, arc, start, upper, flute, shank, holder",
+            shown(words[0]), did_you_mean(words[0], kKeywords))};
   }
   ProfileFile take() { return std::move(file_); }
   bool has_pieces() const { return !file_.pieces.empty(); }
 
  private:
   Done read_start(const Words& words) {
-    if (words.size() != 3) return Error{"wrong number of values; the form is 'start 0 Z'"};
-    if (has_pieces()) return Error{"start must come before the first line or arc"};
+    if (words.size() != 3) return Error{tr("wrong number of values; the form is 'start 0 Z'")};
+    if (has_pieces()) return Error{tr("start must come before the first line or arc")};
     const Result<double> r = parse_within("R", words[1], 0, 0, "mm");
     if (!r) return Error{r.error()};
     const Result<double> z = parse_within("Z", words[2], 0, kMaxHeight_mm, "mm");
@@ -59,43 +62,43 @@ class Reader {
   }
 
   Done read_upper(const Words& words) {
-    if (words.size() != 1) return Error{"'upper' takes no value"};
-    if (!has_pieces()) return Error{"upper must come after the lower side of the outline"};
-    if (upper_) return Error{"'upper' is given twice"};
+    if (words.size() != 1) return Error{tr("'upper' takes no value")};
+    if (!has_pieces()) return Error{tr("upper must come after the lower side of the outline")};
+    if (upper_) return Error{tr("'upper' is given twice")};
     upper_ = true;
     return std::monostate{};
   }
 
   Done read_option(const Words& words, std::optional<std::string>& option) {
     if (words.size() != 2) {
-      return Error{fmt::format("'{}' takes one value", to_lower(words[0]))};
+      return Error{trf("'{}' takes one value", to_lower(words[0]))};
     }
-    if (option) return Error{fmt::format("'{}' is given twice", to_lower(words[0]))};
+    if (option) return Error{trf("'{}' is given twice", to_lower(words[0]))};
     option = std::string(words[1]);
     return std::monostate{};
   }
 
   Done read_piece(const Words& words, std::size_t count, std::string_view form) {
     if (words.size() != count) {
-      return Error{fmt::format("wrong number of values; the form is '{}'", form)};
+      return Error{trf("wrong number of values; the form is '{}'", form)};
     }
     std::vector<ProfilePiece>& pieces = upper_ ? file_.upper_pieces : file_.pieces;
     if (pieces.size() >= kMaxProfilePieces) {
-      return Error{fmt::format("more than {} pieces", kMaxProfilePieces)};
+      return Error{trf("more than {} pieces", kMaxProfilePieces)};
     }
     const Result<double> r = parse_within("R", words[1], 0, kMaxRadius_mm, "mm");
     if (!r) return Error{r.error()};
     const Result<double> z = parse_within("Z", words[2], 0, kMaxHeight_mm, "mm");
     if (!z) return Error{z.error()};
     if (upper_ && *r > r_) {
-      return Error{fmt::format("the radius rises from {} to {}; the upper side must run inward",
-                               number_text(r_), number_text(*r))};
+      return Error{trf("the radius rises from {} to {}; the upper side must run inward",
+                       number_text(r_), number_text(*r))};
     }
     if (!upper_ && *r < r_) {
-      return Error{fmt::format("the radius falls from {} to {}; the outline must run outward",
-                               number_text(r_), number_text(*r))};
+      return Error{trf("the radius falls from {} to {}; the outline must run outward",
+                       number_text(r_), number_text(*r))};
     }
-    if (*r == r_ && *z == z_) return Error{"the piece has no length"};
+    if (*r == r_ && *z == z_) return Error{tr("the piece has no length")};
     ProfilePiece piece;
     piece.r0 = r_;
     piece.z0 = z_;
@@ -119,14 +122,14 @@ class Reader {
     if (!radius) return Error{radius.error()};
     const std::string sense = to_lower(words[4]);
     if (sense != "cw" && sense != "ccw") {
-      return Error{fmt::format("'{}' is not a sense; must be cw or ccw", shown(words[4]))};
+      return Error{trf("'{}' is not a sense; must be cw or ccw", shown(words[4]))};
     }
     const double dr = piece.r1 - piece.r0;
     const double dz = piece.z1 - piece.z0;
     const double half_chord = std::hypot(dr, dz) / 2;
     if (half_chord > *radius + kFitTolerance_mm / 2) {
-      return Error{fmt::format("arc radius {} is too small: the ends are {:.4g} mm apart",
-                               number_text(*radius), 2 * half_chord)};
+      return Error{trf("arc radius {} is too small: the ends are {:.4g} mm apart",
+                       number_text(*radius), 2 * half_chord)};
     }
     piece.kind = ProfilePiece::Kind::kArc;
     piece.convex = sense == "ccw";
@@ -147,7 +150,7 @@ class Reader {
     const double excess = arc.convex ? level - arc.center_z : arc.center_z - level;
     if (excess <= 0) return std::monostate{};
     if (excess > kFitTolerance_mm || arc.r1 == arc.r0) {
-      return Error{"the arc turns back inward; it must not pass its widest point"};
+      return Error{tr("the arc turns back inward; it must not pass its widest point")};
     }
     const double a = arc.z0 - level;
     const double b = arc.z1 - level;
@@ -191,7 +194,7 @@ Result<ProfileFile> parse_profile_text(std::string_view text, const std::string&
     if (!done) return Error{fmt::format("{}:{}: {}", name, number, done.error())};
   }
   if (!reader.has_pieces()) {
-    return Error{fmt::format("{}: no outline found; at least one 'line R Z' is needed", name)};
+    return Error{trf("{}: no outline found; at least one 'line R Z' is needed", name)};
   }
   return reader.take();
 }
@@ -199,18 +202,16 @@ Result<ProfileFile> parse_profile_text(std::string_view text, const std::string&
 Result<ProfileFile> read_profile_file(const std::string& path) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) return Error{fmt::format("{}: no such file", shown(path))};
+  if (!std::filesystem::exists(status)) return Error{trf("{}: no such file", shown(path))};
   if (!std::filesystem::is_regular_file(status)) {
-    return Error{fmt::format("{}: not a regular file", shown(path))};
+    return Error{trf("{}: not a regular file", shown(path))};
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{fmt::format("{}: {}", shown(path), std::strerror(errno))};
-  std::string text(kMaxProfileBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) return Error{fmt::format("{}: read error", shown(path))};
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  const std::string text = read_up_to(file, kMaxProfileBytes + 1);
+  if (file.bad()) return Error{trf("{}: read error", shown(path))};
   if (text.size() > kMaxProfileBytes) {
-    return Error{fmt::format("{}: larger than {} bytes", shown(path), kMaxProfileBytes)};
+    return Error{trf("{}: larger than {} bytes", shown(path), kMaxProfileBytes)};
   }
   return parse_profile_text(text, path);
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "base/geometry.h"
+#include "base/suggest.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/scan.h"
 
@@ -40,25 +43,41 @@ struct Form {
   std::string_view text;
   std::size_t required;
   std::size_t optional;
-  std::array<std::string_view, 3> parameters;
+  std::array<const char*, 3> parameters;
 };
 
 constexpr std::array<Form, 11> kForms = {{
-    {"flat", "flat:D", 1, 0, {"diameter D"}},
-    {"ball", "ball:D", 1, 0, {"diameter D"}},
-    {"bull", "bull:D:R", 2, 0, {"diameter D", "corner radius R"}},
-    {"vee", "vee:D:ANGLE[:TIP]", 2, 1, {"diameter D", "included angle ANGLE", "tip diameter TIP"}},
-    {"taper", "taper:D:ANGLE[:R]", 2, 1, {"tip diameter D", "half angle ANGLE", "corner radius R"}},
-    {"drill", "drill:D:ANGLE", 2, 0, {"diameter D", "point angle ANGLE"}},
-    {"lollipop", "lollipop:D:SHAFT", 2, 0, {"diameter D", "shaft diameter SHAFT"}},
-    {"tslot", "tslot:D:T:SHAFT", 3, 0, {"diameter D", "thickness T", "shaft diameter SHAFT"}},
+    {"flat", "flat:D", 1, 0, {tr_noop("diameter D")}},
+    {"ball", "ball:D", 1, 0, {tr_noop("diameter D")}},
+    {"bull", "bull:D:R", 2, 0, {tr_noop("diameter D"), tr_noop("corner radius R")}},
+    {"vee",
+     "vee:D:ANGLE[:TIP]",
+     2,
+     1,
+     {tr_noop("diameter D"), tr_noop("included angle ANGLE"), tr_noop("tip diameter TIP")}},
+    {"taper",
+     "taper:D:ANGLE[:R]",
+     2,
+     1,
+     {tr_noop("tip diameter D"), tr_noop("half angle ANGLE"), tr_noop("corner radius R")}},
+    {"drill", "drill:D:ANGLE", 2, 0, {tr_noop("diameter D"), tr_noop("point angle ANGLE")}},
+    {"lollipop",
+     "lollipop:D:SHAFT",
+     2,
+     0,
+     {tr_noop("diameter D"), tr_noop("shaft diameter SHAFT")}},
+    {"tslot",
+     "tslot:D:T:SHAFT",
+     3,
+     0,
+     {tr_noop("diameter D"), tr_noop("thickness T"), tr_noop("shaft diameter SHAFT")}},
     {"dovetail",
      "dovetail:D:ANGLE:SHAFT",
      3,
      0,
-     {"diameter D", "side angle ANGLE", "shaft diameter SHAFT"}},
-    {"kerf", "kerf:W", 1, 0, {"kerf width W"}},
-    {"profile", "profile:FILE", 1, 0, {"file name FILE"}},
+     {tr_noop("diameter D"), tr_noop("side angle ANGLE"), tr_noop("shaft diameter SHAFT")}},
+    {"kerf", "kerf:W", 1, 0, {tr_noop("kerf width W")}},
+    {"profile", "profile:FILE", 1, 0, {tr_noop("file name FILE")}},
 }};
 
 constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
@@ -66,7 +85,7 @@ constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "
                                                           "dovetail", "kerf",  "profile"};
 constexpr std::array<std::string_view, 3> kOptionNames = {"flute", "shank", "holder"};
 
-constexpr std::string_view kHelp =
+constexpr const char* kHelp = tr_noop(
     "flat:D               end mill\n"
     "ball:D               ball nose\n"
     "bull:D:R             corner radius R, up to D/2\n"
@@ -80,7 +99,7 @@ constexpr std::string_view kHelp =
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]";
+    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -101,8 +120,6 @@ ProfilePiece corner_piece(double center_r, double radius, double r1, double z1) 
   piece.convex = true;
   return piece;
 }
-
-double radians(double degrees) { return degrees * (kPi / 180.0); }
 
 struct Part {
   double diameter_mm = 0;
@@ -130,19 +147,17 @@ Result<Part> parse_part(std::string_view name, std::string_view text, bool lengt
                         LengthUnit unit) {
   const std::size_t cross = text.find_first_of("xX");
   Part part;
-  const Result<double> diameter =
-      parse_length(fmt::format("{} diameter", name), text.substr(0, cross), kMinDiameter_mm,
-                   kMaxDiameter_mm, unit);
+  const Result<double> diameter = parse_length(trf("{} diameter", name), text.substr(0, cross),
+                                               kMinDiameter_mm, kMaxDiameter_mm, unit);
   if (!diameter) return Error{diameter.error()};
   part.diameter_mm = *diameter;
   if (cross == std::string_view::npos) {
     if (length_needed) {
-      return Error{
-          fmt::format("{}: '{}' has no length; write DxL ({})", name, shown(text), name_of(unit))};
+      return Error{trf("{}: '{}' has no length; write DxL ({})", name, shown(text), name_of(unit))};
     }
     return part;
   }
-  const Result<double> length = parse_length(fmt::format("{} length", name), text.substr(cross + 1),
+  const Result<double> length = parse_length(trf("{} length", name), text.substr(cross + 1),
                                              kMinLength_mm, kMaxLength_mm, unit);
   if (!length) return Error{length.error()};
   part.length_mm = *length;
@@ -152,8 +167,8 @@ Result<Part> parse_part(std::string_view name, std::string_view text, bool lengt
 Done parse_holder(std::string_view text, LengthUnit unit, Options& options) {
   const std::vector<std::string_view> sections = split(text, '+');
   if (sections.size() > kMaxHolderSections) {
-    return Error{fmt::format("holder: {} sections; at most {} are allowed", sections.size(),
-                             kMaxHolderSections)};
+    return Error{
+        trf("holder: {} sections; at most {} are allowed", sections.size(), kMaxHolderSections)};
   }
   for (const std::string_view section : sections) {
     const Result<Part> part = parse_part("holder", section, true, unit);
@@ -166,27 +181,26 @@ Done parse_holder(std::string_view text, LengthUnit unit, Options& options) {
 Done parse_option(std::string_view name, std::string_view value, LengthUnit unit,
                   Options& options) {
   if (name == "flute") {
-    if (options.flute_mm) return Error{"flute= is given twice"};
+    if (options.flute_mm) return Error{tr("flute= is given twice")};
     const Result<double> flute =
-        parse_length("flute length", value, kMinLength_mm, kMaxLength_mm, unit);
+        parse_length(tr("flute length"), value, kMinLength_mm, kMaxLength_mm, unit);
     if (!flute) return Error{flute.error()};
     options.flute_mm = *flute;
     return std::monostate{};
   }
   if (name == "shank") {
-    if (options.shank) return Error{"shank= is given twice"};
+    if (options.shank) return Error{tr("shank= is given twice")};
     const Result<Part> shank = parse_part("shank", value, false, unit);
     if (!shank) return Error{shank.error()};
     options.shank = *shank;
     return std::monostate{};
   }
   if (name == "holder") {
-    if (!options.holder.empty()) return Error{"holder= is given twice"};
+    if (!options.holder.empty()) return Error{tr("holder= is given twice")};
     return parse_holder(value, unit, options);
   }
-  return Error{
-      fmt::format("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=DxL[+DxL..]",
-                  shown(name), did_you_mean(name, kOptionNames))};
+  return Error{trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=DxL[+DxL..]",
+                   shown(name), did_you_mean(name, kOptionNames))};
 }
 
 std::string part_text(const Part& part) {
@@ -228,18 +242,19 @@ class Values {
   std::size_t count() const { return texts_.size(); }
   Result<double> diameter(std::size_t index, double low = kMinDiameter_mm,
                           double high = kMaxDiameter_mm) const {
-    return parse_length(form_.parameters[index], texts_[index], low, high, unit_);
+    return parse_length(tr(form_.parameters[index]), texts_[index], low, high, unit_);
   }
   Result<double> angle(std::size_t index, double high) const {
-    return parse_within(form_.parameters[index], texts_[index], kMinAngle_deg, high, "degrees");
+    return parse_within(tr(form_.parameters[index]), texts_[index], kMinAngle_deg, high,
+                        tr("degrees"));
   }
   /// A diameter that must stay clearly below D, given before it.
   Result<double> below(std::size_t index, double limit, double low) const {
     const Result<double> value = detail(index, low, kMaxDiameter_mm);
     if (value && *value > limit - kMinDetail_mm) {
-      return Error{fmt::format("{}: {} is not allowed; must be less than diameter D, {} ({})",
-                               form_.parameters[index], length_number(*value, unit_),
-                               length_number(limit, unit_), name_of(unit_))};
+      return Error{trf("{}: {} is not allowed; must be less than diameter D, {} ({})",
+                       tr(form_.parameters[index]), length_number(*value, unit_),
+                       length_number(limit, unit_), name_of(unit_))};
     }
     return value;
   }
@@ -253,9 +268,9 @@ class Values {
   Result<double> detail(std::size_t index, double low, double high) const {
     const Result<double> value = diameter(index, low, high);
     if (value && *value > 0 && *value < kMinDetail_mm) {
-      return Error{fmt::format("{}: {} is not allowed; must be 0 or at least {} ({})",
-                               form_.parameters[index], length_number(*value, unit_),
-                               length_number(kMinDetail_mm, unit_), name_of(unit_))};
+      return Error{trf("{}: {} is not allowed; must be 0 or at least {} ({})",
+                       tr(form_.parameters[index]), length_number(*value, unit_),
+                       length_number(kMinDetail_mm, unit_), name_of(unit_))};
     }
     return value;
   }
@@ -281,7 +296,7 @@ void add_bull(Body& body, double radius, double corner) {
 /// Flat tip, cone up to `radius`.
 void add_cone(Body& body, double tip_radius, double radius, double half_angle_deg) {
   if (tip_radius > 0) body.pieces.push_back(line_piece(0, 0, tip_radius, 0));
-  const double height = (radius - tip_radius) / std::tan(radians(half_angle_deg));
+  const double height = (radius - tip_radius) / std::tan(half_angle_deg * kRadPerDeg);
   body.pieces.push_back(line_piece(tip_radius, 0, radius, height));
 }
 
@@ -357,18 +372,17 @@ Result<Body> make_taper(const Values& values, const Options& options) {
   }
   const double center_r = flat_radius(*d / 2, corner);
   if (corner > 0) corner = *d / 2 - center_r;
-  const double r = center_r + corner * std::cos(radians(*angle));
-  const double z = corner * (1 - std::sin(radians(*angle)));
+  const double r = center_r + corner * std::cos(*angle * kRadPerDeg);
+  const double z = corner * (1 - std::sin(*angle * kRadPerDeg));
   const double top = options.flute_mm.value_or(kTaperHeightPerTip * *d);
   if (top < z + kMinLength_mm) {
-    return Error{fmt::format("flute={} ends below the cone, which begins {:.4g} mm above the tip",
-                             number_text(top), z)};
+    return Error{trf("flute={} ends below the cone, which begins {:.4g} mm above the tip",
+                     number_text(top), z)};
   }
-  const double top_r = r + (top - z) * std::tan(radians(*angle));
+  const double top_r = r + (top - z) * std::tan(*angle * kRadPerDeg);
   if (2 * top_r > kMaxDiameter_mm) {
-    return Error{
-        fmt::format("the cone is {:.4g} mm wide at its top, {} mm above the tip; at most {} mm",
-                    2 * top_r, number_text(top), number_text(kMaxDiameter_mm))};
+    return Error{trf("the cone is {:.4g} mm wide at its top, {} mm above the tip; at most {} mm",
+                     2 * top_r, number_text(top), number_text(kMaxDiameter_mm))};
   }
   if (center_r > 0) body.pieces.push_back(line_piece(0, 0, center_r, 0));
   if (corner > 0) body.pieces.push_back(corner_piece(center_r, corner, r, z));
@@ -425,10 +439,10 @@ Result<Body> make_dovetail(const Values& values) {
   Body body;
   body.spec =
       fmt::format("dovetail:{}:{}:{}", number_text(*d), number_text(*angle), number_text(*shaft));
-  const double height = (*d - *shaft) / 2 * std::tan(radians(*angle));
+  const double height = (*d - *shaft) / 2 * std::tan(*angle * kRadPerDeg);
   if (height < kMinLength_mm || height > kMaxLength_mm) {
-    return Error{fmt::format("the head is {:.4g} mm high; must be from {} to {} (mm)", height,
-                             kMinLength_mm, kMaxLength_mm)};
+    return Error{trf("the head is {:.4g} mm high; must be from {} to {} (mm)", height,
+                     kMinLength_mm, kMaxLength_mm)};
   }
   add_bull(body, *d / 2, 0);
   body.upper_pieces.push_back(line_piece(*d / 2, 0, *shaft / 2, height));
@@ -461,14 +475,14 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
   const double top = body.flute_mm.value_or(profile_top);
   const std::optional<double> flute = options.flute_mm ? options.flute_mm : body.flute_mm;
   if (flute && *flute < top - kLengthTolerance_mm) {
-    return Error{fmt::format("flute={} is shorter than the cutting end, {:.4g} mm",
-                             number_text(*flute), top)};
+    return Error{
+        trf("flute={} is shorter than the cutting end, {:.4g} mm", number_text(*flute), top)};
   }
   if (!options.holder.empty() && !flute) {
-    return Error{"holder= needs flute=L as well: the holder begins where flutes and shank end"};
+    return Error{tr("holder= needs flute=L as well: the holder begins where flutes and shank end")};
   }
   if (options.shank && options.shank->length_mm > 0 && options.holder.empty()) {
-    return Error{"shank=DxL needs a holder= above it; without one write shank=D"};
+    return Error{tr("shank=DxL needs a holder= above it; without one write shank=D")};
   }
   Result<Cutter> cutter = Cutter::from_profile(std::move(spec), std::move(body.pieces));
   if (!cutter) return cutter;
@@ -494,8 +508,9 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
 
 /// The options of the file count unless the SHAPE text has its own.
 Result<Cutter> make_profile(std::string_view file_name, const Options& options) {
-  if (file_name.empty()) return Error{"file name FILE is missing; the form is profile:FILE"};
-  if (file_name.find('\0') != std::string_view::npos) return Error{"a file name cannot hold NUL"};
+  if (file_name.empty()) return Error{tr("file name FILE is missing; the form is profile:FILE")};
+  if (file_name.find('\0') != std::string_view::npos)
+    return Error{tr("a file name cannot hold NUL")};
   const std::string path(file_name);
   Result<ProfileFile> file = read_profile_file(path);
   if (!file) return Error{file.error()};
@@ -554,11 +569,11 @@ Result<Cutter> parse_known(const Form& form, std::string_view rest, LengthUnit u
   }
   for (std::size_t i = 0; i < form.required; ++i) {
     if (i >= values.size() || values[i].empty()) {
-      return Error{fmt::format("{} is missing; the form is {}", form.parameters[i], form.text)};
+      return Error{trf("{} is missing; the form is {}", tr(form.parameters[i]), form.text)};
     }
   }
   if (values.size() > form.required + form.optional) {
-    return Error{fmt::format("{} values are too many; the form is {}", values.size(), form.text)};
+    return Error{trf("{} values are too many; the form is {}", values.size(), form.text)};
   }
   Result<Body> body = make_body(form, values, options, unit);
   if (!body) return Error{body.error()};
@@ -574,8 +589,8 @@ Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit) {
   const std::string name = to_lower(spec.substr(0, colon));
   if (name.empty()) {
     return Error{
-        "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
-        "lollipop, tslot, dovetail, kerf, profile)"};
+        tr("the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
+           "lollipop, tslot, dovetail, kerf, profile)")};
   }
   for (const Form& form : kForms) {
     if (form.name != name) continue;
@@ -586,9 +601,9 @@ Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit) {
     return cutter;
   }
   return Error{
-      fmt::format("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
-                  "lollipop, tslot, dovetail, kerf, profile",
-                  shown(spec), shown(name), did_you_mean(name, kShapeNames))};
+      trf("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
+          "lollipop, tslot, dovetail, kerf, profile",
+          shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 
 std::string shape_in(std::string_view spec, LengthUnit unit) {
@@ -610,7 +625,8 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
       out +=
           fmt::format("{}={}", field.substr(0, equals), parts_in(field.substr(equals + 1), unit));
     } else if (is_file || (index < form->parameters.size() &&
-                           form->parameters[index].find("angle") != std::string_view::npos)) {
+                           std::string_view(form->parameters[index]).find("angle") !=
+                               std::string_view::npos)) {
       out += field;
     } else {
       out += parts_in(field, unit);
@@ -624,19 +640,17 @@ Result<ToolShapeArgument> parse_tool_argument(std::string_view argument, LengthU
   const std::size_t equals = argument.find('=');
   const std::string_view number = trim(argument.substr(0, equals));
   int tool = 0;
-  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), tool);
-  if (equals == std::string_view::npos || number.empty() || error != std::errc() ||
-      stop != number.data() + number.size() || tool < 0) {
-    return Error{fmt::format("{}: not N=SHAPE with a tool number N; write for example 3=ball:6",
-                             shown(argument))};
+  if (equals == std::string_view::npos || !read_number(number, tool) || tool < 0) {
+    return Error{
+        trf("{}: not N=SHAPE with a tool number N; write for example 3=ball:6", shown(argument))};
   }
   Result<Cutter> cutter = parse_shape(argument.substr(equals + 1), unit);
-  if (!cutter) return Error{fmt::format("tool {}: {}", tool, cutter.error())};
+  if (!cutter) return Error{trf("tool {}: {}", tool, cutter.error())};
   return ToolShapeArgument{tool, std::move(*cutter)};
 }
 
 std::string shape_help(LengthUnit unit) {
-  return fmt::format("{}   ({}, degrees)\n", kHelp, name_of(unit));
+  return trf("{}   ({}, degrees)\n", tr(kHelp), name_of(unit));
 }
 
 }  // namespace kerf

@@ -4,8 +4,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/text_scan.h"
+#include "base/units.h"
 #include "stock/cutter/free_text.h"
-#include "stock/cutter/scan.h"
 
 namespace kerf {
 namespace {
@@ -14,16 +15,9 @@ namespace {
 constexpr std::size_t kLongestComment = 512;
 /// More tools than any magazine holds, and few enough to compare each with all.
 constexpr std::size_t kMostHints = 10000;
-constexpr double kMmPerInch = 25.4;
 /// A drill's point: what is blunter than this is no chamfer and no taper, whatever language names
 /// it.
 constexpr double kLeastDrillAngle_deg = 100;
-
-bool contains(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::string_view skip(std::string_view text, std::string_view characters) {
   const std::size_t first = text.find_first_not_of(characters);
@@ -82,7 +76,6 @@ std::optional<NumberedText> split_tool_number(std::string_view lower) {
 /// kSeveralTools.
 constexpr int kSeveralTools = -2;
 int tool_named_in(std::string_view lower) {
-  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   int named = -1;
   for (std::size_t at = lower.find('t'); at != std::string_view::npos;
        at = lower.find('t', at + 1)) {

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/translate.h"
+
 namespace kerf::octree {
 namespace {
 

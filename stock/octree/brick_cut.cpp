@@ -13,7 +13,7 @@ namespace {
 /// Blocks this close to wholly inside or outside are looked at node by node, so that rounding never
 /// decides differently for a block than for its nodes.
 constexpr double kBlockSlack_mm = 1e-6;
-constexpr int kBlock = kBrick / 2;
+constexpr int kNodeBlock = kBrick / 2;
 /// Roots are found to this part of an edge: far below a crossing's 1 / kEdgeParts.
 constexpr double kRootPart = 1e-7;
 constexpr int kNewtonSteps = 12, kMaxRootSteps = 60;
@@ -69,7 +69,7 @@ void BrickCutter::set_place(int bx, int by, int bz) {
 void BrickCutter::sort_blocks(const Sweep& sweep, const Near* near) {
   points_ = 0;
   const auto middle = [](const double* places, int block) {
-    return 0.5 * (places[block * kBlock] + places[(block + 1) * kBlock]);
+    return 0.5 * (places[block * kNodeBlock] + places[(block + 1) * kNodeBlock]);
   };
   for (int b = 0; b < 8; ++b)
     push_point(middle(x_, b & 1), middle(y_, b >> 1 & 1), middle(z_, b >> 2));
@@ -97,7 +97,7 @@ bool BrickCutter::find_nodes(const Sweep& sweep, const OpenBrick& brick, const N
       unsigned solid = brick.columns[column];
       if (additive_ && at_end_) solid &= may_clear_[column];
       if (solid == 0) continue;
-      const int block = std::min(i / kBlock, 1) + 2 * std::min(j / kBlock, 1);
+      const int block = std::min(i / kNodeBlock, 1) + 2 * std::min(j / kNodeBlock, 1);
       for (int upper = 0; upper < 2; ++upper) {
         const Side side = blocks_[block + 4 * upper];
         const LowerPlane& plane = planes_[block + 4 * upper];
@@ -157,7 +157,7 @@ void BrickCutter::find_edges(const Sweep& sweep, const OpenBrick& brick) {
   const bool takes_roofs = sweep.body->endless && std::isfinite(sweep.bottom_mm);
   for (int j = 0; j < kBrick; ++j) {
     for (int i = 0; i < kBrick; ++i) {
-      const int block = i / kBlock + 2 * (j / kBlock);
+      const int block = i / kNodeBlock + 2 * (j / kNodeBlock);
       const unsigned near =
           (blocks_[block] != kOutside ? 0x0fu : 0u) | (blocks_[block + 4] != kOutside ? 0xf0u : 0u);
       if (near == 0) continue;
@@ -209,7 +209,7 @@ void BrickCutter::push_lost(const OpenBrick& brick, int axis, int i, int j, unsi
   for (unsigned bits = lost; bits != 0; bits &= bits - 1) {
     const int k = std::countr_zero(bits);
     // All of the edge is inside of the sweep.
-    if (blocks_[i / kBlock + 2 * (j / kBlock) + 4 * (k / kBlock)] == kInside) continue;
+    if (blocks_[i / kNodeBlock + 2 * (j / kNodeBlock) + 4 * (k / kNodeBlock)] == kInside) continue;
     Crossing c{};
     c.edge = axis * kBrickNodes + (j * kBrick + i) * kBrick + k;
     c.axis = axis;
@@ -219,8 +219,8 @@ void BrickCutter::push_lost(const OpenBrick& brick, int axis, int i, int j, unsi
     if (!c.solid_is_lower) ++solid[axis];
     const int lower = brick.place[c.edge];
     c.reach = length * (c.solid_is_lower ? lower : kEdgeParts - lower) / kEdgeParts;
-    const int block = std::min(solid[0] / kBlock, 1) + 2 * std::min(solid[1] / kBlock, 1) +
-                      4 * std::min(solid[2] / kBlock, 1);
+    const int block = std::min(solid[0] / kNodeBlock, 1) + 2 * std::min(solid[1] / kNodeBlock, 1) +
+                      4 * std::min(solid[2] / kNodeBlock, 1);
     const double f = node_f_[(solid[1] * kSide + solid[0]) * 16 + solid[2]];
     if (blocks_[block] == kMixed && f + c.reach <= kLeastFilm_mm) continue;
     c.from_mm = Vec3(x_[solid[0]], y_[solid[1]], z_[solid[2]]);
@@ -233,7 +233,7 @@ void BrickCutter::push_lost(const OpenBrick& brick, int axis, int i, int j, unsi
 bool BrickCutter::may_be_inside(const Crossing& c, const int solid[3]) const {
   if (additive_) return true;
   int block = 0;
-  for (int axis = 0; axis < 3; ++axis) block |= (solid[axis] >= kBlock ? 1 : 0) << axis;
+  for (int axis = 0; axis < 3; ++axis) block |= (solid[axis] >= kNodeBlock ? 1 : 0) << axis;
   if (blocks_[block] != kMixed) return true;
   Vec3 at = c.from_mm;
   at[c.axis] += c.sign * c.reach;
@@ -408,9 +408,9 @@ void BrickCutter::look_near(const TurnGroup& group, const OpenBrick& brick, Near
   whole.bend_mm = bend_mm(reach, group.way_mm, group.turn_rad);
   points_ = 0;
   for (int b = 0; b < 8; ++b)
-    push_point(0.5 * (x_[(b & 1) * kBlock] + x_[((b & 1) + 1) * kBlock]),
-               0.5 * (y_[(b >> 1 & 1) * kBlock] + y_[((b >> 1 & 1) + 1) * kBlock]),
-               0.5 * (z_[(b >> 2) * kBlock] + z_[((b >> 2) + 1) * kBlock]));
+    push_point(0.5 * (x_[(b & 1) * kNodeBlock] + x_[((b & 1) + 1) * kNodeBlock]),
+               0.5 * (y_[(b >> 1 & 1) * kNodeBlock] + y_[((b >> 1 & 1) + 1) * kNodeBlock]),
+               0.5 * (z_[(b >> 2) * kNodeBlock] + z_[((b >> 2) + 1) * kNodeBlock]));
   const double clear = block_half_diagonal_ + kReachMargin_mm + off;
   kernel_.turn_bound(whole, clear, 8, px_, py_, pz_, f_);
   for (int b = 0; b < 8; ++b) near.outside[b] = f_[b] > clear;
@@ -419,10 +419,10 @@ void BrickCutter::look_near(const TurnGroup& group, const OpenBrick& brick, Near
   for (int column = 0; column < kSide * kSide; ++column) {
     near.columns[column] = 0;
     const int i = column % kSide, j = column / kSide;
-    const int block = std::min(i / kBlock, 1) + 2 * std::min(j / kBlock, 1);
+    const int block = std::min(i / kNodeBlock, 1) + 2 * std::min(j / kNodeBlock, 1);
     for (unsigned bits = brick.columns[column]; bits != 0; bits &= bits - 1) {
       const int k = std::countr_zero(bits);
-      if (near.outside[block + 4 * std::min(k / kBlock, 1)]) continue;
+      if (near.outside[block + 4 * std::min(k / kNodeBlock, 1)]) continue;
       nodes_[points_] = static_cast<std::uint16_t>(column << 4 | k);
       push_point(x_[i], y_[j], z_[k]);
     }
@@ -446,11 +446,13 @@ bool BrickCutter::any_edge_near(const OpenBrick& brick, const Near& near) const 
           int solid[3] = {i, j, k};
           const bool lower_is = (brick.columns[j * kSide + i] >> k & 1u) != 0;
           if (!lower_is) ++solid[axis];
-          const int block = std::min(solid[0] / kBlock, 1) + 2 * std::min(solid[1] / kBlock, 1) +
-                            4 * std::min(solid[2] / kBlock, 1);
+          const int block = std::min(solid[0] / kNodeBlock, 1) +
+                            2 * std::min(solid[1] / kNodeBlock, 1) +
+                            4 * std::min(solid[2] / kNodeBlock, 1);
           if (near.outside[block]) {
             // The edge's own block may be the other one, which is near.
-            if (near.outside[i / kBlock + 2 * (j / kBlock) + 4 * (k / kBlock)]) continue;
+            if (near.outside[i / kNodeBlock + 2 * (j / kNodeBlock) + 4 * (k / kNodeBlock)])
+              continue;
             return true;
           }
           const int lower = brick.place[axis * kBrickNodes + (j * kBrick + i) * kBrick + k];

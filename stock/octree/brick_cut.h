@@ -54,7 +54,6 @@ class BrickCutter {
   /// Is there material deeper than the sweep's shrink_mm in it? Changes nothing.
   bool touches(const Sweep& sweep, const OpenBrick& brick, const TurnGroup* group = nullptr);
   /// All nodes of a brick lie within this of its middle.
-  double half_diagonal_mm() const { return half_diagonal_; }
 
  private:
   enum Side : std::uint8_t { kOutside, kInside, kMixed };

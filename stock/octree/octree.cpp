@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/translate.h"
 #include "base/worker_pool.h"
 #include "stock/move_reach.h"
 #include "stock/octree/blank_bricks.h"
@@ -19,6 +20,7 @@
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
 #include "stock/octree/octree_state.h"
+#include "stock/octree/solid_point.h"
 #include "stock/octree/thin_films.h"
 #include "stock/octree/tool_bodies.h"
 #include "stock/octree/tree_cut.h"
@@ -100,33 +102,33 @@ bool countable(const Box& box, double cell) {
 
 Done check(const OctreeOptions& options, const Box& box) {
   const double cell = options.cell_mm;
-  if (box.empty() || options.blank.bodies.empty()) return Error{"the blank is empty"};
+  if (box.empty() || options.blank.bodies.empty()) return Error{tr("the blank is empty")};
   if (!std::isfinite(cell) || cell <= 0)
-    return Error{fmt::format("cell size {} mm is not allowed; must be above 0", cell)};
+    return Error{trf("cell size {} mm is not allowed; must be above 0", cell)};
   const Vec3 size = box.size();
   if (cell > std::min({size.x, size.y, size.z})) {
     return Error{
-        fmt::format("cell size {} mm exceeds the blank, which is {} x {} x {} mm; 0.05 to 0.5 mm "
-                    "suits most parts",
-                    cell, size.x, size.y, size.z)};
+        trf("cell size {} mm exceeds the blank, which is {} x {} x {} mm; 0.05 to 0.5 mm "
+            "suits most parts",
+            cell, size.x, size.y, size.z)};
   }
   if (!countable(box, cell)) {
     return Error{
-        fmt::format("cell size {} mm is not allowed; the blank must not have more than a "
-                    "million cells along an edge: at least {:.2g} mm",
-                    cell, std::max({size.x, size.y, size.z}) / 1e6)};
+        trf("cell size {} mm is not allowed; the blank must not have more than a "
+            "million cells along an edge: at least {:.2g} mm",
+            cell, std::max({size.x, size.y, size.z}) / 1e6)};
   }
   if (size.z / cell > kMostLayers) {
     return Error{
-        fmt::format("cell size {} mm makes {:.0f} layers of cells between the blank's floor and "
-                    "its top; {} are allowed, for which {:.2g} mm fits",
-                    cell, std::ceil(size.z / cell), kMostLayers, layers_cell(size.z))};
+        trf("cell size {} mm makes {:.0f} layers of cells between the blank's floor and "
+            "its top; {} are allowed, for which {:.2g} mm fits",
+            cell, std::ceil(size.z / cell), kMostLayers, layers_cell(size.z))};
   }
   const double needed = needed_bytes(Lattice::over(box, cell));
   const double limit = static_cast<double>(options.memory_limit_bytes);
   if (needed > limit) {
     const double fits = fitting_cell(box, cell, limit);
-    return Error{fmt::format(
+    return Error{trf(
         "cell size {} mm would need about {} of memory; {} are allowed, for which {:.2g} mm fits",
         cell, size_text(needed), size_text(limit), fits)};
   }
@@ -376,42 +378,8 @@ std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
   return WayContact{first, {first_part(moves[first], meets).to_mm, depth_mm}};
 }
 
-/// By the nodes around it; where they differ by the planes of the crossings between them.
 bool Octree::solid_at(const Vec3& point_mm, double within_mm) const {
-  const Impl& m = *impl_;
-  const Lattice& lattice = m.tree.lattice();
-  std::array<int, 3> low{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double place = (point_mm[axis] - lattice.origin_mm[axis]) / lattice.cell_mm[axis];
-    if (!(place >= 0 && place < lattice.cells[a] + 1)) return false;
-    low[a] = static_cast<int>(place);
-  }
-  int solid = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const int i = low[0] + (corner & 1), j = low[1] + (corner >> 1 & 1), k = low[2] + (corner >> 2);
-    const BrickRef& brick = m.tree.brick(i / kBrick, j / kBrick, k / kBrick);
-    if (brick.get() == nullptr) {
-      solid += brick.is_solid() ? 1 : 0;
-    } else {
-      solid += brick->columns[j % kBrick * kSide + i % kBrick] >> (k % kBrick) & 1;
-    }
-  }
-  if (solid == 0 || solid == 8) return (solid == 8) != m.additive;
-  thread_local HermiteGrid cell;
-  octree::gather(m.tree, m.additive, low, {2, 2, 2}, &cell);
-  const auto at = [](int n) { return static_cast<std::size_t>(n); };
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const std::int32_t number = cell.edges[at(axis)][at(corner)];
-      if (number < 0) continue;
-      const HermiteCrossing& crossing = cell.crossings[at(number)];
-      Vec3 crossed = cell.origin_mm + Vec3(corner & 1, corner >> 1 & 1, corner >> 2) * cell.cell_mm;
-      crossed[axis] += static_cast<double>(crossing.t) * cell.cell_mm[axis];
-      if (glm::dot(Vec3(crossing.normal), point_mm - crossed) > -within_mm) return false;
-    }
-  }
-  return true;
+  return octree::solid_at(impl_->tree, impl_->additive, point_mm, within_mm);
 }
 
 std::unique_ptr<StockModel> Octree::snapshot() const {

@@ -73,9 +73,12 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   /// To a cell / 4000 along the path. Where no tool has come within a few cells yet it is the exact
   /// tool against the exact blank less the tolerance, whatever the cells (BlankContact); elsewhere,
   /// and of a workpiece that was loaded, nodes and crossings count, and a corner of material may be
-  /// missed by less than a cell. depth_mm is the greatest height of material in the sweep above any
-  /// one point: of columns of nodes, and of an upright tool in the untouched blank exact. Never in
-  /// an additive model: its tool always touches what it adds.
+  /// missed by less than a cell. Beside and below a slot, at whose walls and floor crossings are
+  /// exact, level ways of flat, ball, bull and vee tools are told from the tolerance on (measured
+  /// against points of the exact bodies, in cells of 0.25 and 0.5 mm). depth_mm is the greatest
+  /// height of material in the sweep above any one point: of columns of nodes, and of an upright
+  /// tool in the untouched blank exact. Never in an additive model: its tool always touches what it
+  /// adds.
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
   std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,

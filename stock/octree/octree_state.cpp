@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 
+#include "base/translate.h"
 #include "stock/state_bytes.h"
 
 namespace kerf::octree {
@@ -214,7 +215,7 @@ Result<SavedTree> parse_tree(const std::string& bytes, const std::string& name) 
   if (!reader) return Error{reader.error()};
   const Result<std::string_view> data = data_of_state(*reader, name);
   if (!data) return Error{data.error()};
-  const std::string damaged = fmt::format("{}: the tiles are damaged", name);
+  const std::string damaged = trf("{}: the tiles are damaged", name);
   const Lattice lattice = lattice_of(head);
   const double tiles = static_cast<double>(lattice.tiles[0]) * lattice.tiles[1] * lattice.tiles[2];
   if (tiles > static_cast<double>(data->size())) return Error{damaged};

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/geometry.h"
+#include "base/translate.h"
 
 namespace kerf::octree {
 namespace {
@@ -214,7 +215,7 @@ Result<std::vector<ToolBody>> tool_bodies(const Cutter& cutter) {
     const bool bulges_down =
         p.kind == ProfilePiece::Kind::kArc && p.convex && p.r0 < p.center_r - 1e-9;
     if (p.z1 < p.z0 - 1e-9 || bulges_down) {
-      return Error{fmt::format(
+      return Error{trf(
           "{} has a hollow bottom (its profile falls from radius {:.6g} outward); an octree cannot "
           "cut with it",
           cutter.spec(), p.r0)};

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "stock/sheet/polygon.h"
 
 namespace kerf {
@@ -23,8 +24,8 @@ struct Edge {
 
 std::string ring_name(const SheetOutline& outline, std::size_t ring) {
   const std::string line =
-      ring < outline.lines.size() ? fmt::format(" (line {})", outline.lines[ring]) : "";
-  return fmt::format("ring {}{}", ring + 1, line);
+      ring < outline.lines.size() ? trf(" (line {})", outline.lines[ring]) : "";
+  return trf("ring {}{}", ring + 1, line);
 }
 
 std::string place(const Vec2& p) {
@@ -63,11 +64,9 @@ Vec2 crossing_of(const Edge& e, const Edge& f) {
 
 std::string crossing_text(const SheetOutline& outline, const Edge& e, const Edge& f) {
   const std::string at = place(crossing_of(e, f));
-  if (e.ring == f.ring)
-    return fmt::format("{} crosses itself at {}", ring_name(outline, e.ring), at);
+  if (e.ring == f.ring) return trf("{} crosses itself at {}", ring_name(outline, e.ring), at);
   const auto [first, second] = std::minmax(e.ring, f.ring);
-  return fmt::format("{} and {} cross at {}", ring_name(outline, first), ring_name(outline, second),
-                     at);
+  return trf("{} and {} cross at {}", ring_name(outline, first), ring_name(outline, second), at);
 }
 
 Done check_ring(const SheetOutline& outline, std::size_t number, std::vector<Edge>& edges) {
@@ -75,21 +74,21 @@ Done check_ring(const SheetOutline& outline, std::size_t number, std::vector<Edg
   sheet::Ring points;
   for (const Vec2& p : ring) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
-      return Error{fmt::format("{}: a corner is not a number", ring_name(outline, number))};
+      return Error{trf("{}: a corner is not a number", ring_name(outline, number))};
     }
     if (std::abs(p.x) > sheet::kMaxCoordinate_mm || std::abs(p.y) > sheet::kMaxCoordinate_mm) {
-      return Error{fmt::format("{}: the corner {} is too far out; must be within {} mm",
-                               ring_name(outline, number), place(p),
-                               number_text(sheet::kMaxCoordinate_mm))};
+      return Error{trf("{}: the corner {} is too far out; must be within {} mm",
+                       ring_name(outline, number), place(p),
+                       number_text(sheet::kMaxCoordinate_mm))};
     }
     const Point point = sheet::to_units(p);
     if (points.empty() || points.back() != point) points.push_back(point);
   }
   while (points.size() > 1 && points.front() == points.back()) points.pop_back();
   if (points.size() < 3) {
-    return Error{fmt::format("{} has {} different {}; a closed outline has at least 3",
-                             ring_name(outline, number), points.size(),
-                             points.size() == 1 ? "corner" : "corners")};
+    return Error{trf("{} has {} different {}; a closed outline has at least 3",
+                     ring_name(outline, number), points.size(),
+                     points.size() == 1 ? tr("corner") : tr("corners"))};
   }
   for (std::size_t i = 0; i < points.size(); ++i)
     edges.push_back({points[i], points[(i + 1) % points.size()], number, i});
@@ -103,7 +102,7 @@ SheetOutline rectangle_outline(const Vec2& low_mm, const Vec2& high_mm) {
 }
 
 Done check_outline(const SheetOutline& outline) {
-  if (outline.rings.empty()) return Error{"the outline is empty; it must have a closed ring"};
+  if (outline.rings.empty()) return Error{tr("the outline is empty; it must have a closed ring")};
   std::vector<Edge> edges;
   std::vector<std::size_t> first_edge;
   for (std::size_t ring = 0; ring < outline.rings.size(); ++ring) {
@@ -128,7 +127,7 @@ Done check_outline(const SheetOutline& outline) {
     for (std::size_t i = first_edge[ring]; i < first_edge[ring + 1]; ++i)
       points.push_back(edges[i].a);
     if (sheet::twice_area(points) == 0)
-      return Error{fmt::format("{} has no area", ring_name(outline, ring))};
+      return Error{trf("{} has no area", ring_name(outline, ring))};
   }
   return std::monostate{};
 }

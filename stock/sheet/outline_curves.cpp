@@ -7,12 +7,12 @@
 namespace kerf::sheet {
 namespace {
 
-constexpr double kMaxChords = 100'000;
+constexpr double kMostChords = 100'000;
 /// Of half a chord's angle: eight chords a turn at least.
 constexpr double kLeastCosine = 0.924;
 
 int chords_for(double wanted) {
-  return static_cast<int>(std::clamp(std::ceil(wanted), 1.0, kMaxChords));
+  return static_cast<int>(std::clamp(std::ceil(wanted), 1.0, kMostChords));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "stock/cutter/scan.h"
 #include "stock/sheet/outline_curves.h"
 #include "stock/sheet/outline_file.h"
@@ -14,7 +16,6 @@ namespace kerf {
 namespace {
 
 constexpr double kMax_mm = 1e5;
-constexpr double kMmPerInch = 25.4;
 constexpr std::size_t kMaxPoints = 10'000'000;
 constexpr std::array<std::string_view, 6> kDrawNothing = {"TEXT",      "MTEXT", "POINT",
                                                           "DIMENSION", "HATCH", "SEQEND"};
@@ -59,7 +60,7 @@ class DxfReader {
     if (error_.empty()) join_pieces();
     if (!error_.empty()) return Error{error_};
     if (outline_.rings.empty())
-      return Error{fmt::format("{}: no closed contour in the section ENTITIES", name_)};
+      return Error{trf("{}: no closed contour in the section ENTITIES", name_)};
     return std::move(outline_);
   }
 
@@ -84,13 +85,13 @@ class DxfReader {
     if (code.empty() && at_ >= text_.size()) return false;
     const std::optional<double> number = parse_decimal(code);
     if (!number || *number != std::floor(*number) || std::abs(*number) > 9999) {
-      fail(line_, fmt::format("'{}' is not a group code; is this an ASCII DXF file?", shown(code)));
+      fail(line_, trf("'{}' is not a group code; is this an ASCII DXF file?", shown(code)));
       return false;
     }
     group.code = static_cast<int>(*number);
     group.line = line_ + 1;
     if (next_line(group.value)) return true;
-    fail(line_, fmt::format("the file ends after group code {}", group.code));
+    fail(line_, trf("the file ends after group code {}", group.code));
     return false;
   }
 
@@ -107,7 +108,7 @@ class DxfReader {
 
   double number(const Group& group, double low, double high) {
     const Result<double> value =
-        parse_within(fmt::format("group {}", group.code), group.value, low, high, "drawing units");
+        parse_within(trf("group {}", group.code), group.value, low, high, tr("drawing units"));
     if (!value) fail(group.line, value.error());
     return value ? *value : 0;
   }
@@ -118,7 +119,7 @@ class DxfReader {
     for (auto group = entity.rbegin(); group != entity.rend(); ++group) {
       if (group->code == code) return number(*group, low, high);
     }
-    if (!otherwise) fail(entity[0].line, fmt::format("{} without group {}", entity[0].value, code));
+    if (!otherwise) fail(entity[0].line, trf("{} without group {}", entity[0].value, code));
     return otherwise.value_or(0);
   }
 
@@ -132,7 +133,7 @@ class DxfReader {
     if (entity.empty() || !error_.empty()) return;
     const std::string_view kind = entity[0].value;
     if (value_of(entity, 230, -1, 1, 1.0) < 1 - 1e-6)
-      return fail(entity[0].line, fmt::format("{} drawn from below (group 230)", kind));
+      return fail(entity[0].line, trf("{} drawn from below (group 230)", kind));
     if (kind == "LINE") {
       pieces_.push_back({{point_of(entity, 10), point_of(entity, 11)}, entity[0].line});
     } else if (kind == "ARC" || kind == "CIRCLE") {
@@ -152,8 +153,8 @@ class DxfReader {
       end_polyline();
     } else if (std::find(kDrawNothing.begin(), kDrawNothing.end(), kind) == kDrawNothing.end()) {
       fail(entity[0].line,
-           fmt::format("{} is not read; allowed are LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE",
-                       shown(kind)));
+           trf("{} is not read; allowed are LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE",
+               shown(kind)));
     }
   }
 
@@ -190,7 +191,7 @@ class DxfReader {
   void end_polyline() {
     const std::vector<Vec2>& corners = polyline_.points;
     if (!error_.empty()) return;
-    if (corners.size() < 2) return fail(polyline_.line, "a polyline of less than two corners");
+    if (corners.size() < 2) return fail(polyline_.line, tr("a polyline of less than two corners"));
     std::vector<Vec2> points{corners[0]};
     const std::size_t edges = corners.size() - (closed_ ? 0 : 1);
     for (std::size_t i = 0; i < edges; ++i)
@@ -202,7 +203,7 @@ class DxfReader {
 
   void add_ring(std::vector<Vec2> points, int line) {
     count_ += points.size();
-    if (count_ > kMaxPoints) return fail(line, fmt::format("more than {} points", kMaxPoints));
+    if (count_ > kMaxPoints) return fail(line, trf("more than {} points", kMaxPoints));
     outline_.rings.push_back(std::move(points));
     outline_.lines.push_back(line);
   }
@@ -249,9 +250,9 @@ class DxfReader {
         const std::size_t next = piece_at(ring.back(), ends, used);
         if (next == pieces_.size()) {
           return fail(pieces_[first].line,
-                      fmt::format("the contour that begins here is open: nothing goes on at "
-                                  "X{:.4f} Y{:.4f} (within {} mm)",
-                                  ring.back().x, ring.back().y, kJoin_mm));
+                      trf("the contour that begins here is open: nothing goes on at "
+                          "X{:.4f} Y{:.4f} (within {} mm)",
+                          ring.back().x, ring.back().y, kJoin_mm));
         }
         used[next] = 1;
         std::vector<Vec2> points = pieces_[next].points;

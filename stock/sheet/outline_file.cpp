@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/atomic_file.h"
+#include "base/translate.h"
 #include "stock/sheet/outline_arcs.h"
 #include "stock/sheet/polygon.h"
 
@@ -19,14 +20,14 @@ Result<std::string> read_text(const std::string& path) {
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) return Error{path + ": " + std::strerror(ENOENT)};
-  if (!std::filesystem::is_regular_file(status)) return Error{path + ": not a regular file"};
+  if (!std::filesystem::is_regular_file(status)) return Error{path + tr(": not a regular file")};
   const std::uintmax_t bytes = std::filesystem::file_size(path, code);
   if (!code && bytes > kMaxOutlineBytes) {
-    return Error{fmt::format("{}: {} bytes; at most {} are read", path, bytes, kMaxOutlineBytes)};
+    return Error{trf("{}: {} bytes; at most {} are read", path, bytes, kMaxOutlineBytes)};
   }
   std::ifstream in(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return Error{fmt::format("reading {}: {}", path, std::strerror(errno))};
+  if (!in) return Error{trf("reading {}: {}", path, std::strerror(errno))};
   return text;
 }
 

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
 #include "stock/cutter/scan.h"
 #include "stock/sheet/outline_curves.h"
 #include "stock/sheet/outline_file.h"
@@ -14,7 +17,6 @@
 namespace kerf {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr double kMaxUser = 1e6;
 /// What is in these is drawn only where something refers to it.
 constexpr std::array<std::string_view, 5> kNotDrawn = {"defs", "symbol", "clipPath", "mask",
@@ -37,8 +39,8 @@ class SvgReader {
   Result<SheetOutline> read() {
     while (error_.empty() && next_tag()) {
     }
-    if (error_.empty() && !seen_svg_) fail("no <svg> element; is this an SVG file?");
-    if (error_.empty() && outline_.rings.empty()) fail("no closed contour");
+    if (error_.empty() && !seen_svg_) fail(tr("no <svg> element; is this an SVG file?"));
+    if (error_.empty() && outline_.rings.empty()) fail(tr("no closed contour"));
     if (!error_.empty()) return Error{error_};
     return std::move(outline_);
   }
@@ -62,7 +64,7 @@ class SvgReader {
   bool skip_past(std::string_view ending) {
     const std::size_t end = text_.find(ending, at_);
     if (end == std::string_view::npos) {
-      fail(fmt::format("the file ends before '{}'", ending));
+      fail(trf("the file ends before '{}'", ending));
       return false;
     }
     at_ = end + ending.size();
@@ -97,13 +99,12 @@ class SvgReader {
     return true;
   }
 
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
   void skip_blanks() {
-    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+    while (at_ < text_.size() && is_text_blank(text_[at_])) ++at_;
   }
   std::string_view word() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && !is_blank(text_[at_]) &&
+    while (at_ < text_.size() && !is_text_blank(text_[at_]) &&
            std::string_view("=/>\"'<").find(text_[at_]) == std::string_view::npos)
       ++at_;
     return text_.substr(begin, at_ - begin);
@@ -113,7 +114,7 @@ class SvgReader {
   bool read_attributes(Attributes& attributes) {
     while (true) {
       skip_blanks();
-      if (at_ >= text_.size()) return fail("the file ends within a tag"), false;
+      if (at_ >= text_.size()) return fail(tr("the file ends within a tag")), false;
       if (text_[at_] == '>') return ++at_, true;
       if (text_[at_] == '/') {
         ++at_;
@@ -122,13 +123,13 @@ class SvgReader {
       const std::string_view key = word();
       skip_blanks();
       const bool equals = at_ < text_.size() && text_[at_] == '=';
-      if (key.empty() || !equals) return fail("an attribute is not NAME=\"VALUE\""), false;
+      if (key.empty() || !equals) return fail(tr("an attribute is not NAME=\"VALUE\"")), false;
       ++at_;
       skip_blanks();
       const char quote = at_ < text_.size() ? text_[at_] : ' ';
-      if (quote != '"' && quote != '\'') return fail("an attribute is not in quotes"), false;
+      if (quote != '"' && quote != '\'') return fail(tr("an attribute is not in quotes")), false;
       const std::size_t end = text_.find(quote, ++at_);
-      if (end == std::string_view::npos) return fail("the file ends within a tag"), false;
+      if (end == std::string_view::npos) return fail(tr("the file ends within a tag")), false;
       attributes.emplace(key, text_.substr(at_, end - at_));
       at_ = end + 1;
     }
@@ -138,26 +139,26 @@ class SvgReader {
                 std::optional<double> otherwise) {
     const auto at = attributes.find(key);
     if (at == attributes.end()) {
-      if (!otherwise) fail(fmt::format("the attribute {} is missing", key));
+      if (!otherwise) fail(trf("the attribute {} is missing", key));
       return otherwise.value_or(0);
     }
-    const Result<double> value = parse_within(key, trim(at->second), low, kMaxUser, "user units");
+    const Result<double> value =
+        parse_within(key, trim(at->second), low, kMaxUser, tr("user units"));
     if (!value) fail(value.error());
     return value ? *value : 0;
   }
 
   void take(std::string_view element, const Attributes& attributes) {
     if (attributes.contains("transform"))
-      return fail(fmt::format("{}: a transform is not read; apply it in the drawing program",
-                              shown(element)));
+      return fail(
+          trf("{}: a transform is not read; apply it in the drawing program", shown(element)));
     if (element == "svg") return take_svg(attributes);
     if (element == "path") return take_path(attributes);
     if (element == "polygon") return take_polygon(attributes);
     if (element == "rect") return take_rect(attributes);
     if (element == "circle" || element == "ellipse") return take_ellipse(attributes, element);
     if (contains(kRefused, element))
-      fail(fmt::format("{} is not read; allowed are path, rect, circle, ellipse and polygon",
-                       element));
+      fail(trf("{} is not read; allowed are path, rect, circle, ellipse and polygon", element));
   }
 
   /// Millimetres of a length like "210mm"; 0 for one in user units.
@@ -170,30 +171,30 @@ class SvgReader {
       if (!text.ends_with(unit)) continue;
       const std::optional<double> value = parse_decimal(text.substr(0, text.size() - unit.size()));
       if (value && *value > 0) return *value * mm;
-      fail(fmt::format("{}: '{}' is not a length", key, shown(text)));
+      fail(trf("{}: '{}' is not a length", key, shown(text)));
     }
     return 0;
   }
 
   void take_svg(const Attributes& attributes) {
-    if (seen_svg_) return fail("an <svg> within an <svg>");
+    if (seen_svg_) return fail(tr("an <svg> within an <svg>"));
     seen_svg_ = true;
     const double width = length_mm(attributes, "width"), height = length_mm(attributes, "height");
     const auto box = attributes.find("viewBox");
     if (box == attributes.end()) {
       if (width > 0 || height > 0)
-        fail("width and height are lengths, but there is no viewBox to scale by");
+        fail(tr("width and height are lengths, but there is no viewBox to scale by"));
       return;
     }
     Result<std::vector<double>> numbers = sheet::parse_numbers(box->second);
     if (!numbers) return fail("viewBox: " + numbers.error());
     const std::vector<double>& view = *numbers;
     if (view.size() != 4 || !(view[2] > 0) || !(view[3] > 0))
-      return fail(fmt::format("viewBox: '{}' must be x, y, width, height", shown(box->second)));
+      return fail(trf("viewBox: '{}' must be x, y, width, height", shown(box->second)));
     if (width > 0) scale_ = width / view[2];
     if (width == 0 && height > 0) scale_ = height / view[3];
     if (width > 0 && height > 0 && std::abs(height / view[3] / scale_ - 1) > 1e-3)
-      return fail("width and height scale the viewBox differently");
+      return fail(tr("width and height scale the viewBox differently"));
     lower_edge_ = view[1] + view[3];
   }
 
@@ -208,10 +209,10 @@ class SvgReader {
 
   void take_polygon(const Attributes& attributes) {
     const auto data = attributes.find("points");
-    if (data == attributes.end()) return fail("the attribute points is missing");
+    if (data == attributes.end()) return fail(tr("the attribute points is missing"));
     const Result<std::vector<double>> numbers = sheet::parse_numbers(data->second);
     if (!numbers) return fail("points: " + numbers.error());
-    if (numbers->size() % 2 != 0) return fail("points: an odd number of coordinates");
+    if (numbers->size() % 2 != 0) return fail(tr("points: an odd number of coordinates"));
     std::vector<Vec2> ring;
     for (std::size_t i = 0; i < numbers->size(); i += 2)
       ring.emplace_back((*numbers)[i], (*numbers)[i + 1]);
@@ -225,7 +226,7 @@ class SvgReader {
     const double h = number(attributes, "height", 0, std::nullopt);
     const double round =
         std::max(number(attributes, "rx", 0, 0.0), number(attributes, "ry", 0, 0.0));
-    if (round > 0) return fail("rect: round corners are not read; make it a path");
+    if (round > 0) return fail(tr("rect: round corners are not read; make it a path"));
     add({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}});
   }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/suggest.h"
+#include "base/translate.h"
 #include "stock/cutter/scan.h"
 #include "stock/sheet/kerf_contour.h"
 #include "stock/sheet/outline_file.h"
@@ -26,9 +28,8 @@ Result<double> size_of(std::string_view name, std::string_view text) {
 
 Done check_count(const Fields& fields, std::size_t count, std::string_view form) {
   if (fields.size() == count) return std::monostate{};
-  return Error{fmt::format("{} {} after '{}'; the form is {}", fields.size() - 1,
-                           fields.size() == 2 ? "value" : "values", to_lower(trim(fields[0])),
-                           form)};
+  return Error{trf("{} {} after '{}'; the form is {}", fields.size() - 1,
+                   fields.size() == 2 ? "value" : "values", to_lower(trim(fields[0])), form)};
 }
 
 SheetOutline rectangle(double a, double b) {
@@ -97,10 +98,10 @@ Result<SheetOutline> parse_polygon(const Fields& fields) {
   const Done count = check_count(fields, 3, "polygon:N:D");
   if (!count) return Error{count.error()};
   const Result<double> n =
-      parse_within("corners N", trim(fields[1]), kMinCorners, kMaxCorners, "whole number");
+      parse_within(tr("corners N"), trim(fields[1]), kMinCorners, kMaxCorners, tr("whole number"));
   if (!n) return Error{n.error()};
   if (*n != std::floor(*n)) {
-    return Error{fmt::format("corners N: {} is not a whole number", shown(trim(fields[1])))};
+    return Error{trf("corners N: {} is not a whole number", shown(trim(fields[1])))};
   }
   const Result<double> d = size_of("diameter D", fields[2]);
   if (!d) return Error{d.error()};
@@ -125,32 +126,33 @@ Result<SheetOutline> parse_fields(std::string_view spec, double tolerance_mm) {
     // A file name may hold colons.
     const std::string file(trim(spec.substr(std::min(spec.size(), spec.find(':') + 1))));
     if (fields.size() < 2 || file.empty())
-      return Error{fmt::format("the file name is missing; the form is {}:FILE", kind)};
+      return Error{trf("the file name is missing; the form is {}:FILE", kind)};
     return read_outline_file(file, kind == "dxf" ? OutlineFormat::kDxf : OutlineFormat::kSvg,
                              tolerance_mm);
   }
-  return Error{fmt::format("unknown shape '{}'{} Forms:\n{}", shown(kind),
-                           did_you_mean(kind, kKinds), punch_shape_help())};
+  return Error{trf("unknown shape '{}'{} Forms:\n{}", shown(kind), did_you_mean(kind, kKinds),
+                   punch_shape_help())};
 }
 
 }  // namespace
 
 Result<SheetOutline> parse_punch_shape(std::string_view spec, double tolerance_mm) {
   spec = trim(spec);
-  if (spec.empty()) return Error{fmt::format("no shape is given; forms:\n{}", punch_shape_help())};
+  if (spec.empty()) return Error{trf("no shape is given; forms:\n{}", punch_shape_help())};
   Result<SheetOutline> shape = parse_fields(spec, tolerance_mm);
   if (!shape) return Error{fmt::format("{}: {}", shown(spec), shape.error())};
   return shape;
 }
 
 std::string_view punch_shape_help() {
-  return "round:D          diameter D\n"
-         "square:A         edge A\n"
-         "rectangle:A:B    edges A along x, B along y\n"
-         "obround:A:B      A x B over all, round at the ends of the longer one\n"
-         "polygon:N:D      N corners, D across them\n"
-         "dxf:FILE         closed contours of a drawing\n"
-         "svg:FILE         closed contours of a picture\n";
+  return tr(
+      "round:D          diameter D\n"
+      "square:A         edge A\n"
+      "rectangle:A:B    edges A along x, B along y\n"
+      "obround:A:B      A x B over all, round at the ends of the longer one\n"
+      "polygon:N:D      N corners, D across them\n"
+      "dxf:FILE         closed contours of a drawing\n"
+      "svg:FILE         closed contours of a picture\n");
 }
 
 }  // namespace kerf

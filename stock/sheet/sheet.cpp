@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "stock/move_reach.h"
 #include "stock/sheet/pieces.h"
 #include "stock/sheet/punch_hits.h"
@@ -72,8 +73,8 @@ SheetOutline to_outline(const sheet::Rings& rings) {
 
 Done check_range(std::string_view name, double value, double low, double high) {
   if (value >= low && value <= high) return std::monostate{};
-  return Error{fmt::format("{}: {} is not allowed; must be from {} to {} (mm)", name,
-                           number_text(value), number_text(low), number_text(high))};
+  return Error{trf("{}: {} is not allowed; must be from {} to {} (mm)", name, number_text(value),
+                   number_text(low), number_text(high))};
 }
 
 }  // namespace
@@ -113,11 +114,11 @@ struct Sheet::Impl {
 };
 
 Result<std::unique_ptr<Sheet>> Sheet::create(const SheetOptions& options) {
-  for (const Done& done : {check_range("sheet: bottom", options.bottom_mm,
+  for (const Done& done : {check_range(tr("sheet: bottom"), options.bottom_mm,
                                        -sheet::kMaxCoordinate_mm, sheet::kMaxCoordinate_mm),
-                           check_range("sheet: thickness", options.top_mm - options.bottom_mm,
+                           check_range(tr("sheet: thickness"), options.top_mm - options.bottom_mm,
                                        sheet::kMinThickness_mm, sheet::kMaxThickness_mm),
-                           check_range("sheet: arc tolerance", options.arc_tolerance_mm,
+                           check_range(tr("sheet: arc tolerance"), options.arc_tolerance_mm,
                                        sheet::kMinTolerance_mm, sheet::kMaxTolerance_mm),
                            check_outline(options.outline)}) {
     if (!done) return Error{done.error()};
@@ -298,8 +299,8 @@ std::size_t Sheet::unique_bytes() const {
 Done Sheet::accepts(const Cutter& cutter) const {
   const double kerf_mm = 2 * cutter.radius_mm();
   if (kerf_mm >= kMinKerf_mm) return std::monostate{};
-  return Error{fmt::format("{}: a kerf of {} mm is not allowed; must be at least {} mm",
-                           cutter.spec(), number_text(kerf_mm), number_text(kMinKerf_mm))};
+  return Error{trf("{}: a kerf of {} mm is not allowed; must be at least {} mm", cutter.spec(),
+                   number_text(kerf_mm), number_text(kMinKerf_mm))};
 }
 
 Box Sheet::bounds_mm() const {

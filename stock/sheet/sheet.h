@@ -110,6 +110,7 @@ class Sheet final : public StockModel {
   std::size_t unique_bytes() const override;
   /// Error for a kerf of less than kMinKerf_mm.
   Done accepts(const Cutter& cutter) const override;
+  const Sheet* sheet() const override { return this; }
   std::string name() const override { return "sheet"; }
   Box bounds_mm() const override;
   /// The step of the coordinates.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "base/translate.h"
 #include "stock/state_bytes.h"
 
 namespace kerf::sheet {
@@ -228,12 +229,12 @@ Result<SavedSheet> parse_sheet(const std::string& bytes, const std::string& name
       bytes, name, "sheet", [&head](StateHead& lines) { return read_head(lines, head); });
   if (!reader) return Error{reader.error()};
   if (!head.is_known()) {
-    return Error{fmt::format("{}: a sheet of layout {}; layouts 1 to {} can be read", name,
-                             head.layout, kLayout)};
+    return Error{
+        trf("{}: a sheet of layout {}; layouts 1 to {} can be read", name, head.layout, kLayout)};
   }
   const Result<std::string_view> data = data_of_state(*reader, name);
   if (!data) return Error{data.error()};
-  const std::string damaged = fmt::format("{}: the tiles are damaged", name);
+  const std::string damaged = trf("{}: the tiles are damaged", name);
   const auto count = static_cast<std::size_t>(head.tiles[0] * head.tiles[1]);
   if (count > data->size() / sizeof(std::uint32_t)) return Error{damaged};
 
@@ -251,7 +252,7 @@ Result<SavedSheet> parse_sheet(const std::string& bytes, const std::string& name
                    head.arc_tolerance_mm, head.blank_area2};
   const bool has_pieces = head.layout > 1;
   if ((has_pieces && !rest.read_pieces(saved)) || !rest.is_at_end())
-    return Error{has_pieces ? fmt::format("{}: the pieces are damaged", name) : damaged};
+    return Error{has_pieces ? trf("{}: the pieces are damaged", name) : damaged};
   return saved;
 }
 

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "stock/sheet/outline_curves.h"
 
 namespace kerf::sheet {
@@ -39,14 +40,14 @@ class Scanner {
       const bool sign = (c == '+' || c == '-') && (at_ == begin || before == 'e' || before == 'E');
       const bool first_point = c == '.' && !point;
       const bool exponent = (c == 'e' || c == 'E') && at_ > begin;
-      if (!(c >= '0' && c <= '9') && !sign && !first_point && !exponent) break;
+      if (!is_digit(c) && !sign && !first_point && !exponent) break;
       point |= first_point || exponent;
     }
     const std::string_view found = text_.substr(begin, at_ - begin);
     const std::optional<double> value = parse_decimal(found);
     if (!value || std::abs(*value) > kMaxUser) {
-      return Error{fmt::format("character {}: '{}' is not a number", begin + 1,
-                               shown(found.empty() ? text_.substr(begin, 10) : found))};
+      return Error{trf("character {}: '{}' is not a number", begin + 1,
+                       shown(found.empty() ? text_.substr(begin, 10) : found))};
     }
     return *value;
   }
@@ -56,7 +57,7 @@ class Scanner {
     skip();
     if (at_ < text_.size() && (text_[at_] == '0' || text_[at_] == '1'))
       return static_cast<double>(text_[at_++] - '0');
-    return Error{fmt::format("character {}: an arc's flag must be 0 or 1", at_ + 1)};
+    return Error{trf("character {}: an arc's flag must be 0 or 1", at_ + 1)};
   }
 
  private:
@@ -77,18 +78,18 @@ class PathReader {
         command = scan_.take();
       } else if (command == 0 || command == 'Z' || command == 'z') {
         const char found = scan_.peek();
-        fail(fmt::format("character {}: '{}' is no command", scan_.at() + 1,
-                         shown(std::string_view(&found, 1))));
+        fail(trf("character {}: '{}' is no command", scan_.at() + 1,
+                 shown(std::string_view(&found, 1))));
         break;
       } else if (command == 'M' || command == 'm') {
         command = command == 'M' ? 'L' : 'l';  // further pairs are lines
       }
       if (ring_.empty() && command != 'M' && command != 'm') {
-        fail("a part does not begin with M");
+        fail(tr("a part does not begin with M"));
         break;
       }
       run(command);
-      if (count_ > kMaxPoints) fail(fmt::format("more than {} points", kMaxPoints));
+      if (count_ > kMaxPoints) fail(trf("more than {} points", kMaxPoints));
     }
     end_part(false);
     if (!error_.empty()) return Error{error_};
@@ -217,8 +218,8 @@ class PathReader {
     const bool returns = ring_.size() > 1 && glm::length(ring_.front() - ring_.back()) <= kClosed;
     if (ring_.size() > 1) {
       if (!closes && !returns)
-        fail(fmt::format("an open part, from {:.4f},{:.4f} to {:.4f},{:.4f}; must end with Z",
-                         ring_.front().x, ring_.front().y, ring_.back().x, ring_.back().y));
+        fail(trf("an open part, from {:.4f},{:.4f} to {:.4f},{:.4f}; must end with Z",
+                 ring_.front().x, ring_.front().y, ring_.back().x, ring_.back().y));
       if (returns) ring_.pop_back();
       rings_.push_back(ring_);
     }

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -86,28 +88,26 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
                                  const std::string& model) {
   const double cell = cell_mm;
   const Box box = blank.bounds_mm();
-  if (box.empty() || blank.bodies.empty()) return Error{"the blank is empty"};
+  if (box.empty() || blank.bodies.empty()) return Error{tr("the blank is empty")};
   const Vec3 size = box.size();
   if (!std::isfinite(cell) || cell <= 0)
-    return Error{fmt::format("cell size {} mm is not allowed; must be above 0", cell)};
+    return Error{trf("cell size {} mm is not allowed; must be above 0", cell)};
   if (cell > std::min(size.x, size.y)) {
-    return Error{fmt::format(
+    return Error{trf(
         "cell size {} mm exceeds the blank, which is {} x {} mm; 0.05 to 0.2 mm suits most parts",
         cell, size.x, size.y)};
   }
   for (const BlankBody& body : blank.bodies) {
     if (body.kind != BlankBody::Kind::kBox && body.axis != 'z')
-      return Error{
-          fmt::format("{} cannot hold a cylinder along {}; its axis must be z", model, body.axis)};
+      return Error{trf("{} cannot hold a cylinder along {}; its axis must be z", model, body.axis)};
     if (body.bounds_mm.min.z > box.min.z + 1e-9 || body.bounds_mm.max.z <= box.min.z)
-      return Error{
-          fmt::format("{} cannot hold a body that begins at Z{} above the blank's floor Z{}", model,
-                      body.bounds_mm.min.z, box.min.z)};
+      return Error{trf("{} cannot hold a body that begins at Z{} above the blank's floor Z{}",
+                       model, body.bounds_mm.min.z, box.min.z)};
   }
   // The slack keeps 100 mm / 0.1 mm at 1000 cells.
   const double nx = std::ceil(size.x / cell - 1e-6), ny = std::ceil(size.y / cell - 1e-6);
   if (nx * ny > static_cast<double>(most_cells)) {
-    return Error{fmt::format(
+    return Error{trf(
         "cell size {} mm makes {:.0f} x {:.0f} cells and would take {} of memory; at most {} are "
         "allowed",
         cell, nx, ny, memory_text(nx * ny), memory_text(static_cast<double>(most_cells)))};

@@ -22,7 +22,8 @@ struct ShrunkSweep {
   double reach() const { return tool.radius - tolerance; }
 
   double height(double x, double y, double t) const {
-    const double d = std::hypot(x - from.x - t * step.x, y - from.y - t * step.y);
+    const double dx = x - from.x - t * step.x, dy = y - from.y - t * step.y;
+    const double d = std::sqrt(dx * dx + dy * dy);
     if (d > reach()) return kNone;
     return from.z + t * step.z + surface_height(tool, std::min(d + tolerance, tool.radius)) +
            tolerance;
@@ -54,7 +55,10 @@ struct ShrunkSweep {
     }
     for (int i = 0; i < 60 && t1 - t0 > 1e-9; ++i) {
       const double a = t0 + (t1 - t0) / 3, b = t1 - (t1 - t0) / 3;
-      (height(x, y, a) <= height(x, y, b) ? t1 : t0) = height(x, y, a) <= height(x, y, b) ? b : a;
+      if (height(x, y, a) <= height(x, y, b))
+        t1 = b;
+      else
+        t0 = a;
     }
     return 0.5 * (t0 + t1);
   }
@@ -83,7 +87,8 @@ struct AreaSweep {
 
   double distance(double t) const {
     const double x = from.x + t * step.x, y = from.y + t * step.y;
-    return std::hypot(std::max({x0 - x, 0.0, x - x1}), std::max({y0 - y, 0.0, y - y1}));
+    const double dx = std::max({x0 - x, 0.0, x - x1}), dy = std::max({y0 - y, 0.0, y - y1});
+    return std::sqrt(dx * dx + dy * dy);
   }
   /// For t within over().
   double height(double t) const {

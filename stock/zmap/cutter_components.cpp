@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/geometry.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -133,9 +134,9 @@ Done check_bottom(const Cutter& cutter, const std::string& model) {
         piece.kind == ProfilePiece::Kind::kArc && piece.convex && piece.r0 < piece.center_r - 1e-9;
     if (piece.z1 < piece.z0 - 1e-9 || bulges_down) {
       return Error{
-          fmt::format("{} has a hollow bottom (its profile falls from radius {:.6g} outward); {} "
-                      "cannot cut with it",
-                      cutter.spec(), piece.r0, model)};
+          trf("{} has a hollow bottom (its profile falls from radius {:.6g} outward); {} "
+              "cannot cut with it",
+              cutter.spec(), piece.r0, model)};
     }
   }
   return std::monostate{};

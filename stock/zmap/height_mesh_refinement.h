@@ -61,7 +61,6 @@ class Refinement {
     return errors_[row_slot_[std::size_t(n.v)] * stride_ + column_slot_[std::size_t(n.u)]];
   }
 
-  void make_slots();
   void keep_cells_around_holes();
   void measure_level(int s, int threads);
   void measure_edges_along_x(int s, int v0);

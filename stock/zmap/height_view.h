@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "base/height_grid.h"
 #include "stock/zmap/tile_grid.h"
+#include "surface/height_grid.h"
 
 namespace kerf {
 
@@ -12,5 +12,7 @@ namespace kerf {
 /// `grid` go to copies of the tiles and are not seen here. Costs some nanoseconds a tile. May be
 /// read and dropped on another thread.
 std::shared_ptr<const HeightGrid> height_view(const TileGrid& grid);
+/// The same without a copy: until `grid` is changed or gone.
+HeightGrid present_view(const TileGrid& grid);
 
 }  // namespace kerf

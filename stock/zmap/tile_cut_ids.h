@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "stock/zmap/tile_grid.h"
-#include "stock/zmap/tile_relief.h"
+#include "surface/tile_relief.h"
 
 namespace kerf {
 

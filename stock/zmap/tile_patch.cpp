@@ -12,7 +12,7 @@
 
 #include "stock/stock_model.h"
 #include "stock/zmap/tile_cut_ids.h"
-#include "stock/zmap/tile_relief.h"
+#include "surface/tile_relief.h"
 
 namespace kerf {
 namespace {

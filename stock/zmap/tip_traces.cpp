@@ -39,10 +39,34 @@ TipTraces::TipTraces(const TipTraces& other)
       tiles_x_(other.tiles_x_),
       any_(other.any_),
       rims_(other.rims_),
+      border_full_(other.border_full_),
+      boxes_(other.boxes_),
       slack_mm_(other.slack_mm_),
       tiles_(other.tiles_),
       own_(other.own_.size(), 0) {
   std::fill(other.own_.begin(), other.own_.end(), std::uint8_t{0});
+}
+
+void TipTraces::follow_sides(std::span<const BlankBody> bodies) {
+  rims_ = RimTraces(bodies, std::max(cell_x_, cell_y_));
+  border_full_ = bodies.size() == 1 && bodies[0].kind == BlankBody::Kind::kBox;
+  boxes_.clear();
+  for (const BlankBody& body : bodies) {
+    if (body.kind == BlankBody::Kind::kBox) boxes_.push_back(body.bounds_mm);
+  }
+}
+
+/// How high a box was over all of the cell.
+double TipTraces::full_to_mm(int i, int j) const {
+  constexpr double kRounding_mm = 1e-6;
+  const double x = x0_ + i * cell_x_, y = y0_ + j * cell_y_;
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Box& box : boxes_) {
+    const bool holds = box.min.x <= x + kRounding_mm && box.max.x >= x + cell_x_ - kRounding_mm &&
+                       box.min.y <= y + kRounding_mm && box.max.y >= y + cell_y_ - kRounding_mm;
+    if (holds) top = std::max(top, box.max.z);
+  }
+  return top;
 }
 
 TipTraces::Tip TipTraces::tip_of(std::span<const ConvexTool> tools) const {
@@ -182,6 +206,8 @@ double TipTraces::lower_bound_mm(const TileGrid& grid, int i, int j, double marg
       if (any_) lowest = std::min(lowest, at(x, y));
     }
   }
+  const bool at_border = i < wide_x || j < wide_y || i >= nx_ - wide_x || j >= ny_ - wide_y;
+  if (at_border && !border_full_) lowest = std::min(lowest, full_to_mm(i, j));
   return std::max(lowest - slack_mm_, static_cast<double>(grid.floor_mm()));
 }
 

@@ -31,6 +31,8 @@ namespace kerf {
 /// nothing for a flat one, little for a large ball (that is subtracted), and much for a point, of
 /// which the axis itself is remembered. Beside the grid there are no middles: where an axis passes
 /// there, the cells at the border that the tool can reach are remembered as well, of any tool.
+/// Nor are there any that tell where the side of a blank is that ends within the border's cells,
+/// as a round one does where it touches the grid's edge: such cells have no bound.
 ///
 /// Cost: nothing for flat tools within the grid; for others a few ns for each cell that the tip
 /// comes over, and 4 bytes a cell in tiles where a pointed tool was. Copies share tiles.
@@ -56,10 +58,9 @@ class TipTraces {
   using Way = std::pair<Vec3, Vec3>;
   double depth_mm(const TileGrid& grid, const Tip& tip, const CutMove& move,
                   const std::optional<Way>& held, double clear_mm) const;
-  /// Nothing is cut yet, and these are the bodies: their round sides are exact (RimTraces).
-  void follow_rims(std::span<const BlankBody> bodies) {
-    rims_ = RimTraces(bodies, std::max(cell_x_, cell_y_));
-  }
+  /// Nothing is cut yet, and these are the bodies: their round sides are exact (RimTraces), and
+  /// cells at the grid's border that a box does not fill are not taken for full.
+  void follow_sides(std::span<const BlankBody> bodies);
   const RimTraces& rims() const { return rims_; }
   /// The move is cut. Arcs are taken as chords.
   void add(const Tip& tip, const CutMove& move);
@@ -85,6 +86,7 @@ class TipTraces {
  private:
   using Tile = std::array<float, kTileFloats>;
   void lower(int i, int j, double z);
+  double full_to_mm(int i, int j) const;
   bool leaves_grid(const CutMove& move) const;
   void trace(const Tip& tip, const Vec3& a, const Vec3& b);
   void trace_border(const Tip& tip, const Vec3& a, const Vec3& b);
@@ -103,7 +105,9 @@ class TipTraces {
   int nx_, ny_, tiles_x_;
   bool any_ = false;
   RimTraces rims_;
-  double slack_mm_ = 0;  ///< greatest Tip::rise_mm of all that has cut
+  bool border_full_ = true;  ///< no cell there is only partly in a body
+  std::vector<Box> boxes_;   ///< bodies, otherwise
+  double slack_mm_ = 0;      ///< greatest Tip::rise_mm of all that has cut
   std::vector<std::shared_ptr<Tile>> tiles_;
   mutable std::vector<std::uint8_t> own_;  ///< no copy has the tile
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/translate.h"
 #include "stock/move_reach.h"
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
@@ -51,21 +52,21 @@ ZMap::ZMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ZMap::~ZMap() = default;
 
 Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
-  Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, "a Z-map");
+  Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, tr("a Z-map"));
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
   auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
-  impl->sweeper.follow_rims(options.blank.bodies);
+  impl->sweeper.follow_sides(options.blank.bodies);
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 
 Done ZMap::can_cut(const Cutter& cutter) {
   if (cutter.undercuts()) {
-    return Error{fmt::format(
+    return Error{trf(
         "{} cuts below itself (its neck is thinner than its head); a Z-map cannot hold undercuts",
         cutter.spec())};
   }
-  return check_bottom(cutter, "a Z-map");
+  return check_bottom(cutter, tr("a Z-map"));
 }
 
 void ZMap::cut(const Cutter& cutter, std::span<const CutMove> moves,
@@ -93,6 +94,8 @@ std::unique_ptr<StockModel> ZMap::snapshot() const {
 }
 
 std::shared_ptr<const HeightGrid> ZMap::height_grid() const { return height_view(impl_->grid()); }
+
+std::optional<HeightGrid> ZMap::present_heights() const { return present_view(impl_->grid()); }
 
 void ZMap::keep_cut_ids(bool keep) {
   assert(!impl_->sweeper.holds_back());

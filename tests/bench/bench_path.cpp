@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "viewer/gl_context.h"
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {

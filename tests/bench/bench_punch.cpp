@@ -17,8 +17,10 @@
 
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
-#include "twin/cut_stage.h"
-#include "twin/stock_choice.h"
+#include "twin/job/stock_choice.h"
+#include "twin/process/cut_stage.h"
+#include "twin/process/punch/punch_plan.h"
+#include "twin/process/punch/punch_stage.h"
 
 namespace kerf {
 namespace {
@@ -131,17 +133,16 @@ Outcome run(const Program& program, const TurretPointer& press) {
   options.outline = rectangle_outline({0, 0}, kSheet_mm);
   Result<std::unique_ptr<Sheet>> sheet = Sheet::create(options);
   if (!sheet) fail(sheet.error());
-  ToolBook book({}, stock_model(StockKind::kSheet).can_cut);
+  ToolResolver resolver({}, stock_model(StockKind::kSheet).can_cut);
   FindingLog log;
-  CutStage stage(**sheet, book, log, TimelineOptions{});
-  stage.punch(press);
+  CutStage stage(**sheet, resolver, log, TimelineOptions{}, *punch_process(press));
   stage.take(program.motions());
   stage.finish();
   Outcome outcome;
   outcome.cut_s = thread_s() - begin;
-  outcome.totals = stage.punch()->totals();
+  outcome.totals = dynamic_cast<const PunchStage&>(stage.process()).totals();
   outcome.punched_mm2 = kSheet_mm.x * kSheet_mm.y - (*sheet)->remaining_mm2();
-  outcome.freed = stage.punch()->freed().size();
+  outcome.freed = stage.process().freed().size();
   outcome.findings = log.total();
   return outcome;
 }

@@ -30,10 +30,10 @@
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
 #include "tests/bench/workloads.h"
-#include "twin/cut_stage.h"
 #include "twin/playback/load_program.h"
 #include "twin/playback/player.h"
-#include "twin/session_parts.h"
+#include "twin/process/cut_stage.h"
+#include "twin/program/session_parts.h"
 
 namespace kerf {
 namespace {
@@ -197,17 +197,18 @@ void cut_to_the_end(const Player& player) {
 
 /// Digests at some motions, by cutting from the start; no keyframes, no record.
 std::vector<std::string> dry_run(const ProgramTrack& track, const SessionOptions& options,
-                                 const ToolSources& tools, const std::optional<BeamSettings>& beam,
+                                 const ToolSources& tools, const ProcessPlan& process,
+                                 std::span<const TorchMaterial> materials,
                                  const std::vector<std::size_t>& places) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   const StockSetup setup =
       make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
-  ToolBook book(tools, row_of(*setup.stock).can_cut);
+  ToolResolver resolver(tools, row_of(*setup.stock).can_cut);
   FindingLog log;
-  CutStage stage(*setup.stock, book, log, {});
-  if (beam) stage.burn(*beam);
+  CutStage stage(*setup.stock, resolver, log, {}, process);
+  stage.set_materials(materials);
   std::vector<std::string> digests;
   std::size_t done = 0;
   for (const std::size_t place : places) {
@@ -289,7 +290,8 @@ int run(const Arguments& arguments) {
   std::unique_ptr<LoadedProgram> loaded = load(options);
   const std::shared_ptr<const CutQuery> cuts = loaded->cuts;
   const ToolSources tools = loaded->player.tools;
-  const std::optional<BeamSettings> beam = loaded->player.beam;
+  const ProcessPointer process = loaded->player.process;
+  const std::vector<TorchMaterial> materials = loaded->player.materials;
   const std::shared_ptr<const ProgramTrack> track = loaded->player.track;
   const double loaded_mb = rss_mb();
   Player player(std::move(loaded->player), {});
@@ -305,7 +307,7 @@ int run(const Arguments& arguments) {
       places.insert(random() % track->size());
     }
     const std::vector<std::size_t> list(places.begin(), places.end());
-    compare(player, list, dry_run(*track, options, tools, beam, list));
+    compare(player, list, dry_run(*track, options, tools, *process, materials, list));
   }
   const std::vector<double> seeks = time_seeks(player, arguments);
   print_times("seek to a random line", seeks);

@@ -38,10 +38,10 @@
 #include "stock/cutter/shape_spec.h"
 #include "twin/live/live_session.h"
 #include "twin/playback/load_program.h"
-#include "twin/view/live_view.h"
-#include "twin/view/player_view.h"
+#include "twin/scene/live_view.h"
+#include "twin/scene/player_view.h"
 #include "viewer/gl_context.h"
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {

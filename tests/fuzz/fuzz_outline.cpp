@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
 #include "stock/sheet/outline_file.h"
 #include "stock/sheet/punch_shape.h"
 #include "stock/sheet/sheet.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "base/text_scan.h"
 #include "stock/cutter/profile_file.h"
-#include "stock/cutter/scan.h"
 #include "stock/cutter/shape_spec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

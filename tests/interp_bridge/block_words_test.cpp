@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include "tests/base/temporary_folder.h"
 
 namespace kerf {
 namespace {
@@ -59,7 +58,7 @@ TEST(BlockWords, Places) {
 TEST(BlockWords, Offsets) {
   EXPECT_EQ(words_of_block("G92 X0").offset, Offset::kShift);
   EXPECT_EQ(words_of_block("G92.1").offset, Offset::kUnshift);
-  EXPECT_EQ(words_of_block("G92.2").offset, Offset::kUnshift);
+  EXPECT_EQ(words_of_block("G92.2").offset, Offset::kSuspend);
   EXPECT_EQ(words_of_block("G92.3").offset, Offset::kReshift);
   EXPECT_EQ(words_of_block("G10 L20 P1 Z0").offset, Offset::kTouchOff);
   EXPECT_EQ(words_of_block("G10 L2 P1 X5").offset, Offset::kMachine);
@@ -76,10 +75,10 @@ TEST(BlockWords, Speeds) {
 /// A file in a folder of its own.
 class BlockFile : public testing::Test {
  protected:
-  void write(const std::string& text) { std::ofstream(path_) << text; }
-  void TearDown() override { std::filesystem::remove(path_); }
+  void write(const std::string& text) { write_file(path_, text); }
 
-  std::string path_ = testing::TempDir() + "kerf_block_words.ngc";
+  TemporaryFolder folder_;
+  std::string path_ = folder_ / "blocks.ngc";
 };
 
 TEST_F(BlockFile, LinesForthAndBack) {

@@ -1,5 +1,5 @@
-// Both roads over real programs: kerf-interp's records and rs274's text must command the same.
-// Needs KERF_SHARED_DATA.
+// Both interpreters over real programs: kerf-interp's records and rs274's text must command the
+// same. Needs KERF_SHARED_DATA.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 /// the program's unit.
 double print_precision_mm(bool inches) { return inches ? 1e-4 * 25.4 * 1.01 : 1.01e-4; }
 
-/// Programs whose roads differ, and why. Everything else must agree.
+/// Programs whose interpreters differ, and why. Everything else must agree.
 const std::map<std::string, std::string>& known_differences() {
   static const std::map<std::string, std::string> known = {
       {"engrave/linuxcnc__systems.ngc", "splines: the text of rs274 does not hold their points"},
@@ -80,7 +80,7 @@ std::string difference(const ProgramRun& bridge, const ProgramRun& text, double 
   return {};
 }
 
-TEST(BridgeCorpus, BothRoadsAgree) {
+TEST(BridgeCorpus, BothInterpretersAgree) {
   if (shared_data().empty()) GTEST_SKIP() << "KERF_SHARED_DATA is not set";
   const std::filesystem::path root = shared_data() / "nc";
   std::size_t agreed = 0, moves = 0, same_lines = 0;

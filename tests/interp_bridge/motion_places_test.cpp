@@ -133,6 +133,48 @@ TEST_F(Places, AShiftWhereAllIsKnownStaysKnown) {
   EXPECT_TRUE(run("G0 Z10", {"STRAIGHT_TRAVERSE(5, 5, 10, 0, 0, 0)"}).start_known);
 }
 
+TEST_F(Places, AShiftIsThatOfThePlaceWhereItWasGiven) {
+  run("G92 Z10", {"SET_G92_OFFSET(0, 0, -10, 0, 0, 0)"});
+  run("G0 X0 Y0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"});
+  EXPECT_EQ(motions_.back().unknown_to, 0);
+  // The shift goes with the program from system to system.
+  run("G55", {"SET_G5X_OFFSET(2, 0, 0, 0, 0, 0, 0)", "SET_G92_OFFSET(0, 0, -10, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z6", {"STRAIGHT_TRAVERSE(0, 0, 6, 0, 0, 0)"}).unknown_to, 0);
+  run("G92.2", {"SET_G92_OFFSET(0, 0, 0, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z6", {"STRAIGHT_TRAVERSE(0, 0, 6, 0, 0, 0)"}).unknown_to, kZ);
+  run("G92.3", {"SET_G92_OFFSET(0, 0, -10, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z6", {"STRAIGHT_TRAVERSE(0, 0, 6, 0, 0, 0)"}).unknown_to, 0);
+  run("G92.1", {"SET_G92_OFFSET(0, 0, 0, 0, 0, 0)"});
+  run("G92.3", {"SET_G92_OFFSET(0, 0, 0, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z6", {"STRAIGHT_TRAVERSE(0, 0, 6, 0, 0, 0)"}).unknown_to, kZ);
+}
+
+TEST_F(Places, ALocalSystemTakesThePlaceOfAShift) {
+  run("G92 X0 Y0 Z10", {"SET_G92_OFFSET(0, 0, -10, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 X0 Y0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"}).unknown_to, 0);
+  run("G52 X3", {"SET_G92_OFFSET(3, 0, -10, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z6", {"STRAIGHT_TRAVERSE(-3, 0, 6, 0, 0, 0)"}).unknown_to, 0);
+  EXPECT_EQ(run("G0 X0", {"STRAIGHT_TRAVERSE(0, 0, 6, 0, 0, 0)"}).unknown_to, kX);
+}
+
+TEST_F(Places, ASystemThatIsTouchedOffIsRelatedToNoOther) {
+  run("G10 L20 P1 X0 Y0 Z10", {"SET_G5X_OFFSET(1, 0, 0, -10, 0, 0, 0)"});
+  run("G0 X0 Y0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"});
+  EXPECT_EQ(motions_.back().unknown_to, 0);
+  run("G55", {"SET_G5X_OFFSET(2, 0, 0, 0, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"}).unknown_to, kZ);
+  // What is touched off there is G55's.
+  fold_.store(words_of_block("G10 L20 P3 Z0"));
+  run("G56", {"SET_G5X_OFFSET(3, 0, 0, 5, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z1", {"STRAIGHT_TRAVERSE(0, 0, 1, 0, 0, 0)"}).unknown_to, kZ);
+  run("G54", {"SET_G5X_OFFSET(1, 0, 0, -10, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"}).unknown_to, 0);
+  // And here that of the workpiece.
+  fold_.store(words_of_block("G10 L20 P3 Z0"));
+  run("G56", {"SET_G5X_OFFSET(3, 0, 0, -5, 0, 0, 0)"});
+  EXPECT_EQ(run("G0 Z1", {"STRAIGHT_TRAVERSE(0, 0, 1, 0, 0, 0)"}).unknown_to, 0);
+}
+
 TEST_F(Places, AnArcFromNowhereHasNoSweep) {
   run("G0 Y0 Z5", {"STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)"});
   const Motion arc = run("G2 X10 I5", {"ARC_FEED(10, 0, 5, 0, -1, 5, 0, 0, 0)"});

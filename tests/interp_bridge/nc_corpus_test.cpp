@@ -1,5 +1,5 @@
-// Real programs of the shared test data: the road with numbered copies must give what rs274 alone
-// prints. Needs KERF_SHARED_DATA.
+// Real programs of the shared test data: the interpreter with numbered copies must give what rs274
+// alone prints. Needs KERF_SHARED_DATA.
 #include <gtest/gtest.h>
 
 #include "interp_bridge/interpreter_process.h"

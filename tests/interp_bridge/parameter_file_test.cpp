@@ -49,6 +49,23 @@ TEST_F(ParameterFiles, G92CountsOnlyWhileItIsInForce) {
   EXPECT_EQ(file_.work_offset_index(), 1);
 }
 
+TEST_F(ParameterFiles, LengthsInAnotherUnit) {
+  messages(
+      "500\t8\n5163\t-10\n5181\t20\n5210\t1\n5213\t30\n5220\t2\n5221\t40\n5224\t50\n"
+      "5230\t15\n5389\t60\n");
+  file_.scale_lengths(0.5);
+  EXPECT_EQ(file_.values, (std::map<int, double>{{500, 8},
+                                                 {5163, -5},
+                                                 {5181, 10},
+                                                 {5210, 1},
+                                                 {5213, 15},
+                                                 {5220, 2},
+                                                 {5221, 20},
+                                                 {5224, 50},
+                                                 {5230, 15},
+                                                 {5389, 30}}));
+}
+
 TEST_F(ParameterFiles, FaultsSayWhere) {
   EXPECT_EQ(messages("5221 1\nnonsense\n5222 1 2\n5223\n99999 1\n5221 2\n"),
             "2:1: is not a parameter: a number from 1 to 5601 and its value are expected\n"

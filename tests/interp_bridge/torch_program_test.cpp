@@ -46,7 +46,7 @@ class TorchProgram : public ::testing::Test {
     result.materials = program->materials();
     return result;
   }
-  /// The same on both roads.
+  /// The same on both interpreters.
   void both(const std::string& text, const std::function<void(const TorchRunResult&)>& expect) {
     for (const bool by_text : {false, true}) {
       SCOPED_TRACE(by_text ? "text" : "bridge");
@@ -155,7 +155,7 @@ TEST_F(TorchProgram, GivenPinsComeFirst) {
   EXPECT_TRUE(has_error(unknown.diagnostics));
 }
 
-TEST_F(TorchProgram, TheTextRoadSaysThatItCannot) {
+TEST_F(TorchProgram, TheTextInterpreterSaysThatItCannot) {
   EXPECT_EQ(this->run(std::string("G21\n\n") + kFeedOfMaterial + "M2\n", true).messages(),
             folder_.path("part.ngc") +
                 ":3: error: Named parameter #<_hal[plasmac.cut-feed-rate]> not defined\n"

@@ -13,20 +13,80 @@ namespace {
 struct FolderRule {
   std::string_view folder;
   std::vector<std::string_view> may_include;
+  std::vector<std::string_view> but_not{};  ///< of these
 };
 
 /// The first row whose folder the file lies in decides.
 const std::array kFolderRules{
     FolderRule{"base/", {"base/"}},
+    FolderRule{"surface/", {"base/", "surface/"}},
     FolderRule{"stock/cutter/", {"base/", "stock/cutter/", "stock/blank.h"}},
-    FolderRule{"stock/", {"base/", "stock/"}},
+    FolderRule{"stock/", {"base/", "surface/", "stock/"}},
     FolderRule{"interp_bridge/", {"base/", "interp_bridge/"}},
     FolderRule{"machine_io/", {"base/", "machine_io/"}},
-    FolderRule{"viewer/", {"base/", "viewer/"}},
-    FolderRule{"twin/app/",
-               {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
-    FolderRule{"twin/machine/", {"base/", "interp_bridge/", "machine_io/", "twin/"}},
-    FolderRule{"twin/", {"base/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"}},
+    FolderRule{"viewer/shaders/", {"base/", "viewer/shaders/"}},
+    FolderRule{
+        "viewer/csg/", {"base/", "surface/", "viewer/"}, {"viewer/raycast/", "viewer/window/"}},
+    FolderRule{
+        "viewer/raycast/", {"base/", "surface/", "viewer/"}, {"viewer/csg/", "viewer/window/"}},
+    FolderRule{"viewer/window/", {"base/", "surface/", "viewer/"}},
+    FolderRule{"viewer/",
+               {"base/", "surface/", "viewer/"},
+               {"viewer/csg/", "viewer/raycast/", "viewer/window/"}},
+    // Rooms of twin, each above those that it may include; TheRoomsOfTwinHaveAnOrder.
+    FolderRule{"twin/motion/", {"base/", "interp_bridge/", "stock/", "twin/motion/"}},
+    FolderRule{"twin/findings/", {"base/", "interp_bridge/", "twin/findings/"}},
+    FolderRule{"twin/machine/kinematics/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/machine/kinematics/"}},
+    FolderRule{"twin/machine/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/machine/"}},
+    FolderRule{"twin/job/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/machine/", "twin/job/"}},
+    FolderRule{"twin/process/milling/",
+               {"base/", "surface/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/"}},
+    FolderRule{"twin/process/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/"}},
+    FolderRule{"twin/report/",
+               {"base/", "interp_bridge/", "stock/", "machine_io/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/", "twin/report/"}},
+    FolderRule{"twin/program/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/", "twin/report/", "twin/program/"}},
+    FolderRule{"twin/guess/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/report/", "twin/program/", "twin/guess/"}},
+    FolderRule{"twin/session/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/", "twin/report/", "twin/program/",
+                "twin/guess/", "twin/session/"}},
+    FolderRule{"twin/live/",
+               {"base/", "interp_bridge/", "stock/", "machine_io/", "twin/motion/",
+                "twin/findings/", "twin/machine/", "twin/job/", "twin/process/", "twin/report/",
+                "twin/program/", "twin/live/"}},
+    FolderRule{"twin/playback/",
+               {"base/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
+                "twin/machine/", "twin/job/", "twin/process/", "twin/report/", "twin/program/",
+                "twin/guess/", "twin/playback/"}},
+    FolderRule{"twin/scene/machines/",
+               {"base/", "interp_bridge/", "stock/", "viewer/", "twin/motion/", "twin/machine/",
+                "twin/scene/machines/"}},
+    FolderRule{"twin/scene/compare/",
+               {"base/", "viewer/", "twin/scene/machines/", "twin/scene/compare/"}},
+    FolderRule{"twin/scene/",
+               {"base/", "surface/", "interp_bridge/", "stock/", "viewer/", "twin/motion/",
+                "twin/findings/", "twin/machine/", "twin/job/", "twin/process/", "twin/report/",
+                "twin/live/", "twin/playback/", "twin/scene/"}},
+    FolderRule{"twin/config/",
+               {"base/", "interp_bridge/", "stock/", "machine_io/", "twin/machine/", "twin/job/",
+                "twin/report/", "twin/live/", "twin/scene/machines/", "twin/config/"}},
+    FolderRule{"twin/cli/kerf_machine/",
+               {"base/", "interp_bridge/", "machine_io/", "twin/motion/", "twin/machine/",
+                "twin/config/", "twin/cli/"}},
+    FolderRule{"twin/cli/",
+               {"base/", "surface/", "stock/", "interp_bridge/", "machine_io/", "viewer/", "twin/"},
+               {"twin/cli/kerf_machine/"}},
 };
 
 struct LibraryRule {
@@ -37,7 +97,7 @@ struct LibraryRule {
 
 constexpr std::array kLibraryRules{
     LibraryRule{"yaml-cpp/", "twin/config/"},
-    LibraryRule{"CLI/", "twin/app/", "twin/machine/"},
+    LibraryRule{"CLI/", "twin/cli/"},
     LibraryRule{"nlohmann/", "twin/"},
     LibraryRule{"xxhash.h", "stock/"},
     LibraryRule{"polyclipping/", "stock/sheet/"},
@@ -77,6 +137,28 @@ std::string_view stock_model_of(std::string_view path) {
   return end == std::string_view::npos ? std::string_view{} : path.substr(0, end + 1);
 }
 
+/// The folder of the process that `path` belongs to ("twin/process/torch/"), or "".
+std::string_view process_of(std::string_view path) {
+  constexpr std::string_view kProcess = "twin/process/";
+  if (!path.starts_with(kProcess)) return {};
+  const std::size_t end = path.find('/', kProcess.size());
+  return end == std::string_view::npos ? std::string_view{} : path.substr(0, end + 1);
+}
+
+/// A process is known to its table alone; all others ask for what is in process.h. It knows what
+/// processes share, and neither the table nor who calls it.
+std::string check_process_include(std::string_view path, std::string_view target) {
+  constexpr std::string_view kTable = "twin/process/process_table.cpp";
+  const std::string_view own = process_of(path), other = process_of(target);
+  if (!other.empty() && other != own && path != kTable) {
+    return fmt::format("\"{}\": only {} and {} may include it", target, other, kTable);
+  }
+  const bool is_above =
+      target == "twin/process/cut_stage.h" || target == "twin/process/process_table.h";
+  if (!own.empty() && is_above) return fmt::format("a process may not include \"{}\"", target);
+  return "";
+}
+
 const FolderRule* rule_for(std::string_view path) {
   for (const FolderRule& rule : kFolderRules) {
     if (path.starts_with(rule.folder)) return &rule;
@@ -92,22 +174,25 @@ std::string check_project_include(std::string_view path, bool is_test, std::stri
   if (target.starts_with("tests/")) {
     return is_test ? "" : fmt::format("\"{}\" belongs to the tests", target);
   }
-  const FolderRule* rule = rule_for(path);
+  // What a test of a room wants to see may be made in any other.
+  const bool sees_all = is_test && path.starts_with("twin/");
+  const FolderRule* rule = sees_all ? &kFolderRules.back() : rule_for(path);
   if (rule == nullptr) {
     return is_test ? "" : "lies in a folder that the layers of ARCHITECTURE.md do not name";
   }
-  if (!starts_with_any(target, rule->may_include)) {
+  // A test of a part may look at pictures that other parts make.
+  const bool is_barred = !is_test && starts_with_any(target, rule->but_not);
+  if (is_barred || !starts_with_any(target, rule->may_include)) {
     return fmt::format("{} may not include \"{}\"", rule->folder, target);
-  }
-  const bool is_program = rule->folder == "twin/app/" || rule->folder == "twin/machine/";
-  if (!is_test && target.starts_with("twin/app/") && !is_program) {
-    return fmt::format("\"{}\": only twin/app/ and twin/machine/ may include it", target);
   }
   // It writes to devices; kerf must not.
   constexpr std::string_view kSimulator = "machine_io/simulator/";
   if (!is_test && target.starts_with(kSimulator) && !path.starts_with(kSimulator) &&
-      rule->folder != "twin/machine/") {
-    return fmt::format("\"{}\": only twin/machine/ may include it", target);
+      rule->folder != "twin/cli/kerf_machine/") {
+    return fmt::format("\"{}\": only twin/cli/kerf_machine/ may include it", target);
+  }
+  if (std::string fault = is_test ? "" : check_process_include(path, target); !fault.empty()) {
+    return fault;
   }
   const std::string_view own_model = stock_model_of(path);
   const std::string_view other_model = stock_model_of(target);
@@ -131,6 +216,25 @@ std::string check_library_include(std::string_view path, std::string_view target
 }
 
 }  // namespace
+
+std::vector<std::string> find_circles() {
+  std::vector<std::string> circles;
+  const auto lies_in = [](std::string_view folder, const std::vector<std::string_view>& prefixes) {
+    return starts_with_any(folder, prefixes);
+  };
+  for (const FolderRule& one : kFolderRules) {
+    for (const FolderRule& other : kFolderRules) {
+      // A folder knows those within it.
+      if (one.folder >= other.folder || other.folder.starts_with(one.folder)) continue;
+      const bool there =
+          lies_in(other.folder, one.may_include) && !lies_in(other.folder, one.but_not);
+      const bool back =
+          lies_in(one.folder, other.may_include) && !lies_in(one.folder, other.but_not);
+      if (there && back) circles.push_back(fmt::format("{} and {}", one.folder, other.folder));
+    }
+  }
+  return circles;
+}
 
 std::vector<IncludeLine> find_includes(std::string_view source_text) {
   static const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">])");

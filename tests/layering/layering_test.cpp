@@ -13,11 +13,27 @@ namespace {
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
 
-const std::set<std::string> kSomeFiles{
-    "base/result.h",         "stock/blank.h",          "stock/stock_model.h",
-    "stock/cutter/cutter.h", "stock/zmap/zmap.h",      "stock/sheet/sheet.h",
-    "viewer/picture.h",      "interp_bridge/motion.h", "twin/run.h",
-    "twin/app/options.h",    "tests/stock/oracle.h",   "machine_io/simulator/fault.h"};
+const std::set<std::string> kSomeFiles{"base/result.h",
+                                       "stock/blank.h",
+                                       "stock/stock_model.h",
+                                       "stock/cutter/cutter.h",
+                                       "stock/zmap/zmap.h",
+                                       "stock/sheet/sheet.h",
+                                       "viewer/picture.h",
+                                       "interp_bridge/motion.h",
+                                       "twin/report/run.h",
+                                       "twin/cli/options.h",
+                                       "tests/stock/oracle.h",
+                                       "machine_io/simulator/fault.h",
+                                       "surface/relief.h",
+                                       "viewer/camera.h",
+                                       "viewer/window/layer.h",
+                                       "viewer/csg/renderer.h",
+                                       "viewer/raycast/tile.h",
+                                       "twin/process/process.h",
+                                       "twin/process/cut_stage.h",
+                                       "twin/process/process_table.h",
+                                       "twin/process/torch/plan.h"};
 
 Strings check(std::string_view path, std::string_view text) {
   return check_includes(path, text, kSomeFiles);
@@ -39,10 +55,10 @@ TEST(Layering, DownwardsIsAllowed) {
                   "#include \"stock/stock_model.h\"\n"
                   "#include \"stock/cutter/cutter.h\"\n"),
             Strings{});
-  EXPECT_EQ(
-      check("twin/run.cpp", "#include \"viewer/picture.h\"\n#include \"stock/zmap/zmap.h\"\n"),
-      Strings{});
-  EXPECT_EQ(check("twin/app/main.cpp", "#include \"twin/app/options.h\"\n#include <CLI/CLI.hpp>\n"),
+  EXPECT_EQ(check("twin/scene/run.cpp",
+                  "#include \"viewer/picture.h\"\n#include \"stock/zmap/zmap.h\"\n"),
+            Strings{});
+  EXPECT_EQ(check("twin/cli/main.cpp", "#include \"twin/cli/options.h\"\n#include <CLI/CLI.hpp>\n"),
             Strings{});
   EXPECT_EQ(check("viewer/gl.cpp", "#include <epoxy/gl.h>\n#include <vector>\n"), Strings{});
 }
@@ -52,24 +68,63 @@ TEST(Layering, UpwardsAndSidewaysAreNot) {
             Strings{"base/mesh.cpp:2: base/ may not include \"stock/stock_model.h\""});
   EXPECT_EQ(check("stock/zmap/zmap.h", "#include \"interp_bridge/motion.h\"\n"),
             Strings{"stock/zmap/zmap.h:1: stock/ may not include \"interp_bridge/motion.h\""});
-  EXPECT_EQ(check("viewer/window.cpp", "#include \"twin/run.h\"\n"),
-            Strings{"viewer/window.cpp:1: viewer/ may not include \"twin/run.h\""});
-  EXPECT_EQ(check("twin/run.cpp", "#include \"twin/app/options.h\"\n"),
-            Strings{"twin/run.cpp:1: \"twin/app/options.h\": only twin/app/ and twin/machine/ may "
-                    "include it"});
+  EXPECT_EQ(check("viewer/window.cpp", "#include \"twin/report/run.h\"\n"),
+            Strings{"viewer/window.cpp:1: viewer/ may not include \"twin/report/run.h\""});
+  EXPECT_EQ(
+      check("twin/process/run.cpp", "#include \"twin/cli/options.h\"\n"),
+      Strings{"twin/process/run.cpp:1: twin/process/ may not include \"twin/cli/options.h\""});
 }
 
 TEST(Layering, OnlyTheSimulatedMachineWritesToDevices) {
   const std::string text = "#include \"machine_io/simulator/fault.h\"\n";
-  EXPECT_EQ(check("twin/machine/main.cpp", text), Strings{});
-  EXPECT_EQ(check("twin/machine/main.cpp", "#include \"twin/app/options.h\"\n"), Strings{});
+  EXPECT_EQ(check("twin/cli/kerf_machine/main.cpp", text), Strings{});
+  EXPECT_EQ(check("twin/cli/kerf_machine/main.cpp", "#include \"twin/cli/options.h\"\n"),
+            Strings{});
   EXPECT_EQ(check("machine_io/simulator/main.cpp", text + "#include <modbus/modbus.h>\n"),
             Strings{});
-  for (const char* path : {"twin/app/main.cpp", "twin/run.cpp", "machine_io/modbus/poll.cpp"}) {
+  for (const char* path :
+       {"twin/cli/main.cpp", "twin/live/run.cpp", "machine_io/modbus/poll.cpp"}) {
     EXPECT_EQ(check(path, text),
               Strings{std::string(path) + ":1: \"machine_io/simulator/fault.h\": only "
-                                          "twin/machine/ may include it"});
+                                          "twin/cli/kerf_machine/ may include it"});
   }
+}
+
+TEST(Layering, TheRoomsOfTwinHaveAnOrder) {
+  EXPECT_EQ(find_circles(), Strings{});
+  const std::string text = "#include \"twin/report/run.h\"\n";
+  EXPECT_EQ(check("twin/session/a.cpp", text), Strings{});
+  EXPECT_EQ(check("twin/machine/kinematics/a.cpp", text),
+            Strings{"twin/machine/kinematics/a.cpp:1: twin/machine/kinematics/ may not include "
+                    "\"twin/report/run.h\""});
+  EXPECT_EQ(
+      check("twin/a.cpp", text),
+      Strings{"twin/a.cpp:1: lies in a folder that the layers of ARCHITECTURE.md do not name"});
+  EXPECT_EQ(check("tests/twin/process/a_test.cpp", text), Strings{});
+}
+
+TEST(Layering, AProcessIsKnownToItsTableAlone) {
+  const std::string torch = "#include \"twin/process/torch/plan.h\"\n";
+  const std::string shared = "#include \"twin/process/process.h\"\n";
+  EXPECT_EQ(check("twin/process/process_table.cpp", torch + shared), Strings{});
+  EXPECT_EQ(check("twin/process/torch/plan.cpp", torch + shared), Strings{});
+  EXPECT_EQ(check("twin/process/turning/plan.cpp", shared), Strings{}) << "one that is new";
+  for (const char* path :
+       {"twin/process/cut_stage.cpp", "twin/process/punch/plan.cpp", "twin/process/milling/a.cpp",
+        "twin/report/a.cpp", "twin/session/a.cpp", "twin/playback/a.cpp", "twin/live/a.cpp",
+        "twin/scene/a.cpp", "twin/cli/a.cpp"}) {
+    EXPECT_EQ(check(path, torch),
+              Strings{std::string(path) + ":1: \"twin/process/torch/plan.h\": only "
+                                          "twin/process/torch/ and "
+                                          "twin/process/process_table.cpp may include it"});
+  }
+  for (const std::string name : {"cut_stage.h", "process_table.h"}) {
+    EXPECT_EQ(check("twin/process/torch/plan.cpp", "#include \"twin/process/" + name + "\"\n"),
+              Strings{"twin/process/torch/plan.cpp:1: a process may not include "
+                      "\"twin/process/" +
+                      name + "\""});
+  }
+  EXPECT_EQ(check("tests/twin/live/a_test.cpp", torch), Strings{});
 }
 
 TEST(Layering, StockModelsDoNotKnowEachOther) {
@@ -80,6 +135,38 @@ TEST(Layering, StockModelsDoNotKnowEachOther) {
   EXPECT_EQ(check("stock/cutter/cutter.cpp", "#include \"stock/zmap/zmap.h\"\n"),
             Strings{"stock/cutter/cutter.cpp:1: stock/cutter/ may not include "
                     "\"stock/zmap/zmap.h\""});
+}
+
+TEST(Layering, TheSurfaceLiesBelowThoseWhoMakeAndShowIt) {
+  const std::string text = "#include \"surface/relief.h\"\n";
+  EXPECT_EQ(check("surface/relief.cpp", text + "#include \"base/result.h\"\n"), Strings{});
+  for (const char* path :
+       {"stock/zmap/zmap.cpp", "viewer/raycast/tile.cpp", "twin/scene/run.cpp"}) {
+    EXPECT_EQ(check(path, text), Strings{}) << path;
+  }
+  for (const char* path : {"base/a.cpp", "stock/cutter/a.cpp", "interp_bridge/a.cpp"}) {
+    EXPECT_EQ(check(path, text).size(), 1u) << path;
+  }
+  EXPECT_EQ(check("surface/relief.cpp", "#include \"stock/stock_model.h\"\n").size(), 1u);
+}
+
+TEST(Layering, FoldersOfTheViewerDoNotIncludeEachOther) {
+  const auto includes = [](std::string_view target) {
+    return "#include \"" + std::string(target) + "\"\n";
+  };
+  const std::string window = includes("viewer/window/layer.h");
+  const std::string csg = includes("viewer/csg/renderer.h");
+  const std::string raycast = includes("viewer/raycast/tile.h");
+  const std::string camera = includes("viewer/camera.h");
+  EXPECT_EQ(check("viewer/window/layer.cpp", window + csg + raycast + camera), Strings{});
+  EXPECT_EQ(check("viewer/csg/renderer.cpp", csg + camera), Strings{});
+  EXPECT_EQ(check("viewer/raycast/tile.cpp", raycast + camera), Strings{});
+  EXPECT_EQ(check("viewer/csg/renderer.cpp", window),
+            Strings{"viewer/csg/renderer.cpp:1: viewer/csg/ may not include "
+                    "\"viewer/window/layer.h\""});
+  EXPECT_EQ(check("viewer/csg/renderer.cpp", raycast).size(), 1u);
+  EXPECT_EQ(check("viewer/raycast/tile.cpp", csg + window).size(), 2u);
+  EXPECT_EQ(check("viewer/camera.cpp", csg + raycast + window).size(), 3u);
 }
 
 TEST(Layering, PathsStartAtTheRootAndFoldersAreKnown) {
@@ -96,8 +183,8 @@ TEST(Layering, OutsideLibrariesStayBehindTheirFolder) {
   EXPECT_EQ(check("interp_bridge/program.cpp", "#include <canon.hh>\n"),
             Strings{"interp_bridge/program.cpp:1: <canon.hh> appears only in "
                     "interp_bridge/kerf_interp/"});
-  EXPECT_EQ(check("twin/run.cpp", "#include <GL/gl.h>\n"),
-            Strings{"twin/run.cpp:1: <GL/gl.h> appears only in viewer/"});
+  EXPECT_EQ(check("twin/process/run.cpp", "#include <GL/gl.h>\n"),
+            Strings{"twin/process/run.cpp:1: <GL/gl.h> appears only in viewer/"});
   EXPECT_EQ(check("machine_io/can/can.cpp", "#include <modbus/modbus.h>\n"),
             Strings{"machine_io/can/can.cpp:1: <modbus/modbus.h> appears only in "
                     "machine_io/modbus/ and machine_io/simulator/"});
@@ -113,9 +200,9 @@ TEST(Layering, TestsHaveTheRightsOfWhatTheyTest) {
                   "#include \"tests/stock/oracle.h\"\n"
                   "#include \"stock/zmap/zmap.h\"\n"),
             Strings{});
-  EXPECT_EQ(check("tests/stock/zmap_test.cpp", "#include \"twin/run.h\"\n").size(), 1u);
+  EXPECT_EQ(check("tests/stock/zmap_test.cpp", "#include \"twin/report/run.h\"\n").size(), 1u);
   EXPECT_EQ(check("tests/stock/zmap_test.cpp", "#include <GL/gl.h>\n").size(), 1u);
-  EXPECT_EQ(check("tests/twin/app_test.cpp", "#include \"twin/app/options.h\"\n"), Strings{});
+  EXPECT_EQ(check("tests/twin/cli/app_test.cpp", "#include \"twin/cli/options.h\"\n"), Strings{});
   EXPECT_EQ(check("tests/fuzz/fuzz_any.cpp", "#include \"interp_bridge/motion.h\"\n"), Strings{});
   EXPECT_EQ(check("tests/fuzz/fuzz_any.cpp", "#include <xxhash.h>\n"), Strings{});
   EXPECT_EQ(check("stock/zmap/zmap.cpp", "#include \"tests/stock/oracle.h\"\n"),

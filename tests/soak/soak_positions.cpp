@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "twin/machine/machine_player.h"
+#include "twin/cli/kerf_machine/machine_player.h"
 
 namespace kerf {
 namespace {

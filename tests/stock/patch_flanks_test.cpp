@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "stock/zmap/tile_relief.h"
+#include "surface/tile_relief.h"
 #include "tests/stock/patch_samples.h"
 
 namespace kerf {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
 
 namespace kerf {
 namespace {

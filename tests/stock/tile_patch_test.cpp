@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "stock/zmap/tile_relief.h"
+#include "surface/tile_relief.h"
 #include "tests/stock/patch_samples.h"
 #include "tests/stock/stock_samples.h"
 

@@ -13,8 +13,8 @@
 
 #include "viewer/csg/cut_moves.h"
 #include "viewer/gl_context.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/window/csg_picture.h"
-#include "viewer/window/orbit_camera.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
@@ -56,11 +56,11 @@ class CsgViewTest : public testing::Test {
     context_.emplace(std::move(*context));
     scene_.emplace(std::move(SceneRenderer::create().value()));
     reference_.emplace(std::move(SceneRenderer::create().value()));
-    options_.road = DrawRoad::kCsg;
+    options_.draw_mode = DrawMode::kCsg;
     SceneUpdate update;
-    auto answer = std::make_shared<RoadAnswer>();
-    answer->road = DrawRoad::kCsg;
-    update.road = std::move(answer);
+    auto answer = std::make_shared<DrawAnswer>();
+    answer->draw_mode = DrawMode::kCsg;
+    update.draw_mode = std::move(answer);
     auto setup = std::make_shared<SceneSetup>();
     setup->bounds_mm = kBlank;
     update.setup = std::move(setup);
@@ -83,7 +83,7 @@ class CsgViewTest : public testing::Test {
     const auto end = Clock::now() + std::chrono::seconds(60);
     do {
       draw(renderer, projection);
-    } while ((renderer->has_waiting() || renderer->drawn_road() != DrawRoad::kCsg) &&
+    } while ((renderer->has_waiting() || renderer->drawn_mode() != DrawMode::kCsg) &&
              Clock::now() < end);
     EXPECT_TRUE(renderer->is_full());
     EXPECT_EQ(renderer->projection(), projection);
@@ -117,7 +117,7 @@ TEST_F(CsgViewTest, AnEyeThatTurnsSeesWholePictures) {
   for (int turn = 0; turn < 1000 && pictures < 3; ++turn) {
     camera_.orbit({6, 1}, kSize_px);
     draw(&*scene_, projection());
-    ASSERT_EQ(scene_->drawn_road(), DrawRoad::kCsg);
+    ASSERT_EQ(scene_->drawn_mode(), DrawMode::kCsg);
     if (scene_->projection() == seen) continue;
     seen = scene_->projection();
     ++pictures;
@@ -210,12 +210,12 @@ TEST_F(CsgViewTest, OfShortMovesTheTurningEyeSeesTheSame) {
   draw(&*scene_, projection());
   const Projection begin = scene_->projection();
   const auto end = Clock::now() + std::chrono::seconds(60);
-  while ((scene_->drawn_road() != DrawRoad::kCsg || scene_->projection() == begin) &&
+  while ((scene_->drawn_mode() != DrawMode::kCsg || scene_->projection() == begin) &&
          Clock::now() < end) {
     camera_.orbit({6, 1}, kSize_px);
     draw(&*scene_, projection());
   }
-  ASSERT_EQ(scene_->drawn_road(), DrawRoad::kCsg);
+  ASSERT_EQ(scene_->drawn_mode(), DrawMode::kCsg);
   EXPECT_FALSE(scene_->is_full());
   const Projection seen = scene_->projection();
   const double apart = share_apart(scene_->read(), settled(&*reference_, seen));

@@ -1,4 +1,4 @@
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "tests/base/temporary_folder.h"
 #include "tests/viewer/test_meshes.h"
 #include "viewer/png_image.h"
 
@@ -29,20 +30,13 @@ Picture test_picture(int width_px, int height_px) {
 
 class PngTest : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("kerf_png_test_") + info->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::size_t files() const {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(PngTest, ReadsBackUnchanged) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "tests/viewer/scene_fixture.h"
 
@@ -165,6 +166,81 @@ TEST_F(SceneRendererTest, OfATailTheOlderSegmentsArePalerAndTheRestIsNotThere) {
   EXPECT_NEAR(red_at(9200), ground, 2);
 }
 
+/// Pixels that two pictures have not in common, weighed by how much darker the second one is: for
+/// lines on plain ground, what they cover.
+double covered_px(const Picture& ground, const Picture& picture, int full) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < ground.rgb.size(); i += 3) sum += ground.rgb[i] - picture.rgb[i];
+  return sum / full;
+}
+
+/// On fine displays lines are wider, with faint rims or without, of the path and of all else.
+TEST_F(SceneRendererTest, LinesAreAsWideAsTheDisplayAsks) {
+  std::vector<PathVertex> path;
+  for (int i = 0; i <= 50; ++i) {
+    path.push_back({{2.0f * static_cast<float>(i), 50.0f, 0.0f}, PathKind::kFeed});
+  }
+  camera_.look_from(StandardView::kTop);
+  camera_.set_perspective(false);
+  SceneRenderer empty = renderer(), scene = renderer(), outlined = renderer();
+  empty.apply(path_update({}));
+  scene.apply(path_update(path_chunks(path)));
+  scene.apply(past_update(path.size()));
+  SceneSetup setup;
+  setup.bounds_mm = {Vec3(0, 0, -10), Vec3(100, 100, 0)};
+  setup.blank_outline = {{glm::vec3(0, 50, 0), glm::vec3(100, 50, 0)}};
+  SceneUpdate with_outline;
+  with_outline.setup = std::make_shared<const SceneSetup>(setup);
+  outlined.apply(with_outline);
+  Projection projection = view_of(empty);
+  const double length_px =
+      pixel_of(projection, {100, 50, 0}).x - pixel_of(projection, {0, 50, 0}).x;
+  ASSERT_GT(length_px, 100.0);
+  for (const float opacity : {1.0f, 0.5f}) {  // of the workpiece: seen through, lines have no rims
+    DrawOptions options = everything_;
+    options.looks[0].opacity = opacity;
+    options.looks[static_cast<std::size_t>(SceneObject::kFrames)].is_visible = false;
+    for (SceneRenderer* lines : {&scene, &outlined}) {
+      double of_one_px = 0.0;
+      for (const float line_px : {1.0f, 1.5f, 2.0f, 3.0f, 4.0f}) {
+        projection.line_px = line_px;
+        draw(&empty, projection, options);
+        draw(lines, projection, options);
+        const Picture ground = empty.read(), picture = lines->read();
+        const int full = lines == &scene ? at(ground, {200, 150}).r - 26 : 100;
+        const double covered = covered_px(ground, picture, full) / length_px;
+        if (line_px == 1.0f) of_one_px = covered;
+        ASSERT_GT(of_one_px, 0.0);
+        // Without rims a line has whole rows.
+        const double slack = opacity == 1.0f ? 0.15 : 0.55;
+        EXPECT_NEAR(covered / of_one_px, line_px, slack * line_px) << line_px << ' ' << opacity;
+      }
+    }
+  }
+}
+
+/// With lines through the eye, and behind it.
+TEST_F(SceneRendererTest, WideLinesEndBeforeTheEye) {
+  std::vector<PathVertex> path{{{50, -4000, 0}, PathKind::kFeed}, {{50, 4000, 0}, PathKind::kFeed}};
+  SceneRenderer scene = renderer(), empty = renderer();
+  empty.apply(path_update({}));
+  scene.apply(path_update(path_chunks(path)));
+  scene.apply(past_update(path.size()));
+  camera_.set_perspective(true);
+  camera_.look_from(StandardView::kFront);
+  camera_.orbit({0.0f, 20.0f}, kSize_px);
+  Projection projection = view_of(empty);
+  const auto covered = [&](float line_px) {
+    projection.line_px = line_px;
+    draw(&empty, projection, everything_);
+    draw(&scene, projection, everything_);
+    return covered_px(empty.read(), scene.read(), 200);
+  };
+  const double fine = covered(1.0f), wide = covered(2.0f);
+  EXPECT_GT(fine, 30.0);
+  EXPECT_NEAR(wide / fine, 2.0, 0.4);
+}
+
 TEST_F(SceneRendererTest, OfATailThatPassesTheSamePixelsAsAnew) {
   std::mt19937 random(7);
   SceneRenderer local = renderer(), full = renderer();
@@ -175,9 +251,10 @@ TEST_F(SceneRendererTest, OfATailThatPassesTheSamePixelsAsAnew) {
   options.path_tail = anew.path_tail = 200;
   anew.is_local = false;
   camera_.fit({Vec3(0, 0, -10), Vec3(100, 100, 0)}, kSize_px);
-  const Projection projection = camera_.projection(local.depth_box(), kSize_px);
+  Projection projection = camera_.projection(local.depth_box(), kSize_px);
   std::uint64_t past = 4000;
   for (int step = 0; step < 20; ++step) {
+    projection.line_px = step < 10 ? 1.0f : 3.0f;
     past = step % 5 == 4 ? random() % path.size() : past + random() % 90;
     local.apply(past_update(past));
     full.apply(past_update(past));
@@ -197,10 +274,12 @@ TEST_F(SceneRendererTest, OfAThinnedPathThatPassesTheSamePixelsAsAnew) {
   DrawOptions anew = everything_;
   anew.is_local = false;
   // Whole, and so near that most of it is outside the picture and some behind the eye.
-  for (const double zoom : {1.0, 30.0}) {
+  for (const auto& [zoom, line_px] :
+       {std::pair(1.0, 1.0f), {30.0, 1.0f}, {1.0, 2.0f}, {30.0, 2.0f}}) {
     camera_.fit({Vec3(0, 0, -10), Vec3(100, 100, 0)}, kSize_px);
     camera_.zoom(zoom, glm::vec2(kSize_px) * 0.4f, kSize_px);
-    const Projection projection = camera_.projection(local.depth_box(), kSize_px);
+    Projection projection = camera_.projection(local.depth_box(), kSize_px);
+    projection.line_px = line_px;
     draw(&local, projection, everything_);
     local.reset_counters();
     std::uint64_t past = 3000;

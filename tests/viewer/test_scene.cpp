@@ -132,4 +132,16 @@ std::vector<PathVertex> test_path(int cells_x, int cells_y) {
   return path;
 }
 
+std::vector<std::shared_ptr<const PathChunk>> path_chunks(const std::vector<PathVertex>& vertices) {
+  std::vector<std::shared_ptr<const PathChunk>> chunks;
+  for (std::size_t first = 0; first + 1 < vertices.size(); first += kPathChunkSegments) {
+    const std::size_t count = std::min(kPathChunkSegments + 1, vertices.size() - first);
+    const auto begin = vertices.begin() + static_cast<std::ptrdiff_t>(first);
+    chunks.push_back(std::make_shared<const PathChunk>(
+        PathChunk{static_cast<std::uint32_t>(chunks.size()),
+                  {begin, begin + static_cast<std::ptrdiff_t>(count)}}));
+  }
+  return chunks;
+}
+
 }  // namespace kerf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "viewer/scene.h"
@@ -45,5 +46,8 @@ std::shared_ptr<const ToolShape> test_tool(float radius_mm = 5.0f);
 
 /// A square spiral of feeds over the workpiece, with a traverse at its start.
 std::vector<PathVertex> test_path(int cells_x, int cells_y);
+
+/// A path in the chunks that a scene takes.
+std::vector<std::shared_ptr<const PathChunk>> path_chunks(const std::vector<PathVertex>& vertices);
 
 }  // namespace kerf

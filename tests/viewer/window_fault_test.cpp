@@ -9,6 +9,7 @@
 #include <iterator>
 #include <string>
 
+#include "base/translate.h"
 #include "tests/viewer/window_fixture.h"
 #include "viewer/window/settings.h"
 
@@ -149,10 +150,14 @@ TEST_F(WindowFaultTest, SettingsAreRemembered) {
 
 TEST_F(WindowFaultTest, DamagedSettingsAreNamedAndKept) {
   const TemporaryFolder folder;
+  setenv("TEXTDOMAINDIR", KERF_LOCALES, 1);
   settings_file_ = folder.path() + "/view.conf";
   const std::string damaged = "width = 1000\nperspective = perhaps\nlanguage = de\n\xff\xfe\n";
   write_file(settings_file_, damaged);
   open();
+  EXPECT_EQ(window_->settings().language, "de");
+  EXPECT_STREQ(tr("Play"), "Abspielen");
+  use_language("en");
   ASSERT_EQ(window_->settings_faults().size(), 2u);
   EXPECT_EQ(to_string(window_->settings_faults()[0]),
             settings_file_ +
@@ -163,7 +168,6 @@ TEST_F(WindowFaultTest, DamagedSettingsAreNamedAndKept) {
                 settings_file_ + ".damaged and a new one is written\n");
   EXPECT_EQ(window_->settings_faults()[1].line, 4);
   EXPECT_TRUE(window_->settings().is_perspective);
-  EXPECT_EQ(window_->settings().language, Language::kGerman);
   window_.reset();
   EXPECT_EQ(content_of(settings_file_ + ".damaged"), damaged);
   Diagnostics faults;
@@ -175,7 +179,8 @@ TEST(SettingsTest, ReadsWhatItWrote) {
   const TemporaryFolder folder;
   const std::string path = folder.path() + "/view.conf";
   ViewSettings settings;
-  settings.language = Language::kGerman;
+  setenv("TEXTDOMAINDIR", KERF_LOCALES, 1);
+  settings.language = "de";
   settings.flat = FlatView::kZx;
   settings.text_scale = 1.25;
   settings.section.axis = 2;

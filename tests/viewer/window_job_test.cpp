@@ -17,8 +17,9 @@ constexpr int kTabsY = 225;
 
 class WindowJobTest : public WindowTest {
  protected:
-  void publish_job(const std::string& program) {
+  void publish_job(const std::string& program, LengthUnit unit = LengthUnit::kMm) {
     ViewedJob job;
+    job.unit = unit;
     job.program = program;
     job.stock = "box:0,0,-5:10,10,0";
     job.models = {"auto", "zmap", "octree"};
@@ -49,6 +50,18 @@ TEST_F(WindowJobTest, ADroppedFileIsOpened) {
   const auto asked = next<OpenCommand>();
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked->path, path);
+}
+
+TEST_F(WindowJobTest, TheFieldsSayTheirUnits) {
+  open();
+  publish_job(folder_ / "part.ngc");
+  click(1137, kTabsY);
+  settle();
+  const Picture mm = window_->read();
+  publish_job(folder_ / "part.ngc");
+  EXPECT_EQ(mean_difference(mm, window_->read(), kInfo), 0.0);
+  publish_job(folder_ / "part.ngc", LengthUnit::kInch);
+  EXPECT_GT(mean_difference(mm, window_->read(), kInfo), 0.01);
 }
 
 TEST_F(WindowJobTest, BesideAMachineNothingIsOpened) {

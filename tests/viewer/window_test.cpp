@@ -4,12 +4,15 @@
 #include <png.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <set>
 #include <string>
 
+#include "base/translate.h"
 #include "tests/viewer/window_fixture.h"
 
 namespace kerf {
@@ -525,6 +528,58 @@ TEST_F(WindowTest, PlayerKeysAreToldThatTheMachineLeads) {
   publish(test_moment());  // it leads no longer
   settle();
   EXPECT_EQ(count_pixels(window_->read(), kStatus, kWarningText), 0);
+}
+
+/// What stands in the status line is the same sentence in every language.
+TEST_F(WindowTest, TheMachineNoLongerLeadsInAnotherLanguage) {
+  setenv("TEXTDOMAINDIR", KERF_LOCALES, 1);
+  open();
+  Moment moment = test_moment();
+  moment.state = PlayState::kFollowing;
+  publish(moment);
+  settle();
+  key("space");
+  settle();
+  constexpr PixelBox kStatus{0, 745, kWidth, kHeight};
+  const Picture english = window_->read();
+  ASSERT_GT(count_pixels(english, kStatus, kWarningText), 50);
+  ASSERT_TRUE(use_language("de"));
+  publish(moment);
+  settle();
+  EXPECT_GT(mean_difference(english, window_->read(), kStatus), 0.1);  // it is said in German
+  publish(test_moment());
+  settle();
+  EXPECT_EQ(count_pixels(window_->read(), kStatus, kWarningText), 0);
+  use_language("en");
+}
+
+/// The picture has four times the pixels, and so has what its lines cover.
+TEST_F(WindowTest, LinesGrowWithTheDisplay) {
+  std::array<int, 2> line_px{};
+  for (const int scale : {1, 2}) {
+    WindowOptions options;
+    options.scale = static_cast<float>(scale);
+    options.width_px = 640 * scale;
+    options.height_px = 400 * scale;
+    open(options);
+    Moment moment = test_moment();
+    moment.past_vertices = 100'000;
+    publish(moment);
+    settle();
+    const Picture picture = window_->read();
+    // Traverses, with their rims; nothing else is red in the middle.
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+      const int x = static_cast<int>(i / 3) % picture.width_px;
+      const int y = static_cast<int>(i / 3) / picture.width_px;
+      if (std::abs(2 * x - picture.width_px) > picture.width_px / 2) continue;
+      if (std::abs(2 * y - picture.height_px) > picture.height_px / 2) continue;
+      const int others = std::max(picture.rgb[i + 1], picture.rgb[i + 2]);
+      if (picture.rgb[i] > others + 50) ++line_px[static_cast<std::size_t>(scale - 1)];
+    }
+    window_.reset();
+  }
+  ASSERT_GT(line_px[0], 20);
+  EXPECT_GT(line_px[1], 3 * line_px[0]);
 }
 
 /// At scale 2 the buttons beside both panels need several rows: the last one opens the help.

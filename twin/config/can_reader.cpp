@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "machine_io/can/dbc_file.h"
 #include "twin/config/config_reader.h"
 
@@ -18,7 +20,7 @@ class DbcShelf {
   /// False: there is none; that has been reported.
   bool open(ConfigNode& asking) {
     if (!source_.has("dbc")) {
-      source_.faults().at_value(asking, "needs a DBC file, and source.dbc names none");
+      source_.faults().at_value(asking, tr("needs a DBC file, and source.dbc names none"));
       return false;
     }
     ConfigNode* const node = source_.find("dbc");
@@ -40,7 +42,7 @@ class DbcShelf {
   void finish(bool all_found) {
     if (!file_) {
       if (ConfigNode* const node = source_.find("dbc")) {
-        source_.faults().at_key(*node, "no key of the map has a signal of it");
+        source_.faults().at_key(*node, tr("no key of the map has a signal of it"));
       }
       return;
     }
@@ -66,7 +68,7 @@ void refuse_beside(const GroupReader& item, std::string_view chosen,
                    std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys) {
     if (ConfigNode* const node = item.find(key)) {
-      item.faults().at_key(*node, fmt::format("has no place beside {}", chosen));
+      item.faults().at_key(*node, trf("has no place beside {}", chosen));
     }
   }
 }
@@ -92,19 +94,19 @@ void read_type(const GroupReader& item, CanSignal& signal) {
   ConfigNode* const length = item.find("length");
   if (length != nullptr) {
     if (type.length != 0 && static_cast<int>(length->number) != type.length) {
-      item.faults().at_value(*length, fmt::format("{} is not allowed; {} has {} bits",
-                                                  length->scalar, name, type.length));
+      item.faults().at_value(
+          *length, trf("{} is not allowed; {} has {} bits", length->scalar, name, type.length));
     }
     signal.bits.length = static_cast<int>(length->number);
   } else if (type.length == 0) {
-    item.missing("length", fmt::format("1 to 64 (bits), as {} has no length of its own", name));
+    item.missing("length", trf("1 to 64 (bits), as {} has no length of its own", name));
     signal.bits.length = 8;
   }
 }
 
 void read_mux(const GroupReader& mux, CanSignal& signal) {
   if (!mux.is_there()) return;
-  mux.missing("value", "the number that the bits must hold");
+  mux.missing("value", tr("the number that the bits must hold"));
   CanMux out;
   out.bits.endian = endian_of(mux);
   out.bits.start_bit = start_bit_of(mux, out.bits.endian);
@@ -115,8 +117,8 @@ void read_mux(const GroupReader& mux, CanSignal& signal) {
 
 CanSignal read_raw(const GroupReader& item) {
   CanSignal signal;
-  item.missing("id", "the id of the frame, as 0x181",
-               "or preset: cia402, or signal: NAME of a DBC file");
+  item.missing("id", tr("the id of the frame, as 0x181"),
+               tr("or preset: cia402, or signal: NAME of a DBC file"));
   item.number("id", signal.id);
   item.number("extended", signal.extended);
   signal.bits.endian = endian_of(item);
@@ -131,16 +133,15 @@ CanSignal read_preset(const GroupReader& item) {
   const int least = odrive ? 0 : 1;
   const int most = odrive ? 63 : 127;
   const std::string name = *item.text("preset");
-  item.missing("node", fmt::format("the drive's node id, {} to {}", least, most));
-  item.missing("scale", odrive ? "mm or degrees per turn" : "mm or degrees per count");
+  item.missing("node", trf("the drive's node id, {} to {}", least, most));
+  item.missing("scale", odrive ? tr("mm or degrees per turn") : tr("mm or degrees per count"));
   refuse_beside(item, "preset",
                 {"signal", "id", "extended", "byte", "bit", "length", "type", "endian", "mux"});
   int node = least;
   item.number("node", node);
   if (node < least || node > most) {
-    item.faults().at_value(
-        *item.find("node"),
-        fmt::format("{} is not allowed; must be {} to {} for {}", node, least, most, name));
+    item.faults().at_value(*item.find("node"), trf("{} is not allowed; must be {} to {} for {}",
+                                                   node, least, most, name));
     node = least;
   }
   const auto id = static_cast<std::uint8_t>(node);
@@ -158,30 +159,25 @@ void check_unit(const GroupReader& item, ConfigNode& node, const DbcSignal& sign
     Quantity quantity;
     double size;  // mm or degrees
   };
-  constexpr Unit kUnits[] = {{"mm", Quantity::kLength, 1},
-                             {"cm", Quantity::kLength, 10},
-                             {"m", Quantity::kLength, 1000},
-                             {"um", Quantity::kLength, 0.001},
-                             {"\u00b5m", Quantity::kLength, 0.001},
-                             {"\u03bcm", Quantity::kLength, 0.001},
-                             {"in", Quantity::kLength, kMmPerInch},
-                             {"inch", Quantity::kLength, kMmPerInch},
-                             {"deg", Quantity::kAngle, 1},
-                             {"\u00b0", Quantity::kAngle, 1},
-                             {"rad", Quantity::kAngle, 57.29577951308232}};
+  constexpr Unit kUnits[] = {
+      {"mm", Quantity::kLength, 1},          {"cm", Quantity::kLength, 10},
+      {"m", Quantity::kLength, 1000},        {"um", Quantity::kLength, 0.001},
+      {"\u00b5m", Quantity::kLength, 0.001}, {"\u03bcm", Quantity::kLength, 0.001},
+      {"in", Quantity::kLength, kMmPerInch}, {"inch", Quantity::kLength, kMmPerInch},
+      {"deg", Quantity::kAngle, 1},          {"\u00b0", Quantity::kAngle, 1},
+      {"rad", Quantity::kAngle, kDegPerRad}};
   // A scale is the user's word.
   if (item.has("scale")) return;
   const bool inches = inch && quantity == Quantity::kLength;
   const double wanted = inches ? kMmPerInch : 1;
   for (const Unit& unit : kUnits) {
     if (unit.name != signal.unit || unit.quantity != quantity || unit.size == wanted) continue;
-    item.faults().at_value(
-        node,
-        fmt::format("{} is in {}, which is taken for {}", node.scalar, signal.unit,
-                    inches                          ? "inch"
-                    : quantity == Quantity::kLength ? "mm"
-                                                    : "degrees"),
-        fmt::format("scale: {} makes it right", unit.size / wanted));
+    item.faults().at_value(node,
+                           trf("{} is in {}, which is taken for {}", node.scalar, signal.unit,
+                               inches                          ? "inch"
+                               : quantity == Quantity::kLength ? "mm"
+                                                               : tr("degrees")),
+                           trf("scale: {} makes it right", unit.size / wanted));
     return;
   }
 }
@@ -214,7 +210,7 @@ std::optional<CanSignal> read_signal(const GroupReader& item, DbcShelf& shelf, Q
     if (item.find("signal") != nullptr) signal = read_dbc_signal(item, shelf, quantity, inch);
   } else {
     if (ConfigNode* const node = item.find("node")) {
-      item.faults().at_key(*node, "is for a preset, and there is none");
+      item.faults().at_key(*node, tr("is for a preset, and there is none"));
     }
     signal = read_raw(item);
   }
@@ -257,8 +253,8 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
   bool all_found = true;
   for (const MapItem& item : items_of(source.group("map"), reading)) {
     if (item.name == "counter" || item.name == "counter_begun") {
-      source.faults().at_key(*item.group.node(), "only a modbus source has a counter",
-                             "a CAN drive that is silent is found by max_age_ms");
+      source.faults().at_key(*item.group.node(), tr("only a modbus source has a counter"),
+                             tr("a CAN drive that is silent is found by max_age_ms"));
       continue;
     }
     Quantity quantity = Quantity::kOther;
@@ -287,10 +283,11 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
 }
 
 void read_can(const GroupReader& source, const MapReading& reading, CanSourceOptions& options) {
-  source.missing("interface", "the name of a CAN interface", "as in can0");
+  source.missing("interface", tr("the name of a CAN interface"), tr("as in can0"));
   if (const std::optional<std::string> name = source.text("interface")) options.interface = *name;
   source.number("receive_buffer_bytes", options.receive_buffer_bytes);
-  source.missing("map", "a group with at least one axis", "as in X: {id: 0x181, type: int32}");
+  source.missing("map", tr("a group with at least one axis"),
+                 tr("as in X: {id: 0x181, type: int32}"));
   read_can_map(source, reading, options.map);
   report_faults(validate(options), source, reading);
 }

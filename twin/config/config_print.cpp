@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text_scan.h"
 #include "twin/config/config_reader.h"
 #include "twin/config/live_config.h"
 
@@ -14,8 +15,7 @@ namespace {
 /// A text that YAML gives back as it is: bare if that is safe, else in double quotes.
 std::string quoted(const std::string& text) {
   const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '.' || c == '/' || c == '-';
+    return is_letter(c) || is_digit(c) || c == '_' || c == '.' || c == '/' || c == '-';
   };
   const bool safe = !text.empty() && text != "null" && text != "Null" && text != "NULL" &&
                     text.front() != '-' && text.front() != '.' &&

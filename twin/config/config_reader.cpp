@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -30,14 +31,12 @@ void read_work_offset(const GroupReader& offset, ConfigMachine& machine) {
 void read_joints(const GroupReader& machine, std::string& joints) {
   ConfigNode* const node = machine.find("joints");
   if (node == nullptr) return;
-  std::string letters = node->scalar;
-  for (char& c : letters) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  const std::string letters = to_upper(node->scalar);
   if (letters.size() > kMaxPositions || letters.find_first_not_of(kAllAxes) != letters.npos) {
-    machine.faults().at_value(
-        *node,
-        fmt::format("'{}' is not allowed; must be 1 to {} letters of {}, one a joint", node->scalar,
-                    kMaxPositions, kAllAxes),
-        "XYZ: joint 0 moves X, joint 1 Y, joint 2 Z");
+    machine.faults().at_value(*node,
+                              trf("'{}' is not allowed; must be 1 to {} letters of {}, one a joint",
+                                  node->scalar, kMaxPositions, kAllAxes),
+                              tr("XYZ: joint 0 moves X, joint 1 Y, joint 2 Z"));
     return;
   }
   joints = letters;
@@ -66,9 +65,9 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
 std::string trouble_with(const ToolShapeArgument& tool,
                          const std::vector<ToolShapeArgument>& others,
                          std::optional<StockKind> model) {
-  if (tool.tool == 0) return "tool 0 is the empty spindle; numbers begin at 1";
+  if (tool.tool == 0) return tr("tool 0 is the empty spindle; numbers begin at 1");
   for (const ToolShapeArgument& other : others) {
-    if (other.tool == tool.tool) return fmt::format("tool {} is given twice", tool.tool);
+    if (other.tool == tool.tool) return trf("tool {} is given twice", tool.tool);
   }
   if (const Done fit = can_be_cut(model, tool.cutter); !fit) return fit.error();
   return {};
@@ -138,7 +137,7 @@ void read_turret_key(const GroupReader& root, LiveConfig& config) {
   if (!config.turret || !beam.is_there()) return;
   for (const auto& child : beam.node()->children) {
     if (child->faulty || child->key == "density_kg_per_m3") continue;
-    root.faults().at_key(*child, "is for torches, lasers and jets; turret punches");
+    root.faults().at_key(*child, tr("is for torches, lasers and jets; turret punches"));
   }
 }
 
@@ -191,7 +190,7 @@ int GroupReader::word(std::string_view key) const {
 
 void GroupReader::missing(std::string_view key, const std::string& what, std::string hint) const {
   if (group_ == nullptr || has(key)) return;
-  faults_.at_key(*group_, fmt::format("{} is missing; must be {}", key, what), std::move(hint));
+  faults_.at_key(*group_, trf("{} is missing; must be {}", key, what), std::move(hint));
 }
 
 std::string resolved_path(const ConfigNode& node, const std::string& path,

@@ -8,13 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/units.h"
 #include "twin/config/config_tree.h"
 #include "twin/config/key_check.h"
 #include "twin/config/live_config.h"
 
 namespace kerf {
-
-inline constexpr double kMmPerInch = 25.4;
 
 /// Values of one group. A key that is absent, or faulty and thereby reported, leaves what was
 /// there.

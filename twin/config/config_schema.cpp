@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/translate.h"
 #include "twin/config/key_table.h"
 #include "twin/config/live_config.h"
 
@@ -11,9 +12,9 @@ namespace {
 constexpr std::size_t kPurposeColumn = 44;
 
 /// Too many words for the column of the keys.
-bool is_long(const KeySpec& spec) { return spec.words.size() > 24; }
+bool is_long(const Setting& spec) { return spec.words.size() > 24; }
 
-std::string form_of(const KeySpec& spec) {
+std::string form_of(const Setting& spec) {
   switch (spec.type) {
     case KeyType::kGroup:
       return "";
@@ -22,6 +23,7 @@ std::string form_of(const KeySpec& spec) {
     case KeyType::kText:
       return " TEXT";
     case KeyType::kFile:
+    case KeyType::kFolder:
       return " FILE";
     case KeyType::kNumber:
       return " NUMBER";
@@ -38,19 +40,19 @@ std::string form_of(const KeySpec& spec) {
 }
 
 /// Range and default, below the purpose; empty if there is neither.
-std::string details_of(const KeySpec& spec) {
+std::string details_of(const Setting& spec) {
   std::string text;
   const bool number = spec.type == KeyType::kNumber || spec.type == KeyType::kWhole;
   if (number) text = allowed_text(spec);
   if (is_long(spec)) text = spec.words;
-  if (!number && !spec.unit.empty()) text = spec.unit;
+  if (!number && *spec.unit != 0) text = tr(spec.unit);
   if (!spec.fallback.empty()) {
-    text += fmt::format("{}default {}", text.empty() ? "" : "; ", spec.fallback);
+    text += trf("{}default {}", text.empty() ? "" : "; ", spec.fallback);
   }
   return text;
 }
 
-std::string sources_of(const KeySpec& spec) {
+std::string sources_of(const Setting& spec) {
   if (spec.sources == kForAny) return "";
   std::string text;
   const auto add = [&](SourceMask mask, const char* name) {
@@ -67,16 +69,15 @@ std::string sources_of(const KeySpec& spec) {
 }  // namespace
 
 std::string schema_text() {
-  std::string out =
+  std::string out = tr(
       "# Every key of a configuration (YAML). All are optional but source.type and what a source\n"
-      "# cannot do without. [modbus] ..: a key of that type of source alone.\n";
-  for (const KeySpec& spec : key_table()) {
-    const auto depth =
-        static_cast<std::size_t>(std::count(spec.path.begin(), spec.path.end(), '.'));
-    const std::string_view name = spec.path.substr(spec.path.rfind('.') + 1);
+      "# cannot do without. [modbus] ..: a key of that type of source alone.\n");
+  for (const Setting& spec : key_table()) {
+    const auto depth = static_cast<std::size_t>(std::count(spec.key.begin(), spec.key.end(), '.'));
+    const std::string_view name = spec.key.substr(spec.key.rfind('.') + 1);
     const std::string key =
         fmt::format("{}{}:{}", std::string(2 * depth, ' '), name, form_of(spec));
-    out += fmt::format("{:<{}} # {}{}\n", key, kPurposeColumn, sources_of(spec), spec.purpose);
+    out += fmt::format("{:<{}} # {}{}\n", key, kPurposeColumn, sources_of(spec), tr(spec.purpose));
     const std::string details = details_of(spec);
     if (!details.empty()) out += fmt::format("{:<{}} #   {}\n", "", kPurposeColumn, details);
   }

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/translate.h"
 #include "twin/config/live_config.h"
 
 namespace kerf {
@@ -33,7 +34,7 @@ class TreeBuilder final : public YAML::EventHandler {
       : text_(text), root_(root), diagnostics_(diagnostics) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (documents_++ > 0) abandon(mark, "a second document ('---') is not allowed");
+    if (documents_++ > 0) abandon(mark, tr("a second document ('---') is not allowed"));
   }
   void OnDocumentEnd() override {}
 
@@ -41,12 +42,12 @@ class TreeBuilder final : public YAML::EventHandler {
     add(mark, anchor, "", NodeKind::kNothing, {});
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    abandon(mark, "aliases ('*') are not allowed", "write the value out");
+    abandon(mark, tr("aliases ('*') are not allowed"), tr("write the value out"));
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     if (!text_.quote_ends_at(line_of(mark), column_of(mark))) {
-      abandon(mark, "this quote does not end in its line");
+      abandon(mark, tr("this quote does not end in its line"));
     }
     add(mark, anchor, tag, NodeKind::kScalar, value);
   }
@@ -77,22 +78,22 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void open(ConfigNode* node, const YAML::Mark& mark) {
     if (open_.size() >= static_cast<std::size_t>(kMaxConfigDepth)) {
-      abandon(mark, fmt::format("nested deeper than {} levels", kMaxConfigDepth));
+      abandon(mark, trf("nested deeper than {} levels", kMaxConfigDepth));
     }
     open_.push_back({node, false, {}, {}});
   }
 
   ConfigNode* add(const YAML::Mark& mark, YAML::anchor_t anchor, const std::string& tag,
                   NodeKind kind, const std::string& value) {
-    if (anchor != 0) abandon(mark, "anchors ('&') are not allowed", "write the value out");
+    if (anchor != 0) abandon(mark, tr("anchors ('&') are not allowed"), tr("write the value out"));
     if (!tag.empty() && tag != "?" && tag != "!") {
-      abandon(mark, fmt::format("tags are not allowed; '{}' found", tag));
+      abandon(mark, trf("tags are not allowed; '{}' found", tag));
     }
     if (open_.empty()) return add_root(mark, kind);
     Open& parent = open_.back();
     if (parent.node->kind == NodeKind::kMap && !parent.awaits_value) {
       if (kind != NodeKind::kScalar) {
-        abandon(mark, fmt::format("a key is a word; {} found", to_string(kind)));
+        abandon(mark, trf("a key is a word; {} found", to_string(kind)));
       }
       parent = {parent.node, true, value, mark};
       return nullptr;
@@ -102,8 +103,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   ConfigNode* add_root(const YAML::Mark& mark, NodeKind kind) {
     if (kind != NodeKind::kMap && kind != NodeKind::kNothing) {
-      abandon(mark, fmt::format("{} found; a configuration is keys with values ('source: ...')",
-                                to_string(kind)));
+      abandon(mark, trf("{} found; a configuration is keys with values ('source: ...')",
+                        to_string(kind)));
     }
     return &root_;
   }
@@ -111,8 +112,7 @@ class TreeBuilder final : public YAML::EventHandler {
   ConfigNode* attach(Open& parent, const YAML::Mark& mark, NodeKind kind,
                      const std::string& value) {
     if (parent.node->children.size() + duplicates_.size() >= kMostChildren) {
-      abandon(mark,
-              fmt::format("more than {} keys or elements in one group or list", kMostChildren));
+      abandon(mark, trf("more than {} keys or elements in one group or list", kMostChildren));
     }
     auto node = std::make_unique<ConfigNode>();
     node->kind = kind;
@@ -136,7 +136,7 @@ class TreeBuilder final : public YAML::EventHandler {
     if (const ConfigNode* before = node->key.empty() ? nullptr : parent.node->child(node->key)) {
       diagnostics_.push_back(text_.diagnostic(
           node->key_line, node->key_column,
-          fmt::format("{}: given twice; the first is in line {}", node->path, before->key_line)));
+          trf("{}: given twice; the first is in line {}", node->path, before->key_line)));
       duplicates_.push_back(std::move(node));  // read on below it, but drop it
     } else {
       parent.node->children.push_back(std::move(node));
@@ -188,13 +188,14 @@ bool check_bytes(const ConfigText& text, Diagnostics& diagnostics) {
   };
   std::size_t bad = bytes.find('\0');
   if (bad != bytes.npos) {
-    fault(bad, "a zero byte: this is no text file", "a configuration is a YAML text in UTF-8");
+    fault(bad, tr("a zero byte: this is no text file"),
+          tr("a configuration is a YAML text in UTF-8"));
     return false;
   }
   bad = find_bad_utf8(bytes);
   if (bad != bytes.npos) {
-    fault(bad, fmt::format("byte 0x{:02X} is not UTF-8", static_cast<unsigned char>(bytes[bad])),
-          "save the file as UTF-8");
+    fault(bad, trf("byte 0x{:02X} is not UTF-8", static_cast<unsigned char>(bytes[bad])),
+          tr("save the file as UTF-8"));
     return false;
   }
   bool good = true;
@@ -204,7 +205,7 @@ bool check_bytes(const ConfigText& text, Diagnostics& diagnostics) {
     if (first < end && bytes[first] == '\t') {
       const std::size_t content = bytes.find_first_not_of(" \t\r", first);
       if (content < end && bytes[content] != '#') {
-        fault(first, "a tab indents this line", "YAML indents with blanks only");
+        fault(first, tr("a tab indents this line"), tr("YAML indents with blanks only"));
         good = false;
       }
     }
@@ -216,15 +217,17 @@ bool check_bytes(const ConfigText& text, Diagnostics& diagnostics) {
 /// The library's messages begin with lower case words already; these say more.
 std::string plain_words(const std::string& message) {
   if (message.find("illegal map value") != message.npos) {
-    return "a ':' cannot stand here: a line begins farther right than the one above, or a text "
-           "with ': ' in it lacks its quotes";
+    return tr(
+        "a ':' cannot stand here: a line begins farther right than the one above, or a text "
+        "with ': ' in it lacks its quotes");
   }
   if (message.find("end of map not found") != message.npos) {
-    return "keys of one group must begin in the same column, and each needs a ':' and a blank";
+    return tr("keys of one group must begin in the same column, and each needs a ':' and a blank");
   }
-  if (message.find("end of map flow") != message.npos) return "'{' without '}'";
-  if (message.find("end of sequence flow") != message.npos) return "'[' without ']'";
-  return "this is no YAML: " + message;
+  if (message.find("end of map flow") != message.npos) return trf("{} without {}", "'{'", "'}'");
+  if (message.find("end of sequence flow") != message.npos)
+    return trf("{} without {}", "'['", "']'");
+  return tr("this is no YAML: ") + message;
 }
 
 }  // namespace
@@ -232,15 +235,15 @@ std::string plain_words(const std::string& message) {
 const char* to_string(NodeKind kind) {
   switch (kind) {
     case NodeKind::kNothing:
-      return "nothing";
+      return tr("nothing");
     case NodeKind::kScalar:
-      return "a single value";
+      return tr("a single value");
     case NodeKind::kMap:
-      return "a group of keys";
+      return tr("a group of keys");
     case NodeKind::kList:
-      return "a list";
+      return tr("a list");
   }
-  return "nothing";
+  return tr("nothing");
 }
 
 ConfigNode* ConfigNode::child(std::string_view name) {
@@ -336,12 +339,12 @@ void set_in_tree(ConfigNode& root, std::string_view assignment, Diagnostics& dia
   };
   if (equals == assignment.npos || key.empty() || key.front() == '.' || key.back() == '.' ||
       key.find("..") != key.npos || key.size() > 200) {
-    fault(fmt::format("{}: must be KEY=VALUE", assignment.substr(0, 60)),
-          "as in --set source.poll_hz=100");
+    fault(trf("{}: must be KEY=VALUE", assignment.substr(0, 60)),
+          tr("as in --set source.poll_hz=100"));
     return;
   }
   if (find_bad_utf8(assignment) != assignment.npos || assignment.find('\0') != assignment.npos) {
-    fault("value: not UTF-8");
+    fault(tr("value: not UTF-8"));
     return;
   }
   ConfigNode* node = &root;
@@ -350,8 +353,8 @@ void set_in_tree(ConfigNode& root, std::string_view assignment, Diagnostics& dia
     const std::string_view name = key.substr(start, end - start);
     if (node->kind == NodeKind::kNothing) node->kind = NodeKind::kMap;
     if (node->kind != NodeKind::kMap) {
-      fault(fmt::format("{}: {} is {} here, so there is no {} below it", key, node->path,
-                        to_string(node->kind), name));
+      fault(trf("{}: {} is {} here, so there is no {} below it", key, node->path,
+                to_string(node->kind), name));
       return;
     }
     ConfigNode* next = node->child(name);
@@ -366,8 +369,7 @@ void set_in_tree(ConfigNode& root, std::string_view assignment, Diagnostics& dia
     start = end + 1;
   }
   if (node->kind == NodeKind::kMap || node->kind == NodeKind::kList) {
-    fault(fmt::format("{}: {} in the file; only a single value can be set", key,
-                      to_string(node->kind)));
+    fault(trf("{}: {} in the file; only a single value can be set", key, to_string(node->kind)));
     return;
   }
   node->kind = NodeKind::kScalar;

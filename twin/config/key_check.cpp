@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "twin/suggest.h"
+#include "base/suggest.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -28,7 +29,7 @@ std::string source_names(std::uint8_t mask) {
   if ((mask & kForCan) != 0) names.emplace_back("can");
   if ((mask & kForHal) != 0) names.emplace_back("hal");
   if ((mask & kForLog) != 0) names.emplace_back("log");
-  return fmt::format("{}", fmt::join(names, " and "));
+  return fmt::format("{}", fmt::join(names, tr(" and ")));
 }
 
 bool segment_matches(std::string_view segment, const std::string& key) {
@@ -45,11 +46,11 @@ bool segment_matches(std::string_view segment, const std::string& key) {
 }
 
 /// The last part of the path if `group` is all before it; empty if not.
-std::string_view name_below(const KeySpec& spec, std::string_view group) {
-  const std::size_t dot = spec.path.rfind('.');
-  const std::string_view parent = dot == spec.path.npos ? "" : spec.path.substr(0, dot);
+std::string_view name_below(const Setting& spec, std::string_view group) {
+  const std::size_t dot = spec.key.rfind('.');
+  const std::string_view parent = dot == spec.key.npos ? "" : spec.key.substr(0, dot);
   if (parent != group) return {};
-  return dot == spec.path.npos ? spec.path : spec.path.substr(dot + 1);
+  return dot == spec.key.npos ? spec.key : spec.key.substr(dot + 1);
 }
 
 std::optional<double> number_of(std::string_view text, bool whole) {
@@ -57,21 +58,18 @@ std::optional<double> number_of(std::string_view text, bool whole) {
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   if (text.empty() || text[0] == '-' || text[0] == '+') return std::nullopt;
   double value = 0;
-  const char* const end = text.data() + text.size();
   if (whole && (text.starts_with("0x") || text.starts_with("0X"))) {
     std::uint64_t bits = 0;
-    const auto [stop, error] = std::from_chars(text.data() + 2, end, bits, 16);
-    if (error != std::errc{} || stop != end) return std::nullopt;
+    if (!read_number(text.substr(2), bits, 16)) return std::nullopt;
     value = static_cast<double>(bits);
-  } else {
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
+  } else if (!read_number(text, value) || !std::isfinite(value)) {
+    return std::nullopt;
   }
   return negative ? -value : value;
 }
 
-std::optional<bool> yes_no(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+std::optional<bool> yes_no(std::string_view given) {
+  const std::string text = to_lower(given);
   if (text == "yes" || text == "true" || text == "on") return true;
   if (text == "no" || text == "false" || text == "off") return false;
   return std::nullopt;
@@ -87,9 +85,9 @@ class KeyChecker {
 
  private:
   void check_key(ConfigNode& node, const ConfigNode& group, std::string_view pattern) {
-    const KeySpec* found = nullptr;
-    const KeySpec* found_elsewhere = nullptr;
-    for (const KeySpec& spec : key_table()) {
+    const Setting* found = nullptr;
+    const Setting* found_elsewhere = nullptr;
+    for (const Setting& spec : key_table()) {
       const std::string_view name = name_below(spec, pattern);
       if (name.empty() || !segment_matches(name, node.key)) continue;
       if ((spec.sources & type_) == 0) {
@@ -100,13 +98,12 @@ class KeyChecker {
     }
     const bool small_item = is_small_item(group.key, pattern);
     if (found != nullptr && found->axes_only && small_item) {
-      faults_.at_key(node, "only axes have this key");
+      faults_.at_key(node, tr("only axes have this key"));
     } else if (found != nullptr) {
       check_value(node, *found);
     } else if (found_elsewhere != nullptr) {
-      faults_.at_key(node,
-                     fmt::format("is a key of sources of type {}; this one is {}",
-                                 source_names(found_elsewhere->sources), source_names(type_)));
+      faults_.at_key(node, trf("is a key of sources of type {}; this one is {}",
+                               source_names(found_elsewhere->sources), source_names(type_)));
     } else {
       unknown(node, pattern, small_item);
     }
@@ -118,12 +115,12 @@ class KeyChecker {
 
   void unknown(ConfigNode& node, std::string_view pattern, bool small_item) {
     std::vector<std::string> names;
-    for (const KeySpec& spec : key_table()) {
+    for (const Setting& spec : key_table()) {
       const std::string_view name = name_below(spec, pattern);
       if (name.empty() || (spec.sources & type_) == 0 || (spec.axes_only && small_item)) continue;
       if (name == "NUMBER") {
-        faults_.at_key(node, "is no tool number; must be a whole number, 1 to 99999",
-                       "as in 3: flat:6");
+        faults_.at_key(node, tr("is no tool number; must be a whole number, 1 to 99999"),
+                       tr("as in 3: flat:6"));
         return;
       }
       if (name == "ITEM") {
@@ -138,9 +135,9 @@ class KeyChecker {
     names.erase(std::unique(names.begin(), names.end()), names.end());
     const std::string near = nearest_key(node.key, names);
     if (!near.empty()) {
-      faults_.at_key(node, "unknown key", fmt::format("did you mean {}?", near));
+      faults_.at_key(node, tr("unknown key"), trf("did you mean {}?", near));
     } else {
-      faults_.at_key(node, "unknown key", fmt::format("here may be: {}", fmt::join(names, ", ")));
+      faults_.at_key(node, tr("unknown key"), trf("here may be: {}", fmt::join(names, ", ")));
     }
   }
 
@@ -159,18 +156,18 @@ class KeyChecker {
     return nearest_word(key, words);
   }
 
-  void check_value(ConfigNode& node, const KeySpec& spec) {
+  void check_value(ConfigNode& node, const Setting& spec) {
     if (spec.type == KeyType::kGroup) {
       if (node.kind == NodeKind::kMap) {
-        check_group(node, spec.path);
+        check_group(node, spec.key);
       } else if (node.kind != NodeKind::kNothing) {
-        faults_.at_value(
-            node, fmt::format("{} is not allowed; must be a group of keys below it", shown(node)));
+        faults_.at_value(node,
+                         trf("{} is not allowed; must be a group of keys below it", shown(node)));
       }
       return;
     }
     if (node.kind == NodeKind::kNothing) {
-      faults_.at_value(node, fmt::format("has no value; must be {}", allowed_text(spec)));
+      faults_.at_value(node, trf("has no value; must be {}", allowed_text(spec)));
       return;
     }
     if (spec.type == KeyType::kTexts) {
@@ -188,7 +185,7 @@ class KeyChecker {
     check_scalar(node, spec);
   }
 
-  void check_list(ConfigNode& node, const KeySpec& spec) {
+  void check_list(ConfigNode& node, const Setting& spec) {
     if (node.kind != NodeKind::kList) {
       wrong(node, spec);
       return;
@@ -196,37 +193,37 @@ class KeyChecker {
     for (const auto& element : node.children) {
       if (element->kind == NodeKind::kScalar) continue;
       faults_.at_value(*element,
-                       fmt::format("{} is not allowed; must be a text", to_string(element->kind)));
+                       trf("{} is not allowed; must be a text", to_string(element->kind)));
       node.faulty = true;
     }
   }
 
-  void check_groups(ConfigNode& node, const KeySpec& spec) {
+  void check_groups(ConfigNode& node, const Setting& spec) {
     if (node.kind != NodeKind::kList) {
       wrong(node, spec);
       return;
     }
     for (const auto& element : node.children) {
       if (element->kind == NodeKind::kMap) {
-        check_group(*element, spec.path);
+        check_group(*element, spec.key);
       } else {
-        faults_.at_value(
-            *element, fmt::format("{} is not allowed; must be a group of keys", shown(*element)));
+        faults_.at_value(*element,
+                         trf("{} is not allowed; must be a group of keys", shown(*element)));
       }
     }
   }
 
-  void wrong(ConfigNode& node, const KeySpec& spec, std::string hint = {}) {
-    if (hint.empty()) hint = spec.hint;
-    faults_.at_value(node,
-                     fmt::format("{} is not allowed; must be {}", shown(node), allowed_text(spec)),
+  void wrong(ConfigNode& node, const Setting& spec, std::string hint = {}) {
+    if (hint.empty()) hint = tr(spec.hint);
+    faults_.at_value(node, trf("{} is not allowed; must be {}", shown(node), allowed_text(spec)),
                      std::move(hint));
   }
 
-  void check_scalar(ConfigNode& node, const KeySpec& spec) {
+  void check_scalar(ConfigNode& node, const Setting& spec) {
     switch (spec.type) {
       case KeyType::kText:
       case KeyType::kFile:
+      case KeyType::kFolder:
         if (node.scalar.empty()) wrong(node, spec);
         break;
       case KeyType::kWord:
@@ -250,28 +247,27 @@ class KeyChecker {
     }
   }
 
-  void check_word(ConfigNode& node, const KeySpec& spec) {
-    const std::vector<std::string> words = words_of(spec);
+  void check_word(ConfigNode& node, const Setting& spec) {
+    const std::vector<std::string> words = parts_of(spec.words);
     const auto at = std::find(words.begin(), words.end(), node.scalar);
     node.number = static_cast<double>(at - words.begin());
     if (at != words.end()) return;
     const std::string near = nearest_word(node.scalar, words);
-    wrong(node, spec, near.empty() ? "" : fmt::format("did you mean {}?", near));
+    wrong(node, spec, near.empty() ? "" : trf("did you mean {}?", near));
   }
 
-  void check_number(ConfigNode& node, const KeySpec& spec) {
+  void check_number(ConfigNode& node, const Setting& spec) {
     const bool whole = spec.type == KeyType::kWhole;
     const std::optional<double> value = number_of(node.scalar, whole);
     if (!value) {
       const bool comma = node.scalar.find(',') != node.scalar.npos;
-      wrong(node, spec, comma ? "the decimal sign is a point" : "");
+      wrong(node, spec, comma ? tr("the decimal sign is a point") : "");
       return;
     }
     const bool low = spec.least_excluded ? *value <= spec.least : *value < spec.least;
     if (low || *value > spec.most || (whole && *value != std::floor(*value))) {
-      faults_.at_value(
-          node, fmt::format("{} is not allowed; must be {}", node.scalar, allowed_text(spec)),
-          std::string(spec.hint));
+      faults_.at_value(node, trf("{} is not allowed; must be {}", node.scalar, allowed_text(spec)),
+                       tr(spec.hint));
       return;
     }
     node.number = *value;

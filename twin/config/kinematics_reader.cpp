@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/translate.h"
 #include "twin/config/config_reader.h"
 
 namespace kerf {
@@ -18,17 +19,17 @@ std::string module_of(const std::string& kinematics) {
 /// Of keys that mean nothing to these kinematics.
 void refuse(const GroupReader& machine, const char* key, const std::string& why) {
   ConfigNode* const node = machine.find(key);
-  if (node != nullptr) machine.faults().at_key(*node, "has no place here: " + why);
+  if (node != nullptr) machine.faults().at_key(*node, tr("has no place here: ") + why);
 }
 
 void read_linked(const GroupReader& machine, ConfigNode& node, const ConfigMachine& out,
                  KinematicsRequest& request) {
   for (const char* const key : {"geometry", "rotary_side", "rotary_center"}) {
-    refuse(machine, key, "the links say where everything is");
+    refuse(machine, key, tr("the links say where everything is"));
   }
   if (!out.drawn.links) {
     if (!machine.has("links")) {
-      machine.faults().at_value(node, "there are no links", "machine.links lists them");
+      machine.faults().at_value(node, tr("there are no links"), tr("machine.links lists them"));
     }
     return;
   }
@@ -61,15 +62,15 @@ void read_geometry(const GroupReader& geometry, const std::string& module,
       names.append(names.empty() ? "" : ", ").append(pin.name);
     }
     if (known) continue;
-    geometry.faults().at_key(
-        *node, names.empty() ? fmt::format("{} takes no numbers", module)
-                             : fmt::format("is no number of {}; it takes {}", module, names));
+    geometry.faults().at_key(*node, names.empty()
+                                        ? trf("{} takes no numbers", module)
+                                        : trf("is no number of {}; it takes {}", module, names));
   }
 }
 
 void read_module(const GroupReader& machine, ConfigNode* node, const ConfigMachine& out,
                  KinematicsRequest& request) {
-  refuse(machine, "follows_tip", "only `kinematics: links` has it");
+  refuse(machine, "follows_tip", tr("only `kinematics: links` has it"));
   std::string module;
   if (node != nullptr) {
     request.kinematics = node->scalar;
@@ -82,7 +83,7 @@ void read_module(const GroupReader& machine, ConfigNode* node, const ConfigMachi
     module = module_of(node->scalar);
     if (!takes_rotary_placement(module)) {
       for (const char* const key : {"rotary_side", "rotary_center"}) {
-        refuse(machine, key, module + " says what turns, and where");
+        refuse(machine, key, module + tr(" says what turns, and where"));
       }
     }
   }

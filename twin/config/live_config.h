@@ -18,13 +18,14 @@
 #include "machine_io/recorder.h"
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
-#include "twin/kinematics/kinematics_setup.h"
+#include "twin/config/option_layers.h"
+#include "twin/job/stock_choice.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
-#include "twin/live/live_run.h"
 #include "twin/live/path_follower.h"
-#include "twin/machine_model/machine_choice.h"
-#include "twin/stock_choice.h"
+#include "twin/machine/kinematics/kinematics_setup.h"
+#include "twin/report/live_run.h"
+#include "twin/scene/machines/machine_choice.h"
 
 namespace kerf {
 
@@ -114,6 +115,8 @@ struct LiveConfig {
   ConfigFollow follow;
   ConfigView view;
   ConfigSourceCommon common;
+  /// The values that were given, of keys that are options as well: what choose() hears.
+  SaidTexts said;
   /// Empty: the file has no `source:`. Joints that count degrees (HalSettings and LogSettings) are
   /// filled in by make_source(), from machine.joints.
   ConfigSource source;

@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "base/translate.h"
 #include "twin/config/config_reader.h"
 
 namespace kerf {
@@ -12,7 +13,7 @@ void read_pins(const GroupReader& source, LogSettings& settings) {
   ConfigNode* const file = source.find("pins_file");
   ConfigNode* const channel = source.find("channel");
   if (pins != nullptr && file != nullptr) {
-    source.faults().at_key(*file, "has no place beside pins; must be one of both");
+    source.faults().at_key(*file, tr("has no place beside pins; must be one of both"));
   } else if (file != nullptr) {
     int number = 0;
     source.number("channel", number);
@@ -20,7 +21,7 @@ void read_pins(const GroupReader& source, LogSettings& settings) {
     settings.pins = pins_from_hal_file(*source.path("pins_file"), number, said);
     // Without a diagnostic of its own the empty list would pass for no pins at all.
     if (settings.pins.empty() && !has_error(said)) {
-      source.faults().at_value(*file, "no pins of a sampler are in this file");
+      source.faults().at_value(*file, tr("no pins of a sampler are in this file"));
     }
     if (has_error(said)) file->faulty = true;
     for (Diagnostic& one : said) source.faults().diagnostics().push_back(std::move(one));
@@ -29,11 +30,11 @@ void read_pins(const GroupReader& source, LogSettings& settings) {
     for (const auto& pin : pins->children) settings.pins.push_back(pin->scalar);
     if (settings.pins.empty()) {
       source.faults().at_value(*pins,
-                               "an empty list is not allowed; must be the pins of a sampler");
+                               tr("an empty list is not allowed; must be the pins of a sampler"));
     }
   }
   if (channel != nullptr && !source.has("pins_file")) {
-    source.faults().at_key(*channel, "is for pins_file, and there is none");
+    source.faults().at_key(*channel, tr("is for pins_file, and there is none"));
   }
 }
 
@@ -46,10 +47,11 @@ void refuse_idle_keys(const GroupReader& source, const LogSettings& settings) {
   const bool is_auto = settings.format == LogFormat::kAuto;
   if (settings.format != LogFormat::kHalsampler) {
     // Of what it is, auto tells only by the file; but halsampler is it with pins alone.
-    refuse(source, "period_s", "is for halsampler, which needs pins or pins_file");
+    refuse(source, "period_s", tr("is for halsampler, which needs pins or pins_file"));
   }
   if (settings.format != LogFormat::kCandump) {
-    const std::string why = is_auto ? "is for candump, which needs a map" : "is for candump";
+    const std::string why =
+        is_auto ? tr("is for candump, which needs a map") : tr("is for candump");
     refuse(source, "gather_ms", why);
     refuse(source, "interface", why);
     refuse(source, "dbc", why);
@@ -59,7 +61,7 @@ void refuse_idle_keys(const GroupReader& source, const LogSettings& settings) {
 }  // namespace
 
 void read_log(const GroupReader& source, const MapReading& reading, LogSettings& settings) {
-  source.missing("file", "the path of a log, or '-' for standard input");
+  source.missing("file", tr("the path of a log, or '-' for standard input"));
   settings.path = source.path("file").value_or("");
   constexpr std::array kFormats{LogFormat::kAuto, LogFormat::kRecording, LogFormat::kCsv,
                                 LogFormat::kHalsampler, LogFormat::kCandump};

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 
-#include "stock/cutter/scan.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "twin/config/config_reader.h"
 
 namespace kerf {
@@ -16,13 +16,10 @@ void read_color(const GroupReader& group, std::uint32_t& out) {
   const std::string_view text = node->scalar;
   std::uint32_t value = 0;
   const bool sized = (text.size() == 7 || text.size() == 9) && text[0] == '#';
-  const auto [end, error] =
-      std::from_chars(text.data() + (sized ? 1 : 0), text.data() + text.size(), value, 16);
-  if (!sized || error != std::errc() || end != text.data() + text.size()) {
+  if (!sized || !read_number(text.substr(1), value, 16)) {
     group.faults().at_value(
-        *node,
-        fmt::format("'{}' is not allowed; must be #RRGGBB or #RRGGBBAA", shown(node->scalar)),
-        "in quotes, as '#' begins a comment: \"#8090a0\"");
+        *node, trf("'{}' is not allowed; must be #RRGGBB or #RRGGBBAA", shown(node->scalar)),
+        tr("in quotes, as '#' begins a comment: \"#8090a0\""));
     return;
   }
   if (text.size() == 7) value = value << 8U | 0xffU;
@@ -37,7 +34,8 @@ void read_joint(const GroupReader& group, ChainLink& link) {
     for (const char* const key : {"moves", "direction"}) {
       ConfigNode* const alone = group.find(key);
       if (alone != nullptr && !group.has("axis")) {
-        group.faults().at_key(*alone, "has no place in a link without axis, which does not move");
+        group.faults().at_key(*alone,
+                              tr("has no place in a link without axis, which does not move"));
       }
     }
     return;
@@ -45,9 +43,9 @@ void read_joint(const GroupReader& group, ChainLink& link) {
   const int axis = axis_of_item(node->scalar);
   const int joint = joint_of_item(node->scalar);
   if (axis < 0 && joint < 0) {
-    group.faults().at_value(*node, fmt::format("'{}' is not allowed; must be one of X, Y, Z, A, B, "
-                                               "C, U, V, W or J0 to J8",
-                                               shown(node->scalar)));
+    group.faults().at_value(*node, trf("'{}' is not allowed; must be one of X, Y, Z, A, B, "
+                                       "C, U, V, W or J0 to J8",
+                                       shown(node->scalar)));
     return;
   }
   link.by_joint = axis < 0;
@@ -58,7 +56,7 @@ void read_joint(const GroupReader& group, ChainLink& link) {
   link.joint = turns ? JointKind::kRotary : JointKind::kPrismatic;
   link.direction = Vec3(0.0);
   if (!link.by_joint) link.direction[axis % 3] = 1.0;
-  if (link.by_joint) group.missing("direction", "three numbers, x,y,z");
+  if (link.by_joint) group.missing("direction", tr("three numbers, x,y,z"));
   read_vector(group, "direction", link.direction);
 }
 
@@ -76,10 +74,11 @@ LinkSpec read_link(const GroupReader& group) {
       link.bodies_spec = mesh->scalar;
     } else {
       group.faults().at_value(*mesh,
-                              shape ? shape->sheet ? "'sheet:' is no shape of a machine; a box is"
-                                                   : "'state:' is no shape of a machine"
+                              shape ? shape->sheet
+                                          ? tr("'sheet:' is no shape of a machine; a box is")
+                                          : tr("'state:' is no shape of a machine")
                                     : shape.error(),
-                              "a file is named by stl: FILE");
+                              tr("a file is named by stl: FILE"));
     }
   }
   link.stl_path = group.path("stl").value_or("");
@@ -88,7 +87,7 @@ LinkSpec read_link(const GroupReader& group) {
   for (const char* const key : {"stl_units", "stl_offset"}) {
     ConfigNode* const alone = group.find(key);
     if (alone != nullptr && !group.has("stl")) {
-      group.faults().at_key(*alone, "has no place in a link without stl");
+      group.faults().at_key(*alone, tr("has no place in a link without stl"));
     }
   }
   read_color(group, link.color);
@@ -120,8 +119,8 @@ void read_links(const GroupReader& machine, ConfigNode& list, LinkedMachine& out
     for (const auto& node : element->children) sound = sound && !node->faulty;
     sound = sound && !element->faulty;
   }
-  machine.missing("workpiece_on", "the name of a link");
-  machine.missing("tool_on", "the name of a link");
+  machine.missing("workpiece_on", tr("the name of a link"));
+  machine.missing("tool_on", tr("the name of a link"));
   out.workpiece_on = machine.text("workpiece_on").value_or("");
   out.tool_on = machine.text("tool_on").value_or("");
   // The chain of links of which some could not be read would be said to have faults of its own.
@@ -150,8 +149,8 @@ void read_vector(const GroupReader& group, std::string_view key, Vec3& out) {
     return;
   }
   group.faults().at_value(
-      *node, fmt::format("'{}' is not allowed; must be three numbers, x,y,z", shown(node->scalar)),
-      "as in 0,0,-120.5");
+      *node, trf("'{}' is not allowed; must be three numbers, x,y,z", shown(node->scalar)),
+      tr("as in 0,0,-120.5"));
 }
 
 void read_drawn_machine(const GroupReader& machine, MachineChoice& out) {
@@ -167,16 +166,16 @@ void read_drawn_machine(const GroupReader& machine, MachineChoice& out) {
     for (const char* const key : {"workpiece_on", "tool_on"}) {
       ConfigNode* const alone = machine.find(key);
       if (alone != nullptr && !machine.has("links")) {
-        machine.faults().at_key(*alone, "has no place without links");
+        machine.faults().at_key(*alone, tr("has no place without links"));
       }
     }
     return;
   }
   if (ConfigNode* const model = machine.find("model")) {
-    machine.faults().at_key(*model, "has no place beside links");
+    machine.faults().at_key(*model, tr("has no place beside links"));
   }
   if (links->children.empty()) {
-    machine.faults().at_value(*links, "is empty; a machine has at least one link");
+    machine.faults().at_value(*links, tr("is empty; a machine has at least one link"));
     return;
   }
   read_links(machine, *links, out.links.emplace());

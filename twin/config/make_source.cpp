@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "base/translate.h"
 #include "machine_io/modbus/modbus_source.h"
 #include "twin/config/key_table.h"
 
@@ -34,8 +35,8 @@ struct Maker {
   Diagnostics& diagnostics;
 
   std::unique_ptr<PositionSource> operator()(const std::monostate&) const {
-    diagnostics.push_back(general("the configuration has no source",
-                                  "`kerf config schema` lists the keys of `source:`"));
+    diagnostics.push_back(general(tr("the configuration has no source"),
+                                  tr("`kerf config schema` lists the keys of `source:`")));
     return nullptr;
   }
   std::unique_ptr<PositionSource> operator()(const ModbusSettings& settings) const {
@@ -59,10 +60,10 @@ struct Maker {
     const std::optional<CoordinateKind> wanted = config.common.coordinates;
     if (columns && wanted && *columns != *wanted) {
       const bool joints = *columns == CoordinateKind::kJoints;
-      diagnostics.push_back(general(
-          fmt::format("source.coordinates: {}, but the columns of {} are {}",
+      diagnostics.push_back(
+          general(trf("source.coordinates: {}, but the columns of {} are {}",
                       joints ? "axes" : "joints", log->describe(), joints ? "joints" : "axes"),
-          "leave the key away: the columns say it themselves"));
+                  tr("leave the key away: the columns say it themselves")));
       return nullptr;
     }
     return log;

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "twin/config/config_reader.h"
 
 namespace kerf {
@@ -18,10 +19,10 @@ void read_common(const GroupReader& source, ConfigSourceCommon& common) {
     const bool given = node != nullptr;
     if (!given) node = source.find("stale_after_ms");
     if (node != nullptr) {
-      source.faults().at_value(
-          *node, fmt::format("{} is not allowed; must be {}, which is {} (ms)", node->scalar,
-                             given ? "above stale_after_ms" : "below lost_after_ms",
-                             1000 * (given ? common.stale_after_s : common.lost_after_s)));
+      source.faults().at_value(*node,
+                               trf("{} is not allowed; must be {}, which is {} (ms)", node->scalar,
+                                   given ? tr("above stale_after_ms") : tr("below lost_after_ms"),
+                                   1000 * (given ? common.stale_after_s : common.lost_after_s)));
     }
   }
   constexpr std::array kGaps{GapPolicy::kMark, GapPolicy::kCut, GapPolicy::kIgnore};
@@ -43,36 +44,35 @@ void read_tcp(const GroupReader& source, ModbusSettings& settings) {
   const std::string& text = node->scalar;
   const auto fault = [&](std::string hint) {
     source.faults().at_value(*node,
-                             fmt::format("'{}' is not allowed; must be HOST:PORT, HOST or "
-                                         "[IPv6]:PORT",
-                                         text.substr(0, 60)),
+                             trf("'{}' is not allowed; must be HOST:PORT, HOST or "
+                                 "[IPv6]:PORT",
+                                 text.substr(0, 60)),
                              std::move(hint));
   };
   std::size_t colon = text.rfind(':');
   if (text.starts_with('[')) {
     const std::size_t close = text.find(']');
-    if (close == text.npos) return fault("']' is missing");
+    if (close == text.npos) return fault(tr("']' is missing"));
     settings.host = text.substr(1, close - 1);
     colon = close + 1 < text.size() ? close + 1 : text.npos;
-    if (colon != text.npos && text[colon] != ':') return fault("':' must follow ']'");
+    if (colon != text.npos && text[colon] != ':') return fault(tr("':' must follow ']'"));
   } else {
-    if (text.find(':') != colon) return fault("an IPv6 address stands in brackets: [::1]:502");
+    if (text.find(':') != colon) return fault(tr("an IPv6 address stands in brackets: [::1]:502"));
     settings.host = text.substr(0, colon);
   }
   if (settings.host.empty() || settings.host.find_first_of(" \t/") != text.npos) {
-    return fault("as in 192.168.1.7:502");
+    return fault(tr("as in 192.168.1.7:502"));
   }
   if (colon == text.npos) return;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + colon + 1, end, settings.port);
-  if (error != std::errc{} || stop != end || settings.port < 1 || settings.port > 65535) {
-    fault("the port is a whole number, 1 to 65535");
+  const bool is_number = read_number(std::string_view(text).substr(colon + 1), settings.port);
+  if (!is_number || settings.port < 1 || settings.port > 65535) {
+    fault(tr("the port is a whole number, 1 to 65535"));
   }
 }
 
 void read_rtu(const GroupReader& rtu, ModbusSettings& settings) {
   settings.rtu = true;
-  rtu.missing("device", "the path of a serial line", "as in /dev/ttyUSB0");
+  rtu.missing("device", tr("the path of a serial line"), tr("as in /dev/ttyUSB0"));
   settings.device = rtu.text("device").value_or("");
   rtu.number("baud", settings.baud);
   constexpr std::array kParities{'N', 'E', 'O'};
@@ -85,7 +85,7 @@ void read_rtu(const GroupReader& rtu, ModbusSettings& settings) {
 
 ModbusRegister read_register(const GroupReader& item, double mm_per_unit) {
   ModbusRegister out;
-  item.missing("register", "a whole number, 0 to 65535");
+  item.missing("register", tr("a whole number, 0 to 65535"));
   item.number("register", out.address);
   if (const int word = item.word("table"); word == 1) out.table = ModbusTable::kInput;
   if (const int word = item.word("type"); word >= 0) out.type = static_cast<ModbusType>(word);
@@ -147,10 +147,11 @@ std::vector<MapItem> items_of(const GroupReader& map, const MapReading& reading)
     const int axis = axis_of_item(node->key);
     const int joint = joint_of_item(node->key);
     if (joints ? axis >= 0 : joint >= 0) {
-      map.faults().at_key(*node,
-                          joints ? "an axis, but source.coordinates is joints"
-                                 : "a joint, but source.coordinates is axes",
-                          joints ? "joints are J0 to J8" : "joints need `coordinates: joints`");
+      map.faults().at_key(
+          *node,
+          joints ? tr("an axis, but source.coordinates is joints")
+                 : tr("a joint, but source.coordinates is axes"),
+          joints ? tr("joints are J0 to J8") : tr("joints need `coordinates: joints`"));
       continue;
     }
     const int index = joints ? joint : axis;
@@ -197,12 +198,12 @@ void report_faults(const std::vector<std::string>& texts, const GroupReader& sou
 void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSettings& settings) {
   if (source.has("rtu") && source.has("tcp")) {
     source.faults().at_key(*source.node()->child("rtu"),
-                           "has no place beside tcp; must be one of both");
+                           tr("has no place beside tcp; must be one of both"));
     read_tcp(source, settings);
   } else if (source.has("rtu")) {
     read_rtu(source.group("rtu"), settings);
   } else {
-    source.missing("tcp", "HOST:PORT, or rtu: with a device instead");
+    source.missing("tcp", tr("HOST:PORT, or rtu: with a device instead"));
     read_tcp(source, settings);
   }
   source.number("unit", settings.unit);
@@ -210,7 +211,7 @@ void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSet
   source.number("timeout_ms", settings.timeout_ms);
   source.number("max_gap", settings.max_gap);
 
-  source.missing("map", "a group with at least one axis", "as in X: {register: 0}");
+  source.missing("map", tr("a group with at least one axis"), tr("as in X: {register: 0}"));
   for (const MapItem& item : items_of(source.group("map"), reading)) {
     if (item.position) {
       const double mm_per_unit = reading.mm_per_unit(*item.position);
@@ -243,17 +244,17 @@ void read_hal(const GroupReader& source, const ConfigSourceCommon& common, bool 
   }
   if (common.coordinates == CoordinateKind::kAxes) {
     source.faults().at_value(*source.find("coordinates"),
-                             "axes is not allowed; must be joints: that is what HAL has");
+                             tr("axes is not allowed; must be joints: that is what HAL has"));
   }
   if (common.frame == CoordinateFrame::kWorkpiece) {
     source.faults().at_value(*source.find("frame"),
-                             "workpiece is not allowed; must be machine: that is what HAL has");
+                             tr("workpiece is not allowed; must be machine: that is what HAL has"));
   }
 }
 
 void read_source(const GroupReader& source, LiveConfig& config) {
   if (!source.is_there()) return;
-  source.missing("type", "one of modbus, can, hal, log");
+  source.missing("type", tr("one of modbus, can, hal, log"));
   read_common(source, config.common);
   MapReading reading;
   reading.kind = config.common.coordinates.value_or(CoordinateKind::kAxes);

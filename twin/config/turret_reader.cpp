@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "stock/cutter/scan.h"
+#include "base/small_file.h"
+#include "base/suggest.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
 #include "twin/config/config_reader.h"
-#include "twin/suggest.h"
 
 namespace kerf {
 namespace {
@@ -53,7 +55,7 @@ class TurretReader {
     read_regrips(root);
     if (ConfigNode* const times = group(root, "times")) read_times(*times);
     if (root.child("punch") == nullptr) {
-      about_file("punch.trigger is missing; it says what makes the punch strike",
+      about_file(tr("punch.trigger is missing; it says what makes the punch strike"),
                  "m3, m62:0, m100 .. m199, g81, z<-1");
     }
   }
@@ -64,9 +66,9 @@ class TurretReader {
     for (const auto& child : node.children) {
       if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
       const std::string near = nearest_word(child->key, known);
-      faults_.at_key(*child, "unknown key",
-                     near.empty() ? fmt::format("here may be: {}", fmt::join(known, ", "))
-                                  : fmt::format("did you mean {}?", near));
+      faults_.at_key(*child, tr("unknown key"),
+                     near.empty() ? trf("here may be: {}", fmt::join(known, ", "))
+                                  : trf("did you mean {}?", near));
     }
   }
 
@@ -83,15 +85,15 @@ class TurretReader {
 
   void refuse(ConfigNode& node, const std::string& allowed, std::string hint = {}) {
     if (node.faulty) return;
-    faults_.at_value(node, fmt::format("{} is not allowed; must be {}", found(node), allowed),
+    faults_.at_value(node, trf("{} is not allowed; must be {}", found(node), allowed),
                      std::move(hint));
   }
 
   ConfigNode* group(ConfigNode& node, std::string_view name) {
-    return of_kind(node, name, NodeKind::kMap, "a group of keys");
+    return of_kind(node, name, NodeKind::kMap, tr("a group of keys"));
   }
   ConfigNode* list(ConfigNode& node, std::string_view name) {
-    return of_kind(node, name, NodeKind::kList, "a list");
+    return of_kind(node, name, NodeKind::kList, tr("a list"));
   }
   ConfigNode* text(ConfigNode& node, std::string_view name) {
     return of_kind(node, name, NodeKind::kScalar, "a value");
@@ -109,8 +111,8 @@ class TurretReader {
     if (child == nullptr) return std::nullopt;
     const std::optional<double> value = parse_decimal(child->scalar);
     if (value && *value >= range.least && *value <= range.most) return value;
-    refuse(*child, fmt::format("{} to {} ({})", number_text(range.least), number_text(range.most),
-                               range.unit));
+    refuse(*child,
+           trf("{} to {} ({})", number_text(range.least), number_text(range.most), range.unit));
     return std::nullopt;
   }
 
@@ -139,18 +141,19 @@ class TurretReader {
       out_.index.analog = given[4] - '0';
       return;
     }
-    refuse(*node, fmt::format("A, B, C, or m67:0 to m67:{} (an analog output in degrees)", last));
+    refuse(*node, trf("A, B, C, or m67:0 to m67:{} (an analog output in degrees)", last));
   }
 
   void read_stations(ConfigNode& root) {
     ConfigNode* const stations = group(root, "stations");
     if (stations == nullptr && root.child("stations") == nullptr) {
-      about_file("stations is missing; must be NUMBER: SHAPE for each", "as in 3: round:12");
+      about_file(tr("stations is missing; must be NUMBER: SHAPE for each"),
+                 tr("as in 3: round:12"));
     }
     if (stations == nullptr) return;
     if (stations->children.empty()) {
-      faults_.at_value(*stations, "there are none; must be NUMBER: SHAPE for each",
-                       "as in 3: round:12");
+      faults_.at_value(*stations, tr("there are none; must be NUMBER: SHAPE for each"),
+                       tr("as in 3: round:12"));
     }
     for (const auto& child : stations->children) {
       const std::optional<double> value = parse_decimal(child->key);
@@ -158,9 +161,9 @@ class TurretReader {
           child->key.find_first_not_of("0123456789") == std::string::npos) {
         read_station(*child, static_cast<int>(*value));
       } else {
-        faults_.at_key(*child, fmt::format("'{}' is no station; must be the number of a tool, 1 to "
-                                           "{}",
-                                           shown(child->key), kLastStation));
+        faults_.at_key(*child, trf("'{}' is no station; must be the number of a tool, 1 to "
+                                   "{}",
+                                   shown(child->key), kLastStation));
       }
     }
   }
@@ -174,19 +177,20 @@ class TurretReader {
     bool turns = false;
     if (node.kind == NodeKind::kMap) {
       check_names(node, {"punch", "name", "angle", "index", "pitch"});
-      angle_deg = this->number(node, "angle", {-360, 360, "degrees"}).value_or(0);
+      angle_deg = this->number(node, "angle", {-360, 360, tr("degrees")}).value_or(0);
       if (const ConfigNode* const given = text(node, "name")) name = given->scalar;
       pitch_mm = this->number(node, "pitch", {kLeastPitch_mm, kFarthest_mm, "mm"}).value_or(0);
       turns = word(node, "index", {"true", "false"}) == "true";
       shape = text(node, "punch");
       if (shape == nullptr) {
         if (node.child("punch") == nullptr) {
-          faults_.at_value(node, "punch is missing; must be a shape, as in round:12");
+          faults_.at_value(node, tr("punch is missing; must be a shape, as in round:12"));
         }
         return;
       }
     } else if (node.kind != NodeKind::kScalar) {
-      refuse(node, "a shape, as in round:12, or a group of keys: punch, name, angle, index, pitch");
+      refuse(node,
+             tr("a shape, as in round:12, or a group of keys: punch, name, angle, index, pitch"));
       return;
     }
     std::string spec = resolved_spec(*shape, "dxf:", faults_);
@@ -217,14 +221,14 @@ class TurretReader {
         faults_.at_value(*trigger, parsed.error());
       }
     } else if (punch.child("trigger") == nullptr) {
-      faults_.at_value(punch, "trigger is missing; it says what makes the punch strike",
+      faults_.at_value(punch, tr("trigger is missing; it says what makes the punch strike"),
                        "m3, m62:0, m100 .. m199, g81, z<-1");
     }
     const bool is_state = out_.trigger.kind() == PunchTrigger::Kind::kState;
     out_.strikes_at_ends = word(punch, "hit", {"once", "ends"}) == "ends";
     if (out_.strikes_at_ends && !is_state) {
       faults_.at_key(*punch.child("hit"),
-                     fmt::format("is for triggers that stay on; {} does not", trigger->scalar));
+                     trf("is for triggers that stay on; {} does not", trigger->scalar));
     }
     ConfigNode* const nibble = group(punch, "nibble");
     if (nibble != nullptr) read_nibbling(*nibble);
@@ -233,10 +237,10 @@ class TurretReader {
     ConfigNode& place = nibble != nullptr ? *nibble : punch;
     if (nibble != nullptr && nibble->child("while") != nullptr) return;  // it is faulty
     faults_.at_value(place,
-                     fmt::format("{} is missing: {} does not stay on, so it cannot tell on which "
-                                 "feeds the punch nibbles",
-                                 nibble != nullptr ? "while" : "nibble.while", trigger->scalar),
-                     "as in while: m62:1");
+                     trf("{} is missing: {} does not stay on, so it cannot tell on which "
+                         "feeds the punch nibbles",
+                         nibble != nullptr ? "while" : "nibble.while", trigger->scalar),
+                     tr("as in while: m62:1"));
   }
 
   bool stations_nibble() const {
@@ -248,7 +252,7 @@ class TurretReader {
     ConfigNode* const nibble = &node;
     check_names(*nibble, {"pitch", "while"});
     if (nibble->child("pitch") == nullptr && !stations_nibble()) {
-      faults_.at_value(*nibble, "pitch is missing; must be mm from stroke to stroke");
+      faults_.at_value(*nibble, tr("pitch is missing; must be mm from stroke to stroke"));
     }
     out_.nibble_pitch_mm =
         number(*nibble, "pitch", {kLeastPitch_mm, kFarthest_mm, "mm"}).value_or(0);
@@ -267,7 +271,7 @@ class TurretReader {
     if (clamps == nullptr) return;
     for (const auto& child : clamps->children) {
       if (child->kind != NodeKind::kMap) {
-        refuse(*child, "a group of keys: x, y, width, depth, clearance");
+        refuse(*child, tr("a group of keys: x, y, width, depth, clearance"));
         continue;
       }
       check_names(*child, {"x", "y", "width", "depth", "clearance"});
@@ -282,9 +286,8 @@ class TurretReader {
 
   std::optional<double> needed(ConfigNode& node, const char* name, const Range& range) {
     if (node.child(name) == nullptr) {
-      faults_.at_value(
-          node, fmt::format("{} is missing; must be {} to {} ({})", name, number_text(range.least),
-                            number_text(range.most), range.unit));
+      faults_.at_value(node, trf("{} is missing; must be {} to {} ({})", name,
+                                 number_text(range.least), number_text(range.most), range.unit));
     }
     return number(node, name, range);
   }
@@ -294,16 +297,17 @@ class TurretReader {
     if (regrips == nullptr) return;
     for (const auto& child : regrips->children) {
       if (child->kind != NodeKind::kMap) {
-        refuse(*child, "a group of keys: on or line, x, y");
+        refuse(*child, tr("a group of keys: on or line, x, y"));
         continue;
       }
       check_names(*child, {"on", "line", "x", "y"});
       Regrip regrip;
       const bool by_code = child->child("on") != nullptr, by_line = child->child("line") != nullptr;
       if (by_code == by_line) {
-        faults_.at_value(*child, by_code ? "on and line are both given; must be one of them"
-                                         : "on or line is missing: the M-code, or the line of the "
-                                           "program, at which the clamps move");
+        faults_.at_value(*child, by_code
+                                     ? tr("on and line are both given; must be one of them")
+                                     : tr("on or line is missing: the M-code, or the line of the "
+                                          "program, at which the clamps move"));
         continue;
       }
       if (by_code) read_code(*child, regrip);
@@ -314,7 +318,7 @@ class TurretReader {
       regrip.shift_mm = {number(*child, "x", shift).value_or(0),
                          number(*child, "y", shift).value_or(0)};
       if (child->child("x") == nullptr && child->child("y") == nullptr) {
-        faults_.at_value(*child, "x and y are missing: how far the clamps move, in mm");
+        faults_.at_value(*child, tr("x and y are missing: how far the clamps move, in mm"));
       }
       out_.regrips.push_back(regrip);
     }
@@ -337,30 +341,29 @@ class TurretReader {
     times.places = static_cast<int>(*places);
     const int last = out_.stations.empty() ? 0 : out_.stations.rbegin()->first;
     if (*places != std::floor(*places)) {
-      refuse(*turret->child("places"), "a whole number");
+      refuse(*turret->child("places"), tr("a whole number"));
     } else if (last > times.places) {
       faults_.at_value(*turret->child("places"),
-                       fmt::format("{} are too few: there is a station {}", times.places, last));
+                       trf("{} are too few: there is a station {}", times.places, last));
     }
   }
 
   /// Strokes a minute, by the pitch.
   void read_rates(ConfigNode& rates) {
     if (rates.children.empty()) {
-      faults_.at_value(rates, "there are none; must be PITCH: STROKES a minute for each",
-                       "as in 4: 600");
+      faults_.at_value(rates, tr("there are none; must be PITCH: STROKES a minute for each"),
+                       tr("as in 4: 600"));
     }
     for (const auto& child : rates.children) {
       const std::optional<double> pitch = parse_decimal(child->key);
       if (!pitch || *pitch < kLeastPitch_mm || *pitch > kFarthest_mm) {
-        faults_.at_key(*child,
-                       fmt::format("'{}' is no pitch; must be {} to {} (mm)", shown(child->key),
+        faults_.at_key(*child, trf("'{}' is no pitch; must be {} to {} (mm)", shown(child->key),
                                    number_text(kLeastPitch_mm), number_text(kFarthest_mm)));
         continue;
       }
-      const auto rate = number(rates, child->key, {kLeastRate, kMostRate, "strokes a minute"});
+      const auto rate = number(rates, child->key, {kLeastRate, kMostRate, tr("strokes a minute")});
       if (rate && !out_.times.period_by_pitch_s.emplace(*pitch, 60 / *rate).second) {
-        faults_.at_key(*child, "this pitch is given twice");
+        faults_.at_key(*child, tr("this pitch is given twice"));
       }
     }
   }
@@ -372,7 +375,7 @@ class TurretReader {
     if (!code || code->kind() != PunchTrigger::Kind::kUserCode) {
       refuse(*on, "m100 to m199");
     } else if (code->user_code() == out_.trigger.user_code()) {
-      faults_.at_value(*on, fmt::format("{} makes the punch strike already", on->scalar));
+      faults_.at_value(*on, trf("{} makes the punch strike already", on->scalar));
     } else {
       regrip.user_code = code->user_code();
     }
@@ -404,19 +407,18 @@ TurretPointer read_turret(const std::string& path, Diagnostics& diagnostics) {
   struct stat facts {};
   const bool is_there = stat(path.c_str(), &facts) == 0;
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxConfig_bytes + 1, '\0');
+  std::string text;
   Diagnostic fault;
   fault.file = path;
   if (is_there && S_ISDIR(facts.st_mode)) {
-    fault.message = "is a folder; a turret is a file";
+    fault.message = tr("is a folder; a turret is a file");
   } else if (!is_there || !file) {
-    fault.message = fmt::format("cannot read the turret: {}", std::strerror(errno));
+    fault.message = trf("cannot read the turret: {}", std::strerror(errno));
   } else {
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    if (text.find_first_not_of(" \t\r\n") == text.npos) fault.message = "is empty";
+    text = read_up_to(file, kMaxConfig_bytes + 1);
+    if (text.find_first_not_of(" \t\r\n") == text.npos) fault.message = tr("is empty");
     if (text.size() > kMaxConfig_bytes) {
-      fault.message = fmt::format("is longer than {} bytes; a turret is not", kMaxConfig_bytes);
+      fault.message = trf("is longer than {} bytes; a turret is not", kMaxConfig_bytes);
     }
   }
   if (fault.message.empty()) return parse_turret(text, path, diagnostics);

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/diagnostic.h"
-#include "twin/turret.h"
+#include "twin/machine/turret.h"
 
 namespace kerf {
 

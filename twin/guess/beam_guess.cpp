@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/motion_geometry.h"
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 namespace {
@@ -65,7 +66,7 @@ void BeamWatch::add(const Motion& m) {
 
 std::optional<BeamGuess> BeamWatch::guess(bool is_qtplasmac) const {
   if (feeds_mm_.empty() || turns_) return std::nullopt;
-  if (is_qtplasmac) return BeamGuess{"", 0, "it is for QtPlasmaC"};
+  if (is_qtplasmac) return BeamGuess{"", 0, tr("it is for QtPlasmaC")};
   if (!(fed_mm_ > 0)) return std::nullopt;
   // One start is that of a spindle, unless Z never moves: a tool that turns must come down.
   const std::uint64_t least = z_moves_ ? 2 : 1;
@@ -73,18 +74,17 @@ std::optional<BeamGuess> BeamWatch::guess(bool is_qtplasmac) const {
   for (unsigned n = 0; n < TorchState::kOutputs; ++n) {
     if (!output_[n].is_beam() || output_[n].starts < least) continue;
     return BeamGuess{fmt::format("m62:{}", n), kLaserKerf_mm,
-                     fmt::format("output {} is on where it feeds, off where it travels", n)};
+                     trf("output {} is on where it feeds, off where it travels", n)};
   }
   // A valve or a load may go with the cuts of a mill, which plunges.
   for (unsigned n = 0; n < TorchState::kAnalogs && !(plunged_mm_ > 0); ++n) {
     if (!analog_[n].is_beam() || analog_[n].starts < least) continue;
-    return BeamGuess{
-        fmt::format("m67:{}", n), kLaserKerf_mm,
-        fmt::format("analog output {} is above 0 where it feeds, 0 where it travels", n)};
+    return BeamGuess{fmt::format("m67:{}", n), kLaserKerf_mm,
+                     trf("analog output {} is above 0 where it feeds, 0 where it travels", n)};
   }
   if (spindle_.is_beam() && spindle_.starts >= least) {
     return BeamGuess{"m3", dwells_lit_ ? kPlasmaKerf_mm : kLaserKerf_mm,
-                     "the spindle is on where it feeds, off where it travels"};
+                     tr("the spindle is on where it feeds, off where it travels")};
   }
   if (z_moves_) return std::nullopt;
   // Whether it is dark along rapids the program does not say: such machines see to it themselves.
@@ -92,16 +92,17 @@ std::optional<BeamGuess> BeamWatch::guess(bool is_qtplasmac) const {
     const bool varies = powers_[n].size() >= 2 || analog_[n].fed_off_mm > 0;
     if (!(analog_[n].fed_on_mm > 0) || !varies) continue;
     return BeamGuess{fmt::format("m67:{}+feed", n), kLaserKerf_mm,
-                     fmt::format("Z never moves, and analog output {} says how strong", n)};
+                     trf("Z never moves, and analog output {} says how strong", n)};
   }
   const double share = spindle_.fed_on_mm / fed_mm_;
   if (share > kMost && (speeds_.size() >= 2 || speed_.fed_off_mm > 0)) {
-    return BeamGuess{"laser", kLaserKerf_mm, "Z never moves, and S says how strong"};
+    return BeamGuess{"laser", kLaserKerf_mm, tr("Z never moves, and S says how strong")};
   }
   if (share > 0 && spindle_.fed_off_mm > 0) {
-    return BeamGuess{"m3", kLaserKerf_mm, "Z never moves, and the spindle comes on and goes off"};
+    return BeamGuess{"m3", kLaserKerf_mm,
+                     tr("Z never moves, and the spindle comes on and goes off")};
   }
-  return BeamGuess{"feed", kLaserKerf_mm, "Z never moves"};
+  return BeamGuess{"feed", kLaserKerf_mm, tr("Z never moves")};
 }
 
 }  // namespace kerf

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "twin/guess/guess_row.h"
 #include "twin/guess/program_survey.h"
-#include "twin/program_front.h"
-#include "twin/tool_use.h"
+#include "twin/job/tool_use.h"
+#include "twin/program/program_front.h"
+#include "twin/report/guess_row.h"
 
 namespace kerf {
 

@@ -7,9 +7,10 @@
 #include <regex>
 #include <utility>
 
+#include "base/translate.h"
 #include "stock/cutter/scan.h"
-#include "twin/blank_choice.h"
-#include "twin/motion_geometry.h"
+#include "twin/job/blank_choice.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 namespace {
@@ -61,9 +62,9 @@ const ResolvedTool* OpenTools::feeding(const Motion& m) {
   if (!feed && !is_traverse(m)) return nullptr;
   if (!mounted_) {
     const bool waits = m.to_machine_place || m.unknown_to == kAllUnknown ||
-                       (m.tool == 0 && !book_.has_arguments());
+                       (m.tool == 0 && !resolver_.has_arguments());
     if (!feed && waits) return nullptr;
-    mounted_ = &book_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
+    mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
   }
   return feed ? mounted_ : nullptr;
 }
@@ -107,12 +108,11 @@ std::optional<ProgramSurvey::SheetGuess> ProgramSurvey::sheet(
     if (out.sheet.high_mm[i] <= out.sheet.low_mm[i]) out.sheet.high_mm[i] += 1;
   }
   out.sheet.thickness_mm = kSheet_mm;
-  out.reason = beam->reason + "; how thick is not known";
+  out.reason = beam->reason + tr("; how thick is not known");
   for (const TorchMaterial& material : materials) {
     if (const double mm = thickness_of(material.name); is_qtplasmac && mm > 0) {
       out.sheet.thickness_mm = mm;
-      out.reason =
-          fmt::format("{}; as thick as material {} is called", beam->reason, material.number);
+      out.reason = trf("{}; as thick as material {} is called", beam->reason, material.number);
     }
   }
   return out;
@@ -143,7 +143,7 @@ void ProgramSurvey::add_drills(double top_mm, std::vector<ToolGuess>& guesses) c
   for (const auto& [number, sized] : sized_tools_) {
     if (!sized.trace.only_plunges(top_mm)) continue;
     guesses.push_back({number, fmt::format("drill:{}:118", sized.diameter_mm),
-                       "only its diameter is known, and it only goes up and down", true});
+                       tr("only its diameter is known, and it only goes up and down"), true});
   }
 }
 
@@ -151,7 +151,7 @@ std::vector<ToolGuess> ProgramSurvey::kerfs(const BeamGuess& beam) const {
   std::vector<ToolGuess> out;
   if (beam.kerf_mm <= 0) return out;
   for (const int number : fed_tools_) {
-    out.push_back({number, fmt::format("kerf:{:g}", beam.kerf_mm), "nothing says how wide"});
+    out.push_back({number, fmt::format("kerf:{:g}", beam.kerf_mm), tr("nothing says how wide")});
   }
   return out;
 }
@@ -165,22 +165,23 @@ Diagnostics ProgramSurvey::missing() const {
   Diagnostics out;
   if (wishes_.blank) {
     out.push_back(
-        missing_error("--no-guess: the blank is not known: no --stock, and no comment of "
-                      "the program describes it",
-                      "--stock box:x0,y0,z0:x1,y1,z1"));
+        missing_error(tr("--no-guess: the blank is not known: no --stock, and no comment of "
+                         "the program describes it"),
+                      tr("--stock box:x0,y0,z0:x1,y1,z1")));
   }
   for (const auto& [number, trace] : open_tools_) {
     out.push_back(
         number == 0
-            ? missing_error("--no-guess: the program cuts with no tool in the spindle, and not one "
-                            "--tool says which it is",
-                            "--tool 1=SHAPE")
-            : missing_error(fmt::format("--no-guess: nothing is known of tool {}", number),
+            ? missing_error(
+                  tr("--no-guess: the program cuts with no tool in the spindle, and not one "
+                     "--tool says which it is"),
+                  "--tool 1=SHAPE")
+            : missing_error(trf("--no-guess: nothing is known of tool {}", number),
                             fmt::format("--tool {}=SHAPE", number)));
   }
   for (const auto& [number, why] : half_known_) {
-    out.push_back(missing_error(fmt::format("--no-guess: tool {} is not known for sure: {}", number,
-                                            why.empty() ? "only its diameter is" : why),
+    out.push_back(missing_error(trf("--no-guess: tool {} is not known for sure: {}", number,
+                                    why.empty() ? tr("only its diameter is") : why),
                                 fmt::format("--tool {}=SHAPE", std::max(1, number))));
   }
   return out;
@@ -190,28 +191,10 @@ Finding guess_warning(const Blank& blank, const std::string& reason) {
   Finding finding;
   finding.id = FindingId::kStockGuessed;
   finding.severity = Severity::kWarning;
-  finding.text = fmt::format(
-      "no blank is given or written in the program; assumed: {} ({}; --stock SPEC says better)",
-      describe(blank), reason);
+  finding.text =
+      trf("no blank is given or written in the program; assumed: {} ({}; --stock SPEC says better)",
+          describe(blank), reason);
   return finding;
-}
-
-std::string stock_spec(const Blank& blank, LengthUnit unit) {
-  // Not more digits than a person writes; -0 is 0.
-  const auto number = [unit](double mm) {
-    return unit == LengthUnit::kMm ? fmt::format("{:.10g}", mm + 0.0) : length_number(mm, unit);
-  };
-  if (blank.sheet && blank.sheet->file.empty()) {
-    const BlankSheet& s = *blank.sheet;
-    return fmt::format("sheet:{},{}:{},{}:{}", number(s.low_mm.x), number(s.low_mm.y),
-                       number(s.high_mm.x), number(s.high_mm.y), number(s.thickness_mm));
-  }
-  const bool box = blank.state_file.empty() && !blank.sheet && blank.bodies.size() == 1 &&
-                   blank.bodies[0].kind == BlankBody::Kind::kBox;
-  if (!box) return {};
-  const Box& b = blank.bodies[0].bounds_mm;
-  return fmt::format("box:{},{},{}:{},{},{}", number(b.min.x), number(b.min.y), number(b.min.z),
-                     number(b.max.x), number(b.max.y), number(b.max.z));
 }
 
 }  // namespace kerf

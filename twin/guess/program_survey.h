@@ -13,12 +13,12 @@
 #include "interp_bridge/motion.h"
 #include "interp_bridge/torch_materials.h"
 #include "stock/blank.h"
-#include "twin/finding.h"
+#include "twin/findings/finding.h"
 #include "twin/guess/beam_guess.h"
 #include "twin/guess/tool_guess.h"
-#include "twin/motion_moves.h"
-#include "twin/program_front.h"
-#include "twin/tools.h"
+#include "twin/job/tools.h"
+#include "twin/machine/motion_moves.h"
+#include "twin/program/program_front.h"
 
 namespace kerf {
 
@@ -37,18 +37,18 @@ struct SurveyWishes {
 /// Finds the tools of which nothing is known, as CutStage mounts them.
 class OpenTools {
  public:
-  explicit OpenTools(const ToolSources& sources) : book_(sources, nullptr) {}
+  explicit OpenTools(const ToolSources& sources) : resolver_(sources, nullptr) {}
   /// The tool of a feed move that goes somewhere; null: it is none.
   const ResolvedTool* feeding(const Motion& motion);
 
  private:
-  ToolBook book_;
+  ToolResolver resolver_;
   int tool_ = 0;
   const ResolvedTool* mounted_ = nullptr;
 };
 
 /// Takes a program in its order, whole, and says what fits it. Its own tools are those of a
-/// ToolBook over `sources`. One thread; costs little beside reading the program.
+/// ToolResolver over `sources`. One thread; costs little beside reading the program.
 class ProgramSurvey {
  public:
   ProgramSurvey(const SurveyWishes& wishes, const ToolSources& sources);
@@ -102,9 +102,5 @@ class ProgramSurvey {
 
 /// stock-guessed. `reason`: what it was made of.
 Finding guess_warning(const Blank& blank, const std::string& reason);
-
-/// "box:-5,-5,-10:105,65,0", what --stock takes. Boxes and rectangular sheets alone; empty for
-/// other blanks. Its numbers are in `unit`.
-std::string stock_spec(const Blank& blank, LengthUnit unit = LengthUnit::kMm);
 
 }  // namespace kerf

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "twin/motion_geometry.h"
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 namespace {
@@ -184,8 +185,8 @@ ShapeGuess ToolTrace::drill(double depth_mm) const {
   if (spacing > 0) size = std::min(size, 0.6 * spacing);
   ShapeGuess out;
   out.shape = fmt::format("drill:{:g}:118", usual_up_to(size));
-  out.reason = "it only goes up and down";
-  if (spacing > 0) out.reason += fmt::format(", the nearest holes are {:.3g} mm apart", spacing);
+  out.reason = tr("it only goes up and down");
+  if (spacing > 0) out.reason += trf(", the nearest holes are {:.3g} mm apart", spacing);
   return out;
 }
 
@@ -197,14 +198,14 @@ ShapeGuess ToolTrace::follower(double depth_mm, double step_mm) const {
   if (step_mm <= 0 && depth_mm <= 0.2 * std::max(size.x, size.y)) {
     // 60 degrees are 1.16 times as wide as they are deep.
     out.shape = fmt::format("vee:{:g}:60", std::max(3.0, usual_from(1.2 * depth_mm)));
-    out.reason = "single lines, Z follows them";
+    out.reason = tr("single lines, Z follows them");
     return out;
   }
   const double wanted = step_mm > 0 ? 8 * step_mm : 0.05 * std::max(size.x, size.y);
   const double most = std::max(0.2 * least, depth_mm / 10);
   out.shape = fmt::format("ball:{:g}", usual_up_to(std::clamp(wanted, 0.1, std::max(0.1, most))));
-  out.reason = "Z follows the part";
-  if (step_mm > 0) out.reason += fmt::format(", passes {:.2g} mm apart", step_mm);
+  out.reason = tr("Z follows the part");
+  if (step_mm > 0) out.reason += trf(", passes {:.2g} mm apart", step_mm);
   return out;
 }
 
@@ -217,20 +218,20 @@ double ToolTrace::flat_size_mm() const {
 ShapeGuess ToolTrace::end_mill(double depth_mm, double step_mm) const {
   ShapeGuess out;
   double size = flat_size_mm();
-  out.reason = "single lines, by the size of the part";
+  out.reason = tr("single lines, by the size of the part");
   if (step_mm > 0) {
     // Most pockets are cut with half the diameter from pass to pass; less than that leaves ridges.
     size = usual_from(2 * step_mm);
-    out.reason = fmt::format("passes {:.2g} mm apart", step_mm);
+    out.reason = trf("passes {:.2g} mm apart", step_mm);
   }
   if (size < depth_mm / 6) {
     size = usual_from(depth_mm / 6);
-    out.reason += fmt::format(", {:.3g} mm deep", depth_mm);
+    out.reason += trf(", {:.3g} mm deep", depth_mm);
   }
   const double circle = least_circle_mm_;
   if (circle > 0 && 2 * circle > size && 2 * circle <= 2 * size) {
     size = usual_from(2 * circle);
-    out.reason += fmt::format(", circles of radius {:.3g} mm", circle);
+    out.reason += trf(", circles of radius {:.3g} mm", circle);
   }
   out.shape = fmt::format("flat:{:g}", size);
   return out;
@@ -259,7 +260,7 @@ ShapeGuess ToolTrace::guess(double top_mm) const {
     const Vec3 size = bounds_mm_.size();
     out.shape =
         fmt::format("ball:{:g}", usual_up_to(std::clamp(0.05 * glm::length(size), 0.5, 10.0)));
-    out.reason = "tool or part turn; by the size of the part";
+    out.reason = tr("tool or part turn; by the size of the part");
     return out;
   }
   if (follows) return follower(depth, step);
@@ -268,11 +269,10 @@ ShapeGuess ToolTrace::guess(double top_mm) const {
   const bool drawn = step <= kDrawn_mm || depth <= kEtched_mm;
   if (depth <= kEngraved_mm && drawn) {
     // Bits for copper have a small flat, or else such lines would be as good as none.
-    return {depth <= kEtched_mm ? "vee:3:60:0.2" : "vee:3:60",
-            fmt::format("lines {:.2g} mm deep", depth)};
+    return {depth <= kEtched_mm ? "vee:3:60:0.2" : "vee:3:60", trf("lines {:.2g} mm deep", depth)};
   }
   if (step > 0 && is_drawing()) {
-    const std::string reason = fmt::format("lines of a drawing, {:.2g} mm apart", step);
+    const std::string reason = trf("lines of a drawing, {:.2g} mm apart", step);
     // 60 degrees are 1.16 times as wide as they are deep.
     if (1.2 * depth <= step) {
       return {fmt::format("vee:{:g}:60", std::max(3.0, usual_from(1.2 * depth))), reason};

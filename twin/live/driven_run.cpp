@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "twin/motion_nearest.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -34,7 +34,7 @@ bool DrivenRun::goes_on(const Motion& motion, Way way) const {
 /// All that was met lies on the way, in the order in which it was met.
 bool DrivenRun::is_straight(const Motion& whole) const {
   double t = 0;
-  for (const ProgramPlace& place : met_) {
+  for (const ProgramPose& place : met_) {
     const TurnedAxes turned{
         place.abc_deg, {true, true, true}, lever_mm_, place.uvw_mm, {true, true, true}};
     const PointOnWay point = nearest_on(whole, place.tip_mm, turned, t);

@@ -50,8 +50,8 @@ class DrivenRun {
 
   double bound_mm_, lever_mm_;
   std::optional<Run> run_;
-  bool straight_ = false;          ///< positions alone have made it
-  std::vector<ProgramPlace> met_;  ///< by straight ways, between their first and last place
+  bool straight_ = false;         ///< positions alone have made it
+  std::vector<ProgramPose> met_;  ///< by straight ways, between their first and last place
 };
 
 }  // namespace kerf

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/translate.h"
 #include "interp_bridge/tool_lengths.h"
 
 namespace kerf {
@@ -53,7 +54,7 @@ unsigned needed_joints(const MachineKinematics& machine) {
 
 /// "X", or of a robot "joint 3".
 std::string name_of_joint(const MachineKinematics& machine, std::size_t joint) {
-  if (machine.is_arm()) return fmt::format("joint {}", joint);
+  if (machine.is_arm()) return trf("joint {}", joint);
   return std::string(1, machine.joint_letters[joint]);
 }
 
@@ -102,7 +103,7 @@ void LiveFrame::turn() {
 std::string LiveFrame::missing_axes(const AxisSample& sample) const {
   std::string text;
   const auto add = [&](const std::string& name) {
-    text.append(text.empty() ? "" : " and ").append(name);
+    text.append(text.empty() ? "" : tr(" and ")).append(name);
   };
   if (const MachineKinematics* const machine = options_.kinematics.get()) {
     unsigned missing = needed_joints(*machine) & ~known_joints(sample, *machine);
@@ -121,7 +122,7 @@ std::string LiveFrame::missing_axes(const AxisSample& sample) const {
 }
 
 double LiveFrame::length_of(const AxisSample& sample, std::optional<double> program_length_mm,
-                            LivePose& pose) const {
+                            SamplePose& pose) const {
   const ToolLengthFrom from = options_.tool_length;
   const auto allowed = [from](ToolLengthFrom one) {
     return from == one || from == ToolLengthFrom::kAuto;
@@ -166,7 +167,7 @@ Vec3 LiveFrame::tip_of(const Axes& axes, double tool_mm) const {
   return Vec3{cos_ * tip.x + sin_ * tip.y, cos_ * tip.y - sin_ * tip.x, tip.z} - work.g92_mm;
 }
 
-std::array<double, 9> LiveFrame::machine_place_of(const LivePose& pose) const {
+std::array<double, 9> LiveFrame::machine_place_of(const SamplePose& pose) const {
   const WorkpieceFrame& work = options_.work;
   const Vec3 turned = pose.tip_mm + work.g92_mm;
   const Vec3 there =
@@ -181,10 +182,10 @@ std::array<double, 9> LiveFrame::machine_place_of(const LivePose& pose) const {
   return place;
 }
 
-std::optional<LivePose> LiveFrame::pose_of(const AxisSample& sample,
-                                           std::optional<double> program_length_mm,
-                                           int type) const {
-  LivePose pose;
+std::optional<SamplePose> LiveFrame::pose_of(const AxisSample& sample,
+                                             std::optional<double> program_length_mm,
+                                             int type) const {
+  SamplePose pose;
   if (!options_.workpiece_frame) {
     pose.tool_length_mm = length_of(sample, program_length_mm, pose);
     if (pose.length_is_applied) {

@@ -11,7 +11,7 @@
 
 #include "interp_bridge/motion.h"
 #include "machine_io/position_source.h"
-#include "twin/kinematics/machine_kinematics.h"
+#include "twin/machine/kinematics/machine_kinematics.h"
 
 namespace kerf {
 
@@ -50,7 +50,7 @@ struct LiveFrameOptions {
 ///     kTip, kArm  X Y Z are the tip in the workpiece frame, whatever has turned
 ///
 /// ToolPath says where the tool is in the workpiece for either.
-struct LivePose {
+struct SamplePose {
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};  ///< of kArm roll, pitch and yaw, in -180 .. 180
   std::array<bool, 3> abc_known{};  ///< false: no position of that axis has come, 0 is assumed
@@ -80,14 +80,14 @@ class LiveFrame {
   /// which): X, Y, Z, and where the kinematics need them to tell these, the axes that turn.
   /// `program_length_mm`: the G43 in force in the program, if it is followed. `type`: of the
   /// kinematics in force (MachineKinematics::types); of positions by axes it does not matter.
-  std::optional<LivePose> pose_of(const AxisSample& sample, std::optional<double> program_length_mm,
-                                  int type = 0) const;
+  std::optional<SamplePose> pose_of(const AxisSample& sample,
+                                    std::optional<double> program_length_mm, int type = 0) const;
   /// "Z", "X and Y", "joint 3": those without which there is no tip.
   std::string missing_axes(const AxisSample& sample) const;
 
   /// Machine coordinates of the pose, whatever tool length is in force: X Y Z A B C U V W. mm,
   /// degrees.
-  std::array<double, 9> machine_place_of(const LivePose& pose) const;
+  std::array<double, 9> machine_place_of(const SamplePose& pose) const;
 
   int tool_of(const AxisSample& sample) const {
     return sample.tool >= 0 ? sample.tool : options_.tool;
@@ -104,7 +104,7 @@ class LiveFrame {
   Axes axes_of(const AxisSample& sample, int type, double tool_mm) const;
   Vec3 tip_of(const Axes& axes, double tool_mm) const;
   double length_of(const AxisSample& sample, std::optional<double> program_length_mm,
-                   LivePose& pose) const;
+                   SamplePose& pose) const;
   std::optional<Vec3> real_shift_of(const AxisSample& sample, double applied_mm) const;
 
   LiveFrameOptions options_;

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "machine_io/recording_format.h"
-#include "twin/finding_json.h"
-#include "twin/live/run_json.h"
+#include "twin/findings/finding_json.h"
+#include "twin/report/run_json.h"
 
 namespace kerf {
 namespace {
@@ -32,7 +32,7 @@ std::string line_of(const Json& json) {
 }  // namespace
 
 std::string status_json(const LiveStatus& status, const EventHead& head) {
-  const LivePlace& place = status.place;
+  const ToolState& place = status.place;
   const bool followed = place.followed;
   Json out = event("status", head);
   out["state"] = to_string(status.state);

@@ -8,10 +8,13 @@
 #include <utility>
 
 #include "base/helper_thread.h"
-#include "twin/blank_choice.h"
-#include "twin/motion_geometry.h"
-#include "twin/program_front.h"
-#include "twin/turning.h"
+#include "base/translate.h"
+#include "twin/job/blank_choice.h"
+#include "twin/live/program_duration.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/process_table.h"
+#include "twin/program/program_front.h"
+#include "twin/program/turning.h"
 
 namespace kerf {
 namespace {
@@ -21,8 +24,6 @@ constexpr std::chrono::milliseconds kPatience{50};
 /// The program ahead is looked at this often, in seconds of the samples' clock.
 constexpr double kLook_s = 0.05;
 constexpr std::size_t kAges = 1 << 16;
-/// Two clocks that differ by more between two samples: one of them was set.
-constexpr double kClockStep_s = 0.2;
 /// A device's stamps that leave the arrival by more are not believed.
 constexpr double kPlausible_s = 1.0;
 /// The status is copied this seldom while a log rushes by.
@@ -34,41 +35,35 @@ double seconds(std::chrono::steady_clock::duration d) {
   return std::chrono::duration<double>(d).count();
 }
 
-std::int64_t stamp_of(const AxisSample& sample) {
-  return sample.device_ns != AxisSample::kNoTime ? sample.device_ns : sample.host_ns;
-}
-
 std::int64_t steady_ns(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
 }
-
-/// Its own plan of a program, for the sum alone.
-class DurationSink : public StepSink {
-  void step(const Motion&, const TimedStep&, std::span<const PathPiece>) override {}
-};
 
 }  // namespace
 
 const char* to_string(LiveState state) {
   switch (state) {
     case LiveState::kWaiting:
-      return "waiting";
+      return tr_noop("waiting");
     case LiveState::kLive:
-      return "live";
+      return tr_noop("live");
     case LiveState::kStale:
-      return "stale";
+      return tr_noop("stale");
     case LiveState::kLost:
-      return "lost";
+      return tr_noop("lost");
     case LiveState::kEnded:
-      return "ended";
+      return tr_noop("ended");
   }
   return "";
 }
 
 LiveSession::LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source)
-    : options_(std::move(options)), source_(std::move(source)), start_(Clock::now()) {
+    : options_(std::move(options)),
+      source_(std::move(source)),
+      clock_watch_(options_.clock_ns ? options_.clock_ns : real_time_ns),
+      start_(Clock::now()) {
   ages_ms_.reserve(kAges);
-  speed_ = options_.speed;
+  pace_.set_speed(options_.speed);
 }
 
 LiveSession::~LiveSession() = default;
@@ -95,20 +90,17 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   program.machine.inch_machine = options_.inch_table;
   if (options_.program) {
     program = *options_.program;
-    program_ = Program::open(program, diagnostics);
-    if (!program_) return false;
+    if (!open_program(diagnostics)) return false;
   }
   ToolSources& tools = tool_sources_;
-  if (!gather_tool_sources(options_.tools, program_.get(), program, tools, diagnostics)) {
-    return false;
-  }
+  if (!gather_tool_sources(options_.tools, program_, program, tools, diagnostics)) return false;
   program.lathe = options_.lathe;
   program.as_mill = options_.as_mill;
-  if (refuse_turning(program, program_.get(), tools.table, diagnostics)) {
+  if (refuse_turning(program, program_, tools.table, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }
-  if (program_) program_->give_diameters(known_diameters(tools));
+  if (program_ && !open_readings(diagnostics)) return false;
   for (const ToolTableRow& row : tools.table) {
     options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
   }
@@ -134,18 +126,49 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     stock_facts_ = std::move(setup.facts);
   }
   if (!stock_) return false;
-  if (as_sheet(*stock_)) choose_trade(diagnostics);
+  prepare_process(diagnostics);
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
-  ShiftOptions shift{options_.cutting, shift_programs(), options_.on_end};
+  ShiftOptions shift{options_.cutting, shift_programs(), options_.on_end,
+                     options_.beam.density_kg_per_m3};
   if (!shift.programs.empty() && shift.programs[0].open) {
     shift.cutting.reopen = [open = shift.programs[0].open] { return open({}); };
   }
   program_total_s_ = std::vector<std::atomic<double>>(shift.programs.size());
   for (std::atomic<double>& total_s : program_total_s_) total_s = -1;
   shift_ = std::make_unique<LiveShift>(std::move(stock_), tools, report_.findings, std::move(shift),
-                                       std::move(program_));
+                                       std::move(followed_));
   return true;
+}
+
+bool LiveSession::open_program(Diagnostics& diagnostics) {
+  if (options_.program->path == "-") {
+    followed_ = Program::open(*options_.program, diagnostics);
+    program_ = followed_.get();
+    return program_ != nullptr;
+  }
+  readings_.push_back(ProgramReadings::open(*options_.program, diagnostics));
+  if (!readings_[0]) return false;
+  program_ = &readings_[0]->source();
+  return true;
+}
+
+/// With the tools' diameters, which all readings of all programs need.
+bool LiveSession::open_readings(Diagnostics& diagnostics) {
+  const std::map<int, KnownDiameter> diameters = known_diameters(tool_sources_);
+  if (followed_) followed_->give_diameters(diameters);
+  for (const std::string& path : options_.more_programs) {
+    ProgramOptions other = *options_.program;
+    other.path = path;
+    // Without a first one, which is standard input, it counts from the second on.
+    readings_.resize(std::max<std::size_t>(readings_.size(), 1));
+    readings_.push_back(std::make_shared<ProgramReadings>(std::move(other)));
+  }
+  for (const std::shared_ptr<ProgramReadings>& readings : readings_) {
+    if (readings) readings->give_diameters(diameters);
+  }
+  if (!followed_) followed_ = readings_[0]->reader(options_.program->machine.start, diagnostics);
+  return followed_ != nullptr;
 }
 
 /// That of the options goes first.
@@ -154,41 +177,33 @@ std::vector<ShiftProgram> LiveSession::shift_programs() {
   if (!options_.program) return programs;
   std::vector<std::string> paths = options_.more_programs;
   paths.insert(paths.begin(), options_.program->path);
-  for (const std::string& path : paths) {
-    ShiftProgram& program = programs.emplace_back(ShiftProgram{path, {}});
-    if (path == "-") continue;
-    program.open = [again = *options_.program, path,
-                    diameters = known_diameters(tool_sources_)](const ProgramStart& start) mutable {
-      again.path = path;
-      again.machine.start = start.value_or(std::array<double, 9>{});
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    ShiftProgram& program = programs.emplace_back(ShiftProgram{paths[i], {}});
+    if (i >= readings_.size() || !readings_[i]) continue;
+    program.open = [readings = readings_[i]](const ProgramStart& start) {
       Diagnostics ignored;
-      std::unique_ptr<Program> opened = Program::open(again, ignored);
-      if (opened) opened->give_diameters(diameters);
-      return opened;
+      return readings->reader(start.value_or(ProgramReadings::Start{}), ignored);
     };
   }
   return programs;
 }
 
-/// Of a sheet: it is punched, or cut by a beam.
-void LiveSession::choose_trade(Diagnostics& diagnostics) {
+/// The one that workpiece and options need.
+void LiveSession::prepare_process(Diagnostics& diagnostics) {
+  ProcessWish wish;
+  wish.is_sheet = stock_->sheet() != nullptr;
+  wish.beam = options_.beam;
+  wish.turret = options_.turret;
+  wish.is_qtplasmac = program_ && program_->is_qtplasmac();
+  wish.has_program = program_ != nullptr;
   LiveCutOptions& cutting = options_.cutting;
-  const auto warn = [&](std::string message) {
-    Diagnostic note = general_error(std::move(message));
+  cutting.process = choose_process(wish);
+  cutting.timeline.holds = cutting.process->holds();
+  if (std::string warning = cutting.process->warning(); !warning.empty()) {
+    Diagnostic note = general_error(std::move(warning));
     note.severity = Severity::kWarning;
     diagnostics.push_back(std::move(note));
-  };
-  cutting.turret = options_.turret;
-  if (!options_.turret) {
-    cutting.beam = beam_settings(options_.beam, program_ && program_->is_qtplasmac());
-    if (!program_) cutting.beam->trigger = BeamTrigger();
-    if (!program_ && options_.beam.trigger) {
-      warn(
-          "--beam: without a program (--program) the beam is on while the source's spindle turns, "
-          "whatever the trigger");
-    }
   }
-  cutting.timeline.holds = holds_of(cutting.turret, cutting.beam);
 }
 
 void LiveSession::keep_cut_ids() {
@@ -203,9 +218,9 @@ bool LiveSession::survey_program(const ToolSources& tools, Survey& survey,
   const TimelineOptions& timeline = options_.cutting.timeline;
   const bool may_turn = !options_.stock.kind && timeline.kinematics && timeline.kinematics->turns();
   if (!program_ || options_.program->path == "-" || !(survey.guesses || may_turn)) return true;
-  const std::unique_ptr<Program> first_pass = Program::open(*options_.program, diagnostics);
+  // What is interpreted for it, and perhaps beyond it, followed_ need not interpret again.
+  const auto first_pass = readings_[0]->reader(options_.program->machine.start, diagnostics);
   if (!first_pass) return false;
-  first_pass->give_diameters(known_diameters(tools));
   TiltWatch tilt(timeline.kinematics);
   BlankSurvey blank(options_.margin_mm, tools);
   Diagnostics said;
@@ -232,10 +247,10 @@ std::string LiveSession::need_of_tilt(const Survey& survey) const {
   std::string axes;
   for (std::size_t i = 3; i < 6; ++i) {
     if (machine.is_arm() || !machine.chain.is_driven_by(i)) continue;
-    axes.append(axes.empty() ? "" : " and ").append(1, kAxisLetters[i]);
+    axes.append(axes.empty() ? "" : tr(" and ")).append(1, kAxisLetters[i]);
   }
-  return fmt::format("the machine turns the tool or the workpiece ({}{}{})", machine.module,
-                     axes.empty() ? "" : ": ", axes);
+  return trf("the machine turns the tool or the workpiece ({}{}{})", machine.module,
+             axes.empty() ? "" : ": ", axes);
 }
 
 /// From the motions of the program.
@@ -243,52 +258,24 @@ bool LiveSession::guess_blank(const Survey& survey, Diagnostics& diagnostics, Ou
   outcome = Outcome::kUsageError;
   if (!survey.blank) {
     diagnostics.push_back(general_error(
-        "no blank is given: without a program there is nothing to guess it from",
-        "--stock box:x0,y0,z0:x1,y1,z1 gives it, in the coordinates of the work offset"));
+        tr("no blank is given: without a program there is nothing to guess it from"),
+        tr("--stock box:x0,y0,z0:x1,y1,z1 gives it, in the coordinates of the work offset")));
     return false;
   }
   StockSetup setup =
-      make_stock(*survey.blank, choice_, options_.stock, "guessed", diagnostics, outcome);
+      make_stock(*survey.blank, choice_, options_.stock, tr("guessed"), diagnostics, outcome);
   stock_ = std::move(setup.stock);
   stock_facts_ = std::move(setup.facts);
   if (!stock_) return false;
   Finding finding;
   finding.id = FindingId::kStockGuessed;
   finding.severity = Severity::kWarning;
-  finding.text = fmt::format(
-      "no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
-      "--stock SPEC says better)",
-      stock_facts_.description, options_.margin_mm);
+  finding.text =
+      trf("no blank is given or written in the program; assumed: {} (the feed moves plus {:g} mm; "
+          "--stock SPEC says better)",
+          stock_facts_.description, options_.margin_mm);
   report_.findings.add(std::move(finding));
   return true;
-}
-
-/// A log's sample waits for its time, which the speed may change meanwhile.
-void LiveSession::pace(const AxisSample& sample, const std::stop_token& stop) {
-  const std::int64_t stamp = stamp_of(sample);
-  if (stamp == AxisSample::kNoTime) return;
-  while (!stop.stop_requested()) {
-    const double speed = speed_;
-    const auto now = Clock::now();
-    if (!paced_from_ns_ || speed != paced_speed_) {
-      // From where the log has come to, not from where it should be: what was late stays late.
-      paced_from_ns_ = paced_ns_.value_or(stamp);
-      paced_since_ = now;
-      paced_speed_ = speed;
-    }
-    paced_ns_ = std::max(paced_ns_.value_or(stamp), *paced_from_ns_);
-    if (!std::isfinite(speed)) break;
-    if (speed > 0) {
-      const double due_s = seconds(stamp - *paced_from_ns_) / speed;
-      const auto due = paced_since_ + std::chrono::duration_cast<Clock::duration>(
-                                          std::chrono::duration<double>(due_s));
-      if (now >= due) break;
-      std::this_thread::sleep_until(std::min(due, now + kPatience));
-    } else {
-      std::this_thread::sleep_for(kPatience);
-    }
-  }
-  paced_ns_ = stamp;
 }
 
 void LiveSession::read_source(std::stop_token stop) {
@@ -305,8 +292,11 @@ void LiveSession::read_source(std::stop_token stop) {
       if (next == PositionSource::Next::kEnd) break;
       continue;
     }
-    if (options_.log()) pace(sample, stop);
+    if (options_.log()) pace_.wait_for(sample, stop);
     ArrivedSample arrived{sample, Clock::now(), source_->status().lost};
+    if (!options_.log() && sample.host_ns != AxisSample::kNoTime) {
+      arrived.clock_set_ns = clock_watch_.set_by(sample.host_ns, steady_ns(arrived.arrival));
+    }
     if (tap_) tap_(tapped(arrived));
     if (!options_.log() || handed % kStatusEvery == 0) copy_status();
     ++handed;
@@ -324,11 +314,7 @@ void LiveSession::read_source(std::stop_token stop) {
 TappedSample LiveSession::tapped(const ArrivedSample& arrived) {
   TappedSample out{arrived.sample};
   out.lost = arrived.lost - std::exchange(tapped_lost_, arrived.lost);
-  if (options_.log() || arrived.sample.host_ns == AxisSample::kNoTime) return out;
-  const std::int64_t offset_ns = arrived.sample.host_ns - steady_ns(arrived.arrival);
-  const std::int64_t by_ns = offset_ns - tapped_offset_ns_.value_or(offset_ns);
-  if (std::abs(seconds(by_ns)) > kClockStep_s) out.clock_set_ns = by_ns;
-  tapped_offset_ns_ = offset_ns;
+  out.clock_set_ns = arrived.clock_set_ns;
   return out;
 }
 
@@ -337,34 +323,13 @@ void LiveSession::measure_programs(std::stop_token stop) {
   std::size_t i = 0;
   for (const ShiftProgram& program : shift_programs()) {
     if (program.open && !stop.stop_requested()) {
-      program_total_s_[i] = measure_program(program, stop);
+      const std::unique_ptr<Program> opened = program.open({});
+      if (opened) {
+        program_total_s_[i] = program_duration_s(*opened, options_.cutting.timeline, stop);
+      }
     }
     ++i;
   }
-}
-
-double LiveSession::measure_program(const ShiftProgram& measured, const std::stop_token& stop) {
-  Diagnostics ignored;
-  const std::unique_ptr<Program> program = measured.open({});
-  if (!program) return -1;
-  DurationSink sink;
-  TimelineOptions timing = options_.cutting.timeline;
-  timing.planner.with_path = false;
-  Timeline timeline(timing, sink);
-  std::size_t materials = 0;
-  program->run(
-      [&](std::span<const Motion> motions) {
-        if (program->materials().size() != materials) {
-          materials = program->materials().size();
-          timeline.set_materials(program->materials());
-        }
-        for (const Motion& m : motions) timeline.push(m);
-        return true;
-      },
-      stop, ignored);
-  if (stop.stop_requested()) return -1;
-  timeline.finish();
-  return timeline.clock_s();
 }
 
 /// Seconds since the first sample. By the stamps as long as they go along with the arrivals.
@@ -373,7 +338,6 @@ double LiveSession::time_of(const ArrivedSample& arrived) {
   if (!first_) {
     first_ = newest_ = arrived;
     stamp_before_ns_ = stamp;
-    host_offset_ns_ = arrived.sample.host_ns - steady_ns(arrived.arrival);
     return 0;
   }
   const double by_arrival_s = seconds(arrived.arrival - newest_.arrival);
@@ -383,7 +347,7 @@ double LiveSession::time_of(const ArrivedSample& arrived) {
     // Without a clock of its own the stamp is ours, of when it was read: so a recording of this
     // run, which has no other times, is cut as the run was.
     const bool own_clock = arrived.sample.device_ns != AxisSample::kNoTime;
-    const double allowed_s = own_clock ? kPlausible_s : kClockStep_s;
+    const double allowed_s = own_clock ? kPlausible_s : ClockWatch::kStep_s;
     const bool plausible = by_stamp_s >= 0 && std::abs(by_stamp_s - by_arrival_s) < allowed_s;
     if (options_.log() || plausible) elapsed_s = std::max(0.0, by_stamp_s);
   }
@@ -393,23 +357,8 @@ double LiveSession::time_of(const ArrivedSample& arrived) {
 
 void LiveSession::note_clocks(const ArrivedSample& arrived, double t_s) {
   if (options_.log()) return;
-  const AxisSample& sample = arrived.sample;
-  const std::int64_t offset_ns = sample.host_ns - steady_ns(arrived.arrival);
-  // A single sample that is off was held up. A clock that was set stays so.
-  const auto is_off = [&](std::int64_t from_ns) {
-    return std::abs(seconds(offset_ns - from_ns)) > kClockStep_s;
-  };
-  if (!is_off(host_offset_ns_)) {
-    host_offset_ns_ = offset_ns;
-    odd_offset_ns_.reset();
-  } else if (odd_offset_ns_ && !is_off(*odd_offset_ns_)) {
-    ++live_.clock_steps;
-    host_offset_ns_ = offset_ns;
-    odd_offset_ns_.reset();
-  } else {
-    odd_offset_ns_ = offset_ns;
-  }
-  if (sample.device_ns != AxisSample::kNoTime) {
+  if (arrived.clock_set_ns != 0) ++live_.clock_steps;
+  if (arrived.sample.device_ns != AxisSample::kNoTime) {
     const double late_s = seconds(arrived.arrival - first_->arrival) - t_s;
     live_.jitter_ms = std::max(live_.jitter_ms, std::abs(late_s) * 1e3);
   }
@@ -439,7 +388,7 @@ void LiveSession::take(const ArrivedSample& arrived) {
 
 /// Without what turns, where the axes are: the tip changes places with a tool's length, too.
 void LiveSession::measure_feed() {
-  const LivePlace& place = shift_->cutter().place();
+  const ToolState& place = shift_->cutter().place();
   if (!place.known) return feed_meter_.forget();
   feed_meter_.take(t_s_, place.turns ? place.tip_mm : place.machine_mm);
 }
@@ -533,7 +482,7 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
 }
 
 void LiveSession::extend_trail() {
-  const LivePlace& place = shift_->cutter().place();
+  const ToolState& place = shift_->cutter().place();
   if (!shows_frames_ || !place.known) return;
   const bool far =
       !trail_end_ || glm::distance(*trail_end_, place.tip_mm) > LiveObserver::kTrail_mm;
@@ -609,8 +558,9 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   conclude(stopped);
   const SourceStatus& status = live_.status;
   if (status.state == SourceState::kFailed || (!first_ && !stopped)) {
-    diagnostics.push_back(general_error(fmt::format(
-        "{}: {}", live_.source, status.trouble.empty() ? "no position has come" : status.trouble)));
+    diagnostics.push_back(general_error(
+        fmt::format("{}: {}", live_.source,
+                    status.trouble.empty() ? tr("no position has come") : status.trouble)));
     return Outcome::kFailed;
   }
   return outcome(stopped);

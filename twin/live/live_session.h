@@ -18,16 +18,19 @@
 #include "interp_bridge/program.h"
 #include "machine_io/position_source.h"
 #include "stock/blank.h"
+#include "twin/findings/outcome.h"
+#include "twin/job/tools.h"
+#include "twin/live/clock_watch.h"
 #include "twin/live/feed_meter.h"
 #include "twin/live/live_cutter.h"
-#include "twin/live/live_report.h"
 #include "twin/live/live_shift.h"
+#include "twin/live/log_pace.h"
+#include "twin/live/program_readings.h"
 #include "twin/live/sample_queue.h"
 #include "twin/live/source_faults.h"
-#include "twin/outcome.h"
-#include "twin/report.h"
-#include "twin/session_parts.h"
-#include "twin/tools.h"
+#include "twin/program/session_parts.h"
+#include "twin/report/live_report.h"
+#include "twin/report/report.h"
 
 namespace kerf {
 
@@ -57,7 +60,7 @@ struct LiveOptions {
   StockSettings stock;
   double margin_mm = 5;  ///< around a blank guessed from the program
   /// For a sheet. Without a program there is nothing to look for the trigger in, and a warning says
-  /// so (LiveCutOptions::beam).
+  /// so (LiveCutOptions::process).
   BeamOptions beam;
   TurretPointer turret;  ///< for a sheet that is punched, instead
   LiveCutOptions cutting;
@@ -67,6 +70,8 @@ struct LiveOptions {
   double speed = 0;
   /// Ends after so many seconds; 0: with the source, or when it is stopped.
   double for_s = 0;
+  /// This computer's clock, for tests; empty: real_time_ns().
+  std::function<std::int64_t()> clock_ns;
   bool log() const { return speed > 0; }
 };
 
@@ -75,7 +80,7 @@ struct LiveStatus {
   LiveState state = LiveState::kWaiting;
   double age_s = 0;  ///< of the newest sample
   double t_s = 0;    ///< since the first sample, by its clock
-  LivePlace place;
+  ToolState place;
   std::uint32_t run = 1;  ///< LiveRun's number
   std::uint32_t part = 1;
   std::string file;            ///< of the program's line the machine is on
@@ -156,7 +161,7 @@ class LiveSession {
 
   /// Of a log, while it runs: program seconds a second, 0 stands still, infinity goes as fast as it
   /// can. Any thread. A machine has its own speed.
-  void set_speed(double speed) { speed_ = speed; }
+  void set_speed(double speed) { pace_.set_speed(speed); }
 
   /// Call once.
   Outcome run(std::stop_token stop, Diagnostics& diagnostics);
@@ -171,16 +176,16 @@ class LiveSession {
   using Clock = std::chrono::steady_clock;
   LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source);
   bool set_up(Diagnostics& diagnostics, Outcome& outcome);
+  bool open_program(Diagnostics& diagnostics);
+  bool open_readings(Diagnostics& diagnostics);
   /// What the program is found to need before it is followed.
   struct Survey;
   bool survey_program(const ToolSources& tools, Survey& survey, Diagnostics& diagnostics);
-  void choose_trade(Diagnostics& diagnostics);
+  void prepare_process(Diagnostics& diagnostics);
   bool guess_blank(const Survey& survey, Diagnostics& diagnostics, Outcome& outcome);
   std::string need_of_tilt(const Survey& survey) const;
   void read_source(std::stop_token stop);
-  void pace(const AxisSample& sample, const std::stop_token& stop);
   void measure_programs(std::stop_token stop);
-  double measure_program(const ShiftProgram& measured, const std::stop_token& stop);
   std::vector<ShiftProgram> shift_programs();
   TappedSample tapped(const ArrivedSample& arrived);
   void take(const ArrivedSample& arrived);
@@ -197,7 +202,10 @@ class LiveSession {
 
   LiveOptions options_;
   std::unique_ptr<PositionSource> source_;
-  std::unique_ptr<Program> program_;
+  /// One a program, that of the options first; none of standard input, which is read but once.
+  std::vector<std::shared_ptr<ProgramReadings>> readings_;
+  const Program* program_ = nullptr;   ///< what is known of it without interpreting
+  std::unique_ptr<Program> followed_;  ///< until there is a shift
   StockChoice choice_;
   std::unique_ptr<StockModel> stock_;  ///< until there is a shift
   StockReport stock_facts_;
@@ -206,7 +214,7 @@ class LiveSession {
   std::unique_ptr<LiveShift> shift_;
   LiveObserver* observer_ = nullptr;
   SampleTap tap_;
-  std::atomic<double> speed_{0};
+  LogPace pace_;
   std::function<std::chrono::microseconds()> rest_;
   Report report_;
 
@@ -240,15 +248,9 @@ class LiveSession {
   FeedMeter feed_meter_;
   std::vector<float> ages_ms_;  ///< ring of the ages at which samples were cut
   std::size_t next_age_ = 0;
-  std::int64_t host_offset_ns_ = 0;
-  std::optional<std::int64_t> odd_offset_ns_;  ///< another one, of the last sample alone
   // of the source's thread
   std::uint64_t tapped_lost_ = 0;
-  std::optional<std::int64_t> tapped_offset_ns_;  ///< of the clocks, at the last sample
-  std::optional<std::int64_t> paced_from_ns_;     ///< stamp of the log when the speed last changed
-  std::optional<std::int64_t> paced_ns_;          ///< of the last sample
-  Clock::time_point paced_since_;
-  double paced_speed_ = 0;
+  ClockWatch clock_watch_;
   Clock::time_point start_;
 };
 

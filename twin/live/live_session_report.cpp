@@ -1,8 +1,9 @@
 // What a watch has come to: LiveSession's report and outcome.
 #include <algorithm>
 
+#include "base/translate.h"
 #include "twin/live/live_session.h"
-#include "twin/sheet_report.h"
+#include "twin/report/sheet_report.h"
 
 namespace kerf {
 
@@ -27,27 +28,23 @@ void LiveSession::conclude(bool stopped) {
   if (const ProgramAhead* program = cutter.program()) {
     report_.program = program->summary();
     if (!program->complete()) report_.program.stopped_early = true;
-    const bool open_ended = !report_.program.has_program_end && !report_.program.stopped_early;
     // Of a program that was not read to its end the interpreter only says that it was stopped.
     if (program->complete()) {
-      add_interpreter_findings(program->diagnostics(), open_ended, report_.findings);
+      add_interpreter_findings(program->diagnostics(), report_.program.end_remarked,
+                               report_.findings);
     }
   }
-  report_.time_model = options_.log() ? "as logged" : "as it happened";
+  report_.time_model = options_.log() ? tr("as logged") : tr("as it happened");
   report_.motion.duration_s = t_s_;
   report_.tools = shift_->tools();
   report_.stock = stock_report(shift_->stock(), stock_facts_);
-  if (const TorchStage* const torch = cutter.stage().torch()) {
-    report_.sheet =
-        sheet_report(*as_sheet(shift_->stock()), *torch, options_.beam.density_kg_per_m3);
-  }
-  if (const PunchStage* const punch = cutter.stage().punch()) {
-    report_.sheet =
-        sheet_report(*as_sheet(shift_->stock()), *punch, options_.beam.density_kg_per_m3);
+  if (const Sheet* const sheet = shift_->stock().sheet()) {
+    report_.sheet = sheet_report(*sheet, cutter.stage().process(), options_.beam.density_kg_per_m3);
   }
   report_.timing.total_s = std::chrono::duration<double>(Clock::now() - start_).count();
   report_.peak_rss_mb = peak_rss_mb();
-  if (stopped && options_.log()) report_.partial_reason = "interrupted before the end of the log";
+  if (stopped && options_.log())
+    report_.partial_reason = tr("interrupted before the end of the log");
   report_.live = live_;
 }
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "base/translate.h"
+#include "twin/job/stock_choice.h"
+
 namespace kerf {
 namespace {
 
@@ -40,20 +43,6 @@ void add_uses(const std::vector<ToolUse>& uses, std::vector<ToolUse>& all) {
 }
 
 }  // namespace
-
-const char* to_string(RunEnd end) {
-  switch (end) {
-    case RunEnd::kRuns:
-      return "runs";
-    case RunEnd::kFinished:
-      return "finished";
-    case RunEnd::kAborted:
-      return "aborted";
-    case RunEnd::kUnseen:
-      return "unseen";
-  }
-  return "";
-}
 
 LiveShift::LiveShift(std::unique_ptr<StockModel> stock, const ToolSources& tools, FindingLog& log,
                      ShiftOptions options, std::unique_ptr<Program> first)
@@ -186,7 +175,7 @@ void LiveShift::see_line(const AxisSample& sample, double t_s) {
   state_ = ProgramState::kUnknown;
   if (!can_begin() || !current().found()) return;
   if (sample.line == 0) rested_ = true;
-  const LivePlace& place = current().place();
+  const ToolState& place = current().place();
   if (place.followed) {
     if (scouts_.empty()) last_line_ = place.source.line;
     off_since_s_.reset();
@@ -236,7 +225,8 @@ void LiveShift::begin_next() {
 
 void LiveShift::begin_scouts() {
   current().settle();
-  const bool new_part = blank_ && run_.finished;
+  // Its end may come while nobody looks: the last way home is as good.
+  const bool new_part = blank_ && (run_.finished || current().has_cut_all());
   for (std::size_t i = 0; i < options_.programs.size(); ++i) {
     std::unique_ptr<Program> opened = open(i);
     if (!opened) continue;
@@ -252,6 +242,7 @@ void LiveShift::begin_scouts() {
   scouts_from_s_ = t_s_ + kScoutsAgain_s;
   if (scouts_.empty()) return;
   before_scouts_ = now();
+  before_scouts_->sheet = sheet_now();
   stock_before_ = stock_->snapshot();
   regained_s_.reset();
   current().set_doubtful(true);
@@ -334,9 +325,17 @@ void LiveShift::promote(std::size_t scout) {
 
 LiveShift::Before LiveShift::now() const {
   const LiveCutter& cutter = *run_.cutter;
-  return {run_.log->kept().size(),    cutter.facts(),
-          cutter.stage().tools(),     cutter.place().program_s,
-          cutter.place().source.line, cutter.finished()};
+  return {run_.log->kept().size(),  cutter.facts(),
+          cutter.stage().tools(),   {},
+          cutter.place().program_s, cutter.place().source.line,
+          cutter.has_cut_all()};
+}
+
+/// The workpiece as it is, if it is a sheet.
+std::optional<SheetReport> LiveShift::sheet_now() const {
+  const Sheet* const sheet = stock_->sheet();
+  if (!sheet) return std::nullopt;
+  return sheet_report(*sheet, run_.cutter->stage().process(), options_.density_kg_per_m3);
 }
 
 /// The present one becomes a past one.
@@ -347,6 +346,8 @@ void LiveShift::close_run() {
   if (before) run_.log->forget_from(before->findings);
   past_.push_back(present());
   LiveRun& past = past_.back();
+  past.sheet = before ? before->sheet : sheet_now();
+  past.files = files();
   const StockModel& part = stock_before_ ? *stock_before_ : *stock_;
   past.digest = part.digest();
   past.part_removed_mm3 = part.blank_mm3() - part.remaining_mm3();

@@ -15,11 +15,11 @@
 
 #include "machine_io/position_source.h"
 #include "stock/stock_model.h"
-#include "twin/cut_labels.h"
-#include "twin/finding.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tools.h"
 #include "twin/live/live_cutter.h"
-#include "twin/live/live_run.h"
-#include "twin/tools.h"
+#include "twin/process/cut_labels.h"
+#include "twin/report/live_run.h"
 
 namespace kerf {
 
@@ -38,6 +38,7 @@ struct ShiftOptions {
   LiveCutOptions cutting;
   std::vector<ShiftProgram> programs;  ///< the first one is the one that is followed at once
   OnProgramEnd on_end = OnProgramEnd::kKeep;
+  double density_kg_per_m3 = 7850;  ///< of a sheet, for the weight of its parts
 };
 
 /// A chain of LiveCutters, one a run.
@@ -115,6 +116,7 @@ class LiveShift {
     std::size_t findings = 0;
     LiveFacts facts;
     std::vector<ToolUse> tools;
+    std::optional<SheetReport> sheet;
     double program_s = 0;
     std::uint32_t line = 0;
     bool finished = false;
@@ -140,6 +142,7 @@ class LiveShift {
   LiveRun record() const;
   std::vector<std::string> files() const;
   Before now() const;
+  std::optional<SheetReport> sheet_now() const;
   double way_of(const Run& run) const { return run.cutter->facts().path_mm; }
 
   const ToolSources& tools_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "twin/stock_choice.h"
+#include "twin/job/stock_choice.h"
 
 namespace kerf {
 namespace {
@@ -36,22 +36,18 @@ void LookAheadGuard::restart(const StockModel& stock, const CutStage& stage,
                              const WorkpieceFrame& frame) {
   auto copy = std::make_unique<Copy>();
   copy->stock = stock.snapshot();
-  copy->book = std::make_unique<ToolBook>(tools_, row_of(stock).can_cut);
-  copy->stage = std::make_unique<CutStage>(*copy->stock, *copy->book, copy->log, options_.timeline);
+  copy->resolver = std::make_unique<ToolResolver>(tools_, row_of(stock).can_cut);
+  copy->stage = std::make_unique<CutStage>(*copy->stock, *copy->resolver, copy->log,
+                                           options_.timeline, *options_.process);
   copy->stage->check_by(options_.checks);
-  if (options_.turret) {
-    copy->stage->punch(options_.turret);
-  } else if (options_.beam) {
-    BeamSettings beam = *options_.beam;
-    if (!materials_.empty()) beam.materials = materials_;
-    copy->stage->burn(std::move(beam));
-  }
+  if (!materials_.empty()) copy->stage->set_materials(materials_);
   copy->stage->go_on_from(stage);
   copy->stage->set_frame(frame);
   copy->stage->stop_by(stop_.get_token());
   fresh_ = std::move(copy);
   handed_materials_ = materials_.size();
   begun_ = finished_ = false;
+  change_s_ = -std::numeric_limits<double>::infinity();
   ahead_.clear();
   ++copies_;
 }
@@ -60,14 +56,13 @@ void LookAheadGuard::set_materials(std::span<const TorchMaterial> materials) {
   materials_.assign(materials.begin(), materials.end());
 }
 
-void LookAheadGuard::look(const ProgramAhead& program, double now_s, int program_tool,
-                          int real_tool, std::vector<AheadWarning>& out) {
+void LookAheadGuard::look(const ProgramAhead& program, double now_s, const RealTip& tip,
+                          std::vector<AheadWarning>& out) {
   if (copies_ == 0) return;
   const auto& motions = program.motions();
   if (!begun_ && motions.empty()) return;
   if (!std::exchange(begun_, true)) next_ = program.forgotten();
   next_ = std::max(next_, program.forgotten());
-  const bool other_tool = real_tool >= 0 && real_tool != program_tool;
   Work work;
   work.copy = std::move(fresh_);
   if (handed_materials_ != materials_.size()) {
@@ -78,9 +73,8 @@ void LookAheadGuard::look(const ProgramAhead& program, double now_s, int program
     const PlannedMotion& planned = motions[next_ - program.forgotten()];
     if (planned.start_s > now_s + options_.horizon_s) break;
     work.motions.push_back(planned);
-    // Until the program changes it, the tool is what it is.
-    Motion& motion = work.motions.back().motion;
-    if (other_tool && motion.tool == program_tool) motion.tool = real_tool;
+    if (planned.motion.kind == MotionKind::kToolChange) change_s_ = planned.start_s;
+    if (change_s_ < now_s) take_real_tip(tip, work.motions.back());
   }
   work.whole = !finished_ && program.complete() && next_ - program.forgotten() == motions.size();
   finished_ |= work.whole;

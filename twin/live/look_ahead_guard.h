@@ -16,12 +16,11 @@
 #include <vector>
 
 #include "stock/stock_model.h"
-#include "twin/beam_settings.h"
-#include "twin/cut_stage.h"
-#include "twin/finding.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tools.h"
 #include "twin/live/program_ahead.h"
-#include "twin/tools.h"
-#include "twin/turret.h"
+#include "twin/live/real_tip.h"
+#include "twin/process/cut_stage.h"
 
 namespace kerf {
 
@@ -33,8 +32,9 @@ struct AheadWarning {
 };
 
 /// Runs the program ahead of the machine, on a copy of the workpiece that the machine has really
-/// left, with the tool that it really has in the spindle. While the machine keeps to the program
-/// the copy only needs what comes next; when it has done something else, the owner calls restart().
+/// left, with the tool that it really has in the spindle, at the tip where its length puts it.
+/// While the machine keeps to the program the copy only needs what comes next; when it has done
+/// something else, the owner calls restart().
 ///
 /// Cuts in a thread of its own, motion by motion, so that what is dear ahead of the machine (the
 /// first contact of a helix: seconds) costs the owner nothing but copies of motions; or, for logs,
@@ -44,9 +44,8 @@ class LookAheadGuard {
  public:
   struct Options {
     TimelineOptions timeline;
-    double horizon_s = 10;             ///< how far it looks
-    std::optional<BeamSettings> beam;  ///< of a sheet, as LiveCutOptions have it
-    TurretPointer turret;              ///< of another
+    double horizon_s = 10;  ///< how far it looks
+    ProcessPointer process = default_process();
     CheckOptions checks;
     bool own_thread = true;
   };
@@ -62,9 +61,10 @@ class LookAheadGuard {
   void set_materials(std::span<const TorchMaterial> materials);
 
   /// Has the copy brought to `now_s` + horizon of program time, and appends what has been found to
-  /// come until then; nothing twice, restarts included. `real_tool`: in the machine's spindle now,
-  /// where the program has `program_tool`; -1: not known.
-  void look(const ProgramAhead& program, double now_s, int program_tool, int real_tool,
+  /// come until then; nothing twice, restarts included. `tip`: of the machine now. Until the
+  /// program changes the tool, it is what it is; where it has become another, the owner calls
+  /// restart().
+  void look(const ProgramAhead& program, double now_s, const RealTip& tip,
             std::vector<AheadWarning>& out);
 
   double horizon_s() const { return options_.horizon_s; }
@@ -73,7 +73,7 @@ class LookAheadGuard {
   /// The copy of the workpiece and what cuts it.
   struct Copy {
     std::unique_ptr<StockModel> stock;
-    std::unique_ptr<ToolBook> book;
+    std::unique_ptr<ToolResolver> resolver;
     FindingLog log;
     std::unique_ptr<CutStage> stage;
     std::size_t collected = 0;
@@ -103,6 +103,7 @@ class LookAheadGuard {
   std::vector<TorchMaterial> materials_;
   std::size_t handed_materials_ = 0;
   std::uint64_t next_ = 0;  ///< number of the program's motion that comes next
+  double change_s_ = 0;     ///< the last tool change that was handed: program time
   bool begun_ = false;
   bool finished_ = false;
   std::vector<Finding> ahead_;                            ///< found, and not told yet

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "twin/motion_geometry.h"
-#include "twin/motion_nearest.h"
-#include "twin/planned_pieces.h"
+#include "interp_bridge/motion_kinds.h"
+#include "twin/machine/planned_pieces.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kHidden_s = 0.1;
 /// And shows it by then, s, by leaving the path by more than this, mm.
 constexpr double kHiddenFor_s = 10.0;
 constexpr double kAside_mm = 0.1;
-
-bool moves(const Motion& m) { return is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m); }
 
 }  // namespace
 
@@ -44,8 +43,8 @@ std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
   return best;
 }
 
-ProgramPlace place_on(const Motion& m, const FollowedPlace& place) {
-  ProgramPlace here = place.here;
+ProgramPose place_on(const Motion& m, const MatchQuery& place) {
+  ProgramPose here = place.here;
   bool arm = false;
   if (place.machine) {
     const int type = place.machine->type_of(m);
@@ -71,7 +70,7 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
                           std::span<const PathPiece> path) {
   end_s_ = timed.start_s + timed.duration_s;
   ++appended_;
-  if (!moves(motion)) return;
+  if (!is_move(motion)) return;
   if (!motion.start_known && pieces_.empty() && !found_) {
     approach_line_ = motion.source.file == 0 ? static_cast<int>(motion.source.line) : 0;
   }
@@ -123,9 +122,9 @@ double PathFollower::left_s() const {
   return moved_s_ - pieces_.front().moved_s - (found_ ? t_ * pieces_.front().duration_s : 0);
 }
 
-PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
+PointOnWay PathFollower::nearest_of(const Piece& piece, const MatchQuery& place, double from_t,
                                     double to_t) const {
-  const ProgramPlace here = place_on(piece.motion, place);
+  const ProgramPose here = place_on(piece.motion, place);
   TurnedAxes turned{here.abc_deg, place.abc_known, options_.lever_mm, here.uvw_mm, place.uvw_known};
   for (std::size_t i = 0; i < 3; ++i) {
     turned.counts[i] = turned.counts[i] && piece.turned[i];
@@ -136,7 +135,7 @@ PointOnWay PathFollower::nearest_of(const Piece& piece, const FollowedPlace& pla
 
 /// As far as the machine can have come. That may be within a piece: a full circle ends where it
 /// begins.
-PathFollower::Reach PathFollower::reach(const FollowedPlace& place, double hidden_s) const {
+PathFollower::Reach PathFollower::reach(const MatchQuery& place, double hidden_s) const {
   // How long the machine stands in a dwell or a tool change is not the path's business.
   const Piece& first = pieces_.front();
   const double ahead_s = found_
@@ -155,7 +154,7 @@ PathFollower::Reach PathFollower::reach(const FollowedPlace& place, double hidde
 
 /// The first place that is nearly as near as the nearest. `line` > 0: only on pieces of that line;
 /// `tool` >= 0: only on pieces of that tool.
-std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace& place,
+std::optional<PathFollower::Candidate> PathFollower::search(const MatchQuery& place,
                                                             const Reach& reach, int line,
                                                             int tool) const {
   std::optional<Candidate> nearest;
@@ -183,7 +182,7 @@ std::optional<PathFollower::Candidate> PathFollower::search(const FollowedPlace&
 
 /// What its line tells of a machine that has not been found yet. On its way to the program's first
 /// place it says a line that may come again later, in a loop.
-int PathFollower::told_line(const FollowedPlace& place) const {
+int PathFollower::told_line(const MatchQuery& place) const {
   return found_ || place.line != approach_line_ ? place.line : -1;
 }
 
@@ -195,7 +194,7 @@ bool PathFollower::has_line(int line) const {
 }
 
 /// Exactly where the machine is, farther on than it can have come since it was last found.
-std::optional<PathFollower::Candidate> PathFollower::search_hidden(const FollowedPlace& place,
+std::optional<PathFollower::Candidate> PathFollower::search_hidden(const MatchQuery& place,
                                                                    int line, const Candidate& at) {
   seen_s_ += place.elapsed_s;
   if (seen_s_ > kHiddenFor_s) hidden_s_ = 0;
@@ -226,8 +225,8 @@ void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   t_ = to.t;
 }
 
-FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& drive) {
-  FollowedPoint point;
+PathMatch PathFollower::follow(const MatchQuery& place, const Drive& drive) {
+  PathMatch point;
   point.distance_mm = std::numeric_limits<double>::infinity();
   // Line 0: the machine runs no program yet.
   if (pieces_.empty() || (!found_ && place.line == 0)) return point;
@@ -270,6 +269,7 @@ FollowedPoint PathFollower::follow(const FollowedPlace& place, const Drive& driv
   point.source = piece.motion.source;
   point.tool = piece.motion.tool;
   const ToolLengthState& length = piece.motion.length;
+  point.length = length;
   point.tip_shift_mm = length.tip_shift_mm;
   if (length.verdict == ToolLengthState::Verdict::kStated) {
     point.stated_length_mm = length.applied_mm.z;

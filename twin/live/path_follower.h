@@ -12,9 +12,9 @@
 #include <span>
 
 #include "interp_bridge/motion.h"
-#include "twin/kinematics/machine_kinematics.h"
-#include "twin/motion_nearest.h"
-#include "twin/timeline.h"
+#include "twin/machine/kinematics/machine_kinematics.h"
+#include "twin/machine/timeline.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 
@@ -32,8 +32,8 @@ struct FollowOptions {
   double lever_mm = 50;
 };
 
-/// A place in the numbers of a program (LivePose).
-struct ProgramPlace {
+/// A place in the numbers of a program (SamplePose).
+struct ProgramPose {
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};
   Vec3 along_tool{0, 0, 1};  ///< the tip of a tool that is 1 mm longer is at tip_mm less this
@@ -41,14 +41,14 @@ struct ProgramPlace {
 };
 
 /// What of the machine is needed to find it on the path.
-struct FollowedPlace {
-  ProgramPlace here;
+struct MatchQuery {
+  ProgramPose here;
   std::array<bool, 3> abc_known{};  ///< those that are not are not compared
   std::array<bool, 3> uvw_known{};
   /// Of a machine that may switch its kinematics, or of a robot: the same place in the numbers of
   /// each type. Null: `here` is one for all.
   const MachineKinematics* machine = nullptr;
-  std::array<ProgramPlace, kMostKinematicsTypes> by_type{};
+  std::array<ProgramPose, kMostKinematicsTypes> by_type{};
   /// The tip is where a tool of no length would have it: the lengths are those that the program
   /// has in force (Motion::tool_offset_mm, Z).
   bool without_length = false;
@@ -62,20 +62,21 @@ struct FollowedPlace {
 
 /// The place, if the machine is on this motion. A robot's A B C are the turns that are nearest to
 /// those of the motion (nearest_turns()).
-ProgramPlace place_on(const Motion& motion, const FollowedPlace& place);
+ProgramPose place_on(const Motion& motion, const MatchQuery& place);
 
 /// Angles of the same attitude (roll, pitch, yaw) that are nearest to others.
 std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
                                     const std::array<double, 3>& to_deg);
 
 /// Where the tip was found.
-struct FollowedPoint {
+struct PathMatch {
   bool on_path = false;
   bool in_reach = false;   ///< as far on as the machine can have come; else by its line alone
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
-  ProgramPlace place;      ///< on the path
+  ProgramPose place;       ///< on the path
   Vec3 tip_shift_mm{0};    ///< of a wrong tool length there; in `place` already
+  ToolLengthState length;  ///< of the program there
   std::optional<double> stated_length_mm;  ///< the program itself says it (kStated), in Z
   int kinematics_type = 0;                 ///< in force there, by the program
   std::array<bool, 3> turned{};            ///< A, B, C: the program has turned it, up to there
@@ -123,7 +124,7 @@ class PathFollower {
     bool of_same_piece = false;  ///< of which the part before was one
   };
   using Drive = std::function<void(const DrivenPart& part)>;
-  FollowedPoint follow(const FollowedPlace& place, const Drive& drive);
+  PathMatch follow(const MatchQuery& place, const Drive& drive);
 
   /// The machine is at or behind `program_s`: what lies before is passed without being driven.
   void begin_at(double program_s);
@@ -168,14 +169,14 @@ class PathFollower {
     /// Time in motion (Piece::moved_s) up to which the machine can have come.
     double latest_s = std::numeric_limits<double>::infinity();
   };
-  PointOnWay nearest_of(const Piece& piece, const FollowedPlace& place, double from_t,
+  PointOnWay nearest_of(const Piece& piece, const MatchQuery& place, double from_t,
                         double to_t) const;
-  Reach reach(const FollowedPlace& place, double hidden_s) const;
-  std::optional<Candidate> search_hidden(const FollowedPlace& place, int line, const Candidate& at);
+  Reach reach(const MatchQuery& place, double hidden_s) const;
+  std::optional<Candidate> search_hidden(const MatchQuery& place, int line, const Candidate& at);
   void note_hidden(double latest_s, const Candidate& at);
-  int told_line(const FollowedPlace& place) const;
+  int told_line(const MatchQuery& place) const;
   bool has_line(int line) const;
-  std::optional<Candidate> search(const FollowedPlace& place, const Reach& reach, int line,
+  std::optional<Candidate> search(const MatchQuery& place, const Reach& reach, int line,
                                   int tool) const;
   void drive_to(const Candidate& to, const Drive& drive);
 

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "interp_bridge/program.h"
-#include "twin/batch_queue.h"
-#include "twin/kinematics/switched_motions.h"
 #include "twin/live/path_follower.h"
-#include "twin/material_mail.h"
-#include "twin/timeline.h"
+#include "twin/machine/kinematics/switched_motions.h"
+#include "twin/machine/timeline.h"
+#include "twin/program/batch_queue.h"
+#include "twin/program/material_handover.h"
 
 namespace kerf {
 
@@ -32,7 +32,8 @@ struct PlannedMotion {
 };
 
 /// Interprets in a thread of its own, which waits when it is far ahead; plans in the caller's, and
-/// appends the path to a follower. Memory does not grow with the program.
+/// appends the path to a follower. Memory does not grow with the program, but for what a
+/// SharedReading keeps of it.
 class ProgramAhead : private StepSink {
  public:
   /// `follower` must outlive it.
@@ -80,7 +81,7 @@ class ProgramAhead : private StepSink {
   Timeline timeline_;
   SwitchedMotions switched_;  ///< of thread_
   BatchQueue queue_;
-  MaterialMail materials_;
+  MaterialHandover materials_;
   std::vector<TorchMaterial> planned_materials_;  ///< that the timeline knows
   std::vector<Motion> batch_;
   std::deque<PlannedMotion> motions_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -30,7 +32,7 @@ MotionBounds motion_bounds(const LiveFrameOptions& frame, const TimelineOptions&
     if (machine && machine->is_arm()) continue;
     const auto at = static_cast<std::size_t>(axis);
     bound.judged = true;
-    bound.name = machine ? fmt::format("joint {}", i) : std::string(1, kAxisLetters[at]);
+    bound.name = machine ? trf("joint {}", i) : std::string(1, kAxisLetters[at]);
     const AxisLimits& limits = machine ? timeline.joint_limits[at] : timeline.limits.axes[at];
     const bool known = timeline.limits_known && limits.present;
     if (known && limits.max_acceleration > 0) bound.most_per_s2 = limits.max_acceleration;
@@ -77,7 +79,7 @@ bool SampleGate::is_wild(const Timed& one, const Timed& next) {
     const double is_mm = one.sample.position[i];
     const double off_mm = std::max(low_mm - is_mm, is_mm - high_mm);
     if (off_mm <= farthest_mm(i, between_s)) continue;
-    fault_ = fmt::format(
+    fault_ = trf(
         "{} reads {:g} mm, {:.2f} mm away from where it is before and after, within {:.3f} s: no "
         "machine is so quick",
         bound.name, is_mm, off_mm, between_s);

@@ -11,7 +11,7 @@
 
 #include "machine_io/position_source.h"
 #include "twin/live/live_frame.h"
-#include "twin/timeline.h"
+#include "twin/machine/timeline.h"
 
 namespace kerf {
 

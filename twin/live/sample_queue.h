@@ -16,7 +16,8 @@ namespace kerf {
 struct ArrivedSample {
   AxisSample sample;
   std::chrono::steady_clock::time_point arrival;
-  std::uint64_t lost = 0;  ///< samples known to be lost before this one, in all
+  std::uint64_t lost = 0;         ///< samples known to be lost before this one, in all
+  std::int64_t clock_set_ns = 0;  ///< by which this computer's clock was set before it
 };
 
 /// One producer, one consumer. Nothing is allocated after the first rounds.

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kStill_mm = 0.005;
 constexpr double kPlunge_mm = 0.5;
 constexpr double kBack_mm = 0.05;
 
-Vec2 flat(const ProgramPlace& place) { return Vec2(place.tip_mm); }
+Vec2 flat(const ProgramPose& place) { return Vec2(place.tip_mm); }
 
 bool by_spindle(const BeamTrigger::Term& term) {
   return (term.kind == Kind::kSpindle && term.index <= 0) || term.kind == Kind::kCounterclockwise ||
@@ -52,12 +54,12 @@ std::string SeenStrokes::missing() const {
     const bool spindle = std::all_of(terms.begin(), terms.end(), [](const BeamTrigger::Term& term) {
       return by_spindle(term) || term.kind == Kind::kBelow;
     });
-    if (spindle) return "neither a spindle speed nor a trigger";
+    if (spindle) return tr("neither a spindle speed nor a trigger");
   }
-  return "no trigger";
+  return tr("no trigger");
 }
 
-std::span<const PunchHit> SeenStrokes::take(const AxisSample& sample, const ProgramPlace& place,
+std::span<const PunchHit> SeenStrokes::take(const AxisSample& sample, const ProgramPose& place,
                                             int tool, bool gap) {
   hits_.clear();
   drags_ = false;
@@ -83,7 +85,7 @@ std::span<const PunchHit> SeenStrokes::take(const AxisSample& sample, const Prog
   return hits_;
 }
 
-void SeenStrokes::take_state(bool on, const ProgramPlace& place, int tool) {
+void SeenStrokes::take_state(bool on, const ProgramPose& place, int tool) {
   if (!before_ || !on_) return;
   const double way_mm = glm::length(flat(place) - flat(*before_));
   const double pitch_mm = turret_->nibbles ? 0 : turret_->pitch_mm(tool);
@@ -103,20 +105,20 @@ void SeenStrokes::take_state(bool on, const ProgramPlace& place, int tool) {
 }
 
 /// The rest of the way stays for the next sample, or for where the trigger goes off.
-void SeenStrokes::nibble(const ProgramPlace& place, int tool, double pitch_mm) {
-  const ProgramPlace from = *before_;
+void SeenStrokes::nibble(const ProgramPose& place, int tool, double pitch_mm) {
+  const ProgramPose from = *before_;
   const double way_mm = glm::length(flat(place) - flat(from));
   double at_mm = pitch_mm - since_mm_;
   since_mm_ += way_mm;
   for (; at_mm <= way_mm; at_mm += pitch_mm) {
-    ProgramPlace between = place;
+    ProgramPose between = place;
     between.tip_mm = from.tip_mm + (at_mm / way_mm) * (place.tip_mm - from.tip_mm);
     strike(between, tool);
     since_mm_ = way_mm - at_mm;
   }
 }
 
-void SeenStrokes::take_plunge(const ProgramPlace& place, int tool) {
+void SeenStrokes::take_plunge(const ProgramPose& place, int tool) {
   if (!before_) {
     top_mm_ = place.tip_mm.z;
     return;
@@ -134,7 +136,7 @@ void SeenStrokes::take_plunge(const ProgramPlace& place, int tool) {
   }
 }
 
-void SeenStrokes::strike(const ProgramPlace& place, int tool) {
+void SeenStrokes::strike(const ProgramPose& place, int tool) {
   Motion standing;
   standing.tool = tool;
   standing.from_mm = standing.to_mm = place.tip_mm;

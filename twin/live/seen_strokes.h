@@ -8,8 +8,8 @@
 
 #include "machine_io/position_source.h"
 #include "twin/live/path_follower.h"
-#include "twin/punch_moves.h"
-#include "twin/turret.h"
+#include "twin/machine/punch_moves.h"
+#include "twin/machine/turret.h"
 
 namespace kerf {
 
@@ -30,7 +30,7 @@ class SeenStrokes {
 
   /// The next sample; the strokes since the one before, until the next call. `gap`: between the two
   /// positions are missing. share of a hit means nothing.
-  std::span<const PunchHit> take(const AxisSample& sample, const ProgramPlace& place, int tool,
+  std::span<const PunchHit> take(const AxisSample& sample, const ProgramPose& place, int tool,
                                  bool gap);
   /// The trigger can be told from the last sample.
   bool is_told() const { return told_; }
@@ -41,22 +41,22 @@ class SeenStrokes {
 
  private:
   std::optional<bool> is_on(const AxisSample& sample, const Vec3& place_mm) const;
-  void take_state(bool on, const ProgramPlace& place, int tool);
-  void take_plunge(const ProgramPlace& place, int tool);
-  void nibble(const ProgramPlace& place, int tool, double pitch_mm);
-  void strike(const ProgramPlace& place, int tool);
+  void take_state(bool on, const ProgramPose& place, int tool);
+  void take_plunge(const ProgramPose& place, int tool);
+  void nibble(const ProgramPose& place, int tool, double pitch_mm);
+  void strike(const ProgramPose& place, int tool);
 
   PunchMoves moves_;
   TurretPointer turret_;
   std::vector<PunchHit> hits_;
-  std::optional<ProgramPlace> before_;  ///< where the sheet last moved to
+  std::optional<ProgramPose> before_;  ///< where the sheet last moved to
   bool told_ = false;
   bool drags_ = false;
   std::optional<bool> on_;
   double since_mm_ = 0;  ///< way since the last stroke, with the trigger on
   // g81
-  double top_mm_ = 0;                   ///< Z has come down from there ..
-  std::optional<ProgramPlace> bottom_;  ///< .. to there, X and Y standing
+  double top_mm_ = 0;                  ///< Z has come down from there ..
+  std::optional<ProgramPose> bottom_;  ///< .. to there, X and Y standing
 };
 
 }  // namespace kerf

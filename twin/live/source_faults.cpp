@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "base/translate.h"
+
 namespace kerf {
 
 void SourceFaults::tell(std::optional<FindingLog::Handle>& told, std::uint64_t count,
@@ -20,22 +22,23 @@ void SourceFaults::tell(std::optional<FindingLog::Handle>& told, std::uint64_t c
 void SourceFaults::look_at(const SourceStatus& status, FindingLog& log) {
   if (status.incomplete != seen_.incomplete) {
     tell(incomplete_, status.incomplete,
-         fmt::format("frames of the bus were lost: {} {} without all axes, and dropped",
-                     status.incomplete, status.incomplete == 1 ? "cycle was" : "cycles were"),
+         trnf("frames of the bus were lost: {} cycle was without all axes, and dropped",
+              "frames of the bus were lost: {} cycles were without all axes, and dropped",
+              status.incomplete),
          log);
   }
   if (status.standing != seen_.standing) {
     tell(standing_, status.standing,
-         fmt::format("the device's clock stood still during {} samples: they follow by the times "
-                     "at which they were received, as far as there are any",
-                     status.standing),
+         trf("the device's clock stood still during {} samples: they follow by the times "
+             "at which they were received, as far as there are any",
+             status.standing),
          log);
   }
   if (status.damaged != seen_.damaged) {
     tell(damaged_, status.damaged,
-         fmt::format("the recording is damaged: {} samples are in parts whose sum is wrong, and "
-                     "were dropped",
-                     status.damaged),
+         trf("the recording is damaged: {} samples are in parts whose sum is wrong, and "
+             "were dropped",
+             status.damaged),
          log);
   }
   seen_ = status;

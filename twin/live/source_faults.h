@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "machine_io/position_source.h"
-#include "twin/finding.h"
+#include "twin/findings/finding.h"
 
 namespace kerf {
 

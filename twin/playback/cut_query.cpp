@@ -6,9 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "twin/motion_geometry.h"
-#include "twin/motion_nearest.h"
-#include "twin/playback/mounted_tools.h"
+#include "base/golden_section.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/motion/motion_nearest.h"
+#include "twin/process/process.h"
 
 namespace kerf {
 namespace {
@@ -64,20 +65,9 @@ struct LeftHeight {
 
 /// Least value of a function with one minimum on [a, b].
 template <class F>
-double golden_minimum(const F& f, double a, double b) {
-  constexpr double kGolden = 0.6180339887498949;
-  double least = std::min(f(a), f(b));
-  double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-  double fc = f(c), fd = f(d);
-  for (int i = 0; i < kGoldenSteps; ++i) {
-    if (fc < fd) {
-      b = d, d = c, fd = fc, c = b - kGolden * (b - a), fc = f(c);
-    } else {
-      a = c, c = d, fc = fd, d = a + kGolden * (b - a), fd = f(d);
-    }
-    least = std::min({least, fc, fd});
-  }
-  return least;
+double least_between(const F& f, double a, double b) {
+  const double least = golden_section(f, a, b, kGoldenSteps, std::less<>{}).least;
+  return std::min({f(a), f(b), least});
 }
 
 /// The part of a straight way over which the cutter is, in fractions. False: none.
@@ -107,7 +97,7 @@ double searched_minimum(const F& f, int steps) {
   for (int i = 0; i <= steps; ++i) {
     const double next = i < steps ? f(t(i + 1)) : kInfinity;
     if (here < kInfinity && here <= before && here <= next) {
-      least = std::min(least, golden_minimum(f, t(std::max(0, i - 1)), t(std::min(steps, i + 1))));
+      least = std::min(least, least_between(f, t(std::max(0, i - 1)), t(std::min(steps, i + 1))));
     }
     before = here;
     here = next;
@@ -131,7 +121,7 @@ double least_height(const Motion& m, const LeftHeight& left, bool convex) {
   if (m.kind != MotionKind::kArc) {
     double from = 0, to = 1;
     if (!under_cutter(m, left.point_mm, radius + left.tolerance_mm, from, to)) return kInfinity;
-    if (convex) return golden_minimum(height, from, to);
+    if (convex) return least_between(height, from, to);
   }
   const double steps = path_length_mm(m) / (kSearchStep * radius);
   return searched_minimum(height, static_cast<int>(std::clamp<double>(steps, 8, kMostSteps)));
@@ -140,15 +130,15 @@ double least_height(const Motion& m, const LeftHeight& left, bool convex) {
 }  // namespace
 
 CutQuery::CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools,
-                   ToolBook::CutterCheck can_cut)
+                   ToolResolver::CutterCheck can_cut)
     : track_(std::move(track)), mounts_(1) {
-  MountedTools mounted(std::move(tools), can_cut);
+  const std::unique_ptr<MotionTools> mounted = default_process()->tools(tools, can_cut);
   const ResolvedTool* last = nullptr;
   for (std::size_t i = 0; i < track_->size(); ++i) {
     if (i % kChunk == 0) chunks_.emplace_back();
     const Motion m = track_->motion(i);
     if (!is_cutting(m)) continue;
-    const ResolvedTool* const tool = mounted.at(m);
+    const ResolvedTool* const tool = mounted->of(m, {}).tool;
     const bool known = tool && tool->cutter;
     // A tool that was not known may be so the next time it is mounted.
     if (tool != last || known != (mounts_.back().cutter != nullptr)) add_mount(i, tool);
@@ -196,7 +186,7 @@ bool CutQuery::touches(const Motion& m, const Mount& mount, const Probe& probe) 
 }
 
 std::optional<std::size_t> CutQuery::last_cut_at(const Vec3& point_mm, double tolerance_mm,
-                                                 const TrackPlace& until) const {
+                                                 const TrackPosition& until) const {
   const Probe probe{point_mm, tolerance_mm};
   const std::size_t end = std::min(until.motion, track_->size());
   if (end < track_->size() && until.fraction > 0) {

@@ -8,8 +8,8 @@
 
 #include "base/geometry.h"
 #include "stock/cutter/cutter.h"
+#include "twin/job/tools.h"
 #include "twin/playback/program_track.h"
-#include "twin/tools.h"
 
 namespace kerf {
 
@@ -20,9 +20,9 @@ class CutQuery {
  public:
   static constexpr std::size_t kChunk = 256;
 
-  /// `can_cut`: as the ToolBook of the session that cuts it.
+  /// `can_cut`: as the ToolResolver of the session that cuts it.
   CutQuery(std::shared_ptr<const ProgramTrack> track, ToolSources tools,
-           ToolBook::CutterCheck can_cut = nullptr);
+           ToolResolver::CutterCheck can_cut = nullptr);
 
   /// The motion that touched the point last, of those before `until` and the part of `until.motion`
   /// up to its fraction. Nothing: none did, the point is of the blank.
@@ -44,7 +44,7 @@ class CutQuery {
   ///
   /// Chunks whose boxes lie apart from the point cost nanoseconds.
   std::optional<std::size_t> last_cut_at(const Vec3& point_mm, double tolerance_mm,
-                                         const TrackPlace& until) const;
+                                         const TrackPosition& until) const;
 
   /// The cutter that makes a motion; null: it does not cut.
   const Cutter* cutter_at(std::size_t motion) const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "twin/stock_choice.h"
+#include "twin/job/stock_choice.h"
 
 namespace kerf {
 namespace {
@@ -13,14 +13,9 @@ constexpr std::size_t kMotionsAtOnce = 512;
 constexpr double kCellsAtOnce = 1e6;
 
 MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
-                     const ProgramTrack& track, const std::optional<BeamSettings>& beam,
-                     const TurretPointer& turret) {
+                     const ProgramTrack& track, const ProcessPlan& process) {
   MotionMoves moves = MotionMoves::of(blank, options.kinematics, track.frame());
-  if (turret) {
-    moves.punch(PunchMoves(turret));
-  } else if (beam) {
-    moves.burn(TorchMoves(beam->trigger, beam->pierce_mm));
-  }
+  moves.set_ordered(process.moves());
   return moves;
 }
 
@@ -28,23 +23,19 @@ MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
 
 Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
                    const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope,
-                   const std::optional<BeamSettings>& beam, const TurretPointer& turret,
+                   const ProcessPlan& process, std::span<const TorchMaterial> materials,
                    const CheckOptions& checks)
     : track_(track),
-      moves_(moves_of(*blank, options, track, beam, turret)),
+      moves_(moves_of(*blank, options, track, process)),
       record_(track.size()),
       stock_(std::move(blank), track, moves_, record_, store),
-      book_(std::move(tools), row_of(stock_).can_cut),
-      stage_(stock_, book_, log_, options),
+      resolver_(std::move(tools), row_of(stock_).can_cut),
+      stage_(stock_, resolver_, log_, options, process),
       scope_(scope) {
   stage_.set_frame(track.frame());
   stage_.check_by(checks);
   stage_.judge_blank(scope.blank);
-  if (turret) {
-    stage_.punch(turret);
-  } else if (beam) {
-    stage_.burn(*beam);
-  }
+  stage_.set_materials(materials);
   if (scope_.from > 0) stage_.hold_reports();
 }
 

@@ -3,21 +3,20 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "twin/cut_stage.h"
-#include "twin/finding.h"
-#include "twin/motion_moves.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tools.h"
+#include "twin/machine/motion_moves.h"
+#include "twin/machine/timeline.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
 #include "twin/playback/programmed_steps.h"
 #include "twin/playback/recording_stock.h"
-#include "twin/timeline.h"
-#include "twin/tools.h"
-#include "twin/turret.h"
+#include "twin/process/cut_stage.h"
 
 namespace kerf {
 
@@ -29,14 +28,14 @@ struct ReportScope {
 };
 
 /// Cuts a program once, in slices, through the same CutStage as a dry run: the findings are those
-/// of the report (`beam`: of a sheet under a torch, `turret`: under a punch). Everything before
+/// of the report (`materials`: all that its motions name). Everything before
 /// reached() can afterwards be cut again from the record and the keyframes. One thread.
 class Frontier {
  public:
   Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank, ToolSources tools,
            const TimelineOptions& options, KeyframeStore& store, const ReportScope& scope = {},
-           const std::optional<BeamSettings>& beam = {}, const TurretPointer& turret = {},
-           const CheckOptions& checks = {});
+           const ProcessPlan& process = *default_process(),
+           std::span<const TorchMaterial> materials = {}, const CheckOptions& checks = {});
 
   /// The findings are to be those of these steps, the track being of their planned path. Before the
   /// first advance().
@@ -60,7 +59,7 @@ class Frontier {
   MotionMoves moves_;
   CutRecord record_;
   RecordingStock stock_;
-  ToolBook book_;
+  ToolResolver resolver_;
   FindingLog log_;
   CutStage stage_;
   ReportScope scope_;

@@ -9,14 +9,15 @@
 #include <system_error>
 #include <utility>
 
+#include "base/translate.h"
+#include "base/units.h"
 #include "interp_bridge/parameter_file.h"
 #include "twin/guess/guess_rows.h"
 #include "twin/guess/program_survey.h"
-#include "twin/kerf_book.h"
-#include "twin/kinematics/switched_motions.h"
-#include "twin/playback/mounted_tools.h"
+#include "twin/machine/kinematics/switched_motions.h"
 #include "twin/playback/planned_steps.h"
 #include "twin/playback/probed_workpiece.h"
+#include "twin/process/process.h"
 
 namespace kerf {
 namespace {
@@ -45,79 +46,37 @@ ProgramTool described(const ResolvedTool& tool, const std::vector<ToolTableRow>&
   return out;
 }
 
-std::optional<BeamSettings> beam_of(const SessionOptions& options, const ProgramFront& front) {
-  if (!front.is_sheet() || options.turret) return std::nullopt;
-  BeamSettings beam = beam_settings(options.beam, front.program->is_qtplasmac());
-  beam.guessed = front.blank_guessed;
-  return beam;
-}
-
-TimelineOptions timing_of(const SessionOptions& options, const ProgramFront& front) {
+TimelineOptions timing_of(const SessionOptions& options, const ProcessPlan& process) {
   TimelineOptions timing = options.timeline;
-  if (front.is_sheet()) timing.holds = holds_of(options.turret, beam_of(options, front));
+  timing.holds = process.holds();
   return timing;
 }
 
-/// The tools of a program, each once. Of a torch (`beam`) each kerf, of a punch each station.
+/// The tools of a program, each once.
 class ToolList {
  public:
-  ToolList(const ToolSources& sources, ToolBook::CutterCheck can_cut,
-           const std::optional<BeamSettings>& beam, TurretPointer turret)
-      : turret_(std::move(turret)),
-        mounted_(sources, can_cut),
-        book_(sources, can_cut),
-        table_(sources.table) {
-    if (!beam) return;
-    torch_.emplace(beam->trigger, beam->pierce_mm);
-    kerfs_.emplace(book_, beam->kerf_mm, beam->is_qtplasmac);
-  }
+  ToolList(const ToolSources& sources, ToolResolver::CutterCheck can_cut,
+           const ProcessPlan& process)
+      : motion_tools_(process.tools(sources, can_cut)), table_(sources.table) {}
 
   /// `materials`: all that the motions so far name.
   void add(const Motion& m, std::span<const TorchMaterial> materials) {
-    if (turret_) {
-      add_station(m);
-      return;
-    }
-    const ResolvedTool* const tool = at(m, materials);
+    const auto [tool, name] = motion_tools_->of(m, materials);
     if (!tool || tool == last_) return;
     last_ = tool;
-    const ProgramTool fresh = described(*tool, table_);
+    ProgramTool fresh = described(*tool, table_);
+    if (name) fresh.remark = *name;
+    const bool by_shape = motion_tools_->by_shape();
     const bool known = std::any_of(tools_.begin(), tools_.end(), [&](const ProgramTool& listed) {
-      return listed.number == fresh.number && (!torch_ || listed.shape == fresh.shape);
+      return listed.number == fresh.number && (!by_shape || listed.shape == fresh.shape);
     });
-    if (!known) tools_.push_back(fresh);
+    if (!known) tools_.push_back(std::move(fresh));
   }
 
   std::vector<ProgramTool> take() { return std::move(tools_); }
 
  private:
-  const ResolvedTool* at(const Motion& m, std::span<const TorchMaterial> materials) {
-    if (!torch_) return mounted_.at(m);
-    return torch_->burns(m) ? &kerfs_->of(m, materials) : nullptr;
-  }
-
-  void add_station(const Motion& m) {
-    const bool known =
-        m.tool == 0 || std::any_of(tools_.begin(), tools_.end(), [&](const ProgramTool& listed) {
-          return listed.number == m.tool;
-        });
-    if (known) return;
-    ProgramTool& tool = tools_.emplace_back();
-    tool.number = m.tool;
-    tool.origin = "turret";
-    if (const TurretStation* const station = turret_->station(m.tool)) {
-      tool.shape = station->punch.spec();
-      tool.remark = station->name;
-    } else {
-      tool.trouble = "the station is empty";
-    }
-  }
-
-  TurretPointer turret_;
-  MountedTools mounted_;
-  ToolBook book_;
-  std::optional<TorchMoves> torch_;
-  std::optional<KerfBook> kerfs_;  ///< over book_
+  std::unique_ptr<MotionTools> motion_tools_;
   std::vector<ToolTableRow> table_;
   std::vector<ProgramTool> tools_;
   const ResolvedTool* last_ = nullptr;
@@ -127,15 +86,14 @@ class ToolList {
 class Loading {
  public:
   /// `cuts`: what its probes meet is looked for.
-  Loading(const SessionOptions& options, const ProgramFront& front, const LoadControl& control,
-          bool cuts)
+  Loading(const SessionOptions& options, const ProgramFront& front, const ProcessPlan& process,
+          const LoadControl& control, bool cuts)
       : control_(control),
         program_(*front.program),
         window_(options.lines),
-        planned_(builder_, options.timeline.planner.with_path && !options.turret),
-        timeline_(timing_of(options, front), planned_),
-        tools_(front.tools, stock_model(front.choice.kind).can_cut, beam_of(options, front),
-               options.turret),
+        planned_(builder_, options.timeline.planner.with_path && process.traits().follows_path),
+        timeline_(timing_of(options, process), planned_),
+        tools_(front.tools, stock_model(front.choice.kind).can_cut, process),
         tilt_(options.timeline.kinematics),
         switched_(options.timeline.kinematics) {
     blank_wanted_ = !front.stock.stock;
@@ -181,7 +139,8 @@ class Loading {
     if (tilt_.found().empty() || workpiece_->takes_tilted_tools()) {
       return workpiece_->answer(question);
     }
-    unknown.why = "tool or workpiece have turned before, and the blank was not of --model octree";
+    unknown.why =
+        tr("tool or workpiece have turned before, and the blank was not of --model octree");
     return unknown;
   }
 
@@ -234,7 +193,7 @@ std::vector<NamedOffset> read_work_offsets(const InterpreterSetup& machine) {
   std::vector<NamedOffset> offsets;
   if (machine.parameter_path.empty()) return offsets;
   Diagnostics faults;
-  const double unit_mm = machine.inch_machine ? 25.4 : 1.0;
+  const double unit_mm = mm_of_unit(machine.inch_machine);
   const Result<ParameterFile> file = parameters_of(machine, unit_mm, faults);
   if (!file) return offsets;
   for (std::size_t i = 0; i < kNames.size(); ++i) {
@@ -254,10 +213,10 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
   }
   if (!front.blank) {
     front.blank = survey.blank();
-    front.blank_origin = "guessed";
+    front.blank_origin = tr("guessed");
     front.blank_guessed = true;
     front.is_drawn = survey.is_drawn();
-    front.guess_reason = fmt::format("the feed moves plus {:g} mm", options.margin_mm);
+    front.guess_reason = trf("the feed moves plus {:g} mm", options.margin_mm);
     if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
       remarks.add(std::move(*warning));
     }
@@ -271,16 +230,16 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
 }
 
 /// Those that were not known while the program was read.
-void describe_guessed(const ToolSources& sources, ToolBook::CutterCheck can_cut,
+void describe_guessed(const ToolSources& sources, ToolResolver::CutterCheck can_cut,
                       std::vector<ProgramTool>& tools) {
-  ToolBook book(sources, can_cut);
+  ToolResolver resolver(sources, can_cut);
   for (ProgramTool& tool : tools) {
     for (const ToolGuess& guess : sources.guesses) {
       if (guess.tool != tool.number || tool.shape.empty() == guess.of_known_size) continue;
       if (guess.of_known_size) {
         tool.shape = guess.shape;
       } else {
-        tool = described(book.mount(tool.number, 0), sources.table);
+        tool = described(resolver.mount(tool.number, 0), sources.table);
       }
     }
   }
@@ -307,7 +266,8 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   if (!front) return nullptr;
   auto loaded = std::make_unique<LoadedProgram>();
   std::optional<Loading> reading;
-  reading.emplace(options, *front, control, false);
+  const ProcessPointer process = process_of(options, *front);
+  reading.emplace(options, *front, *process, control, false);
   Diagnostics said;
   loaded->summary = reading->read(said);
   if (reading->wants_to_cut()) {
@@ -315,7 +275,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
     front->program = Program::open(options.program, diagnostics);
     if (!front->program) return nullptr;
     front->program->give_diameters(known_diameters(front->tools));
-    reading.emplace(options, *front, control, true);
+    reading.emplace(options, *front, *process, control, true);
     loaded->summary = reading->read(said);
   }
   Loading& loading = *reading;
@@ -360,16 +320,15 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   player.programmed = loading.programmed(loaded->summary.files);
   loaded->blank = stock_report(*front->stock.stock, front->stock.facts);
   player.blank = std::move(front->stock.stock);
-  // A torch has no height by which a point could be said to be cut or not.
+  // A sheet has no height by which a point could be said to be cut or not.
   if (!front->is_sheet()) {
     loaded->cuts =
         std::make_shared<const CutQuery>(player.track, front->tools, row_of(*player.blank).can_cut);
   }
   player.tools = std::move(front->tools);
   player.timeline = options.timeline;
-  player.beam = beam_of(options, *front);
-  if (player.beam) player.beam->materials = front->program->materials();
-  player.turret = options.turret;
+  player.process = process;
+  player.materials = front->program->materials();
   player.remarks = remarks.kept();
   return loaded;
 }

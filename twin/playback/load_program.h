@@ -10,12 +10,12 @@
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
-#include "twin/guess/guess_row.h"
-#include "twin/outcome.h"
+#include "twin/findings/outcome.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/player.h"
-#include "twin/program_front.h"
-#include "twin/report.h"
+#include "twin/program/program_front.h"
+#include "twin/report/guess_row.h"
+#include "twin/report/report.h"
 
 namespace kerf {
 

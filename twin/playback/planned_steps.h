@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "twin/planned_pieces.h"
+#include "twin/machine/planned_pieces.h"
+#include "twin/machine/timeline.h"
 #include "twin/playback/program_track.h"
 #include "twin/playback/programmed_steps.h"
-#include "twin/timeline.h"
 
 namespace kerf {
 

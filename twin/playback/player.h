@@ -15,15 +15,13 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
-#include "twin/beam_settings.h"
-#include "twin/checks.h"
-#include "twin/finding.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tools.h"
+#include "twin/machine/timeline.h"
 #include "twin/playback/program_track.h"
 #include "twin/playback/programmed_steps.h"
-#include "twin/program_checks.h"
-#include "twin/timeline.h"
-#include "twin/tools.h"
-#include "twin/turret.h"
+#include "twin/process/check_options.h"
+#include "twin/process/process.h"
 
 namespace kerf {
 
@@ -37,9 +35,8 @@ struct PlayerProgram {
   /// Limits for the checks (over-feed, axis limits). What is cut is the track;
   /// PlannerOptions::with_path is not looked at.
   TimelineOptions timeline;
-  /// Of a sheet, with all materials of the program; such a blank needs it, or a turret.
-  std::optional<BeamSettings> beam;
-  TurretPointer turret;  ///< of a sheet that is punched; null: it is not
+  ProcessPointer process = default_process();  ///< that fits the blank
+  std::vector<TorchMaterial> materials;        ///< all that the motions name
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
   CheckOptions checks;
@@ -84,7 +81,7 @@ struct PlayerState {
   double seek_progress = 1;  ///< 0..1 of a seek that goes on
   std::string message;       ///< why the last command could not be carried out; mostly empty
 
-  TrackPlace place;
+  TrackPosition place;
   Motion motion;  ///< that runs there; at the end of the program the last one
   Vec3 tip_mm{0};
   std::array<double, 3> abc_deg{};

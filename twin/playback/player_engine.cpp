@@ -7,7 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "twin/motion_geometry.h"
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 namespace {
@@ -41,8 +42,8 @@ PlayerEngine::PlayerEngine(PlayerProgram program, const PlayerOptions& options)
       remarks_(std::move(program.remarks)),
       store_(options.keyframe_bytes),
       frontier_(*track_, std::move(program.blank), std::move(program.tools), program.timeline,
-                store_, {program.report_from, program.whole, program.blank_kind}, program.beam,
-                program.turret, program.checks),
+                store_, {program.report_from, program.whole, program.blank_kind}, *program.process,
+                program.materials, program.checks),
       cursor_(*track_, frontier_.moves(), frontier_.record(), store_),
       place_(track_->place_before(0)),
       findings_(std::make_shared<const std::vector<Finding>>(by_time({}, remarks_))) {
@@ -85,7 +86,7 @@ void PlayerEngine::command(const PlayerCommand& c) {
 }
 
 void PlayerEngine::set_playing(double speed) {
-  if (!(speed > 0)) return refuse(fmt::format("speed {} is not allowed; must be above 0", speed));
+  if (!(speed > 0)) return refuse(trf("speed {} is not allowed; must be above 0", speed));
   if (std::isinf(speed)) return run_to(track_->size());
   speed_ = speed;
   if (mode_ == PlayerMode::kSeeking) {
@@ -110,7 +111,7 @@ void PlayerEngine::stand(PlayerStop why) {
 
 void PlayerEngine::refuse(std::string message) { message_ = std::move(message); }
 
-void PlayerEngine::go_to(const TrackPlace& goal) {
+void PlayerEngine::go_to(const TrackPosition& goal) {
   if (mode_ == PlayerMode::kPlaying) play_on_ = true;
   mode_ = PlayerMode::kSeeking;
   stop_ = PlayerStop::kNone;
@@ -133,7 +134,7 @@ void PlayerEngine::run_to(std::size_t motion) {
 }
 
 void PlayerEngine::step_blocks(int blocks) {
-  TrackPlace from = destination();
+  TrackPosition from = destination();
   stand(PlayerStop::kAsked);
   std::size_t motion = from.motion;
   if (blocks < 0 && motion < track_->size() &&
@@ -155,7 +156,7 @@ void PlayerEngine::seek_line(const PlayerCommand& c) {
     if (line && !motion) motion = track_->first_of_line(*line);
   }
   if (!motion) {
-    return refuse(fmt::format("the program makes no move in line {} or behind it", c.line.line));
+    return refuse(trf("the program makes no move in line {} or behind it", c.line.line));
   }
   if (c.kind == Kind::kRunToLine) return run_to(*motion);
   go_to(track_->place_before(*motion));
@@ -168,7 +169,7 @@ void PlayerEngine::seek_tool_change(int count) {
         count > 0 ? track_->next_tool_change(motion) : track_->previous_tool_change(motion);
     if (!change) {
       return refuse(
-          fmt::format("there is no tool change {} this place", count > 0 ? "behind" : "before"));
+          trf("there is no tool change {} this place", count > 0 ? tr("behind") : tr("before")));
     }
     motion = *change;
   }
@@ -189,7 +190,7 @@ void PlayerEngine::seek_finding_number(std::size_t index) {
   const Finding* const finding = index < findings_->size() ? &(*findings_)[index] : nullptr;
   if (finding && finding->time_s) return go_to(track_->place_at(*finding->time_s));
   const std::optional<SourceRef> line = finding ? line_of(*finding) : std::nullopt;
-  if (!line) return refuse(fmt::format("finding {} has no place in the program", index + 1));
+  if (!line) return refuse(trf("finding {} has no place in the program", index + 1));
   const std::optional<SourceRef> moving = track_->line_with_motions(*line);
   const std::optional<std::size_t> motion = moving ? track_->first_of_line(*moving) : std::nullopt;
   go_to(track_->place_before(motion.value_or(track_->size())));
@@ -224,7 +225,7 @@ bool PlayerEngine::search_finding() {
   const bool known = frontier_.complete() || (count < 0 && frontier_.reached() > goal_.motion);
   if (!known) return false;
   finding_count_.reset();
-  refuse(fmt::format("there is no finding {} this place", count > 0 ? "behind" : "before"));
+  refuse(trf("there is no finding {} this place", count > 0 ? tr("behind") : tr("before")));
   return true;
 }
 
@@ -240,14 +241,14 @@ void PlayerEngine::find_breakpoint() {
   }
 }
 
-void PlayerEngine::move_to(const TrackPlace& place) {
+void PlayerEngine::move_to(const TrackPosition& place) {
   if (place_ == place) return;
   place_ = place;
   changed_ = true;
 }
 
 /// Brings the workpiece to a place. False: the time was not enough.
-bool PlayerEngine::reach(const TrackPlace& goal, Clock::time_point until) {
+bool PlayerEngine::reach(const TrackPosition& goal, Clock::time_point until) {
   const std::size_t needed = goal.motion + (goal.fraction > 0 ? 1 : 0);
   do {
     if (frontier_.reached() < needed) {
@@ -274,7 +275,7 @@ void PlayerEngine::work_seek(Clock::time_point until) {
 void PlayerEngine::work_run(Clock::time_point until) {
   const std::size_t goal = std::min(goal_.motion, next_breakpoint_);
   while (Clock::now() < until) {
-    const TrackPlace next = track_->place_before(std::min(goal, place_.motion + kRunStep));
+    const TrackPosition next = track_->place_before(std::min(goal, place_.motion + kRunStep));
     if (!reach(next, until)) break;
     move_to(next);
     if (next.motion < goal) continue;
@@ -287,7 +288,7 @@ void PlayerEngine::work_run(Clock::time_point until) {
 
 void PlayerEngine::work_play(Clock::time_point now, Clock::time_point until) {
   const double time_s = anchor_s_ + speed_ * std::chrono::duration<double>(now - anchor_).count();
-  TrackPlace target = track_->place_at(time_s);
+  TrackPosition target = track_->place_at(time_s);
   const bool halts = next_breakpoint_ < track_->size() && target.motion >= next_breakpoint_;
   if (halts) target = track_->place_before(next_breakpoint_);
   if (reach(target, until)) {
@@ -390,7 +391,7 @@ std::shared_ptr<const PlayerState> PlayerEngine::take_state() {
   describe_place(*state);
   // While a seek is on its way the cursor is elsewhere; the old picture stands for the old place.
   const bool cuts = place_.fraction > 0 && frontier_.record().cuts(place_.motion);
-  const TrackPlace shown{place_.motion, cuts ? place_.fraction : 0, 0};
+  const TrackPosition shown{place_.motion, cuts ? place_.fraction : 0, 0};
   if (!picture_ || (!(shown == picture_place_) && cursor_.motion() == place_.motion)) {
     picture_ = cursor_.picture(shown.fraction);
     picture_place_ = shown;

@@ -65,7 +65,7 @@ class PlayerEngine {
 
  private:
   void set_playing(double speed);
-  void go_to(const TrackPlace& goal);
+  void go_to(const TrackPosition& goal);
   void run_to(std::size_t motion);
   void stand(PlayerStop why);
   void refuse(std::string message);
@@ -76,14 +76,16 @@ class PlayerEngine {
   void seek_finding_number(std::size_t index);
   std::optional<SourceRef> line_of(const Finding& finding) const;
   void find_breakpoint();
-  const TrackPlace& destination() const { return mode_ == PlayerMode::kSeeking ? goal_ : place_; }
+  const TrackPosition& destination() const {
+    return mode_ == PlayerMode::kSeeking ? goal_ : place_;
+  }
 
   bool search_finding();
-  bool reach(const TrackPlace& goal, Clock::time_point until);
+  bool reach(const TrackPosition& goal, Clock::time_point until);
   void work_seek(Clock::time_point until);
   void work_run(Clock::time_point until);
   void work_play(Clock::time_point now, Clock::time_point until);
-  void move_to(const TrackPlace& place);
+  void move_to(const TrackPosition& place);
   void refresh_findings();
   void describe_place(PlayerState& state) const;
   double seek_progress() const;
@@ -97,8 +99,8 @@ class PlayerEngine {
 
   PlayerMode mode_ = PlayerMode::kPaused;
   PlayerStop stop_ = PlayerStop::kNone;
-  TrackPlace place_;      ///< the cursor stands at its motion, unless a seek or run goes on
-  TrackPlace goal_;       ///< of a seek or run
+  TrackPosition place_;   ///< the cursor stands at its motion, unless a seek or run goes on
+  TrackPosition goal_;    ///< of a seek or run
   bool play_on_ = false;  ///< after the seek
   std::optional<int> finding_count_;  ///< of findings to the goal, which is still unknown
   double finding_from_s_ = 0;
@@ -121,8 +123,8 @@ class PlayerEngine {
   std::size_t findings_seen_ = 0;
   bool findings_whole_ = false;
   std::shared_ptr<const StockModel> picture_;  ///< of picture_place_
-  TrackPlace picture_place_;  ///< without the time; fraction 0 where nothing is cut
-  TrackPlace shown_place_;    ///< of the last state
+  TrackPosition picture_place_;  ///< without the time; fraction 0 where nothing is cut
+  TrackPosition shown_place_;    ///< of the last state
   std::uint64_t pictures_ = 0;
 };
 

@@ -2,15 +2,15 @@
 
 #include <utility>
 
-#include "twin/stock_choice.h"
+#include "twin/job/stock_choice.h"
 
 namespace kerf {
 
 ProbedWorkpiece::ProbedWorkpiece(const SessionOptions& options, const ProgramFront& front,
                                  std::stop_token stop)
     : stock_(front.stock.stock->snapshot()),
-      book_(front.tools, row_of(*stock_).can_cut),
-      stage_(*stock_, book_, log_, options.timeline) {
+      resolver_(front.tools, row_of(*stock_).can_cut),
+      stage_(*stock_, resolver_, log_, options.timeline) {
   log_.set_muted(true);
   stage_.stop_by(std::move(stop));
   stage_.check_by({front.blank_guessed, options.below_mm});

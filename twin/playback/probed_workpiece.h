@@ -7,10 +7,10 @@
 
 #include "interp_bridge/program.h"
 #include "stock/stock_model.h"
-#include "twin/cut_stage.h"
-#include "twin/finding.h"
-#include "twin/program_front.h"
-#include "twin/tools.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tools.h"
+#include "twin/process/cut_stage.h"
+#include "twin/program/program_front.h"
 
 namespace kerf {
 
@@ -31,7 +31,7 @@ class ProbedWorkpiece {
  private:
   std::unique_ptr<StockModel> stock_;
   FindingLog log_;  ///< what is to be said the player says
-  ToolBook book_;
+  ToolResolver resolver_;
   CutStage stage_;
 };
 

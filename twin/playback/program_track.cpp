@@ -5,8 +5,9 @@
 #include <cassert>
 #include <utility>
 
-#include "twin/motion_geometry.h"
-#include "twin/motion_nearest.h"
+#include "interp_bridge/motion_kinds.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -98,7 +99,7 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
 
 void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
                                 std::vector<CutMove>& out) const {
-  if (moves.torch() != nullptr || moves.punch() != nullptr) {
+  if (moves.ordered() != nullptr) {
     append_part(i, 1, moves, cutter, out);
   } else if (moves.path() == nullptr) {
     out.push_back(cut_move(i));
@@ -107,24 +108,16 @@ void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const C
   }
 }
 
-bool ProgramTrack::pierces(std::size_t i, const TorchMoves& torch) const {
-  return torch.pierces(i, [this](std::size_t n) { return motion(n); });
-}
-
 void ProgramTrack::append_part(std::size_t i, double fraction, const MotionMoves& moves,
                                const Cutter& cutter, std::vector<CutMove>& out) const {
-  if (const PunchMoves* const punch = moves.punch()) {
-    punch->append(
-        i, [this](std::size_t n) { return motion(n); }, fraction, i, out);
+  if (const OrderedMoves* const ordered = moves.ordered()) {
+    ordered->append(
+        i, [this](std::size_t n) { return motion(n); }, fraction, cutter, i, out);
     return;
   }
   Motion m = motion(i);
   if (fraction < 1) m = part_of(m, 0, fraction);
-  if (const TorchMoves* const torch = moves.torch()) {
-    if (torch->burns(m)) torch->append(m, pierces(i, *torch), cutter, i, out);
-  } else {
-    moves.append(m, cutter, i, out);
-  }
+  moves.append(m, cutter, i, out);
 }
 
 TimedStep ProgramTrack::step(std::size_t i) const {
@@ -134,16 +127,15 @@ TimedStep ProgramTrack::step(std::size_t i) const {
   step.programmed_mm_per_min = programmed_.real_at(i);
   step.allowed_mm_per_min = allowed_.real_at(i);
   const Motion m = motion(i);
-  const bool moves = kerf::is_traverse(m) || m.kind == MotionKind::kProbe || is_feed(m);
-  if (moves && m.start_known) step.length_mm = fed_length_mm(m);
+  if (is_move(m) && m.start_known) step.length_mm = fed_length_mm(m);
   return step;
 }
 
-TrackPlace ProgramTrack::place_before(std::size_t i) const {
+TrackPosition ProgramTrack::place_before(std::size_t i) const {
   return {i, 0, i < size() ? start_s(i) : duration_s()};
 }
 
-TrackPlace ProgramTrack::place_at(double time_s) const {
+TrackPosition ProgramTrack::place_at(double time_s) const {
   std::size_t first = 0;
   std::size_t count = size();
   while (count > 0) {  // the first motion that starts later

@@ -14,20 +14,20 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
-#include "twin/motion_moves.h"
+#include "twin/machine/motion_moves.h"
+#include "twin/machine/timeline.h"
 #include "twin/playback/packed_column.h"
-#include "twin/timeline.h"
 
 namespace kerf {
 
 /// A place in a program: all motions before `motion` are done, and of that one the part up to
 /// `fraction` of its way. `motion` == size() is the end. `time_s` is the program time; within a
 /// pause between two motions it alone moves.
-struct TrackPlace {
+struct TrackPosition {
   std::size_t motion = 0;
   double fraction = 0;  ///< [0, 1)
   double time_s = 0;
-  bool operator==(const TrackPlace&) const = default;
+  bool operator==(const TrackPosition&) const = default;
 };
 
 /// The motions of a program, in order, numbered from 0, with their times. Immutable once built, so
@@ -43,8 +43,8 @@ class ProgramTrack {
   TimedStep step(std::size_t i) const;
   /// cut_move_from(motion(i), i), at a fifth of the cost.
   CutMove cut_move(std::size_t i) const;
-  /// What motion(i) is cut as, with i for an id: MotionMoves::append(), or the moves of a torch
-  /// (none where its beam is off).
+  /// What motion(i) is cut as, with i for an id: MotionMoves::append(), or where the motions
+  /// before count OrderedMoves::append().
   void append_moves(std::size_t i, const MotionMoves& moves, const Cutter& cutter,
                     std::vector<CutMove>& out) const;
   /// The same of its way up to `fraction`.
@@ -69,9 +69,9 @@ class ProgramTrack {
 
   /// The place at a time; before the first motion and after the last one the ends of the program.
   /// Within a motion the tip is taken to move evenly. O(log n).
-  TrackPlace place_at(double time_s) const;
+  TrackPosition place_at(double time_s) const;
   /// Just before motion i; its start, or (i == size()) the end of the program.
-  TrackPlace place_before(std::size_t i) const;
+  TrackPosition place_before(std::size_t i) const;
 
   /// First motion of the line, of those with number >= from; in a loop a line comes back. Nothing
   /// if there is none. O(log n).
@@ -109,7 +109,6 @@ class ProgramTrack {
     return modes_[static_cast<std::size_t>(mode_.at(i))];
   }
   const Jump* jump_at(std::size_t i) const;
-  bool pierces(std::size_t i, const TorchMoves& torch) const;
   /// Index into lines_ of the first block that is not before (line, motion).
   std::size_t line_lower_bound(SourceRef line, std::size_t motion) const;
 

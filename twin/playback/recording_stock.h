@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
-#include "twin/motion_moves.h"
+#include "twin/machine/motion_moves.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"
@@ -58,6 +58,7 @@ class RecordingStock final : public StockModel {
   std::unique_ptr<StockModel> snapshot() const override { return stock_->snapshot(); }
   std::size_t unique_bytes() const override { return stock_->unique_bytes(); }
   const StockModel& bare() const override { return stock_->bare(); }
+  const Sheet* sheet() const override { return stock_->sheet(); }
   std::string name() const override { return stock_->name(); }
   Box bounds_mm() const override { return stock_->bounds_mm(); }
   double cell_mm() const override { return stock_->cell_mm(); }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
-#include "twin/motion_moves.h"
+#include "twin/machine/motion_moves.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
 #include "twin/playback/program_track.h"

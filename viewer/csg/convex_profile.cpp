@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
 
@@ -15,19 +17,19 @@ constexpr double kStraight_rad = 1e-4;
 
 Done check(std::span<const ProfilePoint> outline) {
   if (outline.size() < 2) {
-    return Error{fmt::format("the outline of the cutter has {} points; it needs at least two",
-                             outline.size())};
+    return Error{
+        trf("the outline of the cutter has {} points; it needs at least two", outline.size())};
   }
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const ProfilePoint& p = outline[i];
     if (!std::isfinite(p.radius_mm) || !std::isfinite(p.height_mm) || p.radius_mm < 0.0f) {
       return Error{
-          fmt::format("point {} of the outline of the cutter has radius {} mm and height {} mm; "
-                      "both must be finite, the radius not negative",
-                      i + 1, p.radius_mm, p.height_mm)};
+          trf("point {} of the outline of the cutter has radius {} mm and height {} mm; "
+              "both must be finite, the radius not negative",
+              i + 1, p.radius_mm, p.height_mm)};
     }
     if (i > 0 && p.height_mm < outline[i - 1].height_mm) {
-      return Error{fmt::format(
+      return Error{trf(
           "the outline of the cutter falls from {} mm to {} mm at point {}; heights must not fall",
           outline[i - 1].height_mm, p.height_mm, i + 1)};
     }

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
+
 namespace kerf {
 namespace {
-
-constexpr double kMinSides = 12.0;
-constexpr double kMaxSides = 720.0;
 
 /// Equal positions get the same number.
 std::vector<std::uint32_t> welded(const std::vector<glm::vec3>& positions) {
@@ -56,52 +55,28 @@ CsgBlank box_blank(const Box& box) {
   return blank;
 }
 
-CsgBlank cylinder_blank(const Vec3& base_mm, char axis, double radius_mm, double height_mm,
-                        double tolerance_mm) {
-  const int along = axis == 'X' ? 0 : axis == 'Y' ? 1 : 2;
-  const double half_rad = std::acos(1.0 - std::min(1.0, tolerance_mm / radius_mm));
-  const auto sides =
-      static_cast<std::uint32_t>(std::clamp(std::ceil(kPi / half_rad), kMinSides, kMaxSides));
-  CsgBlank blank;
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const double angle = 2.0 * kPi * i / sides;
-    Vec3 p = base_mm;
-    p[(along + 1) % 3] += radius_mm * std::cos(angle);
-    p[(along + 2) % 3] += radius_mm * std::sin(angle);
-    blank.mesh.positions_mm.emplace_back(p);
-    p[along] += height_mm;
-    blank.mesh.positions_mm.emplace_back(p);
-    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % sides);
-    blank.mesh.triangles.insert(blank.mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
-    if (i >= 2) {
-      blank.mesh.triangles.insert(blank.mesh.triangles.end(), {{0, a, a - 2}, {1, a - 1, a + 1}});
-    }
-  }
-  return blank;
-}
-
 Done check(const CsgBlank& blank) {
   const TriangleMesh& mesh = blank.mesh;
-  if (mesh.triangles.empty()) return Error{"the blank has no triangles"};
+  if (mesh.triangles.empty()) return Error{tr("the blank has no triangles")};
   if (blank.convexity < 1 || blank.convexity > kMaxConvexity) {
-    return Error{fmt::format("convexity {} of the blank is not allowed; must be 1 to {}",
-                             blank.convexity, kMaxConvexity)};
+    return Error{trf("convexity {} of the blank is not allowed; must be 1 to {}", blank.convexity,
+                     kMaxConvexity)};
   }
   for (const glm::vec3& p : mesh.positions_mm) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      return Error{"the blank has a corner that is not finite"};
+      return Error{tr("the blank has a corner that is not finite")};
     }
   }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
       if (corner >= mesh.positions_mm.size()) {
-        return Error{fmt::format("the blank names corner {}, but has {} only", corner,
-                                 mesh.positions_mm.size())};
+        return Error{
+            trf("the blank names corner {}, but has {} only", corner, mesh.positions_mm.size())};
       }
     }
   }
   if (const std::size_t count = open_edges(mesh); count > 0) {
-    return Error{fmt::format("the blank is not closed: {} edges do not join two triangles", count)};
+    return Error{trf("the blank is not closed: {} edges do not join two triangles", count)};
   }
   return std::monostate{};
 }

@@ -22,11 +22,6 @@ struct CsgBlank {
 
 CsgBlank box_blank(const Box& box);
 
-/// Axis 'X', 'Y' or 'Z', from base_mm by height_mm (> 0). Sides leave the true cylinder by no more
-/// than tolerance_mm, inwards.
-CsgBlank cylinder_blank(const Vec3& base_mm, char axis, double radius_mm, double height_mm,
-                        double tolerance_mm);
-
 /// Error: no triangles, an index or a coordinate out of range, edges that do not belong to two
 /// triangles of opposite direction (corners at equal positions count as one), or a convexity out of
 /// 1 .. kMaxConvexity.

@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/translate.h"
 #include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/csg_store.h"
 #include "viewer/csg/layer_composer.h"
@@ -176,7 +177,7 @@ Done CsgRenderer::Impl::set_tools(std::span<const CsgTool> tools) {
   std::vector<Tool> taken;
   for (const CsgTool& tool : tools) {
     Result<std::vector<ConvexProfile>> pieces = convex_pieces(tool.shape.cutter);
-    if (!pieces) return Error{fmt::format("tool {}: {}", taken.size(), pieces.error())};
+    if (!pieces) return Error{trf("tool {}: {}", taken.size(), pieces.error())};
     for (ConvexProfile& piece : *pieces) piece = simplified(piece, options_.tolerance_mm);
     taken.push_back({std::move(*pieces), tool.color});
   }
@@ -229,8 +230,8 @@ Done CsgRenderer::Impl::resize(const Projection& projection) {
   const int layers = convexity_ + (is_eye_in(blank_mm_, projection) ? 1 : 0);
   if (size_px == size_px_ && layers == static_cast<int>(layers_.size())) return std::monostate{};
   if (std::max(size_px.x, size_px.y) > max_size_px_) {
-    return Error{fmt::format("this OpenGL draws at most {} x {} pixels; the picture has {} x {}",
-                             max_size_px_, max_size_px_, size_px.x, size_px.y)};
+    return Error{trf("this OpenGL draws at most {} x {} pixels; the picture has {} x {}",
+                     max_size_px_, max_size_px_, size_px.x, size_px.y)};
   }
   layers_.resize(static_cast<std::size_t>(layers));
   for (Layer& layer : layers_) {
@@ -490,9 +491,8 @@ Done CsgRenderer::Impl::draw(const Projection& projection, double longest_ms, bo
 
 Result<CsgRenderer> CsgRenderer::create(const CsgOptions& options) {
   if (!(options.tolerance_mm > 0.0) || !std::isfinite(options.tolerance_mm)) {
-    return Error{
-        fmt::format("a tolerance of {} mm is not allowed for the CSG view; must be above 0",
-                    options.tolerance_mm)};
+    return Error{trf("a tolerance of {} mm is not allowed for the CSG view; must be above 0",
+                     options.tolerance_mm)};
   }
   Result<GlProgram> solid = GlProgram::create(shaders::csg_solid_vert, shaders::csg_solid_frag);
   if (!solid) return Error{solid.error()};

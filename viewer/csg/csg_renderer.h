@@ -13,9 +13,9 @@
 #include "viewer/csg/csg_schedule.h"
 #include "viewer/csg/depth_picture.h"
 #include "viewer/csg/swept_solid.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
-#include "viewer/window/orbit_camera.h"
 
 namespace kerf {
 

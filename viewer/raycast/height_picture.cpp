@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/translate.h"
 #include "viewer/annotations.h"
 #include "viewer/camera.h"
 #include "viewer/raycast/height_surface.h"
@@ -251,13 +252,12 @@ Result<Picture> draw_heights(std::shared_ptr<const HeightGrid> grid, const Pictu
   const glm::ivec2 size_px(options.width_px, options.height_px);
   if (std::min(size_px.x, size_px.y) < kMinSize_px ||
       std::max(size_px.x, size_px.y) > kMaxSize_px) {
-    return Error{
-        fmt::format("a picture of {} x {} pixels is not allowed; each side must be {} to {}",
-                    size_px.x, size_px.y, kMinSize_px, kMaxSize_px)};
+    return Error{trf("a picture of {} x {} pixels is not allowed; each side must be {} to {}",
+                     size_px.x, size_px.y, kMinSize_px, kMaxSize_px)};
   }
   const Box part_mm = material_box(*grid);
   if (part_mm.empty() && options.blank_mm.empty()) {
-    return Error{"nothing to draw: the part is empty and no blank is given"};
+    return Error{tr("nothing to draw: the part is empty and no blank is given")};
   }
   const Annotations annotations(options.blank_mm, part_mm, kEyeDirection, size_px);
   const std::vector<Vec3> points_mm = annotations.points_to_fit();

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/height_grid.h"
+#include "surface/height_grid.h"
 #include "viewer/picture.h"
 
 namespace kerf {

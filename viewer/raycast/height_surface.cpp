@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/wall_course.h"
+#include "surface/wall_course.h"
 #include "viewer/raycast/parallel.h"
 
 namespace kerf {

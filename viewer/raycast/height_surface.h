@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/height_grid.h"
+#include "surface/height_grid.h"
+#include "surface/surface_tile.h"
 #include "viewer/raycast/ray_frame.h"
-#include "viewer/raycast/surface_tile.h"
 
 namespace kerf {
 

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "base/height_grid.h"
+#include "surface/height_grid.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
 #include "viewer/raycast/height_surface.h"
 #include "viewer/scene.h"
-#include "viewer/window/orbit_camera.h"
 
 namespace kerf {
 

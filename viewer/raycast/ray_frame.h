@@ -20,7 +20,7 @@ struct Ray {
 
 /// Takes the projection of an OpenGL view apart. A ray begins at the eye (perspective: t is the
 /// distance along the view direction) or infinitely far before the scene (orthographic), not at
-/// the near plane: the mesh road clamps depth instead of cutting there, too.
+/// the near plane: the mesh clamps depth instead of cutting there, too.
 class RayFrame {
  public:
   RayFrame(const glm::mat4& clip_from_world, glm::ivec2 size_px);

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "base/height_grid.h"
+#include "surface/height_grid.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/raycast/ray_caster.h"
-#include "viewer/window/orbit_camera.h"
 
 namespace kerf {
 

@@ -44,7 +44,8 @@ using Place = glm::vec3;
 /// Blends over the picture what a line covers of a pixel.
 class Canvas {
  public:
-  Canvas(Picture* picture, std::vector<float>* depths) : picture_(*picture), depths_(*depths) {}
+  Canvas(Picture* picture, std::vector<float>* depths, float line_px)
+      : picture_(*picture), depths_(*depths), reach_px_(0.5f * line_px + 0.5f) {}
 
   void draw(Place a, Place b, const glm::vec4& rgba) const {
     const bool is_steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
@@ -65,12 +66,13 @@ class Canvas {
       const float along = (std::clamp(x + 0.5f, a.x, b.x) - a.x) / run;
       const float middle = a.y + along * (b.y - a.y);
       const float depth = a.z + along * (b.z - a.z);
-      if (!(middle > -2.0f && middle < static_cast<float>(rows) + 2.0f)) continue;
-      const int first = static_cast<int>(std::floor(middle - 1.0f / across - 0.5f));
+      const float margin = reach_px_ / across + 1.0f;
+      if (!(middle > -margin && middle < static_cast<float>(rows) + margin)) continue;
+      const int first = static_cast<int>(std::floor(middle - reach_px_ / across - 0.5f));
       for (int y = std::max(first, 0); y < rows; ++y) {
         const float aside = (static_cast<float>(y) + 0.5f - middle) * across;
-        if (aside >= 1.0f) break;
-        const float cover = std::clamp(1.0f - std::abs(aside), 0.0f, 1.0f) * share;
+        if (aside >= reach_px_) break;
+        const float cover = std::clamp(reach_px_ - std::abs(aside), 0.0f, 1.0f) * share;
         if (cover < kLeastCover) continue;
         const int column = static_cast<int>(x);
         blend(is_steep ? y : column, is_steep ? column : y, depth, cover, rgba);
@@ -81,19 +83,20 @@ class Canvas {
   /// A round mark, whatever lies before it.
   void draw_mark(const Place& at, const glm::vec4& rgba) const {
     const glm::vec4 rim(kRimShade * glm::vec3(rgba), rgba.a);
-    const auto first = [](float middle) {
-      return std::max(0, static_cast<int>(std::floor(middle - kMarkRadius_px)));
+    const float radius_px = kMarkRadius_px * (2.0f * reach_px_ - 1.0f);
+    const auto first = [radius_px](float middle) {
+      return std::max(0, static_cast<int>(std::floor(middle - radius_px)));
     };
-    const auto end = [](float middle, int size) {
-      return std::min(size, static_cast<int>(std::ceil(middle + kMarkRadius_px)) + 1);
+    const auto end = [radius_px](float middle, int size) {
+      return std::min(size, static_cast<int>(std::ceil(middle + radius_px)) + 1);
     };
     for (int y = first(at.y); y < end(at.y, picture_.height_px); ++y) {
       for (int x = first(at.x); x < end(at.x, picture_.width_px); ++x) {
         const float off_px =
             std::hypot(static_cast<float>(x) + 0.5f - at.x, static_cast<float>(y) + 0.5f - at.y);
-        const float cover = std::clamp(kMarkRadius_px + 0.5f - off_px, 0.0f, 1.0f);
+        const float cover = std::clamp(radius_px + 0.5f - off_px, 0.0f, 1.0f);
         if (cover < kLeastCover) continue;
-        mix(pixel_at(x, y), cover, off_px > kRimBegins * kMarkRadius_px ? rim : rgba);
+        mix(pixel_at(x, y), cover, off_px > kRimBegins * radius_px ? rim : rgba);
       }
     }
   }
@@ -123,6 +126,7 @@ class Canvas {
 
   Picture& picture_;
   std::vector<float>& depths_;
+  float reach_px_;  ///< from the middle of a line to where nothing of it is left
 };
 
 /// Takes points of the scene to places of the picture.
@@ -235,7 +239,7 @@ void SceneLines::set_findings(std::span<const SceneFinding> findings) {
 void SceneLines::draw(const Projection& projection, const LineNearness& nearness,
                       std::uint64_t past_vertices, Picture* picture,
                       std::vector<float>* depths) const {
-  const Canvas canvas(picture, depths);
+  const Canvas canvas(picture, depths, projection.line_px);
   const Lens path_lens(projection, nearness.path);
   for (const auto& chunk : path_) draw_chunk(*chunk, past_vertices, is_shown_, path_lens, canvas);
   const Lens marker_lens(projection, nearness.markers);

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
-#include "viewer/window/orbit_camera.h"
 
 namespace kerf {
 
@@ -26,8 +26,8 @@ struct LineNearness {
 };
 
 /// The lines and marks that the scene renderer of the window draws into the kept scene, with the
-/// same colours, one pixel wide and antialiased by coverage, for pictures that are made without it.
-/// Knows no OpenGL.
+/// same colours, Projection::line_px wide and antialiased by coverage, for pictures that are made
+/// without it. Knows no OpenGL.
 class SceneLines {
  public:
   /// Outline of the blank, frames.

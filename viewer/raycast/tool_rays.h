@@ -19,7 +19,7 @@ struct ToolHit {
   glm::vec3 normal{0, 0, 1};  ///< unit length, outward
 };
 
-/// The outlines of a tool turned around its axis: exactly round, where the mesh road draws a prism.
+/// The outlines of a tool turned around its axis: exactly round, where the mesh has a prism.
 /// Each segment of an outline is a cone, a cylinder or a ring and is met in closed form; open ends
 /// are closed with a disc. Normals are smooth where the outline bends by less than 20 degrees.
 class ToolRays {

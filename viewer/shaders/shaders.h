@@ -20,6 +20,8 @@ extern const char* const path_vert;  ///< Toolpath: colour by kind, past and fut
 extern const char* const path_frag;
 extern const char* const marker_vert;  ///< Outlines, axes, markers of findings.
 extern const char* const marker_frag;
+extern const char* const line_vert;  ///< Lines of more than a pixel, of both kinds.
+extern const char* const line_frag;
 extern const char* const section_frag;    ///< The cut face of a section.
 extern const char* const glass_frag;      ///< The transparent workpiece over the rest.
 extern const char* const workpiece_frag;  ///< The workpiece as a picture with depth.

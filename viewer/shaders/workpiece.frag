@@ -1,5 +1,5 @@
 #version 330 core
-// The workpiece as another road than the mesh has drawn it: a picture with depth.
+// The workpiece as made in another draw mode than the mesh: a picture with depth.
 uniform sampler2D colors;
 uniform sampler2D depths;  // 1 where there is no workpiece
 uniform int is_from_top;   // rows of the picture

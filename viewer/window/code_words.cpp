@@ -1,19 +1,14 @@
 #include "viewer/window/code_words.h"
 
 #include <algorithm>
-#include <cctype>
+
+#include "base/text_scan.h"
 
 namespace kerf {
 namespace {
 
-char small(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-
 CodeKind kind_of_letter(char letter) {
-  switch (small(letter)) {
+  switch (to_lower(letter)) {
     case 'g':
       return CodeKind::kMotion;
     case 'm':
@@ -61,7 +56,7 @@ CodeWord word_at(std::string_view line, std::size_t at) {
   std::size_t letters = at;
   while (letters < line.size() && is_letter(line[letters])) ++letters;
   // if, endwhile, call: what stands behind an O word.
-  if (letters - at > 1 && (at == 0 || !std::isdigit(static_cast<unsigned char>(line[at - 1])))) {
+  if (letters - at > 1 && (at == 0 || !is_digit(line[at - 1]))) {
     return {at, letters - at, CodeKind::kControl};
   }
   return {at, value_end(line, at + 1) - at, kind_of_letter(c)};
@@ -92,7 +87,7 @@ std::vector<CodeWord> code_words(std::string_view line) {
 std::size_t find_text(std::string_view line, std::string_view wanted) {
   if (wanted.empty()) return std::string_view::npos;
   const auto found = std::search(line.begin(), line.end(), wanted.begin(), wanted.end(),
-                                 [](char a, char b) { return small(a) == small(b); });
+                                 [](char a, char b) { return to_lower(a) == to_lower(b); });
   if (found == line.end()) return std::string_view::npos;
   return static_cast<std::size_t>(found - line.begin());
 }

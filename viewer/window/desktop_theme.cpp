@@ -3,12 +3,14 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <string>
+
+#include "base/small_file.h"
+#include "base/text_scan.h"
 
 // Xlib's own name; its headers are not needed for pointers to it.
 struct _XDisplay;
@@ -103,27 +105,14 @@ std::string settings_ini() {
     return "";
   }
   std::ifstream file(folder + "/gtk-3.0/settings.ini", std::ios::binary);
-  std::string text(kMostSettingsBytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-  return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+  return read_up_to(file, kMostSettingsBytes);
 }
 
 }  // namespace
 
 std::optional<bool> is_dark_theme(std::string_view name) {
   if (name.empty()) return std::nullopt;
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower.find("dark") != std::string::npos;
+  return contains(to_lower(name), "dark");
 }
 
 std::optional<bool> dark_by_xsettings(std::string_view bytes) {
@@ -155,13 +144,11 @@ std::optional<bool> dark_by_xsettings(std::string_view bytes) {
 std::optional<bool> dark_by_settings_ini(std::string_view text) {
   std::optional<bool> by_name;
   while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) continue;
-    const std::string_view name = trimmed(line.substr(0, equals));
-    const std::string_view value = trimmed(line.substr(equals + 1));
+    const std::string_view name = trim(line.substr(0, equals), is_line_blank);
+    const std::string_view value = trim(line.substr(equals + 1), is_line_blank);
     if (name == "gtk-application-prefer-dark-theme" && (value == "1" || value == "true")) {
       return true;
     }

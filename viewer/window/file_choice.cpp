@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <glm/common.hpp>
 #include <system_error>
 
+#include "base/text_scan.h"
+#include "base/translate.h"
 #include "viewer/window/panels.h"
 
 namespace kerf {
@@ -26,13 +27,8 @@ constexpr std::array kProgramEndings{".ngc",  ".nc",  ".tap", ".gcode", ".cnc",
                                      ".ncc",  ".gc",  ".iso", ".mpf",   ".canon",
                                      ".kerf", ".eia", ".csv", ".log",   ".sam"};
 
-std::string in_small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool is_program_name(const fs::path& path) {
-  const std::string ending = in_small_letters(path.extension().string());
+  const std::string ending = to_lower(path.extension().string());
   return std::find(kProgramEndings.begin(), kProgramEndings.end(), ending) != kProgramEndings.end();
 }
 
@@ -55,7 +51,7 @@ void list_folder(FileChoice* files) {
   std::sort(files->entries.begin(), files->entries.end(),
             [](const FileChoice::Entry& a, const FileChoice::Entry& b) {
               if (a.is_folder != b.is_folder) return a.is_folder;
-              return in_small_letters(a.name) < in_small_letters(b.name);
+              return to_lower(a.name) < to_lower(b.name);
             });
 }
 
@@ -76,7 +72,7 @@ void choose(const fs::path& path, const PanelContext& context) {
     context.commands->push(OpenCommand{path.string()});
   } else {
     files.fault = fmt::format("{}: {}", path.string(),
-                              error ? error.message() : std::string("there is no such file"));
+                              error ? error.message() : std::string(tr("there is no such file")));
   }
 }
 

@@ -145,9 +145,10 @@ void draw_findings(const PanelContext& context) {
     const SceneFinding& finding = findings[i];
     ImGui::PushID(static_cast<int>(i));
     ImGui::PushStyleColor(ImGuiCol_Text, theme::of(finding.severity));
+    const std::string& text = finding.text_in(context.measures.unit());
     const std::string line = finding.line > 0 ? fmt::format("{}", finding.line) : "-";
     const float height =
-        ImGui::CalcTextSize(finding.text.c_str(), nullptr, false, std::max(wrap_px, 1.0f)).y;
+        ImGui::CalcTextSize(text.c_str(), nullptr, false, std::max(wrap_px, 1.0f)).y;
     if (ImGui::Selectable(line.c_str(), false, 0, {0.0f, height})) {
       context.commands->push(SeekFindingCommand{static_cast<int>(i)});
     }
@@ -155,7 +156,7 @@ void draw_findings(const PanelContext& context) {
     const bool is_hovered = ImGui::IsItemHovered();
     ImGui::SameLine(text_x);
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(finding.text.c_str());
+    ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (is_hovered) {
       ImGui::SetTooltip("%s:%d  %s", finding.file.c_str(), finding.line,

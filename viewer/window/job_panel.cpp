@@ -17,9 +17,15 @@ void draw_in_use(const PanelContext& context, const std::string& in_use) {
   ImGui::PopTextWrapPos();
 }
 
+/// "Cell, mm": texts are those of the command line, and so are their units.
+void draw_label(const PanelContext& context, Text label) {
+  ImGui::TextColored(theme::kDim, "%s, %s", context.word(label),
+                     Measures(context.shown.job->unit).name());
+}
+
 /// True when Enter ends it.
 bool draw_field(const PanelContext& context, Text label, const char* id, std::string* value) {
-  ImGui::TextColored(theme::kDim, "%s", context.word(label));
+  draw_label(context, label);
   ImGui::SetNextItemWidth(-1.0f);
   return ImGui::InputTextWithHint(id, context.word(Text::kByItself), value,
                                   ImGuiInputTextFlags_EnterReturnsTrue);
@@ -28,7 +34,7 @@ bool draw_field(const PanelContext& context, Text label, const char* id, std::st
 bool draw_tools(const PanelContext& context) {
   JobEdit& edit = context.state->job;
   bool is_entered = false;
-  ImGui::TextColored(theme::kDim, "%s", context.word(Text::kTool));
+  draw_label(context, Text::kTool);
   for (auto& [number, shape] : edit.tools) {
     ImGui::PushID(number);
     ImGui::AlignTextToFramePadding();
@@ -66,7 +72,7 @@ void draw_command(const PanelContext& context) {
   const ViewedJob& job = *context.shown.job;
   if (ImGui::Button(context.word(Text::kCopyCommand))) {
     ImGui::SetClipboardText(job.command.c_str());
-    context.state->notice = context.word(Text::kCopied);
+    context.state->notice = Text::kCopied;
   }
   ImGui::PushTextWrapPos(0.0f);
   ImGui::PushFont(context.fonts.mono);

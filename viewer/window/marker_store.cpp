@@ -88,7 +88,9 @@ GLsizei load(GLuint array, GLuint buffer, const std::vector<MarkerVertex>& verti
 Result<MarkerStore> MarkerStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::marker_vert, shaders::marker_frag);
   if (!program) return Error{program.error()};
-  return MarkerStore(std::move(*program));
+  Result<WideLines> wide = WideLines::create();
+  if (!wide) return Error{wide.error()};
+  return MarkerStore(std::move(*program), std::move(*wide));
 }
 
 void MarkerStore::set_setup(const SceneSetup& setup) {
@@ -120,21 +122,39 @@ void MarkerStore::set_findings(std::span<const SceneFinding> findings) {
 
 void MarkerStore::draw(const Projection& projection, const Opacities& opacities,
                        bool may_smooth) const {
+  draw_lines(blank_, projection, kNearer_px, opacities.blank, may_smooth);
+  draw_lines(frames_, projection, kFramesNearer_px, opacities.frames, may_smooth);
   program_.use();
   program_.set("clip_from_world", projection.clip_from_world);
-  program_.set("towards_eye", towards_eye(projection, kNearer_px));
-  program_.set("size_px", kMarker_px);
-  glEnable(GL_PROGRAM_POINT_SIZE);
-  if (may_smooth) glEnable(GL_LINE_SMOOTH);
-  draw_batch(blank_, GL_LINES, opacities.blank);
   program_.set("towards_eye", towards_eye(projection, kFramesNearer_px));
-  draw_batch(frames_, GL_LINES, opacities.frames);
-  glDisable(GL_LINE_SMOOTH);
+  program_.set("size_px", kMarker_px * projection.line_px);
+  glEnable(GL_PROGRAM_POINT_SIZE);
   // Seen through the workpiece: what was found mostly lies on it or in it.
   glDisable(GL_DEPTH_TEST);
   draw_batch(findings_, GL_POINTS, opacities.findings);
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void MarkerStore::draw_lines(const Batch& batch, const Projection& projection, double nearer_px,
+                             float opacity, bool may_smooth) const {
+  if (batch.count == 0 || opacity <= 0.0f) return;
+  const float nearer = towards_eye(projection, nearer_px);
+  if (WideLines::are_needed(projection)) {
+    wide_.use(projection, nearer);
+    wide_.set_own_colors(opacity);
+    wide_.set_smooth(may_smooth);
+    glBindVertexArray(batch.array.name());
+    wide_.bind(batch.texture, batch.vertices);
+    wide_.draw_pairs(batch.count);
+    return;
+  }
+  program_.use();
+  program_.set("clip_from_world", projection.clip_from_world);
+  program_.set("towards_eye", nearer);
+  if (may_smooth) glEnable(GL_LINE_SMOOTH);
+  draw_batch(batch, GL_LINES, opacity);
+  glDisable(GL_LINE_SMOOTH);
 }
 
 void MarkerStore::draw_batch(const Batch& batch, GLenum shape, float opacity) const {

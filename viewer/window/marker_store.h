@@ -6,8 +6,9 @@
 #include <span>
 
 #include "viewer/gl_objects.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/scene.h"
-#include "viewer/window/orbit_camera.h"
+#include "viewer/window/wide_lines.h"
 
 namespace kerf {
 
@@ -30,13 +31,18 @@ class MarkerStore {
   struct Batch {
     GlVertexArray array;
     GlBuffer vertices;
+    GlTexture texture;  ///< of the buffer
     GLsizei count = 0;
   };
 
-  explicit MarkerStore(GlProgram program) : program_(std::move(program)) {}
+  MarkerStore(GlProgram program, WideLines wide)
+      : program_(std::move(program)), wide_(std::move(wide)) {}
+  void draw_lines(const Batch& batch, const Projection& projection, double nearer_px, float opacity,
+                  bool may_smooth) const;
   void draw_batch(const Batch& batch, GLenum shape, float opacity) const;
 
   GlProgram program_;
+  WideLines wide_;
   Batch blank_;
   Batch frames_;
   Batch findings_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/translate.h"
 #include "viewer/window/layer.h"
 
 namespace kerf {
@@ -18,8 +19,7 @@ Done PanelLayer::resize(glm::ivec2 size_px) {
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size_px.x, size_px.y);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.name());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    return Error{
-        fmt::format("OpenGL cannot draw a window of {} x {} pixels", size_px.x, size_px.y)};
+    return Error{trf("OpenGL cannot draw a window of {} x {} pixels", size_px.x, size_px.y)};
   }
   size_px_ = size_px;
   return std::monostate{};

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viewer/scene.h"
@@ -22,11 +23,12 @@
 #include "viewer/window/scene_renderer.h"
 #include "viewer/window/settings.h"
 #include "viewer/window/shortcuts.h"
+#include "viewer/window/texts.h"
 #include "viewer/window/theme.h"
 
 namespace kerf {
 
-/// The values shown now; never null but `picked`, `road` and `job`.
+/// The values shown now; never null but `picked`, `draw_mode` and `job`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
@@ -34,7 +36,7 @@ struct ShownValues {
   std::shared_ptr<const ProgramTimeline> timeline = std::make_shared<ProgramTimeline>();
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
   std::shared_ptr<const PickedPoint> picked;
-  std::shared_ptr<const RoadAnswer> road;
+  std::shared_ptr<const DrawAnswer> draw_mode;
   std::shared_ptr<const ViewedJob> job;  ///< Null: nothing else can be shown here.
   std::chrono::steady_clock::time_point moment_came{};
 
@@ -98,9 +100,32 @@ struct JobEdit {
   int new_tool = 1;
 };
 
+/// A sentence in the status line. A text of the window itself is shown in the language in use,
+/// also when that changes while it stands there.
+class Notice {
+ public:
+  Notice& operator=(Text which) {
+    text_ = which;
+    words_.clear();
+    return *this;
+  }
+  Notice& operator=(std::string words) {
+    text_.reset();
+    words_ = std::move(words);
+    return *this;
+  }
+  void clear() { *this = std::string(); }
+  bool is(Text which) const { return text_ == which; }
+  std::string shown() const { return text_ ? text(*text_) : words_; }
+
+ private:
+  std::optional<Text> text_;
+  std::string words_;
+};
+
 /// What the panels remember while the window is open.
 struct PanelState {
-  std::string notice;  ///< Of the window itself, in the status line.
+  Notice notice;  ///< Of the window itself, in the status line.
   bool shows_help = false;
   bool shows_first_keys = false;
   bool asks_for_line = false;
@@ -124,7 +149,7 @@ struct PanelContext {
   const ShownValues& shown;
   const DrawCounters& counters;
   const std::vector<ColorLegendEntry>& legend;
-  DrawRoad drawn_road;  ///< May be the mesh although another one was asked for.
+  DrawMode drawn_mode;  ///< May be the mesh although another one was asked for.
   Box bounds_mm;        ///< Of the workpiece; may be empty.
   const Fonts& fonts;
   float scale;    ///< Of everything: 1, 2
@@ -134,7 +159,7 @@ struct PanelContext {
   CommandQueue* commands;
   Measures measures;
 
-  const char* word(Text which) const { return text(which, settings->language); }
+  const char* word(Text which) const { return text(which); }
 };
 
 /// Pixels that the panels take from each side of the window.
@@ -162,7 +187,7 @@ void open_picture_choice(PictureChoice::Kind kind, const std::string& folder,
 void draw_picture_choice(const PanelContext& context, glm::vec2 window_px);
 /// The path that was chosen, its ending added where there is none; nothing, and why, where it
 /// cannot be written.
-std::optional<std::string> chosen_path(PictureChoice* choice, Language language);
+std::optional<std::string> chosen_path(PictureChoice* choice);
 /// Where there is no program: that there is none, and how to get one.
 void draw_empty_hint(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 /// Blank, cells, model and tools, to be changed, and the command that is equal to them.
@@ -185,9 +210,9 @@ void draw_inspection(const PanelContext& context, const Projection& projection,
 /// Asks the owner of the workpiece for the colours that are set.
 ColorCommand color_command(const ViewSettings& settings, const PanelState& state);
 
-/// What is to be known of the road by which the workpiece is drawn: why it is not the one that was
-/// chosen, what it does not show. Empty if nothing.
-std::string road_note(const PanelContext& context);
+/// What is to be known of the draw mode in which the workpiece is drawn: why it is not the one that
+/// was chosen, what it does not show. Empty if nothing.
+std::string draw_note(const PanelContext& context);
 
 /// The plane that hides part of the workpiece; none if it is off.
 std::optional<SectionPlane> section_plane(const SectionChoice& choice);

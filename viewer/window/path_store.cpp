@@ -102,7 +102,9 @@ std::size_t PathStore::Chunk::gpu_bytes() const {
 Result<PathStore> PathStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::path_vert, shaders::path_frag);
   if (!program) return Error{program.error()};
-  return PathStore(std::move(*program));
+  Result<WideLines> wide = WideLines::create();
+  if (!wide) return Error{wide.error()};
+  return PathStore(std::move(*program), std::move(*wide));
 }
 
 void PathStore::set_chunk_count(std::uint32_t count) {
@@ -356,8 +358,10 @@ void PathStore::draw_lines(const Chunk& chunk, const Strip& strip, std::size_t b
   if (end < begin + 2) return;
   const auto first = static_cast<GLint>(strip.first);
   if (chunk.rect.common(rect) == chunk.rect && !reaches_edge(chunk.rect, projection_.size_px)) {
-    glDrawArrays(GL_LINE_STRIP, first + static_cast<GLint>(begin),
-                 static_cast<GLsizei>(end - begin));
+    const GLint from = first + static_cast<GLint>(begin);
+    const auto count = static_cast<GLsizei>(end - begin);
+    if (is_wide()) return wide_.draw_strip(from, count);
+    glDrawArrays(GL_LINE_STRIP, from, count);
     return;
   }
   std::vector<GLint> firsts;
@@ -378,20 +382,61 @@ void PathStore::draw_lines(const Chunk& chunk, const Strip& strip, std::size_t b
     drawn_to = to;
   }
   if (counts.empty()) return;
+  if (is_wide()) {
+    for (std::size_t i = 0; i < counts.size(); ++i) wide_.draw_strip(firsts[i], counts[i]);
+    return;
+  }
   glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
                     static_cast<GLsizei>(counts.size()));
 }
 
 void PathStore::draw_line(std::size_t from, std::size_t to) const {
   if (from == to) return;
+  if (is_wide()) return wide_.draw_one(static_cast<int>(from), static_cast<int>(to));
   const std::array numbers{static_cast<GLushort>(from), static_cast<GLushort>(to)};
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, line_.name());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof(numbers), numbers.data(), GL_STREAM_DRAW);
   glDrawElements(GL_LINES, 2, GL_UNSIGNED_SHORT, nullptr);
 }
 
+void PathStore::use_program() const {
+  const float nearer = towards_eye(projection_, kNearer_px);
+  if (is_wide()) return wide_.use(projection_, nearer);
+  program_.use();
+  program_.set("clip_from_world", projection_.clip_from_world);
+  program_.set("towards_eye", nearer);
+}
+
+void PathStore::set_colors(const PathColors& colors) const {
+  std::array<glm::vec4, 6> rgba;
+  for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
+    rgba[2 * kind] = colors.past[kind];
+    rgba[2 * kind + 1] = colors.future[kind];
+  }
+  if (is_wide()) return wide_.set_kind_colors(rgba);
+  for (std::size_t i = 0; i < rgba.size(); ++i) {
+    program_.set(("rgba[" + std::to_string(i) + "]").c_str(), rgba[i]);
+  }
+}
+
+void PathStore::set_is_past(bool is_past) const {
+  if (is_wide()) return wide_.set_past(is_past);
+  program_.set("is_past", is_past ? 1 : 0);
+}
+
+void PathStore::set_smooth(bool is_smooth) const {
+  if (is_wide()) return wide_.set_smooth(is_smooth);
+  (is_smooth ? glEnable : glDisable)(GL_LINE_SMOOTH);
+}
+
+void PathStore::bind(const Chunk& chunk) const {
+  glBindVertexArray(chunk.array.name());
+  if (is_wide()) wide_.bind(chunk.texture, chunk.vertices);
+}
+
 void PathStore::draw_tail(const ScreenRect& rect, const PathColors& colors) const {
-  program_.set("is_past", 1);
+  set_is_past(true);
+  set_smooth(false);
   glEnable(GL_BLEND);
   for (std::size_t shade = 0; shade < kTailShades; ++shade) {
     // From the oldest to the newest; vertices that lie behind the tool.
@@ -400,50 +445,42 @@ void PathStore::draw_tail(const ScreenRect& rect, const PathColors& colors) cons
     const std::uint64_t end = past_vertices_ - std::min<std::uint64_t>(past_vertices_, newer);
     const std::uint64_t begin = past_vertices_ - std::min<std::uint64_t>(past_vertices_, older + 1);
     const float share = static_cast<float>(shade + 1) / static_cast<float>(kTailShades);
-    for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
-      glm::vec4 rgba = colors.past[kind];
-      rgba.a *= share;
-      program_.set(("rgba[" + std::to_string(2 * kind) + "]").c_str(), rgba);
-    }
+    PathColors shades = colors;
+    for (glm::vec4& rgba : shades.past) rgba.a *= share;
+    set_colors(shades);
     for (std::size_t c = begin / kPathChunkSegments;
          c < chunks_.size() && c * kPathChunkSegments < end; ++c) {
       const Chunk& chunk = chunks_[c];
       if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
-      glBindVertexArray(chunk.array.name());
+      bind(chunk);
       draw_lines(chunk, chunk.strips.front(), past_of(c, begin), past_of(c, end), rect);
     }
   }
 }
 
 void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_smooth) const {
-  program_.use();
-  program_.set("clip_from_world", projection_.clip_from_world);
-  program_.set("towards_eye", towards_eye(projection_, kNearer_px));
+  use_program();
   if (tail_ > 0) {
     draw_tail(rect, colors);
     return;
   }
-  for (std::size_t kind = 0; kind < colors.past.size(); ++kind) {
-    const std::string at = "rgba[" + std::to_string(2 * kind);
-    program_.set((at + "]").c_str(), colors.past[kind]);
-    program_.set(("rgba[" + std::to_string(2 * kind + 1) + "]").c_str(), colors.future[kind]);
-  }
+  set_colors(colors);
   const auto is_opaque_color = [](const glm::vec4& rgba) { return rgba.a == 0 || rgba.a == 1; };
   // Blending is a fifth of what lines cost a processor.
   const bool is_opaque = std::ranges::all_of(colors.past, is_opaque_color) &&
                          std::ranges::all_of(colors.future, is_opaque_color);
   std::optional<bool> told_past;
   const auto tell_past = [&](bool is_past) {
-    if (is_past != told_past) program_.set("is_past", is_past ? 1 : 0);
+    if (is_past != told_past) set_is_past(is_past);
     told_past = is_past;
   };
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const Chunk& chunk = chunks_[c];
     if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
     const bool is_smooth = may_smooth && chunk.is_smooth;
-    (is_smooth ? glEnable : glDisable)(GL_LINE_SMOOTH);
+    set_smooth(is_smooth);
     (is_smooth || !is_opaque ? glEnable : glDisable)(GL_BLEND);
-    glBindVertexArray(chunk.array.name());
+    bind(chunk);
     const Strip& strip = chunk.strips[chunk.level];
     const std::size_t past = past_of(c, past_vertices_);
     // The segment to the first vertex belongs to the chunk before.

@@ -11,6 +11,7 @@
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
 #include "viewer/window/screen_rect.h"
+#include "viewer/window/wide_lines.h"
 
 namespace kerf {
 
@@ -33,7 +34,8 @@ struct PathColors {
 /// past ends, the vertex at which it does is drawn as well. Lines are antialiased up to
 /// kSmoothVertices and kSmooth_px, in chunks whose segments are longer than kSmoothSegment_px on
 /// average: of shorter ones, the faint rims of one hide the next. Of a chunk only what comes near
-/// the rectangle is drawn, in runs of kRunSegments or kThinnedRunSegments.
+/// the rectangle is drawn, in runs of kRunSegments or kThinnedRunSegments. Lines of more than a
+/// pixel (Projection::line_px) are drawn by WideLines, of the same buffers.
 class PathStore {
  public:
   static constexpr double kTolerance_px = 0.5, kMostTolerance_px = 64.0;
@@ -97,6 +99,7 @@ class PathStore {
     std::shared_ptr<const PathChunk> growing;
     GlVertexArray array;
     GlBuffer vertices;
+    GlTexture texture;  ///< of the buffer
     Box box_mm;
     std::vector<Steps> places;  ///< of the vertices within the box
     double length_mm = 0.0;
@@ -110,7 +113,15 @@ class PathStore {
     std::size_t gpu_bytes() const;
   };
 
-  explicit PathStore(GlProgram program) : program_(std::move(program)) {}
+  PathStore(GlProgram program, WideLines wide)
+      : program_(std::move(program)), wide_(std::move(wide)) {}
+  bool is_wide() const { return WideLines::are_needed(projection_); }
+  /// The program that draws, with what all lines have in common.
+  void use_program() const;
+  void set_colors(const PathColors& colors) const;
+  void set_is_past(bool is_past) const;
+  void set_smooth(bool is_smooth) const;
+  void bind(const Chunk& chunk) const;
   void load(Chunk* chunk, std::shared_ptr<const PathChunk> values);
   /// Where the chunk's picture changes with the new values.
   static Box change_of(const Chunk& chunk, const PathChunk& values);
@@ -136,6 +147,7 @@ class PathStore {
   const std::vector<ScreenRect>& run_rects(const Strip& strip) const;
 
   GlProgram program_;
+  WideLines wide_;
   GlBuffer line_;  ///< numbers of the vertices of one
   std::vector<Chunk> chunks_;
   std::deque<std::shared_ptr<const PathChunk>> waiting_;

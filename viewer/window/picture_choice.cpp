@@ -52,19 +52,18 @@ void open_picture_choice(PictureChoice::Kind kind, const std::string& folder,
   *choice = {true, true, false, kind, absolute.string(), free_name(absolute, ending), ""};
 }
 
-std::optional<std::string> chosen_path(PictureChoice* choice, Language language) {
+std::optional<std::string> chosen_path(PictureChoice* choice) {
   choice->is_accepted = false;
   fs::path path = fs::path(choice->folder) / choice->name;
   const bool is_film = choice->kind == PictureChoice::Kind::kFilm;
   if (!path.has_extension()) path += is_film ? ".mp4" : ".png";
   std::error_code error;
   if (is_film && !FilmWriter::can_be_named(path.string())) {
-    choice->fault = text(Text::kFilmEnding, language);
+    choice->fault = text(Text::kFilmEnding);
   } else if (!fs::is_directory(path.parent_path(), error)) {
-    choice->fault =
-        fmt::format("{}: {}", path.parent_path().string(), text(Text::kNoFolder, language));
+    choice->fault = fmt::format("{}: {}", path.parent_path().string(), text(Text::kNoFolder));
   } else if (fs::exists(path, error)) {
-    choice->fault = fmt::format("{}: {}", path.string(), text(Text::kIsThere, language));
+    choice->fault = fmt::format("{}: {}", path.string(), text(Text::kIsThere));
   } else {
     choice->is_open = false;
     return path.string();

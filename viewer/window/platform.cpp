@@ -12,12 +12,13 @@
 #include <mutex>
 #include <string>
 
+#include "base/translate.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
 namespace {
 
-constexpr const char* kWithout = "pictures need no display: --png FILE";
+constexpr const char* kWithout = tr_noop("pictures need no display: --png FILE");
 constexpr int kNeededGlVersion = 33;
 
 std::mutex wake_mutex;
@@ -101,7 +102,7 @@ std::string found_gl() {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   GLFWwindow* window = glfwCreateWindow(16, 16, "", nullptr, nullptr);
-  if (window == nullptr) return "no OpenGL at all";
+  if (window == nullptr) return tr("no OpenGL at all");
   glfwMakeContextCurrent(window);
   const auto string_of = [](GLenum name) {
     const GLubyte* value = glGetString(name);
@@ -186,11 +187,10 @@ Done Platform::start() {
   if (glfwInit() != GLFW_TRUE) {
     const std::string display = display_name();
     if (display.empty()) {
-      return Error{
-          fmt::format("no window: there is no display (DISPLAY is not set); {}", kWithout)};
+      return Error{trf("no window: there is no display (DISPLAY is not set); {}", tr(kWithout))};
     }
-    return Error{fmt::format("no window: the display {} cannot be opened ({}); {}", display,
-                             complaint(), kWithout)};
+    return Error{trf("no window: the display {} cannot be opened ({}); {}", display, complaint(),
+                     tr(kWithout))};
   }
   is_started_ = true;
   window_is_gone = false;
@@ -214,15 +214,15 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   GLFWwindow* window = glfwCreateWindow(width_px, height_px, title, nullptr, nullptr);
   if (window == nullptr) {
     const std::string reason = complaint();
-    return Error{fmt::format("no window: OpenGL 3.3 is needed; the display {} has {} ({}); {}",
-                             display_name(), found_gl(), reason, kWithout)};
+    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {} ({}); {}",
+                     display_name(), found_gl(), reason, tr(kWithout))};
   }
   glfwMakeContextCurrent(window);
   if (epoxy_gl_version() < kNeededGlVersion) {
     const int found = epoxy_gl_version();
     glfwDestroyWindow(window);
-    return Error{fmt::format("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}",
-                             display_name(), found / 10, found % 10, kWithout)};
+    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}",
+                     display_name(), found / 10, found % 10, tr(kWithout))};
   }
   fit_on_screens(window);
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
@@ -242,11 +242,10 @@ bool Platform::is_gone(GLFWwindow* window) {
 
 Done Platform::check() const {
   if (display_is_lost) {
-    return Error{
-        fmt::format("the window is gone: the connection to the display {} broke", display_name())};
+    return Error{trf("the window is gone: the connection to the display {} broke", display_name())};
   }
   if (glfwGetCurrentContext() == nullptr) {
-    return Error{fmt::format("the window is gone: its OpenGL context is lost ({})", complaint())};
+    return Error{trf("the window is gone: its OpenGL context is lost ({})", complaint())};
   }
   return std::monostate{};
 }

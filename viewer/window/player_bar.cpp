@@ -115,7 +115,7 @@ void draw_time_tip(const PanelContext& context, double time_s, double near_s) {
   constexpr int kMostFindings = 4;
   for (const SceneFinding& finding : context.shown.findings->findings) {
     if (std::abs(finding.time_s - time_s) > near_s || ++shown > kMostFindings) continue;
-    tip += fmt::format("\n{}: {}", finding.line, finding.text);
+    tip += fmt::format("\n{}: {}", finding.line, finding.text_in(context.measures.unit()));
   }
   ImGui::SetTooltip("%s", tip.c_str());
 }
@@ -212,8 +212,9 @@ void draw_status(const PanelContext& context) {
                             ? theme::kGood
                             : theme::kDim;
   ImGui::TextColored(color, "%s", words(context));
-  std::string notice = context.state->notice.empty() ? moment.notice : context.state->notice;
-  if (notice.empty()) notice = road_note(context);
+  std::string notice = context.state->notice.shown();
+  if (notice.empty()) notice = moment.notice;
+  if (notice.empty()) notice = draw_note(context);
   if (!notice.empty()) {
     ImGui::SameLine(0.0f, 14.0f * context.scale);
     ImGui::TextColored(theme::kWarning, "%s", notice.c_str());
@@ -271,15 +272,14 @@ std::vector<ToolButton> tool_buttons(const ViewSettings& settings, bool measures
 }
 
 /// Where the buttons stand, in rows of `width` pixels; from the upper left.
-std::vector<ImVec2> tool_places(const std::vector<ToolButton>& buttons, Language language,
-                                float width, float scale) {
+std::vector<ImVec2> tool_places(const std::vector<ToolButton>& buttons, float width, float scale) {
   const float row_height =
       std::round(ImGui::GetFontSize() + 2.0f * (kToolPadding_px.y + kToolGap_px) * scale);
   std::vector<ImVec2> places;
   ImVec2 next(0.0f, 0.0f);
   for (const ToolButton& button : buttons) {
-    const float button_width = ImGui::CalcTextSize(text(button.label, language)).x +
-                               2.0f * std::round(kToolPadding_px.x * scale);
+    const float button_width =
+        ImGui::CalcTextSize(text(button.label)).x + 2.0f * std::round(kToolPadding_px.x * scale);
     if (button.begins_group && next.x > 0.0f) next.x += (kGroupGap_px - kToolGap_px) * scale;
     if (next.x > 0.0f && next.x + button_width > width) next = {0.0f, next.y + row_height};
     places.push_back(next);
@@ -290,8 +290,7 @@ std::vector<ImVec2> tool_places(const std::vector<ToolButton>& buttons, Language
 
 float toolbar_room(const ViewSettings& settings, float width, float scale) {
   const float inside = width - 2.0f * ImGui::GetStyle().WindowPadding.x;
-  const std::vector<ImVec2> places =
-      tool_places(tool_buttons(settings, false), settings.language, inside, scale);
+  const std::vector<ImVec2> places = tool_places(tool_buttons(settings, false), inside, scale);
   return std::round(kToolbarHeight_px * scale + places.back().y);
 }
 
@@ -414,8 +413,8 @@ void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelR
   const std::vector<ToolButton> buttons =
       tool_buttons(*context.settings, context.state->inspection.measures);
   const ImVec2 corner = ImGui::GetCursorPos();
-  const std::vector<ImVec2> places = tool_places(buttons, context.settings->language,
-                                                 ImGui::GetContentRegionAvail().x, context.scale);
+  const std::vector<ImVec2> places =
+      tool_places(buttons, ImGui::GetContentRegionAvail().x, context.scale);
   for (std::size_t i = 0; i < buttons.size(); ++i) {
     ImGui::SetCursorPos({corner.x + places[i].x, corner.y + places[i].y});
     draw_tool_button(context, buttons[i]);

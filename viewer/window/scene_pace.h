@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 
 namespace kerf {
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "base/translate.h"
 #include "viewer/gl_objects.h"
 #include "viewer/window/gl_failure.h"
 #include "viewer/window/gpu_timer.h"
@@ -23,7 +24,7 @@
 #include "viewer/window/section_face.h"
 #include "viewer/window/surface_colors.h"
 #include "viewer/window/tool_store.h"
-#include "viewer/window/workpiece_roads.h"
+#include "viewer/window/workpiece_renderer.h"
 
 namespace kerf {
 namespace {
@@ -57,11 +58,11 @@ bool is_software() {
 
 class SceneRenderer::Impl {
  public:
-  Impl(ScenePrograms programs, PathStore path, MarkerStore markers, WorkpieceRoads roads)
+  Impl(ScenePrograms programs, PathStore path, MarkerStore markers, WorkpieceRenderer draw_modes)
       : programs_(std::move(programs)),
         path_(std::move(path)),
         markers_(std::move(markers)),
-        roads_(std::move(roads)) {
+        draw_modes_(std::move(draw_modes)) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px_);
   }
 
@@ -70,9 +71,9 @@ class SceneRenderer::Impl {
   void keep_pace() { pace_.emplace(); }
   bool has_waiting() const {
     return (pace_ && pace_->has_waiting()) || patches_.waiting_bytes() > 0 || path_.has_waiting() ||
-           machine_.has_waiting() || roads_.has_waiting();
+           machine_.has_waiting() || draw_modes_.has_waiting();
   }
-  bool is_full() const { return divisor_ == 1 && roads_.is_full(); }
+  bool is_full() const { return divisor_ == 1 && draw_modes_.is_full(); }
   ScreenRect take_changed() {
     return std::exchange(changed_, {}).times(divisor_).common(ScreenRect::whole(full_px_));
   }
@@ -82,10 +83,10 @@ class SceneRenderer::Impl {
   Box fit_box() const;
   const Box& depth_box() const { return depth_box_; }
   std::vector<ColorLegendEntry> legend(const Measures& measures) const {
-    if (road_ != DrawRoad::kMesh) return {};
+    if (draw_mode_ != DrawMode::kMesh) return {};
     return colors_.legend(shown_by_, scale_, measures);
   }
-  DrawRoad drawn_road() const { return road_; }
+  DrawMode drawn_mode() const { return draw_mode_; }
   const Projection& projection() const { return full_projection_; }
 
   DrawCounters counters;
@@ -125,8 +126,8 @@ class SceneRenderer::Impl {
   MarkerStore markers_;
   ToolStore tool_;
   MachineStore machine_;
-  WorkpieceRoads roads_;
-  DrawRoad road_ = DrawRoad::kMesh;  // drawn last
+  WorkpieceRenderer draw_modes_;
+  DrawMode draw_mode_ = DrawMode::kMesh;  // drawn last
   Layer kept_;
   Layer glass_;
   Layer shown_;
@@ -198,7 +199,7 @@ void SceneRenderer::Impl::apply(const SceneUpdate& update) {
     path_box_.extend(box);
     grow_depth_box(box);
   }
-  roads_.apply(update);
+  draw_modes_.apply(update);
   if (update.tool_shape) tool_.set_shape(*update.tool_shape);
   if (update.machine) machine_.set_machine(update.machine);
   if (update.colors) {
@@ -221,8 +222,8 @@ Done SceneRenderer::Impl::resize(glm::ivec2 size_px) {
   if (!needs_glass) glass_.release();
   if (size_px == size_px_ && needs_glass == glass_.is_allocated()) return std::monostate{};
   if (std::max(size_px.x, size_px.y) > max_size_px_) {
-    return Error{fmt::format("this OpenGL draws at most {} x {} pixels; the window has {} x {}",
-                             max_size_px_, max_size_px_, size_px.x, size_px.y)};
+    return Error{trf("this OpenGL draws at most {} x {} pixels; the window has {} x {}",
+                     max_size_px_, max_size_px_, size_px.x, size_px.y)};
   }
   for (Layer* layer : {&kept_, &shown_}) {
     if (Done done = layer->allocate(size_px); !done) return done;
@@ -273,9 +274,10 @@ std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
 }
 
 Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& options) {
-  const Result<WorkpieceRoads::Step> step = roads_.prepare(projection, options.road);
+  const Result<WorkpieceRenderer::Step> step = draw_modes_.prepare(projection, options.draw_mode);
   if (!step) return Error{step.error()};
-  if (std::exchange(road_, step->road) != step->road || step->is_all_new) is_kept_old_ = true;
+  if (std::exchange(draw_mode_, step->draw_mode) != step->draw_mode || step->is_all_new)
+    is_kept_old_ = true;
   const std::optional<double> whole_ms = timer_.collect();
   if (pace_ && whole_ms && is_full_timed_) pace_->took(*whole_ms);
   set_divisor(pace_ ? pace_->divisor(projection, ScenePace::Clock::now()) : 1);
@@ -283,6 +285,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   full_px_ = projection.size_px;
   Projection drawn = step->projection;
   drawn.size_px = ScreenRect::whole(full_px_).divided(divisor_).max;
+  drawn.line_px = std::max(1.0f, projection.line_px / static_cast<float>(divisor_));
   if (Done done = take_options(drawn, options); !done) return done;
   timer_.begin();
   const std::size_t bytes = upload(options.upload_bytes_per_frame);
@@ -322,7 +325,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
 
 std::size_t SceneRenderer::Impl::gpu_bytes() const {
   return patches_.gpu_bytes() + path_.gpu_bytes() + machine_.gpu_bytes() + tool_.gpu_bytes() +
-         colors_.gpu_bytes() + roads_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() +
+         colors_.gpu_bytes() + draw_modes_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() +
          shown_.gpu_bytes();
 }
 
@@ -360,8 +363,8 @@ std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
 
 std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
   if (!look(SceneObject::kWorkpiece).is_visible) return 0;
-  if (road_ != DrawRoad::kMesh) {
-    roads_.draw();
+  if (draw_mode_ != DrawMode::kMesh) {
+    draw_modes_.draw();
     return 0;
   }
   const std::optional<glm::dvec4> section = kept_side(options_.section);
@@ -575,10 +578,10 @@ Result<SceneRenderer> SceneRenderer::create(std::function<void()> wake) {
   if (!path) return Error{path.error()};
   Result<MarkerStore> markers = MarkerStore::create();
   if (!markers) return Error{markers.error()};
-  Result<WorkpieceRoads> roads = WorkpieceRoads::create(std::move(wake));
-  if (!roads) return Error{roads.error()};
+  Result<WorkpieceRenderer> draw_modes = WorkpieceRenderer::create(std::move(wake));
+  if (!draw_modes) return Error{draw_modes.error()};
   return SceneRenderer(std::make_unique<Impl>(std::move(*programs), std::move(*path),
-                                              std::move(*markers), std::move(*roads)));
+                                              std::move(*markers), std::move(*draw_modes)));
 }
 
 SceneRenderer::SceneRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -592,7 +595,7 @@ Done SceneRenderer::draw(const Projection& projection, const DrawOptions& option
 void SceneRenderer::keep_pace() { impl_->keep_pace(); }
 bool SceneRenderer::has_waiting() const { return impl_->has_waiting(); }
 bool SceneRenderer::is_full() const { return impl_->is_full(); }
-DrawRoad SceneRenderer::drawn_road() const { return impl_->drawn_road(); }
+DrawMode SceneRenderer::drawn_mode() const { return impl_->drawn_mode(); }
 const Projection& SceneRenderer::projection() const { return impl_->projection(); }
 ScreenRect SceneRenderer::take_changed() { return impl_->take_changed(); }
 void SceneRenderer::show_in(unsigned framebuffer, glm::ivec2 corner_px,

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
-#include "viewer/window/orbit_camera.h"
 #include "viewer/window/screen_rect.h"
 #include "viewer/window/units.h"
 
@@ -49,7 +49,7 @@ struct SectionPlane {
 struct DrawOptions {
   /// As far as its values have come, else by mesh. Only the mesh has colours, section and
   /// deviations.
-  DrawRoad road = DrawRoad::kMesh;
+  DrawMode draw_mode = DrawMode::kMesh;
   std::array<ObjectLook, kSceneObjectCount> looks{};
   std::optional<SectionPlane> section;
   /// Of the workpiece. kTool, kRemovalRate and kLineRange show the CutColors that came last, when
@@ -124,9 +124,9 @@ class SceneRenderer {
   bool has_waiting() const;
   /// The picture last drawn is that of the eye last asked for, in all of its pixels.
   bool is_full() const;
-  /// By which road the workpiece was drawn last, and as seen how: by rays that may be as it was
-  /// asked for some frames before.
-  DrawRoad drawn_road() const;
+  /// In which draw mode the workpiece was drawn last, and as seen how: by rays that may be as it
+  /// was asked for some frames before.
+  DrawMode drawn_mode() const;
   const Projection& projection() const;
 
   /// What the colours of the workpiece last drawn mean; empty if nothing.

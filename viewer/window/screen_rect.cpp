@@ -10,7 +10,7 @@
 namespace kerf {
 namespace {
 
-/// Around projected corners: rounding of the rasterizer, and the width of a line.
+/// Around projected corners: rounding of the rasterizer, and the width of a fine line.
 constexpr int kBorder_px = 2;
 /// Below this w a corner counts as reaching the eye.
 constexpr float kMinW = 1e-4f;
@@ -87,14 +87,17 @@ ScreenRect covered_rect(const Box& box, const Projection& projection) {
     low = {std::min(low.x, at.x), std::min(low.y, at.y)};
     high = {std::max(high.x, at.x), std::max(high.y, at.y)};
   }
+  // What a wider line has more on each side.
+  const int border_px =
+      kBorder_px + static_cast<int>(std::ceil(0.5f * (projection.line_px - 1.0f)));
   const auto inside = [](float value, int offset, int limit) {
     const float kept = std::clamp(std::floor(value), -kFarthest_px, kFarthest_px);
     return std::clamp(static_cast<int>(kept) + offset, 0, limit);
   };
-  return {{inside(low.x, -kBorder_px, projection.size_px.x),
-           inside(low.y, -kBorder_px, projection.size_px.y)},
-          {inside(high.x, kBorder_px + 1, projection.size_px.x),
-           inside(high.y, kBorder_px + 1, projection.size_px.y)}};
+  return {{inside(low.x, -border_px, projection.size_px.x),
+           inside(low.y, -border_px, projection.size_px.y)},
+          {inside(high.x, border_px + 1, projection.size_px.x),
+           inside(high.y, border_px + 1, projection.size_px.y)}};
 }
 
 Box placed(const Box& box, const glm::mat4& pose) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 
 namespace kerf {
 

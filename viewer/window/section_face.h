@@ -6,7 +6,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
-#include "viewer/window/orbit_camera.h"
+#include "viewer/orbit_camera.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,8 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -42,7 +43,7 @@ Field switch_field(std::string name, std::function<bool*(ViewSettings*)> member)
             return std::string(*member(&copy) ? "on" : "off");
           },
           [member](std::string_view value, ViewSettings* settings) -> std::string {
-            if (value != "on" && value != "off") return "on or off";
+            if (value != "on" && value != "off") return tr("on or off");
             *member(settings) = value == "on";
             return "";
           }};
@@ -53,10 +54,8 @@ Field size_field(std::string name, int ViewSettings::*member) {
           [member](const ViewSettings& settings) { return std::to_string(settings.*member); },
           [member](std::string_view value, ViewSettings* settings) -> std::string {
             int number = 0;
-            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
-            if (error != std::errc() || end != value.end() || number < kMinSize_px ||
-                number > kMaxSize_px) {
-              return fmt::format("{} to {} (pixels)", kMinSize_px, kMaxSize_px);
+            if (!read_number(value, number) || number < kMinSize_px || number > kMaxSize_px) {
+              return trf("{} to {} (pixels)", kMinSize_px, kMaxSize_px);
             }
             settings->*member = number;
             return "";
@@ -90,9 +89,8 @@ Field number_field(std::string name, std::function<double*(ViewSettings*)> membe
           },
           [member, low, high](std::string_view value, ViewSettings* settings) -> std::string {
             double number = 0.0;
-            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
-            if (error != std::errc() || end != value.end() || !(number >= low && number <= high)) {
-              return fmt::format("{} to {}", low, high);
+            if (!read_number(value, number) || !(number >= low && number <= high)) {
+              return trf("{} to {}", low, high);
             }
             *member(settings) = number;
             return "";
@@ -106,10 +104,8 @@ Field opacity_field(std::size_t object) {
           },
           [object](std::string_view value, ViewSettings* settings) -> std::string {
             float number = 0.0f;
-            const auto [end, error] = std::from_chars(value.begin(), value.end(), number);
-            if (error != std::errc() || end != value.end() ||
-                !(number >= kMinOpacity && number <= 1.0f)) {
-              return fmt::format("{} to 1", kMinOpacity);
+            if (!read_number(value, number) || !(number >= kMinOpacity && number <= 1.0f)) {
+              return trf("{} to 1", kMinOpacity);
             }
             settings->drawing.looks[object].opacity = number;
             return "";
@@ -128,8 +124,10 @@ std::vector<Field> choices() {
           [](int choice, ViewSettings* s) { s->drawing.color_by = static_cast<ColorBy>(choice); }),
       choice_field(
           "draw", {"mesh", "raycast", "csg"},
-          [](const ViewSettings& s) { return static_cast<int>(s.drawing.road); },
-          [](int choice, ViewSettings* s) { s->drawing.road = static_cast<DrawRoad>(choice); }),
+          [](const ViewSettings& s) { return static_cast<int>(s.drawing.draw_mode); },
+          [](int choice, ViewSettings* s) {
+            s->drawing.draw_mode = static_cast<DrawMode>(choice);
+          }),
       choice_field(
           "section.axis", {"x", "y", "z"}, [](const ViewSettings& s) { return s.section.axis; },
           [](int choice, ViewSettings* s) { s->section.axis = choice; }),
@@ -169,7 +167,7 @@ Field recent_field(std::size_t place) {
             return place < settings.recent.size() ? settings.recent[place] : std::string();
           },
           [](std::string_view value, ViewSettings* settings) -> std::string {
-            if (!value.empty() && value.front() != '/') return "an absolute path";
+            if (!value.empty() && value.front() != '/') return tr("an absolute path");
             if (!value.empty() && settings->recent.size() < kMostRecent) {
               settings->recent.emplace_back(value);
             }
@@ -181,11 +179,13 @@ std::vector<Field> all_fields() {
   std::vector<Field> fields{
       size_field("width", &ViewSettings::width_px),
       size_field("height", &ViewSettings::height_px),
-      {"language", [](const ViewSettings& s) { return std::string(code(s.language)); },
+      {"language", [](const ViewSettings& s) { return s.language; },
        [](std::string_view value, ViewSettings* s) -> std::string {
-         const std::optional<Language> language = language_of(value);
-         if (!language) return "en or de";
-         s->language = *language;
+         const std::vector<std::string> known = languages();
+         if (std::find(known.begin(), known.end(), value) == known.end()) {
+           return fmt::format("{}", fmt::join(known, "|"));
+         }
+         s->language = value;
          return "";
        }},
       switch_field("perspective", [](ViewSettings* s) { return &s->is_perspective; }),
@@ -203,19 +203,12 @@ std::vector<Field> all_fields() {
   }
   fields.push_back({"picture.folder", [](const ViewSettings& s) { return s.picture_folder; },
                     [](std::string_view value, ViewSettings* s) -> std::string {
-                      if (!value.empty() && value.front() != '/') return "an absolute path";
+                      if (!value.empty() && value.front() != '/') return tr("an absolute path");
                       s->picture_folder = value;
                       return "";
                     }});
   for (std::size_t place = 0; place < kMostRecent; ++place) fields.push_back(recent_field(place));
   return fields;
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
 /// Column of `part` in `line`, from 1.
@@ -226,7 +219,7 @@ int column_of(std::string_view part, std::string_view line) {
 /// Reads one line; a fault has column, message and hint.
 std::optional<Diagnostic> read_line(std::string_view line, const std::vector<Field>& fields,
                                     ViewSettings* settings) {
-  const std::string_view content = trimmed(line.substr(0, line.find('#')));
+  const std::string_view content = trim(line.substr(0, line.find('#')), is_line_blank);
   if (content.empty()) return std::nullopt;
   Diagnostic fault;
   fault.severity = Severity::kWarning;
@@ -234,20 +227,20 @@ std::optional<Diagnostic> read_line(std::string_view line, const std::vector<Fie
   fault.column = column_of(content, line);
   const std::size_t equals = content.find('=');
   if (equals == std::string_view::npos) {
-    fault.message = "no '='; a line reads `name = value`";
+    fault.message = tr("no '='; a line reads `name = value`");
     return fault;
   }
-  const std::string_view name = trimmed(content.substr(0, equals));
-  const std::string_view value = trimmed(content.substr(equals + 1));
+  const std::string_view name = trim(content.substr(0, equals), is_line_blank);
+  const std::string_view value = trim(content.substr(equals + 1), is_line_blank);
   for (const Field& field : fields) {
     if (field.name != name) continue;
     const std::string allowed = field.read(value, settings);
     if (allowed.empty()) return std::nullopt;
     if (!value.empty()) fault.column = column_of(value, line);
-    fault.message = fmt::format("{}: '{}' is not allowed; must be {}", name, value, allowed);
+    fault.message = trf("{}: '{}' is not allowed; must be {}", name, value, allowed);
     return fault;
   }
-  fault.message = fmt::format("'{}' is no setting of the window", name);
+  fault.message = trf("'{}' is no setting of the window", name);
   return fault;
 }
 
@@ -256,7 +249,7 @@ std::string kept_path(const std::string& path) {
   std::error_code error;
   const std::string absolute = std::filesystem::absolute(path, error).lexically_normal().string();
   const bool can_be = !error && absolute.find_first_of("#\n\r") == std::string::npos &&
-                      trimmed(absolute) == absolute;
+                      trim(absolute, is_line_blank) == absolute;
   return can_be ? absolute : std::string();
 }
 
@@ -275,10 +268,9 @@ std::string settings_path() {
 
 ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
   ViewSettings settings;
-  settings.language = language_of_environment();
   std::error_code error;
   if (path.empty() || !std::filesystem::exists(path, error)) return settings;
-  const std::string hint = fmt::format(
+  const std::string hint = trf(
       "the default is used; when the window closes, the file is kept as {}.damaged and a new one "
       "is written",
       path);
@@ -291,12 +283,12 @@ ViewSettings load_settings(const std::string& path, Diagnostics* faults) {
     faults->push_back(std::move(fault));
     return settings;
   };
-  if (!std::filesystem::is_regular_file(path, error)) return whole_file_fault("not a file");
+  if (!std::filesystem::is_regular_file(path, error)) return whole_file_fault(tr("not a file"));
   if (std::filesystem::file_size(path, error) > kMaxBytes) {
-    return whole_file_fault(fmt::format("more than {} bytes: no settings of kerf", kMaxBytes));
+    return whole_file_fault(trf("more than {} bytes: no settings of kerf", kMaxBytes));
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) return whole_file_fault("cannot be read");
+  if (!file) return whole_file_fault(tr("cannot be read"));
   const std::vector<Field> fields = all_fields();
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -318,7 +310,7 @@ Done save_settings(const std::string& path, const ViewSettings& settings) {
   }
   std::error_code error;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
-  if (error) return Error{fmt::format("writing {}: {}", path, error.message())};
+  if (error) return Error{trf("writing {}: {}", path, error.message())};
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return Error{file.error()};
   file->write(content.data(), content.size());
@@ -346,11 +338,11 @@ Result<std::string> set_aside(const std::string& path) {
     std::error_code error;
     if (std::filesystem::exists(std::filesystem::symlink_status(kept, error))) continue;
     std::filesystem::rename(path, kept, error);
-    if (error) return Error{fmt::format("keeping {} as {}: {}", path, kept, error.message())};
+    if (error) return Error{trf("keeping {} as {}: {}", path, kept, error.message())};
     return kept;
   }
-  return Error{fmt::format("keeping {}: {}.damaged to {}.damaged-{} are there already", path, path,
-                           path, kMostKept)};
+  return Error{trf("keeping {}: {}.damaged to {}.damaged-{} are there already", path, path, path,
+                   kMostKept)};
 }
 
 }  // namespace kerf

@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.h"
 #include "base/result.h"
+#include "base/translate.h"
 #include "viewer/window/scene_renderer.h"
 #include "viewer/window/texts.h"
 #include "viewer/window/units.h"
@@ -32,7 +33,7 @@ enum class ThemeChoice { kDark, kLight, kSystem };
 struct ViewSettings {
   int width_px = 1280;  ///< of the window, on a display of scale 1; 320 to 16384
   int height_px = 800;
-  Language language = Language::kEnglish;
+  std::string language = kerf::language();  ///< one of languages()
   LengthUnit units = LengthUnit::kMm;
   ThemeChoice theme = ThemeChoice::kDark;
   bool knows_keys = false;  ///< Has seen the first keys.

@@ -47,7 +47,7 @@ constexpr std::array kShortcuts{
     Shortcut{"d", U'd', 0, Action::kCounters, Text::kDrawing},
     Shortcut{"l", U'l', 0, Action::kLocalDrawing, Text::kLocalDrawing},
     Shortcut{"U", U'U', 0, Action::kUnits, Text::kUnits},
-    Shortcut{"r", U'r', 0, Action::kNextRoad, Text::kNextRoad},
+    Shortcut{"r", U'r', 0, Action::kNextDrawMode, Text::kNextDrawMode},
     Shortcut{"s", U's', 0, Action::kScreenshot, Text::kScreenshot},
     Shortcut{"S", U'S', 0, Action::kWindowPicture, Text::kWindowPicture},
     Shortcut{"F", U'F', 0, Action::kFilm, Text::kFilmWhat},

@@ -48,7 +48,7 @@ enum class Action {
   kCounters,
   kLocalDrawing,
   kUnits,
-  kNextRoad,
+  kNextDrawMode,
   kScreenshot,
   kWindowPicture,
   kFilm,

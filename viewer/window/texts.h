@@ -1,13 +1,7 @@
-// viewer/window/texts.h - every word that the window shows, in every language it speaks.
+// viewer/window/texts.h - every word that the window shows.
 #pragma once
 
-#include <optional>
-#include <string_view>
-
 namespace kerf {
-
-enum class Language { kEnglish, kGerman };
-inline constexpr int kLanguageCount = 2;
 
 enum class Text {
   // player
@@ -74,18 +68,18 @@ enum class Text {
   kPerspective,
   kPerspectiveWhat,
   kDrawing,
-  kNextRoad,
-  kRoadMesh,
-  kRoadRaycast,
-  kRoadCsg,
-  kRoadIsPlain,
-  kRoadNoHeights,
-  kRoadCompared,
-  kRoadNoBox,
-  kRoadTilted,
-  kRoadTool,
-  kRoadWatched,
-  kRoadNewest,
+  kNextDrawMode,
+  kDrawMesh,
+  kDrawRaycast,
+  kDrawCsg,
+  kDrawIsPlain,
+  kDrawNoHeights,
+  kDrawCompared,
+  kDrawNoBox,
+  kDrawTilted,
+  kDrawTool,
+  kDrawWatched,
+  kDrawNewest,
   kFull,
   kLocal,
   kStill,
@@ -205,13 +199,8 @@ enum class Text {
   kCount_
 };
 
-/// UTF-8; never empty. A `{}` stands for what the sentence is about.
-const char* text(Text which, Language language);
-
-/// "en", "de"
-std::string_view code(Language language);
-std::optional<Language> language_of(std::string_view code);
-/// From LC_ALL, LC_MESSAGES or LANG: German for "de...", else English.
-Language language_of_environment();
+/// In the language in use (base/translate.h). UTF-8; never empty. A `{}` stands for what the
+/// sentence is about.
+const char* text(Text which);
 
 }  // namespace kerf

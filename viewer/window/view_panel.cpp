@@ -19,7 +19,7 @@ constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
                                  Text::kColorTool,      Text::kColorRemovalRate,
                                  Text::kColorLineRange, Text::kColorDeviation};
 
-constexpr std::array kRoads{Text::kRoadMesh, Text::kRoadRaycast, Text::kRoadCsg};
+constexpr std::array kDrawModes{Text::kDrawMesh, Text::kDrawRaycast, Text::kDrawCsg};
 
 bool header(const PanelContext& context, Text title, bool is_open) {
   return ImGui::CollapsingHeader(
@@ -150,18 +150,19 @@ void draw_section(const PanelContext& context) {
   ImGui::Checkbox(context.word(Text::kSectionFlip), &section.is_flipped);
 }
 
-void draw_roads(const PanelContext& context) {
-  DrawRoad& road = context.settings->drawing.road;
-  for (std::size_t i = 0; i < kRoads.size(); ++i) {
+void draw_modes(const PanelContext& context) {
+  DrawMode& draw_mode = context.settings->drawing.draw_mode;
+  for (std::size_t i = 0; i < kDrawModes.size(); ++i) {
     if (i > 0) ImGui::SameLine();
-    const auto candidate = static_cast<DrawRoad>(i);
-    if (!ImGui::RadioButton(context.word(kRoads[i]), candidate == road) || candidate == road) {
+    const auto candidate = static_cast<DrawMode>(i);
+    if (!ImGui::RadioButton(context.word(kDrawModes[i]), candidate == draw_mode) ||
+        candidate == draw_mode) {
       continue;
     }
-    road = candidate;
-    context.commands->push(RoadCommand{road});
+    draw_mode = candidate;
+    context.commands->push(DrawModeCommand{draw_mode});
   }
-  if (const std::string note = road_note(context); !note.empty()) {
+  if (const std::string note = draw_note(context); !note.empty()) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored(theme::kDim, "%s", note.c_str());
     ImGui::PopTextWrapPos();
@@ -171,7 +172,7 @@ void draw_roads(const PanelContext& context) {
 void draw_drawing(const PanelContext& context) {
   if (!header(context, Text::kDrawing, false)) return;
   ViewSettings* settings = context.settings;
-  draw_roads(context);
+  draw_modes(context);
   ImGui::Checkbox(context.word(Text::kLocalDrawing), &settings->drawing.is_local);
   ImGui::BeginDisabled(context.is_light);
   ImGui::Checkbox(context.word(Text::kDarkBackground), &settings->drawing.is_dark);
@@ -228,12 +229,17 @@ void draw_language(const PanelContext& context) {
   draw_units(context);
   ImGui::Dummy({10.0f * context.scale, 0.0f});
   ImGui::SameLine();
-  for (int i = 0; i < kLanguageCount; ++i) {
-    const auto candidate = static_cast<Language>(i);
-    if (ImGui::RadioButton(std::string(code(candidate)).c_str(), candidate == settings->language)) {
-      settings->language = candidate;
+  static const std::vector<std::pair<std::string, std::string>> kLanguages = [] {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const std::string& code : languages()) all.emplace_back(code, name_of_language(code));
+    return all;
+  }();
+  for (const auto& [code, name] : kLanguages) {
+    if (ImGui::RadioButton(name.c_str(), code == settings->language) && use_language(code)) {
+      settings->language = code;
+      context.commands->push(ReadAgainCommand{});
     }
-    if (i + 1 < kLanguageCount) ImGui::SameLine();
+    if (code != kLanguages.back().first) ImGui::SameLine();
   }
   ImGui::SetNextItemWidth(150.0f * context.scale);
   constexpr std::array kScales{0.85, 1.0, 1.25, 1.5, 2.0, 3.0};
@@ -263,37 +269,39 @@ ColorCommand color_command(const ViewSettings& settings, const PanelState& state
   return {settings.drawing.color_by, state.first_line, state.last_line};
 }
 
-std::string road_note(const PanelContext& context) {
+std::string draw_note(const PanelContext& context) {
   const DrawOptions& drawing = context.settings->drawing;
-  const RoadAnswer* const answer = context.shown.road.get();
-  if (drawing.road == DrawRoad::kMesh || answer == nullptr || answer->road != drawing.road) {
+  const DrawAnswer* const answer = context.shown.draw_mode.get();
+  if (drawing.draw_mode == DrawMode::kMesh || answer == nullptr ||
+      answer->draw_mode != drawing.draw_mode) {
     return {};
   }
   const auto about = [&](Text sentence, const auto& what) {
     return fmt::format(fmt::runtime(context.word(sentence)), what);
   };
   switch (answer->limit) {
-    case RoadLimit::kNone:
+    case DrawLimit::kNone:
       break;
-    case RoadLimit::kNoHeights:
-      return about(Text::kRoadNoHeights, answer->detail);
-    case RoadLimit::kCompared:
-      return context.word(Text::kRoadCompared);
-    case RoadLimit::kNoBox:
-      return about(Text::kRoadNoBox, answer->detail);
-    case RoadLimit::kTilted:
-      return context.word(Text::kRoadTilted);
-    case RoadLimit::kTool:
-      return about(Text::kRoadTool, answer->detail);
-    case RoadLimit::kWatched:
-      return context.word(Text::kRoadWatched);
-    case RoadLimit::kNewest:
-      return about(Text::kRoadNewest, answer->line);
+    case DrawLimit::kNoHeights:
+      return about(Text::kDrawNoHeights, answer->detail);
+    case DrawLimit::kCompared:
+      return context.word(Text::kDrawCompared);
+    case DrawLimit::kNoBox:
+      return about(Text::kDrawNoBox, answer->detail);
+    case DrawLimit::kTilted:
+      return context.word(Text::kDrawTilted);
+    case DrawLimit::kTool:
+      return about(Text::kDrawTool, answer->detail);
+    case DrawLimit::kWatched:
+      return context.word(Text::kDrawWatched);
+    case DrawLimit::kNewest:
+      return about(Text::kDrawNewest, answer->line);
   }
   const bool is_missed = drawing.color_by != ColorBy::kPlain || context.settings->section.is_on;
-  if (context.drawn_road == DrawRoad::kMesh || !is_missed) return {};
-  return fmt::format("{}: {}", context.word(kRoads[static_cast<std::size_t>(context.drawn_road)]),
-                     context.word(Text::kRoadIsPlain));
+  if (context.drawn_mode == DrawMode::kMesh || !is_missed) return {};
+  return fmt::format("{}: {}",
+                     context.word(kDrawModes[static_cast<std::size_t>(context.drawn_mode)]),
+                     context.word(Text::kDrawIsPlain));
 }
 
 std::optional<SectionPlane> section_plane(const SectionChoice& choice) {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/translate.h"
 #include "viewer/window/window_impl.h"
 
 namespace kerf {
@@ -35,9 +36,10 @@ std::string first_line(const Diagnostics& faults) {
 Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQueue* commands)
     : options_(options), mailbox_(*mailbox), commands_(*commands) {
   settings_ = load_settings(options.settings_file, &settings_faults_);
+  use_language(settings_.language);
   if (!options.is_local) settings_.drawing.is_local = false;
-  remembered_road_ = settings_.drawing.road;
-  settings_.drawing.road = options.road.value_or(remembered_road_);
+  remembered_mode_ = settings_.drawing.draw_mode;
+  settings_.drawing.draw_mode = options.draw_mode.value_or(remembered_mode_);
   remembered_units_ = settings_.units;
   settings_.units = options.units.value_or(remembered_units_);
   // Where nothing is remembered they would come every time.
@@ -78,7 +80,8 @@ void Window::Impl::remember_settings() {
     settings_.height_px = unscaled(height);
   }
   // What was asked for this time alone; another choice since is to be remembered.
-  if (options_.road == settings_.drawing.road) settings_.drawing.road = remembered_road_;
+  if (options_.draw_mode == settings_.drawing.draw_mode)
+    settings_.drawing.draw_mode = remembered_mode_;
   if (options_.units == settings_.units) settings_.units = remembered_units_;
   // Nobody is left to be told; the next start has the settings of this one.
   static_cast<void>(save_settings(options_.settings_file, settings_));
@@ -110,8 +113,8 @@ void Window::Impl::tell_choices() {
   if (settings_.drawing.color_by != ColorBy::kPlain) {
     commands_.push(color_command(settings_, state_));
   }
-  if (settings_.drawing.road != DrawRoad::kMesh) {
-    commands_.push(RoadCommand{settings_.drawing.road});
+  if (settings_.drawing.draw_mode != DrawMode::kMesh) {
+    commands_.push(DrawModeCommand{settings_.drawing.draw_mode});
   }
 }
 
@@ -292,7 +295,7 @@ void Window::wake() { Platform::wake(); }
 Picture Window::read() const { return impl_->read(); }
 Picture Window::read_scene() const { return impl_->read_scene(); }
 bool Window::is_full() const { return impl_->is_full(); }
-DrawRoad Window::drawn_road() const { return impl_->drawn_road(); }
+DrawMode Window::drawn_mode() const { return impl_->drawn_mode(); }
 const DrawCounters& Window::counters() const { return impl_->counters(); }
 const ViewSettings& Window::settings() const { return impl_->settings(); }
 const Diagnostics& Window::settings_faults() const { return impl_->settings_faults(); }

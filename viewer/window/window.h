@@ -26,11 +26,11 @@ struct WindowOptions {
   int width_px = 0;                             ///< 0: as remembered; both
   int height_px = 0;
   int max_frames_per_s = 60;
-  bool is_local = true;             ///< false: local drawing is off, whatever is remembered
-  std::optional<DrawRoad> road;     ///< Instead of the one that is remembered, which stays so.
-  std::optional<LengthUnit> units;  ///< As `road`.
-  float scale = 0.0f;               ///< Of letters and panels, 1 to 4; 0: that of the display.
-  std::string picture_folder;       ///< Where screenshots go; empty: the current folder.
+  bool is_local = true;               ///< false: local drawing is off, whatever is remembered
+  std::optional<DrawMode> draw_mode;  ///< Instead of the one that is remembered, which stays so.
+  std::optional<LengthUnit> units;    ///< As `draw_mode`.
+  float scale = 0.0f;                 ///< Of letters and panels, 1 to 4; 0: that of the display.
+  std::string picture_folder;         ///< Where screenshots go; empty: the current folder.
 };
 
 /// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at
@@ -66,8 +66,8 @@ class Window {
   /// The picture of the scene is that of the eye, in all of its pixels; none of fewer pixels, or of
   /// where the eye was before.
   bool is_full() const;
-  /// By which road the workpiece in it was drawn.
-  DrawRoad drawn_road() const;
+  /// In which draw mode the workpiece in it was drawn.
+  DrawMode drawn_mode() const;
   const DrawCounters& counters() const;
   const ViewSettings& settings() const;
   /// What was wrong with the settings file; empty if nothing.

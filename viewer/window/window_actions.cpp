@@ -162,7 +162,7 @@ void Window::Impl::act_on_panels(Action action) {
       if (shown_.job && shown_.job->can_open) {
         open_file_choice(shown_, settings_, &state_.files);
       } else {
-        state_.notice = text(Text::kCannotOpen, settings_.language);
+        state_.notice = Text::kCannotOpen;
       }
       break;
     case Action::kClose:
@@ -176,7 +176,7 @@ void Window::Impl::act_on_panels(Action action) {
 void Window::Impl::act_on_player(Action action) {
   const Moment& moment = *shown_.moment;
   if (moment.state == PlayState::kFollowing) {
-    if (is_for_player(action)) state_.notice = text(Text::kMachineLeads, settings_.language);
+    if (is_for_player(action)) state_.notice = Text::kMachineLeads;
     return;
   }
   const auto speed = [&](double factor) {
@@ -241,7 +241,7 @@ void Window::Impl::open_program(const std::string& path) {
   if (shown_.job && shown_.job->can_open) {
     commands_.push(OpenCommand{path});
   } else {
-    state_.notice = text(Text::kCannotOpen, settings_.language);
+    state_.notice = Text::kCannotOpen;
   }
 }
 
@@ -304,11 +304,11 @@ void Window::Impl::act_on_view(Action action) {
       commands_.push(color_command(settings_, state_));
       break;
     }
-    case Action::kNextRoad: {
-      constexpr int kRoads = static_cast<int>(DrawRoad::kCsg) + 1;
-      DrawRoad& road = settings_.drawing.road;
-      road = static_cast<DrawRoad>((static_cast<int>(road) + 1) % kRoads);
-      commands_.push(RoadCommand{road});
+    case Action::kNextDrawMode: {
+      constexpr int kDrawModes = static_cast<int>(DrawMode::kCsg) + 1;
+      DrawMode& draw_mode = settings_.drawing.draw_mode;
+      draw_mode = static_cast<DrawMode>((static_cast<int>(draw_mode) + 1) % kDrawModes);
+      commands_.push(DrawModeCommand{draw_mode});
       break;
     }
     case Action::kSection:

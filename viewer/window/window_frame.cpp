@@ -129,7 +129,7 @@ void Window::Impl::apply(const SceneUpdate& update) {
     shown_.findings = std::make_shared<FindingList>();
     tell_choices();  // it may be another one who shows it
   }
-  if (update.road) shown_.road = update.road;
+  if (update.draw_mode) shown_.draw_mode = update.draw_mode;
   if (update.job) {
     shown_.job = update.job;
     state_.job = edit_of(*update.job);
@@ -152,8 +152,7 @@ void Window::Impl::apply(const SceneUpdate& update) {
   if (update.moment) {
     // Another file comes to the front, which takes Dear ImGui more than one frame.
     if (update.moment->file != shown_.moment->file) touched();
-    if (update.moment->state != PlayState::kFollowing &&
-        state_.notice == text(Text::kMachineLeads, settings_.language)) {
+    if (update.moment->state != PlayState::kFollowing && state_.notice.is(Text::kMachineLeads)) {
       state_.notice.clear();
     }
     shown_.moment = update.moment;
@@ -309,7 +308,8 @@ Done Window::Impl::draw() {
   }
   tell_detail();
   settings_.drawing.section = section_plane(settings_.section);
-  const Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
+  Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
+  wanted.line_px = display_scale_;
   DrawOptions drawing = settings_.drawing;
   // Among light panels a dark picture would be a hole.
   drawing.is_dark = drawing.is_dark && !is_light_;
@@ -359,7 +359,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   const PanelContext context{.shown = shown_,
                              .counters = counters,
                              .legend = legend_,
-                             .drawn_road = renderer_->drawn_road(),
+                             .drawn_mode = renderer_->drawn_mode(),
                              .bounds_mm = renderer_->fit_box(),
                              .fonts = fonts_,
                              .scale = scale_,

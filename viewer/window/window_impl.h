@@ -54,7 +54,7 @@ class Window::Impl {
   Picture read() const { return layer_->read(); }
   Picture read_scene() const { return renderer_->read(); }
   bool is_full() const { return renderer_->is_full(); }
-  DrawRoad drawn_road() const { return renderer_->drawn_road(); }
+  DrawMode drawn_mode() const { return renderer_->drawn_mode(); }
   const DrawCounters& counters() const { return renderer_->counters(); }
   const ViewSettings& settings() const { return settings_; }
   const Diagnostics& settings_faults() const { return settings_faults_; }
@@ -136,7 +136,7 @@ class Window::Impl {
   CommandQueue& commands_;
   ViewSettings settings_;
   Diagnostics settings_faults_;
-  DrawRoad remembered_road_ = DrawRoad::kMesh;  // before WindowOptions::road
+  DrawMode remembered_mode_ = DrawMode::kMesh;  // before WindowOptions::draw_mode
   LengthUnit remembered_units_ = LengthUnit::kMm;
 
   Platform platform_;

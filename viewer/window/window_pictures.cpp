@@ -43,7 +43,7 @@ void Window::Impl::begin_or_end_film() {
   taken_.reset();
   state_.picture.is_open = false;
   if (!FilmWriter::is_possible()) {
-    state_.notice = text(Text::kNoFfmpeg, settings_.language);
+    state_.notice = Text::kNoFfmpeg;
     return;
   }
   open_picture_choice(PictureChoice::Kind::kFilm, picture_folder(), ".mp4", &state_.picture);
@@ -52,7 +52,7 @@ void Window::Impl::begin_or_end_film() {
 /// The name was entered.
 void Window::Impl::accept_picture() {
   touched();
-  const std::optional<std::string> path = chosen_path(&state_.picture, settings_.language);
+  const std::optional<std::string> path = chosen_path(&state_.picture);
   if (!path) return;
   frames_without_text_ = 2;
   remember_picture_folder(std::filesystem::path(*path).parent_path().string(), &settings_);
@@ -73,7 +73,7 @@ void Window::Impl::save_taken() {
   if (saving_.valid()) saving_.wait();
   end_saving();
   saving_path_ = std::exchange(taken_path_, {});
-  state_.notice = text(Text::kSaving, settings_.language);
+  state_.notice = Text::kSaving;
   panels_are_old_ = true;
   // Packing takes longer than a frame may.
   saving_ = std::async(std::launch::async,
@@ -89,8 +89,7 @@ void Window::Impl::end_saving() {
     return;
   }
   const Done done = saving_.get();
-  state_.notice = done ? fmt::format("{} {}", text(Text::kSaved, settings_.language), saving_path_)
-                       : done.error();
+  state_.notice = done ? fmt::format("{} {}", text(Text::kSaved), saving_path_) : done.error();
   touched();
 }
 
@@ -103,7 +102,7 @@ void Window::Impl::begin_film(const std::string& path) {
   film_ = std::move(*film);
   film_has_moved_ = false;
   film_ends_ = {};
-  state_.notice = fmt::format("{} {}", text(Text::kFilmRuns, settings_.language), path);
+  state_.notice = fmt::format("{} {}", text(Text::kFilmRuns), path);
   if (shown_.moment->state == PlayState::kPaused) {
     state_.code.follows = true;
     commands_.push(PlayCommand{});
@@ -128,7 +127,7 @@ void Window::Impl::end_film() {
   if (saving_.valid()) saving_.wait();
   end_saving();
   saving_path_ = film_->path();
-  state_.notice = text(Text::kFilmEnds, settings_.language);
+  state_.notice = Text::kFilmEnds;
   saving_ = std::async(std::launch::async, [film = std::move(film_)] {
     Done done = film->finish();
     Platform::wake();

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "base/wall_shift.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/mmap/column_relief.h"
+#include "surface/wall_shift.h"
 
 namespace kerf {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/mesh_patch.h"
-#include "base/wall_course.h"
 #include "stock/zmap/mmap/gap_grid.h"
 #include "stock/zmap/tile_cut_ids.h"
-#include "stock/zmap/tile_relief.h"
+#include "surface/tile_relief.h"
+#include "surface/wall_course.h"
 
 namespace kerf {
 

@@ -35,7 +35,6 @@ class GapTile {
     tops_.fill(kNoTop);
   }
   bool empty() const { return count_ == 0; }
-  std::size_t gap_count() const { return count_; }
   bool has(std::size_t cell) const { return first_[cell] != kNone; }
   /// All gaps lie below this: the highest that there has been. kNoTop: there was none.
   float below_mm() const { return below_mm_; }

@@ -9,10 +9,10 @@
 namespace kerf {
 namespace {
 
-constexpr double kNone = ShrunkSweep::kNone;
+constexpr double kNoContact = ShrunkSweep::kNone;
 
 struct Found {
-  double t = kNone;
+  double t = kNoContact;
   double depth = 0;
 };
 
@@ -142,7 +142,7 @@ class HeadScan {
 double order_along(const CutMove& move, const Vec3& point) {
   if (!move.arc) return glm::dot(point - move.from_mm, move.to_mm - move.from_mm);
   const std::vector<Vec3> points = arc_chord_points(move, kChordTolerance_mm);
-  double best = 0, nearest = kNone;
+  double best = 0, nearest = kNoContact;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double distance = glm::length(points[i] - point);
     if (distance >= nearest) continue;
@@ -164,7 +164,7 @@ std::optional<Contact> find_head_contact(const TileGrid& grid, const GapGrid& ga
   Vec3 from = move.from_mm;
   for (const Vec3& to : points) {
     const Found found = HeadScan(grid, gaps, tool, from, to, tolerance_mm).run();
-    if (found.t != kNone) {
+    if (found.t != kNoContact) {
       if (!contact) contact = Contact{from + found.t * (to - from), 0};
       contact->depth_mm = std::max(contact->depth_mm, found.depth);
     }

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "base/translate.h"
 #include "stock/move_reach.h"
 #include "stock/state_bytes.h"
 #include "stock/zmap/blank_grid.h"
@@ -81,11 +82,11 @@ MMap::~MMap() = default;
 
 Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
   Result<TileGrid> grid =
-      make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, "an M-map");
+      make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, tr("an M-map"));
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
   auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
-  impl->sweeper.follow_rims(options.blank.bodies);
+  impl->sweeper.follow_sides(options.blank.bodies);
   return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 
@@ -104,7 +105,7 @@ Result<std::unique_ptr<MMap>> MMap::load(const std::string& path, int threads, Z
   return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 
-Done MMap::can_cut(const Cutter& cutter) { return check_bottom(cutter, "an M-map"); }
+Done MMap::can_cut(const Cutter& cutter) { return check_bottom(cutter, tr("an M-map")); }
 
 void MMap::cut(const Cutter& cutter, std::span<const CutMove> moves,
                std::vector<CutReport>& reports) {
@@ -284,6 +285,11 @@ MeshPatch MMap::patch(std::uint32_t tile, int level) const {
 
 std::shared_ptr<const HeightGrid> MMap::height_grid() const {
   return has_gaps() ? nullptr : height_view(impl_->grid());
+}
+
+std::optional<HeightGrid> MMap::present_heights() const {
+  if (has_gaps()) return std::nullopt;
+  return present_view(impl_->grid());
 }
 
 }  // namespace kerf

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "stock/present_heights.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/mmap/gap_grid.h"
 #include "stock/zmap/zmap.h"
@@ -34,7 +35,7 @@ namespace kerf {
 /// is_vertical() denies. Reads no files, knows no GL.
 /// Source: several intervals per cell as in T. Van Hook, "Real-time shaded NC milling display",
 /// SIGGRAPH 1986.
-class MMap final : public StockModel {
+class MMap final : public StockModel, public PresentHeights {
  public:
   /// Errors as ZMap::create(). `kernel` and `threads` change no bit of the result.
   static Result<std::unique_ptr<MMap>> create(const ZMapOptions& options);
@@ -81,6 +82,7 @@ class MMap final : public StockModel {
   MeshPatch patch(std::uint32_t tile, int level) const override;
   /// Null while there are gaps: heights alone would not show them.
   std::shared_ptr<const HeightGrid> height_grid() const override;
+  std::optional<HeightGrid> present_heights() const override;
 
   int nx() const;
   int ny() const;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/mesh_patch.h"
+#include "base/translate.h"
 #include "stock/zmap/state_file.h"
 
 namespace kerf {
@@ -69,7 +70,7 @@ Result<SavedColumns> parse_columns(const std::string& bytes, const std::string& 
   if (!heights) return Error{heights.error()};
   const std::size_t size = heights->rest.size();
   if (size % sizeof(Record) != 0)
-    return Error{fmt::format("{}: {} bytes of gaps are no whole number of them", name, size)};
+    return Error{trf("{}: {} bytes of gaps are no whole number of them", name, size)};
   const std::size_t tiles = heights->state.grid.tile_count();
   SavedColumns saved{std::move(heights->state.grid), GapGrid(tiles), heights->state.blank_mm3};
   const std::size_t count = size / sizeof(Record);
@@ -86,7 +87,7 @@ Result<SavedColumns> parse_columns(const std::string& bytes, const std::string& 
     for (; n < count && record(n).cell == cell; ++n)
       gaps.push_back({record(n).low, record(n).high, MeshPatch::kNotCut, MeshPatch::kNotCut});
     if (!set_gaps(saved.heights, cell, gaps, saved.gaps))
-      return Error{fmt::format("{}: gap {} does not lie in its column", name, first)};
+      return Error{trf("{}: gap {} does not lie in its column", name, first)};
   }
   return saved;
 }

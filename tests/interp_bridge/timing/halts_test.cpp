@@ -49,10 +49,10 @@ std::vector<HaltRun> recorded_runs() {
     fields >> kind;
     if (kind == "run") {
       HaltRun& run = runs.emplace_back();
-      std::string seconds, road;
-      fields >> run.name >> seconds >> road;
+      std::string seconds, interpreter;
+      fields >> run.name >> seconds >> interpreter;
       run.seconds = mean_of(seconds);
-      run.bridge_only = road == "bridge";
+      run.bridge_only = interpreter == "bridge";
     } else if (kind == "at") {
       Vec3 place_mm{0};
       fields >> place_mm.x >> place_mm.y >> place_mm.z;
@@ -123,7 +123,7 @@ double path_error_mm(const std::vector<Motion>& motions, const Plan& plan,
   return worst;
 }
 
-void compare(InterpreterChoice road) {
+void compare(InterpreterChoice interpreter) {
   const std::vector<HaltRun> runs = recorded_runs();
   ASSERT_GE(runs.size(), 40U);
   const TestFolder folder;
@@ -133,11 +133,11 @@ void compare(InterpreterChoice road) {
   std::printf("%-24s %10s %10s %8s %9s\n", "program", "measured s", "planned s", "error",
               "path mm");
   for (const HaltRun& measured : runs) {
-    if (measured.bridge_only && road == InterpreterChoice::kText) continue;
+    if (measured.bridge_only && interpreter == InterpreterChoice::kText) continue;
     ProgramOptions options;
     options.path = std::string(HALT_RUNS "/") + measured.name + ".ngc";
     options.tool_table_path = table;
-    options.interpreter = road;
+    options.interpreter = interpreter;
     options.machine.start[2] = 100;
     options.machine.start_known = true;
     options.machine.tool_lengths = true;
@@ -146,7 +146,7 @@ void compare(InterpreterChoice road) {
 #endif
     ProgramRun run = run_program(options);
     ASSERT_TRUE(run.opened) << run.messages();
-    if (road == InterpreterChoice::kText) {
+    if (interpreter == InterpreterChoice::kText) {
       place_start(run.motions, {{0, 0, 100}}, true);
       const std::vector<Vec3> lengths_mm = lengths_by_line(options.path);
       for (Motion& m : run.motions) {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "tests/twin/kinematics/recorded_places.h"
+#include "tests/twin/machine/kinematics/recorded_places.h"
 
 namespace kerf {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "machine_io/can/can_encode.h"
 #include "machine_io/can/can_socket_source.h"
+#include "tests/machine_io/can/can_encode.h"
 
 namespace kerf {
 namespace {

@@ -14,10 +14,10 @@
 #include <string>
 #include <thread>
 
-#include "machine_io/can/can_encode.h"
 #include "machine_io/can/can_socket_source.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/machine_io/can/can_bus.h"
+#include "tests/machine_io/can/can_encode.h"
 
 namespace kerf {
 namespace {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -90,13 +91,13 @@ void pause_for(milliseconds time) { std::this_thread::sleep_for(time); }
     record.joint[0] = status.collision_seconds;
     record.joint[1] = status.off_path_mm;
     record.joint[2] = status.collision_ahead * 100 + status.off_path * 10 + status.stale;
-    record.program_line = head_fault(status) == nullptr ? status.finding_line : -1;
+    record.program_line = !head_fault(status) ? status.finding_line : -1;
     put(record);
   }
 }
 
-int end_saying(const char* text, int status) {
-  std::fprintf(stderr, "kerf-hal: %s\n", text);
+int end_saying(const std::string& text, int status) {
+  std::fprintf(stderr, "kerf-hal: %s\n", text.c_str());
   return status;
 }
 
@@ -135,9 +136,16 @@ int play(std::string_view mode, std::uintmax_t earlier_starts) {
   if (mode == "echo") echo_status();
   if (mode == "silent") stay();
   if (mode == "strange") return strange_values();
-  if (mode == "none") return end_saying("no LinuxCNC runs on this computer", kHalExitNoLinuxCnc);
-  if (mode == "refused") return end_saying("HAL's shared memory is full", kHalExitTrouble);
+  if (mode == "none") return end_saying(filled_in(HalMessage::kNoLinuxCnc), kHalExitNoLinuxCnc);
+  if (mode == "refused") return end_saying(filled_in(HalMessage::kHalFull), kHalExitTrouble);
   if (mode == "usage") return end_saying("unknown argument --rate", kHalExitUsage);
+  if (mode == "old-kerf") {
+    const char* const fault = text_of(HalMessage::kOtherVersion);
+    put(record_number(0));  // what was said before it is forgotten with it
+    pause_for(milliseconds(50));
+    end_saying(filled_in(HalMessage::kBadStatus, fault), 0);
+    stay();
+  }
   if (mode == "mute") {
     close(STDERR_FILENO);
     be_good(milliseconds(20));

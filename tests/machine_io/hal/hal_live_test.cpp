@@ -316,7 +316,7 @@ TEST_F(HalLive, ASecondOneReadsAndSaysThatThePinsAreTaken) {
   ASSERT_EQ(bytes.size(), sizeof(HalSampleRecord));
   HalSampleRecord record;
   std::memcpy(&record, bytes.data(), sizeof(record));
-  EXPECT_EQ(head_fault(record), nullptr);
+  EXPECT_FALSE(head_fault(record).has_value());
   EXPECT_NE(record.on & kHalPinsTaken, 0u);
   EXPECT_EQ(record.joint_count, 3u);
   EXPECT_NEAR(record.joint[2], 5 + kWork[2] + kToolLength, 1e-6);

@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
+
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
@@ -220,7 +224,19 @@ TEST_F(HalSourceTest, ComesBackWithLinuxCnc) {
                        }),
             3);
   EXPECT_EQ(source.status().trouble, "LinuxCNC has ended (it asked kerf-hal to end)");
-  read_until(source, [&] { return source.status().samples > 10; });
+  // The first sample behind it says so, and no other.
+  std::vector<bool> restarted;
+  AxisSample sample;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (source.status().samples <= 10 && std::chrono::steady_clock::now() < end) {
+    if (source.next(sample, std::chrono::milliseconds(50)) != PositionSource::Next::kSample) {
+      continue;
+    }
+    restarted.push_back(sample.restarted);
+  }
+  ASSERT_GE(restarted.size(), 2U);
+  EXPECT_TRUE(restarted[0]);
+  EXPECT_EQ(std::count(restarted.begin(), restarted.end(), true), 1);
   EXPECT_EQ(source.status().reconnects, 1u);
   EXPECT_EQ(source.status().errors, 0u);
   EXPECT_EQ(source.status().trouble, "");
@@ -231,6 +247,45 @@ TEST_F(HalSourceTest, ARefusalIsAnErrorAndTriedAgain) {
   HalSource source = make("refused");
   read_until(source, [&] { return source.status().errors == 2; });
   EXPECT_EQ(source.status().trouble, "HAL's shared memory is full");
+}
+
+/// kerf-hal speaks English; its words are looked up where they are shown.
+TEST_F(HalSourceTest, SaysWhatKerfHalSaysInTheLanguageInUse) {
+  setenv("TEXTDOMAINDIR", KERF_LOCALES, 1);
+  ASSERT_TRUE(use_language("de"));
+  {
+    HalSource source = make("none");
+    read_until(source, [&] { return starts() >= 2; });
+    EXPECT_EQ(source.status().trouble, "auf diesem Rechner läuft kein LinuxCNC");
+  }
+  {
+    HalSource source = make("version");
+    read_until(source, [&] { return source.status().state == SourceState::kFailed; });
+    EXPECT_EQ(source.status().trouble,
+              "von kerf-hal kam ein Datensatz einer anderen Version: kerf und kerf-hal müssen "
+              "dieselbe Version haben");
+  }
+  {
+    HalSource source = make("old-kerf");
+    read_until(source, [&] { return !source.status().trouble.empty(); });
+    EXPECT_EQ(source.status().trouble,
+              "über stdin kam ein Datensatz einer anderen Version; die Pins kerf.* bleiben "
+              "veraltet");
+  }
+  use_language("en");
+}
+
+/// So that kerf finds them again in what comes: no text is the beginning of another one.
+TEST(HalMessageTest, TextsAreToldApart) {
+  for (int i = 0; i < static_cast<int>(HalMessage::kCount_); ++i) {
+    const HalTextParts one = parts_of(static_cast<HalMessage>(i));
+    EXPECT_FALSE(one.before.empty());
+    for (int j = 0; j < static_cast<int>(HalMessage::kCount_); ++j) {
+      if (i == j) continue;
+      const HalTextParts other = parts_of(static_cast<HalMessage>(j));
+      EXPECT_FALSE(other.before.starts_with(one.before)) << one.before << " / " << other.before;
+    }
+  }
 }
 
 TEST_F(HalSourceTest, PausesGrowBetweenAttempts) {

@@ -314,6 +314,7 @@ TEST(Recorder, WhatTheSourceLostAndASetClockAreInTheRecording) {
     sample.host_ns = begin_ns + static_cast<std::int64_t>(i) * 10'000'000 + ahead_ns;
     sample.set(0, static_cast<double>(i));
     sample.program = states[i];
+    sample.restarted = i == 3;
     if (i == 1) (*recorder)->note_lost(21);
     if (set_s[i] != 0) (*recorder)->note_clock_set(set_s[i] * 1'000'000'000);
     (*recorder)->record(sample);
@@ -327,6 +328,7 @@ TEST(Recorder, WhatTheSourceLostAndASetClockAreInTheRecording) {
   for (std::size_t i = 0; i < states.size(); ++i) {
     EXPECT_EQ(log.samples[i].host_ns, begin_ns + static_cast<std::int64_t>(i) * 10'000'000) << i;
     EXPECT_EQ(log.samples[i].program, states[i]) << i;
+    EXPECT_EQ(log.samples[i].restarted, i == 3) << i;
   }
 }
 

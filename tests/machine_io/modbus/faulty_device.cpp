@@ -172,7 +172,9 @@ void FaultyDevice::take_questions(bool& closed) {
     ++questions_;
     functions_ |= std::uint64_t{1} << (question[rtu_ ? 1 : 7] & 63U);
     const Fault fault = fault_;
-    if (fault == Fault::kSilent) continue;
+    const std::size_t count_at = rtu_ ? 4 : 10;
+    const bool is_refused = (question[count_at] << 8 | question[count_at + 1]) < refused_below_;
+    if (fault == Fault::kSilent || (is_refused && !refuses_by_exception_)) continue;
     if (fault == Fault::kClose) {
       closed = true;
       return;
@@ -181,7 +183,8 @@ void FaultyDevice::take_questions(bool& closed) {
     if (fault == Fault::kLate) due += std::chrono::milliseconds(late_ms_);
     // A device answers one question after the other, whatever becomes of it meanwhile.
     if (!out_.empty()) due = std::max(due, out_.back().due);
-    out_.push_back({due, answer(question, fault)});
+    out_.push_back({due, answer(question, is_refused ? Fault::kException2 : fault)});
+    if (!is_refused) ++good_answers_;
   }
 }
 

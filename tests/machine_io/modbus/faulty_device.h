@@ -68,9 +68,16 @@ class FaultyDevice {
   void kill();
   void set(Fault fault) { fault_ = fault; }
   void set_late(std::chrono::milliseconds late) { late_ms_ = static_cast<int>(late.count()); }
+  /// Refuses (exception 2), or does not answer, what asks for fewer registers.
+  void refuse_below(int count, bool by_exception) {
+    refused_below_ = count;
+    refuses_by_exception_ = by_exception;
+  }
   /// RTU: sends three bytes unasked, at once.
   void chatter();
   int questions() const { return questions_; }
+  /// Of them those that were answered with registers.
+  int good_answers() const { return good_answers_; }
   /// Function codes that were ever asked for, as bits.
   std::uint64_t functions() const { return functions_; }
 
@@ -109,7 +116,10 @@ class FaultyDevice {
 
   std::atomic<Fault> fault_ = Fault::kNone;
   std::atomic<int> late_ms_ = 0;
+  std::atomic<int> refused_below_ = 0;
+  std::atomic<bool> refuses_by_exception_ = false;
   std::atomic<int> questions_ = 0;
+  std::atomic<int> good_answers_ = 0;
   std::atomic<std::uint64_t> functions_ = 0;
 };
 

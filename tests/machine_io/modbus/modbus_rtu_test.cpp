@@ -119,6 +119,82 @@ TEST(ModbusRtu, is_in_step_again_within_a_second) {
   }
 }
 
+/// Old answers and new ones cannot be told apart by their length there.
+TEST(ModbusRtu, without_parts_it_is_in_step_within_a_second_of_the_first_good_answer) {
+  struct Kind {
+    const char* name;
+    int refused_below;
+    bool by_exception;
+    bool is_small;
+  };
+  const Kind kinds[] = {{"refuses", 16, true, false},
+                        {"does not answer", 16, false, false},
+                        {"has few registers", 0, false, true}};
+  for (const Kind& kind : kinds) {
+    for (const int timeout_ms : {50, 200}) {
+      const auto device = FaultyDevice::rtu();
+      device->refuse_below(kind.refused_below, kind.by_exception);
+      ModbusSettings settings = settings_for(*device, true);
+      settings.timeout_ms = timeout_ms;
+      if (kind.is_small) {
+        for (std::size_t i = 1; i < kMaxPositions; ++i) settings.axes[i].reset();
+        settings.tool.reset();
+        settings.line.reset();
+      }
+      ModbusSource source(settings);
+      const auto more_samples = [&source](std::uint64_t count) {
+        const std::uint64_t wanted = source.status().samples + count;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        AxisSample sample;
+        while (source.status().samples < wanted && std::chrono::steady_clock::now() < end) {
+          const double begin_s = FaultyDevice::now_s();
+          if (source.next(sample, milliseconds(20)) != Next::kSample) continue;
+          EXPECT_GE(sample.position[0], begin_s) << "an old reading passes for a new one";
+        }
+        return source.status().samples >= wanted;
+      };
+      const auto wait_for = [&](const auto& done) {
+        AxisSample sample;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!done() && std::chrono::steady_clock::now() < end) {
+          source.next(sample, milliseconds(10));
+        }
+      };
+      ASSERT_TRUE(more_samples(5)) << source.status().trouble;
+      device->set(Fault::kSilent);
+      const auto silent_since = std::chrono::steady_clock::now();
+      wait_for([&] {
+        return std::chrono::steady_clock::now() - silent_since > std::chrono::seconds(4);
+      });
+      const int good = device->good_answers();
+      device->set(Fault::kNone);
+      wait_for([&] { return device->good_answers() > good; });
+      const auto well_since = std::chrono::steady_clock::now();
+      ASSERT_TRUE(more_samples(1)) << source.status().trouble;
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - well_since;
+      EXPECT_LT(took.count(), 1.0) << kind.name << ", timeout_ms " << timeout_ms;
+    }
+  }
+}
+
+/// What is late and cannot be told apart: none of it passes for new.
+TEST(ModbusRtu, an_old_answer_never_passes_for_a_new_one_without_parts) {
+  for (const int late_ms : {150, 350, 777, 1500}) {
+    const auto device = FaultyDevice::rtu();
+    device->refuse_below(16, true);
+    ModbusSource source(settings_for(*device, true));
+    SourceWatch watch(source);
+    ASSERT_TRUE(watch.more_samples(5)) << source.status().trouble;
+    device->set_late(milliseconds(late_ms));
+    device->set(Fault::kLate);
+    const int questions = device->questions();
+    EXPECT_TRUE(watch.until([&] { return device->questions() >= questions + 5; },
+                            std::chrono::seconds(60)));
+    device->set(Fault::kNone);
+    EXPECT_TRUE(watch.more_samples(20)) << source.status().trouble;
+  }
+}
+
 TEST(ModbusRtu, a_late_answer_is_stamped_when_it_was_asked_for) {
   const auto device = FaultyDevice::rtu();
   ModbusSettings settings = settings_for(*device, true);

@@ -1,11 +1,11 @@
 // Arcs in outlines: what is written, by a reader of its own, against closed forms.
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "stock/sheet/outline_arcs.h"
 #include "stock/sheet/outline_file.h"
 #include "stock/sheet/punch_shape.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/stock/sheet/sheet_samples.h"
 
 namespace kerf {
@@ -60,15 +60,11 @@ struct Drawing {
   }
 };
 
-std::string file_text(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 Drawing drawn(const SheetOutline& outline) {
-  const std::string path = ::testing::TempDir() + "arcs.dxf";
+  const TemporaryFolder folder;
+  const std::string path = folder / "arcs.dxf";
   EXPECT_TRUE(write_outline_dxf(outline, kTolerance_mm, path));
-  std::istringstream in(file_text(path));
+  std::istringstream in(read_file(path));
   Drawing drawing;
   std::string code, value, kind;
   while (std::getline(in, code) && std::getline(in, value)) {
@@ -207,7 +203,8 @@ TEST(SheetArcs, a_circle_of_short_chords_is_a_circle) {
 }
 
 TEST(SheetArcs, a_circle_that_is_read_cut_and_written_again_keeps_its_radius) {
-  const std::string path = ::testing::TempDir() + "again.dxf";
+  const TemporaryFolder folder;
+  const std::string path = folder / "again.dxf";
   SheetOutline outline = rectangle_outline({0, 0}, {60, 40});
   std::ofstream(path) << "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\n30.5\n20\n20.25\n40\n15.1\n"
                          "0\nENDSEC\n0\nEOF\n";
@@ -267,9 +264,10 @@ TEST(SheetArcs, curves_of_any_cuts_are_where_the_chords_are) {
 TEST(SheetArcs, svg_has_the_same_arcs) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 5);
   test::cut(*sheet, 1, {arc({30, 20}, 10, 0, 2 * kPi), line({10, 8}, {10, 31})});
-  const std::string path = ::testing::TempDir() + "arcs.svg";
+  const TemporaryFolder folder;
+  const std::string path = folder / "arcs.svg";
   ASSERT_TRUE(write_outline_svg(main_outline(*sheet), kTolerance_mm, path));
-  const std::string text = file_text(path);
+  const std::string text = read_file(path);
   // Two halves of the hole, y downward, to the left first; two ends of the slot.
   EXPECT_NE(text.find("M40.5000 20.0000\nA10.5000 10.5000 0 0 0 19.5000 20.0000\n"
                       "A10.5000 10.5000 0 0 0 40.5000 20.0000\nZ\n"),

@@ -1,9 +1,7 @@
 // Outlines from and to drawings, and punch shapes.
-#include <filesystem>
-#include <fstream>
-
 #include "stock/sheet/outline_file.h"
 #include "stock/sheet/punch_shape.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/stock/sheet/sheet_samples.h"
 
 namespace kerf {
@@ -156,7 +154,8 @@ TEST(SheetOutline, cut_off_anywhere_gives_an_error_or_an_outline) {
 TEST(SheetOutline, written_and_read_again) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 5);
   test::cut(*sheet, 1, {test::line({5, 5}, {55, 30}), test::arc({30, 20}, 12, 0, 2 * kPi)});
-  const std::string folder = ::testing::TempDir();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path() + "/";
   for (const SheetPiece& piece : sheet->pieces()) {
     const SheetOutline outline = sheet->outline_of(piece.number);
     ASSERT_TRUE(write_outline_dxf(outline, 0.005, folder + "piece.dxf"));
@@ -186,8 +185,9 @@ TEST(PunchShape, areas) {
   EXPECT_NEAR(area("obround:5:20"), 15 * 5 + kPi * 6.25, 0.05);
   EXPECT_NEAR(area("obround:5:5"), kPi * 6.25, 0.05);
   EXPECT_NEAR(area("polygon:6:10"), 6 * 0.5 * 25 * std::sin(kPi / 3), 1e-9);
-  const std::string file = ::testing::TempDir() + "star.svg";
-  std::ofstream(file) << "<svg><path d='M-5 0L0 -2 5 0 0 2z'/></svg>";
+  const TemporaryFolder folder;
+  const std::string file = folder / "star.svg";
+  write_file(file, "<svg><path d='M-5 0L0 -2 5 0 0 2z'/></svg>");
   EXPECT_NEAR(area("svg:" + file), 20, 1e-9);
 }
 

@@ -210,8 +210,8 @@ TEST(ConfigKeys, Words) {
 TEST(ConfigKeys, ModelsAreThoseThereAre) {
   std::string words = "auto";
   for (const StockModelRow& row : stock_models()) words.append("|").append(row.name);
-  for (const KeySpec& key : key_table()) {
-    if (key.path != "stock.model") continue;
+  for (const Setting& key : key_table()) {
+    if (key.key != "stock.model") continue;
     EXPECT_EQ(key.words, words);
   }
 }
@@ -240,9 +240,9 @@ TEST(ConfigKeys, BlankNamesWhatIsWrong) {
 TEST(KeyTable, IsWhatSchemaShowsAndConsistent) {
   const std::string schema = schema_text();
   std::vector<std::string> seen;
-  for (const KeySpec& spec : key_table()) {
-    const std::string path(spec.path);
-    EXPECT_FALSE(spec.purpose.empty()) << path;
+  for (const Setting& spec : key_table()) {
+    const std::string path(spec.key);
+    EXPECT_STRNE(spec.purpose, "") << path;
     EXPECT_NE(schema.find(spec.purpose), std::string::npos) << path;
     const bool number = spec.type == KeyType::kNumber || spec.type == KeyType::kWhole;
     EXPECT_EQ(spec.least < spec.most, number) << path;
@@ -281,18 +281,18 @@ std::string minimal(SourceMask type, const std::string& item = {}) {
 /// A default that the table tells is the one that counts.
 TEST(KeyTable, DefaultsAreTrue) {
   int checked = 0;
-  for (const KeySpec& spec : key_table()) {
-    if (spec.fallback.empty() || spec.path.find(".mux.") != spec.path.npos) continue;
-    if (spec.path.starts_with("machine.links.")) continue;  // of a list, which no --set reaches
+  for (const Setting& spec : key_table()) {
+    if (spec.fallback.empty() || spec.key.find(".mux.") != spec.key.npos) continue;
+    if (spec.key.starts_with("machine.links.")) continue;  // of a list, which no --set reaches
     for (const SourceMask type : {kForModbus, kForCan, kForHal, kForLog}) {
       if ((spec.sources & type) == 0) continue;
       // Keys of their own formats, which a map excludes.
-      if (type == kForLog && (spec.path == "source.format" || spec.path == "source.period_s" ||
-                              spec.path == "source.channel")) {
+      if (type == kForLog && (spec.key == "source.format" || spec.key == "source.period_s" ||
+                              spec.key == "source.channel")) {
         continue;
       }
       const std::string fallback(spec.fallback);
-      std::string path(spec.path);
+      std::string path(spec.key);
       std::string item;
       std::vector<std::string> sets;
       constexpr std::string_view kItem = "source.map.ITEM.";

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/twin/config/config_support.h"
-#include "twin/kinematics/tool_path.h"
+#include "twin/machine/kinematics/tool_path.h"
 
 namespace kerf {
 namespace {

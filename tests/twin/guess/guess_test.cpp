@@ -7,13 +7,13 @@
 
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
-#include "tests/twin/motions.h"
-#include "twin/blank_choice.h"
+#include "tests/twin/process/motions.h"
 #include "twin/guess/beam_guess.h"
-#include "twin/guess/guess_row.h"
 #include "twin/guess/program_survey.h"
 #include "twin/guess/tool_guess.h"
-#include "twin/motion_geometry.h"
+#include "twin/job/blank_choice.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/report/guess_row.h"
 
 namespace kerf {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "twin/motion_geometry.h"
-#include "twin/motion_nearest.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "twin/kinematics/tool_path.h"
+#include "twin/machine/kinematics/tool_path.h"
 
 namespace kerf {
 namespace {
@@ -26,7 +26,7 @@ TEST(LiveFrame, MachineCoordinatesBecomeThoseOfTheTip) {
   const LiveFrame frame(options);
   AxisSample sample = at(100, 50, 20);
   sample.tool_offset_z_mm = 40;
-  const LivePose pose = frame.pose_of(sample, std::nullopt).value();
+  const SamplePose pose = frame.pose_of(sample, std::nullopt).value();
   // The other way round, as LinuxCNC goes: R * (w + g92) + g5x + length.
   const double c = std::cos(kPi / 6), s = std::sin(kPi / 6);
   const Vec3 w = pose.tip_mm + options.work.g92_mm;

@@ -9,9 +9,12 @@
 #include <utility>
 
 #include "tests/twin/live/live_shop.h"
-#include "tests/twin/punch_shop.h"
-#include "tests/twin/torch_shop.h"
+#include "tests/twin/process/punch_shop.h"
+#include "tests/twin/process/stages.h"
+#include "tests/twin/process/torch_shop.h"
 #include "twin/live/live_cutter.h"
+#include "twin/process/punch/punch_plan.h"
+#include "twin/process/torch/torch_plan.h"
 
 namespace kerf {
 namespace {
@@ -54,15 +57,14 @@ MotionList panel() {
 struct Dry {
   explicit Dry(const MotionList& program, const TurretPointer& press)
       : sheet(sheet_200()),
-        book({}, stock_model(StockKind::kSheet).can_cut),
-        stage(*sheet, book, log, TimelineOptions{}) {
-    stage.punch(press);
+        resolver({}, stock_model(StockKind::kSheet).can_cut),
+        stage(*sheet, resolver, log, TimelineOptions{}, *punch_process(press)) {
     stage.take(program.list());
     stage.finish();
   }
   std::unique_ptr<Sheet> sheet;
   FindingLog log;
-  ToolBook book;
+  ToolResolver resolver;
   CutStage stage;
 };
 
@@ -86,8 +88,7 @@ class SheetWatch {
     options.guard_s = guard_s;
     options.gap = gap;
     options.joined_late = joined_late;
-    options.turret = std::move(press);
-    if (!options.turret) options.beam = BeamSettings{};
+    options.process = press ? punch_process(std::move(press)) : torch_process({});
     std::unique_ptr<Program> listed;
     if (program) listed = std::make_unique<ListedProgram>(program->list());
     cutter_ =
@@ -121,7 +122,7 @@ class SheetWatch {
   const Sheet& sheet() const { return *sheet_; }
   double punched_mm2() const { return 20000 - sheet_->remaining_mm2(); }
   LiveCutter& cutter() { return *cutter_; }
-  PunchTotals totals() const { return cutter_->stage().punch()->totals(); }
+  PunchTotals totals() const { return test::punch_of(cutter_->stage()).totals(); }
 
   struct Warned {
     AheadWarning warning;
@@ -146,11 +147,11 @@ TEST(LivePunch, AlongTheProgramTheSheetIsThatOfTheDryRunBitForBit) {
     watch.run(machine, rate_hz);
     EXPECT_EQ(watch.sheet().digest(), dry.sheet->digest()) << rate_hz;
     EXPECT_EQ(ids_of(watch.log), Ids{}) << rate_hz;
-    EXPECT_EQ(watch.totals().hits, dry.stage.punch()->totals().hits);
-    EXPECT_NEAR(watch.totals().nibbled_mm, dry.stage.punch()->totals().nibbled_mm, 1e-9);
-    ASSERT_EQ(watch.cutter().stage().punch()->freed().size(), 1U) << "the slug of the circle";
-    EXPECT_EQ(watch.cutter().stage().punch()->freed()[0].source,
-              dry.stage.punch()->freed()[0].source);
+    EXPECT_EQ(watch.totals().hits, test::punch_of(dry.stage).totals().hits);
+    EXPECT_NEAR(watch.totals().nibbled_mm, test::punch_of(dry.stage).totals().nibbled_mm, 1e-9);
+    ASSERT_EQ(watch.cutter().stage().process().freed().size(), 1U) << "the slug of the circle";
+    EXPECT_EQ(watch.cutter().stage().process().freed()[0].source,
+              dry.stage.process().freed()[0].source);
   }
 }
 
@@ -292,7 +293,7 @@ TEST(LivePunch, WithoutAProgramTheSpindleIsTheTrigger) {
   const Dry dry(program, press);
   SheetWatch watch(nullptr, press);
   watch.run(machine, 200, tell_spindle);
-  EXPECT_EQ(watch.totals().hits, dry.stage.punch()->totals().hits);
+  EXPECT_EQ(watch.totals().hits, test::punch_of(dry.stage).totals().hits);
   EXPECT_EQ(watch.totals().hits, 2U + 11);
   // Places of samples on a line: what is between strokes is not as long to the last digit.
   EXPECT_NEAR(watch.punched_mm2(), 20000 - dry.sheet->remaining_mm2(), 1);
@@ -453,7 +454,7 @@ TEST(SheetGuard, PartsThatWereFreeBeforeAreKnownToIt) {
       sample.spindle_rpm = 1000;
     }
     watch.take(sample, t);
-    cut_free = cut_free || !watch.cutter().stage().torch()->freed().empty();
+    cut_free = cut_free || !watch.cutter().stage().process().freed().empty();
   }
   EXPECT_TRUE(cut_free);
   const Ids ids = warned_of(watch);

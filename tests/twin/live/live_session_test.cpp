@@ -4,13 +4,14 @@
 
 #include <array>
 #include <atomic>
-#include <deque>
+#include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
+#include "tests/twin/live/listed_source.h"
 #include "tests/twin/live/live_shop.h"
 #include "twin/live/live_json.h"
 
@@ -18,38 +19,6 @@ namespace kerf {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// Hands out what it is given, then waits or ends.
-class ListedSource final : public PositionSource {
- public:
-  explicit ListedSource(std::vector<AxisSample> samples, bool ends = true)
-      : samples_(samples.begin(), samples.end()), ends_(ends) {}
-  Next next(AxisSample& sample, std::chrono::milliseconds patience) override {
-    if (!samples_.empty()) {
-      sample = samples_.front();
-      if (sample.host_ns == AxisSample::kNoTime) sample.host_ns = 0;
-      samples_.pop_front();
-      ++status_.samples;
-      status_.state = SourceState::kReading;
-      return Next::kSample;
-    }
-    if (ends_) {
-      status_.state = end_state;
-      return Next::kEnd;
-    }
-    std::this_thread::sleep_for(patience);
-    return Next::kNothing;
-  }
-  const SourceStatus& status() const override { return status_; }
-  std::string describe() const override { return "a list"; }
-
-  SourceState end_state = SourceState::kEnded;
-  SourceStatus status_;
-
- private:
-  std::deque<AxisSample> samples_;
-  bool ends_;
-};
 
 LiveOptions with_block() {
   LiveOptions options;
@@ -233,23 +202,48 @@ TEST(LiveSession, WhatIsWrongWithTheSourceIsToldOnceEach) {
 }
 
 TEST(LiveSession, AnAnswerThatWasHeldUpIsNoClockThatWasSet) {
-  const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                  std::chrono::system_clock::now().time_since_epoch())
-                                  .count();
+  const std::int64_t now_ns = real_time_ns();
   for (const bool is_set : {false, true}) {
     std::vector<AxisSample> samples;
     for (int i = 0; i < 10; ++i) {
       AxisSample sample = at(10, 20, 1, 0);
       sample.device_ns = AxisSample::kNoTime;
-      // One is 5 s off, or all from there on.
-      const bool is_off = is_set ? i >= 5 : i == 5;
+      // One is 5 s off, or several; and the clock with these.
+      const bool is_off = is_set ? i >= 5 : i == 5 || i == 7 || i == 8;
       sample.host_ns = now_ns - (is_off ? 5'000'000'000 : 0);
       samples.push_back(sample);
     }
     LiveOptions options = with_block();
     options.speed = 0;
+    auto asked = std::make_shared<int>(0);
+    options.clock_ns = [asked, is_set] {
+      return real_time_ns() - (is_set && (*asked)++ >= 5 ? 5'000'000'000 : 0);
+    };
     Watched run(std::move(options), std::make_unique<ListedSource>(std::move(samples)));
     EXPECT_EQ(run.report().live->clock_steps, is_set ? 1U : 0U);
+  }
+}
+
+/// A clock that is set between two samples, of which the second may have been read before.
+TEST(ClockWatch, ASampleThatWasReadBeforeIsOfTheTimeBefore) {
+  const auto steady_ns = [] {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  };
+  for (const std::int64_t by_ns :
+       std::array<std::int64_t, 3>{3'600'000'000'000, -7'000'000'000, 300'000'000}) {
+    std::int64_t offset_ns = 0;
+    const auto clock_ns = [&] { return steady_ns() + offset_ns; };
+    ClockWatch watch(clock_ns);
+    EXPECT_EQ(watch.set_by(clock_ns(), steady_ns()), 0);
+    const std::int64_t read_ns = clock_ns();
+    offset_ns = by_ns;
+    EXPECT_EQ(watch.set_by(read_ns, steady_ns()), 0);
+    // Held up for a tenth of a second.
+    EXPECT_NEAR(static_cast<double>(watch.set_by(clock_ns() - 100'000'000, steady_ns())),
+                static_cast<double>(by_ns), 2e6);
+    EXPECT_EQ(watch.set_by(clock_ns(), steady_ns()), 0);
   }
 }
 
@@ -276,11 +270,8 @@ class LosingSource final : public PositionSource {
     }
     sample = at(10, 20, 5, 0);
     sample.device_ns = AxisSample::kNoTime;
-    sample.host_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                         std::chrono::system_clock::now().time_since_epoch())
-                         .count();
-    // An hour forward behind the third one.
-    if (next_ >= 3) sample.host_ns += std::int64_t{3'600'000'000'000};
+    set_ = next_ >= 3;
+    sample.host_ns = clock_ns();
     if (next_ == 2) status_.lost = 21;
     ++next_;
     status_.state = SourceState::kReading;
@@ -288,10 +279,15 @@ class LosingSource final : public PositionSource {
   }
   const SourceStatus& status() const override { return status_; }
   std::string describe() const override { return "a source that loses"; }
+  /// An hour forward behind the third one.
+  std::int64_t clock_ns() const {
+    return real_time_ns() + (set_ ? std::int64_t{3'600'000'000'000} : 0);
+  }
 
  private:
   SourceStatus status_;
   int next_ = 0;
+  std::atomic<bool> set_ = false;
 };
 
 TEST(LiveSession, WhatIsLostAndWhenTheClockWasSetIsTapped) {
@@ -300,8 +296,9 @@ TEST(LiveSession, WhatIsLostAndWhenTheClockWasSetIsTapped) {
   options.for_s = 0.3;
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
-  auto session =
-      LiveSession::open(std::move(options), std::make_unique<LosingSource>(), diagnostics, outcome);
+  auto source = std::make_unique<LosingSource>();
+  options.clock_ns = [&losing = *source] { return losing.clock_ns(); };
+  auto session = LiveSession::open(std::move(options), std::move(source), diagnostics, outcome);
   ASSERT_TRUE(session);
   std::vector<std::uint64_t> lost;
   std::vector<double> set_s;

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "tests/twin/live/live_shop.h"
-#include "tests/twin/torch_shop.h"
+#include "tests/twin/process/stages.h"
+#include "tests/twin/process/torch_shop.h"
 #include "twin/live/live_cutter.h"
+#include "twin/process/torch/torch_plan.h"
 
 namespace kerf {
 namespace {
@@ -43,7 +45,7 @@ class TorchWatch {
     LiveCutOptions options;
     options.frame.tool_length = ToolLengthFrom::kNone;
     options.wait_for_program = true;
-    options.beam = std::move(beam);
+    options.process = torch_process(std::move(beam));
     std::unique_ptr<Program> listed;
     if (program) listed = std::make_unique<ListedProgram>(program->list());
     cutter_ =
@@ -109,12 +111,12 @@ TEST(LiveSheet, OnThePathTheBeamIsTheProgramsAndThePartsAreThoseOfTheDryRun) {
     watch.run(machine, rate_hz, kUntold, kUntold);
     expect_parts(watch.sheet(), dry.sheet(), 0.01 * 4 * 40);
     EXPECT_EQ(watch.count(FindingId::kNoBeam), 0U);
-    const TorchStage& torch = *watch.cutter().stage().torch();
-    EXPECT_EQ(torch.totals().pierces, dry.report().cuts.pierces);
-    EXPECT_NEAR(torch.totals().cut_mm, dry.report().cuts.cut_mm, 0.5);
-    ASSERT_EQ(torch.freed().size(), dry.stage().torch()->freed().size());
+    const TorchStage& torch = test::torch_of(watch.cutter().stage());
+    EXPECT_EQ(torch.totals().pierces, test::cuts_of(dry.report()).pierces);
+    EXPECT_NEAR(torch.totals().cut_mm, test::cuts_of(dry.report()).cut_mm, 0.5);
+    ASSERT_EQ(torch.freed().size(), dry.stage().process().freed().size());
     for (std::size_t i = 0; i < torch.freed().size(); ++i)
-      EXPECT_EQ(torch.freed()[i].source, dry.stage().torch()->freed()[i].source);
+      EXPECT_EQ(torch.freed()[i].source, dry.stage().process().freed()[i].source);
   }
 }
 

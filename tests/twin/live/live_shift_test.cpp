@@ -14,6 +14,9 @@
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
 #include "tests/twin/live/live_shop.h"
+#include "tests/twin/process/stages.h"
+#include "tests/twin/process/torch_shop.h"
+#include "twin/process/torch/torch_plan.h"
 
 namespace kerf {
 namespace {
@@ -37,10 +40,10 @@ const ToolSources& cutters() {
 /// What programs leave of one block, one after the other.
 double removed_by(const std::vector<std::vector<Motion>>& programs) {
   auto stock = block();
-  ToolBook book(cutters(), ZMap::can_cut);
+  ToolResolver resolver(cutters(), ZMap::can_cut);
   for (const std::vector<Motion>& program : programs) {
     FindingLog log;
-    CutStage stage(*stock, book, log, TimelineOptions{});
+    CutStage stage(*stock, resolver, log, TimelineOptions{});
     stage.take(program);
     stage.finish();
   }
@@ -120,6 +123,11 @@ class Shift {
   void jog_up_as_line(double z, int line) { go({tip_.x, tip_.y, z}, line, ProgramState::kIdle); }
   /// By hand.
   void jog(const Vec3& to) { go(to, 0, ProgramState::kIdle); }
+  /// Nobody looks, and then it is there.
+  void blind(double seconds, const Vec3& then) {
+    t_s_ += seconds;
+    tip_ = then;
+  }
   /// The program, between two times of its plan; it is driven to where it begins.
   void run(std::size_t program, double from_s = 0,
            double until_s = std::numeric_limits<double>::infinity()) {
@@ -136,6 +144,15 @@ class Shift {
       see(machine.tip(end_s), line_at(machine, end_s), ProgramState::kRunning);
     }
     stand(0.3);
+  }
+  /// From its beginning, and not seen any more then.
+  void run_unfinished(std::size_t program, double until_s) {
+    const RunningMachine& machine = machines_[program];
+    go(machine.tip(0), std::max(2, line_at(machine, 0)), ProgramState::kRunning);
+    for (double t = 0; t < until_s; t += kPeriod_s) {
+      const bool dwells = machine.at(t).motion.kind == MotionKind::kDwell;
+      see(machine.tip(t), dwells ? 0 : std::max(2, line_at(machine, t)), ProgramState::kRunning);
+    }
   }
   void finish() { shift_->finish(); }
   LiveShift& shift() { return *shift_; }
@@ -237,6 +254,22 @@ TEST_P(EveryShift, ASecondRunIsOneOfItsOwnInTheSamePartOrTheNext) {
   }
 }
 
+TEST(LiveShift, AnEndThatNobodySawIsOneWhereOnlyWaysHomeWereLeft) {
+  const std::vector<Motion> program = looped(slots(10));
+  // The last way home, from Z5 to Z20, and the dwell before it; then what feeds a slot before that.
+  for (const double before_end_s : {0.2, 3.0}) {
+    Shift shift({program}, Says::kLine, OnProgramEnd::kNewBlank);
+    shift.stand(0.5);
+    shift.run_unfinished(0, shift.duration_s(0) - before_end_s);
+    shift.blind(1.8, {-30, -30, 60});
+    shift.run(0);
+    shift.finish();
+    const bool whole = before_end_s < 1;
+    expect_runs(shift, {{1, "a", whole ? RunEnd::kFinished : RunEnd::kAborted},
+                        {whole ? 2U : 1U, "a", RunEnd::kFinished}});
+  }
+}
+
 TEST_P(EveryShift, WhichOfSeveralProgramsItIsItsPathTells) {
   const std::vector<Motion> a = looped(slots(10));
   const std::vector<Motion> b = looped(slots(22));
@@ -277,6 +310,68 @@ INSTANTIATE_TEST_SUITE_P(Sources, EveryShift,
                                   : says.param == Says::kLine ? "Line"
                                                               : "Nothing";
                          });
+
+/// One square a run, in a new sheet each: what the last run cut is not what the first one did.
+TEST(LiveShift, EachRunHasItsOwnSheet) {
+  for (const OnProgramEnd on_end : {OnProgramEnd::kNewBlank, OnProgramEnd::kKeep}) {
+    MotionList small = test::torch_program();
+    test::square(small, {40, 20}, 20);
+    small.traverse({0, 0, 20});
+    MotionList large = test::torch_program();
+    test::square(large, {120, 30}, 40);
+    large.traverse({0, 0, 20});
+    const std::vector<std::vector<Motion>> programs{{small.list().begin(), small.list().end()},
+                                                    {large.list().begin(), large.list().end()}};
+    ShiftOptions options;
+    options.cutting.frame.tool_length = ToolLengthFrom::kNone;
+    options.cutting.wait_for_program = true;
+    options.cutting.process = torch_process({});
+    options.on_end = on_end;
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+      options.programs.push_back(
+          {std::string(1, static_cast<char>('a' + i)), [&programs, i](const ProgramStart&) {
+             return std::make_unique<ListedProgram>(programs[i]);
+           }});
+    }
+    FindingLog log;
+    const ToolSources torch = test::torch_of("kerf:2");
+    LiveShift shift(test::sheet_200(), torch, log, options,
+                    std::make_unique<ListedProgram>(programs[0]));
+    double t_s = 0;
+    for (const std::size_t i : {0U, 1U, 0U}) {
+      std::vector<Motion> known = programs[i];
+      for (Motion& m : known) m.start_known = true;
+      const RunningMachine machine(known);
+      for (double at_s = 0; at_s < machine.duration_s(); at_s += 0.01, t_s += 0.01) {
+        AxisSample sample = machine.sample(at_s, true);
+        sample.program = ProgramState::kRunning;
+        shift.take(sample, t_s, false);
+      }
+      AxisSample end = machine.sample(machine.duration_s());
+      end.line = 0;
+      end.program = ProgramState::kIdle;
+      for (int k = 0; k < 30; ++k, t_s += 0.01) shift.take(end, t_s, false);
+    }
+    shift.finish();
+    ASSERT_EQ(shift.past().size(), 3U);
+    const bool is_new = on_end == OnProgramEnd::kNewBlank;
+    // A square of 20 within the kerf of 2 mm is 18 mm, one of 40 is 38; with their leads of 3 mm
+    // the torch goes 4 x 20 + 3 and 4 x 40 + 3.
+    const double wanted_mm[] = {83, 163, 83};
+    const double wanted_mm2[] = {18.0 * 18, 38.0 * 38, 18.0 * 18};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const LiveRun& run = shift.past()[i];
+      ASSERT_TRUE(run.sheet) << i;
+      EXPECT_NEAR(test::cuts_of(*run.sheet).cut_mm, wanted_mm[i], 0.5) << i;
+      EXPECT_EQ(test::cuts_of(*run.sheet).pierces, 1U) << i;
+      if (!is_new) continue;
+      ASSERT_EQ(run.sheet->parts.size(), 1U) << i;
+      EXPECT_NEAR(run.sheet->parts[0].area_mm2, wanted_mm2[i], 1) << i;
+    }
+    if (is_new) continue;
+    EXPECT_EQ(shift.past()[1].sheet->parts.size(), 2U);
+  }
+}
 
 TEST(LiveShift, APausedProgramThatGoesOnIsNoOther) {
   const std::vector<Motion> program = looped(slots(10));

@@ -8,9 +8,9 @@
 
 #include "interp_bridge/program.h"
 #include "machine_io/position_source.h"
-#include "tests/twin/motions.h"
-#include "twin/motion_geometry.h"
-#include "twin/timeline.h"
+#include "tests/twin/process/motions.h"
+#include "twin/machine/timeline.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "tests/twin/live/live_shop.h"
-#include "twin/motion_nearest.h"
+#include "twin/motion/motion_nearest.h"
 
 namespace kerf {
 namespace {
@@ -92,8 +92,8 @@ class Chase {
     for (const TimedMotion& m : machine_.list()) follower_.append(m.motion, m.step, {});
   }
 
-  FollowedPoint see(double t_s, bool with_line = false, Vec3 error_mm = Vec3{0}) {
-    FollowedPlace place;
+  PathMatch see(double t_s, bool with_line = false, Vec3 error_mm = Vec3{0}) {
+    MatchQuery place;
     place.here.tip_mm = machine_.tip(t_s) + error_mm;
     place.elapsed_s = t_s - t_s_;
     place.tool = machine_.at(t_s).motion.tool;
@@ -152,7 +152,7 @@ TEST(PathFollower, NeverAheadAndNeverFarBehind) {
       const double end_s = chase.machine().duration_s();
       double worst_ahead_s = 0, worst_behind_s = 0;
       for (double t = 0; t < end_s; t += 1 / rate_hz) {
-        const FollowedPoint point = chase.see(t, with_line);
+        const PathMatch point = chase.see(t, with_line);
         ASSERT_TRUE(point.on_path) << rate_hz << " Hz, " << t;
         EXPECT_LT(point.distance_mm, 0.021);
         worst_ahead_s = std::max(worst_ahead_s, point.program_s - t);
@@ -228,7 +228,7 @@ TEST(PathFollower, ClosedPathsAreNotJumpedOver) {
         for (double t = 0; t < end_s; t += 1 / rate_hz) {
           const Vec3 error_mm =
               rounded_tip(chase.machine(), t, kRounding_s) - chase.machine().tip(t);
-          const FollowedPoint point = chase.see(t, with_line, error_mm);
+          const PathMatch point = chase.see(t, with_line, error_mm);
           ASSERT_TRUE(point.on_path) << t;
           worst_ahead_s = std::max(worst_ahead_s, point.program_s - t);
           worst_behind_s = std::max(worst_behind_s, t - point.program_s);
@@ -252,7 +252,7 @@ TEST(PathFollower, FollowingErrorsDoNotConfuseIt) {
   Chase chase(busy_program());
   const double end_s = chase.machine().duration_s();
   for (double t = 0; t < end_s; t += 0.01) {
-    const FollowedPoint point = chase.see(t, false, {noise(random), noise(random), noise(random)});
+    const PathMatch point = chase.see(t, false, {noise(random), noise(random), noise(random)});
     ASSERT_TRUE(point.on_path);
     EXPECT_LT(point.distance_mm, 0.08);
     EXPECT_LT(std::abs(point.program_s - t), 0.6);
@@ -262,12 +262,12 @@ TEST(PathFollower, FollowingErrorsDoNotConfuseIt) {
 
 TEST(PathFollower, AMachineThatPausesOrRunsAtHalfSpeedIsFollowed) {
   Chase chase(busy_program());
-  FollowedPoint point;
+  PathMatch point;
   for (int i = 0; i < 100; ++i) point = chase.see(0.01 * i);
   const double mm = chase.driven_mm();
   PathFollower& follower = chase.follower();
   // It stands for ten minutes.
-  FollowedPlace still;
+  MatchQuery still;
   still.here.tip_mm = chase.machine().tip(0.99);
   still.elapsed_s = 0.1;
   for (int i = 0; i < 6000; ++i) {
@@ -290,7 +290,7 @@ TEST(PathFollower, ATipBesideThePathIsNotOnIt) {
   Chase chase(busy_program());
   for (int i = 0; i < 100; ++i) chase.see(0.01 * i);
   const double mm = chase.driven_mm();
-  const FollowedPoint point = chase.see(1.0, false, {0, 0, 0.7});
+  const PathMatch point = chase.see(1.0, false, {0, 0, 0.7});
   EXPECT_FALSE(point.on_path);
   EXPECT_NEAR(point.distance_mm, 0.7, 0.05);
   EXPECT_EQ(chase.driven_mm(), mm);
@@ -304,7 +304,7 @@ TEST(PathFollower, StandsBeforeAToolChangeUntilTheMachineHasChanged) {
   program.feed({5, 0, 0}).feed({9, 0, 0});
   Chase chase(program);
   const auto see = [&](Vec3 tip, int tool) {
-    FollowedPlace place;
+    MatchQuery place;
     place.here.tip_mm = tip;
     place.elapsed_s = 0.5;
     place.tool = tool;
@@ -322,7 +322,7 @@ TEST(PathFollower, StandsBeforeAToolChangeUntilTheMachineHasChanged) {
 
 TEST(PathFollower, AnIdleMachineIsNotYetOnThePath) {
   Chase chase(busy_program());
-  FollowedPlace place;
+  MatchQuery place;
   place.here.tip_mm = {0, 0, 5};
   place.line = 0;
   EXPECT_FALSE(chase.follower().follow(place, [](const PathFollower::DrivenPart&) {}).on_path);

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/twin/live/rotary_shop.h"
-#include "twin/kinematics/switched_motions.h"
+#include "twin/machine/kinematics/switched_motions.h"
 
 namespace kerf {
 namespace {
@@ -81,7 +81,7 @@ TEST(RotaryLive, TheWorkpieceIsThatOfTheDryRun) {
     ASSERT_GT(removed_mm3, 100) << one.name;
     for (const Positions positions : {Positions::kJoints, Positions::kAxes}) {
       for (const bool followed : {false, true}) {
-        // By axes the road is another one only as far as the frame.
+        // By axes the way is another one only as far as the frame.
         if (positions == Positions::kAxes && (followed || &one != &all.back())) continue;
         // A thousand samples a second of one machine are enough.
         const double rate_hz = &one == &all[2] ? 1000 : 200;

@@ -11,8 +11,8 @@
 #include "stock/octree/octree.h"
 #include "tests/twin/live/live_shop.h"
 #include "tests/twin/live/surface_deviation.h"
-#include "twin/cut_stage.h"
 #include "twin/live/live_cutter.h"
+#include "twin/process/cut_stage.h"
 
 namespace kerf {
 
@@ -102,9 +102,9 @@ class RotaryShop {
   }
   std::unique_ptr<Octree> dry_run(const std::vector<Motion>& program) const {
     auto stock = block();
-    ToolBook book(tools(), Octree::can_cut);
+    ToolResolver resolver(tools(), Octree::can_cut);
     FindingLog log;
-    CutStage stage(*stock, book, log, timeline());
+    CutStage stage(*stock, resolver, log, timeline());
     stage.set_frame(frame_);
     stage.take(program);
     stage.finish();
@@ -116,7 +116,7 @@ class RotaryShop {
     std::unique_ptr<Octree> stock;
     FindingLog log;
     LiveFacts facts;
-    LivePlace place;
+    ToolState place;
   };
   /// The machine runs the program, and is asked `rate_hz` times a second. `followed`: the program
   /// is known (`other_program`: is taken to be that one). `lines`: the source names the program's

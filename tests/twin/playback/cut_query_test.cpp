@@ -83,9 +83,9 @@ TEST(CutQuery, NamesTheMotionThatMadeACell) {
   const auto track = test::track_of(motions);
   const CutQuery query(track, test::two_tools());
   const std::unique_ptr<ZMap> stock = test::block_40();
-  ToolBook book(test::two_tools(), ZMap::can_cut);
+  ToolResolver resolver(test::two_tools(), ZMap::can_cut);
   FindingLog log;
-  CutStage stage(*stock, book, log, TimelineOptions{});
+  CutStage stage(*stock, resolver, log, TimelineOptions{});
   stage.take(motions);
   stage.finish();
   std::mt19937 random(6);
@@ -141,7 +141,7 @@ TEST(CutQuery, WallsAndRimsOfAFlatCutter) {
   program.at({0, 0, 0}).tool(1).spindle(true).feed({20, 0, -4});  // motion 1, sloping down
   const auto track = test::track_of(program.list());
   const CutQuery query(track, tools);
-  const TrackPlace end = track->place_before(2);
+  const TrackPosition end = track->place_before(2);
   EXPECT_EQ(query.last_cut_at({10, 2.999, -2}, 1e-6, end), 1U);
   EXPECT_EQ(query.last_cut_at({10, 3.001, -2}, 1e-6, end), std::nullopt);
   EXPECT_EQ(query.last_cut_at({10, 3.001, -2}, 0.002, end), 1U);

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "tests/interp_bridge/program_test_support.h"
-#include "twin/finding_json.h"
-#include "twin/kinematics/machine_kinematics.h"
-#include "twin/session.h"
+#include "twin/findings/finding_json.h"
+#include "twin/machine/kinematics/machine_kinematics.h"
+#include "twin/session/session.h"
 
 namespace kerf {
 namespace {

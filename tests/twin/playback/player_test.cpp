@@ -59,7 +59,7 @@ TEST(Player, StartsAtTheBeginning) {
   const auto state = player->state();
   ASSERT_TRUE(state);
   EXPECT_EQ(state->mode, PlayerMode::kPaused);
-  EXPECT_EQ(state->place, (TrackPlace{0, 0, 0}));
+  EXPECT_EQ(state->place, (TrackPosition{0, 0, 0}));
   EXPECT_EQ(state->stock->digest(), test::block_40()->digest());
   EXPECT_DOUBLE_EQ(state->remaining_s, player->track().duration_s());
 }

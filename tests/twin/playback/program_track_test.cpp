@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/twin/playback/tracks.h"
-#include "twin/motion_geometry.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 namespace {
@@ -288,15 +288,15 @@ TEST(ProgramTrack, LongBlocksSpanManyWords) {
 
 TEST(ProgramTrack, PlacesInTime) {
   const auto track = looping_track();
-  EXPECT_EQ(track->place_at(-1), (TrackPlace{0, 0, 0}));
-  EXPECT_EQ(track->place_at(0.25), (TrackPlace{0, 0.25, 0.25}));
-  EXPECT_EQ(track->place_at(1.25), (TrackPlace{1, 0, 1.25})) << "the wait behind the first";
-  EXPECT_EQ(track->place_at(1.5), (TrackPlace{1, 0, 1.5}));
-  EXPECT_EQ(track->place_at(2), (TrackPlace{1, 0.5, 2}));
+  EXPECT_EQ(track->place_at(-1), (TrackPosition{0, 0, 0}));
+  EXPECT_EQ(track->place_at(0.25), (TrackPosition{0, 0.25, 0.25}));
+  EXPECT_EQ(track->place_at(1.25), (TrackPosition{1, 0, 1.25})) << "the wait behind the first";
+  EXPECT_EQ(track->place_at(1.5), (TrackPosition{1, 0, 1.5}));
+  EXPECT_EQ(track->place_at(2), (TrackPosition{1, 0.5, 2}));
   EXPECT_EQ(track->duration_s(), 13 * 1.5 + 1);
-  EXPECT_EQ(track->place_at(1e9), (TrackPlace{14, 0, 20.5}));
-  EXPECT_EQ(track->place_before(3), (TrackPlace{3, 0, 4.5}));
-  EXPECT_EQ(track->place_before(14), (TrackPlace{14, 0, 20.5}));
+  EXPECT_EQ(track->place_at(1e9), (TrackPosition{14, 0, 20.5}));
+  EXPECT_EQ(track->place_before(3), (TrackPosition{3, 0, 4.5}));
+  EXPECT_EQ(track->place_before(14), (TrackPosition{14, 0, 20.5}));
 }
 
 TEST(ProgramTrack, ToolChanges) {
@@ -316,7 +316,7 @@ TEST(ProgramTrack, EmptyProgram) {
   const auto track = ProgramTrackBuilder().build({}, {});
   EXPECT_TRUE(track->empty());
   EXPECT_EQ(track->duration_s(), 0);
-  EXPECT_EQ(track->place_at(3), (TrackPlace{0, 0, 0}));
+  EXPECT_EQ(track->place_at(3), (TrackPosition{0, 0, 0}));
   EXPECT_EQ(track->first_of_line({0, 1}), std::nullopt);
   EXPECT_EQ(track->line_with_motions({0, 1}), std::nullopt);
   EXPECT_EQ(track->next_block(0), 0U);

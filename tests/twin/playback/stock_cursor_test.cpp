@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tests/twin/playback/tracks.h"
-#include "twin/finding_json.h"
+#include "twin/findings/finding_json.h"
 #include "twin/playback/frontier.h"
 
 namespace kerf {

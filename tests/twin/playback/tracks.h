@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "stock/zmap/zmap.h"
-#include "tests/twin/motions.h"
-#include "twin/cut_stage.h"
-#include "twin/motion_geometry.h"
+#include "tests/twin/process/motions.h"
+#include "twin/motion/motion_geometry.h"
 #include "twin/playback/player.h"
 #include "twin/playback/program_track.h"
+#include "twin/process/cut_stage.h"
 
 namespace kerf::test {
 
@@ -100,9 +100,9 @@ inline std::vector<Motion> varied_program(unsigned seed, int moves) {
 inline std::string digest_after(std::span<const Motion> motions, std::size_t count,
                                 std::vector<Finding>* findings = nullptr) {
   const std::unique_ptr<ZMap> stock = block_40();
-  ToolBook book(two_tools(), ZMap::can_cut);
+  ToolResolver resolver(two_tools(), ZMap::can_cut);
   FindingLog log;
-  CutStage stage(*stock, book, log, TimelineOptions{});
+  CutStage stage(*stock, resolver, log, TimelineOptions{});
   stage.take(motions.first(count));
   stage.finish();
   if (findings) *findings = log.kept();
@@ -123,9 +123,9 @@ inline std::map<std::size_t, std::string> digests_after(std::span<const Motion> 
   for (const Motion& m : motions) timeline.push(m);
   timeline.finish();
   const std::unique_ptr<ZMap> stock = block_40();
-  ToolBook book(two_tools(), ZMap::can_cut);
+  ToolResolver resolver(two_tools(), ZMap::can_cut);
   FindingLog log;
-  CutStage stage(*stock, book, log, TimelineOptions{});
+  CutStage stage(*stock, resolver, log, TimelineOptions{});
   std::sort(counts.begin(), counts.end());
   std::map<std::size_t, std::string> digests;
   std::size_t done = 0;

@@ -11,8 +11,8 @@
 #include "tests/interp_bridge/program_test_support.h"
 #include "tests/stock/octree/dual_contour/mesh_checks.h"
 #include "tests/stock/octree/octree_samples.h"
-#include "twin/kinematics/tool_path.h"
-#include "twin/motion_geometry.h"
+#include "twin/machine/kinematics/tool_path.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf::test {
 namespace {

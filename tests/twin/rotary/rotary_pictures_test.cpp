@@ -4,7 +4,7 @@
 // then look at tests/golden/rotary/*.png before they are committed.
 #include <gtest/gtest.h>
 
-#include "tests/twin/kerf_process.h"
+#include "tests/twin/cli/kerf_process.h"
 #include "tests/viewer/golden_picture.h"
 
 namespace kerf {
@@ -38,9 +38,15 @@ void expect_looks_as_it_did(const Job& job) {
                       kPartDifference);
 }
 
-/// One of this folder's programs.
+/// Where the program and the INI lie: among the examples, or in this folder.
+std::string start_of(const std::string& name) {
+  if (name == "wrapped_shaft") return KERF_EXAMPLES "/fourth-axis/" + name;
+  if (name == "swivel_mill") return KERF_EXAMPLES "/five-axes/" + name;
+  return ROTARY_FOLDER "/" + name;
+}
+
 Job own(const std::string& name, std::vector<std::string> work) {
-  const std::string start = std::string(ROTARY_FOLDER) + "/" + name;
+  const std::string start = start_of(name);
   return {name, start + ".ngc", start + ".ini", std::move(work)};
 }
 
@@ -80,7 +86,7 @@ TEST(RotaryPictures, MachinesWhoseHeadsTilt) {
   for (const auto& [name, what] : views) {
     SCOPED_TRACE(name);
     const TestFolder folder;
-    const std::string start = std::string(ROTARY_FOLDER) + "/" + name;
+    const std::string start = start_of(name);
     KerfCall call;
     call.arguments = {"view",     start + ".ngc",
                       "--ini",    start + ".ini",

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/twin/kerf_process.h"
+#include "tests/twin/cli/kerf_process.h"
 
 namespace kerf {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kOfRemoved = 0.01;
 
 Json report_of(std::vector<std::string> arguments) {
   const TestFolder folder;
-  const std::string start = std::string(ROTARY_FOLDER) + "/swivel_mill";
+  const std::string start = KERF_EXAMPLES "/five-axes/swivel_mill";
   KerfCall call;
   call.arguments = std::move(arguments);
   call.arguments.insert(call.arguments.end(),
@@ -31,19 +31,19 @@ Json report_of(std::vector<std::string> arguments) {
 }
 
 TEST(SwivelReplay, TheRecordedMachineCutsWhatTheProgramSays) {
-  const std::string start = std::string(ROTARY_FOLDER) + "/swivel_mill";
+  const std::string start = KERF_EXAMPLES "/five-axes/swivel_mill";
   const Json dry = report_of({"run", start + ".ngc", "--interp", "bridge"});
   const double wanted = dry["stock"]["removed_mm3"];
   ASSERT_GT(wanted, 1000);
-  const Json followed = report_of({"replay", start + ".csv", "--speed", "max", "--program",
-                                   start + ".ngc", "--interp", "bridge"});
+  const Json followed = report_of({"replay", ROTARY_FOLDER "/swivel_mill.csv", "--speed", "max",
+                                   "--program", start + ".ngc", "--interp", "bridge"});
   EXPECT_EQ(followed["stock"]["model"], "octree");
   EXPECT_NEAR(followed["stock"]["removed_mm3"], wanted, kOfRemoved * wanted);
   EXPECT_EQ(followed["live"]["off_path"], 0) << followed["live"];
   const Json alone =
-      report_of({"replay", start + ".csv", "--speed", "max", "--set", "machine.work_offset.x=5",
-                 "--set", "machine.work_offset.y=-3", "--set", "machine.work_offset.z=-40", "--set",
-                 "machine.tool_length=none"});
+      report_of({"replay", ROTARY_FOLDER "/swivel_mill.csv", "--speed", "max", "--set",
+                 "machine.work_offset.x=5", "--set", "machine.work_offset.y=-3", "--set",
+                 "machine.work_offset.z=-40", "--set", "machine.tool_length=none"});
   EXPECT_NEAR(alone["stock"]["removed_mm3"], wanted, kOfRemoved * wanted);
 }
 

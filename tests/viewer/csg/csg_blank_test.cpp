@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "tests/viewer/csg/cylinder_blank.h"
+
 namespace kerf {
 namespace {
 

@@ -10,6 +10,8 @@
 #include <optional>
 #include <random>
 
+#include "tests/viewer/csg/cylinder_blank.h"
+#include "tests/viewer/csg/depth_values.h"
 #include "tests/viewer/csg/ray_oracle.h"
 #include "tests/viewer/csg/test_outlines.h"
 #include "viewer/gl_context.h"

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "base/height_grid.h"
-#include "viewer/window/orbit_camera.h"
+#include "surface/height_grid.h"
+#include "viewer/orbit_camera.h"
 
 namespace kerf::test {
 

@@ -59,6 +59,15 @@ TEST_F(SceneLinesTest, ALineThroughTheMiddlesOfPixelsIsOnePixelWide) {
   }
 }
 
+TEST_F(SceneLinesTest, AWiderLineHasMoreRows) {
+  projection_.line_px = 3.0f;
+  draw(path({{5, 10.5, 0.5}, {15, 10.5, 0.5}}));
+  for (int y = 0; y < kSide_px; ++y) {
+    const bool is_on = std::abs(y - (kSide_px - 11)) <= 1;
+    ASSERT_EQ(red(8, y), is_on ? std::lround(255 * 0.10) : 255) << y;
+  }
+}
+
 TEST_F(SceneLinesTest, BetweenTwoRowsItIsHalfInBoth) {
   draw(path({{5, 10, 0.5}, {15, 10, 0.5}}));
   const double half = 0.5 * 255 + 0.5 * 255 * 0.10;

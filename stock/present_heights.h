@@ -1,0 +1,20 @@
+// stock/present_heights.h - the heights of a model, for a look between two cuts.
+#pragma once
+
+#include <optional>
+
+#include "surface/height_grid.h"
+
+namespace kerf {
+
+/// A model of heights that lets others look at them as they are now, without a copy: good until the
+/// model is changed or asked for anything else. Moves held back do not count yet. Costs about a
+/// nanosecond a tile.
+class PresentHeights {
+ public:
+  virtual ~PresentHeights() = default;
+  /// None where heights do not say all (gaps below them).
+  virtual std::optional<HeightGrid> present_heights() const = 0;
+};
+
+}  // namespace kerf

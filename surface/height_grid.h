@@ -1,0 +1,110 @@
+// surface/height_grid.h - a workpiece as one height per cell, to be looked at.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/geometry.h"
+
+namespace kerf {
+
+/// When the surface between two neighbouring cells is smooth, else there is a wall. Whoever makes a
+/// surface from heights goes by these, so that all of them show the same one:
+///   - the heights differ by no more than kSmooth says (a slope: height over the cell's edge), or
+///   - the surface goes on rising (falling) beyond one of the two, there at least
+///     1 / kMostSteepening as fast, and either the step is no more than kSteepest says, or the
+///     surface goes on beyond both, there steeper than kFlank.
+/// So the foot of a flank and its top edge are sharp, and all that lies between them is alike,
+/// however steep. A cell with material and one without are never one surface.
+struct SurfaceSlopes {
+  static constexpr float kSmooth = 0.25f;   ///< about 14 degrees
+  static constexpr float kSteepest = 6.0f;  ///< about 80 degrees
+  static constexpr float kMostSteepening = 2.5f;
+  /// 45 degrees: what is less steep on one side of a high step is its foot or its top edge.
+  static constexpr float kFlank = 1.0f;
+
+  /// `step`: the way up from one cell to the next; `before`, `after`: of the steps before and after
+  /// it; 0 where a cell has no material. `edge`: of a cell. Does not branch, so that compilers ask
+  /// about several at a time.
+  static bool is_smooth(float step, float before, float after, float edge) {
+    const float size = std::abs(step), with_before = step * before, with_after = step * after;
+    const float most = with_before > with_after ? with_before : with_after;
+    const float least = with_before < with_after ? with_before : with_after;
+    return (size <= kSmooth * edge) |
+           ((size * size <= kMostSteepening * most) &
+            ((size <= kSteepest * edge) | (least >= kFlank * edge * size)));
+  }
+};
+
+/// Heights of nx x ny cells in tiles, as a snapshot of a workpiece has them. Holds no heights of
+/// its own: it points to the snapshot's, and keeps them. Immutable, so it may cross threads.
+///
+///      j                      Each tile has kTileCells x kTileCells floats. Inside it cells lie
+///    ny +-------+---+         in blocks of kBlockX x kBlockY, blocks row by row, cells of a
+///       | 2     | 3 |         block row by row (offset()). Tiles at the far ends may be partly
+///       +-------+---+         outside; what is there must not be read.
+///       | 0     | 1 |
+///       +-------+---+  i      A cell at the floor holds no material; above the floor it is solid
+///                  nx         from the floor up to its height.
+///
+/// As long as two grids live, equal pointers of a tile mean equal heights: models copy a tile
+/// before they change one that a grid points to. That is how a view finds out what has changed.
+///
+/// Readers take a tile's pointer once and then read floats, without a call for each cell. A model
+/// with several solid intervals in a cell gives its tiles in the same way.
+class HeightGrid {
+ public:
+  static constexpr int kTileCells = 64;
+  static constexpr int kBlockX = 2;
+  static constexpr int kBlockY = 4;
+
+  /// `bounds_mm`: from the floor to the top of the blank. `tiles`: row by row from low x, y, as
+  /// many as cover the cells; good as long as `keeper` lives.
+  HeightGrid(const Box& bounds_mm, int nx, int ny, std::vector<const float*> tiles,
+             std::shared_ptr<const void> keeper)
+      : bounds_mm_(bounds_mm),
+        nx_(nx),
+        ny_(ny),
+        tiles_x_((nx + kTileCells - 1) / kTileCells),
+        tiles_(std::move(tiles)),
+        keeper_(std::move(keeper)) {}
+
+  const Box& bounds_mm() const { return bounds_mm_; }
+  int nx() const { return nx_; }
+  int ny() const { return ny_; }
+  double cell_x_mm() const { return bounds_mm_.size().x / nx_; }
+  double cell_y_mm() const { return bounds_mm_.size().y / ny_; }
+  float floor_mm() const { return static_cast<float>(bounds_mm_.min.z); }
+
+  int tiles_x() const { return tiles_x_; }
+  int tiles_y() const { return static_cast<int>(tiles_.size()) / std::max(1, tiles_x_); }
+  const float* tile(int tx, int ty) const {
+    return tiles_[static_cast<std::size_t>(ty) * static_cast<std::size_t>(tiles_x_) +
+                  static_cast<std::size_t>(tx)];
+  }
+  bool contains(int i, int j) const { return i >= 0 && j >= 0 && i < nx_ && j < ny_; }
+  /// Of a cell that the grid contains; never below the floor.
+  float height(int i, int j) const {
+    return std::max(floor_mm(), tile(i / kTileCells, j / kTileCells)[offset(i, j)]);
+  }
+
+  /// Position of cell (i, j) within its tile.
+  static std::size_t offset(int i, int j) {
+    const int x = i % kTileCells, y = j % kTileCells;
+    constexpr int kFloats = kBlockX * kBlockY, kPerRow = kTileCells / kBlockX;
+    return static_cast<std::size_t>((y / kBlockY * kPerRow + x / kBlockX) * kFloats +
+                                    y % kBlockY * kBlockX + x % kBlockX);
+  }
+
+ private:
+  Box bounds_mm_;
+  int nx_, ny_, tiles_x_;
+  std::vector<const float*> tiles_;
+  std::shared_ptr<const void> keeper_;
+};
+
+}  // namespace kerf

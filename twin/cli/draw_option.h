@@ -1,0 +1,14 @@
+// twin/cli/draw_option.h - --draw, which several commands have.
+#pragma once
+
+#include <optional>
+
+#include "twin/cli/option_reader.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+/// The draw mode that --draw names; none if it is not given, or wrong.
+std::optional<DrawMode> understand_draw(OptionReader& reader);
+
+}  // namespace kerf

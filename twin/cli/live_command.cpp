@@ -1,0 +1,333 @@
+#include "twin/cli/live_command.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/exit_code.h"
+#include "base/translate.h"
+#include "machine_io/recorder.h"
+#include "twin/cli/console.h"
+#include "twin/cli/live_console.h"
+#include "twin/cli/live_window.h"
+#include "twin/cli/scheduling.h"
+#include "twin/cli/stop_signals.h"
+#include "twin/cli/window_host.h"
+#include "twin/config/make_source.h"
+
+namespace kerf {
+namespace {
+
+/// Bits of the positions that the source can have; all of them where that is seen later.
+std::uint16_t positions_of(const ConfigSource& source) {
+  const auto mask = [](const auto& axes) {
+    std::uint16_t bits = 0;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (axes[i]) bits = static_cast<std::uint16_t>(bits | 1U << i);
+    }
+    return bits;
+  };
+  if (const auto* modbus = std::get_if<ModbusSettings>(&source)) return mask(modbus->axes);
+  if (const auto* can = std::get_if<CanSourceOptions>(&source)) return mask(can->map.axes);
+  return (1U << kMaxPositions) - 1;
+}
+
+Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
+                                                 const PositionSource& source) {
+  RecordingHead head;
+  head.source = source.describe();
+  head.kind = coordinates_of(request.config, source);
+  head.frame = request.options.cutting.frame.workpiece_frame ? CoordinateFrame::kWorkpiece
+                                                             : CoordinateFrame::kMachine;
+  head.axes = positions_of(request.config.source);
+  if (const auto* modbus = std::get_if<ModbusSettings>(&request.config.source)) {
+    head.trigger = modbus->trigger.has_value();
+  } else if (const auto* can = std::get_if<CanSourceOptions>(&request.config.source)) {
+    head.trigger = can->map.trigger.has_value();
+  }
+  head.program = std::holds_alternative<HalSettings>(request.config.source);
+  if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
+  if (!request.config.machine.joints.empty()) {
+    head.extra.emplace_back("joints", request.config.machine.joints);
+  }
+  return Recorder::create(request.record, head);
+}
+
+/// The console, and the kerf.* pins of the LinuxCNC that is watched.
+class HalObserver final : public LiveObserver {
+ public:
+  HalObserver(LiveObserver& console, HalSource& hal) : console_(console), hal_(hal) {}
+  void on_status(const LiveStatus& status) override {
+    console_.on_status(status);
+    HalStatus pins;
+    pins.collision_ahead = status.collision_in_s >= 0;
+    if (pins.collision_ahead) {
+      pins.collision_seconds = status.collision_in_s;
+      pins.finding_line = static_cast<std::int32_t>(status.collision_line);
+    }
+    pins.off_path = status.off_path_mm > 0;
+    pins.off_path_mm = status.off_path_mm;
+    pins.stale = status.state != LiveState::kLive;
+    hal_.show(pins);
+  }
+  void on_finding(const Finding& finding, const std::vector<std::string>& files) override {
+    console_.on_finding(finding, files);
+  }
+  void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override {
+    console_.on_warning(warning, files);
+  }
+  void on_run(const LiveRun& run) override { console_.on_run(run); }
+
+ private:
+  LiveObserver& console_;
+  HalSource& hal_;
+};
+
+/// The event stream: "-" is standard output, a file appears at once and grows.
+struct EventFile {
+  explicit EventFile(const std::string& path) {
+    if (path.empty()) return;
+    file = path == "-" ? stdout : std::fopen(path.c_str(), "we");
+    if (!file) error = errno;
+  }
+  ~EventFile() {
+    if (file && file != stdout) std::fclose(file);
+  }
+  EventFile(const EventFile&) = delete;
+  EventFile& operator=(const EventFile&) = delete;
+  std::FILE* file = nullptr;
+  int error = 0;
+};
+
+Diagnostic fault(std::string message) {
+  Diagnostic d;
+  d.message = std::move(message);
+  return d;
+}
+
+int exit_code(Outcome outcome, const Report& report, const Diagnostics& diagnostics) {
+  if (outcome == Outcome::kUsageError) return kExitUsage;
+  const bool finished = outcome == Outcome::kFinished || outcome == Outcome::kLossy;
+  if (!finished || has_error(diagnostics)) return kExitFailure;
+  if (outcome == Outcome::kLossy) return kExitLossy;
+  return report.findings.count(Severity::kError) > 0 ? kExitFindings : kExitGood;
+}
+
+/// The recorder and the log say what they have met.
+void close_sources(Recorder* recorder, const PositionSource* log, const std::string& path,
+                   Diagnostics& diagnostics) {
+  if (recorder) {
+    const RecorderStatus recorded = recorder->finish();
+    if (!recorded.trouble.empty()) {
+      diagnostics.push_back(fault(recorded.trouble));
+    } else if (recorded.lost > 0) {
+      Diagnostic d = fault(
+          trf("recording {}: {} samples were dropped: the disk is too slow", path, recorded.lost));
+      d.severity = Severity::kWarning;
+      diagnostics.push_back(std::move(d));
+    }
+  }
+  if (const auto* source = dynamic_cast<const LogSource*>(log)) {
+    diagnostics.insert(diagnostics.end(), source->notes().begin(), source->notes().end());
+  }
+}
+
+int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::stop_source& stop,
+          LiveWindow* window) {
+  Diagnostics diagnostics;
+  Outcome outcome = Outcome::kFailed;
+  PositionSource* const raw_source = source.get();
+  std::unique_ptr<Recorder> recorder;
+  EventFile events(request.events);
+  if (events.error != 0) {
+    diagnostics.push_back(
+        fault(fmt::format("--events: {}: {}", request.events, std::strerror(events.error))));
+  }
+  choose_frame(request, *source, diagnostics);
+  std::unique_ptr<LiveSession> session;
+  if (!has_error(diagnostics)) {
+    session = LiveSession::open(request.options, std::move(source), diagnostics, outcome);
+  }
+  if (session && !request.record.empty()) {
+    auto started = start_recorder(request, *raw_source);
+    if (started) {
+      recorder = std::move(started.value());
+      session->set_tap([&](const TappedSample& tapped) {
+        if (tapped.lost > 0) recorder->note_lost(tapped.lost);
+        if (tapped.clock_set_ns != 0) recorder->note_clock_set(tapped.clock_set_ns);
+        recorder->record(tapped.sample);
+      });
+    } else {
+      diagnostics.push_back(fault(started.error()));
+      session.reset();
+    }
+  }
+  print_diagnostics(diagnostics, request.quiet);
+  if (!session) return exit_code(outcome, Report{}, diagnostics);
+  diagnostics.clear();
+  CpuBudget budget(request.cpu_limit_percent);
+  session->set_rest([&] { return budget.rest(); });
+  LiveConsole console(request.quiet, events.file);
+  if (recorder) console.watch(*recorder);
+  std::optional<HalObserver> pins;
+  if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
+  LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
+  std::optional<LiveView> view;
+  std::optional<std::jthread> inputs;
+  if (window) {
+    session->keep_cut_ids();
+    view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
+                 window->commands());
+    observer = &*view;
+    inputs.emplace(window->watch_inputs(request, *view, stop));
+  }
+  session->set_observer(observer);
+  outcome = session->run(stop.get_token(), diagnostics);
+  // What was cut of a log whose round is over is nothing to be reported.
+  if (window && window->is_over()) return kExitGood;
+  close_sources(recorder.get(), raw_source, request.record, diagnostics);
+  if (console.events_error() != 0) {
+    diagnostics.push_back(fault(
+        fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
+  }
+  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
+                diagnostics);
+  if (console.unprinted() > 0) {
+    print_text(stderr,
+               trf("kerf: note: {} more findings; --json FILE lists them\n", console.unprinted()));
+  }
+  if (!request.quiet) {
+    const bool stdout_taken = request.outputs.uses_stdout() || request.events == "-";
+    print_lengths(stdout_taken ? stderr : stdout, summary_text(session->report()));
+  }
+  flush_console();
+  print_diagnostics(diagnostics, request.quiet);
+  // What it came to may be looked at until the window is closed.
+  if (view && !stop.stop_requested()) {
+    view->end(session->stock(), session->cut_labels(), stop.get_token());
+  }
+  return exit_code(outcome, session->report(), diagnostics);
+}
+
+/// Round after round, as the window asks for them.
+int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
+                 std::stop_source& stop, LiveWindow& window) {
+  while (true) {
+    int code = kExitGood;
+    {
+      std::stop_source round;
+      const std::stop_callback ends(stop.get_token(), [&round] { round.request_stop(); });
+      code = watch(request, std::move(source), round, &window);
+    }
+    std::optional<LiveRequest> next = window.take_next();
+    if (!next || stop.stop_requested()) return code;
+    Diagnostics diagnostics;
+    request = std::move(*next);
+    source = make_source(request.config, diagnostics);
+    print_diagnostics(diagnostics, request.quiet);
+    if (!source) return kExitFailure;
+  }
+}
+
+/// With a window, if one is wanted and there is a display; without one a machine is watched and a
+/// log replayed, too, unless the window is all that was asked for.
+int watch_in_window(const Arguments& arguments, LiveRequest& request,
+                    std::unique_ptr<PositionSource> source, std::stop_source& stop) {
+  const bool may_try = has_display() || request.needs_window;
+  if (!request.window || !may_try) return watch(request, std::move(source), stop, nullptr);
+  SceneMailbox mailbox(Window::wake);
+  CommandQueue commands;
+  LiveWindow window(mailbox, commands, arguments);
+  const bool quiet = request.quiet;
+  const auto go_on = [quiet](const std::string& reason) {
+    Diagnostic d = fault(trf("{}; going on without a window", reason));
+    d.severity = Severity::kWarning;
+    d.hint = tr("--no-view does not try one");
+    print_diagnostics({d}, quiet);
+  };
+  WindowOptions options;
+  options.draw_mode = request.draw;
+  if (request.units != LengthUnit::kMm) options.units = request.units;
+  const Result<int> code = work_beside_window(
+      options, mailbox, commands, stop,
+      [&] { return watch_rounds(request, std::move(source), stop, window); },
+      [&](const std::string& reason) {
+        window.lost = true;
+        go_on(reason);
+      });
+  if (code) return *code;
+  if (request.needs_window) {
+    Diagnostic d = fault(code.error());
+    d.hint = tr("kerf replay LOG needs no window; with --png FILE it draws what the log leaves");
+    print_diagnostics({d}, false);
+    return kExitFailure;
+  }
+  go_on(code.error());
+  return watch(request, std::move(source), stop, nullptr);
+}
+
+}  // namespace
+
+int live_command(const Arguments& arguments) {
+  Diagnostics diagnostics;
+  LiveRequest request = understand_live(arguments, diagnostics);
+  if (has_error(diagnostics)) {
+    print_diagnostics(diagnostics, false);
+    return kExitUsage;
+  }
+  show_lengths_in(request.units);
+  check_output_places(request.outputs, diagnostics);
+  if (request.window && (has_display() || request.needs_window)) {
+    check_shapes(request.config.machine.drawn, diagnostics);
+  }
+  if (arguments.command == kShadow) {
+    for (const std::string& refused : make_room()) {
+      Diagnostic d = fault(refused);
+      d.severity = Severity::kWarning;
+      diagnostics.push_back(std::move(d));
+    }
+  }
+  if (request.memory_limit_mb > 0 && !limit_memory(request.memory_limit_mb)) {
+    diagnostics.push_back(fault(fmt::format("--memory-limit: {}", std::strerror(errno))));
+  }
+  std::stop_source stop;
+  const StopSignals signals(stop, [] { remove_uncommitted_files(); });
+  std::unique_ptr<PositionSource> source;
+  if (!has_error(diagnostics)) source = make_source(request.config, diagnostics);
+  print_diagnostics(diagnostics, request.quiet);
+  const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
+  if (!source) return none_named ? kExitUsage : kExitFailure;
+  return watch_in_window(arguments, request, std::move(source), stop);
+}
+
+ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueue& commands,
+                  std::stop_source& stop, std::function<void()> on_start) {
+  ShownLog shown;
+  LiveRequest request = understand_live(arguments, shown.diagnostics);
+  check_shapes(request.config.machine.drawn, shown.diagnostics);
+  if (has_error(shown.diagnostics)) return shown;
+  std::unique_ptr<PositionSource> source = make_source(request.config, shown.diagnostics);
+  if (!source || has_error(shown.diagnostics)) return shown;
+  LiveWindow window(mailbox, commands, arguments);
+  bool has_started = false;
+  window.serve([&] {
+    if (!std::exchange(has_started, true)) on_start();
+  });
+  watch_rounds(request, std::move(source), stop, window);
+  shown.opened = window.opened();
+  if (!has_started) {
+    shown.diagnostics.push_back(fault(trf("{} cannot be replayed", arguments.options.text("LOG"))));
+  }
+  return shown;
+}
+
+}  // namespace kerf

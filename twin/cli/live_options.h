@@ -1,0 +1,46 @@
+// twin/cli/live_options.h - the command lines of `kerf shadow` and `kerf replay`, from text and
+// configuration to checked values.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/diagnostic.h"
+#include "twin/cli/outputs.h"
+#include "twin/cli/program_options.h"
+#include "twin/cli/torch_options.h"
+#include "twin/cli/work_options.h"
+#include "twin/config/live_config.h"
+#include "twin/live/live_session.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+/// The options, understood.
+struct LiveRequest {
+  LiveConfig config;
+  LiveOptions options;                 ///< all but the frame, which the source has a say in
+  LengthUnit units = LengthUnit::kMm;  ///< of what is shown
+  bool inch_machine = false;
+  std::string joint_letters;   ///< of the INI
+  std::string parameter_path;  ///< of the INI
+  std::string ini;             ///< empty: none
+  OutputPaths outputs;
+  std::string record;
+  std::string events;
+  double mesh_tolerance_mm = 0;
+  double cpu_limit_percent = 0;  ///< 0: none
+  double memory_limit_mb = 0;    ///< 0: none
+  bool quiet = false;
+  bool window = false;           ///< wanted; there may be no display
+  std::optional<DrawMode> draw;  ///< in the window; none: as it remembers it
+  bool needs_window = false;     ///< without one there is nothing to be done
+};
+
+/// All faults at once, as diagnostics. `arguments`: of kShadow or kReplay.
+LiveRequest understand_live(const Arguments& arguments, Diagnostics& diagnostics);
+
+/// How the samples of `source` are to be read: completes request.options.cutting.
+void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);
+
+}  // namespace kerf

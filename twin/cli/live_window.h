@@ -1,0 +1,68 @@
+// twin/cli/live_window.h - the window beside a session: what it shows, and what comes next in it.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "twin/cli/live_options.h"
+#include "twin/scene/live_view.h"
+#include "viewer/scene_mailbox.h"
+#include "viewer/viewer_command.h"
+
+namespace kerf {
+
+/// A session is one round. Another one follows when files of a log were changed, or when another
+/// log is opened. Declared before the sessions, so that it ends after them.
+class LiveWindow {
+ public:
+  LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments);
+
+  /// `on_start` is called before anything of a session is shown; what the user opens then ends the
+  /// round and is opened().
+  void serve(std::function<void()> on_start);
+  bool serves() const { return static_cast<bool>(on_start_); }
+
+  /// Of this round; `stop` ends it.
+  LiveViewOptions view_options(const LiveRequest& request, LiveSession& session,
+                               std::stop_source stop);
+  /// Looks at the files of this round until the thread is ended: those of a log begin the next
+  /// round, those of a machine are told.
+  std::jthread watch_inputs(const LiveRequest& request, LiveView& view, std::stop_source stop);
+
+  /// This round is over for the sake of the next one.
+  bool is_over() const { return is_over_; }
+  /// The next round, if there is one.
+  std::optional<LiveRequest> take_next();
+  const std::optional<std::string>& opened() const { return opened_; }
+
+  SceneMailbox& mailbox() { return mailbox_; }
+  CommandQueue& commands() { return commands_; }
+  /// The display is gone: the user has not closed the window.
+  std::atomic<bool> lost{false};
+
+ private:
+  ViewedJob job() const;
+  void open(const std::string& path, std::stop_source stop);
+  /// False, and why in the job's faults: what was asked for cannot be shown.
+  bool begin_next(Arguments arguments, std::stop_source stop);
+  std::vector<std::string> inputs(const LiveRequest& request) const;
+
+  SceneMailbox& mailbox_;
+  CommandQueue& commands_;
+  const Command command_;
+  std::function<void()> on_start_;
+  std::mutex mutex_;  // of what follows
+  Arguments arguments_;
+  std::optional<LiveRequest> next_;
+  std::optional<std::string> opened_;
+  std::atomic<bool> is_over_{false};
+};
+
+}  // namespace kerf

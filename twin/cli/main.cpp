@@ -1,0 +1,329 @@
+// kerf - a machine twin for LinuxCNC. The command line.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/exit_code.h"
+#include "base/suggest.h"
+#include "base/translate.h"
+#include "stock/cutter/shape_spec.h"
+#include "twin/cli/canon_command.h"
+#include "twin/cli/cli_options.h"
+#include "twin/cli/config_command.h"
+#include "twin/cli/console.h"
+#include "twin/cli/live_command.h"
+#include "twin/cli/machine_command.h"
+#include "twin/cli/option_reader.h"
+#include "twin/cli/run_command.h"
+#include "twin/cli/version.h"
+#include "twin/cli/view_command.h"
+#include "twin/job/stock_choice.h"
+
+namespace kerf {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --png part.png\n"
+    "  kerf shadow -c mill.yaml --program part.ngc\n"
+    "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
+    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  kerf canon part.ngc\n"
+    "  kerf models\n"
+    "  kerf tools\n";
+
+constexpr const char* kRunExample =
+    "Examples:\n"
+    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n"
+    "  kerf run plate.ngc --stock sheet:0,0:600,400:3 --kerf 1.2 --pierce 3 --dxf rest.dxf\n";
+
+constexpr const char* kViewExample =
+    "Examples:\n"
+    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  kerf view part.ngc --frames film --fps 25 --speed 10\n";
+
+constexpr const char* kCanonExample = tr_noop(
+    "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
+    "applies; mm, mm/min, s, degrees.\n\n"
+    "Example:\n"
+    "  kerf canon part.ngc | jq -c 'select(.kind == \"traverse\") | .to'\n");
+
+constexpr const char* kShadowExample =
+    "Examples:\n"
+    "  kerf shadow --set source.type=hal --ini mill.ini --program part.ngc --stock "
+    "box:0,0,-20:100,60,0\n"
+    "  kerf shadow -c mill.yaml --record run.csv\n";
+
+constexpr const char* kReplayExample =
+    "Example:\n"
+    "  kerf replay run.csv --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --speed max --png "
+    "part.png\n";
+
+constexpr const char* kConfigExample =
+    "Examples:\n"
+    "  kerf config check mill.yaml\n"
+    "  kerf config print mill.yaml\n"
+    "  kerf config schema\n"
+    "  kerf config completion bash\n"
+    "  kerf config man\n";
+
+constexpr const char* kMachineExample =
+    "Example:\n"
+    "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502 --frame workpiece\n";
+
+constexpr const char* kSourceList = tr_noop(
+    "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
+    "can      signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
+    "hal      pins of the LinuxCNC that runs on this computer\n"
+    "log      recordings of kerf, CSV, halsampler files, candump -l files\n");
+
+std::string model_list() {
+  std::string list;
+  for (const StockModelRow& row : stock_models()) {
+    list += fmt::format("{:<7} {}\n", row.name, tr(row.purpose));
+  }
+  return list +
+         tr("auto    sheet for a sheet, else the first of these that holds what tools, blank and "
+            "motions need; the report says why\n");
+}
+
+std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
+
+/// An argument that no command knows: exit code 2, with the nearest known one.
+int refuse_argument(const std::string& argument, const CLI::App& app, bool command_wanted) {
+  Diagnostic d;
+  std::vector<std::string> allowed;
+  if (!argument.empty() && argument[0] == '-') {
+    d.message = trf("unknown option {}", argument.substr(0, argument.find('=')));
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) allowed.push_back("--" + name);
+    }
+  } else if (command_wanted) {
+    d.message = trf("unknown command {}", in_quotes(argument));
+    for (const CLI::App* command : app.get_subcommands({})) allowed.push_back(command->get_name());
+  } else {
+    d.message = trf("{}: one argument too many", in_quotes(argument));
+  }
+  const std::string near = nearest_word(argument.substr(0, argument.find('=')), allowed);
+  if (!near.empty()) d.message += trf("; did you mean {}?", near);
+  const std::string name = app.get_parent() ? "kerf " + app.get_name() : "kerf";
+  d.hint = trf("{} --help lists what there is", name);
+  kerf::print(stderr, "{}", to_string(d));
+  return kExitUsage;
+}
+
+/// The argument to complain about: an option first, as its value may have been taken for the
+/// PROGRAM.
+const std::string* worst_argument(const std::vector<std::string>& left) {
+  if (left.empty()) return nullptr;
+  for (const std::string& argument : left) {
+    if (argument.size() > 1 && argument[0] == '-') return &argument;
+  }
+  return &left[0];
+}
+
+/// `--stock ""` is what a script with an unset variable writes: not the same as no --stock. And
+/// `--png --quiet` is no picture of the name --quiet.
+int refuse_odd_values(const CLI::App& app) {
+  int code = kExitGood;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      const bool is_option = value.starts_with("--") && app.get_option_no_throw(value) != nullptr;
+      if (!value.empty() && !is_option) continue;
+      Diagnostic d;
+      d.message = value.empty() ? trf("{}: the value is empty", option->get_name())
+                                : trf("{}: a value must follow, not the option {}",
+                                      option->get_name(), value);
+      kerf::print(stderr, "{}", to_string(d));
+      code = kExitUsage;
+    }
+  }
+  return code;
+}
+
+int list_tools(const Arguments& arguments) {
+  Diagnostics diagnostics;
+  const OptionReader reader(diagnostics, {arguments.command, &arguments.options, nullptr, {}});
+  for (const Diagnostic& d : diagnostics) print_diagnostic(stderr, d);
+  if (has_error(diagnostics)) return kExitUsage;
+  kerf::print(stdout, "{}\n", shape_help(reader.unit()));
+  return kExitGood;
+}
+
+int print_list(const std::string& text) {
+  kerf::print(stdout, "{}", text);
+  return kExitGood;
+}
+
+/// What each command prints below its options, and what it calls.
+struct CommandCall {
+  Command command;
+  const char* footer;
+  int (*call)(const Arguments&);
+};
+
+constexpr std::array kCalls{
+    CommandCall{kRun, kRunExample, run_command},
+    CommandCall{kView, kViewExample, view_command},
+    CommandCall{kShadow, kShadowExample, live_command},
+    CommandCall{kReplay, kReplayExample, live_command},
+    CommandCall{kCanon, kCanonExample, canon_command},
+    CommandCall{kConfig, kConfigExample, config_command},
+    // Found and started by machine_command(), before this is asked.
+    CommandCall{kMachine, kMachineExample, [](const Arguments&) -> int { return kExitUsage; }},
+    CommandCall{kModels, "Example:\n  kerf models\n",
+                [](const Arguments&) { return print_list(model_list()); }},
+    CommandCall{kSources, "Example:\n  kerf sources\n",
+                [](const Arguments&) { return print_list(tr(kSourceList)); }},
+    CommandCall{kTools, "Example:\n  kerf tools\n", list_tools},
+};
+
+/// What CLI11 says of its own in a help.
+constexpr std::array kLabels{tr_noop("Usage"),       tr_noop("Positionals"), tr_noop("OPTIONS"),
+                             tr_noop("Subcommands"), tr_noop("SUBCOMMAND"),  tr_noop("REQUIRED")};
+
+/// The commands with their arguments, and what each of them calls.
+struct Commands {
+  explicit Commands(CLI::App& app, const std::vector<std::string>& words) {
+    for (const CommandRow& row : command_table()) {
+      const auto* const call = std::find_if(kCalls.begin(), kCalls.end(), [&](const auto& one) {
+        return one.command == row.command;
+      });
+      CLI::App* const command = app.add_subcommand(row.name, tr(row.purpose));
+      command->footer(std::string(tr(call->footer)) + "\n" + tr(kExitCodes));
+      command->allow_extras();
+      all.push_back(command);
+      calls.push_back({command, call->call, std::make_unique<Arguments>()});
+      Arguments& arguments = *calls.back().arguments;
+      arguments.command = row.command;
+      arguments.words = words;
+      if (row.command != kMachine) add_options(*command, row.command, arguments.options);
+    }
+  }
+
+  struct Call {
+    CLI::App* app;
+    int (*function)(const Arguments&);
+    std::unique_ptr<Arguments> arguments;
+  };
+  std::vector<CLI::App*> all;
+  std::vector<Call> calls;
+};
+
+/// What CLI11 says of a wrong command line, which it does in English only.
+std::string words_of(const CLI::ParseError& error) {
+  const std::string said = error.what();
+  constexpr std::string_view kRequired = " is required", kOverride = " was given a disallowed";
+  if (error.get_name() == "RequiredError" && said.ends_with(kRequired)) {
+    return trf("{} is required", said.substr(0, said.size() - kRequired.size()));
+  }
+  if (error.get_name() != "ArgumentMismatch") return said;
+  if (const std::size_t at = said.find(kOverride); at != said.npos) {
+    return trf("{} takes no value", "--" + said.substr(0, at));  // said without its dashes
+  }
+  const std::string option = said.substr(0, said.find(':'));
+  if (said.find(": At Most ") != said.npos) return trf("{} is given more than once", option);
+  if (said.ends_with(" missing")) return trf("{}: a value must follow", option);
+  return said;
+}
+
+/// A mistyped option leaves others without what they need: name the cause, not the effect.
+int refuse(const CLI::ParseError& error, const Commands& commands) {
+  Diagnostic d;
+  d.message = words_of(error);
+  d.hint = tr("kerf --help lists what there is");
+  for (const CLI::App* command : commands.all) {
+    const std::vector<std::string> left = command->remaining();
+    if (const std::string* argument = worst_argument(left)) {
+      return refuse_argument(*argument, *command, false);
+    }
+    if (command->parsed()) {
+      d.hint = trf("kerf {} --help lists what there is", command->get_name());
+    }
+  }
+  kerf::print(stderr, "{}", to_string(d));
+  return kExitUsage;
+}
+
+int run(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "machine")
+    return machine_command(argc - 1, argv + 1);
+  CLI::App app(
+      tr("kerf: a twin of a machine under LinuxCNC: runs NC programs through a model of the "
+         "workpiece, beside the machine or without it"),
+      "kerf");
+  app.set_help_flag("-h,--help", tr("print this help"));
+  app.option_defaults()->group(tr("Options"));
+  const std::shared_ptr<CLI::Formatter> formatter = std::make_shared<CLI::Formatter>();
+  for (const char* const label : kLabels) formatter->label(label, tr(label));
+  app.formatter(formatter);
+  app.set_version_flag("--version", "kerf " + version_text(), tr("print the version"));
+  app.footer(std::string(kExamples) + "\n" + tr(kExitCodes));
+  app.allow_extras();
+  const Commands commands(app, std::vector<std::string>(argv, argv + argc));
+  for (CLI::App* const command : commands.all) {
+    for (CLI::Option* const option : command->get_options({})) {
+      if (option->get_items_expected_max() == 0) option->disable_flag_override();
+    }
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    std::ostringstream text;
+    const int code = app.exit(success, text, text);  // --help, --version
+    kerf::print(stdout, "{}", text.str());
+    return code;
+  } catch (const CLI::ParseError& error) {
+    return refuse(error, commands);
+  }
+  for (const CLI::App* command : commands.all) {
+    const std::vector<std::string> left = command->remaining();
+    if (const std::string* argument = worst_argument(left)) {
+      return refuse_argument(*argument, *command, false);
+    }
+    if (!command->parsed()) continue;
+    if (const int code = refuse_odd_values(*command); code != kExitGood) return code;
+  }
+  const std::vector<std::string> left = app.remaining();
+  if (const std::string* argument = worst_argument(left)) {
+    return refuse_argument(*argument, app, true);
+  }
+  for (const Commands::Call& call : commands.calls) {
+    if (call.app->parsed()) return call.function(*call.arguments);
+  }
+  kerf::print(stderr, "{}", app.help());
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace kerf
+
+int main(int argc, char** argv) {
+  // A reader that has seen enough of `--json -` must not kill the run: the write fails instead, and
+  // is reported.
+  // The same for `ulimit -f`.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  int code = kerf::kExitFailure;
+  try {
+    kerf::use_language(kerf::language_of_environment());
+    code = kerf::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    kerf::print_text(stderr, kerf::tr("kerf: error: out of memory\n"));
+  } catch (const std::exception& failure) {
+    kerf::print_text(stderr, kerf::trf("kerf: error: {}\n", failure.what()));
+  }
+  return kerf::end_console(code);
+}

@@ -1,0 +1,209 @@
+#include "twin/cli/outputs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/mesh_file.h"
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "twin/program/session_parts.h"
+#include "twin/scene/frame_tool.h"
+#include "twin/scene/part_patches.h"
+#include "viewer/picture.h"
+#include "viewer/raycast/height_picture.h"
+
+namespace kerf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using NamedPath = std::pair<const char*, const std::string*>;
+
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 7> kPaths{
+    {{"--json", &OutputPaths::json},
+     {"--png", &OutputPaths::png},
+     {"--stl", &OutputPaths::stl},
+     {"--ply", &OutputPaths::ply},
+     {"--state", &OutputPaths::state},
+     {"--dxf", &OutputPaths::dxf},
+     {"--svg", &OutputPaths::svg}}};
+
+void fault(Diagnostics& diagnostics, std::string message) {
+  Diagnostic d;
+  d.message = std::move(message);
+  diagnostics.push_back(std::move(d));
+}
+
+void note_failure(const Done& done, Diagnostics& diagnostics) {
+  if (!done) fault(diagnostics, done.error());
+}
+
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/// By OpenGL; by rays where there is none, which is said.
+Done write_picture(const std::string& path, const StockModel& stock, const std::string& name,
+                   Diagnostics& diagnostics) {
+  PictureOptions options;
+  options.blank_mm = stock.bounds_mm();
+  options.caption = fmt::format("{}  {}", file_name(name), stock.name());
+  if (stock.sheet() == nullptr) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
+  Result<Picture> picture = draw_part(part_patches(stock), options);
+  if (picture) return write_png(path, *picture);
+  const std::string reason = picture.error();
+  const std::shared_ptr<const HeightGrid> heights = stock.height_grid();
+  if (!heights) {
+    return Error{
+        trf("drawing {}: {} (without OpenGL only workpieces without undercuts)", path, reason)};
+  }
+  picture = draw_heights(heights, options, ray_threads());
+  if (!picture) return Error{trf("drawing {}: {}", path, picture.error())};
+  Diagnostic note;
+  note.severity = Severity::kNote;
+  note.message = trf("{}: drawn by rays on the CPU, not by OpenGL: {}", path, reason);
+  diagnostics.push_back(std::move(note));
+  return write_png(path, *picture);
+}
+
+}  // namespace
+
+std::array<std::pair<const char*, const std::string*>, 7> OutputPaths::named() const {
+  std::array<NamedPath, 7> all;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
+  return all;
+}
+
+OutputPaths understand_outputs(const OptionReader& reader) {
+  OutputPaths paths;
+  for (const auto& [option, path] : kPaths) paths.*path = reader.text(option);
+  return paths;
+}
+
+void check_picture_name(const char* option, const std::string& path, Diagnostics& diagnostics) {
+  constexpr std::array kOthers{".jpg",  ".jpeg", ".gif", ".bmp", ".tif",
+                               ".tiff", ".webp", ".svg", ".pdf"};
+  const std::string ending = to_lower(std::filesystem::path(path).extension().string());
+  if (std::find(kOthers.begin(), kOthers.end(), ending) == kOthers.end()) return;
+  Diagnostic d;
+  d.message =
+      trf("{} {}: pictures are written as PNG; a name that ends with {} says "
+          "something else",
+          option, path, ending);
+  d.hint =
+      fmt::format("{} {}", option, std::filesystem::path(path).replace_extension(".png").string());
+  diagnostics.push_back(std::move(d));
+}
+
+void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
+  check_picture_name("--png", paths.png, diagnostics);
+  const auto all = paths.named();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string& path = *all[i].second;
+      if (path.empty() || path != *all[j].second) continue;
+      fault(diagnostics, trf("{} and {} both write to {}", all[j].first, all[i].first,
+                             path == "-" ? tr("standard output") : path));
+    }
+  }
+}
+
+void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
+  for (const auto& [option, path] : paths.named()) {
+    // Only files are replaced within their folder.
+    if (path->empty() || written_as_it_comes(*path)) continue;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(*path, ignored)) {
+      fault(diagnostics, trf("{}: {} is a folder, not a file", option, *path));
+      continue;
+    }
+    const std::string parent = std::filesystem::path(*path).parent_path().string();
+    const std::string folder = parent.empty() ? "." : parent;
+    if (access(folder.c_str(), W_OK | X_OK) != 0) {
+      fault(diagnostics,
+            trf("{}: cannot write {}: folder {}: {}", option, *path, folder, std::strerror(errno)));
+    }
+  }
+}
+
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
+                   Report& report, Diagnostics& diagnostics, std::atomic<unsigned>* dealt_with) {
+  const auto done_with = [&](const std::string& path) {
+    const auto all = paths.named();
+    for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
+      if (all[i].second == &path) *dealt_with |= 1u << i;
+    }
+  };
+  const Clock::time_point start = Clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const std::string& name =
+      report.program_path.empty() && report.live ? report.live->source : report.program_path;
+  const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
+  if (stock && !paths.png.empty()) {
+    note_failure(write_picture(paths.png, *stock, name, diagnostics), diagnostics);
+    done_with(paths.png);
+  }
+  if (stock && wants_mesh) {
+    const Clock::time_point mesh_start = Clock::now();
+    const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
+    report.timing.mesh_s = std::chrono::duration<double>(Clock::now() - mesh_start).count();
+    if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
+    done_with(paths.stl);
+    if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
+    done_with(paths.ply);
+  }
+  const Sheet* const sheet = stock && report.sheet ? stock->sheet() : nullptr;
+  if (stock && !paths.state.empty()) {
+    note_failure(sheet ? save_sheet(*sheet, *report.sheet, report.program.files, paths.state)
+                       : stock->save(paths.state),
+                 diagnostics);
+    done_with(paths.state);
+  }
+  if (sheet) {
+    std::vector<std::string> errors;
+    write_outlines(*sheet, *report.sheet, paths.dxf, paths.svg, errors);
+    for (std::string& error : errors) fault(diagnostics, std::move(error));
+    done_with(paths.dxf);
+    done_with(paths.svg);
+  }
+  if (!stock && (wants_mesh || !paths.png.empty() || !paths.state.empty())) {
+    fault(diagnostics,
+          tr("stopped before there was a workpiece; no picture, mesh or state is written"));
+  }
+  report.timing.total_s += elapsed_s();
+  report.peak_rss_mb = peak_rss_mb();
+  if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
+}
+
+std::string names_left(const OutputPaths& paths, unsigned dealt_with) {
+  std::string names;
+  const auto all = paths.named();
+  for (unsigned i = 0; i < all.size(); ++i) {
+    const std::string& path = *all[i].second;
+    if (path.empty() || &path == &paths.json || (dealt_with >> i & 1u) != 0) continue;
+    names.append(names.empty() ? "" : ", ").append(path);
+  }
+  return names;
+}
+
+}  // namespace kerf

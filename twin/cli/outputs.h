@@ -1,0 +1,62 @@
+// twin/cli/outputs.h - the files that a run leaves: report, picture, meshes, saved workpiece.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "stock/zmap/zmap.h"
+#include "twin/cli/option_reader.h"
+#include "twin/report/report.h"
+
+namespace kerf {
+
+/// Paths as the user wrote them; empty = not wanted, "-" = standard output.
+struct OutputPaths {
+  std::string json;
+  std::string png;
+  std::string stl;
+  std::string ply;
+  std::string state;
+  std::string dxf;  ///< what is left of a sheet, and parts beside it (write_outlines)
+  std::string svg;
+
+  /// With the options that give them.
+  std::array<std::pair<const char*, const std::string*>, 7> named() const;
+  bool uses_stdout() const {
+    for (const auto& [option, path] : named()) {
+      if (*path == "-" || *path == "/dev/stdout") return true;
+    }
+    return false;
+  }
+};
+
+/// What the options of named() say.
+OutputPaths understand_outputs(const OptionReader& reader);
+
+/// A picture's name that says another format than PNG.
+void check_picture_name(const char* option, const std::string& path, Diagnostics& diagnostics);
+
+/// Faults of the arguments themselves: two outputs to one place, a picture's name.
+void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics);
+
+/// Faults of the file system that can be seen before a minute of cutting: folder missing or not
+/// writable, path is a folder.
+void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
+
+/// Writes what is wanted, each under a temporary name that is renamed when it is whole. One that
+/// fails is a diagnostic and does not keep the others from being written. Fills in the report's
+/// mesh time, adds it to the total, and brings the peak memory up to date before the JSON is
+/// written, which comes last.
+/// `stock`: null if there was none. `dealt_with`, if given, gets a bit for each of paths.named()
+/// that is there, or has failed; another thread may look at it.
+void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
+                   Report& report, Diagnostics& diagnostics,
+                   std::atomic<unsigned>* dealt_with = nullptr);
+
+/// The files of those that are not dealt with, but for the report: "part.png, part.stl".
+std::string names_left(const OutputPaths& paths, unsigned dealt_with);
+
+}  // namespace kerf

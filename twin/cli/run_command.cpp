@@ -1,0 +1,247 @@
+#include "twin/cli/run_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/exit_code.h"
+#include "base/translate.h"
+#include "twin/cli/command_line.h"
+#include "twin/cli/console.h"
+#include "twin/cli/option_reader.h"
+#include "twin/cli/progress_bar.h"
+#include "twin/cli/stdin_program.h"
+#include "twin/cli/stop_deadline.h"
+#include "twin/cli/stop_signals.h"
+#include "twin/cli/torch_options.h"
+#include "twin/cli/view_command.h"
+#include "twin/cli/window_host.h"
+
+namespace kerf {
+namespace {
+
+/// Findings printed one by one; the rest are only counted (and all are in --json).
+constexpr std::size_t kFindingsShown = 20;
+
+void print(const Diagnostics& diagnostics) {
+  for (const Diagnostic& d : diagnostics) print_diagnostic(stderr, d);
+}
+
+void print_findings(const Report& report, bool quiet) {
+  std::size_t shown = 0;
+  for (const Finding& finding : report.findings.kept()) {
+    if (quiet && finding.severity != Severity::kError) continue;
+    if (++shown > kFindingsShown) break;
+    print_diagnostic(stderr, diagnostic_of(finding, report.program.files));
+  }
+  if (shown > kFindingsShown) {
+    print_text(stderr, trf("kerf: note: {} findings in all; --json FILE lists the first {}\n",
+                           report.findings.total(), FindingLog::kMaxKept));
+  }
+}
+
+/// The second Ctrl-C: the interpreter ends on the stop request already made and takes its temporary
+/// folder with it; it gets a moment for that. Half-written files go as well.
+void abandon(const std::atomic<Session*>& session) {
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries && session.load() && session.load()->interpreting(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  remove_uncommitted_files();
+}
+
+int exit_code(Outcome outcome, const Report& report, const Diagnostics& diagnostics) {
+  if (outcome == Outcome::kUsageError) return kExitUsage;
+  const bool finished = outcome == Outcome::kFinished || outcome == Outcome::kLossy;
+  if (!finished || has_error(diagnostics)) return kExitFailure;
+  if (outcome == Outcome::kLossy) return kExitLossy;
+  return report.findings.count(Severity::kError) > 0 ? kExitFindings : kExitGood;
+}
+
+/// Messages about the text of standard input are not about the file that it was kept in.
+void rename_stdin(const StdinProgram& kept, Report& report, Diagnostics& diagnostics) {
+  if (kept.path().empty()) return;
+  report.program_path = StdinProgram::kName;
+  for (std::string& file : report.program.files) file = kept.renamed(std::move(file));
+  for (Diagnostic& d : diagnostics) {
+    d.file = kept.renamed(std::move(d.file));
+    d.message = kept.renamed(std::move(d.message));
+  }
+  report.findings.rename_files([&](std::string text) { return kept.renamed(std::move(text)); });
+}
+
+/// For a disk that is slow while files are written, and for what a stop asks to end by itself.
+constexpr std::chrono::milliseconds kWritingPatience{1000}, kRunPatience{10'000};
+
+void print_results(const RunRequest& request, const Report& report) {
+  print_findings(report, request.quiet);
+  if (request.quiet) return;
+  const std::string command =
+      command_line(with_guesses(request.written, rows_in(report.guesses, request.units)));
+  kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
+              summary_text(report, {request.verbose, command, request.units}));
+}
+
+/// The last words of a run that was interrupted where nothing looks at the stop: what is known, as
+/// a partial report; and which files there will not be.
+void tell_interrupted(const RunRequest& request, Report report, unsigned dealt_with,
+                      const char* where) {
+  if (report.partial_reason.empty()) {
+    report.partial_reason = trf("interrupted {}", where);
+    Finding finding;
+    finding.id = FindingId::kInterrupted;
+    finding.severity = Severity::kNote;
+    finding.text = report.partial_reason;
+    report.findings.add(std::move(finding));
+  }
+  OutputPaths paths;
+  paths.json = request.outputs.json;
+  Diagnostics diagnostics;
+  write_outputs(paths, 0, nullptr, report, diagnostics);
+  print_results(request, report);
+  if (const std::string left = names_left(request.outputs, dealt_with); !left.empty()) {
+    Diagnostic d;
+    d.message = trf("interrupted: not written: {}", left);
+    diagnostics.push_back(std::move(d));
+  }
+  print(diagnostics);
+}
+
+/// Of a run that has not come to a report of its own.
+Report report_of_nothing(const RunRequest& request) {
+  Report report;
+  report.version = KERF_VERSION;
+  report.program_path = request.session.program.path;
+  report.lines = request.session.lines;
+  return report;
+}
+
+/// How one of the programs ended.
+struct RunVerdict {
+  int code = kExitGood;
+  bool interrupted = false;
+};
+
+/// What nobody has said is guessed, or asked for, by a first reading.
+StdinProgram::Listings listings_of(const SessionOptions& session) {
+  const bool tools_known = !session.tools.empty() || !session.program.tool_table_path.empty();
+  const bool all_known = session.blank && (tools_known || is_sheet(*session.blank));
+  return all_known && session.guess ? StdinProgram::Listings::kStreamed
+                                    : StdinProgram::Listings::kKept;
+}
+
+RunVerdict run_one(const Arguments& arguments, RunRequest request) {
+  Diagnostics diagnostics;
+  check_output_places(request.outputs, diagnostics);
+  if (request.view && !has_display()) {
+    Diagnostic d;
+    d.message = tr("--view: no window: neither DISPLAY nor WAYLAND_DISPLAY is set");
+    d.hint = tr("pictures need no display: --png FILE");
+    diagnostics.push_back(std::move(d));
+  }
+  if (request.view) check_shapes(request.machine, diagnostics);
+  Outcome outcome = Outcome::kFailed;
+  std::unique_ptr<Session> session;
+  StdinProgram kept;
+  // Before the session is opened: filling a large blank takes its time, too.
+  std::stop_source stop;
+  std::atomic<Session*> opened{nullptr};
+  const StopSignals signals(stop, [&] { abandon(opened); });
+  std::optional<StopDeadline> deadline(std::in_place, stop.get_token(), kExitFailure);
+  deadline->set_last_words(
+      [&request, none = report_of_nothing(request)] {
+        tell_interrupted(request, none, 0, tr("before the end of the program"));
+      },
+      kRunPatience);
+  kept.take(request.session.program.path, listings_of(request.session), stop.get_token(),
+            diagnostics);
+  if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
+  Report none;
+  rename_stdin(kept, session ? session->report() : none, diagnostics);
+  print(diagnostics);
+  if (!session) return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested()};
+  diagnostics.clear();
+  opened = session.get();
+  {
+    const ProgressBar bar([&] { return session->progress(); }, !request.quiet);
+    outcome = session->run(stop.get_token(), diagnostics);
+  }
+  rename_stdin(kept, session->report(), diagnostics);
+  if (!has_error(diagnostics)) {
+    std::atomic<unsigned> dealt_with{0};
+    deadline->set_last_words(
+        [&request, &dealt_with, report = session->report()] {
+          tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
+        },
+        kWritingPatience);
+    write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
+                  diagnostics, &dealt_with);
+    deadline->set_last_words({}, kWritingPatience);
+    print_results(request, session->report());
+  }
+  flush_console();
+  print(diagnostics);
+  const int code = exit_code(outcome, session->report(), diagnostics);
+  if (!request.view || stop.stop_requested() || !session->stock()) {
+    return {code, stop.stop_requested()};
+  }
+  session.reset();
+  opened = nullptr;
+  deadline.reset();  // the window has its own
+  const int shown = show_program(arguments, request, stop);
+  return {shown == kExitGood ? code : shown, stop.stop_requested()};
+}
+
+/// What one file or one window cannot take of several programs.
+void refuse_shared_outputs(const RunRequest& request, std::size_t programs,
+                           Diagnostics& diagnostics) {
+  for (const auto& [option, path] : request.outputs.named()) {
+    if (path->empty()) continue;
+    add_fault(option, trf("{}: one file, and there are {} programs", *path, programs),
+              tr("run them one by one, each with a file of its own"), diagnostics);
+  }
+  if (request.view) {
+    add_fault("--view", tr("one window, and there are several programs"), {}, diagnostics);
+  }
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  const std::vector<std::string> programs = arguments.options.texts("PROGRAM");
+  Arguments one = arguments;
+  if (!programs.empty()) one.options.set("PROGRAM", programs.front());
+  Diagnostics diagnostics;
+  RunRequest request = understand_run(one, diagnostics);
+  check_sheet_options(request.session.blank, one, diagnostics);
+  if (programs.size() > 1) refuse_shared_outputs(request, programs.size(), diagnostics);
+  if (has_error(diagnostics)) {
+    print(diagnostics);  // in the user's own words and units
+    return kExitUsage;
+  }
+  show_lengths_in(request.units);
+  print(diagnostics);  // warnings about files
+  if (programs.size() <= 1) return run_one(one, std::move(request)).code;
+  RunVerdict worst;
+  for (const std::string& program : programs) {
+    RunRequest own = request;
+    own.session.program.path = program;
+    own.written.options.set("PROGRAM", program);
+    const RunVerdict end = run_one(one, std::move(own));
+    worst.code = std::max(worst.code, end.code);
+    if (end.interrupted) break;
+  }
+  return worst.code;
+}
+
+}  // namespace kerf

@@ -1,0 +1,110 @@
+#include "twin/cli/run_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/cli/draw_option.h"
+#include "twin/cli/option_reader.h"
+
+namespace kerf {
+namespace {
+
+void read_lines(OptionReader& reader, LineRange& lines) {
+  lines.from = static_cast<std::uint32_t>(reader.whole_number("--from-line"));
+  lines.until = static_cast<std::uint32_t>(reader.whole_number("--until-line"));
+  if (lines.until == 0 || lines.from <= lines.until) return;
+  reader.fault("--from-line", trf("{} lies beyond --until-line {}", lines.from, lines.until));
+}
+
+/// A beam and a punch go through a sheet whatever Z says.
+void note_sheet(SessionOptions& session) {
+  session.program.machine.z_matters = !session.blank || !is_sheet(*session.blank);
+}
+
+}  // namespace
+
+std::optional<LiveConfig> read_config(const WrittenOptions& options, Diagnostics& diagnostics) {
+  if (!options.has("--config") && !options.has("--set")) return std::nullopt;
+  return read_config(options.text("--config"), options.texts("--set"), diagnostics);
+}
+
+OptionLayers layers_of(const Arguments& arguments, const LiveConfig* config) {
+  return {arguments.command, &arguments.options, config == nullptr ? nullptr : &config->said, {}};
+}
+
+ProgramSurroundings surroundings_of(const LiveConfig* config) {
+  if (config == nullptr) return {};
+  const ConfigMachine& machine = config->machine;
+  return {machine.kinematics, machine.joints, machine.work_offset, {}};
+}
+
+RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
+  RunRequest request;
+  request.units = reader.unit();
+  SessionOptions& session = request.session;
+  TorchOptions torch;
+  session.beam = understand_torch(reader, torch);
+  ProgramSurroundings around = surroundings_of(config);
+  around.hal_pins = torch.hal_values;
+  ProgramRequest source = understand_program("PROGRAM", around, reader);
+  source.program.torch = std::move(torch);
+  session.turret = understand_turret(reader, source.program);
+  // A window shows the program all the same, beside the lathe.
+  const bool refuses_lathe = reader.command() == kRun;
+  if (refuses_lathe && config && config->machine.drawn.kind == MachineKind::kLathe) {
+    source.program.lathe = tr("machine.model is lathe");
+  }
+  session.program = std::move(source.program);
+  session.timeline = std::move(source.timeline);
+  WorkRequest work = understand_work(config, reader);
+  session.tools = std::move(work.tools);
+  session.tools_named = work.tools_named;
+  session.blank = std::move(work.blank);
+  session.stock = work.stock;
+  session.margin_mm = work.margin_mm;
+  session.below_mm = work.below_mm;
+  note_sheet(session);
+  session.timeline.planner.with_path = work.planned_path;
+  if (session.turret && work.planned_path) {
+    reader.fault("--path", tr("planned is for cutting; a punch strikes where the program says"));
+  }
+  read_lines(reader, session.lines);
+  session.guess = !reader.is_yes("--no-guess");
+  request.quiet = reader.is_yes("--quiet");
+  request.ini = reader.text("--ini");
+  if (config) request.machine = config->machine.drawn;
+  // A turret is a machine's: it is drawn, unless another one is asked for.
+  if (session.turret && !request.machine.is_chosen()) request.machine.kind = MachineKind::kPunch;
+  return request;
+}
+
+RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) {
+  const std::optional<LiveConfig> read = read_config(arguments.options, diagnostics);
+  const LiveConfig* const config = read ? &*read : nullptr;
+  OptionReader reader(diagnostics, layers_of(arguments, config));
+  RunRequest request = understand_cut(config, reader);
+  request.written = arguments;
+  request.mesh_tolerance_mm = reader.length_mm("--mesh-tolerance");
+  request.outputs = understand_outputs(reader);
+  check_outline_wishes(request.session.blank, request.outputs, reader);
+  request.verbose = reader.is_yes("--verbose");
+  if (request.quiet && request.verbose) {
+    reader.fault("--verbose", tr("--quiet wants no summary at all"));
+  }
+  request.view = reader.is_yes("--view");
+  request.draw = understand_draw(reader);
+  if (request.draw && !request.view) {
+    reader.fault("--draw", tr("is for the window; there is no --view"));
+  }
+  if (request.view && request.session.program.path == "-") {
+    reader.fault("--view", tr("the program comes from standard input, which cannot be read again"));
+  }
+  check_output_arguments(request.outputs, diagnostics);
+  return request;
+}
+
+}  // namespace kerf

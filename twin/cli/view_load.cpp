@@ -1,0 +1,155 @@
+#include "twin/cli/view_load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "base/exit_code.h"
+#include "base/small_file.h"
+#include "base/translate.h"
+#include "twin/cli/command_line.h"
+#include "twin/cli/console.h"
+#include "twin/report/guess_row.h"
+#include "twin/scene/drawn_machine.h"
+#include "twin/scene/tool_shape.h"
+
+namespace kerf {
+namespace {
+
+/// Where the comparison will not say what its user expects.
+Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stock) {
+  Diagnostics doubts;
+  const auto doubt = [&](std::string message, std::string hint) {
+    Diagnostic d = fault_of(std::move(message), std::move(hint));
+    d.severity = Severity::kWarning;
+    d.file = request.compare;
+    doubts.push_back(std::move(d));
+  };
+  const Box part = request.design->box_mm(), blank = stock.bounds_mm();
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart = apart || part.min[axis] > blank.max[axis] || part.max[axis] < blank.min[axis];
+  }
+  if (apart) {
+    doubt(trf("lies beside the blank: X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm; the blank is "
+              "X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm",
+              part.min.x, part.max.x, part.min.y, part.max.y, part.min.z, part.max.z, blank.min.x,
+              blank.max.x, blank.min.y, blank.max.y, blank.min.z, blank.max.z),
+          tr("the design part is taken as mm, in the coordinates that the program writes"));
+  }
+  if (stock.cell_mm() > request.tolerance_mm) {
+    doubt(trf("cells of {:g} mm are coarser than the tolerance of {:g} mm: walls may seem "
+              "off by up to a cell",
+              stock.cell_mm(), request.tolerance_mm),
+          trf("--cell {:g} or --tolerance {:g}", request.tolerance_mm, stock.cell_mm()));
+  }
+  return doubts;
+}
+
+}  // namespace
+
+Diagnostic fault_of(std::string message, std::string hint) {
+  Diagnostic d;
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  return d;
+}
+
+/// What the file is, by its first bytes; by its name where they do not tell.
+ViewKind view_kind_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string head = read_up_to(file, 64);
+  const std::string_view begin = head;
+  if (begin.starts_with("kerf-state/")) return ViewKind::kState;
+  if (begin.find("kerf-recording/") != std::string_view::npos) return ViewKind::kLog;
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".csv" || extension == ".log" || extension == ".sam" ? ViewKind::kLog
+                                                                           : ViewKind::kProgram;
+}
+
+/// Program, blank, tools; null on error.
+std::unique_ptr<LoadedProgram> load_viewed(const ViewRequest& request, ViewKind kind,
+                                           const LoadControl& control, Diagnostics& diagnostics,
+                                           Outcome& outcome) {
+  if (kind == ViewKind::kProgram) {
+    auto loaded = load_program(request.run.session, control, diagnostics, outcome);
+    // Who cut where is what colours and the difference between cut and uncut are made of.
+    if (loaded && loaded->player.blank) loaded->player.blank->keep_cut_ids(true);
+    return loaded;
+  }
+  const std::string& path = request.run.session.program.path;
+  Result<Blank> blank = parse_blank("state:" + path);
+  if (!blank) {
+    diagnostics.push_back(fault_of(blank.error()));
+    outcome = Outcome::kFailed;
+    return nullptr;
+  }
+  StockSetup setup =
+      make_stock(*blank, StockChoice{}, request.run.session.stock, path, diagnostics, outcome);
+  if (!setup.stock) return nullptr;
+  auto loaded = std::make_unique<LoadedProgram>();
+  loaded->player.track = ProgramTrackBuilder().build({}, {});
+  loaded->player.blank = std::move(setup.stock);
+  loaded->blank = setup.facts;
+  return loaded;
+}
+
+/// The block that the interpreter refused, if there is one, and why the program is not whole.
+void print_faults(const LoadedProgram& loaded) {
+  for (const Finding& remark : loaded.player.remarks) {
+    if (remark.severity != Severity::kError) continue;
+    print_diagnostic(stderr, diagnostic_of(remark, loaded.player.track->files()));
+  }
+  if (!loaded.partial_reason.empty()) kerf::print(stderr, "kerf: {}\n", loaded.partial_reason);
+}
+
+void print_guesses(const ViewRequest& request, const LoadedProgram& loaded) {
+  if (request.run.quiet || loaded.guesses.empty()) return;
+  const std::vector<GuessRow> rows = rows_in(loaded.guesses, request.run.units);
+  const Arguments said = with_guesses(request.written, rows);
+  kerf::print(stderr, "{}", guess_text(rows, command_line(said)));
+}
+
+int view_exit_code(Outcome outcome, const Diagnostics& diagnostics) {
+  if (outcome == Outcome::kUsageError) return kExitUsage;
+  return has_error(diagnostics) || outcome == Outcome::kFailed ? kExitFailure : kExitGood;
+}
+
+/// With the machine around it. What is wrong with that one is said; the program is shown without.
+ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
+  ViewedProgram shown = viewed_program(
+      loaded, std::filesystem::path(request.run.session.program.path).filename().string());
+  if (request.design && loaded.player.blank) {
+    shown.design = request.design;
+    shown.tolerance_mm = request.tolerance_mm;
+    print_diagnostics(comparison_doubts(request, *loaded.player.blank), request.run.quiet);
+  }
+  const RunRequest& run = request.run;
+  const bool wanted = !run.ini.empty() || run.machine.is_chosen();
+  if (!wanted || !loaded.player.blank) return shown;
+  double longest_mm = 0;
+  for (const ProgramTool& tool : loaded.tools) {
+    const auto cutter = parse_tool_argument("0=" + tool.shape);
+    if (cutter) {
+      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(cutter->cutter)));
+    }
+  }
+  if (const TurretPointer turret = loaded.player.process->turret()) {
+    for (const auto& [number, station] : turret->stations) {
+      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(station.punch)));
+    }
+  }
+  Diagnostics diagnostics;
+  WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
+  room.turret = loaded.player.process->turret();
+  shown.machine = drawn_machine(run.machine, run.ini, room, diagnostics);
+  print_diagnostics(diagnostics, request.run.quiet);
+  return shown;
+}
+
+}  // namespace kerf

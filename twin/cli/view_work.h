@@ -1,0 +1,85 @@
+// twin/cli/view_work.h - what `kerf view` does beside its window: reads, plays, reads again.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "twin/cli/file_watch.h"
+#include "twin/cli/live_command.h"
+#include "twin/cli/view_load.h"
+#include "twin/scene/player_view.h"
+#include "viewer/scene_mailbox.h"
+#include "viewer/viewer_command.h"
+
+namespace kerf {
+
+/// In a thread of its own. A program whose files are changed, that is opened from the window or is
+/// to be cut otherwise is read while the one before is still shown; where that fails, the one
+/// before stays, and the window says why.
+class ViewWork {
+ public:
+  /// `arguments`: from which the request can be understood again; none: what was asked for is shown
+  /// and nothing else. The others must outlive it.
+  /// `replay` shows the log that is the arguments' program, where logs can be shown.
+  using Replay = std::function<ShownLog(const Arguments&, std::function<void()> on_start)>;
+  ViewWork(std::optional<Arguments> arguments, ViewRequest request, SceneMailbox& mailbox,
+           CommandQueue& commands, std::stop_source& stop, Replay replay = {});
+
+  /// Until the window is closed; what the program is to end with.
+  int run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// Where a program was when it was read again.
+  struct Place {
+    std::size_t motions = 0;
+    double duration_s = 0;
+    std::size_t motion = 0;
+    double time_s = 0;
+    SourceRef line;
+    std::optional<double> speed;  ///< it was playing
+  };
+
+  bool has_program() const { return !request_.run.session.program.path.empty(); }
+  bool load();
+  bool understand_again();
+  void take(const ViewerCommand& asked);
+  std::optional<ViewerCommand> wait_without_program();
+  bool is_log(const ViewerCommand& asked) const;
+  std::optional<ViewerCommand> replay_logs(ViewerCommand asked);
+  void tell_faults();
+  void replace_view(std::unique_ptr<LoadedProgram> loaded);
+  Place place() const;
+  void go_to(const Place& place);
+  void watch_inputs();
+  void describe(const LoadedProgram& loaded);
+  void publish_job();
+  void tell(const std::string& notice);
+  void announce(const LoadProgress& progress);
+  void keep(ViewerCommand command);
+
+  std::optional<Arguments> arguments_;
+  ViewRequest request_;
+  SceneMailbox& mailbox_;
+  CommandQueue& commands_;
+  std::stop_source& stop_;
+  Replay replay_;
+  std::unique_ptr<PlayerView> view_;  ///< null: there is no program
+  bool has_machine_ = false;          ///< in the window
+  bool is_same_program_ = false;      ///< as the one that is shown
+  std::optional<double> speed_;       ///< to play at, at once
+  ViewedJob job_;
+  std::string shown_blank_;  ///< its box, as --stock has it; empty: there is none
+  FileWatch watch_;
+  Diagnostics diagnostics_;  ///< of the last reading
+  Outcome outcome_ = Outcome::kFailed;
+  Clock::time_point announced_{};
+  std::vector<ViewerCommand> waiting_;  ///< for what is shown next
+};
+
+}  // namespace kerf

@@ -1,0 +1,101 @@
+#include "twin/cli/work_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "base/translate.h"
+
+namespace kerf {
+namespace {
+
+void read_model(OptionReader& reader, WorkRequest& work) {
+  work.stock.additive = reader.is_yes("--additive");
+  const std::string model = reader.text("--model");
+  if (work.stock.additive && model != "auto" && model != "octree") {
+    reader.fault("--additive", trf("the model {} only removes; allowed: octree", model));
+  }
+  // The words are auto, then the models in their order.
+  if (const int word = reader.word("--model"); word > 0) {
+    work.stock.kind = stock_models()[static_cast<std::size_t>(word) - 1].kind;
+  }
+}
+
+void read_tool(const std::string& text, OptionReader& reader, WorkRequest& work) {
+  Result<ToolShapeArgument> tool = parse_tool_argument(text, reader.unit());
+  if (!tool) {
+    reader.fault("--tool", tool.error());
+    return;
+  }
+  if (tool->tool == 0) {
+    reader.fault("--tool", trf("'{}': tool 0 is the empty spindle; numbers begin at 1", text),
+                 tr("--tool 1=SHAPE, if it is the only --tool, is what is in the spindle of a "
+                    "program that changes no tool"));
+    return;
+  }
+  if (const Done fit = can_be_cut(work.stock.kind, tool->cutter); !fit) {
+    reader.fault("--tool", fmt::format("'{}': {}", text, fit.error()));
+    return;
+  }
+  bool twice = false;
+  for (const ToolShapeArgument& other : work.tools) twice |= other.tool == tool->tool;
+  if (twice) {
+    reader.fault("--tool", trf("'{}': tool {} is given twice", text, tool->tool));
+    return;
+  }
+  work.tools.push_back(std::move(tool.value()));
+}
+
+void read_tools(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
+  const ValueFrom from = reader.choose("--tool").from;
+  if (from == ValueFrom::kConfig) work.tools = config->tools;
+  if (from != ValueFrom::kCommandLine) return;
+  for (const std::string& text : reader.texts("--tool")) read_tool(text, reader, work);
+  work.tools_named = !work.tools.empty();
+}
+
+void read_stock(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
+  const ChosenValue stock = reader.choose("--stock");
+  if (stock.from == ValueFrom::kConfig) work.blank = config->stock.blank;
+  if (stock.from != ValueFrom::kCommandLine) return;
+  Result<Blank> blank = parse_blank(stock.text, reader.unit());
+  if (blank) {
+    work.blank = std::move(blank.value());
+  } else {
+    reader.fault("--stock", blank.error());
+  }
+}
+
+void read_choices(OptionReader& reader, WorkRequest& work) {
+  work.path_from = reader.choose("--path").from;
+  work.planned_path = reader.word("--path") == 1;
+  reader.word("--kernel", {ZMapKernel::kAuto, ZMapKernel::kScalar, ZMapKernel::kAvx2},
+              work.stock.kernel);
+  if (work.stock.kernel == ZMapKernel::kAvx2 && !zmap_has_avx2()) {
+    reader.fault("--kernel", tr("this machine cannot run avx2; allowed: auto, scalar"));
+  }
+}
+
+/// One core is left to the interpreter.
+int default_threads() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  return cores > 2 ? static_cast<int>(std::min(cores - 1, 8U)) : 1;
+}
+
+}  // namespace
+
+WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
+  WorkRequest work;
+  read_model(reader, work);
+  read_tools(config, reader, work);
+  read_stock(config, reader, work);
+  read_choices(reader, work);
+  work.stock.cell_mm = reader.length_mm("--cell");
+  work.below_mm = reader.length_mm("--below");
+  work.margin_mm = reader.length_mm("--margin");
+  work.stock.threads = static_cast<int>(reader.whole_number("--threads", default_threads()));
+  return work;
+}
+
+}  // namespace kerf

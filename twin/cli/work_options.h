@@ -1,0 +1,31 @@
+// twin/cli/work_options.h - the options about tools and workpiece, which run, shadow and replay
+// share.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stock/blank.h"
+#include "stock/cutter/shape_spec.h"
+#include "twin/cli/option_reader.h"
+#include "twin/config/live_config.h"
+#include "twin/program/session_parts.h"
+
+namespace kerf {
+
+/// The options, understood.
+struct WorkRequest {
+  std::vector<ToolShapeArgument> tools;
+  bool tools_named = false;  ///< on the command line
+  std::optional<Blank> blank;
+  StockSettings stock;
+  double margin_mm = 0;                       ///< around a guessed blank
+  double below_mm = 0;                        ///< the blank's floor
+  bool planned_path = false;                  ///< what is cut
+  ValueFrom path_from = ValueFrom::kNowhere;  ///< who says so
+};
+
+/// Faults go to the reader. `config`: what its layers have as theirs; null: none.
+WorkRequest understand_work(const LiveConfig* config, OptionReader& reader);
+
+}  // namespace kerf

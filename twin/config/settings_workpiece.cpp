@@ -1,0 +1,123 @@
+#include <array>
+
+#include "base/translate.h"
+#include "twin/config/setting_table.h"
+
+namespace kerf {
+namespace {
+
+using T = KeyType;
+
+constexpr std::array kWorkpieceSettings{
+    Setting{.key = "stock", .purpose = tr_noop("the workpiece")},
+    Setting{
+        .key = "stock.blank",
+        .option = "--stock",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop(
+            "blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, sheet:0,0:600,400:3, .."),
+        .help = tr_noop(
+            "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | "
+            "tube:x,y,z0:z1:d:inner[:axis] | several of these joined by +; or state:FILE (a "
+            "saved workpiece); or "
+            "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
+            "(metal to be cut by a torch, laser or jet, or punched; its top is at Z0)"),
+        .value_name = "SPEC"},
+    Setting{.key = "stock.model",
+            .option = "--model",
+            .commands = kCutting,
+            .type = T::kWord,
+            .words = "auto|zmap|mmap|octree|sheet",
+            .fallback = "auto",
+            .purpose = tr_noop("how the workpiece is modelled; auto: what tools and motions need"),
+            .help = tr_noop("workpiece model: zmap | mmap | octree | sheet | auto (default {}: "
+                            "what blank, tools and motions need)"),
+            .value_name = "NAME",
+            .refusal = tr_noop("'{}' is no model; allowed: {}")},
+    Setting{.option = "--additive",
+            .commands = kCutting,
+            .type = T::kYesNo,
+            .fallback = "no",
+            .help = tr_noop(
+                "material is added along the path (printing, welding), within the blank's box"),
+            .flag = "yes"},
+    Setting{.key = "stock.cell_mm",
+            .option = "--cell",
+            .commands = kCutting,
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0,
+            .most = 1000,
+            .least_excluded = true,
+            .purpose = tr_noop("grid size; by the size of the blank where it is not given"),
+            .hint = tr_noop("0.05 to 0.2 suits most parts"),
+            .help = tr_noop("edge of a cell (default: suits the blank, at most 4 million cells; "
+                            "fine engravers: up to 64)"),
+            .value_name = "LENGTH"},
+    Setting{.key = "stock.margin_mm",
+            .option = "--margin",
+            .commands = kCutting,
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0,
+            .most = 10000,
+            .fallback = "5",
+            .purpose = tr_noop("around a blank that is guessed from the program"),
+            .help = tr_noop("around a blank that is guessed from the moves (default {})"),
+            .value_name = "LENGTH"},
+    Setting{
+        .key = "stock.below_mm",
+        .option = "--below",
+        .commands = kCutting,
+        .type = T::kNumber,
+        .unit = "mm",
+        .least = 0,
+        .most = 1000,
+        .fallback = "0",
+        .purpose = tr_noop("how far below the floor of the blank the tool may go: the spoilboard"),
+        .help = tr_noop(
+            "how far below the floor of the blank the tool may go: the spoilboard (default {})"),
+        .value_name = "LENGTH"},
+    Setting{.key = "tools", .purpose = tr_noop("shapes of tools, by number")},
+    Setting{
+        .key = "tools.NUMBER",
+        .option = "--tool",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm and degrees",
+        .purpose = tr_noop("shape, as --tool has it: flat:6, ball:10:flute=22, profile:FILE, .."),
+        .help = tr_noop("shape of tool N, repeatable; `kerf tools` lists the shapes"),
+        .value_name = "N=SHAPE",
+        .repeatable = true},
+    Setting{.option = "--threads",
+            .commands = kCutting,
+            .type = T::kWhole,
+            .unit = "threads",
+            .least = 1,
+            .most = 256,
+            .help = tr_noop("cutting threads (default: one less than the cores, at most 8)"),
+            .value_name = "N"},
+    Setting{.option = "--kernel",
+            .commands = kCutting,
+            .type = T::kWord,
+            .words = "auto|scalar|avx2",
+            .fallback = "auto",
+            .help = tr_noop("cutting kernel: auto | scalar | avx2; same result"),
+            .value_name = "NAME",
+            .refusal = tr_noop("'{}' is no kernel; allowed: {}")},
+    Setting{.option = "--no-guess",
+            .commands = kRun | kView,
+            .type = T::kYesNo,
+            .fallback = "no",
+            .help = tr_noop("for scripts: a blank or a tool that nobody has described is an error "
+                            "(exit code 2, with all that is missing)"),
+            .flag = "yes"},
+};
+
+}  // namespace
+
+std::span<const Setting> workpiece_settings() { return kWorkpieceSettings; }
+
+}  // namespace kerf

@@ -1,0 +1,105 @@
+// twin/job/tool_use.h - what one tool did, for the report.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace kerf {
+
+struct ToolUse {
+  int number = 0;
+  std::string shape;  ///< SHAPE text; empty: undefined, did not cut
+  std::string origin;
+  bool guessed = false;
+  double cut_s = 0;    ///< time of feed moves that removed material
+  double feed_mm = 0;  ///< length of all its feed moves
+  double removed_mm3 = 0;
+  double max_depth_mm = 0;    ///< greatest height of material that one move removed
+  double peak_mm3_per_s = 0;  ///< greatest removal rate: LoadMeter, and windows of short moves
+  double window_s = 0;        ///< cutting time, way and volume of the window that is open
+  double window_mm = 0;
+  double window_mm3 = 0;
+  double window_bound_mm3_per_s = 0;  ///< greatest of what its moves can have removed
+  double grain_s = 0;  ///< time and volume of the grain that is open (CutStage::take_timed)
+  double grain_mm3 = 0;
+  /// Of feed moves since the last that removed something; infinity: it is over.
+  double gap_s = 0;
+  double gap_mm = std::numeric_limits<double>::infinity();
+};
+
+/// Removal rates of short moves are taken over at least this much cutting time, and over the way of
+/// some cells (FeedPart): single moves of a finishing pass last milliseconds and remove whole cells
+/// or nothing.
+inline constexpr double kPeakWindow_s = 0.5;
+
+/// The rate of the window that is open, whatever its length; the next one begins.
+inline void close_window(ToolUse& use) {
+  if (use.window_s > 0) {
+    const double rate = std::min(use.window_mm3 / use.window_s, use.window_bound_mm3_per_s);
+    use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, rate);
+  }
+  use.window_s = use.window_mm = use.window_mm3 = use.window_bound_mm3_per_s = 0;
+}
+
+/// A feed move, or several, that removed so much in so long. `bound_mm3_per_s`: no tool of that
+/// size can be faster. A model tells what the cutter's front takes of the last of several moves in
+/// a row: the volume is right, and their sum; the rate of the last one is not.
+inline void add_cutting(ToolUse& use, double duration_s, double removed_mm3,
+                        double bound_mm3_per_s = std::numeric_limits<double>::infinity(),
+                        double least_mm = 0) {
+  if (removed_mm3 <= 0) return;
+  use.cut_s += duration_s;
+  use.window_s += duration_s;
+  use.window_mm3 += removed_mm3;
+  use.window_bound_mm3_per_s = std::max(use.window_bound_mm3_per_s, bound_mm3_per_s);
+  if (use.window_s >= kPeakWindow_s && use.window_mm >= least_mm) close_window(use);
+}
+
+/// A feed move that was not looked at on its own, as far as it is where the blank was.
+struct FeedPart {
+  bool known = false;
+  double seconds = 0, way_mm = 0;  ///< 0: it is not there
+  bool enters = false;             ///< it came from where the blank never was
+  /// Of that, until the cutter's middle leaves the blank's box; negative: it does not.
+  double leaves_s = -1, leaves_mm = 0;
+  /// What lies between two moves that remove cells is cutting time as long as it is no longer:
+  /// moves shorter than a cell remove some now and then and nothing between.
+  double near_mm = 0;
+  double window_mm = 0;  ///< the least way that a rate is taken over
+};
+
+/// `front_mm`: where a stretch of cutting begins with this move, how far before it the cutter's
+/// front was in material. A model tells what the front takes with the move that brings the cutter's
+/// middle there.
+inline void add_short_move(ToolUse& use, const FeedPart& part, double removed_mm3,
+                           double bound_mm3_per_s, double front_mm) {
+  constexpr double kOver = std::numeric_limits<double>::infinity();
+  if (part.way_mm <= 0) {  // the next one enters
+    use.gap_s = use.gap_mm = 0;
+    return;
+  }
+  if (part.enters) use.gap_s = use.gap_mm = 0;
+  const bool leaves = part.leaves_s >= 0;
+  const double seconds = leaves ? part.leaves_s : part.seconds;
+  const double way_mm = leaves ? part.leaves_mm : part.way_mm;
+  if (removed_mm3 > 0) {
+    const double counts_mm = std::max(part.near_mm, front_mm);
+    const double counts = use.gap_mm <= counts_mm ? 1 : counts_mm / use.gap_mm;
+    if (use.gap_mm < kOver && use.gap_mm > 0) {
+      use.cut_s += counts * use.gap_s;
+      use.window_s += counts * use.gap_s;
+      use.window_mm += counts * use.gap_mm;
+    }
+    use.window_mm += way_mm;
+    add_cutting(use, seconds, removed_mm3, bound_mm3_per_s, part.window_mm);
+    use.gap_s = use.gap_mm = 0;
+  } else {
+    use.gap_s += seconds;
+    use.gap_mm += way_mm;
+    if (leaves && use.gap_mm <= part.near_mm) use.cut_s += use.gap_s;
+  }
+  if (leaves) use.gap_mm = kOver;
+}
+
+}  // namespace kerf

@@ -1,0 +1,181 @@
+// twin/process/milling/engagement_scan.h - when on its way a move removes what: worked out from the
+// heights that it meets, cell by cell, without cutting.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "surface/height_grid.h"
+#include "twin/process/milling/way_spans.h"
+
+namespace kerf {
+
+/// Looks at the cells that a move comes over, and works out for each of them when the cutter's
+/// surface goes down through its height: the instant at which a flat cutter's edge is there, or the
+/// time from where a ball touches the top until it is right beside the cell. Reads only. Of long
+/// ways with many cells every n-th of a row is looked at, in each row another one, so that each
+/// stands for the n around it; along long arcs heights are looked up in rows that run beside them.
+///
+/// Ends of the cutting are those of the cells' squares, not of their middles: the sides of a blank,
+/// which are edges of cells, are met and left where they are; walls that were cut before are known
+/// to half a cell. Where a wall is left beside the way the cutter is taken to be at it until its
+/// widest is past the wall's end.
+///
+/// Does not see gaps of less than kLeastGapBins bins; arcs are those about Z with up to one turn;
+/// cutters do not undercut, and what is hollow below its top is not. One thread; keeps its memory.
+class EngagementScan {
+ public:
+  static constexpr int kMostPoints = 4096;  ///< looked at by each of its passes
+  static constexpr int kMostBins = 256;
+  static constexpr int kLeastGapBins = 3;
+
+  static bool takes(const Cutter& cutter, const CutMove& move);
+
+  struct Cost {
+    double looks = 0;   ///< heights that were looked at
+    double places = 0;  ///< of them, those that are above the cutter's tip
+  };
+
+  /// The part of the way from `from` to `to`; `bin_mm`: as fine as volumes are to be told (coarser
+  /// where kMostBins of them are shorter than that). Looks at a few lanes along the way: spans()
+  /// are as exact as above, where what is cut is no narrower than the lanes are apart (about a
+  /// fortieth of the cutter in the middle, less at its sides) and no shorter than `step_mm`; air of
+  /// less than `gap_mm` is not seen. bins_mm3() are good to some percent.
+  /// `held`: null, or a straight move of the same cutter that the heights may not have yet.
+  struct Lanes {
+    double bin_mm = 0, gap_mm = 0, step_mm = 0;
+    int count = 41;
+    const CutMove* held = nullptr;
+  };
+  Cost run_lanes(const HeightGrid& heights, const Cutter& cutter, const CutMove& move, double from,
+                 double to, const Lanes& lanes);
+
+  /// After run_lanes(), of the same move: bins_mm3() of a part of the way, by all of its cells (of
+  /// many every n-th; of few, where the material is level about them, several places of each). The
+  /// first bin has what the cutter stands in there, too.
+  Cost run_part(double from, double to, int bins);
+
+  std::span<const WaySpan> spans() const { return spans_; }
+  /// What is removed on each of equal parts of the way from `from` to `to`.
+  std::span<const double> bins_mm3() const { return bins_; }
+
+ private:
+  /// A place in the frame of the way: along and beside it, or around its centre.
+  struct Place {
+    double along = 0;   ///< mm; of arcs the angle from the start, 0 .. 2 pi
+    double beside = 0;  ///< mm; of arcs the distance from the centre
+  };
+  /// The cutter is over a place: parts of the way, and where it is nearest.
+  struct Pass {
+    double first = 0, nearest = 0, last = 0;
+    double middle = 0;  ///< where it is nearest, were the way longer
+  };
+
+  bool is_flat() const { return flat_radius_ >= radius_; }
+  bool is_level() const { return rise_ == 0 && length_ > 0; }
+  void set_cutter(const Cutter& cutter);
+  void set(const HeightGrid& heights, const Cutter& cutter, const CutMove& move);
+  Place place_of(const Vec2& point) const;
+  Vec2 point_of(const Place& place) const;
+  Place moved(const Place& place, double along_mm, double outward_mm) const;
+  double beside_mm(const Place& place) const;
+  double distance2(const Place& place, double t) const;
+  double surface(const Place& place, double t) const;
+  int passes(const Place& place, double from, double to, Pass (&found)[3]) const;
+  bool pass_at(double nearest, double half, double from, double to, Pass& pass) const;
+
+  template <class Visit>
+  void each_cell(double from, double to, double most_apart_mm, Visit&& visit);
+  bool is_level_about(int i, int j) const;
+  void take(const Place& place, double height, double area_mm2);
+  double take_pass(const Place& place, const Pass& pass, double height, double area_mm2);
+  void add(double from, double to, double mm3);
+  int bin_of(double t) const;
+  double lowest_at(const Place& place, const Pass& pass) const;
+  double first_below(const Place& place, const Pass& pass, double height) const;
+  double settled(const Place& place, const Pass& pass) const;
+  double level_crossing(const Place& place, const Pass& pass, double height) const;
+  double left_at(const Place& place, double removed_to_mm);
+  bool stands_beside(const Place& place, double tip_mm) const;
+  bool is_at_side(const Place& place) const;
+  std::optional<double> height_at(const Vec2& point) const;
+  double behind_held(const Vec2& point, double height) const;
+  Box path_box(double from, double to) const;
+
+  struct Lane {
+    double beside = 0;    ///< mm, from the way
+    double width_mm = 0;  ///< for which it stands
+    double lowest = 0;    ///< when the cutter is lowest, after it is nearest: part of the way
+  };
+  /// What a look at a lane has found.
+  struct Look {
+    bool removed = false;
+    Place place{};  ///< the middle of the cell
+    double height = 0, depth = 0;
+    double when = 0;  ///< it is being removed
+  };
+  void set_bins(double bin_mm);
+  double engaged_radius() const;
+  void lay_lanes(int count);
+  double lowest_behind(double beside) const;
+  bool lane_within(const Lane& lane, double& low, double& high) const;
+  double front_at_start(const Lane& lane) const;
+  double outside_mm(const Vec2& point) const;
+  Vec2 point_on(const Lane& lane, double along) const;
+  Look look(const Lane& lane, double along);
+  Look look_at(const Lane& lane, const Vec2& point);
+  /// A stretch of a lane begins or ends between a place that is removed and one that is free.
+  struct Edge {
+    Lane lane;
+    double removed_at = 0, free_at = 0;
+    Look look;        ///< at the former
+    double time = 0;  ///< when it is removed at first, or left
+    double most = 0;  ///< it cannot be farther than that beyond, as part of the way
+    std::size_t span = 0, stretch = 0;
+    bool begins = false;
+  };
+  void walk(const Lane& lane, double phase, double step);
+  void note_edge(const Lane& lane, const Look& look, double removed_at, double free_at,
+                 bool begins);
+  void take_edge(const Lane& lane, const Edge& edge, Look look, WaySpan& stretch);
+  void find_edges(bool missed);
+  void find_edge(const Lane& lane, double removed, double free, Look& last);
+  double begin_of(const Place& place, double height, double from, double to, double best);
+  double end_of(const Place& place, double height, double from, double to, double best);
+
+  const HeightGrid* heights_ = nullptr;
+  Motion motion_;  ///< of arcs
+  bool arc_ = false;
+  double radius_ = 0, flat_radius_ = 0;
+  double engaged_ = 0;  ///< greatest radius that can be in material
+  double z_ = 0, rise_ = 0, low_z_ = 0;
+  Vec2 start_{0}, direction_{1, 0};
+  double length_ = 0;  ///< seen from above
+  Vec2 center_{0};
+  double arc_radius_ = 0, start_angle_ = 0, sweep_ = 0, turn_ = 1;
+  double cell_ = 0, half_along_ = 0;
+  std::string cutter_spec_;  ///< whose lift_ is
+  static constexpr int kLifts = 1024;
+  std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
+  double lift_scale_ = 0;
+
+  double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;
+  Cost cost_;
+  std::vector<double> bins_;
+  std::vector<WaySpan> spans_;
+  std::vector<Lane> lanes_;
+  std::vector<Edge> edges_;
+  /// The move that is held back; length 0: none.
+  struct Held {
+    Vec2 start{0}, direction{1, 0};
+    double length = 0, z = 0, rise = 0;
+  } held_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,83 @@
+// What MillingStage asks of the load of its feed moves: how long they cut, and how fast.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "twin/job/blank_choice.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/milling_stage.h"
+
+namespace kerf {
+namespace {
+
+/// Short moves are looked at on their own where they are at least so much of a window long and
+/// there is enough to spend.
+constexpr double kLeastOfWindow = 0.5;
+
+}  // namespace
+
+/// What a feed move counts for: where the blank never was it does not cut. Of one that lasts: how
+/// long it really cuts, and how fast at most. Short ones are taken together (add_short_move). Of a
+/// program that is played nobody asks.
+void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& flight) {
+  cut_parts_.clear();
+  if (site_.timed || site_.holding || !is_feed(m) || divided_.empty() || step.duration_s <= 0)
+    return;
+  const Cutter& cutter = *mounted_->cutter;
+  if (divided_.size() > 1 || !LoadMeter::is_one_piece(divided_[0])) {
+    if (!comes_near(m)) return;
+    hand_over();
+    load_meter_.cut_parts(cutter, divided_, cut_parts_);
+    return;
+  }
+  flight.reach = load_meter_.reach(cutter, divided_[0], step.duration_s, step.peak_mm_per_min / 60);
+  const bool lasts = step.duration_s >= LoadMeter::kLasting_s;
+  if (!lasts && step.length_mm < kLeastOfWindow * load_meter_.window_mm(cutter)) return;
+  if ((!lasts && !load_meter_.affords_short()) || !comes_near(m)) return;
+  hand_over();
+  ToolUse& use = uses_[use_];
+  const MotionLoad load = load_meter_.measure(cutter, divided_[0], use.peak_mm3_per_s);
+  use.cut_s += load.cut_s;
+  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, load.peak_mm3_per_s);
+  flight.measured = true;
+}
+
+/// How far before its middle the cutter meets material of that depth, and of the width that this
+/// removal has. Octrees tell what the front takes with the move that takes it.
+double MillingStage::front_mm_of(const FeedPart& part, const CutReport& report) const {
+  if (stock_.takes_tilted_tools() || cutter() == nullptr || report.depth_mm <= 0) return 0;
+  const double half_mm = half_width_mm(*cutter(), report.depth_mm);
+  const double way_mm = std::max(part.way_mm, stock_.cell_mm());
+  const double width_mm = report.removed_mm3 / (report.depth_mm * way_mm);
+  const double beside_mm = std::max(0.0, half_mm - width_mm);
+  return std::sqrt(std::max(0.0, half_mm * half_mm - beside_mm * beside_mm));
+}
+
+void MillingStage::count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const {
+  if (site_.watched) {
+    use.grain_s += move.duration_s;
+    use.grain_mm3 += report.removed_mm3;
+    if (use.grain_s < kGrain_s) return;
+    const double duration_s = std::exchange(use.grain_s, 0);
+    add_cutting(use, duration_s, std::exchange(use.grain_mm3, 0));
+    return;
+  }
+  const MotionReach& reach = move.reach;
+  const double bound = report.depth_mm > 0
+                           ? report.depth_mm * reach.side_mm2_per_s + reach.disc_mm3_per_s
+                           : std::numeric_limits<double>::infinity();
+  if (reach.part.known) {
+    const bool begins = report.removed_mm3 > 0 && use.gap_mm > reach.part.near_mm &&
+                        use.gap_mm < std::numeric_limits<double>::infinity();
+    const double front_mm = begins ? front_mm_of(reach.part, report) : 0;
+    add_short_move(use, reach.part, report.removed_mm3, bound, front_mm);
+  } else {
+    use.gap_mm = std::numeric_limits<double>::infinity();
+    add_cutting(use, move.cut_part * move.duration_s, report.removed_mm3, bound);
+  }
+  const double mean = report.removed_mm3 * reach.speed_per_mm;
+  use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, std::min(mean, bound));
+}
+
+}  // namespace kerf

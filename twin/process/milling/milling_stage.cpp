@@ -1,0 +1,315 @@
+#include "twin/process/milling/milling_stage.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/machine/planned_pieces.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/probe_contact.h"
+
+namespace kerf {
+namespace {
+
+/// Moves handed to the model at once: many enough that the call costs nothing, few enough to stay
+/// in the cache.
+constexpr std::size_t kMovesPerCut = 4096;
+/// Motion::unknown_to: X, Y and Z.
+constexpr std::uint8_t kAllUnknown = 7;
+/// Of moves that cost much (tilted tools, long ways on fine cells) fewer, so that a stop is seen in
+/// time: as many as take about so long.
+constexpr double kCut_s = 0.05;
+constexpr std::size_t kLeastMovesPerCut = 1;
+/// To begin with, while nobody knows: of upright tools.
+constexpr std::size_t kFirstMovesPerCut = 64;
+/// Of tilted ones at most: moves in the air say nothing of those in the material behind them. An
+/// octree takes no more at once.
+constexpr std::size_t kMostTiltedMovesPerCut = 512;
+/// From one cut to the next at most so many times as many.
+constexpr double kGrowth = 4;
+/// Of the moves of one motion, to share its time: as far as they go, and as they turn.
+double way_of(const CutMove& move) {
+  return glm::length(move.to_mm - move.from_mm) + glm::length(move.axis_to - move.axis_from);
+}
+
+}  // namespace
+
+MillingStage::MillingStage(ProcessSite& site)
+    : site_(site),
+      stock_(site.stock),
+      resolver_(site.tools),
+      log_(site.log),
+      checks_(stock_, log_),
+      program_(stock_, log_),
+      load_meter_(stock_),
+      lengths_(stock_.bounds_mm(), log_),
+      films_(stock_, log_),
+      moves_per_cut_(stock_.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
+  moves_.reserve(kMovesPerCut);
+  in_flight_.reserve(2 * kMovesPerCut);
+  reports_.reserve(2 * kMovesPerCut);
+}
+
+void MillingStage::stop_by(const std::stop_token& stop) {
+  checks_.watch_by({stop, [this](double share) { site_.progress.note_search(share); }});
+}
+
+void MillingStage::begin_reporting() {
+  complete();
+  checks_.forget_events();
+  lengths_.forget();
+  films_.forget();
+  program_.forget_events();
+  speed_unsaid_.reset();
+  uses_.clear();
+  deepest_.clear();
+  mounted_ = nullptr;
+  drawn_told_ = false;
+}
+
+void MillingStage::finish(bool whole) {
+  program_.finish(whole);
+  if (whole && !site_.progress.is_stopped()) report_nothing_cut();
+  report_coarse_cells();
+  for (ToolUse& use : uses_) {
+    if (use.peak_mm3_per_s == 0) close_window(use);
+  }
+}
+
+void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
+  path_ = path;
+  watch_program(m, step);
+  if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
+    complete();  // with the cutter that made these moves
+    checks_.end_spindle_event();
+    spindle_tool_ = m.tool;
+    mounted_ = nullptr;
+  }
+  if (!stands(m) && checks_.spindle_event_open()) {
+    complete();  // the depths still to come belong to the event
+    checks_.end_spindle_event();
+  }
+  if (is_traverse(m)) {
+    take_traverse(m, step);
+  } else if (is_feed(m)) {
+    take_feed(m, step);
+  }
+}
+
+/// Mounts the tool of this motion if that has not been done since the last change. True if it can
+/// cut.
+bool MillingStage::mount_for(const Motion& m) {
+  if (mounted_) return mounted_->cutter.has_value();
+  mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
+  announce(*mounted_, m);
+  return mounted_->cutter.has_value();
+}
+
+void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
+  // With an empty spindle a comment without a number waits for the first feed move: the traverse
+  // may just clear the way for the tool change that the comment announces.
+  if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) return;
+  // Nor does a move to where nobody knows say which tool is in the spindle: many programs begin so.
+  if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
+  if (!mount_for(m) || !m.start_known) {
+    check_length(m, step, false);
+    return;
+  }
+  if (!divide(m, step)) return;
+  if (!comes_near(m)) {
+    check_length(m, step, false);
+    checks_.clear_traverse();
+    return;
+  }
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
+  complete();
+  check_length(m, step, checks_.check_traverse(move));
+  if (site_.moves.is_upright(m)) checks_.check_floor(move);
+  push(m, step, false);
+}
+
+void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
+  if (stands_still(m)) return;
+  const bool known = mount_for(m);
+  check_length(m, step, false);
+  if (!known) {
+    report_undefined(m, step);
+    return;
+  }
+  uses_[use_].feed_mm += step.length_mm;
+  if (!m.start_known) return;
+  if (!site_.watched) program_.feeds(m, step, mounted_->number);
+  site_.feeds.note(m, step);
+  if (!divide(m, step)) return;
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
+  if (!reached_stock_) note_reach(m);
+  if (!site_.watched) note_contact(move);
+  note_depth(m, step);
+  if (site_.moves.is_upright(m)) checks_.check_floor(move);
+  const bool spindle_off = stands(m);
+  if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, step, move);
+  if (ProgramChecks::is_drill(move.cutter) && !program_.drill_told() &&
+      ProgramChecks::goes_sideways(move) && comes_near(m)) {
+    complete();
+    program_.check_drill(move);
+  }
+  push(m, step, spindle_off);
+}
+
+void MillingStage::check_length(const Motion& m, const TimedStep& step, bool touches) {
+  const double radius_mm = cutter() ? cutter()->radius_mm() : 0;
+  lengths_.check(m, step, radius_mm, site_.moves.is_upright(m), touches);
+}
+
+ProbeAnswer MillingStage::answer(const ProbeQuestion& question) {
+  complete();
+  ProbeAnswer unknown;
+  const Motion& m = question.motion;
+  if (!mount_for(m)) {
+    unknown.why =
+        trf("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does", m.tool, m.tool);
+    return unknown;
+  }
+  divide(m, {});
+  if (divided_.size() != 1) {
+    unknown.why = tr("the tool or the workpiece turns");
+    return unknown;
+  }
+  return probe_contact(stock_, *mounted_->cutter, divided_[0], question.away);
+}
+
+/// What it is cut as. False: it turns so far that it cannot be.
+bool MillingStage::divide(const Motion& m, const TimedStep& step) {
+  divided_.clear();
+  const bool done = site_.moves.append(m, *mounted_->cutter, 0, divided_);
+  if (!done) report_endless_turn(m, step);
+  return done;
+}
+
+bool MillingStage::comes_near(const Motion& m) const {
+  const Cutter& cutter = *mounted_->cutter;
+  return site_.moves.is_upright(m) ? checks_.may_touch(m, cutter.radius_mm())
+                                   : checks_.may_touch(divided_, cutter);
+}
+
+void MillingStage::note_reach(const Motion& m) {
+  if (comes_near(m)) {
+    reached_stock_ = true;
+    return;
+  }
+  for (const CutMove& move : divided_) {
+    feed_bounds_mm_.extend(move.from_mm);
+    feed_bounds_mm_.extend(move.to_mm);
+  }
+  if (divided_.size() == 1) feed_bounds_mm_.extend(bounds_of(m));
+}
+
+void MillingStage::note_depth(const Motion& m, const TimedStep& step) {
+  Deepest& deepest = deepest_[use_];
+  const double tip_z = std::min(m.from_mm.z, m.to_mm.z);
+  if (tip_z >= deepest.tip_z_mm || !site_.moves.is_upright(m) || !comes_near(m)) return;
+  if (!deepest.cutter) {
+    deepest.source = m.source;
+    deepest.time_s = step.start_s;
+    deepest.cutter = mounted_->cutter;
+  }
+  deepest.tip_z_mm = tip_z;
+}
+
+/// The programmed move, or what the machine makes of it.
+void MillingStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
+  if (site_.progress.stop_now()) return;  // while its contacts were looked for
+  if (path_.empty()) {
+    push_moves(m, step, spindle_off);
+    return;
+  }
+  for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
+    if (site_.progress.is_stopped()) return;
+    if (!divide(piece, part)) return;
+    push_moves(piece, part, spindle_off);
+  });
+}
+
+/// Those of divide().
+void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_off) {
+  const std::uint64_t id =
+      site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
+  double ways = 0;
+  for (const CutMove& move : divided_) ways += way_of(move);
+  InFlight flight;
+  flight.duration_s = step.duration_s;
+  flight.start_s = step.start_s;
+  flight.source = m.source;
+  flight.use = use_;
+  flight.feed = is_feed(m);
+  flight.spindle_off = spindle_off;
+  measure(m, step, flight);
+  std::size_t pushed = 0;
+  for (CutMove& move : divided_) {
+    move.id = id;
+    moves_.push_back(move);
+    if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
+    const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
+    flight.duration_s = step.duration_s * share;
+    in_flight_.push_back(flight);
+    ++pushed;
+    if (moves_.size() < moves_per_cut_) continue;
+    hand_over();
+    if (site_.progress.stop_now()) return;
+    site_.progress.note_cut(static_cast<double>(pushed) / static_cast<double>(divided_.size()));
+  }
+}
+
+void MillingStage::hand_over() {
+  if (moves_.empty()) return;
+  const auto begin = std::chrono::steady_clock::now();
+  stock_.cut(*mounted_->cutter, moves_, reports_);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
+  const double grown = std::min(fits, kGrowth * static_cast<double>(moves_per_cut_));
+  const std::size_t most = stock_.takes_tilted_tools() ? kMostTiltedMovesPerCut : kMovesPerCut;
+  moves_per_cut_ = static_cast<std::size_t>(
+      std::clamp(grown, static_cast<double>(kLeastMovesPerCut), static_cast<double>(most)));
+  moves_.clear();
+  collect_reports();
+}
+
+void MillingStage::complete() {
+  hand_over();
+  if (in_flight_.empty()) return;
+  stock_.finish(reports_);
+  collect_reports();
+}
+
+void MillingStage::collect_reports() {
+  assert(reports_.size() <= in_flight_.size());
+  for (std::size_t i = 0; i < reports_.size(); ++i) {
+    const CutReport& report = reports_[i];
+    const InFlight& move = in_flight_[i];
+    ToolUse& use = uses_[move.use];
+    if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
+    if (move.feed && !move.measured) {
+      count_feed(use, move, report);
+    } else {
+      use.gap_mm = std::numeric_limits<double>::infinity();
+    }
+    // Of a groove that is narrower than a cell only the depth may be known.
+    use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
+    if (report.film.area_mm2 > 0 && !site_.holding)
+      films_.take(report.film, {move.source, move.start_s, use.number});
+    if (report.removed_mm3 <= 0) continue;
+    use.removed_mm3 += report.removed_mm3;
+    if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
+      checks_.deepen_spindle_event(report.depth_mm);
+    }
+  }
+  in_flight_.erase(in_flight_.begin(),
+                   in_flight_.begin() + static_cast<std::ptrdiff_t>(reports_.size()));
+  reports_.clear();
+}
+
+}  // namespace kerf

@@ -1,0 +1,132 @@
+// twin/process/milling/milling_stage.h - motions of rotating tools: mounts tools, checks and cuts,
+// adds up what each tool did.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tool_use.h"
+#include "twin/job/tools.h"
+#include "twin/machine/timeline.h"
+#include "twin/process/milling/checks.h"
+#include "twin/process/milling/film_events.h"
+#include "twin/process/milling/length_check.h"
+#include "twin/process/milling/load_meter.h"
+#include "twin/process/milling/program_checks.h"
+#include "twin/process/process.h"
+
+namespace kerf {
+
+/// Steps of a watched machine are shorter than a cell; its cutting time is counted in grains of
+/// this many seconds that removed something.
+inline constexpr double kGrain_s = 0.05;
+
+/// Per move it allocates nothing and hands moves to the model by thousands. Which moves cut:
+/// traverses, feeds, arcs and threads with a known start and a known tool. Probes, and moves of a
+/// tool of which nothing is known, do not.
+class MillingStage final : public Process {
+ public:
+  explicit MillingStage(ProcessSite& site);
+
+  void take(const Motion& motion, const TimedStep& step, std::span<const PathPiece> path) override;
+  void finish(bool whole) override;
+  void begin_reporting() override;
+  void hand_over() override;
+  void complete() override;
+  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  void stop_by(const std::stop_token& stop) override;
+  const std::vector<ToolUse>& tools() const override { return uses_; }
+  const Cutter* cutter() const override {
+    return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
+  }
+  ProbeAnswer answer(const ProbeQuestion& question) override;
+
+ private:
+  /// What is needed when a move's report comes back.
+  struct InFlight {
+    double duration_s = 0;
+    double start_s = 0;   ///< of its motion
+    double cut_part = 1;  ///< of its time, where it is one of several moves: LoadMeter
+    SourceRef source;
+    MotionReach reach;
+    std::uint32_t use = 0;  ///< index of ToolUse
+    bool feed = false;
+    bool measured = false;  ///< its cutting time and rate are in the ToolUse already
+    bool spindle_off = false;
+  };
+  /// The deepest place of a tool's feed moves, where they come near the workpiece.
+  struct Deepest {
+    double tip_z_mm = std::numeric_limits<double>::infinity();
+    SourceRef source;  ///< the first of them
+    double time_s = 0;
+    std::optional<Cutter> cutter;
+  };
+
+  void watch_program(const Motion& motion, const TimedStep& step);
+  bool stands(const Motion& motion) const;
+  void check_standing(const Motion& motion, const TimedStep& step, const CheckedMove& move);
+  void report_drawn(const Motion& motion, const TimedStep& step);
+  void take_traverse(const Motion& motion, const TimedStep& step);
+  void take_feed(const Motion& motion, const TimedStep& step);
+  bool mount_for(const Motion& motion);
+  void announce(const ResolvedTool& tool, const Motion& motion);
+  void report_undefined(const Motion& motion, const TimedStep& step);
+  bool divide(const Motion& motion, const TimedStep& step);
+  bool comes_near(const Motion& motion) const;
+  void note_reach(const Motion& motion);
+  void report_endless_turn(const Motion& motion, const TimedStep& step);
+  void report_outside_stock();
+  void check_length(const Motion& motion, const TimedStep& step, bool touches);
+  void report_nothing_cut();
+  void note_contact(const CheckedMove& move);
+  void note_depth(const Motion& motion, const TimedStep& step);
+  void report_coarse_cells();
+  void push(const Motion& motion, const TimedStep& step, bool spindle_off);
+  void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
+  void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
+  void collect_reports();
+  double front_mm_of(const FeedPart& part, const CutReport& report) const;
+  void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
+
+  ProcessSite& site_;
+  StockModel& stock_;
+  ToolResolver& resolver_;
+  FindingLog& log_;
+  std::vector<CutMove> divided_;     ///< the present motion
+  std::span<const PathPiece> path_;  ///< of it
+  Checks checks_;
+  ProgramChecks program_;
+  bool touched_ = false;          ///< a feed move has met material, whatever the cells have of it
+  int contact_looks_ = 0;         ///< for that
+  bool probes_ = false;           ///< so far
+  std::uint64_t moves_made_ = 0;  ///< motions that move
+  std::uint64_t feed_moves_made_ = 0;  ///< of them, those that are no traverses
+  /// spindle-off-contact of a program without any S word so far.
+  std::optional<FindingLog::Handle> speed_unsaid_;
+  bool drawn_told_ = false;  ///< CheckOptions::is_drawn
+  LoadMeter load_meter_;
+  LengthCheck lengths_;
+  FilmEvents films_;
+  std::vector<ToolUse> uses_;
+  std::vector<Deepest> deepest_;           ///< one for each of uses_
+  const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
+  std::uint32_t use_ = 0;
+  int spindle_tool_ = 0;
+  bool reached_stock_ = false;  ///< a feed move came near the blank, in boxes
+  Box feed_bounds_mm_;          ///< of all feed moves, until then
+  std::size_t moves_per_cut_;
+  std::vector<double> cut_parts_;  ///< of divided_, where it is not one move
+  std::vector<CutMove> moves_;
+  std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
+  std::vector<CutReport> reports_;
+  std::uint64_t next_id_ = 0;
+};
+
+}  // namespace kerf

@@ -1,0 +1,154 @@
+// What MillingStage tells beyond what its checks tell: tools, cells, the blank.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/job/blank_choice.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/finding_at.h"
+#include "twin/process/milling/milling_stage.h"
+
+namespace kerf {
+namespace {
+
+/// A blank is divided evenly: cells may be smaller than asked for, and rounded.
+constexpr double kCoarse = 1 + 1e-6;
+
+}  // namespace
+
+void MillingStage::announce(const ResolvedTool& tool, const Motion& m) {
+  const auto known = std::find_if(uses_.begin(), uses_.end(),
+                                  [&](const ToolUse& use) { return use.number == tool.number; });
+  use_ = static_cast<std::uint32_t>(known - uses_.begin());
+  if (known != uses_.end()) return;
+  ToolUse use;
+  use.number = tool.number;
+  use.origin = tool.origin;
+  use.guessed = tool.guessed;
+  if (tool.cutter) use.shape = tool.cutter->spec();
+  uses_.push_back(use);
+  deepest_.emplace_back();
+  if (!tool.cutter) return;
+  Finding finding;
+  finding.source = m.source;
+  finding.tool = tool.number;
+  if (tool.assumed) {
+    finding.id = FindingId::kToolAssumed;
+    finding.severity = Severity::kNote;
+    finding.text = trf(
+        "the program moves before any tool change; tool {} ({}, {}) is taken to be in the spindle",
+        tool.number, use.shape, use.origin);
+    log_.add(finding);
+  }
+  if (tool.guessed) {
+    finding.id = FindingId::kToolGuessed;
+    finding.severity = Severity::kWarning;
+    finding.text =
+        tool.from_moves
+            ? trf("nothing is known of {}; by its moves it is taken for {}, and that is a "
+                  "guess: {} (--tool {}=SHAPE says better)",
+                  tool.number == 0 ? std::string(tr("the tool in the spindle"))
+                                   : trf("tool {}", tool.number),
+                  use.shape, tool.guess, std::max(1, tool.number))
+        : tool.guess.empty()
+            ? trf("only the diameter of tool {} is known ({}); a flat cutter is assumed: {} "
+                  "(--tool "
+                  "{}=SHAPE says better)",
+                  tool.number, use.origin, use.shape, std::max(1, tool.number))
+            : trf("tool {} is taken for {} ({}), and that is a guess: {} (--tool {}=SHAPE "
+                  "says better)",
+                  tool.number, use.shape, use.origin, tool.guess, std::max(1, tool.number));
+    log_.add(finding);
+  }
+}
+
+/// Of each such move: each is missing from the workpiece.
+void MillingStage::report_endless_turn(const Motion& m, const TimedStep& step) {
+  double turns = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    turns = std::max(turns, std::abs(m.to_abc_deg[i] - m.from_abc_deg[i]) / 360);
+  Finding finding = finding_at(FindingId::kRotaryIgnored, Severity::kError, m, step);
+  finding.tool = m.tool;
+  finding.text = trf(
+      "{:.6g} turns in one move, whose way in the workpiece is more than {} straight pieces: it is "
+      "not cut",
+      turns, ToolPath::kMostPieces);
+  finding.hint = tr("a slip of the pen? Otherwise fewer turns in a block, nearer to their axis");
+  log_.add(std::move(finding));
+}
+
+/// Once a tool: what it leaves at its deepest is narrower than two cells. Contacts and depths do
+/// not need cells; volumes, pictures and meshes do.
+void MillingStage::report_coarse_cells() {
+  const Box bounds = stock_.bounds_mm();
+  const double cell = stock_.cell_mm();
+  for (std::size_t i = 0; i < deepest_.size(); ++i) {
+    const Deepest& deepest = deepest_[i];
+    const double depth = bounds.max.z - std::max(deepest.tip_z_mm, bounds.min.z);
+    if (!deepest.cutter || depth <= kContactTolerance_mm) continue;
+    const double half = half_width_mm(*deepest.cutter, depth);
+    if (cell <= half * kCoarse) continue;
+    const double fitting = cell_no_larger_mm(half);
+    const Vec3 size = bounds.size();
+    const double cells = size.x / fitting * (size.y / fitting);
+    Finding finding =
+        finding_at(FindingId::kCellCoarse, Severity::kWarning, deepest.source, deepest.time_s);
+    finding.tool = uses_[i].number;
+    finding.text = trf(
+        "the cells of {:.3g} mm are too coarse for {}, which leaves grooves {:.2g} mm wide at its "
+        "deepest, {:.3g} mm: what it removes is not known, and pictures and meshes show it badly",
+        cell, uses_[i].shape, 2 * half, depth);
+    finding.hint = stock_.takes_tilted_tools() ? trf("--cell {:g} would do", fitting)
+                                               : trf("--cell {:g} would do ({:.0f} million cells)",
+                                                     fitting, std::ceil(cells / 1e6));
+    log_.add(std::move(finding));
+  }
+}
+
+/// A program that never comes near its blank was written for another zero, or another blank.
+void MillingStage::report_outside_stock() {
+  // A guessed blank lies where the program works: missing it says nothing of the program.
+  if (reached_stock_ || feed_bounds_mm_.empty() || checks_.options().blank_guessed) return;
+  const auto extent = [](const Box& box) {
+    return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", box.min.x, box.max.x,
+                       box.min.y, box.max.y, box.min.z, box.max.z);
+  };
+  Finding finding;
+  finding.id = FindingId::kOutsideStock;
+  finding.severity = Severity::kWarning;
+  finding.text = trf(
+      "no feed move comes near the workpiece: the moves are at {}, the blank at {}; is the blank "
+      "given "
+      "in the coordinates that the program writes?",
+      extent(feed_bounds_mm_), extent(stock_.bounds_mm()));
+  log_.add(std::move(finding));
+}
+
+/// Once a tool: its first feed move.
+void MillingStage::report_undefined(const Motion& m, const TimedStep& step) {
+  ToolUse& use = uses_[use_];
+  const bool first = use.origin.empty();
+  use.feed_mm += step.length_mm;
+  if (!first) return;
+  use.origin = tr("nothing");
+  Finding finding = finding_at(FindingId::kToolUndefined, Severity::kError, m, step);
+  finding.tool = mounted_->number;
+  if (!mounted_->trouble.empty()) {
+    finding.text = trf("tool {}: {}; its moves do not cut", m.tool, mounted_->trouble);
+  } else if (m.tool == 0) {
+    finding.text =
+        tr("feed moves with no tool in the spindle do not cut (one --tool N=SHAPE names the tool "
+           "that is in it at the start)");
+  } else {
+    finding.text =
+        trf("nothing is known of tool {}; its moves do not cut (--tool {}=SHAPE describes it)",
+            m.tool, m.tool);
+  }
+  log_.add(std::move(finding));
+}
+
+}  // namespace kerf

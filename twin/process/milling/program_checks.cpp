@@ -1,0 +1,207 @@
+#include "twin/process/milling/program_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Sideways by less is rounding.
+constexpr double kSideways_mm = 0.01;
+/// A foot of a tool that only rests on what it has cut must not count as in it.
+constexpr double kInside_mm = 0.02;
+
+bool stops(const Motion& m) {
+  return m.kind == MotionKind::kToolChange || m.kind == MotionKind::kStop ||
+         m.kind == MotionKind::kProgramEnd;
+}
+
+const char* words_of(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::kToolChange:
+      return tr("the tool is changed");
+    case MotionKind::kProgramEnd:
+      return tr("the program ends");
+    default:
+      return tr("the program stops (M0, M1, M60)");
+  }
+}
+
+std::string extent(const Box& box) {
+  // No "-0.0".
+  const auto tenths = [](double mm) { return std::round(mm * 10) / 10 + 0.0; };
+  return fmt::format("X{:.1f}..{:.1f} Y{:.1f}..{:.1f} Z{:.1f}..{:.1f}", tenths(box.min.x),
+                     tenths(box.max.x), tenths(box.min.y), tenths(box.max.y), tenths(box.min.z),
+                     tenths(box.max.z));
+}
+
+/// Of a drill's SHAPE text, "drill:D:ANGLE..".
+double point_angle_deg(const Cutter& cutter) {
+  double rise = 0, run = 0;
+  for (const ProfilePiece& piece : cutter.profile()) {
+    if (piece.r1 <= piece.r0) break;
+    rise = piece.z1;
+    run = piece.r1;
+  }
+  return run > 0 ? 2 * std::atan2(run, rise) * 180 / kPi : 180;
+}
+
+}  // namespace
+
+void ProgramChecks::feeds(const Motion& m, const TimedStep& step, int tool) {
+  if (m.selected_at != waiting_.last) {
+    const bool same = m.selected_tool == waiting_.tool && m.selected_at.line != 0;
+    if (!same) {
+      tell_not_changed();
+      waiting_ = {m.selected_tool, m.selected_at, m.selected_at, 0, {}, 0, false};
+    }
+    waiting_.last = m.selected_at;
+  }
+  if (waiting_.fed || waiting_.source.line == 0 || waiting_.tool <= 0) return;
+  if (tool == waiting_.tool) return;
+  waiting_.fed = true;
+  waiting_.used = tool;
+  waiting_.first = m.source;
+  waiting_.time_s = step.start_s;
+}
+
+void ProgramChecks::tell_not_changed() {
+  if (!waiting_.fed) return;
+  waiting_.fed = false;
+  Finding finding;
+  finding.id = FindingId::kToolNotChanged;
+  finding.severity = Severity::kWarning;
+  finding.source = waiting_.source;
+  finding.time_s = waiting_.time_s;
+  finding.tool = waiting_.used;
+  finding.text = trf("T{} is selected, and no M6 follows: tool {} cuts on, from line {}",
+                     waiting_.tool, waiting_.used, waiting_.first.line);
+  log_.add(std::move(finding));
+}
+
+void ProgramChecks::forget_events() {
+  waiting_.fed = false;
+  drill_told_ = false;
+}
+
+bool ProgramChecks::may_stop_in_part(const Motion& m) const {
+  if (!stops(m) || !m.start_known || is_empty_) return false;
+  const Vec3& tip = m.to_mm;
+  return tip.z < bounds_mm_.max.z - kInside_mm && tip.x > bounds_mm_.min.x &&
+         tip.x < bounds_mm_.max.x && tip.y > bounds_mm_.min.y && tip.y < bounds_mm_.max.y;
+}
+
+bool ProgramChecks::touches(const Cutter& cutter, const Vec3& tip, const Vec3& to) const {
+  CutMove move;
+  // The foot is lifted off what it may rest on.
+  move.from_mm = tip + Vec3(0, 0, kInside_mm / 2);
+  move.to_mm = to + Vec3(0, 0, kInside_mm / 2);
+  return stock_.first_contact(cutter, move, kContactTolerance_mm).has_value();
+}
+
+void ProgramChecks::check_stop(const Motion& m, const TimedStep& step, const Cutter& cutter,
+                               int tool) {
+  const Vec3& tip = m.to_mm;
+  const auto between = [&](int axis) {
+    Vec3 low = tip, high = tip;
+    low[axis] = bounds_mm_.min[axis];
+    high[axis] = bounds_mm_.max[axis];
+    return touches(cutter, tip, low) && touches(cutter, tip, high);
+  };
+  if (!between(0) && !between(1)) return;
+  Finding finding;
+  finding.id = FindingId::kStopInPart;
+  finding.severity = Severity::kWarning;
+  finding.source = m.source;
+  finding.time_s = step.start_s;
+  finding.position_mm = tip;
+  finding.tool = tool;
+  finding.text = trf("{} while the tool is inside the part, {:.2f} mm below its top",
+                     words_of(m.kind), bounds_mm_.max.z - tip.z);
+  log_.add(std::move(finding));
+}
+
+bool ProgramChecks::is_drill(const Cutter& cutter) { return cutter.spec().rfind("drill:", 0) == 0; }
+
+bool ProgramChecks::goes_sideways(const CheckedMove& move) {
+  if (!is_feed(move.motion)) return false;
+  if (move.motion.kind == MotionKind::kArc) return true;
+  // Along the drill, wherever it points: what turns is divided, and each piece has its own
+  // direction.
+  double sideways_mm = 0;
+  for (const CutMove& part : move.moves) {
+    const Vec3 way = part.to_mm - part.from_mm;
+    const Vec3 along = glm::normalize(part.axis_from + part.axis_to);
+    sideways_mm += glm::length(way - glm::dot(way, along) * along);
+  }
+  return sideways_mm > kSideways_mm;
+}
+
+void ProgramChecks::check_drill(const CheckedMove& move) {
+  for (const CutMove& part : move.moves) {
+    const auto contact = stock_.first_contact(move.cutter, part, kContactTolerance_mm);
+    if (!contact) continue;
+    const double angle_deg = point_angle_deg(move.cutter);
+    Finding finding;
+    finding.id = FindingId::kDrillSideways;
+    finding.severity = angle_deg <= kSpotting_deg + 1e-6 ? Severity::kWarning : Severity::kError;
+    finding.source = move.motion.source;
+    finding.time_s = move.step.start_s;
+    finding.position_mm = contact->tip_mm;
+    finding.tool = move.tool;
+    finding.depth_mm = contact->depth_mm;
+    finding.text = trf("a drill ({}) is fed sideways through material", move.cutter.spec());
+    log_.add(std::move(finding));
+    drill_told_ = true;
+    return;
+  }
+}
+
+Severity blank_severity(BlankKind blank) {
+  return blank == BlankKind::kGiven ? Severity::kError : Severity::kWarning;
+}
+
+std::optional<Finding> nothing_cut(const CutFacts& facts) {
+  if (facts.blank == BlankKind::kUnjudged || facts.removed_mm3 > 0) return std::nullopt;
+  if (facts.probes || facts.undefined || facts.touched) return std::nullopt;
+  // Where the blank is a guess, that nothing was cut says nothing of the program.
+  if (facts.blank == BlankKind::kGuessed && facts.feed_moves > 0) return std::nullopt;
+  Finding finding;
+  finding.id = FindingId::kNothingCut;
+  finding.severity = blank_severity(facts.blank);
+  if (facts.moves == 0) {
+    finding.severity = Severity::kError;
+    finding.text = tr("the program moves nothing");
+  } else if (facts.feed_moves == 0) {
+    finding.severity = Severity::kWarning;
+    finding.text = tr("nothing is cut: the program has no feed moves");
+  } else if (!facts.came_near && !facts.feed_mm.empty() && facts.blank == BlankKind::kGuessed) {
+    finding.text = trf(
+        "nothing is cut, no feed move goes into the blank, which is a guess: the moves are at {}, "
+        "the blank at {}; where it really is --stock SPEC says",
+        extent(facts.feed_mm), extent(facts.blank_mm));
+  } else if (!facts.came_near && !facts.feed_mm.empty()) {
+    finding.text = trf(
+        "nothing is cut, no feed move comes near the workpiece: the moves are at {}, the blank at "
+        "{}; is the blank given in the coordinates that the program writes?",
+        extent(facts.feed_mm), extent(facts.blank_mm));
+  } else if (!facts.came_near) {
+    return std::nullopt;  // feed moves from nowhere known, which do not cut
+  } else {
+    finding.text =
+        facts.blank == BlankKind::kSaved
+            ? tr("nothing is cut: the feed moves come near the workpiece, and find no material "
+                 "that an earlier run has left")
+            : tr("nothing is cut: the feed moves come near the workpiece, and find no material");
+  }
+  return finding;
+}
+
+}  // namespace kerf

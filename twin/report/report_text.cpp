@@ -1,0 +1,269 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/translate.h"
+#include "twin/report/report.h"
+#include "twin/report/shown_lengths.h"
+
+namespace kerf {
+namespace {
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string distance_text(double mm) {
+  return mm < 10000 ? fmt::format("{:.1f} mm", mm) : fmt::format("{:.2f} m", mm / 1000);
+}
+
+std::string volume_text(double mm3) { return fmt::format("{:.3f} cm3", mm3 / 1000); }
+
+/// "2 errors, 1 warning"; "no findings". Notes are no verdict.
+std::string verdict_text(const FindingLog& log) {
+  const std::uint64_t errors = log.count(Severity::kError);
+  const std::uint64_t warnings = log.count(Severity::kWarning);
+  if (log.total() == 0) return tr("no findings");
+  std::string out =
+      errors == 0 ? std::string(tr("no errors")) : trnf("{} error", "{} errors", errors);
+  if (warnings > 0) out += ", " + trnf("{} warning", "{} warnings", warnings);
+  return out;
+}
+
+/// "errors    2 rapid-contact, 1 below-stock", a line for each severity that there is. Of more
+/// findings than are kept the kinds of the kept ones are told.
+std::string findings_text(const FindingLog& log) {
+  constexpr std::pair<Severity, const char*> kSeverities[] = {
+      {Severity::kError, tr_noop("errors")},
+      {Severity::kWarning, tr_noop("warnings")},
+      {Severity::kNote, tr_noop("notes")}};
+  std::string out;
+  for (const auto& [severity, word] : kSeverities) {
+    if (log.count(severity) == 0) continue;
+    std::vector<std::pair<FindingId, std::uint64_t>> kinds;
+    for (const Finding& finding : log.kept()) {
+      if (finding.severity != severity) continue;
+      const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                      [&](const auto& kind) { return kind.first == finding.id; });
+      if (known != kinds.end()) {
+        ++known->second;
+      } else {
+        kinds.emplace_back(finding.id, 1);
+      }
+    }
+    std::uint64_t told = 0;
+    std::string line;
+    for (const auto& [id, count] : kinds) {
+      told += count;
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", count, to_string(id));
+    }
+    if (told < log.count(severity)) {
+      line += trf("{}{} more", line.empty() ? "" : ", ", log.count(severity) - told);
+    }
+    out += fmt::format("{:<10}{}\n", tr(word), line);
+  }
+  return out;
+}
+
+/// Its first words: what the time was reckoned by.
+std::string short_model(const std::string& time_model) {
+  return time_model.substr(0, time_model.find(": "));
+}
+
+/// Says what the rest of the page is about, where that is not the whole program.
+std::string lines_text(const LineRange& lines) {
+  if (lines == LineRange{}) return {};
+  std::string out = tr("lines     ");
+  if (lines.from > 0) out += trf("reported from line {} (all before it is cut)", lines.from);
+  if (lines.from > 0 && lines.until > 0) out += ", ";
+  if (lines.until > 0) out += trf("run until line {}", lines.until);
+  return out + "\n";
+}
+
+void add_stock(std::string& out, const StockReport& s) {
+  out += trf("stock     {} ({})\n", s.description, s.origin);
+  if (s.model == "sheet") {
+    out += trf("          {}, {} corners of polygons\n", s.model, s.cells);
+  } else {
+    out += trf("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
+               static_cast<double>(s.cells) / 1e6);
+  }
+  if (!s.model_reason.empty()) {
+    out += trf("          {} because {}\n", s.model, s.model_reason);
+  }
+}
+
+void add_removed(std::string& out, const StockReport& s) {
+  const double removed = s.blank_mm3 - s.remaining_mm3;
+  const double percent = s.blank_mm3 > 0 ? 100 * removed / s.blank_mm3 : 0;
+  out += trf("removed   {} of {} ({:.1f} %)\n", volume_text(removed), volume_text(s.blank_mm3),
+             percent);
+}
+
+void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
+  const char* head = tr("tools     ");
+  for (const ToolUse& use : tools) {
+    const std::string shape = use.shape.empty() ? tr("undefined, did not cut") : use.shape;
+    out += fmt::format("{}{:<3} {}", head, use.number, shape);
+    if (!use.shape.empty()) {
+      out += fmt::format(" ({}{})", use.guessed ? tr("guessed from ") : "", use.origin);
+      out += trf("\n              removed {}, cutting {}, deepest cut {:.2f} mm, peak {:.1f} mm3/s",
+                 volume_text(use.removed_mm3), duration_text(use.cut_s), use.max_depth_mm,
+                 use.peak_mm3_per_s);
+    }
+    out += "\n";
+    head = "          ";
+  }
+}
+
+void add_live(std::string& out, const LiveReport& live) {
+  const LiveFacts& f = live.facts;
+  out += trf("source    {}: {} samples in {}, {:.0f} a second\n", live.source, f.samples,
+             duration_text(live.duration_s), live.rate_hz);
+  std::string faults;
+  const auto add = [&](std::uint64_t n, const char* what) {
+    if (n == 0) return;
+    if (!faults.empty()) faults += ", ";
+    faults += fmt::format("{} {}", n, what);
+  };
+  add(live.status.errors, tr("errors"));
+  add(live.status.reconnects, tr("reconnections"));
+  add(live.status.lost, tr("lost"));
+  add(live.status.incomplete, tr("cycles of the bus incomplete"));
+  add(live.status.damaged, tr("damaged"));
+  add(live.status.standing, tr("while the device's clock stood"));
+  add(live.status.duplicates, tr("duplicates"));
+  add(live.status.disordered, tr("out of order"));
+  add(live.dropped, tr("dropped"));
+  add(f.incomplete, tr("incomplete"));
+  add(f.wild, tr("where no machine is"));
+  add(f.gaps, tr("gaps"));
+  if (!faults.empty()) out += fmt::format("          {}\n", faults);
+  if (!live.status.trouble.empty()) {
+    out += trf("          last trouble: {}\n", live.status.trouble);
+  }
+  out += trf("cut       {} along the program, {} from sample to sample\n", distance_text(f.path_mm),
+             distance_text(f.chord_mm));
+  if (f.on_path > 0) {
+    out +=
+        trf("followed  {} samples on the path, {:.3f} mm from it on average, {:.3f} mm at "
+            "most; {} beside it, {:.2f} mm at most\n",
+            f.on_path, f.following_sum_mm / static_cast<double>(f.on_path), f.following_max_mm,
+            f.off_path, f.off_path_max_mm);
+  }
+  if (live.jitter_ms > 0 || live.clock_steps > 0) {
+    out +=
+        trf("clocks    the device's and this computer's keep together within {:.1f} ms{}\n",
+            live.jitter_ms, live.clock_steps > 0 ? tr("; this computer's was set meanwhile") : "");
+  }
+  if (live.age_max_ms > 0) {
+    out += trf("age       {:.1f} ms in the middle, {:.1f} at 99 %, {:.1f} at most\n",
+               live.age_median_ms, live.age_p99_ms, live.age_max_ms);
+  }
+}
+
+/// One line a run, where there is more than the whole watch.
+void add_runs(std::string& out, const std::vector<LiveRun>& runs) {
+  if (runs.size() < 2) return;
+  const char* head = tr("runs      ");
+  for (const LiveRun& run : runs) {
+    const std::string file = run.program.substr(run.program.rfind('/') + 1);
+    std::string lines;
+    if (run.from_line > 0) lines = trf(", lines {} to {}", run.from_line, run.to_line);
+    out += trf("{}{:<3} part {}: {} {}{}, {} from {} on\n", head, run.number, run.part,
+               file.empty() ? tr("no program") : file, tr(to_string(run.end)), lines,
+               duration_text(run.end_s - run.begin_s), duration_text(run.begin_s));
+    out +=
+        trf("              removed {}, {} along the program, {} beside it; {} errors, "
+            "{} warnings\n",
+            volume_text(run.removed_mm3), distance_text(run.facts.path_mm),
+            distance_text(run.facts.chord_mm), run.errors, run.warnings);
+    if (run.sheet) out += "              " + sheet_run_text(*run.sheet);
+    head = "          ";
+  }
+}
+
+/// ", of that strokes 3.6 s, turret 4.1 s"; empty where nothing was held.
+std::string held_text(const HeldTime& held) {
+  const std::pair<const char*, double> causes[] = {
+      {tr("strokes"), held.strokes_s},
+      {tr("turret"), held.turret_s},
+      {tr("re-gripping"), held.regrip_s},
+      {tr("piercing"), held.pierces_s},
+      {tr("pauses at the ends of cuts"), held.pauses_s}};
+  std::string out;
+  for (const auto& [cause, seconds] : causes) {
+    if (seconds <= 0) continue;
+    out += fmt::format("{} {} {:.1f} s", out.empty() ? tr(", of that") : ",", cause, seconds);
+  }
+  return out;
+}
+
+/// What comes first on every page.
+void add_verdict(std::string& out, const Report& report) {
+  const std::string name = report.program_path.empty() ? "" : report.program_path + ": ";
+  out += trf("verdict   {}{}\n", name, verdict_text(report.findings));
+  if (!report.partial_reason.empty()) {
+    out +=
+        trf("PARTIAL   {}: everything here is of the part that was run\n", report.partial_reason);
+  }
+  out += findings_text(report.findings);
+}
+
+std::string summary_text(const Report& report, const LiveReport& live) {
+  std::string out;
+  add_verdict(out, report);
+  add_live(out, live);
+  add_runs(out, live.runs);
+  if (report.stock) add_removed(out, *report.stock);
+  if (report.sheet) out += sheet_text(*report.sheet);
+  add_tools(out, report.tools);
+  if (report.stock) add_stock(out, *report.stock);
+  out += trf("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,
+             report.timing.cut_cpu_s, report.peak_rss_mb);
+  return out;
+}
+
+/// --verbose.
+void add_details(std::string& out, const Report& report) {
+  const MotionTotals& m = report.motion;
+  out += trf("program   {} lines, {} moves ({} arcs)\n", report.program.program_lines, m.moves,
+             m.arcs);
+  out += trf("distance  feed {}, traverse {}\n", distance_text(m.feed_mm),
+             distance_text(m.traverse_mm));
+  out += trf("model     {}\n", report.time_model);
+  out +=
+      trf("run       {:.2f} s (interpreting {:.2f}, cutting {:.2f}, surface {:.2f}), {:.0f} MB\n",
+          report.timing.total_s, report.timing.interpret_s, report.timing.cut_s,
+          report.timing.mesh_s, report.peak_rss_mb);
+}
+
+}  // namespace
+
+std::string summary_text(const Report& report, const SummaryOptions& options) {
+  if (report.live) return summary_text(report, *report.live);
+  std::string out;
+  const MotionTotals& m = report.motion;
+  add_verdict(out, report);
+  out += lines_text(report.lines);
+  out += trf("time      {}{} ({})\n", duration_text(m.duration_s), m.held ? held_text(*m.held) : "",
+             short_model(report.time_model));
+  if (report.stock) add_removed(out, *report.stock);
+  if (report.sheet) out += sheet_text(*report.sheet);
+  add_tools(out, report.tools);
+  if (report.lengths_all_zero) {
+    out += tr("lengths   all 0 in the tool table, and so they are not checked\n");
+  }
+  if (report.stock) add_stock(out, *report.stock);
+  if (options.verbose) add_details(out, report);
+  return in_unit(out, options.units) +
+         guess_text(rows_in(report.guesses, options.units), options.command);
+}
+
+}  // namespace kerf

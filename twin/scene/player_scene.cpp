@@ -1,0 +1,296 @@
+#include "twin/scene/player_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/scene/drawn_machine.h"
+#include "twin/scene/moment_values.h"
+#include "twin/scene/program_text.h"
+#include "twin/scene/tool_shape.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::chrono::milliseconds kRemovedPeriod{500};
+
+PlayState play_state(const PlayerState& state, std::size_t motions) {
+  switch (state.mode) {
+    case PlayerMode::kPlaying:
+      return PlayState::kPlaying;
+    case PlayerMode::kRunning:
+    case PlayerMode::kSeeking:
+      return PlayState::kHurrying;
+    case PlayerMode::kPaused:
+      break;
+  }
+  return motions > 0 && state.place.motion >= motions ? PlayState::kEnded : PlayState::kPaused;
+}
+
+std::string notice_of(const PlayerState& state) {
+  if (!state.message.empty()) return state.message;
+  if (state.stop == PlayerStop::kBreakpoint) return "breakpoint";
+  if (state.behind) return tr("slower than asked: cutting takes its time");
+  return {};
+}
+
+}  // namespace
+
+ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
+  ViewedProgram shown;
+  shown.title = std::move(title);
+  shown.files = loaded.files;
+  if (loaded.player.blank) {
+    shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
+    shown.blank = loaded.player.blank->snapshot();
+  }
+  shown.cuts = loaded.cuts;
+  shown.walls = SheetQuery::of(loaded.player);
+  shown.planned = loaded.player.timeline.planner.with_path;
+  if (loaded.player.blank) {
+    shown.moves = MotionMoves::of(*loaded.player.blank, loaded.player.timeline.kinematics,
+                                  loaded.player.track->frame());
+  }
+  if (const TurretPointer turret = loaded.player.process->turret(); turret && loaded.player.blank) {
+    constexpr double kThrough_mm = 1;  // beyond the underside
+    shown.punch = std::make_shared<const PunchPose>(
+        turret, *loaded.player.track, loaded.player.blank->bounds_mm().min.z - kThrough_mm);
+  }
+  const WorkpieceFrame& used = loaded.player.track->frame();
+  for (const NamedOffset& offset : loaded.work_offsets) {
+    if (offset.frame.g5x_mm == used.g5x_mm && offset.frame.g92_mm == used.g92_mm &&
+        offset.frame.rotation_deg == used.rotation_deg && shown.work_offset.empty()) {
+      shown.work_offset = offset.name;
+    }
+  }
+  for (const ProgramTool& tool : loaded.tools) {
+    std::string name = tool.remark;
+    if (name.empty()) name = tool.shape.substr(0, tool.shape.find(":flute="));
+    std::replace(name.begin(), name.end(), ':', ' ');
+    shown.tools.push_back({tool.number, std::move(name)});
+  }
+  return shown;
+}
+
+PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgram shown)
+    : track_(std::move(track)),
+      shown_(std::move(shown)),
+      draw_modes_({track_, shown_.cuts, shown_.blank, shown_.moves.path() != nullptr,
+                   shown_.design != nullptr}),
+      path_(track_, shown_.planned, shown_.moves) {
+  feeder_.compare_with(shown_.design, shown_.tolerance_mm);
+}
+
+SceneUpdate PlayerScene::start(const PlayerState& state) const {
+  SceneUpdate update;
+  update.clears = true;
+  auto setup = std::make_shared<SceneSetup>();
+  setup->title = shown_.title;
+  setup->keeps_eye = shown_.keeps_eye;
+  if (state.stock) setup->bounds_mm = state.stock->bounds_mm();
+  setup->blank_outline = shown_.blank_outline;
+  if (shown_.design) setup->tolerance_mm = shown_.tolerance_mm;
+  setup->frames = scene_frames(track_->frame(), shown_.work_offset);
+  update.setup = std::move(setup);
+  update.program = read_program_text(shown_.files);
+  auto timeline = std::make_shared<ProgramTimeline>();
+  timeline->duration_s = track_->duration_s();
+  for (const std::uint32_t motion : track_->tool_changes()) {
+    ToolMark mark;
+    mark.time_s = track_->start_s(motion);
+    mark.tool = track_->tool(motion);
+    const auto known = std::find_if(shown_.tools.begin(), shown_.tools.end(),
+                                    [&](const NamedTool& t) { return t.number == mark.tool; });
+    if (known != shown_.tools.end()) mark.name = known->name;
+    timeline->tools.push_back(std::move(mark));
+  }
+  update.timeline = std::move(timeline);
+  if (shown_.machine) {
+    update.machine = std::make_shared<const SceneMachine>(scene_machine(*shown_.machine));
+  }
+  return update;
+}
+
+std::optional<SourceRef> PlayerScene::source_of(const std::string& file, int line) const {
+  if (line < 1) return std::nullopt;
+  const auto& files = shown_.files;
+  const auto found = file.empty() ? files.begin() : std::find(files.begin(), files.end(), file);
+  if (found == files.end()) return std::nullopt;
+  return SourceRef{static_cast<std::uint32_t>(found - files.begin()),
+                   static_cast<std::uint32_t>(line)};
+}
+
+void PlayerScene::set_controls(double speed, std::vector<SourceRef> breakpoints) {
+  speed_ = speed;
+  breakpoints_ = std::move(breakpoints);
+  moment_stale_ = true;
+}
+
+void PlayerScene::set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3) {
+  waiting_.colors = cut_colors(command, *track_, shown_.tools, removed_mm3);
+}
+
+void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
+  auto picked = std::make_shared<PickedPoint>();
+  picked->point_mm = point_mm;
+  if (shown_.design) picked->deviation_mm = shown_.design->distance_mm(point_mm);
+  const double tolerance_mm = state.stock ? state.stock->cell_mm() : 0.0;
+  std::optional<std::size_t> motion;
+  if (shown_.walls) {
+    if (const auto wall = shown_.walls->wall_at(point_mm, state.place)) {
+      motion = wall->motion;
+      picked->tool_name = wall->cutter;
+    }
+  } else if (shown_.cuts) {
+    motion = shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place);
+    const Cutter* const cutter = motion ? shown_.cuts->cutter_at(*motion) : nullptr;
+    if (cutter) picked->tool_name = tool_name_of(*cutter);
+  }
+  if (motion) {
+    const SourceRef source = track_->source(*motion);
+    picked->tool = track_->tool(*motion);
+    picked->file = static_cast<int>(source.file);
+    picked->line = static_cast<int>(source.line);
+    picked->time_s = track_->start_s(*motion);
+  }
+  waiting_.picked = std::move(picked);
+}
+
+bool PlayerScene::is_empty(const SceneUpdate& update) {
+  return !update.moment && update.patches.empty() && update.path.empty() && !update.findings &&
+         !update.tool_shape && !update.colors && !update.picked && !update.draw_mode &&
+         !update.heights && !update.cut_moves;
+}
+
+SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
+                                Clock::time_point deadline) {
+  SceneUpdate update = std::exchange(waiting_, {});
+  if (state != state_ || moment_stale_ || is_removed_due(*state)) {
+    if (!state_ || state->stock_number != shown_stock_) {
+      shown_stock_ = state->stock_number;
+      feeder_.follow(state->stock);
+    }
+    if (state->findings != shown_findings_) {
+      shown_findings_ = state->findings;
+      if (state->findings) update.findings = finding_list(*state->findings, shown_.files);
+    }
+    if (state->cutter != shown_cutter_) {
+      shown_cutter_ = state->cutter;
+      update.tool_shape =
+          state->cutter ? tool_shape_of(*state->cutter) : std::make_shared<const ToolShape>();
+      tool_length_mm_ = drawn_height_mm(*update.tool_shape);
+      if (shown_.punch && shown_.machine) {
+        // The machine has the punch, in its true shape.
+        auto holder = std::make_shared<ToolShape>(*update.tool_shape);
+        holder->cutter.clear();
+        update.tool_shape = std::move(holder);
+      }
+    }
+    state_ = state;
+    update.moment = moment_of(*state);
+    moment_stale_ = false;
+  }
+  draw_modes_.update(state->stock, state->place, &update);
+  if (draws_mesh()) update.patches = feeder_.make_until(deadline);
+  if (!path_.complete()) {
+    update.path = path_.next_chunks();
+    moment_stale_ = true;  // vertices that are past are counted as far as there are any
+  }
+  return update;
+}
+
+/// Summing over all cells takes milliseconds: not for every frame of one that plays, nor for every
+/// one of many steps.
+bool PlayerScene::is_removed_due(const PlayerState& state) const {
+  return state.stock && state.stock_number != removed_stock_ &&
+         Clock::now() - removed_at_ > kRemovedPeriod;
+}
+
+double PlayerScene::removed_mm3(const PlayerState& state) {
+  if (is_removed_due(state)) {
+    removed_mm3_ = state.stock->blank_mm3() - state.stock->remaining_mm3();
+    removed_stock_ = state.stock_number;
+    removed_at_ = Clock::now();
+  }
+  return removed_mm3_;
+}
+
+/// Of the state's motion, which is the last one where the program is over.
+double PlayerScene::fraction(const PlayerState& state) const {
+  return state.place.motion >= track_->size() ? 1 : state.place.fraction;
+}
+
+std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) const {
+  const ToolPath* const path = shown_.moves.path();
+  if (path == nullptr) {
+    if (!shown_.punch) {
+      return drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
+    }
+    std::vector<glm::mat4> poses =
+        drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_,
+                    shown_.punch->joints(*track_, state));
+    shown_.punch->place_punch(*shown_.machine, *track_, state, poses);
+    return poses;
+  }
+  const AxisValues axes = path->axes_at(state.motion, fraction(state));
+  if (!shown_.moves.tilts()) {
+    return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)).origin_mm,
+                       state.abc_deg, tool_length_mm_);
+  }
+  return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)),
+                     {axes[3], axes[4], axes[5]}, tool_length_mm_);
+}
+
+ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
+  if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
+  const ToolPath* const path = shown_.moves.path();
+  if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
+  const Pose pose = path->pose_at(state.motion, fraction(state));
+  return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
+}
+
+std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
+  auto moment = std::make_shared<Moment>();
+  const Motion& motion = state.motion;
+  moment->state = play_state(state, track_->size());
+  moment->speed = speed_;
+  moment->is_behind = state.behind || state.mode == PlayerMode::kRunning;
+  moment->time_s = state.elapsed_s;
+  moment->file = static_cast<int>(motion.source.file);
+  moment->line = track_->empty() ? 0 : static_cast<int>(motion.source.line);
+  moment->past_vertices = path_.past_vertices(state.place);
+  moment->tool_pose = tool_pose(state);
+  moment->tool = motion.tool;
+  if (state.cutter) moment->tool_name = tool_name_of(*state.cutter);
+  if (motion.spindle != SpindleState::kStopped) {
+    const bool clockwise = motion.spindle == SpindleState::kClockwise;
+    moment->spindle_rpm = clockwise ? motion.spindle_rpm : -motion.spindle_rpm;
+  }
+  set_feed(motion, moment.get());
+  moment->coolant = coolant_text(motion.mist, motion.flood);
+  moment->work_offset = shown_.work_offset;
+  if (shown_.machine) {
+    moment->link_poses = machine_poses(state);
+  }
+  has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
+  has_slides_ = has_slides_ || state.uvw_mm != Vec3(0);
+  const SlidePlace slides{state.uvw_mm + track_->frame().offset_uvw_mm + motion.tool_offset_uvw_mm,
+                          state.uvw_mm};
+  moment->axes = axis_readouts(
+      machine_position(track_->frame(), state.tip_mm, motion.tool_offset_mm), state.tip_mm,
+      has_rotary_ ? &state.abc_deg : nullptr, has_slides_ ? &slides : nullptr);
+  for (std::size_t i = 0; i < 3; ++i) {
+    moment->axes[i].to_go = motion.to_mm[static_cast<int>(i)] - state.tip_mm[static_cast<int>(i)];
+  }
+  for (const SourceRef& breakpoint : breakpoints_) {
+    moment->breakpoints.push_back(
+        {static_cast<int>(breakpoint.file), static_cast<int>(breakpoint.line)});
+  }
+  std::sort(moment->breakpoints.begin(), moment->breakpoints.end());
+  moment->removed_mm3 = removed_mm3(state);
+  moment->notice = notice_of(state);
+  return moment;
+}
+
+}  // namespace kerf

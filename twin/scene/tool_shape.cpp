@@ -1,0 +1,85 @@
+#include "twin/scene/tool_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+namespace kerf {
+namespace {
+
+/// Arcs of a profile are drawn in steps of this angle.
+constexpr double kArcStep_rad = 5.0 * kPi / 180.0;
+/// Where nothing is known.
+constexpr double kFlutesPerDiameter = 2.0;
+constexpr double kShankPerDiameter = 2.0;
+
+ProfilePoint point(double radius_mm, double height_mm) {
+  return {static_cast<float>(radius_mm), static_cast<float>(height_mm)};
+}
+
+void add_arc(const ProfilePiece& piece, std::vector<ProfilePoint>& outline) {
+  const double begin = std::atan2(piece.z0 - piece.center_z, piece.r0 - piece.center_r);
+  const double end = std::atan2(piece.z1 - piece.center_z, piece.r1 - piece.center_r);
+  double turn = end - begin;
+  // Outward and upward: convex arcs run counter-clockwise in (r, z), hollow ones clockwise.
+  if (piece.convex && turn < 0) turn += 2 * kPi;
+  if (!piece.convex && turn > 0) turn -= 2 * kPi;
+  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / kArcStep_rad)));
+  for (int i = 1; i < steps; ++i) {
+    const double angle = begin + turn * i / steps;
+    outline.push_back(point(piece.center_r + piece.radius * std::cos(angle),
+                            piece.center_z + piece.radius * std::sin(angle)));
+  }
+  outline.push_back(point(piece.r1, piece.z1));
+}
+
+}  // namespace
+
+std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter) {
+  auto shape = std::make_shared<ToolShape>();
+  shape->cutter.push_back(point(0, 0));
+  for (const ProfilePiece& piece : cutter.profile()) {
+    if (piece.kind == ProfilePiece::Kind::kArc) {
+      add_arc(piece, shape->cutter);
+    } else {
+      shape->cutter.push_back(point(piece.r1, piece.z1));
+    }
+  }
+  const double radius_mm = cutter.neck_radius_mm().value_or(cutter.radius_mm());
+  const double profile_top_mm = cutter.profile().back().z1;
+  const double flutes_mm = std::max(
+      profile_top_mm, cutter.flute_length_mm().value_or(std::max(
+                          profile_top_mm * 1.05, 2 * cutter.radius_mm() * kFlutesPerDiameter)));
+  if (cutter.neck_radius_mm()) shape->cutter.push_back(point(radius_mm, profile_top_mm));
+  shape->cutter.push_back(point(radius_mm, flutes_mm));
+  const double shank_mm = cutter.shank_diameter_mm().value_or(2 * radius_mm) / 2;
+  double shank_top_mm = flutes_mm + 2 * shank_mm * kShankPerDiameter;
+  if (!cutter.holder().empty()) {
+    shank_top_mm = std::max(flutes_mm, cutter.holder().front().from_z_mm);
+  }
+  if (shank_top_mm > flutes_mm) {
+    shape->shank = {point(shank_mm, flutes_mm), point(shank_mm, shank_top_mm)};
+  }
+  for (const ToolSection& section : cutter.holder()) {
+    shape->holder.push_back(point(section.diameter_mm / 2, section.from_z_mm));
+    shape->holder.push_back(point(section.diameter_mm / 2, section.to_z_mm));
+  }
+  return shape;
+}
+
+std::string tool_name_of(const Cutter& cutter) {
+  // "bull:10:2:flute=22": what is named (flute=..., shank=...) is not what people call a tool by.
+  std::string name;
+  std::string_view rest = cutter.spec();
+  while (!rest.empty()) {
+    const std::string_view part = rest.substr(0, rest.find(':'));
+    rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+    if (part.find('=') != std::string_view::npos) break;
+    if (!name.empty()) name += ' ';
+    name += part;
+  }
+  return name;
+}
+
+}  // namespace kerf

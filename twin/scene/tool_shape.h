@@ -1,0 +1,19 @@
+// twin/scene/tool_shape.h - a cutter as the viewer draws it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "stock/cutter/cutter.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+/// Outlines of cutter, shank and holder. Flutes of unknown length are drawn two diameters long, as
+/// most are, a shank of unknown length as long again; a holder stands where its sections say.
+std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter);
+
+/// For people, from the shape's text: "ball 10", "bull 10 R2", "drill 8".
+std::string tool_name_of(const Cutter& cutter);
+
+}  // namespace kerf

@@ -1,0 +1,46 @@
+// viewer/window/wide_lines.h - lines wider than a pixel. For the sources of viewer/ only.
+#pragma once
+
+#include <array>
+#include <glm/vec4.hpp>
+#include <span>
+#include <utility>
+
+#include "viewer/gl_objects.h"
+#include "viewer/orbit_camera.h"
+
+namespace kerf {
+
+/// OpenGL's own lines have one pixel in its core profile, which is too fine for fine displays.
+/// These are rectangles with round ends, which the card makes of the same buffers: of 16 bytes a
+/// vertex, position (3 floats) and 4 bytes, which are the segment's kind or colour and count at its
+/// end. Several times the work of plain lines, so those are drawn where a pixel is wide enough.
+class WideLines {
+ public:
+  static Result<WideLines> create();
+
+  static bool are_needed(const Projection& projection) { return projection.line_px > 1.0f; }
+
+  /// Comes before all else. Lines are smooth until set_smooth() says otherwise.
+  void use(const Projection& projection, float towards_eye) const;
+  /// Of kinds, past and future by turns: PathColors.
+  void set_kind_colors(std::span<const glm::vec4, 6> rgba) const;
+  void set_past(bool is_past) const { program_.set("is_past", is_past ? 1 : 0); }
+  /// Colours of the vertices, RGBA.
+  void set_own_colors(float opacity) const;
+  void set_smooth(bool is_smooth) const { program_.set("is_smooth", is_smooth ? 1 : 0); }
+
+  /// Draws from this buffer, whose texture it is, from now on. Any vertex array must be bound.
+  void bind(const GlTexture& texture, const GlBuffer& vertices) const;
+  /// One strip through the vertices [first, first + count).
+  void draw_strip(int first, int count) const;
+  /// Lines between the vertices 0 and 1, 2 and 3 ..
+  void draw_pairs(int count) const;
+  void draw_one(int from, int to) const;
+
+ private:
+  explicit WideLines(GlProgram program) : program_(std::move(program)) {}
+  GlProgram program_;
+};
+
+}  // namespace kerf
