@@ -56,7 +56,7 @@ Result<FaultRule> parse_fault(std::string_view text) {
   if (*kind == FaultKind::kDelay || *kind == FaultKind::kException) {
     const bool delay = *kind == FaultKind::kDelay;
     const std::string wrong = read_value(parts, delay ? kMaxDelay_ms : kMaxException,
-                                         delay ? "ms" : "a code", rule.value);
+                                         delay ? "ms" : tr("a code"), rule.value);
     if (!wrong.empty()) return fault_error(text, wrong);
     next = 2;
   }

@@ -60,11 +60,11 @@ Result<PtyLine> PtyLine::open(const std::string& link) {
   line.slave_fd_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios mode = {};
   if (line.slave_fd_ < 0 || tcgetattr(line.slave_fd_, &mode) != 0) {
-    return system_error_of("opening " + line.device_);
+    return system_error_of(trf("opening {}", line.device_));
   }
   cfmakeraw(&mode);
   if (tcsetattr(line.slave_fd_, TCSANOW, &mode) != 0) {
-    return system_error_of(tr("setting up ") + line.device_);
+    return system_error_of(trf("setting up {}", line.device_));
   }
   if (!link.empty()) {
     if (const Done made = make_link(link, line.device_); !made) return Error{made.error()};

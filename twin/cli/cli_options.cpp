@@ -1,9 +1,17 @@
 #include "twin/cli/cli_options.h"
 
-#include <string>
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "base/translate.h"
 
 namespace kerf {
 namespace {
+
+/// What CLI11 says of its own in a help.
+constexpr std::array kLabels{tr_noop("Usage"),       tr_noop("Positionals"), tr_noop("OPTIONS"),
+                             tr_noop("Subcommands"), tr_noop("SUBCOMMAND"),  tr_noop("REQUIRED")};
 
 void add_option(CLI::App& app, const Setting& setting, WrittenOptions::Slot& slot) {
   const std::string shorter(setting.short_name);
@@ -28,6 +36,31 @@ void add_options(CLI::App& app, Command command, WrittenOptions& options) {
     if ((setting.commands & command) == 0) continue;
     add_option(app, setting, options.slot(setting.option));
   }
+}
+
+void speak_language(CLI::App& app, const std::string& version) {
+  app.set_help_flag("-h,--help", tr("print this help"));
+  app.option_defaults()->group(tr("Options"));
+  const std::shared_ptr<CLI::Formatter> formatter = std::make_shared<CLI::Formatter>();
+  for (const char* const label : kLabels) formatter->label(label, tr(label));
+  app.formatter(formatter);
+  app.set_version_flag("--version", version, tr("print the version"));
+}
+
+std::string words_of(const CLI::ParseError& error) {
+  const std::string said = error.what();
+  constexpr std::string_view kRequired = " is required", kOverride = " was given a disallowed";
+  if (error.get_name() == "RequiredError" && said.ends_with(kRequired)) {
+    return trf("{} is required", said.substr(0, said.size() - kRequired.size()));
+  }
+  if (error.get_name() != "ArgumentMismatch") return said;
+  if (const std::size_t at = said.find(kOverride); at != said.npos) {
+    return trf("{} takes no value", "--" + said.substr(0, at));  // said without its dashes
+  }
+  const std::string option = said.substr(0, said.find(':'));
+  if (said.find(": At Most ") != said.npos) return trf("{} is given more than once", option);
+  if (said.ends_with(" missing")) return trf("{}: a value must follow", option);
+  return said;
 }
 
 }  // namespace kerf

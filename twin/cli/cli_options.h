@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 #include "twin/config/written_options.h"
 
@@ -10,5 +11,12 @@ namespace kerf {
 /// All that the setting table has for the command. What is parsed goes to `options`, which must
 /// stay where it is.
 void add_options(CLI::App& app, Command command, WrittenOptions& options);
+
+/// --help and --version in the language in force, for `app` and the commands that are added to it
+/// from here on: CLI11 speaks English only. `version` is what --version prints.
+void speak_language(CLI::App& app, const std::string& version);
+
+/// What is wrong with a command line that CLI11 could not take.
+std::string words_of(const CLI::ParseError& error);
 
 }  // namespace kerf

@@ -190,10 +190,6 @@ constexpr std::array kCalls{
     CommandCall{kTools, "Example:\n  kerf tools\n", list_tools},
 };
 
-/// What CLI11 says of its own in a help.
-constexpr std::array kLabels{tr_noop("Usage"),       tr_noop("Positionals"), tr_noop("OPTIONS"),
-                             tr_noop("Subcommands"), tr_noop("SUBCOMMAND"),  tr_noop("REQUIRED")};
-
 /// The commands with their arguments, and what each of them calls.
 struct Commands {
   explicit Commands(CLI::App& app, const std::vector<std::string>& words) {
@@ -222,23 +218,6 @@ struct Commands {
   std::vector<Call> calls;
 };
 
-/// What CLI11 says of a wrong command line, which it does in English only.
-std::string words_of(const CLI::ParseError& error) {
-  const std::string said = error.what();
-  constexpr std::string_view kRequired = " is required", kOverride = " was given a disallowed";
-  if (error.get_name() == "RequiredError" && said.ends_with(kRequired)) {
-    return trf("{} is required", said.substr(0, said.size() - kRequired.size()));
-  }
-  if (error.get_name() != "ArgumentMismatch") return said;
-  if (const std::size_t at = said.find(kOverride); at != said.npos) {
-    return trf("{} takes no value", "--" + said.substr(0, at));  // said without its dashes
-  }
-  const std::string option = said.substr(0, said.find(':'));
-  if (said.find(": At Most ") != said.npos) return trf("{} is given more than once", option);
-  if (said.ends_with(" missing")) return trf("{}: a value must follow", option);
-  return said;
-}
-
 /// A mistyped option leaves others without what they need: name the cause, not the effect.
 int refuse(const CLI::ParseError& error, const Commands& commands) {
   Diagnostic d;
@@ -264,12 +243,7 @@ int run(int argc, char** argv) {
       tr("kerf: a twin of a machine under LinuxCNC: runs NC programs through a model of the "
          "workpiece, beside the machine or without it"),
       "kerf");
-  app.set_help_flag("-h,--help", tr("print this help"));
-  app.option_defaults()->group(tr("Options"));
-  const std::shared_ptr<CLI::Formatter> formatter = std::make_shared<CLI::Formatter>();
-  for (const char* const label : kLabels) formatter->label(label, tr(label));
-  app.formatter(formatter);
-  app.set_version_flag("--version", "kerf " + version_text(), tr("print the version"));
+  speak_language(app, "kerf " + version_text());
   app.footer(std::string(kExamples) + "\n" + tr(kExitCodes));
   app.allow_extras();
   const Commands commands(app, std::vector<std::string>(argv, argv + argc));

@@ -94,6 +94,11 @@ WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
   work.stock.cell_mm = reader.length_mm("--cell");
   work.below_mm = reader.length_mm("--below");
   work.margin_mm = reader.length_mm("--margin");
+  if (work.blank && reader.choose("--margin").from == ValueFrom::kCommandLine) {
+    reader.fault("--margin",
+                 tr("is for a blank that is guessed from the program; this one is given"),
+                 tr("without --stock it is guessed, and a wider --stock needs no margin"));
+  }
   work.stock.threads = static_cast<int>(reader.whole_number("--threads", default_threads()));
   return work;
 }

@@ -10,7 +10,6 @@
 #include "base/helper_thread.h"
 #include "base/translate.h"
 #include "twin/job/blank_choice.h"
-#include "twin/live/program_duration.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/process_table.h"
 #include "twin/program/program_front.h"
@@ -90,24 +89,27 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   program.machine.inch_machine = options_.inch_table;
   if (options_.program) {
     program = *options_.program;
-    if (!open_program(diagnostics)) return false;
+    if (!programs_.open(program, diagnostics)) return false;
   }
+  const Program* const first = programs_.first();
   ToolSources& tools = tool_sources_;
-  if (!gather_tool_sources(options_.tools, program_, program, tools, diagnostics)) return false;
+  if (!gather_tool_sources(options_.tools, first, program, tools, diagnostics)) return false;
   program.lathe = options_.lathe;
   program.as_mill = options_.as_mill;
-  if (refuse_turning(program, program_, tools.table, diagnostics)) {
+  if (refuse_turning(program, first, tools.table, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }
-  if (program_ && !open_readings(diagnostics)) return false;
+  if (first && !programs_.start(known_diameters(tools), options_.more_programs, diagnostics)) {
+    return false;
+  }
   for (const ToolTableRow& row : tools.table) {
     options_.cutting.frame.table_length_mm[row.tool] = row.offset_mm.z;
   }
   CommentBlank found;
   if (options_.blank) {
     found = {options_.blank, "--stock"};
-  } else if (program_ && !find_comment_blank(*program_, program.path, found, diagnostics)) {
+  } else if (first && !find_comment_blank(*first, program.path, found, diagnostics)) {
     return false;
   }
   if (options_.turret && !can_be_punched(found.blank, diagnostics, outcome)) return false;
@@ -129,63 +131,14 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   prepare_process(diagnostics);
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;
-  ShiftOptions shift{options_.cutting, shift_programs(), options_.on_end,
+  ShiftOptions shift{options_.cutting, programs_.all(), options_.on_end,
                      options_.beam.density_kg_per_m3};
   if (!shift.programs.empty() && shift.programs[0].open) {
     shift.cutting.reopen = [open = shift.programs[0].open] { return open({}); };
   }
-  program_total_s_ = std::vector<std::atomic<double>>(shift.programs.size());
-  for (std::atomic<double>& total_s : program_total_s_) total_s = -1;
   shift_ = std::make_unique<LiveShift>(std::move(stock_), tools, report_.findings, std::move(shift),
-                                       std::move(followed_));
+                                       programs_.take_followed());
   return true;
-}
-
-bool LiveSession::open_program(Diagnostics& diagnostics) {
-  if (options_.program->path == "-") {
-    followed_ = Program::open(*options_.program, diagnostics);
-    program_ = followed_.get();
-    return program_ != nullptr;
-  }
-  readings_.push_back(ProgramReadings::open(*options_.program, diagnostics));
-  if (!readings_[0]) return false;
-  program_ = &readings_[0]->source();
-  return true;
-}
-
-/// With the tools' diameters, which all readings of all programs need.
-bool LiveSession::open_readings(Diagnostics& diagnostics) {
-  const std::map<int, KnownDiameter> diameters = known_diameters(tool_sources_);
-  if (followed_) followed_->give_diameters(diameters);
-  for (const std::string& path : options_.more_programs) {
-    ProgramOptions other = *options_.program;
-    other.path = path;
-    // Without a first one, which is standard input, it counts from the second on.
-    readings_.resize(std::max<std::size_t>(readings_.size(), 1));
-    readings_.push_back(std::make_shared<ProgramReadings>(std::move(other)));
-  }
-  for (const std::shared_ptr<ProgramReadings>& readings : readings_) {
-    if (readings) readings->give_diameters(diameters);
-  }
-  if (!followed_) followed_ = readings_[0]->reader(options_.program->machine.start, diagnostics);
-  return followed_ != nullptr;
-}
-
-/// That of the options goes first.
-std::vector<ShiftProgram> LiveSession::shift_programs() {
-  std::vector<ShiftProgram> programs;
-  if (!options_.program) return programs;
-  std::vector<std::string> paths = options_.more_programs;
-  paths.insert(paths.begin(), options_.program->path);
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    ShiftProgram& program = programs.emplace_back(ShiftProgram{paths[i], {}});
-    if (i >= readings_.size() || !readings_[i]) continue;
-    program.open = [readings = readings_[i]](const ProgramStart& start) {
-      Diagnostics ignored;
-      return readings->reader(start.value_or(ProgramReadings::Start{}), ignored);
-    };
-  }
-  return programs;
 }
 
 /// The one that workpiece and options need.
@@ -194,8 +147,9 @@ void LiveSession::prepare_process(Diagnostics& diagnostics) {
   wish.is_sheet = stock_->sheet() != nullptr;
   wish.beam = options_.beam;
   wish.turret = options_.turret;
-  wish.is_qtplasmac = program_ && program_->is_qtplasmac();
-  wish.has_program = program_ != nullptr;
+  const Program* const program = programs_.first();
+  wish.is_qtplasmac = program && program->is_qtplasmac();
+  wish.has_program = program != nullptr;
   LiveCutOptions& cutting = options_.cutting;
   cutting.process = choose_process(wish);
   cutting.timeline.holds = cutting.process->holds();
@@ -217,9 +171,9 @@ bool LiveSession::survey_program(const ToolSources& tools, Survey& survey,
                                  Diagnostics& diagnostics) {
   const TimelineOptions& timeline = options_.cutting.timeline;
   const bool may_turn = !options_.stock.kind && timeline.kinematics && timeline.kinematics->turns();
-  if (!program_ || options_.program->path == "-" || !(survey.guesses || may_turn)) return true;
-  // What is interpreted for it, and perhaps beyond it, followed_ need not interpret again.
-  const auto first_pass = readings_[0]->reader(options_.program->machine.start, diagnostics);
+  if (!programs_.can_read_again() || !(survey.guesses || may_turn)) return true;
+  // What is interpreted for it, and perhaps beyond it, who follows need not interpret again.
+  const auto first_pass = programs_.read(diagnostics);
   if (!first_pass) return false;
   TiltWatch tilt(timeline.kinematics);
   BlankSurvey blank(options_.margin_mm, tools);
@@ -239,7 +193,7 @@ bool LiveSession::survey_program(const ToolSources& tools, Survey& survey,
 /// As in a dry run where there is a program. A machine without one may turn whenever it likes.
 std::string LiveSession::need_of_tilt(const Survey& survey) const {
   const TimelineOptions& timeline = options_.cutting.timeline;
-  if (program_ && options_.program->path != "-") return survey.tilt;
+  if (programs_.can_read_again()) return survey.tilt;
   if (!timeline.kinematics_known || !timeline.kinematics || !timeline.kinematics->turns()) {
     return {};
   }
@@ -316,20 +270,6 @@ TappedSample LiveSession::tapped(const ArrivedSample& arrived) {
   out.lost = arrived.lost - std::exchange(tapped_lost_, arrived.lost);
   out.clock_set_ns = arrived.clock_set_ns;
   return out;
-}
-
-/// How long the whole programs take, for what remains of them.
-void LiveSession::measure_programs(std::stop_token stop) {
-  std::size_t i = 0;
-  for (const ShiftProgram& program : shift_programs()) {
-    if (program.open && !stop.stop_requested()) {
-      const std::unique_ptr<Program> opened = program.open({});
-      if (opened) {
-        program_total_s_[i] = program_duration_s(*opened, options_.cutting.timeline, stop);
-      }
-    }
-    ++i;
-  }
 }
 
 /// Seconds since the first sample. By the stamps as long as they go along with the arrivals.
@@ -457,8 +397,7 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
     const std::vector<std::string>& files = program->files();
     if (status.place.source.file < files.size()) status.file = files[status.place.source.file];
   }
-  const std::size_t index = shift_->program();
-  const double total_s = index < program_total_s_.size() ? program_total_s_[index].load() : -1;
+  const double total_s = programs_.total_s(shift_->program());
   if (total_s >= 0) status.remaining_s = std::max(0.0, total_s - status.place.program_s);
   for (const AheadWarning& warning : ahead_) {
     const double in_s = warning.finding.time_s.value_or(0) - status.place.program_s;
@@ -504,10 +443,8 @@ void LiveSession::show_frame() {
   trail_.clear();
 }
 
-Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
-  report_.version = KERF_VERSION;
-  report_.program_path = options_.program ? options_.program->path : std::string();
-  live_.source = source_->describe();
+/// Until the source ends or stop is requested; then the source's thread is over.
+void LiveSession::cut_samples(const std::stop_token& stop) {
   std::stop_source end;
   const std::stop_callback forward(stop, [&] { end.request_stop(); });
   const auto release = [&] {
@@ -516,22 +453,20 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   };
   HelperThread reader([&] { read_source(end.get_token()); }, release);
   std::optional<HelperThread> measure;
-  const bool measured = options_.program && options_.program->path != "-" &&
-                        (!options_.log() || std::isfinite(options_.speed));
-  if (measured) measure.emplace([&] { measure_programs(end.get_token()); }, release);
-  const double cpu_before = thread_cpu_s();
+  if (programs_.can_read_again() && (!options_.log() || std::isfinite(options_.speed))) {
+    const auto take_time = [&] { programs_.measure(options_.cutting.timeline, end.get_token()); };
+    measure.emplace(take_time, release);
+  }
   std::vector<ArrivedSample> batch;
-  double look_at_s = 0;
-  shows_frames_ = observer_ && observer_->wants_frames();
   // The newest sample of a batch that came too soon after a frame is shown when the wait is over.
   const auto patience = shows_frames_ ? kFramePeriod : std::chrono::milliseconds(20);
   while (queue_.pop_all(batch, patience)) {
     for (const ArrivedSample& arrived : batch) {
       take(arrived);
       extend_trail();
-      if (t_s_ < look_at_s) continue;
+      if (t_s_ < look_at_s_) continue;
       shift_->look();
-      look_at_s = t_s_ + kLook_s;
+      look_at_s_ = t_s_ + kLook_s;
       tell(false);
       show_frame();
     }
@@ -541,29 +476,37 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
     const double run_s = options_.log() ? t_s_ : seconds(Clock::now() - start_);
     if (options_.for_s > 0 && run_s >= options_.for_s) break;
   }
-  const bool stopped = stop.stop_requested();
-  end.request_stop();
-  queue_.close();
+  stopped_ = stop.stop_requested();
+  release();
   reader.join();
   if (measure) measure->join();
   // What was recorded is cut. (A log was read ahead: what lies beyond the time asked for is not.)
   while (!options_.log() && queue_.pop_all(batch, std::chrono::milliseconds(0))) {
     for (const ArrivedSample& arrived : batch) take(arrived);
   }
+}
+
+Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
+  report_.version = KERF_VERSION;
+  report_.program_path = options_.program ? options_.program->path : std::string();
+  live_.source = source_->describe();
+  shows_frames_ = observer_ && observer_->wants_frames();
+  const double cpu_before = thread_cpu_s();
+  cut_samples(stop);
   last_state_ = state_now(first_ ? seconds(Clock::now() - newest_.arrival) : 0);
   shift_->look();
   shift_->finish();
   tell(true);
   report_.timing.cut_cpu_s = thread_cpu_s() - cpu_before;
-  conclude(stopped);
+  conclude();
   const SourceStatus& status = live_.status;
-  if (status.state == SourceState::kFailed || (!first_ && !stopped)) {
+  if (status.state == SourceState::kFailed || (!first_ && !stopped_)) {
     diagnostics.push_back(general_error(
         fmt::format("{}: {}", live_.source,
                     status.trouble.empty() ? tr("no position has come") : status.trouble)));
     return Outcome::kFailed;
   }
-  return outcome(stopped);
+  return outcome();
 }
 
 }  // namespace kerf

@@ -1,7 +1,6 @@
 // twin/live/live_session.h - a machine watched (shadow), or a log of one run again (replay).
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -23,9 +22,9 @@
 #include "twin/live/clock_watch.h"
 #include "twin/live/feed_meter.h"
 #include "twin/live/live_cutter.h"
+#include "twin/live/live_programs.h"
 #include "twin/live/live_shift.h"
 #include "twin/live/log_pace.h"
-#include "twin/live/program_readings.h"
 #include "twin/live/sample_queue.h"
 #include "twin/live/source_faults.h"
 #include "twin/program/session_parts.h"
@@ -176,8 +175,6 @@ class LiveSession {
   using Clock = std::chrono::steady_clock;
   LiveSession(LiveOptions options, std::unique_ptr<PositionSource> source);
   bool set_up(Diagnostics& diagnostics, Outcome& outcome);
-  bool open_program(Diagnostics& diagnostics);
-  bool open_readings(Diagnostics& diagnostics);
   /// What the program is found to need before it is followed.
   struct Survey;
   bool survey_program(const ToolSources& tools, Survey& survey, Diagnostics& diagnostics);
@@ -185,8 +182,7 @@ class LiveSession {
   bool guess_blank(const Survey& survey, Diagnostics& diagnostics, Outcome& outcome);
   std::string need_of_tilt(const Survey& survey) const;
   void read_source(std::stop_token stop);
-  void measure_programs(std::stop_token stop);
-  std::vector<ShiftProgram> shift_programs();
+  void cut_samples(const std::stop_token& stop);
   TappedSample tapped(const ArrivedSample& arrived);
   void take(const ArrivedSample& arrived);
   double time_of(const ArrivedSample& arrived);
@@ -197,15 +193,12 @@ class LiveSession {
   void show_frame();
   LiveStatus status_now(LiveState state, double age_s);
   LiveState state_now(double age_s) const;
-  void conclude(bool stopped);
-  Outcome outcome(bool stopped) const;
+  void conclude();
+  Outcome outcome() const;
 
   LiveOptions options_;
   std::unique_ptr<PositionSource> source_;
-  /// One a program, that of the options first; none of standard input, which is read but once.
-  std::vector<std::shared_ptr<ProgramReadings>> readings_;
-  const Program* program_ = nullptr;   ///< what is known of it without interpreting
-  std::unique_ptr<Program> followed_;  ///< until there is a shift
+  LivePrograms programs_;
   StockChoice choice_;
   std::unique_ptr<StockModel> stock_;  ///< until there is a shift
   StockReport stock_facts_;
@@ -222,13 +215,13 @@ class LiveSession {
   mutable std::mutex status_mutex_;  // of source_status_
   SourceStatus source_status_;
   SourceFaults source_faults_;
-  /// How long each program takes; < 0: not known (yet).
-  std::vector<std::atomic<double>> program_total_s_;
 
   // of the cutting thread
   std::optional<ArrivedSample> first_;
   ArrivedSample newest_;
   double t_s_ = 0;
+  double look_at_s_ = 0;  ///< when the program ahead is looked at next
+  bool stopped_ = false;  ///< by who called run()
   std::int64_t stamp_before_ns_ = 0;
   std::uint64_t lost_before_ = 0;
   std::uint64_t dropped_before_ = 0;

@@ -7,7 +7,7 @@
 
 namespace kerf {
 
-void LiveSession::conclude(bool stopped) {
+void LiveSession::conclude() {
   live_.status = source_status_;
   live_.facts = shift_->facts();
   live_.facts.samples = samples_;
@@ -43,14 +43,14 @@ void LiveSession::conclude(bool stopped) {
   }
   report_.timing.total_s = std::chrono::duration<double>(Clock::now() - start_).count();
   report_.peak_rss_mb = peak_rss_mb();
-  if (stopped && options_.log())
+  if (stopped_ && options_.log())
     report_.partial_reason = tr("interrupted before the end of the log");
   report_.live = live_;
 }
 
-Outcome LiveSession::outcome(bool stopped) const {
+Outcome LiveSession::outcome() const {
   // A log that is stopped is not finished; a machine is watched until somebody stops.
-  if (stopped && options_.log()) return Outcome::kInterrupted;
+  if (stopped_ && options_.log()) return Outcome::kInterrupted;
   const LiveReport& live = live_;
   const bool gone = !options_.log() && last_state_ != LiveState::kLive;
   // A machine that could not be asked while it stood has lost nothing; a damaged log has.

@@ -112,7 +112,7 @@ struct Session {
     const double us_per_tick = kPeriod_us / quantile(periods, 0.5);
     double phase = 0;
     for (const auto& row : rows) {
-      if (row[2] != phase && row[2] > 0) turns.push_back({row[2] > 1, {}, {}});
+      if (row[2] != phase && row[2] > 0) turns.push_back({std::fmod(row[2], 2) == 1, {}, {}});
       phase = row[2];
       if (phase == 0) continue;
       turns.back().late.push_back(std::abs(row[0] * us_per_tick - kPeriod_us));

@@ -70,6 +70,18 @@ TEST(RunOptions, ToolsGivenTwiceOrBeyondTheModelAreRefused) {
             "thinner than its head); a Z-map cannot hold undercuts\n");
 }
 
+/// A blank that is given has no margin: what is written beside it would be ignored.
+TEST(RunOptions, AMarginBesideABlankThatIsGivenIsRefused) {
+  Arguments a;
+  a.options.set("--margin", "2");
+  EXPECT_EQ(faults_of(a), "");
+  a.options.set("--stock", "box:0,0,0:9,9,9");
+  EXPECT_EQ(faults_of(a),
+            "kerf: error: --margin: is for a blank that is guessed from the program; this one is "
+            "given\n"
+            "   hint: without --stock it is guessed, and a wider --stock needs no margin\n");
+}
+
 TEST(RunOptions, TwoOutputsToOnePlaceAreRefused) {
   Arguments a;
   a.options.set("--json", "-");

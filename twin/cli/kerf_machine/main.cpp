@@ -171,7 +171,7 @@ int run_machine(const MachineRequest& request) {
 int run(int argc, char** argv) {
   CLI::App app(tr("kerf-machine: executes a program in time and serves its positions"),
                "kerf-machine");
-  app.set_version_flag("--version", std::string("kerf-machine ") + KERF_VERSION);
+  speak_language(app, std::string("kerf-machine ") + KERF_VERSION);
   app.allow_extras();
   WrittenOptions options;
   add_all_options(app, options);
@@ -183,7 +183,7 @@ int run(int argc, char** argv) {
     kerf::print(stdout, "{}", text.str());
     return code;
   } catch (const CLI::ParseError& error) {
-    return refuse(error.what());
+    return refuse(words_of(error));
   }
   const std::vector<std::string> left = app.remaining();
   if (!left.empty()) return refuse_argument(app, left.front());
