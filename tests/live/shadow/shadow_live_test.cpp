@@ -86,7 +86,11 @@ struct WatchedRun {
   }
 };
 
-WatchedRun& the_run() { return quiet_run<WatchedRun>(); }
+const QuietRun<WatchedRun>& quiet() {
+  static const QuietRun<WatchedRun> one;
+  return one;
+}
+const WatchedRun& the_run() { return *quiet().run; }
 
 /// Share of the cells whose heights differ by more than `by_mm`.
 double share_of_differences(const ZMap& a, const ZMap& b, double by_mm) {
@@ -104,6 +108,7 @@ class ShadowOfLinuxCnc : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     const std::string missing = LinuxCncSession::missing();
     if (!missing.empty()) GTEST_SKIP() << missing;
+    if (quiet().stood_still()) GTEST_SKIP() << "this computer had no time for its processes";
     ASSERT_EQ(the_run().status, 0)
         << the_run().output << text_of(the_run().folder / "run" / "linuxcnc.log") << said();
   }
@@ -146,7 +151,10 @@ TEST_P(ShadowOfLinuxCnc, TheRecordedPositionsAloneGiveTheSameWorkpiece) {
                 "--cell 0.1 --tool 1=flat:6 --tool 2=drill:5:118 --quiet --json "
                 "again.json --state again.state 2>&1",
             said);
-  EXPECT_EQ(code, 0) << said << run.report("again")["live"];
+  // A recording that lacks samples says so.
+  const Json live = run.report(name)["live"];
+  const int missing = live.value("lost", 0) + live.value("gaps", 0);
+  EXPECT_EQ(code, missing > 0 ? 3 : 0) << said << run.report("again")["live"];
   const double by_plan = run.report("planned")["stock"]["removed_mm3"];
   EXPECT_NEAR(run.report("again")["stock"]["removed_mm3"], by_plan, 0.005 * by_plan);
   const auto seen = run.workpiece("again");
