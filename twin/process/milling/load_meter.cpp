@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "stock/present_heights.h"
-#include "twin/motion/motion_geometry.h"
 #include "twin/process/milling/engagement_scan.h"
 #include "twin/process/milling/front_section.h"
 #include "twin/process/milling/lane_scan.h"
+#include "twin/process/milling/piece_meter.h"
+#include "twin/process/milling/way_profile.h"
 
 namespace kerf {
 namespace {
@@ -24,11 +25,6 @@ constexpr double kLeastCells = 10;
 constexpr double kNearCells = 1.5;
 /// Windows that differ by less are one rate.
 constexpr double kSameRate = 0.02;
-/// An end of the cutting is found to this part of the way that cuts.
-constexpr double kEnds = 0.002;
-/// Fewer pieces that cut than this say little of how fast they do.
-constexpr std::size_t kFewPieces = 5;
-constexpr int kFinerPieces = 8;
 /// Volumes of a scan are told to this part of a window.
 constexpr int kBinsOfWindow = 8;
 /// Looking at a height counts as much as cutting so many cells, and so much what is worked out of
@@ -72,30 +68,8 @@ constexpr int kPlacesOfFew = 4;
 /// What is deeper in the material than this part of a cell the front removes.
 constexpr double kWithinOfFront = 1e-4;
 
-Motion motion_of(const CutMove& move) {
-  Motion motion;
-  motion.kind = move.arc ? MotionKind::kArc : MotionKind::kFeed;
-  motion.from_mm = move.from_mm;
-  motion.to_mm = move.to_mm;
-  if (move.arc) motion.arc = {move.arc->center_mm, move.arc->axis, move.arc->sweep_rad};
-  return motion;
-}
-
-double length_of(const CutMove& move) {
-  return move.arc ? path_length_mm(motion_of(move)) : glm::length(move.to_mm - move.from_mm);
-}
-
 /// Straight up or down.
 bool is_plunge(const CutMove& move) { return !move.arc && Vec2(move.from_mm) == Vec2(move.to_mm); }
-
-CutMove part_of(const CutMove& whole, double from, double to) {
-  const Motion motion = motion_of(whole);
-  CutMove part = whole;
-  if (from > 0) part.from_mm = point_at(motion, from);
-  if (to < 1) part.to_mm = point_at(motion, to);
-  if (part.arc) part.arc->sweep_rad *= to - from;
-  return part;
-}
 
 }  // namespace
 
@@ -104,24 +78,13 @@ const double LoadMeter::kFreeBlocks = 16e5;
 const double LoadMeter::kShare = 0.05;
 
 struct LoadMeter::Impl {
-  struct Span {
-    double from = 0, to = 0;  ///< fraction of the way
-    double removed_mm3 = 0;
-    bool cuts() const { return removed_mm3 > 0; }
-  };
-  /// Time and speed at a fraction of the way.
-  struct Profile {
-    double length_mm = 0, duration_s = 0, speed_mm_per_s = 0, ramp_mm = 0, ramp_s = 0;
-    double at(double part) const;
-    double speed_at(double part) const;
-    double greatest_speed(double from, double to) const;
-  };
   explicit Impl(const StockModel& stock)
       : stock_(stock),
         box_(stock.bounds_mm()),
         cell_mm_(stock.cell_mm()),
         left_looks_(free_cells()),
-        left_cells_(free_cells()) {}
+        left_cells_(free_cells()),
+        pieces_(stock) {}
   double free_cells() const { return stock_.takes_tilted_tools() ? kFreeBlocks : kFreeCells; }
   double window_mm(const Cutter& cutter) const;
   double window_mm(const Cutter& cutter, const CutMove& move) const;
@@ -145,12 +108,6 @@ struct LoadMeter::Impl {
   MotionLoad measure_by_pieces(const Cutter& cutter, const CutMove& move);
   void clip(const Cutter& cutter, const CutMove& move);
   FeedPart clipped_part(const CutMove& move) const;
-  double cut_part(StockModel& stock, double from, double to);
-  void cut_spans(const StockModel& before, double from, double to, int pieces);
-  double find_begin(const Span& span, const StockModel& before, double least);
-  double find_end(const Span& span, const StockModel& before, double least);
-  void add_run(std::size_t first, std::size_t end, double window, MotionLoad& load);
-  double peak(std::size_t first, std::size_t end, double window) const;
 
   const StockModel& stock_;
   Box box_;
@@ -160,6 +117,7 @@ struct LoadMeter::Impl {
   EngagementScan scan_;
   LaneScan lanes_;
   FrontSection front_;
+  PieceMeter pieces_;
   std::vector<double> rates_;
   /// A window, or a stretch that is shorter than one.
   struct Window {
@@ -172,16 +130,10 @@ struct LoadMeter::Impl {
   };
   Asked asked_, held_;          ///< the last two moves that reach() was asked about
   std::optional<bool> hollow_;  ///< below its heights; asked when it is needed
-  Profile profile_;
+  WayProfile profile_;
   bool lasts_ = false;        ///< LoadMeter::kLasting_s
   double least_ = 0;          ///< of the way, that a rate is taken over
   double from_ = 0, to_ = 1;  ///< of the way, where the cutter is where the blank was
-  const Cutter* cutter_ = nullptr;
-  const CutMove* move_ = nullptr;
-  std::vector<Span> spans_;
-  std::vector<std::unique_ptr<StockModel>> before_;  ///< the workpiece before each of them
-  std::vector<CutMove> moves_;
-  std::vector<CutReport> reports_;
 };
 
 LoadMeter::LoadMeter(const StockModel& stock) : impl_(std::make_unique<Impl>(stock)) {}
@@ -205,27 +157,6 @@ MotionLoad LoadMeter::measure(const Cutter& cutter, const CutMove& move, double 
 void LoadMeter::cut_parts(const Cutter& cutter, std::span<const CutMove> moves,
                           std::vector<double>& parts) {
   impl_->cut_parts(cutter, moves, parts);
-}
-
-/// Up to full speed within ramp_mm, and down again.
-double LoadMeter::Impl::Profile::at(double part) const {
-  const double way = part * length_mm;
-  if (ramp_mm <= 0) return part * duration_s;
-  const double acceleration = speed_mm_per_s / ramp_s;
-  if (way < ramp_mm) return std::sqrt(2 * way / acceleration);
-  const double left = length_mm - way;
-  if (left < ramp_mm) return duration_s - std::sqrt(std::max(0.0, 2 * left / acceleration));
-  return ramp_s + (way - ramp_mm) / speed_mm_per_s;
-}
-
-double LoadMeter::Impl::Profile::speed_at(double part) const {
-  const double way = std::min(part, 1 - part) * length_mm;
-  if (way >= ramp_mm) return speed_mm_per_s;
-  return std::sqrt(2 * std::max(0.0, way) * speed_mm_per_s / ramp_s);
-}
-
-double LoadMeter::Impl::Profile::greatest_speed(double from, double to) const {
-  return speed_at(std::clamp(0.5, from, to));
 }
 
 double LoadMeter::Impl::window_mm(const Cutter& cutter) const {
@@ -278,8 +209,8 @@ FeedPart LoadMeter::Impl::clipped_part(const CutMove& move) const {
   part.near_mm = kNearCells * stock_.cell_mm();
   part.window_mm = kWindowCells * stock_.cell_mm();
   if (to_ <= from_) return part;
-  part.seconds = profile_.at(to_) - profile_.at(from_);
-  part.way_mm = (to_ - from_) * profile_.length_mm;
+  part.seconds = profile_.at_s(to_) - profile_.at_s(from_);
+  part.way_mm = (to_ - from_) * profile_.length_mm();
   part.enters = from_ > 0;
   if (move.arc || !move.is_vertical()) return part;
   const Box box = stock_.bounds_mm();
@@ -291,8 +222,8 @@ FeedPart LoadMeter::Impl::clipped_part(const CutMove& move) const {
     inside = std::min(inside, (side - from) / (to - from));
   }
   if (inside < 1 && inside > from_) {
-    part.leaves_s = profile_.at(inside) - profile_.at(from_);
-    part.leaves_mm = (inside - from_) * profile_.length_mm;
+    part.leaves_s = profile_.at_s(inside) - profile_.at_s(from_);
+    part.leaves_mm = (inside - from_) * profile_.length_mm();
   }
   return part;
 }
@@ -303,16 +234,10 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
   if (cutter.undercuts()) hollow_ = true;
   held_ = asked_;
   asked_ = {move.from_mm, move.to_mm, move.arc ? nullptr : cutter.profile().data()};
-  const double length_mm = length_of(move);
-  profile_ = {};
-  if (length_mm <= 0 || duration_s <= 0) return reach;
-  // A motion that is blended with the next one may have less time than its way takes.
-  const double top_speed = speed_mm_per_s > 0 ? speed_mm_per_s : length_mm / duration_s;
-  profile_ = {length_mm, duration_s, top_speed, 0, 0};
+  const double length_mm = way_length_mm(move);
+  profile_ = WayProfile(length_mm, duration_s, speed_mm_per_s);
+  if (profile_.length_mm() <= 0) return reach;
   lasts_ = duration_s >= kLasting_s;
-  profile_.ramp_s = std::max(0.0, duration_s - length_mm / top_speed);
-  profile_.ramp_mm = profile_.speed_mm_per_s * profile_.ramp_s / 2;
-  if (profile_.ramp_mm * 2 > length_mm) profile_.ramp_mm = profile_.ramp_s = 0;
   if (is_within(move)) {
     from_ = 0, to_ = 1;
     reach.part.known = true;
@@ -333,7 +258,7 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
   const Vec3 step = move.to_mm - move.from_mm;
   const bool level = move.arc || step.x * step.x + step.y * step.y > step.z * step.z;
   if (move.is_vertical()) {
-    const double speed = profile_.speed_mm_per_s, radius_mm = cutter.radius_mm();
+    const double speed = profile_.speed_mm_per_s(), radius_mm = cutter.radius_mm();
     reach.side_mm2_per_s = diameter_mm * speed;
     reach.disc_mm3_per_s = kPi * radius_mm * radius_mm * speed * std::abs(step.z) / length_mm;
   }
@@ -341,100 +266,6 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
   left_looks_ += kShare * swept_mm2 / (cell_mm * cell_mm);
   left_cells_ += kCloseShare * swept_mm2 / (cell_mm * cell_mm);
   return reach;
-}
-
-/// Finished: what the cutter's front takes must not wait for the next part.
-double LoadMeter::Impl::cut_part(StockModel& stock, double from, double to) {
-  moves_.assign(1, part_of(*move_, from, to));
-  reports_.clear();
-  stock.cut(*cutter_, moves_, reports_);
-  stock.finish(reports_);
-  double removed_mm3 = 0;
-  for (const CutReport& report : reports_) removed_mm3 += report.removed_mm3;
-  const double diameter_mm = 2 * cutter_->radius_mm(), cell_mm = stock_.cell_mm();
-  const double swept_mm2 = diameter_mm * (diameter_mm + (to - from) * profile_.length_mm);
-  left_cells_ -= swept_mm2 / (cell_mm * cell_mm) + static_cast<double>(stock_.tile_count());
-  return removed_mm3;
-}
-
-void LoadMeter::Impl::cut_spans(const StockModel& before, double from, double to, int pieces) {
-  spans_.clear();
-  before_.clear();
-  const std::unique_ptr<StockModel> copy = before.snapshot();
-  for (int k = 0; k < pieces; ++k) {
-    Span span;
-    span.from = from + (to - from) * k / pieces;
-    span.to = k + 1 == pieces ? to : from + (to - from) * (k + 1) / pieces;
-    before_.push_back(copy->snapshot());
-    span.removed_mm3 = cut_part(*copy, span.from, span.to);
-    spans_.push_back(span);
-  }
-}
-
-/// Of a span that cuts, and before which nothing does.
-double LoadMeter::Impl::find_begin(const Span& span, const StockModel& before, double least) {
-  const auto cuts = [&](double from, double to) {
-    return cut_part(*before.snapshot(), from, to) > 0;
-  };
-  double from = span.from, to = span.to;
-  if (from == 0 && cuts(0, std::min(to, least))) return 0;
-  while (to - from > least) {
-    const double middle = (from + to) / 2;
-    (cuts(from, middle) ? to : from) = middle;
-  }
-  return from == span.from ? from : (from + to) / 2;
-}
-
-/// Of a span that cuts, and behind which nothing does.
-double LoadMeter::Impl::find_end(const Span& span, const StockModel& before, double least) {
-  std::unique_ptr<StockModel> state = before.snapshot();
-  double from = span.from, to = span.to;
-  while (to - from > least) {
-    const double middle = to == 1 ? std::max(from, 1 - least) : (from + to) / 2;
-    std::unique_ptr<StockModel> half = state->snapshot();
-    cut_part(*half, from, middle);
-    if (cut_part(*half->snapshot(), middle, to) > 0) {
-      if (to == 1) return 1;
-      state = std::move(half);
-      from = middle;
-    } else {
-      to = middle;
-    }
-  }
-  return to == span.to ? to : (from + to) / 2;
-}
-
-/// The windows that lie in a row are those of one stretch of cutting.
-double LoadMeter::Impl::peak(std::size_t first, std::size_t end, double window) const {
-  double greatest = 0, all_mm3 = 0, mm3 = 0, from = spans_[first].from, to = from, density = 0;
-  const auto end_run = [&] {
-    const double way_mm = (to - from) * profile_.length_mm;
-    if (way_mm > 0) greatest = std::max(greatest, mm3 / way_mm * profile_.greatest_speed(from, to));
-  };
-  for (std::size_t i = first; i < end; ++i) {
-    const Span& span = spans_[i];
-    all_mm3 += span.removed_mm3;
-    if (span.to - span.from < window) continue;
-    const double own = span.removed_mm3 / (span.to - span.from);
-    if (to != span.from || std::abs(own - density) > kSameRate * density) {
-      end_run();
-      from = span.from;
-      mm3 = 0;
-      density = own;
-    }
-    to = span.to;
-    mm3 += span.removed_mm3;
-  }
-  end_run();
-  if (greatest > 0) return greatest;
-  from = spans_[first].from, to = spans_[end - 1].to, mm3 = all_mm3;
-  end_run();
-  return greatest;
-}
-
-void LoadMeter::Impl::add_run(std::size_t first, std::size_t end, double window, MotionLoad& load) {
-  load.cut_s += profile_.at(spans_[end - 1].to) - profile_.at(spans_[first].from);
-  load.peak_mm3_per_s = std::max(load.peak_mm3_per_s, peak(first, end, window));
 }
 
 /// Something is, below the heights: an M-map's may say less than what is there. Asked once; what
@@ -471,7 +302,7 @@ double LoadMeter::Impl::scanned_peak(std::span<const double> bins, double span_f
   };
   const std::size_t first = index(span_from), last = index(span_to * (1 - 1e-12));
   const auto rate = [&](double mm3, double from, double to) {
-    const double found = mm3 / (std::max(to - from, least_) * profile_.length_mm) *
+    const double found = mm3 / (std::max(to - from, least_) * profile_.length_mm()) *
                          profile_.greatest_speed(from, to);
     windows_.push_back({from, to, found});
     return found;
@@ -510,9 +341,9 @@ bool LoadMeter::Impl::scan(const Cutter& cutter, const CutMove& move, double kno
   const std::optional<HeightGrid> present = model->present_heights();
   if (!present) return false;
   left_looks_ -= kCellsOfTile * static_cast<double>(stock_.tile_count());
-  const double window = std::min(window_mm(cutter, move) / profile_.length_mm, to_ - from_);
-  least_ = is_plunge(move) ? 0 : kLeastCells * cell_mm_ / profile_.length_mm;
-  const double bin_mm = window * profile_.length_mm / kBinsOfWindow;
+  const double window = std::min(window_mm(cutter, move) / profile_.length_mm(), to_ - from_);
+  least_ = is_plunge(move) ? 0 : kLeastCells * cell_mm_ / profile_.length_mm();
+  const double bin_mm = window * profile_.length_mm() / kBinsOfWindow;
   const bool fine = lasts_ && left_looks_ > kFineShare * free_cells();
   EngagementScan::Lanes lanes;
   lanes.bin_mm = bin_mm;
@@ -536,7 +367,7 @@ void LoadMeter::Impl::take_spans(const Scan& scan, double window, MotionLoad& lo
   load = {};
   windows_.clear();
   for (const auto& span : scan.spans()) {
-    load.cut_s += profile_.at(span.to) - profile_.at(span.from);
+    load.cut_s += profile_.at_s(span.to) - profile_.at_s(span.from);
     load.peak_mm3_per_s =
         std::max(load.peak_mm3_per_s, scanned_peak(scan.bins_mm3(), span.from, span.to, window));
   }
@@ -628,10 +459,10 @@ bool LoadMeter::Impl::scan_points(const Cutter& cutter, const CutMove& move, dou
   const SolidPoints* const solid = points_of(cutter, move);
   if (solid == nullptr) return false;
   from_ = 0, to_ = 1;
-  const double window = std::min(window_mm(cutter, move) / profile_.length_mm, 1.0);
+  const double window = std::min(window_mm(cutter, move) / profile_.length_mm(), 1.0);
   least_ = 0;
   LaneScan::Grain grain;
-  grain.bin_mm = window * profile_.length_mm / kBinsOfWindow;
+  grain.bin_mm = window * profile_.length_mm() / kBinsOfWindow;
   grain.gap_mm = grain.step_mm = EngagementScan::kLeastGapBins * grain.bin_mm;
   if (left_looks_ <= kFineShare * free_cells()) {
     const LaneScan::Grain few = few_lanes();
@@ -652,7 +483,7 @@ bool LoadMeter::Impl::scan_points(const Cutter& cutter, const CutMove& move, dou
 
 MotionLoad LoadMeter::Impl::measure(const Cutter& cutter, const CutMove& move, double known) {
   MotionLoad load;
-  if (profile_.length_mm <= 0 || to_ <= from_) return load;
+  if (profile_.length_mm() <= 0 || to_ <= from_) return load;
   if (scan(cutter, move, known, load) || scan_points(cutter, move, known, load)) return load;
   return measure_by_pieces(cutter, move);
 }
@@ -683,42 +514,9 @@ void LoadMeter::Impl::cut_parts(const Cutter& cutter, std::span<const CutMove> m
 }
 
 MotionLoad LoadMeter::Impl::measure_by_pieces(const Cutter& cutter, const CutMove& move) {
-  MotionLoad load;
-  cutter_ = &cutter;
-  move_ = &move;
-  const double length_mm = profile_.length_mm;
-  const double window = window_mm(cutter) / length_mm;
-  const int pieces = std::clamp(static_cast<int>((to_ - from_) / window), 1, kPieces);
-  cut_spans(stock_, from_, to_, pieces);
-  double cutting = 0;
-  for (const Span& span : spans_) cutting += span.cuts() ? span.to - span.from : 0;
-  const double least = std::max(stock_.cell_mm() / 2 / length_mm, kEnds * cutting);
-  struct Run {
-    double from, to;
-    std::unique_ptr<StockModel> before;  ///< null: it is not looked at again
-  };
-  std::vector<Run> again;
-  for (std::size_t first = 0, end = 0; first < spans_.size(); first = end) {
-    end = first + 1;
-    if (!spans_[first].cuts()) continue;
-    while (end < spans_.size() && spans_[end].cuts()) ++end;
-    spans_[first].from = find_begin(spans_[first], *before_[first], least);
-    spans_[end - 1].to = find_end(spans_[end - 1], *before_[end - 1], least);
-    const double way = spans_[end - 1].to - spans_[first].from;
-    if (end - first < kFewPieces && way > 2 * window) {
-      again.push_back({spans_[first].from, spans_[end - 1].to, std::move(before_[first])});
-    } else {
-      add_run(first, end, std::min(window, (to_ - from_) / pieces) * 0.999, load);
-    }
-  }
-  for (const Run& run : again) {
-    const double way = run.to - run.from;
-    const int finer = std::clamp(static_cast<int>(way / window), 1, kFinerPieces);
-    cut_spans(*run.before, run.from, run.to, finer);
-    add_run(0, spans_.size(), std::min(window, way / finer) * 0.999, load);
-  }
-  spans_.clear();
-  before_.clear();
+  const double window = window_mm(cutter) / profile_.length_mm();
+  const MotionLoad load = pieces_.measure(cutter, move, profile_, {from_, to_}, window);
+  left_cells_ -= pieces_.cost_cells();
   return load;
 }
 

@@ -50,7 +50,7 @@ struct MotionReach {
 /// by 30 %, and others count by lanes, less 4 % (half, by points). By points: ends are good to a
 /// fortieth of a cell, of what is thicker than a twentieth of one.
 ///
-/// In pieces, up to kPieces: ends are searched by halves, to 0.2 % of the way that cuts or half a
+/// In pieces (PieceMeter): ends are searched by halves, to 0.2 % of the way that cuts or half a
 /// cell, whichever is more. A sliver thinner than half a cell is not there to be cut: cutting seems
 /// over up to cell / 2 + sqrt(D * cell / 2) before a round cutter leaves a wall beside it, and it
 /// may seem to begin half a cell late.
@@ -66,13 +66,10 @@ struct MotionReach {
 /// A rate is the mean cross-section over a window of the way times the greatest speed there;
 /// neighbouring windows that are less than 2 % below the greatest are averaged with it. A window is
 /// a quarter of the cutter's diameter, at least 20 cells but straight up and down (the whole
-/// stretch that is cut where it is shorter; of pieces longer where kPieces of them are shorter than
-/// the way). Where in its time the machine is follows from duration and greatest speed, as if it
-/// started and ended at rest; moves that are run through at one speed have no such ramps. One
-/// thread.
+/// stretch that is cut where it is shorter; longer where the pieces that the move is cut in are).
+/// Where in its time the machine is: WayProfile. One thread.
 class LoadMeter {
  public:
-  static constexpr int kPieces = 16;
   /// Moves that last so long are always measured; affords_short() is for others.
   static constexpr double kLasting_s = 0.5;
   static const double kFreeCells, kFreeBlocks, kShare;

@@ -1,0 +1,34 @@
+// twin/process/milling/way_profile.h - when a machine is where along a move.
+#pragma once
+
+#include "stock/stock_model.h"
+
+namespace kerf {
+
+/// Time and speed at a fraction of a move's way. As if the machine started and ended at rest, with
+/// equal ramps, where the move takes longer than its way does at its greatest speed; else at one
+/// speed. 0 long: nothing is known.
+class WayProfile {
+ public:
+  WayProfile() = default;
+  /// `speed_mm_per_s`: the greatest on the way, 0: not known. Nothing is known of a way of no
+  /// length or no time.
+  WayProfile(double length_mm, double duration_s, double speed_mm_per_s);
+
+  double length_mm() const { return length_mm_; }
+  double speed_mm_per_s() const { return speed_mm_per_s_; }
+  /// Seconds from the move's begin to this fraction.
+  double at_s(double part) const;
+  double speed_at(double part) const;
+  double greatest_speed(double from, double to) const;
+
+ private:
+  double length_mm_ = 0, duration_s_ = 0, speed_mm_per_s_ = 0;
+  double ramp_mm_ = 0, ramp_s_ = 0;
+};
+
+double way_length_mm(const CutMove& move);
+/// Of its way, from one fraction to another.
+CutMove part_of(const CutMove& whole, double from, double to);
+
+}  // namespace kerf
