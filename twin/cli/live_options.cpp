@@ -182,14 +182,17 @@ LiveRequest understand_live(const Arguments& a, Diagnostics& diagnostics) {
   OptionReader reader(diagnostics, layers_of(a, &request.config));
   request.units = reader.unit();
   request.ini = reader.text("--ini");
-  ProgramRequest program =
-      understand_program("--program", surroundings_of(&request.config), reader);
+  LiveOptions& options = request.options;
+  TorchOptions torch;
+  options.beam = understand_torch(reader, torch);
+  ProgramSurroundings around = surroundings_of(&request.config);
+  around.hal_pins = torch.hal_values;
+  ProgramRequest program = understand_program("--program", around, reader);
+  program.program.torch = std::move(torch);
   request.config.machine.work_offset = program.program.machine.work_offset;
   // With the limits of the machine its corners are known, and the real tool runs through those.
   if (program.timeline.limits_known) reader.ini_says("--path", "planned");
   WorkRequest work = understand_work(&request.config, reader);
-  LiveOptions& options = request.options;
-  options.beam = understand_torch(reader, program.program.torch);
   options.turret = understand_turret(reader, program.program);
   // Where the machine stands when it starts the program is seen, not read from its INI.
   program.program.machine.start_known = false;

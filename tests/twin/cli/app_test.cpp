@@ -136,6 +136,27 @@ TEST(RunOptions, ToolsAndBlankOfAConfigurationAreTakenWhereNoneAreWritten) {
 }
 
 /// What is known of the program is no reason to run off it: an INI's limits make a path planned.
+/// As in a dry run: what a running program would set the machine's geometry by.
+TEST(LiveOptions, PinsThatAreToldAreThoseOfTheKinematicsToo) {
+  TemporaryFolder folder;
+  const std::string ini = folder / "five.ini";
+  std::ofstream(ini) << "[EMC]\nMACHINE = five\n[TRAJ]\nLINEAR_UNITS = mm\n"
+                        "COORDINATES = X Y Z A C\n[KINS]\nKINEMATICS = xyzac-trt-kins\n"
+                        "JOINTS = 5\n";
+  Arguments a;
+  a.command = kReplay;
+  a.options.set("--ini", ini);
+  const auto geometry = [&] {
+    Diagnostics diagnostics;
+    const LiveRequest request = understand_live(a, diagnostics);
+    const auto& machine = request.options.cutting.timeline.kinematics;
+    return machine && !machine->notes.empty() ? machine->notes.back() : std::string();
+  };
+  EXPECT_NE(geometry().find("y-offset 0"), std::string::npos) << geometry();
+  a.options.set_all("--hal", {"xyzac-trt-kins.y-offset=12.5"});
+  EXPECT_NE(geometry().find("as told: y-offset 12.5"), std::string::npos) << geometry();
+}
+
 TEST(LiveOptions, ThePathIsPlannedWhereLimitsAreKnownAndNobodySaysOtherwise) {
   TemporaryFolder folder;
   Arguments a;
