@@ -298,6 +298,15 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   CanonicalReaderOptions reading = reader_options(*session);
   reading.feeder.frame = &frame_;
   reading.feeder.materials = &materials_;
+  if (!options_.machine.startup_code.empty()) {
+    summary.notes.push_back(
+        {{},
+         trf("rs274 does not run the machine's startup code (RS274NGC_STARTUP_CODE = {}): the "
+             "program begins as if there were none; --interp bridge runs it",
+             options_.machine.startup_code),
+         1,
+         true});
+  }
   const InputWaits& waits = session->prepared.waits;
   if (waits.count > 0 && !reading.feeder.torch.qtplasmac) {
     summary.notes.push_back(
