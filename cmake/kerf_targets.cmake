@@ -94,7 +94,7 @@ endfunction()
 
 # kerf_add_test(name SOURCES ... LINK ... [ALONE | TIMED]): one gtest executable, each TEST a ctest. ALONE: they measure times
 # of processes that give way to others; nothing else is run beside them. TIMED: they mostly wait, and go by a clock; of three
-# tests at a time they count as two.
+# tests at a time they count as two, and they are begun first (COST), that others have the processor while they wait.
 function(kerf_add_test name)
   cmake_parse_arguments(ARG "ALONE;TIMED" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -104,7 +104,7 @@ function(kerf_add_test name)
   if(ARG_ALONE)
     list(APPEND properties RUN_SERIAL TRUE)
   elseif(ARG_TIMED AND NOT KERF_SANITIZE)
-    list(APPEND properties PROCESSORS 2)
+    list(APPEND properties PROCESSORS 2 COST 100)
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
 endfunction()
