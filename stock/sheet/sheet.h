@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stock/sheet/outline.h"
+#include "stock/sheet/piece_origin.h"
 #include "stock/stock_model.h"
 
 namespace kerf {
@@ -23,13 +24,6 @@ struct SheetOptions {
   std::size_t expected_moves = 0;
   /// Columns and rows of tiles, for measurements; 0: as the model sees fit.
   int tiles_each_way = 0;
-};
-
-/// A line of a program.
-struct PieceOrigin {
-  std::string file;
-  std::uint32_t line = 0;  ///< 0: not known
-  bool operator==(const PieceOrigin&) const = default;
 };
 
 /// A part of the sheet that hangs together.

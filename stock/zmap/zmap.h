@@ -12,11 +12,9 @@
 #include "stock/blank.h"
 #include "stock/present_heights.h"
 #include "stock/stock_model.h"
+#include "stock/zmap/zmap_kernel.h"
 
 namespace kerf {
-
-/// Which instructions the cutting kernel uses. All give the same bits.
-enum class ZMapKernel { kAuto, kScalar, kAvx2 };
 
 struct ZMapOptions {
   Blank blank;           ///< bodies, workpiece frame
@@ -94,8 +92,5 @@ class ZMap final : public StockModel, public PresentHeights {
   explicit ZMap(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// True if this machine can run the AVX2 kernel.
-bool zmap_has_avx2();
 
 }  // namespace kerf

@@ -17,6 +17,7 @@
 #include "base/mesh_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "stock/sheet/sheet.h"
 #include "twin/program/session_parts.h"
 #include "twin/scene/frame_tool.h"
 #include "twin/scene/part_patches.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/diagnostic.h"
-#include "stock/zmap/zmap.h"
+#include "stock/stock_model.h"
 #include "twin/cli/option_reader.h"
 #include "twin/report/report.h"
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "interp_bridge/program.h"
+#include "stock/blank.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/outputs.h"
 #include "twin/machine/beam_settings.h"

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/translate.h"
+#include "stock/zmap/zmap_kernel.h"
 
 namespace kerf {
 namespace {

@@ -15,8 +15,10 @@
 #include "stock/cutter/shape_spec.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/outline_file.h"
+#include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
 #include "stock/zmap/mmap/mmap.h"
+#include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
 
 namespace kerf {

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "base/translate.h"
-#include "stock/sheet/sheet.h"
+#include "stock/blank.h"
 #include "stock/stock_model.h"
-#include "stock/zmap/zmap.h"
+#include "stock/zmap/zmap_kernel.h"
 #include "twin/job/tools.h"
 #include "twin/machine/motion_moves.h"
 

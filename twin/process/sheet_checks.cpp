@@ -2,6 +2,7 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "stock/sheet/sheet.h"
 
 namespace kerf {
 

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "interp_bridge/motion.h"
-#include "stock/sheet/sheet.h"
+#include "stock/sheet/piece_origin.h"
 #include "twin/machine/timeline.h"
 
 namespace kerf {
+
+class Sheet;
 
 /// A piece that has been cut free, and what did it.
 struct FreedPiece {

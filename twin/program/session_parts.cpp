@@ -14,6 +14,7 @@
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/zmap/mmap/mmap.h"
+#include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
 
 namespace kerf {

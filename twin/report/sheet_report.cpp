@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/translate.h"
 #include "stock/sheet/outline_file.h"
+#include "stock/sheet/sheet.h"
 #include "twin/findings/finding_json.h"
 
 namespace kerf {

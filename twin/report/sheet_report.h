@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "interp_bridge/motion.h"
-#include "stock/sheet/sheet.h"
 #include "twin/process/process.h"
 
 namespace kerf {
+
+class Sheet;
 
 /// A piece that the program has cut free.
 struct SheetPart {

@@ -13,7 +13,7 @@
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
-#include "stock/zmap/zmap.h"
+#include "stock/stock_model.h"
 #include "twin/findings/outcome.h"
 #include "twin/guess/program_survey.h"
 #include "twin/machine/kinematics/switched_motions.h"

@@ -9,6 +9,7 @@
 
 #include "base/translate.h"
 #include "stock/sheet/punch_hits.h"
+#include "stock/sheet/sheet.h"
 #include "twin/machine/punch_moves.h"
 #include "twin/motion/motion_geometry.h"
 

@@ -11,7 +11,6 @@
 
 #include "interp_bridge/motion.h"
 #include "stock/sheet/blank_area.h"
-#include "stock/sheet/sheet.h"
 #include "twin/findings/finding.h"
 #include "twin/machine/punch_moves.h"
 #include "twin/machine/timeline.h"
@@ -19,6 +18,8 @@
 #include "twin/process/sheet_checks.h"
 
 namespace kerf {
+
+class Sheet;
 
 /// Follows the clamps, and is asked before and after strokes are cut. Of each kind of
 /// trouble the first kTold are told one by one, the others with the last of these. One thread.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/translate.h"
+#include "stock/sheet/sheet.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -33,6 +34,14 @@ bool stays_down(const Motion& m) {
 }
 
 }  // namespace
+
+TorchChecks::TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options)
+    : sheet_(sheet),
+      log_(log),
+      options_(options),
+      uncut_pieces_(sheet.blank_piece_numbers()),
+      freed_(freed_before(sheet)),
+      report_from_(freed_.size()) {}
 
 void TorchChecks::go_on_from(const TorchChecks& other) {
   uncut_pieces_ = other.uncut_pieces_;

@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "interp_bridge/motion.h"
-#include "stock/sheet/sheet.h"
 #include "twin/findings/finding.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/sheet_checks.h"
 
 namespace kerf {
+
+class Sheet;
 
 /// What the checks have to know of the machine.
 struct TorchCheckOptions {
@@ -37,13 +38,7 @@ class TorchChecks {
   /// of a program that never moves Z travels over every piece.
   static constexpr std::uint64_t kTravelsTold = 10;
 
-  TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options)
-      : sheet_(sheet),
-        log_(log),
-        options_(options),
-        uncut_pieces_(sheet.blank_piece_numbers()),
-        freed_(freed_before(sheet)),
-        report_from_(freed_.size()) {}
+  TorchChecks(const Sheet& sheet, FindingLog& log, const TorchCheckOptions& options);
 
   /// Those of another one that looks at the same sheet are known, and are not told again.
   void go_on_from(const TorchChecks& other);
