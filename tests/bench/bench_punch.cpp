@@ -17,6 +17,7 @@
 
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
+#include "stock/sheet/sheet.h"
 #include "twin/job/stock_choice.h"
 #include "twin/process/cut_stage.h"
 #include "twin/process/punch/punch_plan.h"
