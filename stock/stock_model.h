@@ -69,6 +69,20 @@ struct Contact {
   double depth_mm = 0;  ///< greatest depth reached on the whole move
 };
 
+/// A part of the tool above its cutting edges, from `from_z_mm` above the tip to wherever: shank,
+/// or a section of the holder.
+struct CarriedPart {
+  double radius_mm = 0;
+  double from_z_mm = 0;
+};
+
+/// Where a part of a tool first meets material on a move that the tool cuts as it goes.
+struct PartContact {
+  Vec3 tip_mm{0};   ///< tool tip then
+  double t = 0;     ///< fraction of the move
+  double depth_mm;  ///< so much higher the part would have to be to clear all of the move
+};
+
 /// Workpiece as it is now. One owner thread; snapshots are cheap, immutable in effect and may go to
 /// other threads.
 ///
@@ -97,6 +111,20 @@ class StockModel {
   /// nothing.
   virtual std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                                double tolerance_mm) const = 0;
+
+  /// Whether part_contact() looks for anything.
+  virtual bool checks_parts() const { return false; }
+  /// Material is nowhere higher over this rectangle. An upper bound, moves held back or not; cheap.
+  virtual double highest_mm(const Vec2& /*low*/, const Vec2& /*high*/) const {
+    return bounds_mm().max.z;
+  }
+  /// Would this part of an upright tool touch material that `cutter`, on its way along this move,
+  /// has not cut before the part comes there? What stands higher than the flutes reach is not cut.
+  /// Where it goes deeper than `tolerance_mm`. Changes nothing.
+  virtual std::optional<PartContact> part_contact(const Cutter&, const CarriedPart&, const CutMove&,
+                                                  double /*tolerance_mm*/) const {
+    return std::nullopt;
+  }
 
   /// The workpiece as it is now, moves held back completed. Shares its tiles with this model: costs
   /// some nanoseconds a tile, and memory only for tiles that either of the two changes later. May

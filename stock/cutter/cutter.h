@@ -84,6 +84,12 @@ class Cutter {
 
   std::optional<double> flute_length_mm() const { return flute_length_mm_; }
   void set_flute_length_mm(double length) { flute_length_mm_ = length; }
+  /// Nobody has said it: a cone ends somewhere.
+  bool is_flute_length_assumed() const { return flute_length_assumed_; }
+  void assume_flute_length_mm(double length) {
+    flute_length_mm_ = length;
+    flute_length_assumed_ = true;
+  }
   std::optional<double> shank_diameter_mm() const { return shank_diameter_mm_; }
   void set_shank_diameter_mm(double d) { shank_diameter_mm_ = d; }
   /// Of a punch: its outline about the axis at angle 0, closed chains of points, even-odd, mm, as
@@ -103,6 +109,7 @@ class Cutter {
   std::vector<ProfilePiece> upper_pieces_;
   std::optional<double> neck_radius_mm_;
   std::optional<double> flute_length_mm_;
+  bool flute_length_assumed_ = false;
   std::optional<double> shank_diameter_mm_;
   std::vector<ToolSection> holder_;
   std::shared_ptr<const Footprint> footprint_;

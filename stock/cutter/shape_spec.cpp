@@ -490,7 +490,11 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     const Done upper = cutter->set_upper_profile(std::move(body.upper_pieces));
     if (!upper) return Error{upper.error()};
   }
-  if (flute) cutter->set_flute_length_mm(*flute);
+  // The head of a cutter with a neck ends where its shape does.
+  if (options.flute_mm || (flute && body.shank_mm))
+    cutter->set_flute_length_mm(*flute);
+  else if (flute)
+    cutter->assume_flute_length_mm(*flute);
   if (options.shank) {
     cutter->set_shank_diameter_mm(options.shank->diameter_mm);
   } else if (body.shank_mm) {

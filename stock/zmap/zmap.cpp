@@ -18,6 +18,7 @@
 #include "stock/zmap/height_mesh.h"
 #include "stock/zmap/height_sweeper.h"
 #include "stock/zmap/height_view.h"
+#include "stock/zmap/part_contact.h"
 #include "stock/zmap/state_file.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
@@ -42,6 +43,7 @@ struct ZMap::Impl {
     std::uint64_t version, hash;
   };
   std::vector<SeenTile> seen;
+  TileTops tops;
 
   Impl(TileGrid heights, double blank_volume_mm3, ZMapKernel kernel, int threads)
       : sweeper(std::move(heights), kernel, threads), blank_mm3(blank_volume_mm3) {}
@@ -82,6 +84,17 @@ std::optional<Contact> ZMap::first_contact(const Cutter& cutter, const CutMove& 
   if (!near) return std::nullopt;
   return find_first_contact({impl_->grid(), impl_->sweeper.traces(), nullptr, true},
                             convex_components(cutter.profile()), *near, tolerance_mm);
+}
+
+double ZMap::highest_mm(const Vec2& low, const Vec2& high) const {
+  return impl_->tops.highest_mm(impl_->grid(), low, high);
+}
+
+std::optional<PartContact> ZMap::part_contact(const Cutter& cutter, const CarriedPart& part,
+                                              const CutMove& move, double tolerance_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
+  return find_part_contact(impl_->grid(), impl_->tops, cutter, part, *near, tolerance_mm);
 }
 
 std::unique_ptr<StockModel> ZMap::snapshot() const {

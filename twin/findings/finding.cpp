@@ -143,6 +143,12 @@ const char* to_string(FindingId id) {
       return "beam-on-traverse";
     case FindingId::kCellCoarse:
       return "cell-coarse";
+    case FindingId::kHolderContact:
+      return "holder-contact";
+    case FindingId::kShankContact:
+      return "shank-contact";
+    case FindingId::kFluteTooShort:
+      return "flute-too-short";
     case FindingId::kThinFilm:
       return "thin-film";
     case FindingId::kFeedLost:

@@ -75,6 +75,9 @@ enum class FindingId : std::uint8_t {
   kBeamOnTraverse,    ///< the beam is on along traverses
   kCellCoarse,        ///< the cells of the grid are too large for a tool or a depth of the program
   kThinFilm,          ///< a wall or roof thinner than a cell was left, and the octree lost it
+  kHolderContact,     ///< the holder touches the workpiece
+  kShankContact,      ///< the shank, which is wider or slimmer than the cutter, touches it
+  kFluteTooShort,     ///< material stands higher than the flutes reach, and the shank rubs
   kFeedLost,          ///< LinuxCNC does not run a feed that M61 comes right after
 };
 
@@ -115,6 +118,9 @@ class FindingLog {
   /// The event goes on, and is now better described so.
   void reword(Handle handle, std::string text) {
     if (handle < kept_.size()) kept_[handle].text = std::move(text);
+  }
+  void set_hint(Handle handle, std::string hint) {
+    if (handle < kept_.size()) kept_[handle].hint = std::move(hint);
   }
   /// The event is more than it seemed.
   void raise(Handle handle, Severity severity);

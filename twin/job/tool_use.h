@@ -12,6 +12,9 @@ struct ToolUse {
   std::string shape;  ///< SHAPE text; empty: undefined, did not cut
   std::string origin;
   bool guessed = false;
+  /// Its shank, its holder against the workpiece; false: nobody described them, or the model does
+  /// not look.
+  bool shank_checked = false, holder_checked = false;
   double cut_s = 0;    ///< time of feed moves that removed material
   double feed_mm = 0;  ///< length of all its feed moves
   double removed_mm3 = 0;

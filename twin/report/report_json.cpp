@@ -70,6 +70,8 @@ Json tools_json(const Report& report) {
     tool["shape"] = use.shape.empty() ? Json(nullptr) : Json(use.shape);
     tool["origin"] = use.origin;
     tool["guessed"] = use.guessed;
+    tool["shank_checked"] = use.shank_checked;
+    tool["holder_checked"] = use.holder_checked;
     tool["cut_s"] = rounded(use.cut_s);
     tool["feed_mm"] = rounded(use.feed_mm);
     tool["removed_mm3"] = rounded(use.removed_mm3);

@@ -122,6 +122,24 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
   }
 }
 
+/// Whose collisions nobody looked for.
+void add_unchecked(std::string& out, const Report& report) {
+  if (!report.stock || report.stock->model == "sheet") return;
+  std::string numbers;
+  for (const ToolUse& use : report.tools) {
+    if (use.holder_checked || use.shape.empty()) continue;
+    numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", use.number);
+  }
+  if (numbers.empty()) return;
+  if (report.stock->model == "octree") {
+    out += tr("unchecked shank and holder: not in an octree\n");
+    return;
+  }
+  out +=
+      trf("unchecked holder of tool {}: nobody described it (--tool N=SHAPE:flute=L:holder=DxL)\n",
+          numbers);
+}
+
 void add_live(std::string& out, const LiveReport& live) {
   const LiveFacts& f = live.facts;
   out += trf("source    {}: {} samples in {}, {:.0f} a second\n", live.source, f.samples,
@@ -224,6 +242,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
+  add_unchecked(out, report);
   if (report.stock) add_stock(out, *report.stock);
   out += trf("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,
              report.timing.cut_cpu_s, report.peak_rss_mb);
@@ -257,6 +276,7 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
+  add_unchecked(out, report);
   if (report.lengths_all_zero) {
     out += tr("lengths   all 0 in the tool table, and so they are not checked\n");
   }

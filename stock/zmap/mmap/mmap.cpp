@@ -23,6 +23,7 @@
 #include "stock/zmap/mmap/head_contact.h"
 #include "stock/zmap/mmap/mmap_mesh.h"
 #include "stock/zmap/mmap/mmap_state.h"
+#include "stock/zmap/part_contact.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_patch.h"
 
@@ -40,6 +41,7 @@ struct MMap::Impl {
     std::uint64_t version, hash;
   };
   std::vector<SeenTile> seen;
+  TileTops tops;
 
   Impl(TileGrid heights, double blank_volume_mm3, ZMapKernel kernel, int threads)
       : sweeper(std::move(heights), kernel, threads),
@@ -133,6 +135,17 @@ std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& 
   field.middles = false;
   return earlier_contact(*near, contact,
                          find_first_contact(field, tool.lower, *near, tolerance_mm));
+}
+
+double MMap::highest_mm(const Vec2& low, const Vec2& high) const {
+  return impl_->tops.highest_mm(impl_->grid(), low, high);
+}
+
+std::optional<PartContact> MMap::part_contact(const Cutter& cutter, const CarriedPart& part,
+                                              const CutMove& move, double tolerance_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
+  return find_part_contact(impl_->grid(), impl_->tops, cutter, part, *near, tolerance_mm);
 }
 
 std::unique_ptr<StockModel> MMap::snapshot() const {

@@ -74,8 +74,8 @@ TEST(ReportJson, HasThePublishedKeys) {
   EXPECT_EQ(keys(json["stock"]), (Keys{"model", "origin", "cell_mm", "blank_mm3", "removed_mm3",
                                        "remaining_mm3", "bounds_mm", "cells", "digest"}));
   EXPECT_EQ(keys(json["tools"][0]),
-            (Keys{"number", "shape", "origin", "guessed", "cut_s", "feed_mm", "removed_mm3",
-                  "max_depth_mm", "peak_mm3_per_s"}));
+            (Keys{"number", "shape", "origin", "guessed", "shank_checked", "holder_checked",
+                  "cut_s", "feed_mm", "removed_mm3", "max_depth_mm", "peak_mm3_per_s"}));
   EXPECT_EQ(keys(json["findings"][0]), (Keys{"id", "severity", "file", "line", "time_s",
                                              "position_mm", "tool", "depth_mm", "message"}));
   EXPECT_EQ(keys(json["timing_s"]), (Keys{"interpret", "cut", "cut_cpu", "mesh", "total"}));
@@ -126,6 +126,7 @@ TEST(ReportText, IsAPageThatReadsInTenSeconds) {
       "removed   30.000 cm3 of 120.000 cm3 (25.0 %)\n"
       "tools     3   ball:6 (--tool)\n"
       "              removed 30.000 cm3, cutting 1 min 01 s, deepest cut 2.50 mm, peak 40.0 mm3/s\n"
+      "unchecked holder of tool 3: nobody described it (--tool N=SHAPE:flute=L:holder=DxL)\n"
       "stock     box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0 (--stock)\n"
       "          zmap, cells of 0.05 mm, 2.40 million\n");
 }

@@ -48,6 +48,7 @@ MillingStage::MillingStage(ProcessSite& site)
       load_meter_(stock_),
       lengths_(stock_.bounds_mm(), log_),
       films_(stock_, log_),
+      parts_(stock_, log_),
       moves_per_cut_(stock_.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
@@ -63,6 +64,7 @@ void MillingStage::begin_reporting() {
   checks_.forget_events();
   lengths_.forget();
   films_.forget();
+  parts_.unmount();
   program_.forget_events();
   speed_unsaid_.reset();
   uses_.clear();
@@ -88,6 +90,7 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
     checks_.end_spindle_event();
     spindle_tool_ = m.tool;
     mounted_ = nullptr;
+    parts_.unmount();
   }
   if (!stands(m) && checks_.spindle_event_open()) {
     complete();  // the depths still to come belong to the event
@@ -106,6 +109,9 @@ bool MillingStage::mount_for(const Motion& m) {
   if (mounted_) return mounted_->cutter.has_value();
   mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
   announce(*mounted_, m);
+  if (mounted_->cutter) parts_.mount(*mounted_->cutter);
+  uses_[use_].shank_checked = parts_.checks_shank();
+  uses_[use_].holder_checked = parts_.checks_holder();
   return mounted_->cutter.has_value();
 }
 
@@ -120,12 +126,13 @@ void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
     return;
   }
   if (!divide(m, step)) return;
+  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
+  check_parts(m, move);
   if (!comes_near(m)) {
     check_length(m, step, false);
     checks_.clear_traverse();
     return;
   }
-  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   complete();
   check_length(m, step, checks_.check_traverse(move));
   if (site_.moves.is_upright(m)) checks_.check_floor(move);
@@ -148,6 +155,7 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
   if (!reached_stock_) note_reach(m);
   if (!site_.watched) note_contact(move);
+  check_parts(m, move);
   note_depth(m, step);
   if (site_.moves.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);
@@ -158,6 +166,15 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
     program_.check_drill(move);
   }
   push(m, step, spindle_off);
+}
+
+void MillingStage::check_parts(const Motion& m, const CheckedMove& move) {
+  if (!site_.moves.is_upright(m) || !parts_.may_touch(m)) {
+    parts_.pass(m);
+    return;
+  }
+  complete();
+  parts_.check(move);
 }
 
 void MillingStage::check_length(const Motion& m, const TimedStep& step, bool touches) {

@@ -19,6 +19,7 @@
 #include "twin/process/milling/film_events.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
+#include "twin/process/milling/part_checks.h"
 #include "twin/process/milling/program_checks.h"
 #include "twin/process/process.h"
 
@@ -40,7 +41,10 @@ class MillingStage final : public Process {
   void begin_reporting() override;
   void hand_over() override;
   void complete() override;
-  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  void check_by(const CheckOptions& options) override {
+    checks_.set_options(options);
+    parts_.set_blank_guessed(options.blank_guessed);
+  }
   void stop_by(const std::stop_token& stop) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
   const Cutter* cutter() const override {
@@ -83,6 +87,7 @@ class MillingStage final : public Process {
   void note_reach(const Motion& motion);
   void report_endless_turn(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
+  void check_parts(const Motion& motion, const CheckedMove& move);
   void check_length(const Motion& motion, const TimedStep& step, bool touches);
   void report_nothing_cut();
   void note_contact(const CheckedMove& move);
@@ -114,6 +119,7 @@ class MillingStage final : public Process {
   LoadMeter load_meter_;
   LengthCheck lengths_;
   FilmEvents films_;
+  PartChecks parts_;
   std::vector<ToolUse> uses_;
   std::vector<Deepest> deepest_;           ///< one for each of uses_
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move

@@ -1,0 +1,137 @@
+#include "twin/process/milling/part_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/motion/motion_geometry.h"
+
+namespace kerf {
+namespace {
+
+/// Where shank and cutter are of one width: the wall that they touch is that of the cut.
+constexpr double kSameWidth_mm = 0.02;
+
+std::string text_of(FindingId id, double width_mm, double length_mm) {
+  if (id == FindingId::kHolderContact) {
+    return trf("holder ({:.4g} mm wide, {:.4g} mm above the tip) touches the workpiece", width_mm,
+               length_mm);
+  }
+  if (id == FindingId::kShankContact) {
+    return trf("shank ({:.4g} mm wide, {:.4g} mm above the tip) touches the workpiece", width_mm,
+               length_mm);
+  }
+  return trf("material stands higher than the flutes reach ({:.4g} mm): the shank rubs", length_mm);
+}
+
+/// Rounded up: what is told does clear.
+std::string hint_of(FindingId id, double length_mm) {
+  const double least_mm = std::ceil(length_mm * 100 - 1e-6) / 100;
+  if (id == FindingId::kHolderContact)
+    return trf("a stick-out of {:.2f} mm would clear it", least_mm);
+  return trf("flutes of {:.2f} mm would clear it", least_mm);
+}
+
+}  // namespace
+
+void PartChecks::mount(const Cutter& cutter) {
+  parts_.clear();
+  if (!stock_.checks_parts() || !cutter.flute_length_mm() || cutter.is_flute_length_assumed())
+    return;
+  const double flutes_mm = *cutter.flute_length_mm();
+  const double cutter_mm = 2 * cutter.radius_mm();
+  const double shank_mm = cutter.shank_diameter_mm().value_or(cutter_mm);
+  const FindingId id = std::abs(shank_mm - cutter_mm) < kSameWidth_mm ? FindingId::kFluteTooShort
+                                                                      : FindingId::kShankContact;
+  parts_.push_back({{shank_mm / 2, flutes_mm}, id, shank_mm, flutes_mm, 0, {}});
+  for (const ToolSection& section : cutter.holder()) {
+    parts_.push_back({{section.diameter_mm / 2, section.from_z_mm},
+                      FindingId::kHolderContact,
+                      section.diameter_mm,
+                      cutter.holder().front().from_z_mm,
+                      0,
+                      {}});
+  }
+}
+
+bool PartChecks::may_touch(const Motion& motion) const {
+  if (parts_.empty()) return false;
+  const Box way = bounds_of(motion);
+  for (const Part& part : parts_) {
+    const double low = way.min.z + part.body.from_z_mm + kContactTolerance_mm;
+    if (low >= stock_.bounds_mm().max.z) continue;
+    const double r = part.body.radius_mm;
+    if (low < stock_.highest_mm({way.min.x - r, way.min.y - r}, {way.max.x + r, way.max.y + r}))
+      return true;
+  }
+  return false;
+}
+
+PartChecks::Part* PartChecks::open_event(FindingId id) {
+  for (Part& part : parts_)
+    if (part.id == id && part.event) return &part;
+  return nullptr;
+}
+
+void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartContact& contact,
+                      double fraction) {
+  Part& part = parts_[index];
+  Part* open = open_event(part.id);
+  if (!open) {
+    const Grounds grounds{blank_guessed_, move.tool_guessed};
+    Finding finding;
+    finding.id = part.id;
+    finding.severity = severity_of(part.id, grounds);
+    if (part.id == FindingId::kFluteTooShort)
+      finding.severity = std::min(finding.severity, Severity::kWarning);
+    finding.text =
+        text_of(part.id, part.width_mm, part.body.from_z_mm) + doubt_of(part.id, grounds);
+    finding.source = move.motion.source;
+    finding.time_s = move.step.start_s + fraction * move.step.duration_s;
+    finding.position_mm = contact.tip_mm;
+    finding.tool = move.tool;
+    part.event = log_.add(std::move(finding));
+    part.depth_mm = 0;
+    open = &part;
+  }
+  log_.deepen(*open->event, contact.depth_mm);
+  open->depth_mm = std::max(open->depth_mm, contact.depth_mm);
+  log_.set_hint(*open->event, hint_of(open->id, open->length_mm + open->depth_mm));
+}
+
+void PartChecks::check(const CheckedMove& move) {
+  const auto count = static_cast<double>(move.moves.size());
+  bool touched[3] = {};
+  const auto kind_of = [](FindingId id) {
+    return id == FindingId::kHolderContact ? 0 : id == FindingId::kShankContact ? 1 : 2;
+  };
+  struct Met {
+    std::size_t part;
+    PartContact contact;
+    double fraction;
+  };
+  std::vector<Met> met;
+  for (std::size_t i = 0; i < move.moves.size(); ++i) {
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      // A traverse that goes through material is told as such: nothing is cut there by flutes.
+      if (is_traverse(move.motion) && parts_[k].id == FindingId::kFluteTooShort) continue;
+      const auto contact =
+          stock_.part_contact(move.cutter, parts_[k].body, move.moves[i], kContactTolerance_mm);
+      if (contact) met.push_back({k, *contact, (static_cast<double>(i) + contact->t) / count});
+    }
+  }
+  // What comes first on the move begins the event.
+  std::stable_sort(met.begin(), met.end(),
+                   [](const Met& a, const Met& b) { return a.fraction < b.fraction; });
+  for (const Met& one : met) {
+    touched[kind_of(parts_[one.part].id)] = true;
+    meet(one.part, move, one.contact, one.fraction);
+  }
+  if (!is_traverse(move.motion)) return;
+  for (Part& part : parts_)
+    if (!touched[kind_of(part.id)]) part.event.reset();
+}
+
+}  // namespace kerf

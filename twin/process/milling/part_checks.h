@@ -1,0 +1,63 @@
+// twin/process/milling/part_checks.h - shank and holder against the workpiece: holder-contact,
+// shank-contact, flute-too-short.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stock/stock_model.h"
+#include "twin/findings/finding.h"
+#include "twin/process/milling/checks.h"
+
+namespace kerf {
+
+/// Watches what a tool carries above its cutting edges along one program. For upright tools, and
+/// for models that look (StockModel::checks_parts()). One event of an id lasts until the first
+/// traverse on which no part of that id touches anything, or the next tool.
+class PartChecks {
+ public:
+  PartChecks(const StockModel& stock, FindingLog& log) : stock_(stock.bare()), log_(log) {}
+
+  void set_blank_guessed(bool guessed) { blank_guessed_ = guessed; }
+  /// What is known of the tool that goes into the spindle. Nothing is looked for of one whose
+  /// flutes' length nobody gave, nor of a holder that nobody described.
+  void mount(const Cutter& cutter);
+  void unmount() { parts_.clear(); }
+  /// Of the tool in the spindle.
+  bool checks_shank() const { return !parts_.empty(); }
+  bool checks_holder() const { return parts_.size() > 1; }
+  /// False: all of it stays above the workpiece, as far as boxes tell. Moves that the model holds
+  /// back may be among what has been cut.
+  bool may_touch(const Motion& motion) const;
+  /// Before the move is cut, and if it may touch: all before it is in the model.
+  void check(const CheckedMove& move);
+  /// The motion may not touch.
+  void pass(const Motion& motion) {
+    if (is_traverse(motion)) forget();
+  }
+  /// What goes on is forgotten: the next trouble is a new event.
+  void forget() {
+    for (Part& part : parts_) part.event.reset();
+  }
+
+ private:
+  struct Part {
+    CarriedPart body;
+    FindingId id;
+    double width_mm;  ///< of it
+    /// What would have to be longer, so that it clears: flutes, or the stick-out.
+    double length_mm;
+    double depth_mm = 0;  ///< of the event
+    std::optional<FindingLog::Handle> event;
+  };
+  void meet(std::size_t index, const CheckedMove& move, const PartContact& contact,
+            double fraction);
+  Part* open_event(FindingId id);
+
+  const StockModel& stock_;
+  FindingLog& log_;
+  bool blank_guessed_ = false;
+  std::vector<Part> parts_;
+};
+
+}  // namespace kerf
