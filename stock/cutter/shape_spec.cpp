@@ -13,6 +13,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
+#include "stock/cutter/holder_library.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/scan.h"
 
@@ -83,7 +84,7 @@ constexpr std::array<Form, 11> kForms = {{
 constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
                                                           "taper",    "drill", "lollipop", "tslot",
                                                           "dovetail", "kerf",  "profile"};
-constexpr std::array<std::string_view, 3> kOptionNames = {"flute", "shank", "holder"};
+constexpr std::array<std::string_view, 4> kOptionNames = {"flute", "shank", "holder", "stickout"};
 
 constexpr const char* kHelp = tr_noop(
     "flat:D               end mill\n"
@@ -99,7 +100,7 @@ constexpr const char* kHelp = tr_noop(
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=DxL[+DxL..]");
+    "each may add         :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -130,6 +131,8 @@ struct Options {
   std::optional<double> flute_mm;
   std::optional<Part> shank;  ///< length 0: not given
   std::vector<Part> holder;
+  std::string holder_name;  ///< empty: its sections are written out
+  std::optional<double> stickout_mm;
 };
 
 /// What a form makes before the options are added.
@@ -165,6 +168,18 @@ Result<Part> parse_part(std::string_view name, std::string_view text, bool lengt
 }
 
 Done parse_holder(std::string_view text, LengthUnit unit, Options& options) {
+  if (!text.empty() && is_letter(text.front())) {
+    const NamedHolder* named = find_holder(text);
+    if (!named) {
+      std::vector<std::string_view> names;
+      for (const NamedHolder& holder : named_holders()) names.push_back(holder.name);
+      return Error{trf("unknown holder '{}'{} Holders: {}; or its sections, DxL[+DxL..]",
+                       shown(text), did_you_mean(to_lower(text), names), fmt::join(names, ", "))};
+    }
+    options.holder_name = named->name;
+    options.holder.push_back({named->diameter_mm, named->length_mm});
+    return std::monostate{};
+  }
   const std::vector<std::string_view> sections = split(text, '+');
   if (sections.size() > kMaxHolderSections) {
     return Error{
@@ -199,8 +214,18 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
     if (!options.holder.empty()) return Error{tr("holder= is given twice")};
     return parse_holder(value, unit, options);
   }
-  return Error{trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=DxL[+DxL..]",
-                   shown(name), did_you_mean(name, kOptionNames))};
+  if (name == "stickout") {
+    if (options.stickout_mm) return Error{tr("stickout= is given twice")};
+    const Result<double> stickout =
+        parse_length(tr("stick-out"), value, kMinLength_mm, kMaxLength_mm, unit);
+    if (!stickout) return Error{stickout.error()};
+    options.stickout_mm = *stickout;
+    return std::monostate{};
+  }
+  return Error{
+      trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=NAME|DxL[+DxL..], "
+          "stickout=L",
+          shown(name), did_you_mean(name, kOptionNames))};
 }
 
 std::string part_text(const Part& part) {
@@ -213,9 +238,11 @@ std::string options_text(const Options& options) {
   std::string text;
   if (options.flute_mm) text += fmt::format(":flute={}", number_text(*options.flute_mm));
   if (options.shank) text += fmt::format(":shank={}", part_text(*options.shank));
-  for (std::size_t i = 0; i < options.holder.size(); ++i) {
+  if (!options.holder_name.empty()) text += ":holder=" + options.holder_name;
+  for (std::size_t i = 0; i < options.holder.size() && options.holder_name.empty(); ++i) {
     text += fmt::format("{}{}", i == 0 ? ":holder=" : "+", part_text(options.holder[i]));
   }
+  if (options.stickout_mm) text += fmt::format(":stickout={}", number_text(*options.stickout_mm));
   return text;
 }
 
@@ -478,8 +505,20 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     return Error{
         trf("flute={} is shorter than the cutting end, {:.4g} mm", number_text(*flute), top)};
   }
-  if (!options.holder.empty() && !flute) {
-    return Error{tr("holder= needs flute=L as well: the holder begins where flutes and shank end")};
+  if (!options.holder.empty() && !flute && !options.stickout_mm) {
+    return Error{
+        tr("holder= needs stickout=L, from the tip to the holder; or flute=L: the holder begins "
+           "where flutes and shank end")};
+  }
+  if (options.stickout_mm) {
+    if (options.holder.empty()) return Error{tr("stickout= needs a holder= above it")};
+    if (options.shank && options.shank->length_mm > 0) {
+      return Error{tr("stickout=L and shank=DxL both say where the holder begins; write shank=D")};
+    }
+    if (*options.stickout_mm < std::max(top, flute.value_or(0)) - kLengthTolerance_mm) {
+      return Error{trf("stickout={} is shorter than the cutting part, {:.4g} mm",
+                       number_text(*options.stickout_mm), std::max(top, flute.value_or(0)))};
+    }
   }
   if (options.shank && options.shank->length_mm > 0 && options.holder.empty()) {
     return Error{tr("shank=DxL needs a holder= above it; without one write shank=D")};
@@ -501,7 +540,8 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     cutter->set_shank_diameter_mm(*body.shank_mm);
   }
   std::vector<ToolSection> holder;
-  double z = flute.value_or(0) + (options.shank ? options.shank->length_mm : 0);
+  double z = options.stickout_mm.value_or(flute.value_or(0) +
+                                          (options.shank ? options.shank->length_mm : 0));
   for (const Part& part : options.holder) {
     holder.push_back({part.diameter_mm, z, z + part.length_mm});
     z += part.length_mm;

@@ -28,9 +28,11 @@ namespace kerf {
 /// Each may add, in any order, divided by colons:
 ///     flute=L            the cutting part ends L above the tip, at least as high as the shape
 ///     shank=D[xL]        cylinder from the end of the flutes up; L only below a holder
-///     holder=DxL[+..]    cylinders that stack upward from the end of the shank; needs flute=.
+///     holder=DxL[+..]    cylinders that stack upward from the end of the shank, or from stickout=;
+///                        or a NAME (holder_library.h). Needs flute= or stickout=.
 ///                        A shank without L counts as hidden in the holder, which then begins at
 ///                        the end of the flutes: the cautious reading
+///     stickout=L         from the tip to the holder, instead of the shank's length
 ///
 /// taper: the circle of radius R has its centre at radius D/2 - R and meets the cone tangentially;
 /// R = D/2 is a tapered ball nose. The cone ends at the flute length, or three tip diameters above

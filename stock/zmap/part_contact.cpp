@@ -128,7 +128,9 @@ class Search {
         part_(part),
         reach_(part.radius_mm - tolerance),
         bottom_(part.from_z_mm + tolerance),
-        flutes_(cutter.flute_length_mm().value_or(kNever) + tolerance),
+        flutes_((cutter.is_flute_length_assumed() ? kNever
+                                                  : cutter.flute_length_mm().value_or(kNever)) +
+                tolerance),
         tolerance_(tolerance) {}
 
   std::optional<PartContact> run(const CutMove& move);
@@ -237,6 +239,11 @@ void Search::scan(std::size_t index) {
           static_cast<std::size_t>(ty) * static_cast<std::size_t>(grid_.tiles_x()) +
           static_cast<std::size_t>(tx);
       if (static_cast<double>(tops_.top_mm(grid_, tile)) <= level) continue;
+      const Box box = grid_.tile_box(tile);
+      const Vec3 middle = 0.5 * (box.min + box.max);
+      const double around = 0.5 * std::hypot(box.size().x, box.size().y);
+      p.windows(middle.x, middle.y, reach_ + around, over_);
+      if (over_.empty()) continue;
       scan_tile(index,
                 {std::max(all.i0, tx * kTileCells), std::min(all.i1, (tx + 1) * kTileCells - 1),
                  std::max(all.j0, ty * kTileCells), std::min(all.j1, (ty + 1) * kTileCells - 1)},

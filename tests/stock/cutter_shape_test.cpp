@@ -65,6 +65,7 @@ const std::vector<std::pair<const char*, const char*>> kCanonical = {
     {"flat:10:shank=12:flute=22", "flat:10:flute=22:shank=12"},
     {"bull:10:2:flute=22:shank=10:holder=32x20+40x25",
      "bull:10:2:flute=22:shank=10:holder=32x20+40x25"},
+    {"flat:6:stickout=30:holder=ER20", "flat:6:holder=er20:stickout=30"},
     {"ball:6:holder=30X10:Flute=9:shank=6x21.5", "ball:6:flute=9:shank=6x21.5:holder=30x10"},
 };
 
@@ -108,6 +109,11 @@ TEST(Shape, FlutesShankAndHolderStackUpward) {
   EXPECT_EQ(cutter->holder()[1].diameter_mm, 40);
   EXPECT_EQ(cutter->holder()[1].from_z_mm, 57);
   EXPECT_EQ(cutter->holder()[1].to_z_mm, 82);
+  const Result<Cutter> nut = parse_shape("flat:6:flute=12:holder=er20:stickout=30");
+  ASSERT_TRUE(nut) << nut.error();
+  ASSERT_EQ(nut->holder().size(), 1U);
+  EXPECT_EQ(nut->holder()[0].diameter_mm, 34);
+  EXPECT_EQ(nut->holder()[0].from_z_mm, 30);
   // Without a shank length the holder begins where the flutes end.
   EXPECT_EQ(parse_shape("flat:10:flute=22:shank=10:holder=32x20")->holder()[0].from_z_mm, 22);
 }
@@ -165,7 +171,7 @@ TEST(Shape, UnknownNames) {
             "lollipop, tslot, dovetail, kerf, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
-            "shank=D[xL], holder=DxL[+DxL..]");
+            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L");
 }
 
 TEST(Shape, MissingAndSurplusValues) {
@@ -230,8 +236,20 @@ TEST(Shape, OptionsThatDoNotFit) {
   EXPECT_EQ(error_of("flat:10:flute=5:holder=30x"),
             "flat:10:flute=5:holder=30x: holder length: '' is not a number");
   EXPECT_EQ(error_of("flat:10:holder=30x5"),
-            "flat:10:holder=30x5: holder= needs flute=L as well: the holder begins where flutes "
-            "and shank end");
+            "flat:10:holder=30x5: holder= needs stickout=L, from the tip to the holder; or "
+            "flute=L: the holder begins where flutes and shank end");
+  EXPECT_EQ(error_of("flat:10:holder=er21:stickout=30"),
+            "flat:10:holder=er21:stickout=30: unknown holder 'er21'; did you mean 'er11'? Holders: "
+            "er11, er11m, er16, er16m, er20, er20m, er25, er25m, er32, er40; or its sections, "
+            "DxL[+DxL..]");
+  EXPECT_EQ(error_of("flat:10:flute=22:holder=er20:stickout=20"),
+            "flat:10:flute=22:holder=er20:stickout=20: stickout=20 is shorter than the cutting "
+            "part, 22 mm");
+  EXPECT_EQ(error_of("flat:10:flute=9:shank=10x5:holder=er20:stickout=20"),
+            "flat:10:flute=9:shank=10x5:holder=er20:stickout=20: stickout=L and shank=DxL both say "
+            "where the holder begins; write shank=D");
+  EXPECT_EQ(error_of("flat:10:flute=9:stickout=20"),
+            "flat:10:flute=9:stickout=20: stickout= needs a holder= above it");
   EXPECT_EQ(error_of("flat:10:flute=20:shank=10x5"),
             "flat:10:flute=20:shank=10x5: shank=DxL needs a holder= above it; without one write "
             "shank=D");
@@ -264,7 +282,7 @@ TEST(Shape, ToolArguments) {
 TEST(Shape, HelpNamesEveryShape) {
   for (const char* name : {"flat:D", "ball:D", "bull:D:R", "vee:D:ANGLE[:TIP]", "taper:D:ANGLE[:R]",
                            "drill:D:ANGLE", "lollipop:D:SHAFT", "tslot:D:T:SHAFT", "profile:FILE",
-                           "flute=L", "shank=D", "holder=DxL"}) {
+                           "flute=L", "shank=D", "holder=NAME|DxL", "stickout=L"}) {
     EXPECT_NE(shape_help().find(name), std::string_view::npos) << name;
   }
 }

@@ -135,9 +135,9 @@ void add_unchecked(std::string& out, const Report& report) {
     out += tr("unchecked shank and holder: not in an octree\n");
     return;
   }
-  out +=
-      trf("unchecked holder of tool {}: nobody described it (--tool N=SHAPE:flute=L:holder=DxL)\n",
-          numbers);
+  out += trf(
+      "unchecked holder of tool {}: nobody described it (--tool N=SHAPE:holder=er20:stickout=L)\n",
+      numbers);
 }
 
 void add_live(std::string& out, const LiveReport& live) {

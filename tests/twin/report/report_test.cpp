@@ -126,7 +126,7 @@ TEST(ReportText, IsAPageThatReadsInTenSeconds) {
       "removed   30.000 cm3 of 120.000 cm3 (25.0 %)\n"
       "tools     3   ball:6 (--tool)\n"
       "              removed 30.000 cm3, cutting 1 min 01 s, deepest cut 2.50 mm, peak 40.0 mm3/s\n"
-      "unchecked holder of tool 3: nobody described it (--tool N=SHAPE:flute=L:holder=DxL)\n"
+      "unchecked holder of tool 3: nobody described it (--tool N=SHAPE:holder=er20:stickout=L)\n"
       "stock     box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0 (--stock)\n"
       "          zmap, cells of 0.05 mm, 2.40 million\n");
 }

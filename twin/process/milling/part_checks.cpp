@@ -38,14 +38,15 @@ std::string hint_of(FindingId id, double length_mm) {
 
 void PartChecks::mount(const Cutter& cutter) {
   parts_.clear();
-  if (!stock_.checks_parts() || !cutter.flute_length_mm() || cutter.is_flute_length_assumed())
-    return;
-  const double flutes_mm = *cutter.flute_length_mm();
-  const double cutter_mm = 2 * cutter.radius_mm();
-  const double shank_mm = cutter.shank_diameter_mm().value_or(cutter_mm);
-  const FindingId id = std::abs(shank_mm - cutter_mm) < kSameWidth_mm ? FindingId::kFluteTooShort
-                                                                      : FindingId::kShankContact;
-  parts_.push_back({{shank_mm / 2, flutes_mm}, id, shank_mm, flutes_mm, 0, {}});
+  if (!stock_.checks_parts()) return;
+  if (cutter.flute_length_mm() && !cutter.is_flute_length_assumed()) {
+    const double flutes_mm = *cutter.flute_length_mm();
+    const double cutter_mm = 2 * cutter.radius_mm();
+    const double shank_mm = cutter.shank_diameter_mm().value_or(cutter_mm);
+    const FindingId id = std::abs(shank_mm - cutter_mm) < kSameWidth_mm ? FindingId::kFluteTooShort
+                                                                        : FindingId::kShankContact;
+    parts_.push_back({{shank_mm / 2, flutes_mm}, id, shank_mm, flutes_mm, 0, {}});
+  }
   for (const ToolSection& section : cutter.holder()) {
     parts_.push_back({{section.diameter_mm / 2, section.from_z_mm},
                       FindingId::kHolderContact,
@@ -60,13 +61,21 @@ bool PartChecks::may_touch(const Motion& motion) const {
   if (parts_.empty()) return false;
   const Box way = bounds_of(motion);
   for (const Part& part : parts_) {
-    const double low = way.min.z + part.body.from_z_mm + kContactTolerance_mm;
+    const double low =
+        way.min.z + part.body.from_z_mm + kContactTolerance_mm + known_mm(part, motion);
     if (low >= stock_.bounds_mm().max.z) continue;
     const double r = part.body.radius_mm;
     if (low < stock_.highest_mm({way.min.x - r, way.min.y - r}, {way.max.x + r, way.max.y + r}))
       return true;
   }
   return false;
+}
+
+double PartChecks::known_mm(const Part& part, const Motion& motion) const {
+  if (is_traverse(motion)) return 0;
+  for (const Part& other : parts_)
+    if (other.id == part.id && other.event) return other.depth_mm;
+  return 0;
 }
 
 PartChecks::Part* PartChecks::open_event(FindingId id) {
@@ -117,9 +126,13 @@ void PartChecks::check(const CheckedMove& move) {
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       // A traverse that goes through material is told as such: nothing is cut there by flutes.
       if (is_traverse(move.motion) && parts_[k].id == FindingId::kFluteTooShort) continue;
-      const auto contact =
-          stock_.part_contact(move.cutter, parts_[k].body, move.moves[i], kContactTolerance_mm);
-      if (contact) met.push_back({k, *contact, (static_cast<double>(i) + contact->t) / count});
+      const double known = known_mm(parts_[k], move.motion);
+      CarriedPart body = parts_[k].body;
+      body.from_z_mm += known;
+      auto contact = stock_.part_contact(move.cutter, body, move.moves[i], kContactTolerance_mm);
+      if (!contact) continue;
+      contact->depth_mm += known;
+      met.push_back({k, *contact, (static_cast<double>(i) + contact->t) / count});
     }
   }
   // What comes first on the move begins the event.

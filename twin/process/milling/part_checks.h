@@ -19,13 +19,17 @@ class PartChecks {
   PartChecks(const StockModel& stock, FindingLog& log) : stock_(stock.bare()), log_(log) {}
 
   void set_blank_guessed(bool guessed) { blank_guessed_ = guessed; }
-  /// What is known of the tool that goes into the spindle. Nothing is looked for of one whose
-  /// flutes' length nobody gave, nor of a holder that nobody described.
+  /// What is known of the tool that goes into the spindle. Nothing is looked for of a
+  /// shank where nobody gave the length of the flutes, nor of a holder that nobody described.
   void mount(const Cutter& cutter);
   void unmount() { parts_.clear(); }
   /// Of the tool in the spindle.
-  bool checks_shank() const { return !parts_.empty(); }
-  bool checks_holder() const { return parts_.size() > 1; }
+  bool checks_shank() const {
+    return !parts_.empty() && parts_.front().id != FindingId::kHolderContact;
+  }
+  bool checks_holder() const {
+    return !parts_.empty() && parts_.back().id == FindingId::kHolderContact;
+  }
   /// False: all of it stays above the workpiece, as far as boxes tell. Moves that the model holds
   /// back may be among what has been cut.
   bool may_touch(const Motion& motion) const;
@@ -53,6 +57,8 @@ class PartChecks {
   void meet(std::size_t index, const CheckedMove& move, const PartContact& contact,
             double fraction);
   Part* open_event(FindingId id);
+  /// So deep an event is known to go already: on a feed only what is deeper is new.
+  double known_mm(const Part& part, const Motion& motion) const;
 
   const StockModel& stock_;
   FindingLog& log_;
