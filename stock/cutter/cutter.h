@@ -92,6 +92,12 @@ class Cutter {
   }
   std::optional<double> shank_diameter_mm() const { return shank_diameter_mm_; }
   void set_shank_diameter_mm(double d) { shank_diameter_mm_ = d; }
+  /// Between the flutes and the shank, upward and without gaps: the shank begins above them. Mostly
+  /// none.
+  std::span<const ToolSection> neck() const { return neck_; }
+  void set_neck(std::vector<ToolSection> neck) { neck_ = std::move(neck); }
+  std::optional<int> teeth() const { return teeth_; }
+  void set_teeth(int teeth) { teeth_ = teeth; }
   /// Of a punch: its outline about the axis at angle 0, closed chains of points, even-odd, mm, as
   /// it goes straight through (Sheet::cut() says how moves place it). Null: a cutter that turns.
   const Footprint* footprint() const { return footprint_.get(); }
@@ -111,7 +117,9 @@ class Cutter {
   std::optional<double> flute_length_mm_;
   bool flute_length_assumed_ = false;
   std::optional<double> shank_diameter_mm_;
+  std::vector<ToolSection> neck_;
   std::vector<ToolSection> holder_;
+  std::optional<int> teeth_;
   std::shared_ptr<const Footprint> footprint_;
 };
 

@@ -199,7 +199,47 @@ Result<ProfileFile> parse_profile_text(std::string_view text, const std::string&
   return reader.take();
 }
 
-Result<ProfileFile> read_profile_file(const std::string& path) {
+Result<std::vector<HolderSection>> parse_holder_profile(std::string_view text,
+                                                        const std::string& name) {
+  std::vector<HolderSection> sections;
+  double r = 0, z = 0;
+  int number = 0;
+  const auto refuse = [&](const std::string& message) {
+    return Error{fmt::format("{}:{}: {}", name, number, message)};
+  };
+  for (const std::string_view line : split(text, '\n')) {
+    ++number;
+    const Words words = words_of(line.substr(0, line.find('#')));
+    if (words.empty()) continue;
+    if (to_lower(words[0]) != "line" || words.size() != 3) {
+      return refuse(trf("'{}' is not allowed; an outline of a holder has 'line R Z' alone",
+                        shown(trim(line))));
+    }
+    const Result<double> next_r = parse_within("R", words[1], 0, kMaxRadius_mm, "mm");
+    if (!next_r) return refuse(next_r.error());
+    const Result<double> next_z = parse_within("Z", words[2], 0, kMaxHeight_mm, "mm");
+    if (!next_z) return refuse(next_z.error());
+    if (*next_z < z) {
+      return refuse(trf("Z falls from {} to {}; the outline must run upward", number_text(z),
+                        number_text(*next_z)));
+    }
+    if (*next_z > z) {
+      if (!(r > 0) || !(*next_r > 0)) return refuse(tr("the radius must be above 0"));
+      if (sections.size() >= kMaxProfilePieces) {
+        return refuse(trf("more than {} pieces", kMaxProfilePieces));
+      }
+      sections.push_back({2 * r, 2 * *next_r, *next_z - z});
+    }
+    r = *next_r;
+    z = *next_z;
+  }
+  if (!sections.empty()) return sections;
+  return Error{trf("{}: no outline found; at least 'line R 0' and 'line R Z' are needed", name)};
+}
+
+namespace {
+
+Result<std::string> read_outline(const std::string& path) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) return Error{trf("{}: no such file", shown(path))};
@@ -213,7 +253,21 @@ Result<ProfileFile> read_profile_file(const std::string& path) {
   if (text.size() > kMaxProfileBytes) {
     return Error{trf("{}: larger than {} bytes", shown(path), kMaxProfileBytes)};
   }
-  return parse_profile_text(text, path);
+  return text;
+}
+
+}  // namespace
+
+Result<ProfileFile> read_profile_file(const std::string& path) {
+  const Result<std::string> text = read_outline(path);
+  if (!text) return Error{text.error()};
+  return parse_profile_text(*text, path);
+}
+
+Result<std::vector<HolderSection>> read_holder_profile(const std::string& path) {
+  const Result<std::string> text = read_outline(path);
+  if (!text) return Error{text.error()};
+  return parse_holder_profile(*text, path);
 }
 
 }  // namespace kerf

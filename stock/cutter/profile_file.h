@@ -25,6 +25,7 @@
 
 #include "base/result.h"
 #include "stock/cutter/cutter.h"
+#include "stock/cutter/holder_library.h"
 
 namespace kerf {
 
@@ -39,6 +40,15 @@ Result<ProfileFile> parse_profile_text(std::string_view text, const std::string&
 
 /// The same from a file of at most kMaxProfileBytes. Only regular files are read.
 Result<ProfileFile> read_profile_file(const std::string& path);
+
+/// The outline of a holder, from the middle of its nose up: `line R Z` alone, Z from the nose up
+/// and never falling; the radius may rise and fall.
+///     line 14 0                     the nose, 28 mm wide
+///     line 14 20                    a cylinder
+///     line 20 30                    a cone
+Result<std::vector<HolderSection>> parse_holder_profile(std::string_view text,
+                                                        const std::string& name);
+Result<std::vector<HolderSection>> read_holder_profile(const std::string& path);
 
 inline constexpr std::size_t kMaxProfileBytes = 1 << 20;
 inline constexpr std::size_t kMaxProfilePieces = 1000;

@@ -13,27 +13,21 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
-#include "stock/cutter/holder_library.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/scan.h"
+#include "stock/cutter/shape_limits.h"
+#include "stock/cutter/tool_parts.h"
 
 namespace kerf {
 namespace {
 
-// Ranges of what is sold as a tool, with room on both sides; beyond them the text is a slip of the
-// pen.
-constexpr double kMinDiameter_mm = 0.001;
-constexpr double kMaxDiameter_mm = 1000;
-constexpr double kMinLength_mm = 0.001;
 /// Corner radii and tip diameters: 0 or at least this.
 constexpr double kMinDetail_mm = 0.0001;
-constexpr double kMaxLength_mm = 2000;
 constexpr double kMinAngle_deg = 1;
 constexpr double kMaxIncludedAngle_deg = 179;
 constexpr double kFlatDrillAngle_deg = 180;
 constexpr double kMaxHalfAngle_deg = 80;
 constexpr double kMaxDovetailAngle_deg = 89;
-constexpr std::size_t kMaxHolderSections = 32;
 /// Height of a tapered cutter's cone where the flute length is not given.
 constexpr double kTaperHeightPerTip = 3;
 /// Rounding allowance where two lengths that may be equal are compared.
@@ -84,7 +78,8 @@ constexpr std::array<Form, 11> kForms = {{
 constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
                                                           "taper",    "drill", "lollipop", "tslot",
                                                           "dovetail", "kerf",  "profile"};
-constexpr std::array<std::string_view, 4> kOptionNames = {"flute", "shank", "holder", "stickout"};
+constexpr std::array<std::string_view, 5> kOptionNames = {"flute", "shank", "holder", "stickout",
+                                                          "teeth"};
 
 constexpr const char* kHelp = tr_noop(
     "flat:D               end mill\n"
@@ -100,7 +95,7 @@ constexpr const char* kHelp = tr_noop(
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L");
+    "each may add         :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -122,17 +117,12 @@ ProfilePiece corner_piece(double center_r, double radius, double r1, double z1) 
   return piece;
 }
 
-struct Part {
-  double diameter_mm = 0;
-  double length_mm = 0;
-};
-
 struct Options {
   std::optional<double> flute_mm;
-  std::optional<Part> shank;  ///< length 0: not given
-  std::vector<Part> holder;
-  std::string holder_name;  ///< empty: its sections are written out
+  std::vector<ToolPart> shank;  ///< the last may have no length
+  std::vector<ToolPart> holder;
   std::optional<double> stickout_mm;
+  std::optional<int> teeth;
 };
 
 /// What a form makes before the options are added.
@@ -146,50 +136,19 @@ struct Body {
 
 // ---- options ----
 
-Result<Part> parse_part(std::string_view name, std::string_view text, bool length_needed,
-                        LengthUnit unit) {
-  const std::size_t cross = text.find_first_of("xX");
-  Part part;
-  const Result<double> diameter = parse_length(trf("{} diameter", name), text.substr(0, cross),
-                                               kMinDiameter_mm, kMaxDiameter_mm, unit);
-  if (!diameter) return Error{diameter.error()};
-  part.diameter_mm = *diameter;
-  if (cross == std::string_view::npos) {
-    if (length_needed) {
-      return Error{trf("{}: '{}' has no length; write DxL ({})", name, shown(text), name_of(unit))};
-    }
-    return part;
+Done parse_teeth(std::string_view value, Options& options) {
+  int teeth = 0;
+  if (!read_number(value, teeth) || teeth < 1 || teeth > kMaxTeeth) {
+    return Error{trf("teeth: '{}' is not allowed; must be a whole number from 1 to {}",
+                     shown(value), kMaxTeeth)};
   }
-  const Result<double> length = parse_length(trf("{} length", name), text.substr(cross + 1),
-                                             kMinLength_mm, kMaxLength_mm, unit);
-  if (!length) return Error{length.error()};
-  part.length_mm = *length;
-  return part;
+  options.teeth = teeth;
+  return std::monostate{};
 }
 
-Done parse_holder(std::string_view text, LengthUnit unit, Options& options) {
-  if (!text.empty() && is_letter(text.front())) {
-    const NamedHolder* named = find_holder(text);
-    if (!named) {
-      std::vector<std::string_view> names;
-      for (const NamedHolder& holder : named_holders()) names.push_back(holder.name);
-      return Error{trf("unknown holder '{}'{} Holders: {}; or its sections, DxL[+DxL..]",
-                       shown(text), did_you_mean(to_lower(text), names), fmt::join(names, ", "))};
-    }
-    options.holder_name = named->name;
-    options.holder.push_back({named->diameter_mm, named->length_mm});
-    return std::monostate{};
-  }
-  const std::vector<std::string_view> sections = split(text, '+');
-  if (sections.size() > kMaxHolderSections) {
-    return Error{
-        trf("holder: {} sections; at most {} are allowed", sections.size(), kMaxHolderSections)};
-  }
-  for (const std::string_view section : sections) {
-    const Result<Part> part = parse_part("holder", section, true, unit);
-    if (!part) return Error{part.error()};
-    options.holder.push_back(*part);
-  }
+Done take_parts(Result<std::vector<ToolPart>> parsed, std::vector<ToolPart>& out) {
+  if (!parsed) return Error{parsed.error()};
+  out = std::move(parsed.value());
   return std::monostate{};
 }
 
@@ -204,15 +163,16 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
     return std::monostate{};
   }
   if (name == "shank") {
-    if (options.shank) return Error{tr("shank= is given twice")};
-    const Result<Part> shank = parse_part("shank", value, false, unit);
-    if (!shank) return Error{shank.error()};
-    options.shank = *shank;
-    return std::monostate{};
+    if (!options.shank.empty()) return Error{tr("shank= is given twice")};
+    return take_parts(parse_shank(value, unit), options.shank);
   }
   if (name == "holder") {
     if (!options.holder.empty()) return Error{tr("holder= is given twice")};
-    return parse_holder(value, unit, options);
+    return take_parts(parse_holder(value, unit), options.holder);
+  }
+  if (name == "teeth") {
+    if (options.teeth) return Error{tr("teeth= is given twice")};
+    return parse_teeth(value, options);
   }
   if (name == "stickout") {
     if (options.stickout_mm) return Error{tr("stickout= is given twice")};
@@ -224,39 +184,18 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
   }
   return Error{
       trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=NAME|DxL[+DxL..], "
-          "stickout=L",
+          "stickout=L, teeth=N",
           shown(name), did_you_mean(name, kOptionNames))};
-}
-
-std::string part_text(const Part& part) {
-  std::string text = number_text(part.diameter_mm);
-  if (part.length_mm > 0) text += fmt::format("x{}", number_text(part.length_mm));
-  return text;
 }
 
 std::string options_text(const Options& options) {
   std::string text;
   if (options.flute_mm) text += fmt::format(":flute={}", number_text(*options.flute_mm));
-  if (options.shank) text += fmt::format(":shank={}", part_text(*options.shank));
-  if (!options.holder_name.empty()) text += ":holder=" + options.holder_name;
-  for (std::size_t i = 0; i < options.holder.size() && options.holder_name.empty(); ++i) {
-    text += fmt::format("{}{}", i == 0 ? ":holder=" : "+", part_text(options.holder[i]));
-  }
+  if (!options.shank.empty()) text += ":shank=" + parts_text(options.shank);
+  if (!options.holder.empty()) text += ":holder=" + parts_text(options.holder);
   if (options.stickout_mm) text += fmt::format(":stickout={}", number_text(*options.stickout_mm));
+  if (options.teeth) text += fmt::format(":teeth={}", *options.teeth);
   return text;
-}
-
-/// "32x20+40x25": numbers between x and +.
-std::string parts_in(std::string_view text, LengthUnit unit) {
-  std::string out;
-  while (true) {
-    const std::size_t end = std::min(text.find_first_of("xX+"), text.size());
-    const std::optional<double> mm = parse_decimal(text.substr(0, end));
-    out += mm ? length_number(*mm, unit) : std::string(text.substr(0, end));
-    if (end == text.size()) return out;
-    out += text[end];
-    text.remove_prefix(end + 1);
-  }
 }
 
 // ---- forms ----
@@ -510,17 +449,30 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
         tr("holder= needs stickout=L, from the tip to the holder; or flute=L: the holder begins "
            "where flutes and shank end")};
   }
+  const bool shank_ends =
+      !options.shank.empty() && options.shank.back().sections.front().length_mm > 0;
+  const std::vector<ToolSection> shank = sections_of(options.shank, flute.value_or(0));
+  const double shank_top = shank.empty() ? flute.value_or(0) : shank.back().to_z_mm;
   if (options.stickout_mm) {
     if (options.holder.empty()) return Error{tr("stickout= needs a holder= above it")};
-    if (options.shank && options.shank->length_mm > 0) {
+    if (shank_ends) {
       return Error{tr("stickout=L and shank=DxL both say where the holder begins; write shank=D")};
     }
     if (*options.stickout_mm < std::max(top, flute.value_or(0)) - kLengthTolerance_mm) {
       return Error{trf("stickout={} is shorter than the cutting part, {:.4g} mm",
                        number_text(*options.stickout_mm), std::max(top, flute.value_or(0)))};
     }
+    if (*options.stickout_mm < shank_top - kLengthTolerance_mm) {
+      return Error{
+          trf("stickout={} ends below the shank's last section, which begins {:.4g} mm "
+              "above the tip",
+              number_text(*options.stickout_mm), shank_top)};
+    }
   }
-  if (options.shank && options.shank->length_mm > 0 && options.holder.empty()) {
+  if (options.shank.size() > 1 && !flute) {
+    return Error{tr("shank= of several sections needs flute=L: they begin where the flutes end")};
+  }
+  if (shank_ends && options.holder.empty()) {
     return Error{tr("shank=DxL needs a holder= above it; without one write shank=D")};
   }
   Result<Cutter> cutter = Cutter::from_profile(std::move(spec), std::move(body.pieces));
@@ -534,18 +486,15 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     cutter->set_flute_length_mm(*flute);
   else if (flute)
     cutter->assume_flute_length_mm(*flute);
-  if (options.shank) {
-    cutter->set_shank_diameter_mm(options.shank->diameter_mm);
+  if (!shank.empty()) {
+    cutter->set_shank_diameter_mm(shank.back().diameter_mm);
+    cutter->set_neck({shank.begin(), shank.end() - 1});
   } else if (body.shank_mm) {
     cutter->set_shank_diameter_mm(*body.shank_mm);
   }
-  std::vector<ToolSection> holder;
-  double z = options.stickout_mm.value_or(flute.value_or(0) +
-                                          (options.shank ? options.shank->length_mm : 0));
-  for (const Part& part : options.holder) {
-    holder.push_back({part.diameter_mm, z, z + part.length_mm});
-    z += part.length_mm;
-  }
+  if (options.teeth) cutter->set_teeth(*options.teeth);
+  std::vector<ToolSection> holder =
+      sections_of(options.holder, options.stickout_mm.value_or(shank_top));
   cutter->set_holder(std::move(holder));
   return cutter;
 }
@@ -565,7 +514,7 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
     return parse_option(name, *text, LengthUnit::kMm, merged);  // the file is in mm
   };
   for (const Done& done : {merge("flute", file->flute, options.flute_mm.has_value()),
-                           merge("shank", file->shank, options.shank.has_value()),
+                           merge("shank", file->shank, !options.shank.empty()),
                            merge("holder", file->holder, !options.holder.empty())}) {
     if (!done) return Error{fmt::format("{}: {}", shown(path), done.error())};
   }
@@ -578,21 +527,43 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
   return cutter;
 }
 
+bool is_option(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) return false;
+  return std::find(kOptionNames.begin(), kOptionNames.end(), to_lower(text.substr(0, equals))) !=
+         kOptionNames.end();
+}
+
+bool is_holder_file(std::string_view text) { return to_lower(text) == "holder=profile"; }
+
+/// Between colons; "holder=profile:FILE" is one, up to the next option.
+std::vector<std::string_view> fields_of(std::string_view text) {
+  std::vector<std::string_view> fields;
+  for (const std::string_view field : split(text, ':')) {
+    const bool goes_on =
+        !fields.empty() && is_holder_file(fields.back().substr(0, 14)) && !is_option(field);
+    if (goes_on) {
+      const char* const begin = fields.back().data();
+      fields.back() = {begin, static_cast<std::size_t>(field.data() + field.size() - begin)};
+    } else {
+      fields.push_back(field);
+    }
+  }
+  return fields;
+}
+
 /// Splits "name:values:options". A profile's file name may hold colons: only the known options end
 /// it.
 Result<Cutter> parse_known(const Form& form, std::string_view rest, LengthUnit unit) {
   std::vector<std::string_view> values =
-      rest.data() ? split(rest, ':') : std::vector<std::string_view>{};
+      rest.data() ? fields_of(rest) : std::vector<std::string_view>{};
   std::vector<std::string_view> option_texts;
   while (!values.empty()) {
     const std::string_view last = values.back();
     const std::size_t equals = last.find('=');
     if (equals == std::string_view::npos) break;
     // A file name may hold '=' too: there only what names an option is one.
-    const std::string name = to_lower(last.substr(0, equals));
-    const bool known =
-        std::find(kOptionNames.begin(), kOptionNames.end(), name) != kOptionNames.end();
-    if (form.name == "profile" && !known) break;
+    if (form.name == "profile" && !is_option(last)) break;
     option_texts.push_back(last);
     values.pop_back();
   }
@@ -661,13 +632,15 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
   const bool is_file = form->name == "profile";
   std::string out(form->name);
   std::size_t index = 0;
-  for (const std::string_view field : split(spec.substr(colon + 1), ':')) {
+  for (const std::string_view field : fields_of(spec.substr(colon + 1))) {
     const std::size_t equals = field.find('=');
     out += ':';
-    if (equals != field.npos && std::find(kOptionNames.begin(), kOptionNames.end(),
-                                          field.substr(0, equals)) != kOptionNames.end()) {
+    if (is_holder_file(field.substr(0, 14))) {
+      out += field;
+    } else if (is_option(field)) {
+      const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
       out +=
-          fmt::format("{}={}", field.substr(0, equals), parts_in(field.substr(equals + 1), unit));
+          fmt::format("{}={}", name, name == "teeth" ? std::string(value) : parts_in(value, unit));
     } else if (is_file || (index < form->parameters.size() &&
                            std::string_view(form->parameters[index]).find("angle") !=
                                std::string_view::npos)) {

@@ -27,12 +27,15 @@ namespace kerf {
 ///     profile:FILE       outline from a file (profile_file.h)
 /// Each may add, in any order, divided by colons:
 ///     flute=L            the cutting part ends L above the tip, at least as high as the shape
-///     shank=D[xL]        cylinder from the end of the flutes up; L only below a holder
-///     holder=DxL[+..]    cylinders that stack upward from the end of the shank, or from stickout=;
-///                        or a NAME (holder_library.h). Needs flute= or stickout=.
-///                        A shank without L counts as hidden in the holder, which then begins at
-///                        the end of the flutes: the cautious reading
+///     shank=D[xL]        cylinder from the end of the flutes up; L only below a holder. Several
+///                        that stack upward: DxL+..+D[xL]; a cone is D-DxL, its lower end first
+///     holder=DxL[+..]    sections that stack upward from the end of the shank, or from stickout=;
+///                        each DxL, a cone D-DxL, or a NAME (holder_library.h); or profile:FILE,
+///                        an outline (profile_file.h). Needs flute= or stickout=. A shank without L
+///                        counts as hidden in the holder, which then begins at the end of the
+///                        flutes: the cautious reading
 ///     stickout=L         from the tip to the holder, instead of the shank's length
+///     teeth=N            1 to 99
 ///
 /// taper: the circle of radius R has its centre at radius D/2 - R and meets the cone tangentially;
 /// R = D/2 is a tapered ball nose. The cone ends at the flute length, or three tip diameters above

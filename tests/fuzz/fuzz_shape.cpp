@@ -27,6 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto argument = kerf::parse_tool_argument(text);
     if (argument && argument->tool < 0) std::abort();
   }
+  if (const auto holder = kerf::parse_holder_profile(text, "fuzz")) {
+    for (const kerf::HolderSection& section : *holder) {
+      if (!(section.length_mm > 0 && section.lower_mm > 0 && section.upper_mm > 0)) std::abort();
+    }
+  }
   auto file = kerf::parse_profile_text(text, "fuzz");
   if (file) {
     const auto cutter = kerf::Cutter::from_profile("fuzz", std::move(file->pieces));

@@ -171,7 +171,7 @@ TEST(Shape, UnknownNames) {
             "lollipop, tslot, dovetail, kerf, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
-            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L");
+            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L, teeth=N");
 }
 
 TEST(Shape, MissingAndSurplusValues) {
@@ -240,8 +240,8 @@ TEST(Shape, OptionsThatDoNotFit) {
             "flute=L: the holder begins where flutes and shank end");
   EXPECT_EQ(error_of("flat:10:holder=er21:stickout=30"),
             "flat:10:holder=er21:stickout=30: unknown holder 'er21'; did you mean 'er11'? Holders: "
-            "er11, er11m, er16, er16m, er20, er20m, er25, er25m, er32, er40; or its sections, "
-            "DxL[+DxL..]");
+            "er11, er11m, er16, er16m, er20, er20m, er25, er25m, er32, er40, bt30, bt40, "
+            "hsk-a63; or its sections, DxL[+DxL..]");
   EXPECT_EQ(error_of("flat:10:flute=22:holder=er20:stickout=20"),
             "flat:10:flute=22:holder=er20:stickout=20: stickout=20 is shorter than the cutting "
             "part, 22 mm");
@@ -263,6 +263,80 @@ TEST(Shape, OptionsThatDoNotFit) {
             "most 1000 mm");
 }
 
+TEST(Shape, HoldersStackOfNamesSectionsAndCones) {
+  const char* const spec = "flat:10:flute=9:shank=10:holder=er20+40x12+bt30:stickout=25:teeth=4";
+  const Result<Cutter> cutter = parse_shape(spec);
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->spec(), spec);
+  EXPECT_EQ(cutter->teeth(), 4);
+  ASSERT_EQ(cutter->holder().size(), 3u);
+  EXPECT_EQ(cutter->holder()[0].diameter_mm, 34);
+  EXPECT_EQ(cutter->holder()[1].from_z_mm, 25 + 19);
+  EXPECT_EQ(cutter->holder()[2].from_z_mm, 25 + 19 + 12);
+  EXPECT_EQ(cutter->holder()[2].diameter_mm, 46);
+  EXPECT_EQ(shape_in(spec, LengthUnit::kInch),
+            "flat:0.3937:flute=0.3543:shank=0.3937:holder=er20+1.5748x0.4724+bt30:stickout=0.9843:"
+            "teeth=4");
+  EXPECT_EQ(shape_in("flat:10:flute=9:holder=25.4-50.8x25.4+hsk-a63", LengthUnit::kInch),
+            "flat:0.3937:flute=0.3543:holder=1-2x1+hsk-a63");
+}
+
+/// Of the cone between 20 and 33 mm, 13 mm high: 6.5 mm of radius.
+TEST(Shape, StepsOfAConeNeverUnderstateIt) {
+  for (const char* const spec : {"flat:10:flute=9:holder=20-33x13:stickout=25",
+                                 "flat:10:flute=9:holder=33-20x13:stickout=25"}) {
+    const Result<Cutter> cutter = parse_shape(spec);
+    ASSERT_TRUE(cutter) << cutter.error();
+    EXPECT_EQ(cutter->spec(), spec);
+    const auto holder = cutter->holder();
+    ASSERT_EQ(holder.size(), 26u);
+    EXPECT_EQ(holder.front().from_z_mm, 25);
+    EXPECT_EQ(holder.back().to_z_mm, 38);
+    const bool widens = cutter->spec().find("20-33") != std::string::npos;
+    for (const ToolSection& section : holder) {
+      for (const double z : {section.from_z_mm, section.to_z_mm}) {
+        const double exact_mm = widens ? 10 + (z - 25) / 2 : 16.5 - (z - 25) / 2;
+        EXPECT_GE(section.diameter_mm / 2, exact_mm - 1e-9);
+        EXPECT_LE(section.diameter_mm / 2, exact_mm + 0.25 + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Shape, ShanksWithANeck) {
+  const Result<Cutter> cutter = parse_shape("flat:3:flute=9:shank=2.8x6+6:holder=er11:stickout=30");
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->spec(), "flat:3:flute=9:shank=2.8x6+6:holder=er11:stickout=30");
+  ASSERT_EQ(cutter->neck().size(), 1u);
+  EXPECT_EQ(cutter->neck()[0].diameter_mm, 2.8);
+  EXPECT_EQ(cutter->neck()[0].from_z_mm, 9);
+  EXPECT_EQ(cutter->neck()[0].to_z_mm, 15);
+  EXPECT_EQ(cutter->shank_diameter_mm(), 6);
+  EXPECT_EQ(cutter->holder()[0].from_z_mm, 30);
+  EXPECT_TRUE(parse_shape("flat:3:flute=9:shank=6")->neck().empty());
+  EXPECT_EQ(parse_shape("flat:3:flute=9:shank=2x6+6x5:holder=er11")->holder()[0].from_z_mm, 20);
+  EXPECT_EQ(error_of("flat:3:shank=2x6+6"),
+            "flat:3:shank=2x6+6: shank= of several sections needs flute=L: they begin where the "
+            "flutes end");
+  EXPECT_EQ(error_of("flat:3:flute=9:shank=2+6"),
+            "flat:3:flute=9:shank=2+6: shank: '2' has no length; write DxL (mm)");
+  EXPECT_EQ(error_of("flat:3:flute=9:shank=2-6"),
+            "flat:3:flute=9:shank=2-6: shank: '2-6' has no length; write DxL (mm)");
+  EXPECT_EQ(error_of("flat:3:flute=9:shank=2x20+6:holder=er11:stickout=20"),
+            "flat:3:flute=9:shank=2x20+6:holder=er11:stickout=20: stickout=20 ends below the "
+            "shank's last section, which begins 29 mm above the tip");
+}
+
+TEST(Shape, Teeth) {
+  EXPECT_EQ(spec_of("flat:3:teeth=2"), "flat:3:teeth=2");
+  EXPECT_FALSE(parse_shape("flat:3")->teeth());
+  for (const char* bad : {"0", "100", "2.5", "x", ""}) {
+    const std::string spec = std::string("flat:3:teeth=") + bad;
+    EXPECT_EQ(error_of(spec),
+              spec + ": teeth: '" + bad + "' is not allowed; must be a whole number from 1 to 99");
+  }
+}
+
 TEST(Shape, ToolArguments) {
   const Result<ToolShapeArgument> argument = parse_tool_argument("12=ball:6");
   ASSERT_TRUE(argument) << argument.error();
@@ -282,7 +356,7 @@ TEST(Shape, ToolArguments) {
 TEST(Shape, HelpNamesEveryShape) {
   for (const char* name : {"flat:D", "ball:D", "bull:D:R", "vee:D:ANGLE[:TIP]", "taper:D:ANGLE[:R]",
                            "drill:D:ANGLE", "lollipop:D:SHAFT", "tslot:D:T:SHAFT", "profile:FILE",
-                           "flute=L", "shank=D", "holder=NAME|DxL", "stickout=L"}) {
+                           "flute=L", "shank=D", "holder=NAME|DxL", "stickout=L", "teeth=N"}) {
     EXPECT_NE(shape_help().find(name), std::string_view::npos) << name;
   }
 }
@@ -298,6 +372,45 @@ constexpr const char* kRounding =
     "flute 12\n"
     "shank 10x25\n"
     "holder 32x20+40x25\n";
+
+TEST(ProfileFile, HoldersFromAnOutline) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("nut:5x6+7.txt",
+                   "# nose\nline 14 0\nline 14 20\nline 15 21  # cone\nline 12 21\n"
+                   "LINE 12 40\n");
+  const std::string spec = "flat:6:flute=20:holder=profile:" + file + ":stickout=30:teeth=2";
+  const Result<Cutter> cutter = parse_shape(spec);
+  ASSERT_TRUE(cutter) << cutter.error();
+  EXPECT_EQ(cutter->spec(), spec);
+  EXPECT_EQ(shape_in(spec, LengthUnit::kInch),
+            "flat:0.2362:flute=0.7874:holder=profile:" + file + ":stickout=1.1811:teeth=2");
+  const auto holder = cutter->holder();
+  ASSERT_EQ(holder.size(), 6u) << "a cylinder, four steps, a cylinder";
+  EXPECT_EQ(holder[0].diameter_mm, 28);
+  EXPECT_EQ(holder[0].to_z_mm, 50);
+  EXPECT_EQ(holder[4].diameter_mm, 30);
+  EXPECT_EQ(holder[5].diameter_mm, 24);
+  EXPECT_EQ(holder[5].to_z_mm, 70);
+
+  const auto fault = [&](const char* text) {
+    const std::string path = folder.write("bad", text);
+    const std::string error = error_of("flat:6:flute=20:holder=profile:" + path);
+    return error.substr(std::min(error.size(), error.rfind("bad:") + 4));
+  };
+  EXPECT_EQ(fault("line 14 0\narc 3 4 5 cw\n"),
+            "2: 'arc 3 4 5 cw' is not allowed; an outline of a holder has 'line R Z' alone");
+  EXPECT_EQ(fault("line 14 5\n"), "1: the radius must be above 0");
+  EXPECT_EQ(fault("line 14 0\nline 14 9\nline 14 8\n"),
+            "3: Z falls from 9 to 8; the outline must run upward");
+  EXPECT_EQ(fault("line -1 0\n"), "1: R: -1 is not allowed; must be from 0 to 500 (mm)");
+  EXPECT_EQ(fault("line 14 0\n"),
+            " no outline found; at least 'line R 0' and 'line R Z' are needed");
+  EXPECT_NE(error_of("flat:6:flute=9:holder=profile:/no/file").find("/no/file: no such file"),
+            std::string::npos);
+  EXPECT_EQ(error_of("flat:6:flute=9:holder=profile:"),
+            "flat:6:flute=9:holder=profile:: holder: file name FILE is missing after profile:");
+}
 
 TEST(ProfileFile, HeightsAndOptions) {
   const TemporaryFolder folder;

@@ -145,6 +145,7 @@ void refuse_planned(const WorkRequest& work, OptionReader& reader, LiveOptions& 
 
 void take_work(WorkRequest work, LiveOptions& options) {
   options.tools = std::move(work.tools);
+  options.libraries = std::move(work.libraries);
   options.blank = std::move(work.blank);
   options.stock = work.stock;
   options.margin_mm = work.margin_mm;

@@ -180,6 +180,7 @@ std::vector<std::string> LiveWindow::inputs(const LiveRequest& request) const {
        {"LOG", "--config", "--ini", "--tool-table", "--turret", "--materials", "--pins"}) {
     paths.push_back(said.text(option));
   }
+  for (const ToolLibrary& library : request.options.libraries) paths.push_back(library.path);
   if (request.options.program) {
     paths.push_back(request.options.program->path);
     paths.push_back(request.options.program->tool_table_path);

@@ -18,15 +18,14 @@
 #include "base/exit_code.h"
 #include "base/suggest.h"
 #include "base/translate.h"
-#include "stock/cutter/shape_spec.h"
 #include "twin/cli/canon_command.h"
 #include "twin/cli/cli_options.h"
 #include "twin/cli/config_command.h"
 #include "twin/cli/console.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/machine_command.h"
-#include "twin/cli/option_reader.h"
 #include "twin/cli/run_command.h"
+#include "twin/cli/tools_command.h"
 #include "twin/cli/version.h"
 #include "twin/cli/view_command.h"
 #include "twin/job/stock_choice.h"
@@ -82,6 +81,12 @@ constexpr const char* kConfigExample =
 constexpr const char* kMachineExample =
     "Example:\n"
     "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502 --frame workpiece\n";
+
+constexpr const char* kToolsExample =
+    "Examples:\n"
+    "  kerf tools\n"
+    "  kerf tools --holders\n"
+    "  kerf tools shop.json\n";
 
 constexpr const char* kSourceList = tr_noop(
     "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
@@ -153,15 +158,6 @@ int refuse_odd_values(const CLI::App& app) {
   return code;
 }
 
-int list_tools(const Arguments& arguments) {
-  Diagnostics diagnostics;
-  const OptionReader reader(diagnostics, {arguments.command, &arguments.options, nullptr, {}});
-  for (const Diagnostic& d : diagnostics) print_diagnostic(stderr, d);
-  if (has_error(diagnostics)) return kExitUsage;
-  kerf::print(stdout, "{}\n", shape_help(reader.unit()));
-  return kExitGood;
-}
-
 int print_list(const std::string& text) {
   kerf::print(stdout, "{}", text);
   return kExitGood;
@@ -187,7 +183,7 @@ constexpr std::array kCalls{
                 [](const Arguments&) { return print_list(model_list()); }},
     CommandCall{kSources, "Example:\n  kerf sources\n",
                 [](const Arguments&) { return print_list(tr(kSourceList)); }},
-    CommandCall{kTools, "Example:\n  kerf tools\n", list_tools},
+    CommandCall{kTools, kToolsExample, tools_command},
 };
 
 /// The commands with their arguments, and what each of them calls.

@@ -134,7 +134,8 @@ struct RunVerdict {
 
 /// What nobody has said is guessed, or asked for, by a first reading.
 StdinProgram::Listings listings_of(const SessionOptions& session) {
-  const bool tools_known = !session.tools.empty() || !session.program.tool_table_path.empty();
+  const bool tools_known = !session.tools.empty() || !session.libraries.empty() ||
+                           !session.program.tool_table_path.empty();
   const bool all_known = session.blank && (tools_known || is_sheet(*session.blank));
   return all_known && session.guess ? StdinProgram::Listings::kStreamed
                                     : StdinProgram::Listings::kKept;

@@ -62,6 +62,7 @@ RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
   session.timeline = std::move(source.timeline);
   WorkRequest work = understand_work(config, reader);
   session.tools = std::move(work.tools);
+  session.libraries = std::move(work.libraries);
   session.tools_named = work.tools_named;
   session.blank = std::move(work.blank);
   session.stock = work.stock;

@@ -46,6 +46,12 @@ std::string keys_with_equals() {
   return fmt::format("{}", fmt::join(keys, " "));
 }
 
+/// Its value, or each of its values, is the name of a file.
+bool takes_file(const Setting& setting) {
+  return setting.type == KeyType::kFile ||
+         (setting.type == KeyType::kTexts && setting.value_name == std::string_view("FILE"));
+}
+
 /// The words that a value may be, "a b c"; empty: it is another thing.
 std::string values_of(const Setting& setting) {
   if (setting.type == KeyType::kYesNo) return "yes no";
@@ -98,7 +104,7 @@ std::string bash_cases(Command command) {
     const std::string values = values_of(*setting);
     std::string action = ":";
     if (setting->option == "--set") action = "_kerf_keys";
-    if (setting->type == KeyType::kFile) action = "_kerf_files -f";
+    if (takes_file(*setting)) action = "_kerf_files -f";
     if (setting->type == KeyType::kFolder) action = "_kerf_files -d";
     if (!values.empty()) action = fmt::format("_kerf_words '{}'", values);
     std::vector<std::string>& list = options_of[action];
@@ -135,7 +141,7 @@ std::string zsh_action(const Setting& setting) {
   const std::string values = values_of(setting);
   if (!values.empty()) return fmt::format("({})", values);
   if (setting.option == "--set") return "_kerf_keys";
-  if (setting.type == KeyType::kFile) return "_files";
+  if (takes_file(setting)) return "_files";
   if (setting.type == KeyType::kFolder) return "_files -/";
   return " ";
 }

@@ -7,6 +7,7 @@
 
 #include "base/translate.h"
 #include "stock/zmap/zmap_kernel.h"
+#include "twin/config/tool_library_reader.h"
 
 namespace kerf {
 namespace {
@@ -56,6 +57,16 @@ void read_tools(const LiveConfig* config, OptionReader& reader, WorkRequest& wor
   work.tools_named = !work.tools.empty();
 }
 
+void read_libraries(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
+  const ValueFrom from = reader.choose("--tools").from;
+  if (from == ValueFrom::kConfig) {
+    work.libraries = read_tool_libraries(config->tool_libraries, reader.diagnostics());
+  }
+  if (from == ValueFrom::kCommandLine) {
+    work.libraries = read_tool_libraries(reader.texts("--tools"), reader.diagnostics());
+  }
+}
+
 void read_stock(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
   const ChosenValue stock = reader.choose("--stock");
   if (stock.from == ValueFrom::kConfig) work.blank = config->stock.blank;
@@ -90,6 +101,7 @@ WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
   WorkRequest work;
   read_model(reader, work);
   read_tools(config, reader, work);
+  read_libraries(config, reader, work);
   read_stock(config, reader, work);
   read_choices(reader, work);
   work.stock.cell_mm = reader.length_mm("--cell");

@@ -10,12 +10,14 @@
 #include "twin/cli/option_reader.h"
 #include "twin/config/live_config.h"
 #include "twin/program/session_parts.h"
+#include "twin/tool_library/tool_library.h"
 
 namespace kerf {
 
 /// The options, understood.
 struct WorkRequest {
   std::vector<ToolShapeArgument> tools;
+  std::vector<ToolLibrary> libraries;
   bool tools_named = false;  ///< on the command line
   std::optional<Blank> blank;
   StockSettings stock;

@@ -179,6 +179,11 @@ void print_work(Printer& printer, const LiveConfig& config) {
     }
     printer.close();
   }
+  if (!config.tool_libraries.empty()) {
+    printer.open("tool_libraries");
+    for (const std::string& path : config.tool_libraries) printer.line("- " + quoted(path));
+    printer.close();
+  }
   printer.open("stock");
   printer.put("model", config.stock.model ? stock_model(*config.stock.model).name : "auto");
   if (config.stock.blank) printer.text("blank", config.stock.blank_spec);

@@ -78,14 +78,29 @@ void read_tools(const GroupReader& tools, std::optional<StockKind> model,
   if (!tools.is_there()) return;
   for (const auto& node : tools.node()->children) {
     if (node->faulty) continue;
-    Result<ToolShapeArgument> tool = parse_tool_argument(
-        fmt::format("{}={}", node->key, resolved_spec(*node, "profile:", tools.faults())));
+    Result<ToolShapeArgument> tool =
+        parse_tool_argument(fmt::format("{}={}", node->key, resolved_shape(*node, tools.faults())));
     const std::string trouble = tool ? trouble_with(*tool, out, model) : tool.error();
     if (trouble.empty()) {
       out.push_back(std::move(tool.value()));
     } else {
       tools.faults().at_value(*node, fmt::format("'{}': {}", shown(node->scalar), trouble));
     }
+  }
+}
+
+void read_tool_libraries_key(const GroupReader& root, std::vector<std::string>& out) {
+  const ConfigNode* const list = root.find("tool_libraries");
+  if (list == nullptr) return;
+  for (const auto& file : list->children) {
+    if (file->faulty) continue;
+    // N=FILE
+    const std::size_t digits = file->scalar.find_first_not_of("0123456789");
+    const bool has_number =
+        digits != 0 && digits != file->scalar.npos && file->scalar[digits] == '=';
+    const std::size_t name = has_number ? digits + 1 : 0;
+    out.push_back(file->scalar.substr(0, name) +
+                  resolved_path(*file, file->scalar.substr(name), root.faults()));
   }
 }
 
@@ -208,6 +223,15 @@ std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
   return std::string(prefix) + resolved_path(node, file, faults);
 }
 
+std::string resolved_shape(const ConfigNode& node, const ConfigFaults& faults) {
+  constexpr std::string_view kHolder = ":holder=profile:";
+  std::string spec = resolved_spec(node, "profile:", faults);
+  const std::size_t at = to_lower(spec).find(kHolder);
+  if (at == spec.npos) return spec;
+  const std::size_t file = at + kHolder.size();
+  return spec.substr(0, file) + resolved_path(node, spec.substr(file), faults);
+}
+
 void read_workshop(const GroupReader& root, LiveConfig& config) {
   if (const int word = root.word("units"); word >= 0) {
     config.units = word == 1 ? LengthUnit::kInch : LengthUnit::kMm;
@@ -215,6 +239,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_machine(root.group("machine"), config.machine);
   read_stock(root.group("stock"), config.stock);
   read_tools(root.group("tools"), config.stock.model, config.tools);
+  read_tool_libraries_key(root, config.tool_libraries);
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);
   read_follow(root.group("follow"), config.follow);

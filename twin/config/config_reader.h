@@ -63,6 +63,9 @@ std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
                           const ConfigFaults& faults);
 
 /// The groups machine, tools, stock, beam and follow, units and turret.
+/// A SHAPE text in which the files of profile: and holder=profile: are resolved_path().
+std::string resolved_shape(const ConfigNode& node, const ConfigFaults& faults);
+
 void read_workshop(const GroupReader& root, LiveConfig& config);
 
 /// machine.model, machine.links and what belongs to them.

@@ -109,6 +109,7 @@ struct LiveConfig {
   std::optional<LengthUnit> units;
   ConfigMachine machine;
   std::vector<ToolShapeArgument> tools;
+  std::vector<std::string> tool_libraries;  ///< paths
   ConfigStock stock;
   ConfigBeam beam;
   std::optional<std::string> turret;  ///< `turret:`, path; then beam has no more than a density

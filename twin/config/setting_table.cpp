@@ -19,7 +19,8 @@ constexpr std::array kCommands{
     CommandRow{kMachine, "machine", tr_noop("a simulated machine that serves its positions")},
     CommandRow{kModels, "models", tr_noop("list the workpiece models")},
     CommandRow{kSources, "sources", tr_noop("list where positions may come from")},
-    CommandRow{kTools, "tools", tr_noop("list the tool shapes")},
+    CommandRow{kTools, "tools",
+               tr_noop("list the tool shapes, the holders, or the tools of a library")},
 };
 
 }  // namespace

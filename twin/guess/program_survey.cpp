@@ -49,7 +49,7 @@ SurveyWishes SurveyWishes::of(const SessionOptions& options, const ProgramFront&
       [](const ToolShapeArgument& tool) { return !tool.cutter.spec().starts_with("kerf"); });
   wishes.sheet = options.program.path != "-" && !options.stock.additive && !options.stock.kind &&
                  options.stock.cell_mm == 0 && !mills;
-  wishes.tools = front.tools.arguments.empty() && front.tools.table.empty();
+  wishes.tools = !front.tools.describes();
   return wishes;
 }
 

@@ -206,6 +206,12 @@ StockNeeds stock_needs(const ToolSources& tools) {
     if (needs.finest_mm == 0 || size_mm < needs.finest_mm) needs.finest_mm = size_mm;
   };
   for (const ToolShapeArgument& tool : tools.arguments) look_at(tool.cutter);
+  for (const LibraryTool& tool : tools.library) {
+    // What else is in a library is not for this program.
+    if (!tool.cutter || tools.named_of_library.count(*tool.number) == 0) continue;
+    look_at(*tool.cutter);
+    if (needs.undercut.empty()) needs.undercut = undercut_of(*tool.number, *tool.cutter);
+  }
   for (const ToolHint& hint : tools.hints)
     if (const Result<Cutter> cutter = parse_shape(hint.shape)) look_at(*cutter);
   for (const ToolGuess& guess : tools.guesses)

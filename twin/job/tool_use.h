@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace kerf {
@@ -12,6 +13,7 @@ struct ToolUse {
   std::string shape;  ///< SHAPE text; empty: undefined, did not cut
   std::string origin;
   bool guessed = false;
+  std::optional<int> teeth;  ///< where its shape says it
   /// Its shank, its holder against the workpiece; false: nobody described them, or the model does
   /// not look.
   bool shank_checked = false, holder_checked = false;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/text_scan.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -36,6 +37,9 @@ std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
   std::map<int, KnownDiameter> known;
   for (const ToolShapeArgument& argument : sources.arguments) {
     known[argument.tool] = {2 * argument.cutter.radius_mm(), true};
+  }
+  for (const LibraryTool& tool : sources.library) {
+    if (tool.cutter) known.try_emplace(*tool.number, KnownDiameter{2 * tool.cutter->radius_mm()});
   }
   // Whole shapes before those of which only the diameter is known, as ToolResolver has it.
   for (const bool guessed : {false, true}) {
@@ -82,6 +86,21 @@ bool ToolResolver::from_argument(ResolvedTool& out) const {
     if (argument.tool != out.number) continue;
     out.cutter = argument.cutter;
     out.origin = "--tool";
+    return true;
+  }
+  return false;
+}
+
+bool ToolResolver::from_library(ResolvedTool& out) const {
+  for (const LibraryTool& tool : sources_.library) {
+    if (tool.number != out.number) continue;
+    if (!tool.cutter) {
+      out.trouble = trf("tool library {}: {}", tool.path, tool.trouble);
+      return false;
+    }
+    out.cutter = tool.cutter;
+    out.origin = tool.name.empty() ? trf("tool library {}", tool.path)
+                                   : trf("tool library {}: {}", tool.path, shown(tool.name));
     return true;
   }
   return false;
@@ -196,8 +215,9 @@ bool ToolResolver::from_guess(ResolvedTool& out) const {
 ResolvedTool ToolResolver::resolve(int tool, std::optional<std::size_t> fresh_hint) const {
   ResolvedTool out;
   out.number = tool;
-  if (from_argument(out) || from_comments(out) || from_place(out, fresh_hint, false) ||
-      from_table(out) || from_place(out, fresh_hint, true) || from_guess(out)) {
+  if (from_argument(out) || from_library(out) || from_comments(out) ||
+      from_place(out, fresh_hint, false) || from_table(out) || from_place(out, fresh_hint, true) ||
+      from_guess(out)) {
     out.trouble.clear();
   }
   return out;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "stock/cutter/cutter.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/cutter/tool_hints.h"
+#include "twin/tool_library/tool_library.h"
 
 namespace kerf {
 
@@ -28,9 +30,14 @@ struct ToolGuess {
 /// What is known of tools before the program starts.
 struct ToolSources {
   std::vector<ToolShapeArgument> arguments;  ///< --tool N=SHAPE
+  std::vector<LibraryTool> library;          ///< of --tools: those with a number, each one once
+  std::set<int> named_of_library;            ///< those of them that the program's text names
   std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
   std::vector<ToolTableRow> table;           ///< rows of the tool table
   std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
+
+  /// Somebody has described tools by number: one that they do not have is not guessed.
+  bool describes() const { return !arguments.empty() || !library.empty() || !table.empty(); }
 };
 
 /// The diameters of the tools that arguments and comments describe by number: of the widest place.
@@ -40,9 +47,9 @@ std::map<int, KnownDiameter> known_diameters(const ToolSources& sources);
 struct ResolvedTool {
   int number = 0;
   std::optional<Cutter>
-      cutter;  ///< absent: nothing is known (`trouble` says what is wrong), it does not cut
-  std::string
-      origin;  ///< "--tool", "comment in line 3 (fusion)", "tool table line 4: its remark", ...
+      cutter;          ///< absent: nothing is known (`trouble` says what is wrong), it does not cut
+  std::string origin;  ///< "--tool", "tool library shop.json: 6 mm", "comment in line 3 (fusion)",
+                       ///< "tool table line 4: its remark", ...
   bool guessed = false;     ///< its shape, or whether it is this tool's
   std::string guess;        ///< what is guessed of it, a sentence; empty: all but its diameter
   bool from_moves = false;  ///< of ToolSources::guesses: guessed from what the program does with it
@@ -53,15 +60,15 @@ struct ResolvedTool {
   bool is_size_alone() const;
 };
 
-/// Answers "what is tool N" in the order: --tool; comments of the program that name it or stand in
-/// the block of its T word, where they disagree the first, guessed; comments at its tool change,
-/// guessed where they are not certainly about it (ToolHint::near) or several stand there; the
-/// remark in the tool table; a flat cutter of the tool table's diameter (guessed). Running text
-/// that names no tool comes after the tool table; last comes what was guessed from its moves, which
-/// also makes a drill of a tool of which nothing but the diameter is known. Never
-/// gives one tool for another, with one exception that is marked `assumed`: a program that cuts
-/// before any tool change has no tool number, and then the only tool that --tool describes (or,
-/// without
+/// Answers "what is tool N" in the order: --tool; the libraries of --tools; comments of the program
+/// that name it or stand in the block of its T word, where they disagree the first, guessed;
+/// comments at its tool change, guessed where they are not certainly about it (ToolHint::near) or
+/// several stand there; the remark in the tool table; a flat cutter of the tool table's diameter
+/// (guessed). Running text that names no tool comes after the tool table; last comes what was
+/// guessed from its moves, which also makes a drill of a tool of which nothing but the diameter is
+/// known. Never gives one tool for another, with one exception that is marked `assumed`: a program
+/// that cuts before any tool change has no tool number, and then the only tool that --tool
+/// describes (or, without
 /// --tool, the only one that comments describe) is taken.
 /// Cutters are refused where the stock model cannot hold what they leave.
 class ToolResolver {
@@ -82,6 +89,7 @@ class ToolResolver {
   ResolvedTool resolve(int tool, std::optional<std::size_t> fresh_hint) const;
   ResolvedTool resolve_empty_spindle(std::optional<std::size_t> fresh_hint) const;
   bool from_argument(ResolvedTool& out) const;
+  bool from_library(ResolvedTool& out) const;
   bool from_hint(ResolvedTool& out, const ToolHint& hint) const;
   bool from_comments(ResolvedTool& out) const;
   bool from_place(ResolvedTool& out, std::optional<std::size_t> fresh_hint, bool near) const;

@@ -93,7 +93,10 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   const Program* const first = programs_.first();
   ToolSources& tools = tool_sources_;
-  if (!gather_tool_sources(options_.tools, first, program, tools, diagnostics)) return false;
+  if (!gather_tool_sources(options_.tools, options_.libraries, first, program, tools,
+                           diagnostics)) {
+    return false;
+  }
   program.lathe = options_.lathe;
   program.as_mill = options_.as_mill;
   if (refuse_turning(program, first, tools.table, diagnostics)) {

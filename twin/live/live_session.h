@@ -55,6 +55,7 @@ struct LiveOptions {
   std::string lathe;     ///< ProgramOptions::lathe, with a program or without
   bool as_mill = false;  ///< ProgramOptions::as_mill
   std::vector<ToolShapeArgument> tools;
+  std::vector<ToolLibrary> libraries;
   std::optional<Blank> blank;
   StockSettings stock;
   double margin_mm = 5;  ///< around a blank guessed from the program

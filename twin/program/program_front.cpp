@@ -119,8 +119,8 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
   outcome = Outcome::kFailed;
   front.program = Program::open(options.program, diagnostics);
   if (!front.program) return std::nullopt;
-  if (!gather_tool_sources(options.tools, front.program.get(), options.program, front.tools,
-                           diagnostics)) {
+  if (!gather_tool_sources(options.tools, options.libraries, front.program.get(), options.program,
+                           front.tools, diagnostics)) {
     return std::nullopt;
   }
   front.tools.guesses = options.tool_guesses;

@@ -29,6 +29,7 @@ namespace kerf {
 struct SessionOptions {
   ProgramOptions program;
   std::vector<ToolShapeArgument> tools;  ///< of --tool
+  std::vector<ToolLibrary> libraries;    ///< of --tools
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
   BeamOptions beam;      ///< for a sheet

@@ -16,6 +16,7 @@
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
+#include "twin/program/library_tools.h"
 
 namespace kerf {
 namespace {
@@ -161,10 +162,12 @@ bool find_comment_blank(const Program& program, const std::string& path, Comment
   return true;
 }
 
-bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const Program* program,
+bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
+                         const std::vector<ToolLibrary>& libraries, const Program* program,
                          const ProgramOptions& options, ToolSources& sources,
                          Diagnostics& diagnostics) {
   sources.arguments = arguments;
+  add_library_tools(libraries, program, sources, diagnostics);
   if (program) sources.hints = find_tool_hints(comments_with_units(*program, options.path));
   if (options.tool_table_path.empty()) return true;
   auto rows = read_tool_table(options.tool_table_path, diagnostics,
@@ -174,6 +177,7 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const 
     return false;
   }
   sources.table = std::move(rows.value());
+  compare_with_table(sources, diagnostics);
   return !has_error(diagnostics);
 }
 

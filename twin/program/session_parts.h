@@ -13,6 +13,7 @@
 #include "twin/job/stock_choice.h"
 #include "twin/job/tools.h"
 #include "twin/report/report.h"
+#include "twin/tool_library/tool_library.h"
 
 namespace kerf {
 
@@ -38,9 +39,11 @@ struct CommentBlank {
 bool find_comment_blank(const Program& program, const std::string& path, CommentBlank& found,
                         Diagnostics& diagnostics);
 
-/// Shapes of tools from arguments, comments of the program (if there is one) and the tool table.
-/// False with diagnostics if the table cannot be read.
-bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments, const Program* program,
+/// Shapes of tools from arguments, libraries, comments of the program (if there is one) and the
+/// tool table. False with diagnostics if the table cannot be read; what is odd in libraries is a
+/// warning.
+bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
+                         const std::vector<ToolLibrary>& libraries, const Program* program,
                          const ProgramOptions& options, ToolSources& sources,
                          Diagnostics& diagnostics);
 

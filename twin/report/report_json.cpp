@@ -70,6 +70,7 @@ Json tools_json(const Report& report) {
     tool["shape"] = use.shape.empty() ? Json(nullptr) : Json(use.shape);
     tool["origin"] = use.origin;
     tool["guessed"] = use.guessed;
+    if (use.teeth) tool["teeth"] = *use.teeth;
     tool["shank_checked"] = use.shank_checked;
     tool["holder_checked"] = use.holder_checked;
     tool["cut_s"] = rounded(use.cut_s);

@@ -58,8 +58,16 @@ std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter) {
   if (!cutter.holder().empty()) {
     shank_top_mm = std::max(flutes_mm, cutter.holder().front().from_z_mm);
   }
+  double neck_top_mm = flutes_mm;
+  for (const ToolSection& section : cutter.neck()) {
+    shape->shank.push_back(point(section.diameter_mm / 2, neck_top_mm));
+    neck_top_mm = std::max(neck_top_mm, section.to_z_mm);
+    shape->shank.push_back(point(section.diameter_mm / 2, neck_top_mm));
+  }
+  shank_top_mm = std::max(shank_top_mm, neck_top_mm);
   if (shank_top_mm > flutes_mm) {
-    shape->shank = {point(shank_mm, flutes_mm), point(shank_mm, shank_top_mm)};
+    shape->shank.push_back(point(shank_mm, neck_top_mm));
+    shape->shank.push_back(point(shank_mm, shank_top_mm));
   }
   for (const ToolSection& section : cutter.holder()) {
     shape->holder.push_back(point(section.diameter_mm / 2, section.from_z_mm));

@@ -112,7 +112,7 @@ bool Session::take_sheet(const ProgramSurvey::SheetGuess& guess, const ProgramSu
 /// moves, and everything begins again.
 void Session::watch_tools(std::span<const Motion> motions) {
   if (!open_tools_ || lacks_tool_) return;
-  const bool described = !front_.tools.arguments.empty() || !front_.tools.table.empty();
+  const bool described = front_.tools.describes();
   for (const Motion& m : motions) {
     const ResolvedTool* const tool = open_tools_->feeding(m);
     if (!tool) continue;

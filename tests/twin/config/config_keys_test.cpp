@@ -107,6 +107,17 @@ TEST(ConfigKeys, TheBeamOfASheet) {
   EXPECT_EQ(effective_yaml(LiveConfig{}).find("beam"), std::string::npos);
 }
 
+TEST(ConfigKeys, ToolLibrariesAreFilesBesideIt) {
+  const ReadText read("tool_libraries: [shop.json, /abs/shop.fctl, 7=bit.fctb]\n");
+  ASSERT_TRUE(read.config) << read.said();
+  EXPECT_EQ(read.config->tool_libraries,
+            (std::vector<std::string>{"dir/shop.json", "/abs/shop.fctl", "7=dir/bit.fctb"}));
+  EXPECT_NE(effective_yaml(*read.config).find("\ntool_libraries:\n  - dir/shop.json\n"),
+            std::string::npos);
+  EXPECT_EQ(said_of("tool_libraries: shop.json\n"),
+            "1:17: tool_libraries: 'shop.json' is not allowed; must be a list of texts\n");
+}
+
 TEST(ConfigKeys, ATurretInsteadOfABeam) {
   const ReadText read("turret: press.yaml\nbeam: {density_kg_per_m3: 2700}\n");
   ASSERT_TRUE(read.config) << read.said();

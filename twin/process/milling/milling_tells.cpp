@@ -29,7 +29,10 @@ void MillingStage::announce(const ResolvedTool& tool, const Motion& m) {
   use.number = tool.number;
   use.origin = tool.origin;
   use.guessed = tool.guessed;
-  if (tool.cutter) use.shape = tool.cutter->spec();
+  if (tool.cutter) {
+    use.shape = tool.cutter->spec();
+    use.teeth = tool.cutter->teeth();
+  }
   uses_.push_back(use);
   deepest_.emplace_back();
   if (!tool.cutter) return;

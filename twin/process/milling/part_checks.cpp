@@ -27,10 +27,11 @@ std::string text_of(FindingId id, double width_mm, double length_mm) {
 }
 
 /// Rounded up: what is told does clear.
-std::string hint_of(FindingId id, double length_mm) {
+std::string hint_of(FindingId id, double length_mm, bool above_neck) {
   const double least_mm = std::ceil(length_mm * 100 - 1e-6) / 100;
   if (id == FindingId::kHolderContact)
     return trf("a stick-out of {:.2f} mm would clear it", least_mm);
+  if (above_neck) return trf("a neck up to {:.2f} mm above the tip would clear it", least_mm);
   return trf("flutes of {:.2f} mm would clear it", least_mm);
 }
 
@@ -42,10 +43,15 @@ void PartChecks::mount(const Cutter& cutter) {
   if (cutter.flute_length_mm() && !cutter.is_flute_length_assumed()) {
     const double flutes_mm = *cutter.flute_length_mm();
     const double cutter_mm = 2 * cutter.radius_mm();
-    const double shank_mm = cutter.shank_diameter_mm().value_or(cutter_mm);
-    const FindingId id = std::abs(shank_mm - cutter_mm) < kSameWidth_mm ? FindingId::kFluteTooShort
-                                                                        : FindingId::kShankContact;
-    parts_.push_back({{shank_mm / 2, flutes_mm}, id, shank_mm, flutes_mm, 0, {}});
+    const auto add = [&](double width_mm, double from_z_mm) {
+      const bool same = std::abs(width_mm - cutter_mm) < kSameWidth_mm;
+      const FindingId id = same ? FindingId::kFluteTooShort : FindingId::kShankContact;
+      parts_.push_back({{width_mm / 2, from_z_mm}, id, width_mm, from_z_mm, 0, {}});
+      parts_.back().above_neck = from_z_mm > flutes_mm;
+    };
+    for (const ToolSection& section : cutter.neck()) add(section.diameter_mm, section.from_z_mm);
+    add(cutter.shank_diameter_mm().value_or(cutter_mm),
+        cutter.neck().empty() ? flutes_mm : cutter.neck().back().to_z_mm);
   }
   for (const ToolSection& section : cutter.holder()) {
     parts_.push_back({{section.diameter_mm / 2, section.from_z_mm},
@@ -107,7 +113,8 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
   }
   log_.deepen(*open->event, contact.depth_mm);
   open->depth_mm = std::max(open->depth_mm, contact.depth_mm);
-  log_.set_hint(*open->event, hint_of(open->id, open->length_mm + open->depth_mm));
+  log_.set_hint(*open->event,
+                hint_of(open->id, open->length_mm + open->depth_mm, open->above_neck));
 }
 
 void PartChecks::check(const CheckedMove& move) {

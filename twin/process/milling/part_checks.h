@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "interp_bridge/motion_kinds.h"
 #include "stock/stock_model.h"
 #include "twin/findings/finding.h"
 #include "twin/process/milling/checks.h"
@@ -49,10 +50,11 @@ class PartChecks {
     CarriedPart body;
     FindingId id;
     double width_mm;  ///< of it
-    /// What would have to be longer, so that it clears: flutes, or the stick-out.
+    /// What would have to be longer, so that it clears: flutes, neck, or the stick-out.
     double length_mm;
     double depth_mm = 0;  ///< of the event
     std::optional<FindingLog::Handle> event;
+    bool above_neck = false;  ///< a shank that does not begin where the flutes end
   };
   void meet(std::size_t index, const CheckedMove& move, const PartContact& contact,
             double fraction);
