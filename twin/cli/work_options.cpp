@@ -79,6 +79,26 @@ void read_stock(const LiveConfig* config, OptionReader& reader, WorkRequest& wor
   }
 }
 
+/// Those of the command line, else those of the configuration. Meshes are read at once: what is
+/// wrong with one is said before anything runs.
+void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
+  std::vector<FixtureSpec> specs;
+  if (config) specs = config->fixtures;
+  const std::vector<std::string>& texts = reader.texts("--fixture");
+  if (!texts.empty()) specs.clear();
+  for (const std::string& text : texts) {
+    Result<FixtureSpec> spec = parse_fixture(text, reader.unit());
+    if (spec) {
+      specs.push_back(std::move(spec.value()));
+    } else {
+      reader.fault("--fixture", spec.error());
+    }
+  }
+  work.collisions.fixtures = load_fixtures(specs, reader.diagnostics());
+  work.collisions.clearance_mm = reader.length_mm("--clearance");
+  if (config) work.collisions.spindle = config->machine.spindle;
+}
+
 void read_choices(OptionReader& reader, WorkRequest& work) {
   work.path_from = reader.choose("--path").from;
   work.planned_path = reader.word("--path") == 1;
@@ -103,6 +123,7 @@ WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
   read_tools(config, reader, work);
   read_libraries(config, reader, work);
   read_stock(config, reader, work);
+  read_fixtures(config, reader, work);
   read_choices(reader, work);
   work.stock.cell_mm = reader.length_mm("--cell");
   work.below_mm = reader.length_mm("--below");

@@ -149,6 +149,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.max_mm_per_min) printer.put("max_speed_mm_per_min", *machine.max_mm_per_min);
   if (machine.max_mm_per_s2) printer.put("max_acceleration_mm_per_s2", *machine.max_mm_per_s2);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
+  if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.close();
 }
@@ -171,6 +172,16 @@ void print_beam(Printer& printer, const ConfigBeam& beam) {
   printer.close();
 }
 
+std::string fixture_text(const FixtureSpec& fixture) {
+  std::string text = fmt::format("shape: {}", quoted(fixture.text));
+  if (!fixture.name.empty()) text = fmt::format("name: {}, {}", quoted(fixture.name), text);
+  if (fixture.at_mm != Vec3{0}) text += fmt::format(", at: {}", vector_text(fixture.at_mm));
+  if (fixture.turn_deg != 0) text += fmt::format(", turn: {}", fixture.turn_deg);
+  if (fixture.in_blank) text += ", in_blank: yes";
+  if (fixture.clearance_mm) text += fmt::format(", clearance_mm: {}", *fixture.clearance_mm);
+  return text;
+}
+
 void print_work(Printer& printer, const LiveConfig& config) {
   if (!config.tools.empty()) {
     printer.open("tools");
@@ -179,6 +190,14 @@ void print_work(Printer& printer, const LiveConfig& config) {
     }
     printer.close();
   }
+  if (!config.fixtures.empty()) {
+    printer.open("fixtures");
+    for (const FixtureSpec& fixture : config.fixtures) {
+      printer.line(fmt::format("- {{{}}}", fixture_text(fixture)));
+    }
+    printer.close();
+  }
+  printer.put("clearance_mm", config.clearance_mm);
   if (!config.tool_libraries.empty()) {
     printer.open("tool_libraries");
     for (const std::string& path : config.tool_libraries) printer.line("- " + quoted(path));

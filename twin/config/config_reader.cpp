@@ -42,6 +42,28 @@ void read_joints(const GroupReader& machine, std::string& joints) {
   joints = letters;
 }
 
+/// Sections as holders have them.
+void read_spindle(const GroupReader& machine, ConfigMachine& out) {
+  ConfigNode* const node = machine.find("spindle");
+  if (node == nullptr) return;
+  const Result<Cutter> carrier =
+      parse_shape(fmt::format("flat:1:flute=1:holder={}", trim(node->scalar)));
+  if (!carrier || contains(node->scalar, ":")) {
+    machine.faults().at_value(
+        *node,
+        trf("'{}' is not allowed; must be sections from the nose upward, DxL[+DxL..]",
+            shown(node->scalar)),
+        tr("as in 80x60+120x100: 80 mm wide for 60 mm, 120 mm wide above"));
+    return;
+  }
+  out.spindle_spec = std::string(trim(node->scalar));
+  const double nose_mm = carrier->holder().front().from_z_mm;
+  for (const ToolSection& section : carrier->holder()) {
+    out.spindle.push_back(
+        {section.diameter_mm, section.from_z_mm - nose_mm, section.to_z_mm - nose_mm});
+  }
+}
+
 void read_machine(const GroupReader& machine, ConfigMachine& out) {
   out.ini = machine.path("ini");
   out.tool_table = machine.path("tool_table");
@@ -58,6 +80,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
   machine.number("max_acceleration_mm_per_s2", out.max_mm_per_s2);
   read_drawn_machine(machine, out.drawn);
+  read_spindle(machine, out);
   read_kinematics(machine, out);
 }
 
@@ -86,6 +109,29 @@ void read_tools(const GroupReader& tools, std::optional<StockKind> model,
     } else {
       tools.faults().at_value(*node, fmt::format("'{}': {}", shown(node->scalar), trouble));
     }
+  }
+}
+
+void read_fixtures(const GroupReader& root, std::vector<FixtureSpec>& out) {
+  ConfigNode* const list = root.find("fixtures");
+  if (list == nullptr) return;
+  for (const auto& element : list->children) {
+    if (element->faulty) continue;
+    const GroupReader group(element.get(), root.faults());
+    group.missing("shape", tr("a shape, as --fixture has it"));
+    ConfigNode* const shape = group.find("shape");
+    if (shape == nullptr) continue;
+    Result<FixtureSpec> spec = parse_fixture(resolved_spec(*shape, "stl:", root.faults()));
+    if (!spec) {
+      root.faults().at_value(*shape, spec.error());
+      continue;
+    }
+    if (const auto name = group.text("name")) spec->name = *name;
+    read_vector(group, "at", spec->at_mm);
+    group.number("turn", spec->turn_deg);
+    group.number("in_blank", spec->in_blank);
+    group.number("clearance_mm", spec->clearance_mm);
+    out.push_back(std::move(spec.value()));
   }
 }
 
@@ -239,6 +285,8 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_machine(root.group("machine"), config.machine);
   read_stock(root.group("stock"), config.stock);
   read_tools(root.group("tools"), config.stock.model, config.tools);
+  read_fixtures(root, config.fixtures);
+  root.number("clearance_mm", config.clearance_mm);
   read_tool_libraries_key(root, config.tool_libraries);
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);

@@ -19,6 +19,7 @@
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
 #include "twin/config/option_layers.h"
+#include "twin/job/fixtures.h"
 #include "twin/job/stock_choice.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
@@ -46,6 +47,9 @@ struct ConfigMachine {
   std::optional<double> max_mm_per_min;  ///< positions that need more are a gap
   std::optional<double> max_mm_per_s2;   ///< single positions that need more are dropped
   MachineChoice drawn;                   ///< `model` and `links`
+  /// `spindle`: sections from its nose upward, the first begins at 0; empty: it is not described.
+  std::vector<ToolSection> spindle;
+  std::string spindle_spec;  ///< the text that `spindle` was read from
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.
   std::optional<KinematicsRequest> kinematics;
 };
@@ -109,6 +113,8 @@ struct LiveConfig {
   std::optional<LengthUnit> units;
   ConfigMachine machine;
   std::vector<ToolShapeArgument> tools;
+  std::vector<FixtureSpec> fixtures;        ///< `fixtures:`
+  double clearance_mm = 0.5;                ///< near-miss
   std::vector<std::string> tool_libraries;  ///< paths
   ConfigStock stock;
   ConfigBeam beam;

@@ -243,6 +243,11 @@ constexpr std::array kMachineSettings{
             .type = T::kText,
             .purpose = tr_noop(
                 "links: name of the link whose origin holds the tool, which points along -Z")},
+    Setting{
+        .key = "machine.spindle",
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
     Setting{.option = "--interp",
             .commands = kCutting | kCanon,
             .type = T::kWord,

@@ -149,6 +149,12 @@ const char* to_string(FindingId id) {
       return "shank-contact";
     case FindingId::kFluteTooShort:
       return "flute-too-short";
+    case FindingId::kFixtureContact:
+      return "fixture-contact";
+    case FindingId::kSpindleContact:
+      return "spindle-contact";
+    case FindingId::kNearMiss:
+      return "near-miss";
     case FindingId::kThinFilm:
       return "thin-film";
     case FindingId::kFeedLost:

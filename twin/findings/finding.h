@@ -78,6 +78,9 @@ enum class FindingId : std::uint8_t {
   kHolderContact,     ///< the holder touches the workpiece
   kShankContact,      ///< the shank, which is wider or slimmer than the cutter, touches it
   kFluteTooShort,     ///< material stands higher than the flutes reach, and the shank rubs
+  kFixtureContact,    ///< cutter, shank, holder or spindle touches a fixture
+  kSpindleContact,    ///< the spindle touches the workpiece
+  kNearMiss,          ///< two bodies come near each other, and do not touch
   kFeedLost,          ///< LinuxCNC does not run a feed that M61 comes right after
 };
 

@@ -124,6 +124,11 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   choice_ = choose_stock(options_.stock, needs);
   if (!found.blank && !guess_blank(survey, diagnostics, outcome)) return false;
   options_.cutting.checks.blank_guessed = !found.blank;
+  const FixtureList& fixtures = options_.cutting.checks.collisions.fixtures;
+  if (found.blank && fixtures && !check_fixtures_beside(*fixtures, *found.blank, diagnostics)) {
+    outcome = Outcome::kUsageError;
+    return false;
+  }
   if (found.blank) {
     StockSetup setup =
         make_stock(*found.blank, choice_, options_.stock, found.origin, diagnostics, outcome);

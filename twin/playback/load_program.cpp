@@ -313,7 +313,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
   PlayerProgram& player = loaded->player;
   player.report_from = loading.report_from();
   // As Session has it.
-  player.checks = {front->blank_guessed, options.below_mm, front->is_drawn};
+  player.checks = checks_of(options, *front);
   player.blank_kind = blank_kind;
   player.whole = !stopped && !(front->is_sheet() && loading.window().over());
   player.track = loading.build(loaded->summary.files);

@@ -13,7 +13,7 @@ ProbedWorkpiece::ProbedWorkpiece(const SessionOptions& options, const ProgramFro
       stage_(*stock_, resolver_, log_, options.timeline) {
   log_.set_muted(true);
   stage_.stop_by(std::move(stop));
-  stage_.check_by({front.blank_guessed, options.below_mm});
+  stage_.check_by({.blank_guessed = front.blank_guessed, .below_mm = options.below_mm});
 }
 
 void ProbedWorkpiece::take(std::span<const Motion> motions, const WorkpieceFrame& frame) {

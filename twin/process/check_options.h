@@ -2,8 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include "stock/cutter/cutter.h"
+#include "twin/job/fixtures.h"
 
 namespace kerf {
+
+/// What the tool is held against, besides the workpiece.
+struct CollisionWishes {
+  FixtureList fixtures;  ///< may be null: none
+  /// The spindle's sections from its nose upward; empty: nobody described it.
+  std::vector<ToolSection> spindle;
+  double clearance_mm = 0.5;  ///< near-miss: what comes nearer without touching; 0: nothing does
+};
 
 /// What findings are judged by.
 struct CheckOptions {
@@ -13,6 +25,7 @@ struct CheckOptions {
   /// The blank is a skin that was guessed over the only level that is fed, and the program never
   /// starts a spindle: a pen, a knife. What stands in that skin is no fault.
   bool is_drawn = false;
+  CollisionWishes collisions{};
 };
 
 /// Where the blank of a run comes from, and so what it means that nothing of it is cut.

@@ -25,6 +25,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/machine/turret.h"
 #include "twin/process/check_options.h"
+#include "twin/process/collision_table.h"
 #include "twin/process/cut_labels.h"
 #include "twin/process/cut_progress.h"
 #include "twin/process/feed_check.h"
@@ -104,6 +105,8 @@ class Process {
   virtual void stop_by(const std::stop_token& /*stop*/) {}
 
   virtual const std::vector<ToolUse>& tools() const = 0;
+  /// How near bodies came to each other, as far as that was looked for.
+  virtual std::vector<CollisionPair> collisions() const { return {}; }
   /// In the spindle, as far as it has been needed; null: none that is known. Until the next call.
   virtual const Cutter* cutter() const { return nullptr; }
   /// What comes of a probing move behind all that was taken.

@@ -79,6 +79,12 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
   front.blank_guessed = options.blank && options.blank_is_guess;
   front.guess_reason = options.guess_reason;
   if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}, 0};
+  const FixtureList& fixtures = options.collisions.fixtures;
+  if (fixtures && !front.blank_guessed &&
+      !check_fixtures_beside(*fixtures, *front.blank, diagnostics)) {
+    outcome = Outcome::kUsageError;
+    return false;
+  }
   return fill_front(options, front, diagnostics, outcome);
 }
 
@@ -91,6 +97,10 @@ bool can_be_punched(const std::optional<Blank>& blank, Diagnostics& diagnostics,
                                       tr("--stock sheet:x0,y0:x1,y1:THICKNESS gives a sheet")));
   outcome = Outcome::kUsageError;
   return false;
+}
+
+CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front) {
+  return {front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
 }
 
 bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics& diagnostics,

@@ -36,6 +36,7 @@ struct SessionOptions {
   TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
   double margin_mm = 5;  ///< around a guessed blank
   double below_mm = 0;   ///< CheckOptions::below_mm
+  CollisionWishes collisions{};
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
   bool guess = true;         ///< what nobody has said; false: that is an error
@@ -105,6 +106,9 @@ class BlankSurvey {
 
 /// The process that its workpiece and these options need: choose_process().
 ProcessPointer process_of(const SessionOptions& options, const ProgramFront& front);
+
+/// What findings of a run of it are judged by.
+CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front);
 
 /// For nothing-cut: what it means that nothing of this blank is cut (CutStage::judge_blank).
 /// Nothing is said of a part of a program, of one that was refused (`sound` = false) or only

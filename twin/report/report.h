@@ -52,6 +52,8 @@ struct Report {
   std::optional<StockReport> stock;  ///< absent if the run ended before there was one
   std::optional<SheetReport> sheet;  ///< of a workpiece that is one
   std::vector<ToolUse> tools;
+  std::vector<CollisionPair>
+      collisions;                  ///< what was held against each other, and how near it came
   std::vector<GuessRow> guesses;   ///< taken for want of better
   bool lengths_all_zero = false;   ///< of the tool table: they are not checked
   std::optional<LiveReport> live;  ///< of shadow and replay

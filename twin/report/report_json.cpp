@@ -83,6 +83,22 @@ Json tools_json(const Report& report) {
   return out;
 }
 
+Json collisions_json(const Report& report) {
+  Json pairs = Json::array();
+  for (const CollisionPair& row : report.collisions) {
+    Json pair;
+    pair["a"] = to_string(row.part);
+    pair["b"] = row.other.empty() ? "workpiece" : row.other;
+    pair["tool"] = row.tool;
+    pair["contacts"] = row.contacts;
+    pair["least_clearance_mm"] =
+        row.least_clearance_mm ? Json(rounded(*row.least_clearance_mm)) : Json(nullptr);
+    pair["line"] = row.source.line;
+    pairs.push_back(std::move(pair));
+  }
+  return {{"pairs", std::move(pairs)}};
+}
+
 Json guesses_json(const std::vector<GuessRow>& rows) {
   Json out = Json::array();
   for (const GuessRow& row : rows) {
@@ -171,6 +187,7 @@ std::string json_text(const Report& report) {
   out["stock"] = stock_json(report);
   if (report.sheet) out["sheet"] = sheet_json(*report.sheet, report.program.files);
   out["tools"] = tools_json(report);
+  out["collisions"] = collisions_json(report);
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);
   if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);

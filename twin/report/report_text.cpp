@@ -122,6 +122,32 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
   }
 }
 
+/// Of each fixture the part of a tool that came nearest to it.
+void add_clearances(std::string& out, const Report& report) {
+  std::vector<const CollisionPair*> nearest;
+  for (const CollisionPair& row : report.collisions) {
+    if (row.other.empty() || !row.least_clearance_mm) continue;
+    const auto known = std::ranges::find_if(
+        nearest, [&](const CollisionPair* other) { return other->other == row.other; });
+    if (known == nearest.end()) {
+      nearest.push_back(&row);
+    } else if (*row.least_clearance_mm < *(*known)->least_clearance_mm) {
+      *known = &row;
+    }
+  }
+  const char* head = tr("clearance ");
+  for (const CollisionPair* row : nearest) {
+    const std::string what = trf("{} of tool {}", name_of(row->part), row->tool);
+    if (row->contacts > 0) {
+      out += trf("{}{}: touched by {}, line {}\n", head, row->other, what, row->source.line);
+    } else {
+      out += trf("{}{}: {:.2f} mm from {}, line {}\n", head, row->other, *row->least_clearance_mm,
+                 what, row->source.line);
+    }
+    head = "          ";
+  }
+}
+
 /// Whose collisions nobody looked for.
 void add_unchecked(std::string& out, const Report& report) {
   if (!report.stock || report.stock->model == "sheet") return;
@@ -242,6 +268,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
+  add_clearances(out, report);
   add_unchecked(out, report);
   if (report.stock) add_stock(out, *report.stock);
   out += trf("run       {:.2f} s (cutting {:.2f}), {:.0f} MB\n", report.timing.total_s,
@@ -276,6 +303,7 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   add_tools(out, report.tools);
+  add_clearances(out, report);
   add_unchecked(out, report);
   if (report.lengths_all_zero) {
     out += tr("lengths   all 0 in the tool table, and so they are not checked\n");

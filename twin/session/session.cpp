@@ -198,7 +198,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   TimelineOptions timing = options_.timeline;
   timing.holds = process->holds();
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
-  stage.check_by({front_.blank_guessed, options_.below_mm, front_.is_drawn});
+  stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
   work_read_ = work_done_ = 0;
   stage.count_work(work_done_);
@@ -238,6 +238,7 @@ void Session::complete_report(const CutStage& stage) {
   report_.motion = stage.timeline().totals();
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
+  report_.collisions = stage.process().collisions();
   report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
   const auto axes = static_cast<unsigned>(options_.program.machine.length_axes);

@@ -64,8 +64,9 @@ using Keys = std::vector<std::string>;
 
 TEST(ReportJson, HasThePublishedKeys) {
   const Json json = Json::parse(json_text(sample()));
-  EXPECT_EQ(keys(json), (Keys{"schema", "version", "partial", "program", "motion", "stock", "tools",
-                              "findings", "findings_total", "timing_s", "peak_rss_mb"}));
+  EXPECT_EQ(keys(json),
+            (Keys{"schema", "version", "partial", "program", "motion", "stock", "tools",
+                  "collisions", "findings", "findings_total", "timing_s", "peak_rss_mb"}));
   EXPECT_EQ(json["schema"], "kerf-report/1");
   EXPECT_EQ(keys(json["program"]), (Keys{"path", "lines", "interpreter", "canonical_commands"}));
   EXPECT_EQ(keys(json["motion"]),

@@ -49,6 +49,7 @@ MillingStage::MillingStage(ProcessSite& site)
       lengths_(stock_.bounds_mm(), log_),
       films_(stock_, log_),
       parts_(stock_, log_),
+      fixtures_(log_),
       moves_per_cut_(stock_.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
@@ -65,6 +66,7 @@ void MillingStage::begin_reporting() {
   lengths_.forget();
   films_.forget();
   parts_.unmount();
+  fixtures_.unmount();
   program_.forget_events();
   speed_unsaid_.reset();
   uses_.clear();
@@ -74,6 +76,7 @@ void MillingStage::begin_reporting() {
 }
 
 void MillingStage::finish(bool whole) {
+  fixtures_.finish();
   program_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
@@ -91,6 +94,7 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
     spindle_tool_ = m.tool;
     mounted_ = nullptr;
     parts_.unmount();
+    fixtures_.unmount();
   }
   if (!stands(m) && checks_.spindle_event_open()) {
     complete();  // the depths still to come belong to the event
@@ -103,13 +107,24 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
   }
 }
 
+/// What the spindle carries now.
+void MillingStage::mount_parts(const Motion& m) {
+  nose_mm_ = m.tool_offset_mm.z;
+  parts_.mount(*mounted_->cutter, mounted_->number, spindle_, nose_mm_);
+  fixtures_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
+}
+
 /// Mounts the tool of this motion if that has not been done since the last change. True if it can
 /// cut.
 bool MillingStage::mount_for(const Motion& m) {
-  if (mounted_) return mounted_->cutter.has_value();
+  if (mounted_) {
+    // The offset may come after the tool.
+    if (!spindle_.empty() && mounted_->cutter && m.tool_offset_mm.z != nose_mm_) mount_parts(m);
+    return mounted_->cutter.has_value();
+  }
   mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
   announce(*mounted_, m);
-  if (mounted_->cutter) parts_.mount(*mounted_->cutter);
+  if (mounted_->cutter) mount_parts(m);
   uses_[use_].shank_checked = parts_.checks_shank();
   uses_[use_].holder_checked = parts_.checks_holder();
   return mounted_->cutter.has_value();
@@ -169,12 +184,19 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
 }
 
 void MillingStage::check_parts(const Motion& m, const CheckedMove& move) {
+  if (fixtures_.active()) fixtures_.check(move);
   if (!site_.moves.is_upright(m) || !parts_.may_touch(m)) {
     parts_.pass(m);
     return;
   }
   complete();
   parts_.check(move);
+}
+
+std::vector<CollisionPair> MillingStage::collisions() const {
+  std::vector<CollisionPair> out = parts_.table();
+  for (CollisionPair& row : fixtures_.table()) out.push_back(std::move(row));
+  return out;
 }
 
 void MillingStage::check_length(const Motion& m, const TimedStep& step, bool touches) {

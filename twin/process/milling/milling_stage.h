@@ -17,6 +17,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/process/milling/checks.h"
 #include "twin/process/milling/film_events.h"
+#include "twin/process/milling/fixture_checks.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
 #include "twin/process/milling/part_checks.h"
@@ -44,9 +45,12 @@ class MillingStage final : public Process {
   void check_by(const CheckOptions& options) override {
     checks_.set_options(options);
     parts_.set_blank_guessed(options.blank_guessed);
+    fixtures_.set_wishes(options.collisions);
+    spindle_ = options.collisions.spindle;
   }
   void stop_by(const std::stop_token& stop) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
+  std::vector<CollisionPair> collisions() const override;
   const Cutter* cutter() const override {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
   }
@@ -79,6 +83,7 @@ class MillingStage final : public Process {
   void report_drawn(const Motion& motion, const TimedStep& step);
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
+  void mount_parts(const Motion& motion);
   bool mount_for(const Motion& motion);
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
@@ -120,6 +125,9 @@ class MillingStage final : public Process {
   LengthCheck lengths_;
   FilmEvents films_;
   PartChecks parts_;
+  FixtureChecks fixtures_;
+  std::vector<ToolSection> spindle_;
+  double nose_mm_ = 0;  ///< of the spindle above the tip, by the tool length offset
   std::vector<ToolUse> uses_;
   std::vector<Deepest> deepest_;           ///< one for each of uses_
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move

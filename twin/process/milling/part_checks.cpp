@@ -19,6 +19,10 @@ std::string text_of(FindingId id, double width_mm, double length_mm) {
     return trf("holder ({:.4g} mm wide, {:.4g} mm above the tip) touches the workpiece", width_mm,
                length_mm);
   }
+  if (id == FindingId::kSpindleContact) {
+    return trf("spindle ({:.4g} mm wide, {:.4g} mm above the tip) touches the workpiece", width_mm,
+               length_mm);
+  }
   if (id == FindingId::kShankContact) {
     return trf("shank ({:.4g} mm wide, {:.4g} mm above the tip) touches the workpiece", width_mm,
                length_mm);
@@ -31,14 +35,18 @@ std::string hint_of(FindingId id, double length_mm, bool above_neck) {
   const double least_mm = std::ceil(length_mm * 100 - 1e-6) / 100;
   if (id == FindingId::kHolderContact)
     return trf("a stick-out of {:.2f} mm would clear it", least_mm);
+  if (id == FindingId::kSpindleContact)
+    return trf("a tool {:.2f} mm long would clear it", least_mm);
   if (above_neck) return trf("a neck up to {:.2f} mm above the tip would clear it", least_mm);
   return trf("flutes of {:.2f} mm would clear it", least_mm);
 }
 
 }  // namespace
 
-void PartChecks::mount(const Cutter& cutter) {
+void PartChecks::mount(const Cutter& cutter, int tool, std::span<const ToolSection> spindle,
+                       double nose_mm) {
   parts_.clear();
+  tool_ = tool;
   if (!stock_.checks_parts()) return;
   if (cutter.flute_length_mm() && !cutter.is_flute_length_assumed()) {
     const double flutes_mm = *cutter.flute_length_mm();
@@ -61,6 +69,31 @@ void PartChecks::mount(const Cutter& cutter) {
                       0,
                       {}});
   }
+  const double top_mm = cutter.holder().empty() ? 0 : cutter.holder().back().to_z_mm;
+  const double nose_z_mm = std::max(top_mm, nose_mm);
+  for (const ToolSection& section : spindle) {
+    if (nose_z_mm <= 0) break;
+    parts_.push_back({{section.diameter_mm / 2, nose_z_mm + section.from_z_mm},
+                      FindingId::kSpindleContact,
+                      section.diameter_mm,
+                      nose_z_mm,
+                      0,
+                      {}});
+  }
+  for (const Part& part : parts_) row_of(part.id);
+}
+
+CollisionPair& PartChecks::row_of(FindingId id) {
+  const ToolPart part = id == FindingId::kHolderContact    ? ToolPart::kHolder
+                        : id == FindingId::kSpindleContact ? ToolPart::kSpindle
+                                                           : ToolPart::kShank;
+  for (CollisionPair& row : table_)
+    if (row.tool == tool_ && row.part == part) return row;
+  CollisionPair row;
+  row.tool = tool_;
+  row.part = part;
+  table_.push_back(std::move(row));
+  return table_.back();
 }
 
 bool PartChecks::may_touch(const Motion& motion) const {
@@ -107,6 +140,9 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
     finding.time_s = move.step.start_s + fraction * move.step.duration_s;
     finding.position_mm = contact.tip_mm;
     finding.tool = move.tool;
+    CollisionPair& row = row_of(part.id);
+    if (row.contacts++ == 0) row.source = finding.source;
+    row.least_clearance_mm = 0;
     part.event = log_.add(std::move(finding));
     part.depth_mm = 0;
     open = &part;
@@ -119,9 +155,12 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
 
 void PartChecks::check(const CheckedMove& move) {
   const auto count = static_cast<double>(move.moves.size());
-  bool touched[3] = {};
+  bool touched[4] = {};
   const auto kind_of = [](FindingId id) {
-    return id == FindingId::kHolderContact ? 0 : id == FindingId::kShankContact ? 1 : 2;
+    return id == FindingId::kHolderContact    ? 0
+           : id == FindingId::kShankContact   ? 1
+           : id == FindingId::kSpindleContact ? 2
+                                              : 3;
   };
   struct Met {
     std::size_t part;

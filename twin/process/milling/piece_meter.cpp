@@ -8,7 +8,7 @@ namespace kerf {
 namespace {
 
 /// Windows that differ by less are one rate.
-constexpr double kSameRate = 0.02;
+constexpr double kSamePieceRate = 0.02;
 /// An end of the cutting is found to this part of the way that cuts.
 constexpr double kEnds = 0.002;
 /// Fewer pieces that cut than this say little of how fast they do.
@@ -90,7 +90,7 @@ double PieceMeter::peak(std::size_t first, std::size_t end, double window) const
     all_mm3 += piece.removed_mm3;
     if (piece.to - piece.from < window) continue;
     const double own = piece.removed_mm3 / (piece.to - piece.from);
-    if (to != piece.from || std::abs(own - density) > kSameRate * density) {
+    if (to != piece.from || std::abs(own - density) > kSamePieceRate * density) {
       end_run();
       from = piece.from;
       mm3 = 0;

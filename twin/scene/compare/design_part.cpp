@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/scene/machines/stl_mesh.h"
+#include "twin/collision/stl_mesh.h"
 
 namespace kerf {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/translate.h"
+#include "twin/collision/stl_mesh.h"
 #include "twin/scene/machines/mesh_builder.h"
-#include "twin/scene/machines/stl_mesh.h"
 
 namespace kerf {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/scene/machines/stl_mesh.h"
+#include "twin/collision/stl_mesh.h"
 
 #include <gtest/gtest.h>
 

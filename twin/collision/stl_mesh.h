@@ -1,4 +1,4 @@
-// twin/scene/machines/stl_mesh.h - meshes of links from STL files, as vismach users have them.
+// twin/collision/stl_mesh.h - meshes of links from STL files, as vismach users have them.
 #pragma once
 
 #include <cstddef>

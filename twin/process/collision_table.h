@@ -1,0 +1,25 @@
+// twin/process/collision_table.h - which bodies came how near to each other: a row each pair.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "twin/collision/tool_bodies.h"
+
+namespace kerf {
+
+/// A part of a tool, and what it was held against.
+struct CollisionPair {
+  int tool = 0;
+  ToolPart part = ToolPart::kCutter;
+  std::string other;           ///< a fixture's name; empty: the workpiece
+  std::uint32_t contacts = 0;  ///< events, each a finding
+  /// 0: they touched. Nothing: it is not known, as nothing but contacts was looked for.
+  std::optional<double> least_clearance_mm;
+  SourceRef source;  ///< of the move with the least clearance, or the first contact
+};
+
+}  // namespace kerf
