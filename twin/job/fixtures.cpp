@@ -152,10 +152,12 @@ Done parse_shape_fields(const std::vector<std::string_view>& fields, LengthUnit 
   if (shape == "clamp") return parse_clamp(rest, unit, out);
   if (shape == "screw") return parse_screw(rest, unit, out);
   if (shape == "stl") {
+    if (rest.empty()) return Error{tr("the form is stl:FILE[:inch]")};
     // A file's name may hold a colon.
-    const std::size_t length =
-        static_cast<std::size_t>(fields.back().data() + fields.back().size() - rest[0].data());
-    out.mesh_path = rest.empty() ? "" : std::string(trim({rest[0].data(), length}));
+    const char* const begin = rest[0].data();
+    const auto length =
+        static_cast<std::size_t>(fields.back().data() + fields.back().size() - begin);
+    out.mesh_path = std::string(trim({begin, length}));
     if (out.mesh_path.empty()) return Error{tr("the form is stl:FILE[:inch]")};
     return Done{std::monostate{}};
   }
