@@ -303,6 +303,11 @@ FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagn
 
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
                            Diagnostics& diagnostics) {
+  if (blank.sheet && !fixtures.empty()) {
+    tell(diagnostics, Severity::kError,
+         tr("--fixture: a sheet is cut by a beam or punched; fixtures are held against mills"));
+    return false;
+  }
   if (blank.bodies.empty()) return true;
   const SolidPointer whole = Solid::of_bodies(blank.bodies);
   bool beside = true;

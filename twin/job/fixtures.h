@@ -62,7 +62,8 @@ using FixtureList = std::shared_ptr<const std::vector<Fixture>>;
 FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagnostics);
 inline constexpr std::size_t kMostTriangles = 2'000'000;
 
-/// False with an error for each fixture that stands in the blank, and how deep, unless it may.
+/// False with an error for each fixture that stands in the blank, and how deep, unless it may; or
+/// if the blank is a sheet, beside which nothing looks for them.
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
                            Diagnostics& diagnostics);
 

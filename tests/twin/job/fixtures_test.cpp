@@ -101,6 +101,11 @@ TEST(Fixtures, MustNotStandInTheBlank) {
             "fixture 'jaw' stands in the blank, 2.50 mm deep");
   EXPECT_EQ(check("jaw=box:0,37.5,-20:100,60,5:in-blank"), "");
   EXPECT_EQ(check("screw:4:12:at=50,20,-8"), "");
+  Diagnostics of_sheet;
+  const std::vector<FixtureSpec> box{parse_fixture("box:0,0,0:1,1,1").value()};
+  EXPECT_FALSE(check_fixtures_beside(*load_fixtures(box, of_sheet),
+                                     parse_blank("sheet:0,0:60,40:3").value(), of_sheet));
+  EXPECT_EQ(of_sheet.size(), 1U);
   EXPECT_EQ(check("table=box:-100,-100,-30:200,200,-20"), "");
 }
 
