@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "interp_bridge/motion_kinds.h"
 
 namespace kerf {
 namespace {
