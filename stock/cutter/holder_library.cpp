@@ -10,45 +10,48 @@ namespace {
 
 constexpr const char* kNut = tr_noop("clamping nut, DIN 6499 (ISO 15488)");
 constexpr const char* kMiniNut = tr_noop("slim clamping nut, DIN 6499 (ISO 15488)");
+constexpr const char* kWeldon = tr_noop("side-lock holder (Weldon), DIN 6359");
+constexpr const char* kShrink = tr_noop("shrink-fit chuck, 4.5 degrees, DIN 69882-8");
 constexpr const char* kBtFlange = tr_noop("flange, MAS 403 (JIS B 6339)");
 constexpr const char* kHskFlange = tr_noop("flange, DIN 69893-1 (ISO 12164-1)");
 
-/// Lower and upper diameter, length.
-constexpr std::array<HolderSection, 13> kSections = {{
-    {19, 19, 11.5},  // er11
-    {16, 16, 12},    // er11m
-    {28, 28, 17.5},  // er16
-    {22, 22, 18},    // er16m
-    {34, 34, 19},    // er20
-    {28, 28, 19},    // er20m
-    {42, 42, 20},    // er25
-    {35, 35, 20},    // er25m
-    {50, 50, 22.5},  // er32
-    {63, 63, 25.5},  // er40
-    {46, 46, 20},    // bt30
-    {63, 63, 25},    // bt40
-    {63, 63, 26},    // hsk-a63
-}};
-
-constexpr std::span<const HolderSection> section(std::size_t at) {
-  return std::span(kSections).subspan(at, 1);
-}
-
-constexpr std::array<NamedHolder, 13> kHolders = {{
-    {"er11", section(0), kNut},
-    {"er11m", section(1), kMiniNut},
-    {"er16", section(2), kNut},
-    {"er16m", section(3), kMiniNut},
-    {"er20", section(4), kNut},
-    {"er20m", section(5), kMiniNut},
-    {"er25", section(6), kNut},
-    {"er25m", section(7), kMiniNut},
-    {"er32", section(8), kNut},
-    {"er40", section(9), kNut},
-    {"bt30", section(10), kBtFlange},
-    {"bt40", section(11), kBtFlange},
-    {"hsk-a63", section(12), kHskFlange},
-}};
+// Of Weldon holders the length is what a DIN 69871 taper leaves of it below its flange: A less
+// 19.1. Of shrink-fit chucks it is what 4.5 degrees need from the nose's diameter to the other.
+constexpr std::array kHolders = {
+    NamedHolder{"er11", {19, 19, 11.5}, kNut},
+    NamedHolder{"er11m", {16, 16, 12}, kMiniNut},
+    NamedHolder{"er16", {28, 28, 17.5}, kNut},
+    NamedHolder{"er16m", {22, 22, 18}, kMiniNut},
+    NamedHolder{"er20", {34, 34, 19}, kNut},
+    NamedHolder{"er20m", {28, 28, 19}, kMiniNut},
+    NamedHolder{"er25", {42, 42, 20}, kNut},
+    NamedHolder{"er25m", {35, 35, 20}, kMiniNut},
+    NamedHolder{"er32", {50, 50, 22.5}, kNut},
+    NamedHolder{"er40", {63, 63, 25.5}, kNut},
+    NamedHolder{"weldon6", {25, 25, 30.9}, kWeldon},
+    NamedHolder{"weldon8", {28, 28, 30.9}, kWeldon},
+    NamedHolder{"weldon10", {35, 35, 30.9}, kWeldon},
+    NamedHolder{"weldon12", {42, 42, 30.9}, kWeldon},
+    NamedHolder{"weldon14", {44, 44, 30.9}, kWeldon},
+    NamedHolder{"weldon16", {48, 48, 43.9}, kWeldon},
+    NamedHolder{"weldon18", {50, 50, 43.9}, kWeldon},
+    NamedHolder{"weldon20", {52, 52, 43.9}, kWeldon},
+    NamedHolder{"weldon25", {65, 65, 80.9}, kWeldon},
+    NamedHolder{"weldon32", {72, 72, 80.9}, kWeldon},
+    NamedHolder{"shrink6", {21, 27, 38.1}, kShrink},
+    NamedHolder{"shrink8", {21, 27, 38.1}, kShrink},
+    NamedHolder{"shrink10", {24, 32, 50.8}, kShrink},
+    NamedHolder{"shrink12", {24, 32, 50.8}, kShrink},
+    NamedHolder{"shrink14", {27, 34, 44.5}, kShrink},
+    NamedHolder{"shrink16", {27, 34, 44.5}, kShrink},
+    NamedHolder{"shrink18", {33, 42, 57.2}, kShrink},
+    NamedHolder{"shrink20", {33, 42, 57.2}, kShrink},
+    NamedHolder{"shrink25", {44, 53, 57.2}, kShrink},
+    NamedHolder{"shrink32", {44, 53, 57.2}, kShrink},
+    NamedHolder{"bt30", {46, 46, 20}, kBtFlange},
+    NamedHolder{"bt40", {63, 63, 25}, kBtFlange},
+    NamedHolder{"hsk-a63", {63, 63, 26}, kHskFlange},
+};
 
 }  // namespace
 

@@ -58,13 +58,13 @@ Result<HolderSection> parse_section(std::string_view what, std::string_view text
 
 Result<ToolPart> parse_named(std::string_view text) {
   const NamedHolder* const named = find_holder(text);
-  if (named) {
-    return ToolPart{std::string(named->name), {named->sections.begin(), named->sections.end()}};
-  }
+  if (named) return ToolPart{std::string(named->name), {named->section}};
   std::vector<std::string_view> names;
   for (const NamedHolder& holder : named_holders()) names.push_back(holder.name);
-  return Error{trf("unknown holder '{}'{} Holders: {}; or its sections, DxL[+DxL..]", shown(text),
-                   did_you_mean(to_lower(text), names), fmt::join(names, ", "))};
+  return Error{
+      trf("unknown holder '{}'{} `kerf tools --holders` lists them; or its sections, "
+          "DxL[+DxL..]",
+          shown(text), did_you_mean(to_lower(text), names))};
 }
 
 Result<std::vector<ToolPart>> parse_stack(std::string_view what, std::string_view text,

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/geometry.h"
+#include "stock/cutter/holder_library.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/shape_spec.h"
 
@@ -238,10 +240,10 @@ TEST(Shape, OptionsThatDoNotFit) {
   EXPECT_EQ(error_of("flat:10:holder=30x5"),
             "flat:10:holder=30x5: holder= needs stickout=L, from the tip to the holder; or "
             "flute=L: the holder begins where flutes and shank end");
-  EXPECT_EQ(error_of("flat:10:holder=er21:stickout=30"),
-            "flat:10:holder=er21:stickout=30: unknown holder 'er21'; did you mean 'er11'? Holders: "
-            "er11, er11m, er16, er16m, er20, er20m, er25, er25m, er32, er40, bt30, bt40, "
-            "hsk-a63; or its sections, DxL[+DxL..]");
+  EXPECT_EQ(
+      error_of("flat:10:holder=er21:stickout=30"),
+      "flat:10:holder=er21:stickout=30: unknown holder 'er21'; did you mean 'er11'? `kerf tools "
+      "--holders` lists them; or its sections, DxL[+DxL..]");
   EXPECT_EQ(error_of("flat:10:flute=22:holder=er20:stickout=20"),
             "flat:10:flute=22:holder=er20:stickout=20: stickout=20 is shorter than the cutting "
             "part, 22 mm");
@@ -261,6 +263,29 @@ TEST(Shape, OptionsThatDoNotFit) {
   EXPECT_EQ(error_of("taper:300:80"),
             "taper:300:80: the cone is 1.051e+04 mm wide at its top, 900 mm above the tip; at "
             "most 1000 mm");
+}
+
+TEST(CutterShape, HoldersByNameHaveTheSizesOfTheirStandards) {
+  const Result<Cutter> weldon = parse_shape("flat:16:flute=30:holder=weldon16:stickout=50");
+  ASSERT_TRUE(weldon) << weldon.error();
+  EXPECT_EQ(weldon->holder().front().diameter_mm, 48);
+  EXPECT_EQ(weldon->holder().front().from_z_mm, 50);
+  EXPECT_EQ(weldon->holder().back().to_z_mm, 50 + 43.9);
+  // A cone: as steps upward, the last one as wide as its upper end.
+  const Result<Cutter> shrink = parse_shape("flat:6:flute=12:holder=SHRINK6:stickout=30");
+  ASSERT_TRUE(shrink) << shrink.error();
+  EXPECT_EQ(shrink->spec(), "flat:6:flute=12:holder=shrink6:stickout=30");
+  EXPECT_GE(shrink->holder().front().diameter_mm, 21);
+  EXPECT_LE(shrink->holder().front().diameter_mm, 21.5);
+  EXPECT_EQ(shrink->holder().back().diameter_mm, 27);
+  EXPECT_NEAR(shrink->holder().back().to_z_mm, 30 + 38.1, 1e-9);
+  // Each cone of the table has the slope that its source says.
+  for (const NamedHolder& holder : named_holders()) {
+    const HolderSection& s = holder.section;
+    if (s.lower_mm == s.upper_mm) continue;
+    EXPECT_NEAR((s.upper_mm - s.lower_mm) / 2, s.length_mm * std::tan(4.5 * kPi / 180), 0.01)
+        << holder.name;
+  }
 }
 
 TEST(Shape, HoldersStackOfNamesSectionsAndCones) {

@@ -36,11 +36,8 @@ std::string section_text(const HolderSection& section, LengthUnit unit) {
 
 void list_holders(LengthUnit unit) {
   for (const NamedHolder& holder : named_holders()) {
-    std::string sections;
-    for (const HolderSection& section : holder.sections) {
-      sections += (sections.empty() ? "" : "+") + section_text(section, unit);
-    }
-    kerf::print(stdout, "{:<9} {:<14} {}\n", holder.name, sections, tr(holder.source));
+    kerf::print(stdout, "{:<9} {:<14} {}\n", holder.name, section_text(holder.section, unit),
+                tr(holder.source));
   }
   kerf::print(stdout, "{}",
               trf("diameter x length, from the nose up ({}); names may be stacked: er20+bt30\n",
@@ -50,14 +47,11 @@ void list_holders(LengthUnit unit) {
 Json holders_json() {
   Json holders = Json::array();
   for (const NamedHolder& holder : named_holders()) {
-    Json sections = Json::array();
-    for (const HolderSection& section : holder.sections) {
-      sections.push_back({{"lower_mm", section.lower_mm},
-                          {"upper_mm", section.upper_mm},
-                          {"length_mm", section.length_mm}});
-    }
+    const Json section = {{"lower_mm", holder.section.lower_mm},
+                          {"upper_mm", holder.section.upper_mm},
+                          {"length_mm", holder.section.length_mm}};
     holders.push_back(
-        {{"name", holder.name}, {"sections", std::move(sections)}, {"source", holder.source}});
+        {{"name", holder.name}, {"sections", Json::array({section})}, {"source", holder.source}});
   }
   return {{"holders", std::move(holders)}};
 }
