@@ -10,7 +10,7 @@
 #include "twin/cli/torch_options.h"
 #include "twin/cli/work_options.h"
 #include "twin/config/live_config.h"
-#include "twin/scene/machines/machine_choice.h"
+#include "twin/machines/machine_choice.h"
 #include "twin/session/session.h"
 #include "viewer/scene.h"
 

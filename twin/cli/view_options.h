@@ -10,10 +10,10 @@
 #include "base/diagnostic.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/run_options.h"
+#include "twin/machines/machine_choice.h"
 #include "twin/playback/player.h"
 #include "twin/scene/compare/design_part.h"
 #include "twin/scene/frame_writer.h"
-#include "twin/scene/machines/machine_choice.h"
 
 namespace kerf {
 

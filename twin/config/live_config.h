@@ -25,8 +25,8 @@
 #include "twin/live/live_frame.h"
 #include "twin/live/path_follower.h"
 #include "twin/machine/kinematics/kinematics_setup.h"
+#include "twin/machines/machine_choice.h"
 #include "twin/report/live_run.h"
-#include "twin/scene/machines/machine_choice.h"
 
 namespace kerf {
 

@@ -48,6 +48,14 @@ std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
   return model ? std::make_shared<const MachineModel>(std::move(*model)) : nullptr;
 }
 
+SceneMachine scene_machine(const MachineModel& model) {
+  SceneMachine scene;
+  scene.name = model.name;
+  for (const LinkShape& link : model.links)
+    scene.links.push_back({link.name, link.mesh, link.color});
+  return scene;
+}
+
 double drawn_height_mm(const ToolShape& shape) {
   float top = 0;
   for (const auto* outline : {&shape.cutter, &shape.shank, &shape.holder}) {

@@ -6,8 +6,8 @@
 
 #include "base/diagnostic.h"
 #include "base/geometry.h"
+#include "twin/machines/machine_choice.h"
 #include "twin/playback/program_track.h"
-#include "twin/scene/machines/machine_choice.h"
 #include "viewer/scene.h"
 
 namespace kerf {
@@ -29,6 +29,9 @@ WorkRoom work_room(const ProgramTrack& track, const Box& blank_mm, double tool_l
 std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
                                                   const std::string& ini, const WorkRoom& room,
                                                   Diagnostics& diagnostics);
+
+/// What the viewer keeps of it.
+SceneMachine scene_machine(const MachineModel& model);
 
 /// From the tip to the highest point of the tool.
 double drawn_height_mm(const ToolShape& shape);

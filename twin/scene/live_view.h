@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "twin/live/live_session.h"
+#include "twin/machines/machine_model.h"
 #include "twin/playback/program_track.h"
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
 #include "twin/scene/live_colors.h"
-#include "twin/scene/machines/machine_model.h"
 #include "twin/scene/patch_feeder.h"
 #include "twin/scene/track_path.h"
 #include "viewer/scene_mailbox.h"

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "twin/machines/machine_model.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/load_program.h"
 #include "twin/playback/player.h"
 #include "twin/scene/compare/design_part.h"
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
-#include "twin/scene/machines/machine_model.h"
 #include "twin/scene/patch_feeder.h"
 #include "twin/scene/punch_pose.h"
 #include "twin/scene/sheet_query.h"

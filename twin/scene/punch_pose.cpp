@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/units.h"
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 namespace kerf {
 

@@ -7,8 +7,8 @@
 
 #include "twin/machine/punch_moves.h"
 #include "twin/machine/turret.h"
+#include "twin/machines/machine_model.h"
 #include "twin/playback/player.h"
-#include "twin/scene/machines/machine_model.h"
 
 namespace kerf {
 

@@ -6,8 +6,8 @@
 
 #include "base/mesh_file.h"
 #include "tests/base/temporary_folder.h"
-#include "tests/twin/scene/machines/mesh_support.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "tests/twin/machines/mesh_support.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "twin/machine/kinematics/tool_path.h"
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 namespace kerf {
 namespace {
@@ -42,6 +42,18 @@ void expect_nose_at_the_tool(const MachineModel& machine, const ToolPath& path, 
   const Vec3 up = path.spindle_at(m, 1);
   EXPECT_LT(glm::length(Vec3(nose[3]) - (tool.origin_mm + kToolLength_mm * up)), 1e-3);
   EXPECT_LT(glm::length(Vec3(nose[2]) - up), 1e-5);
+}
+
+TEST(DrawnMachine, TheViewerIsGivenEachLinkAsItIs) {
+  const MachineModel model = machine_around_a_block(MachineKind::kGantry);
+  const SceneMachine scene = scene_machine(model);
+  EXPECT_EQ(scene.name, "gantry router");
+  ASSERT_EQ(scene.links.size(), model.links.size());
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    EXPECT_EQ(scene.links[i].name, model.links[i].name);
+    EXPECT_EQ(scene.links[i].mesh, model.links[i].mesh) << "shared, not copied";
+    EXPECT_EQ(scene.links[i].color, model.links[i].color);
+  }
 }
 
 TEST(DrawnMachine, StandsWhereTheKinematicsHaveTheTool) {

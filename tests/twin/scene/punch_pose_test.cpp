@@ -5,7 +5,7 @@
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
 #include "tests/twin/process/motions.h"
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 namespace kerf {
 namespace {

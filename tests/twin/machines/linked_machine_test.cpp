@@ -1,10 +1,10 @@
-#include "twin/scene/machines/linked_machine.h"
+#include "twin/machines/linked_machine.h"
 
 #include <gtest/gtest.h>
 
 #include "base/mesh_file.h"
 #include "tests/base/temporary_folder.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 namespace {
@@ -48,7 +48,7 @@ TEST(LinkedMachine, ShapesAndMeshesHangOnTheirLinks) {
   EXPECT_NEAR(box.min.z, 5, 1e-5);
   EXPECT_NEAR(box.max.z, 30.4, 1e-5);
   EXPECT_EQ(model->links[0].mesh->triangles.size(), 12U);
-  EXPECT_EQ(tool_pose(*model, {{0, 0, 40}, {}}, 30).tip_mm, Vec3(-10, 0, 10));
+  EXPECT_EQ(tool_stand(*model, {{0, 0, 40}, {}}, 30).tip_mm, Vec3(-10, 0, 10));
 }
 
 TEST(LinkedMachine, MissingAndBrokenFilesAreAllNamed) {

@@ -1,8 +1,8 @@
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 #include <cassert>
 
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 

@@ -1,4 +1,4 @@
-#include "twin/scene/machines/mesh_builder.h"
+#include "twin/machines/mesh_builder.h"
 
 #include <algorithm>
 #include <cmath>

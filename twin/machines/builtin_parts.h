@@ -1,4 +1,4 @@
-// twin/scene/machines/builtin_parts.h - what the built-in machines share. For the sources of
+// twin/machines/builtin_parts.h - what the built-in machines share. For the sources of
 // builtin_machine() only.
 #pragma once
 
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "twin/scene/machines/builtin_models.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "twin/machines/builtin_models.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 
@@ -55,7 +55,7 @@ class MachineAssembly {
 
  private:
   std::vector<ChainLink> links_;
-  std::vector<MachineLink> drawn_;
+  std::vector<LinkShape> drawn_;
 };
 
 /// Between a table at its hindmost and the column.

@@ -1,4 +1,4 @@
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 #include <algorithm>
 #include <cassert>

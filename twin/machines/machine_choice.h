@@ -1,4 +1,4 @@
-// twin/scene/machines/machine_choice.h - which machine is drawn, if the user does not say.
+// twin/machines/machine_choice.h - which machine it is, if the user does not say.
 #pragma once
 
 #include <optional>
@@ -6,8 +6,8 @@
 
 #include "twin/machine/kinematics/work_frame.h"
 #include "twin/machine/machine_setup.h"
-#include "twin/scene/machines/builtin_models.h"
-#include "twin/scene/machines/linked_machine.h"
+#include "twin/machines/builtin_models.h"
+#include "twin/machines/linked_machine.h"
 
 namespace kerf {
 

@@ -1,7 +1,7 @@
 // The knee mill.
 #include <algorithm>
 
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 namespace {

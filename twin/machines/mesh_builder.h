@@ -1,4 +1,4 @@
-// twin/scene/machines/mesh_builder.h - closed meshes from boxes, turned and extruded pieces.
+// twin/machines/mesh_builder.h - closed meshes from boxes, turned and extruded pieces.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
-#include "twin/scene/machines/mesh_builder.h"
+#include "twin/machines/mesh_builder.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/twin/scene/machines/mesh_support.h"
-#include "twin/scene/machines/linked_machine.h"
+#include "tests/twin/machines/mesh_support.h"
+#include "twin/machines/linked_machine.h"
 
 namespace kerf {
 namespace {

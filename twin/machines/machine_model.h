@@ -1,15 +1,23 @@
-// twin/scene/machines/machine_model.h - a machine to look at: its chain, a mesh for each link, and
-// where the program's coordinates lie in it. What the viewer is given comes from here.
+// twin/machines/machine_model.h - a machine with its shape: its chain, a mesh for each link, and
+// where the program's coordinates lie in it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/triangle_mesh.h"
 #include "twin/machine/kinematics/kinematic_chain.h"
-#include "viewer/scene.h"
 
 namespace kerf {
+
+/// Part of a machine that moves as one: table, saddle, head.
+struct LinkShape {
+  std::string name;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< In the link's own frame.
+  std::uint32_t color = 0xffa0a0a0;          ///< 0xAABBGGRR
+};
 
 /// Frames: `base` stands on the floor; each link has its own (chain). Machine zero is where the
 /// origin of the tool link (the nose) is with all axes at 0; machine coordinates count from there.
@@ -19,24 +27,26 @@ namespace kerf {
 struct MachineModel {
   std::string name;  ///< "knee mill"
   KinematicChain chain;
-  std::vector<MachineLink> links;  ///< Of chain.links(), in this order; meshes in the link's frame.
-  Pose link_from_workpiece;        ///< link_from_workpiece_of().
+  std::vector<LinkShape> links;  ///< Of chain.links(), in this order; meshes in the link's frame.
+  Pose link_from_workpiece;      ///< link_from_workpiece_of().
   Vec3 nose_from_tip{0.0, 0.0, 1.0};  ///< Unit vector in the tool link's frame; of a lathe +X.
 };
 
 /// Where a work offset puts the program's frame in the workpiece link.
 Pose link_from_workpiece_of(const KinematicChain& chain, const Pose& machine_from_workpiece);
 
-/// What the viewer keeps.
-SceneMachine scene_machine(const MachineModel& model);
-
-/// For Moment::link_poses: from each link to the workpiece frame. Reuses the memory of `out`.
+/// From each link to the workpiece frame. Reuses the memory of `out`.
 void link_poses(const MachineModel& model, const MachinePosition& position,
                 std::vector<glm::mat4>& out);
 
-/// Tip and axis of a tool of that length in the workpiece frame.
-ToolPose tool_pose(const MachineModel& model, const MachinePosition& position,
-                   double tool_length_mm);
+/// A tool in the workpiece frame.
+struct ToolStand {
+  Vec3 tip_mm{0.0};
+  Vec3 axis{0.0, 0.0, 1.0};  ///< Unit length, from the tip to the spindle.
+};
+/// Of a tool of that length.
+ToolStand tool_stand(const MachineModel& model, const MachinePosition& position,
+                     double tool_length_mm);
 
 /// Machine position for what a program has for axes under its work offset, X Y Z being those of the
 /// tip. Trivial kinematics: every axis by itself, so a table that turns takes the part away from

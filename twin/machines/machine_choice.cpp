@@ -1,4 +1,4 @@
-#include "twin/scene/machines/machine_choice.h"
+#include "twin/machines/machine_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "twin/scene/machines/linked_machine.h"
+#include "twin/machines/linked_machine.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "base/translate.h"
 #include "twin/collision/stl_mesh.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 namespace {
@@ -66,7 +66,7 @@ void check_shapes(const LinkedMachine& description, Diagnostics& diagnostics) {
 std::optional<MachineModel> linked_machine(const LinkedMachine& description,
                                            const Pose& machine_from_workpiece,
                                            Diagnostics& diagnostics) {
-  std::vector<MachineLink> drawn;
+  std::vector<LinkShape> drawn;
   bool complete = true;
   for (const LinkSpec& link : description.links) {
     std::optional<TriangleMesh> shape = shape_of(link, diagnostics);

@@ -1,10 +1,10 @@
 // What every built-in machine promises, over all kinds and rooms of several sizes.
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/twin/scene/machines/mesh_support.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "tests/twin/machines/mesh_support.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 namespace {
@@ -104,7 +104,7 @@ TEST(BuiltinModels, EveryLinkIsClosedAndTheWholeIsSmall) {
     ASSERT_EQ(model.links.size(), model.chain.links().size());
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < model.links.size(); ++i) {
-      const MachineLink& link = model.links[i];
+      const LinkShape& link = model.links[i];
       EXPECT_EQ(link.name, model.chain.links()[i].name);
       EXPECT_EQ(open_edges(*link.mesh), 0U) << one.name << " " << link.name;
       EXPECT_GT(volume_mm3(*link.mesh), 0.0) << one.name << " " << link.name;
@@ -250,14 +250,13 @@ TEST(BuiltinModels, TheHeadsTiltFreely) {
   }
 }
 
-TEST(BuiltinModels, LinksAreGivenToTheViewerInTheWorkpieceFrame) {
+TEST(BuiltinModels, LinksAreSeenFromTheWorkpieceFrame) {
   MachineRoom room;
   room.blank_mm = {{0, 0, -10}, {50, 50, 0}};
   room.machine_from_workpiece = shift({100, 0, 0}) * turn({0, 0, 1}, 90);
   const MachineModel model = builtin_machine(MachineKind::kGantry, room);
-  const SceneMachine scene = scene_machine(model);
-  EXPECT_EQ(scene.name, "gantry router");
-  ASSERT_EQ(scene.links.size(), 5U);
+  EXPECT_EQ(model.name, "gantry router");
+  ASSERT_EQ(model.links.size(), 5U);
   std::vector<glm::mat4> poses;
   link_poses(model, position_of_axes(model, {5, 6, 7}, 30), poses);
   ASSERT_EQ(poses.size(), 5U);

@@ -1,10 +1,10 @@
 // The gantry router, and the plasma table that is built like it.
-#include "twin/scene/machines/builtin_gantry.h"
+#include "twin/machines/builtin_gantry.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/scene/machines/machine_model.h"
+#include "twin/machines/machine_model.h"
 
 #include <glm/geometric.hpp>
 
@@ -30,8 +30,6 @@ Pose link_from_workpiece_of(const KinematicChain& chain, const Pose& machine_fro
   return chain.workpiece_from_tool({}) * machine_from_workpiece;
 }
 
-SceneMachine scene_machine(const MachineModel& model) { return {model.name, model.links}; }
-
 void link_poses(const MachineModel& model, const MachinePosition& position,
                 std::vector<glm::mat4>& out) {
   // A machine has a handful of links: no need for memory that outlives the call.
@@ -43,8 +41,8 @@ void link_poses(const MachineModel& model, const MachinePosition& position,
   for (const Pose& pose : base_from_link) out.push_back(to_mat4(workpiece_from_base * pose));
 }
 
-ToolPose tool_pose(const MachineModel& model, const MachinePosition& position,
-                   double tool_length_mm) {
+ToolStand tool_stand(const MachineModel& model, const MachinePosition& position,
+                     double tool_length_mm) {
   const Pose pose = model.link_from_workpiece.inverse() * model.chain.workpiece_from_tool(position);
   return {tip_of(model, position, tool_length_mm), pose.direction(model.nose_from_tip)};
 }

@@ -5,9 +5,9 @@
 
 #include "stock/sheet/punch_hits.h"
 #include "stock/sheet/punch_shape.h"
-#include "tests/twin/scene/machines/mesh_support.h"
-#include "twin/scene/machines/builtin_models.h"
-#include "twin/scene/machines/mesh_builder.h"
+#include "tests/twin/machines/mesh_support.h"
+#include "twin/machines/builtin_models.h"
+#include "twin/machines/mesh_builder.h"
 
 namespace kerf {
 namespace {
@@ -69,7 +69,7 @@ TEST(PunchPress, SheetOrHeadMoves) {
     const Box ram = place_of(model, over(model, 220, 130), "ram");
     EXPECT_NEAR(0.5 * (ram.min.x + ram.max.x), 220, 1e-3);
     EXPECT_NEAR(0.5 * (ram.min.y + ram.max.y), 130, 1e-3);
-    for (const MachineLink& link : model.links) EXPECT_EQ(open_edges(*link.mesh), 0U) << link.name;
+    for (const LinkShape& link : model.links) EXPECT_EQ(open_edges(*link.mesh), 0U) << link.name;
   }
 }
 

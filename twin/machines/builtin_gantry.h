@@ -1,8 +1,8 @@
-// twin/scene/machines/builtin_gantry.h - parts of machines with a bridge over the table. For the
+// twin/machines/builtin_gantry.h - parts of machines with a bridge over the table. For the
 // sources of builtin_machine() only.
 #pragma once
 
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/scene/machines/builtin_gantry.h"
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_gantry.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 namespace {

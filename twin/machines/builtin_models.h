@@ -1,4 +1,4 @@
-// twin/scene/machines/builtin_models.h - machines that kerf draws by itself, made to the size of
+// twin/machines/builtin_models.h - machines that kerf draws by itself, made to the size of
 // the workpiece and the travels.
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "twin/machine/turret.h"
-#include "twin/scene/machines/machine_model.h"
+#include "twin/machines/machine_model.h"
 
 namespace kerf {
 

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "twin/machine/kinematics/known_kinematics.h"
-#include "twin/scene/machines/builtin_models.h"
+#include "twin/machines/builtin_models.h"
 
 namespace kerf {
 namespace {
@@ -148,7 +148,7 @@ TEST(TrivialKinematics, ThePointIsWhereTheAxesSay) {
       if (kind == MachineKind::kLathe) axes[1] = 0;
       const Vec3 wanted(axes[0], axes[1], axes[2]);
       const MachinePosition position = position_of_axes(model, axes, 87.5);
-      const ToolPose tool = tool_pose(model, position, 87.5);
+      const ToolStand tool = tool_stand(model, position, 87.5);
       expect_near(tool.tip_mm, wanted, model.name.c_str());
       const std::optional<MachinePosition> solved = position_of_tip(model, axes, 87.5);
       ASSERT_TRUE(solved) << model.name;
@@ -166,16 +166,16 @@ TEST(TrivialKinematics, ATrunnionTurnsThePartAwayUnderStandingAxes) {
   const MachineModel model = builtin_machine(MachineKind::kTrunnion, room);
   // A table turned right-handed by 90 degrees about X brings what was at +Y up to +Z: the point
   // above the pivot is, in the part, at +Y.
-  expect_near(tool_pose(model, position_of_axes(model, {0, 0, 10, 90}, 50), 50).tip_mm,
+  expect_near(tool_stand(model, position_of_axes(model, {0, 0, 10, 90}, 50), 50).tip_mm,
               Vec3(0, 10, 0));
-  expect_near(tool_pose(model, position_of_axes(model, {0, 0, 10, 90}, 50), 50).axis,
+  expect_near(tool_stand(model, position_of_axes(model, {0, 0, 10, 90}, 50), 50).axis,
               Vec3(0, 1, 0));
   // C after it, about the part's own axis.
-  expect_near(tool_pose(model, position_of_axes(model, {0, 0, 10, 90, 0, 90}, 50), 50).tip_mm,
+  expect_near(tool_stand(model, position_of_axes(model, {0, 0, 10, 90, 0, 90}, 50), 50).tip_mm,
               Vec3(10, 0, 0));
   room.trunnion.tilts_about_y = true;
   const MachineModel other = builtin_machine(MachineKind::kTrunnion, room);
-  expect_near(tool_pose(other, position_of_axes(other, {0, 0, 10, 0, 90}, 50), 50).tip_mm,
+  expect_near(tool_stand(other, position_of_axes(other, {0, 0, 10, 0, 90}, 50), 50).tip_mm,
               Vec3(-10, 0, 0));
 }
 
@@ -258,7 +258,7 @@ TEST(PositionOfTip, PutsTheTipOnThePartWhateverTurns) {
     const AxisValues program = positions.next().axes;
     const std::optional<MachinePosition> position = position_of_tip(model, program, 72);
     ASSERT_TRUE(position);
-    expect_near(tool_pose(model, *position, 72).tip_mm, Vec3(program[0], program[1], program[2]));
+    expect_near(tool_stand(model, *position, 72).tip_mm, Vec3(program[0], program[1], program[2]));
     EXPECT_EQ(position->axes[3], program[3]);
   }
 }

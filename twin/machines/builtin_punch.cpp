@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/scene/machines/builtin_parts.h"
+#include "twin/machines/builtin_parts.h"
 
 namespace kerf {
 namespace {

@@ -1,4 +1,4 @@
-// tests/twin/scene/machines/mesh_support.h - what is true of closed meshes.
+// tests/twin/machines/mesh_support.h - what is true of closed meshes.
 #pragma once
 
 #include <cstddef>

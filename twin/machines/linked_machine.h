@@ -1,4 +1,4 @@
-// twin/scene/machines/linked_machine.h - a machine as its user describes it, link by link.
+// twin/machines/linked_machine.h - a machine as its user describes it, link by link.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 #include "base/diagnostic.h"
 #include "stock/blank.h"
-#include "twin/scene/machines/builtin_models.h"
-#include "twin/scene/machines/machine_model.h"
+#include "twin/machines/builtin_models.h"
+#include "twin/machines/machine_model.h"
 
 namespace kerf {
 
