@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -69,11 +70,13 @@ struct Contact {
   double depth_mm = 0;  ///< greatest depth reached on the whole move
 };
 
-/// A part of the tool above its cutting edges, from `from_z_mm` above the tip to wherever: shank,
-/// or a section of the holder.
+/// A part of the tool above its cutting edges, a cylinder from `from_z_mm` above the tip to
+/// `to_z_mm`: shank, or a section of the holder. Models of heights take it as endless upward: what
+/// stands there stands on what is below.
 struct CarriedPart {
   double radius_mm = 0;
   double from_z_mm = 0;
+  double to_z_mm = std::numeric_limits<double>::infinity();
 };
 
 /// Where a part of a tool first meets material on a move that the tool cuts as it goes.
@@ -81,6 +84,13 @@ struct PartContact {
   Vec3 tip_mm{0};   ///< tool tip then
   double t = 0;     ///< fraction of the move
   double depth_mm;  ///< so much higher the part would have to be to clear all of the move
+};
+
+/// How near such a part comes.
+struct PartGap {
+  double mm = 0;
+  double t = 0;    ///< fraction of the move
+  Vec3 tip_mm{0};  ///< tool tip then
 };
 
 /// Workpiece as it is now. One owner thread; snapshots are cheap, immutable in effect and may go to
@@ -112,17 +122,26 @@ class StockModel {
   virtual std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                                double tolerance_mm) const = 0;
 
-  /// Whether part_contact() looks for anything.
+  /// Whether the three below look for anything.
   virtual bool checks_parts() const { return false; }
-  /// Material is nowhere higher over this rectangle. An upper bound, moves held back or not; cheap.
-  virtual double highest_mm(const Vec2& /*low*/, const Vec2& /*high*/) const {
-    return bounds_mm().max.z;
+  /// All material is at least this far from the part on the whole move, as far as up to `most_mm`;
+  /// a lower bound, moves held back or not. Cheap: it is not looked at closely what is farther than
+  /// `enough_mm` for sure.
+  virtual double part_spare_mm(const CarriedPart&, const CutMove&, double /*enough_mm*/,
+                               double most_mm) const {
+    return most_mm;
   }
-  /// Would this part of an upright tool touch material that `cutter`, on its way along this move,
-  /// has not cut before the part comes there? What stands higher than the flutes reach is not cut.
-  /// Where it goes deeper than `tolerance_mm`. Changes nothing.
+  /// Would this part of a tool touch material that `cutter`, on its way along this move, has not
+  /// cut before the part comes there? What stands higher than the flutes reach is not cut. Where it
+  /// goes deeper than `tolerance_mm`. Changes nothing.
   virtual std::optional<PartContact> part_contact(const Cutter&, const CarriedPart&, const CutMove&,
                                                   double /*tolerance_mm*/) const {
+    return std::nullopt;
+  }
+  /// How near the part comes to what the move leaves of the workpiece, where that is less than
+  /// `below_mm`; 0: it touches. Good to a cell.
+  virtual std::optional<PartGap> part_gap(const Cutter&, const CarriedPart&, const CutMove&,
+                                          double /*below_mm*/) const {
     return std::nullopt;
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "base/translate.h"
 
@@ -19,6 +20,8 @@ constexpr double kInto_mm = 0.02, kIntoShrinks = 0.86;
 /// After so many steps it must have come nearer by a tenth.
 constexpr int kLookEvery = 16;
 constexpr double kStill_mm = 1e-7;
+/// Whoever looks for the nearest point goes on while so many steps bring it nearer by this.
+constexpr double kCloser_mm = 1e-4;
 /// Points of the tool's own surface are not inside of it, whatever rounding says.
 constexpr double kInside_mm = 1e-7;
 static_assert(kLanes == 8, "one lane for each eighth of a block");
@@ -45,38 +48,40 @@ Vec3 into(const Box& box, const Vec3& p) { return glm::max(box.min, glm::min(box
 
 }  // namespace
 
-bool BlankContact::is_near(const Sweep& sweep, const Box& block) {
+bool BlankContact::is_near(const Sweep& sweep, const Box& block, double within_mm) {
   const Vec3 middle = 0.5 * (block.min + block.max);
   std::fill(std::begin(x_), std::end(x_), middle.x);
   std::fill(std::begin(y_), std::end(y_), middle.y);
   std::fill(std::begin(z_), std::end(z_), middle.z);
   kernel_.distance(sweep, 1, x_, y_, z_, f_);
-  return f_[0] - sweep.shrink_mm <= 0.5 * glm::length(block.size());
+  return f_[0] - sweep.shrink_mm <= 0.5 * glm::length(block.size()) + within_mm;
+}
+
+BlankContact::Lanes BlankContact::lanes_of(const BlankBody& body, const Box& block, double in_mm) {
+  Lanes lanes;
+  const Vec3 half = 0.5 * block.size();
+  for (int l = 0; l < kLanes; ++l) {
+    Box part;
+    part.min = block.min + half * Vec3(l & 1, l >> 1 & 1, l >> 2);
+    part.max = part.min + half;
+    Box& box = lanes.boxes[l];
+    box.min = glm::max(part.min, body.bounds_mm.min + Vec3(in_mm));
+    box.max = glm::min(part.max, body.bounds_mm.max - Vec3(in_mm));
+    lanes.searching[l] = box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
+    lanes.at[l] = lanes.searching[l] ? 0.5 * (box.min + box.max) : part.min;
+    lanes.any |= lanes.searching[l];
+  }
+  return lanes;
 }
 
 /// Each lane begins in the middle of its eighth of the block.
 bool BlankContact::search(const Sweep& sweep, const BlankBody& body, const Box& block,
                           Vec3& found_mm) {
   const double in = std::max(sweep.shrink_mm, kStill_mm);
-  Box part;
-  Box boxes[kLanes];
-  Vec3 at[kLanes];
-  bool searching[kLanes];
-  bool any = false;
+  auto [boxes, at, searching, any] = lanes_of(body, block, in);
   double nearest[kLanes], nearest_before[kLanes];
   std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<double>::infinity());
   std::copy(std::begin(nearest), std::end(nearest), nearest_before);
-  const Vec3 half = 0.5 * block.size();
-  for (int l = 0; l < kLanes; ++l) {
-    part.min = block.min + half * Vec3(l & 1, l >> 1 & 1, l >> 2);
-    part.max = part.min + half;
-    boxes[l].min = glm::max(part.min, body.bounds_mm.min + Vec3(in));
-    boxes[l].max = glm::min(part.max, body.bounds_mm.max - Vec3(in));
-    searching[l] = boxes[l].min.x <= boxes[l].max.x && boxes[l].min.y <= boxes[l].max.y &&
-                   boxes[l].min.z <= boxes[l].max.z;
-    at[l] = searching[l] ? 0.5 * (boxes[l].min + boxes[l].max) : part.min;
-    any |= searching[l];
-  }
   double deeper = kInto_mm;
   for (int step = 0; any && step < kMostSteps; ++step, deeper *= kIntoShrinks) {
     for (int l = 0; l < kLanes; ++l) {
@@ -109,21 +114,59 @@ bool BlankContact::search(const Sweep& sweep, const BlankBody& body, const Box& 
   return false;
 }
 
-bool BlankContact::touches(const Sweep& sweep, int bx, int by, int bz, unsigned blocks) {
-  const int brick[3] = {bx, by, bz};
-  Vec3 found;
-  for (; blocks != 0; blocks &= blocks - 1) {
-    const int b = std::countr_zero(blocks);
-    Box block;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int first = brick[axis] * kBrick + (b >> axis & 1) * kBlock;
-      block.min[axis] = lattice_.place_mm(axis, first);
-      block.max[axis] = lattice_.place_mm(axis, first + kBlock);
+/// By projecting to and fro: to what is swept, and back to the body.
+std::optional<BlankContact::Nearest> BlankContact::nearest_in(const Sweep& sweep, const Box& block,
+                                                              double below_mm) {
+  if (!is_near(sweep, block, below_mm)) return std::nullopt;
+  Nearest least{below_mm, Vec3(0)};
+  for (const BlankBody& body : bodies_) {
+    auto [boxes, at, searching, any] = lanes_of(body, block, kStill_mm);
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0; any && step < kMostSteps; ++step) {
+      for (int l = 0; l < kLanes; ++l) {
+        x_[l] = at[l].x;
+        y_[l] = at[l].y;
+        z_[l] = at[l].z;
+      }
+      kernel_.gradient(sweep, kLanes, x_, y_, z_, f_, gx_, gy_, gz_);
+      for (int l = 0; l < kLanes; ++l) {
+        if (!searching[l]) continue;
+        const double f = f_[l] - sweep.shrink_mm;
+        const Vec3 round = into_round(body, kStill_mm, at[l]);
+        if (f < least.mm && glm::length(round - at[l]) <= kStill_mm) least = {f, at[l]};
+        const Vec3 inward = at[l] - std::max(f, 0.0) * Vec3(gx_[l], gy_[l], gz_[l]);
+        at[l] = into(boxes[l], into_round(body, kStill_mm, inward));
+      }
+      if (step % kLookEvery != kLookEvery - 1) continue;
+      if (least.mm <= 0 || least.mm > before - kCloser_mm) break;
+      before = least.mm;
     }
-    if (!is_near(sweep, block)) continue;
-    for (const BlankBody& body : bodies_)
-      if (search(sweep, body, block, found)) return true;
   }
+  return least.mm < below_mm ? std::optional(least) : std::nullopt;
+}
+
+Box BlankContact::block_of(int bx, int by, int bz, int number) const {
+  const int brick[3] = {bx, by, bz};
+  Box block;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int first = brick[axis] * kBrick + (number >> axis & 1) * kBlock;
+    block.min[axis] = lattice_.place_mm(axis, first);
+    block.max[axis] = lattice_.place_mm(axis, first + kBlock);
+  }
+  return block;
+}
+
+std::optional<Vec3> BlankContact::point_in(const Sweep& sweep, const Box& block) {
+  if (!is_near(sweep, block)) return std::nullopt;
+  Vec3 found;
+  for (const BlankBody& body : bodies_)
+    if (search(sweep, body, block, found)) return found;
+  return std::nullopt;
+}
+
+bool BlankContact::touches(const Sweep& sweep, int bx, int by, int bz, unsigned blocks) {
+  for (; blocks != 0; blocks &= blocks - 1)
+    if (point_in(sweep, block_of(bx, by, bz, std::countr_zero(blocks)))) return true;
   return false;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,17 @@ class BlankContact {
   /// Searches by projecting to and fro: of convex parts (all but hollow tubes, level arcs and
   /// turning pieces, of which a block sees little) it finds what there is.
   bool touches(const Sweep& sweep, int bx, int by, int bz, unsigned blocks);
+  /// The same of one block, as a point of it that is in both, or nothing.
+  std::optional<Vec3> point_in(const Sweep& sweep, const Box& block);
+  /// The point of one block of the blank that is nearest to what is swept, to a micrometre or so;
+  /// nothing if none is nearer than `below_mm`. A negative distance is only that: inside.
+  struct Nearest {
+    double mm;
+    Vec3 at_mm;
+  };
+  std::optional<Nearest> nearest_in(const Sweep& sweep, const Box& block, double below_mm);
+  /// Of block `number` (0..7) of a brick.
+  Box block_of(int bx, int by, int bz, int number) const;
   /// How deep an upright tool goes below the top of a blank that is one box, at the most, where
   /// that is untouched from there to the top; 0: nowhere, or it is not known.
   double depth_mm(const BrickTree& tree, std::span<const Sweep> sweeps);
@@ -36,7 +48,15 @@ class BlankContact {
   /// Sets `found_mm` if there is a point.
   bool search(const Sweep& sweep, const BlankBody& body, const Box& block, Vec3& found_mm);
   bool is_untouched_above(const BrickTree& tree, const Vec3& point_mm) const;
-  bool is_near(const Sweep& sweep, const Box& block);
+  bool is_near(const Sweep& sweep, const Box& block, double within_mm = 0);
+  /// Lane by lane, the middles of the eighths of a block that the body less `in_mm` has a share of.
+  struct Lanes {
+    Box boxes[kLanes];
+    Vec3 at[kLanes];
+    bool searching[kLanes];
+    bool any = false;
+  };
+  static Lanes lanes_of(const BlankBody& body, const Box& block, double in_mm);
 
   const Lattice& lattice_;
   SweepKernel kernel_;

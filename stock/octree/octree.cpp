@@ -20,6 +20,8 @@
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
 #include "stock/octree/octree_state.h"
+#include "stock/octree/part_bodies.h"
+#include "stock/octree/part_contact.h"
 #include "stock/octree/solid_point.h"
 #include "stock/octree/thin_films.h"
 #include "stock/octree/tool_bodies.h"
@@ -219,6 +221,7 @@ struct Octree::Impl {
     if (!is_plunge(move)) return 0;
     return BlankContact(tree.lattice(), kernel, bodies_of_blank).plunge_depth_mm(tree, move.to_mm);
   }
+  PartField parts_field() const { return {tree, kernel, bodies_of_blank}; }
   DualField field() const {
     return {tree.lattice().origin_mm, tree.lattice().cell_mm,
             [this](const std::array<int, 3>& first, const std::array<int, 3>& nodes,
@@ -376,6 +379,34 @@ std::optional<WayContact> Octree::first_contact_of(const Cutter& cutter,
       m.tree, m.sweeps_of(*tool, rest.first(std::min(kContactMoves, rest.size())), tolerance_mm));
   const double depth_mm = std::max({cells_depth_mm, blank_depth_mm, tolerance_mm});
   return WayContact{first, {first_part(moves[first], meets).to_mm, depth_mm}};
+}
+
+bool Octree::checks_parts() const { return !impl_->additive; }
+
+double Octree::part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                             double most_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near || impl_->additive) return most_mm;
+  return octree::part_spare_mm(impl_->parts_field(), part, *near, enough_mm, most_mm);
+}
+
+std::optional<PartContact> Octree::part_contact(const Cutter& cutter, const CarriedPart& part,
+                                                const CutMove& move, double tolerance_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near || impl_->additive) return std::nullopt;
+  const Result<std::vector<ToolBody>> bodies = tool_bodies(cutter);
+  assert(bodies);
+  return find_part_contact(impl_->parts_field(), flute_bodies(cutter, *bodies), part, *near,
+                           tolerance_mm);
+}
+
+std::optional<PartGap> Octree::part_gap(const Cutter& cutter, const CarriedPart& part,
+                                        const CutMove& move, double below_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near || impl_->additive) return std::nullopt;
+  const Result<std::vector<ToolBody>> bodies = tool_bodies(cutter);
+  assert(bodies);
+  return find_part_gap(impl_->parts_field(), *bodies, part, *near, below_mm);
 }
 
 bool Octree::solid_at(const Vec3& point_mm, double within_mm) const {

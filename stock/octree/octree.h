@@ -84,6 +84,14 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,
                                              double tolerance_mm,
                                              const WayWatch& watch) const override;
+  /// stock/octree/part_contact.h says how exact these are. Nothing in an additive model.
+  bool checks_parts() const override;
+  double part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                       double most_mm) const override;
+  std::optional<PartContact> part_contact(const Cutter& cutter, const CarriedPart& part,
+                                          const CutMove& move, double tolerance_mm) const override;
+  std::optional<PartGap> part_gap(const Cutter& cutter, const CarriedPart& part,
+                                  const CutMove& move, double below_mm) const override;
   bool solid_at(const Vec3& point_mm, double within_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;

@@ -248,4 +248,13 @@ CutMove first_part(const CutMove& move, double part) {
   return first;
 }
 
+CutMove middle_part(const CutMove& move, double from, double to) {
+  CutMove middle = first_part(move, to);
+  const CutMove before = first_part(move, from);
+  middle.from_mm = before.to_mm;
+  middle.axis_from = before.axis_to;
+  if (move.arc) middle.arc->sweep_rad = (to - from) * move.arc->sweep_rad;
+  return middle;
+}
+
 }  // namespace kerf::octree

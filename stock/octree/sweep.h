@@ -65,5 +65,7 @@ void append_sweeps(const std::vector<ToolBody>& bodies, const CutMove& move, std
 
 /// `move` up to `part` (0..1) of its path.
 CutMove first_part(const CutMove& move, double part);
+/// From one part of it to another.
+CutMove middle_part(const CutMove& move, double from, double to);
 
 }  // namespace kerf::octree

@@ -16,11 +16,9 @@ namespace kerf {
 /// about for the first time after a change, which is some hundred ns.
 class TileTops {
  public:
-  /// Of one tile.
+  /// Of one tile. Of a grid that cuts are still to come for, it is an upper bound: heights only
+  /// fall.
   float top_mm(const TileGrid& grid, std::size_t tile);
-  /// Over a rectangle; minus infinity beside the grid. Of a grid that cuts are still to come for,
-  /// it is an upper bound: heights only fall.
-  double highest_mm(const TileGrid& grid, const Vec2& low, const Vec2& high);
 
  private:
   struct Top {

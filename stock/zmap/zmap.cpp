@@ -19,6 +19,7 @@
 #include "stock/zmap/height_sweeper.h"
 #include "stock/zmap/height_view.h"
 #include "stock/zmap/part_contact.h"
+#include "stock/zmap/part_gap.h"
 #include "stock/zmap/state_file.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
@@ -86,8 +87,11 @@ std::optional<Contact> ZMap::first_contact(const Cutter& cutter, const CutMove& 
                             convex_components(cutter.profile()), *near, tolerance_mm);
 }
 
-double ZMap::highest_mm(const Vec2& low, const Vec2& high) const {
-  return impl_->tops.highest_mm(impl_->grid(), low, high);
+double ZMap::part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                           double most_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return most_mm;
+  return find_part_spare_mm(impl_->grid(), impl_->tops, part, *near, enough_mm, most_mm);
 }
 
 std::optional<PartContact> ZMap::part_contact(const Cutter& cutter, const CarriedPart& part,
@@ -95,6 +99,13 @@ std::optional<PartContact> ZMap::part_contact(const Cutter& cutter, const Carrie
   const std::optional<CutMove> near = within_reach(move, bounds_mm());
   if (!near) return std::nullopt;
   return find_part_contact(impl_->grid(), impl_->tops, cutter, part, *near, tolerance_mm);
+}
+
+std::optional<PartGap> ZMap::part_gap(const Cutter& cutter, const CarriedPart& part,
+                                      const CutMove& move, double below_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
+  return find_part_gap(impl_->grid(), impl_->tops, cutter, part, *near, below_mm);
 }
 
 std::unique_ptr<StockModel> ZMap::snapshot() const {

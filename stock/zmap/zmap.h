@@ -46,9 +46,12 @@ class ZMap final : public StockModel, public PresentHeights {
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
   bool checks_parts() const override { return true; }
-  double highest_mm(const Vec2& low, const Vec2& high) const override;
+  double part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                       double most_mm) const override;
   std::optional<PartContact> part_contact(const Cutter& cutter, const CarriedPart& part,
                                           const CutMove& move, double tolerance_mm) const override;
+  std::optional<PartGap> part_gap(const Cutter& cutter, const CarriedPart& part,
+                                  const CutMove& move, double below_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
   void keep_cut_ids(bool keep) override;

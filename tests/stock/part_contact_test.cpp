@@ -107,14 +107,45 @@ TEST(PartContact, TellsWhatStandsAboveTheFlutes) {
       stock->part_contact(cutter, {3, 8}, line({-10, 15, -8}, {40, 15, -8}), kTolerance_mm));
 }
 
-TEST(PartContact, HighestIsABoundThatFollowsTheCut) {
+TEST(PartContact, SpareIsABoundThatFollowsTheCut) {
   const auto stock = block(0.1);
-  EXPECT_EQ(stock->highest_mm({0, 0}, {30, 30}), 0);
+  const CarriedPart part{10, 12};
+  const auto spare = [&](double tip_z_mm) {
+    const Vec3 tip{15, 15, tip_z_mm};
+    return stock->part_spare_mm(part, line(tip, tip), 1, 5);
+  };
+  EXPECT_EQ(spare(2), 5);
+  EXPECT_NEAR(spare(-8), 4, 1e-9);
+  EXPECT_NEAR(spare(-11.5), 0.5, 1e-9);
+  EXPECT_EQ(spare(-13), 0);
   std::vector<CutReport> reports;
   stock->cut(*parse_shape("flat:80"), std::vector{line({15, 15, 5}, {15, 15, -4})}, reports);
   stock->finish(reports);
-  EXPECT_NEAR(stock->highest_mm({0, 0}, {30, 30}), -4, 1e-6);
-  EXPECT_LT(stock->highest_mm({40, 0}, {50, 30}), -1e9);
+  EXPECT_NEAR(spare(-13), 3, 1e-6);
+  EXPECT_EQ(stock->part_spare_mm(part, line({60, 15, -15}, {50, 15, -15}), 1, 5), 5);
+}
+
+TEST(PartContact, TheGapIsTheDistanceToWhatIsLeft) {
+  const auto stock = block(0.1);
+  const Cutter cutter = *parse_shape("flat:6:flute=12");
+  const CarriedPart part{10, 12};
+  // Above the top, beside the block, and over its edge.
+  const auto above = stock->part_gap(cutter, part, line({15, 15, 2}, {15, 15, -11.7}), 1);
+  ASSERT_TRUE(above);
+  EXPECT_NEAR(above->mm, 0.3, 1e-4);
+  EXPECT_NEAR(above->t, 1, 1e-4);
+  EXPECT_FALSE(stock->part_gap(cutter, part, line({15, 15, 2}, {15, 15, -10.9}), 1));
+  const auto beside = stock->part_gap(cutter, part, line({-10.5, 0, -20}, {-10.5, 30, -20}), 1);
+  ASSERT_TRUE(beside);
+  EXPECT_NEAR(beside->mm, 0.5, 0.06);
+  const auto over = stock->part_gap(cutter, part, line({-10.3, 15, -11.6}, {-40, 15, 0}), 1);
+  ASSERT_TRUE(over);
+  EXPECT_NEAR(over->mm, 0.5, 0.06);
+  EXPECT_NEAR(over->t, 0, 1e-3);
+  // The cutter, wide enough, takes away what the part would come near to.
+  const Cutter wide = *parse_shape("flat:24:flute=12");
+  EXPECT_FALSE(stock->part_gap(wide, part, line({15, 15, 2}, {15, 15, -11.7}), 1));
+  EXPECT_TRUE(stock->part_gap(wide, {12.5, 12}, line({15, 15, 2}, {15, 15, -11.7}), 1));
 }
 
 TEST(PartContact, AgreesWithSteppingAlongTheWay) {

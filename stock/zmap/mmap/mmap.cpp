@@ -24,6 +24,7 @@
 #include "stock/zmap/mmap/mmap_mesh.h"
 #include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/part_contact.h"
+#include "stock/zmap/part_gap.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_patch.h"
 
@@ -137,8 +138,11 @@ std::optional<Contact> MMap::first_contact(const Cutter& cutter, const CutMove& 
                          find_first_contact(field, tool.lower, *near, tolerance_mm));
 }
 
-double MMap::highest_mm(const Vec2& low, const Vec2& high) const {
-  return impl_->tops.highest_mm(impl_->grid(), low, high);
+double MMap::part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                           double most_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return most_mm;
+  return find_part_spare_mm(impl_->grid(), impl_->tops, part, *near, enough_mm, most_mm);
 }
 
 std::optional<PartContact> MMap::part_contact(const Cutter& cutter, const CarriedPart& part,
@@ -146,6 +150,13 @@ std::optional<PartContact> MMap::part_contact(const Cutter& cutter, const Carrie
   const std::optional<CutMove> near = within_reach(move, bounds_mm());
   if (!near) return std::nullopt;
   return find_part_contact(impl_->grid(), impl_->tops, cutter, part, *near, tolerance_mm);
+}
+
+std::optional<PartGap> MMap::part_gap(const Cutter& cutter, const CarriedPart& part,
+                                      const CutMove& move, double below_mm) const {
+  const std::optional<CutMove> near = within_reach(move, bounds_mm());
+  if (!near) return std::nullopt;
+  return find_part_gap(impl_->grid(), impl_->tops, cutter, part, *near, below_mm);
 }
 
 std::unique_ptr<StockModel> MMap::snapshot() const {

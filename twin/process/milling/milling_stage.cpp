@@ -65,7 +65,7 @@ void MillingStage::begin_reporting() {
   checks_.forget_events();
   lengths_.forget();
   films_.forget();
-  parts_.unmount();
+  parts_.begin_reporting();
   fixtures_.unmount();
   program_.forget_events();
   speed_unsaid_.reset();
@@ -76,6 +76,7 @@ void MillingStage::begin_reporting() {
 }
 
 void MillingStage::finish(bool whole) {
+  parts_.finish();
   fixtures_.finish();
   program_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
@@ -185,7 +186,8 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
 
 void MillingStage::check_parts(const Motion& m, const CheckedMove& move) {
   if (fixtures_.active()) fixtures_.check(move);
-  if (!site_.moves.is_upright(m) || !parts_.may_touch(m)) {
+  const bool as_cut = stock_.takes_tilted_tools() || site_.moves.is_upright(m);
+  if (!as_cut || !parts_.may_matter(divided_)) {
     parts_.pass(m);
     return;
   }

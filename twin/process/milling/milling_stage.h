@@ -45,6 +45,7 @@ class MillingStage final : public Process {
   void check_by(const CheckOptions& options) override {
     checks_.set_options(options);
     parts_.set_blank_guessed(options.blank_guessed);
+    parts_.set_clearance(options.collisions.clearance_mm);
     fixtures_.set_wishes(options.collisions);
     spindle_ = options.collisions.spindle;
   }
