@@ -10,7 +10,8 @@ namespace kerf {
 namespace {
 
 constexpr std::uint32_t kPiecesPerLeaf = 4;
-constexpr double kFacet_mm = 0.002;
+/// What grazes a tube goes twenty times as far as this before it is a hundredth deep.
+constexpr double kFacet_mm = 0.0005;
 constexpr int kMostFacets = 4096;
 
 Vec3 axis_of(char letter) {

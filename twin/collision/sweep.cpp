@@ -9,8 +9,10 @@ namespace {
 
 /// Of distances, below what counts.
 constexpr double kGapExact_mm = 1e-4;
-/// Slack that a piece of a curved way may have.
+/// Slack that a piece of a curved way may have: of a least distance, and where it touches first. A
+/// body that grazes goes a long way while it gets a thousandth deeper.
 constexpr double kSlack_mm = kWayExact_mm / 2;
+constexpr double kTouchSlack_mm = 1e-4;
 constexpr double kDepthExact_mm = 0.005;
 /// Halvings of a way at most: of 100 m to a tenth of a micrometre.
 constexpr int kMostHalvings = 30;
@@ -87,7 +89,7 @@ class WaySearch {
     const double slack = way_.slack_mm(t0, t1, reach_mm_);
     const ConvexGap near = gap(from, to, slack);
     if (near.low_mm > slack) return std::nullopt;
-    const bool straight = slack <= kSlack_mm;
+    const bool straight = slack <= kTouchSlack_mm;
     if (straight && near.low_mm > 0) return std::nullopt;
     if (depth >= kMostHalvings || (straight && way_.travel_mm(t0, t1, reach_mm_) <= kWayExact_mm))
       return t0;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kGrain_mm = 0.005;
 /// Nearer than this may be a contact.
 constexpr double kContactGap_mm = 1e-3;
+/// Of places that a program writes down: what runs along a fixture does not touch it.
+constexpr double kRounding_mm = 1e-4;
 /// How far beyond the least distance it is looked, so that moves that follow need no look.
 constexpr double kAhead_mm = 2;
 
@@ -26,6 +28,16 @@ SolidPointer thinner(const Solid& solid, double by_mm) {
     eroded(piece, by_mm, hulls.back(), corners);
   }
   return Solid::of_hulls(hulls);
+}
+
+std::optional<double> first_of(const Solid& body, const RigidWay& way, const Solid& still,
+                               Vec3& guess) {
+  std::optional<double> first;
+  for (const Convex& piece : body.pieces()) {
+    const auto t = first_touch(piece, way, still, guess);
+    if (t && (!first || *t < *first)) first = t;
+  }
+  return first;
 }
 
 std::string contact_text(const std::string& part, double width_mm, double from_z_mm, ToolPart which,
@@ -88,6 +100,7 @@ void FixtureChecks::mount(const Cutter& cutter, int tool, bool guessed, double n
   for (ToolBody& body : tool_bodies(cutter, wishes_.spindle, nose_mm)) {
     Mounted part;
     part.thin = thinner(*body.solid, kContactTolerance_mm);
+    part.bare = thinner(*body.solid, kRounding_mm);
     for (const Convex& piece : body.solid->pieces())
       part.reach_mm = std::max(part.reach_mm, reach_of(piece));
     for (std::size_t i = 0; i < count; ++i) part.pairs.push_back(pair_of(tool, body, i));
@@ -146,13 +159,11 @@ void FixtureChecks::check_pair(Mounted& part, std::size_t fixture, const Checked
     if (spare > kContactGap_mm) return;
   }
   spare = -1;
-  std::optional<double> first;
-  for (const Convex& piece : part.thin->pieces()) {
-    const auto t = first_touch(piece, way, still, guess);
-    if (t && (!first || *t < *first)) first = t;
-  }
+  std::optional<double> first = first_of(*part.thin, way, still, guess);
   if (!first) return;
   touched = true;
+  // What grazes has gone a long way before it is as deep as a contact must be.
+  if (!pair.event) first = first_of(*part.bare, way, still, guess).value_or(*first);
   meet(part, pair, move, which, way, *first);
 }
 

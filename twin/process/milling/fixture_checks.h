@@ -55,6 +55,7 @@ class FixtureChecks {
   struct Mounted {
     ToolBody body;
     SolidPointer thin;  ///< less what a contact may be deep
+    SolidPointer bare;  ///< less what rounding may be: where a contact begins
     double reach_mm = 0;
     std::vector<std::size_t> pairs;  ///< by fixture
     std::vector<double> spare_mm;    ///< no nearer than this at the end of the last move; < 0: ?

@@ -1,0 +1,427 @@
+"""Distances of tools on their way from fixtures and blanks, by formulas of their own: nothing of kerf's geometry is in them.
+
+A part of a tool is a list of pieces about its axis, Z from the tip up, mm:
+    Cylinder(radius, low, high, round_mm)  a cylinder and all that is no farther from it than round_mm: discs are balls, bull noses
+    Cone(radius_low, radius_high, low, high)
+An obstacle is a list of convex bodies in a frame that is turned about Z and shifted: Block, Rod, Pipe (a tube, which is not
+convex, but round). Upright tools are held against them in closed form; tilted ones against blocks by descent, coordinate by
+coordinate, of the squared distance of a point from the piece: convex and smooth, so that it ends at the least.
+"""
+
+import math
+
+EPSILON = 1e-9
+# Farther than anything is measured.
+FAR_mm = 0.5
+
+
+class Cylinder:
+    def __init__(self, radius, low, high, round_mm=0.0, seated=False):
+        """seated: on a rounded one that ends at Z0, which it is one with."""
+        self.radius, self.low, self.high, self.round_mm, self.seated = radius, low, high, round_mm, seated
+
+    def reach(self):
+        return math.hypot(self.radius + self.round_mm, max(abs(self.low), abs(self.high)) + self.round_mm)
+
+    def eroded(self, depth):
+        """Thinner by depth all around; None: nothing is left."""
+        from_round = min(self.round_mm, depth)
+        rest = depth - from_round
+        low = max(self.low, rest) if self.seated else self.low + rest
+        if rest > self.radius or (rest > 0 and low > self.high - rest):
+            return None
+        if rest > 0:
+            return Cylinder(self.radius - rest, low, self.high - rest, 0.0, self.seated)
+        return Cylinder(self.radius, self.low, self.high, self.round_mm - from_round)
+
+    def to_quadrant(self, beside, low, high):
+        """From all that is at least so far from the axis, between two heights."""
+        across = max(beside - self.radius, 0.0)
+        along = max(low - self.high, self.low - high, 0.0)
+        return math.hypot(across, along) - self.round_mm
+
+    def to_point(self, across, along):
+        """The nearest place (across, along) in the core; the distance from that is one to the piece, but for round_mm."""
+        return min(across, self.radius), min(max(along, self.low), self.high)
+
+
+class Cone:
+    round_mm = 0.0
+
+    def __init__(self, radius_low, radius_high, low, high):
+        self.corners = ((0.0, low), (radius_low, low), (radius_high, high), (0.0, high))
+        self.low, self.high = low, high
+
+    def reach(self):
+        return max(math.hypot(*corner) for corner in self.corners)
+
+    def eroded(self, depth):
+        (_, low), (r_low, _), (r_high, _), (_, high) = self.corners
+        if low + depth >= high - depth or r_high <= depth:
+            return None
+        return Cone(max(r_low - depth, 0.0), r_high - depth, low + depth, high)
+
+    def to_quadrant(self, beside, low, high):
+        _, a, b, _ = self.corners
+        return 0.0 if self.within(beside, low, high) else segments_gap(a, b, beside, low, high)
+
+    def within(self, beside, low, high):
+        (r0, z0), (r1, z1) = self.corners[1], self.corners[2]
+        top = min(high, z1)
+        if top < max(low, z0):
+            return False
+        return r0 + (r1 - r0) * (top - z0) / (z1 - z0) >= beside
+
+    def to_point(self, across, along):
+        (r0, z0), (r1, z1) = self.corners[1], self.corners[2]
+        if z0 <= along <= z1 and across <= r0 + (r1 - r0) * (along - z0) / (z1 - z0):
+            return across, along
+        best = None
+        for (ar, az), (br, bz) in zip(self.corners, self.corners[1:]):
+            length2 = (br - ar) ** 2 + (bz - az) ** 2
+            t = 0.0 if length2 == 0 else min(max(((across - ar) * (br - ar) + (along - az) * (bz - az)) / length2, 0.0), 1.0)
+            place = (ar + t * (br - ar), az + t * (bz - az))
+            distance = math.hypot(across - place[0], along - place[1])
+            if best is None or distance < best[0]:
+                best = (distance, place)
+        return best[1]
+
+
+def segments_gap(a, b, beside, low, high):
+    """From the side of a cone to a quadrant, where they are apart: at a corner of one of the two."""
+    gap = math.inf
+    for r, z in (a, b):
+        gap = min(gap, math.hypot(max(beside - r, 0.0), max(low - z, z - high, 0.0)))
+    for r, z in ((beside, low), (beside, high)):
+        length2 = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2
+        t = min(max(((r - a[0]) * (b[0] - a[0]) + (z - a[1]) * (b[1] - a[1])) / length2, 0.0), 1.0)
+        gap = min(gap, math.hypot(r - a[0] - t * (b[0] - a[0]), z - a[1] - t * (b[1] - a[1])))
+    return gap
+
+
+class Block:
+    """A box from one corner to the other."""
+
+    def __init__(self, low, high):
+        self.low, self.high = tuple(low), tuple(high)
+
+    def upright(self, piece, tip):
+        beside = math.hypot(max(self.low[0] - tip[0], tip[0] - self.high[0], 0.0), max(self.low[1] - tip[1], tip[1] - self.high[1], 0.0))
+        return piece.to_quadrant(beside, self.low[2] - tip[2], self.high[2] - tip[2])
+
+    def tilted(self, piece, tip, axis, memory):
+        """memory: keeps the place where the last one was nearest. What is FAR_mm away may be said to be nearer, but not that near."""
+        far = self.ball_gap(piece, tip, axis)
+        if far > FAR_mm:
+            return far
+        p = memory.get((self, piece))
+        if p is None:
+            p = [(a + b) / 2 for a, b in zip(self.low, self.high)]
+        last = math.inf
+        for _ in range(400):
+            before = p.copy()
+            for k in range(3):
+                self.descend(piece, tip, axis, p, [float(i == k) for i in range(3)])
+            # Then on along the valley.
+            self.descend(piece, tip, axis, p, [b - a for a, b in zip(before, p)])
+            now = core_gap(piece, tip, axis, p)[0]
+            if now <= EPSILON or last - now < 1e-9:
+                break
+            last = now
+        memory[(self, piece)] = p
+        return now - piece.round_mm
+
+    def ball_gap(self, piece, tip, axis):
+        """From a ball around the piece."""
+        middle, half = (piece.low + piece.high) / 2, (piece.high - piece.low) / 2
+        center = [t + middle * a for t, a in zip(tip, axis)]
+        gap = math.sqrt(sum(max(low - x, x - high, 0.0) ** 2 for low, x, high in zip(self.low, center, self.high)))
+        return gap - math.hypot(half + piece.round_mm, width_of([piece]))
+
+    def descend(self, piece, tip, axis, p, direction):
+        """Moves p, within the block, along a line to where it is nearest to the piece."""
+        first, last = -math.inf, math.inf
+        for k, d in enumerate(direction):
+            if d != 0:
+                ends = sorted(((self.low[k] - p[k]) / d, (self.high[k] - p[k]) / d))
+                first, last = max(first, ends[0]), min(last, ends[1])
+        if not first < last or last == math.inf:
+            return
+
+        def slope(t):
+            way = core_gap(piece, tip, axis, [a + t * d for a, d in zip(p, direction)])[1]
+            return sum(w * d for w, d in zip(way, direction))
+
+        if slope(first) >= 0:
+            t = first
+        elif slope(last) <= 0:
+            t = last
+        else:
+            for _ in range(34):
+                t = (first + last) / 2
+                if slope(t) > 0:
+                    last = t
+                else:
+                    first = t
+        p[:] = [min(max(a + t * d, low), high) for a, d, low, high in zip(p, direction, self.low, self.high)]
+
+
+def core_gap(piece, tip, axis, p):
+    """Distance of p from a piece that leans, and the way from the nearest place to p."""
+    d = (p[0] - tip[0], p[1] - tip[1], p[2] - tip[2])
+    along = d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2]
+    across = (d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2])
+    length = math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
+    r, z = piece.to_point(length, along)
+    share = 1 - r / length if length > 0 else 0.0
+    rest = along - z
+    way = (share * across[0] + rest * axis[0], share * across[1] + rest * axis[1], share * across[2] + rest * axis[2])
+    return math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2), way
+
+
+class Rod:
+    """A cylinder that stands."""
+
+    def __init__(self, center, radius, low, high):
+        self.center, self.radius, self.low, self.high = tuple(center), radius, low, high
+
+    def upright(self, piece, tip):
+        beside = max(math.hypot(tip[0] - self.center[0], tip[1] - self.center[1]) - self.radius, 0.0)
+        return piece.to_quadrant(beside, self.low - tip[2], self.high - tip[2])
+
+
+class Bar:
+    """A cylinder that lies along X, longer than the tool's way."""
+
+    def __init__(self, center_y, center_z, radius, low_x, high_x):
+        self.center, self.radius, self.low_x, self.high_x = (center_y, center_z), radius, low_x, high_x
+
+    def upright(self, piece, tip):
+        assert self.low_x <= tip[0] <= self.high_x and isinstance(piece, Cylinder)
+        across = max(abs(self.center[0] - tip[1]) - piece.radius, 0.0)
+        along = max(tip[2] + piece.low - self.center[1], self.center[1] - tip[2] - piece.high, 0.0)
+        return max(math.hypot(across, along) - self.radius, 0.0) - piece.round_mm
+
+
+class TooDeep(Exception):
+    """A tool's axis within the wall of a pipe: what is drawn here is outside or inside of it."""
+
+
+class Pipe:
+    """A tube that stands; the tool stays outside (then it is as good as solid), or inside."""
+
+    def __init__(self, center, radius, inner, low, high, inside):
+        self.center, self.radius, self.inner, self.low, self.high, self.inside = tuple(center), radius, inner, low, high, inside
+
+    def upright(self, piece, tip):
+        away = math.hypot(tip[0] - self.center[0], tip[1] - self.center[1])
+        if (away > self.inner) if self.inside else (away < self.inner):
+            raise TooDeep
+        beside = self.inner - away if self.inside else max(away - self.radius, 0.0)
+        return piece.to_quadrant(beside, self.low - tip[2], self.high - tip[2])
+
+
+class Obstacle:
+    """Bodies that are turned about Z by turn_deg, then shifted."""
+
+    def __init__(self, bodies, at=(0.0, 0.0, 0.0), turn_deg=0.0):
+        self.bodies, self.at, self.turn_deg = bodies, tuple(at), turn_deg
+        self.cosine, self.sine = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+
+    def moved(self, by):
+        return Obstacle(self.bodies, tuple(a + b for a, b in zip(self.at, by)), self.turn_deg)
+
+    def direction(self, v):
+        return (self.cosine * v[0] + self.sine * v[1], self.cosine * v[1] - self.sine * v[0], v[2])
+
+
+class Move:
+    """Of one line: the tip's way and the spindle's, by t from 0 to 1, in the frame of the workpiece."""
+
+    def __init__(self, line, start, end, turn=None, from_ac=(0.0, 0.0), to_ac=(0.0, 0.0)):
+        """turn: (center, axis number, radians) of an arc; it climbs along its axis evenly. A and C in degrees."""
+        self.line, self.start, self.end, self.turn = line, tuple(start), tuple(end), turn
+        self.from_ac, self.to_ac = from_ac, to_ac
+        self.leans = any(abs(a) > 0 for a in (from_ac[0], to_ac[0]))
+        self.turns = from_ac != to_ac
+
+    def tip(self, t):
+        if self.turn is None:
+            return tuple(a + t * (b - a) for a, b in zip(self.start, self.end))
+        center, number, angle = self.turn
+        u, v = (number + 1) % 3, (number + 2) % 3
+        x, y = self.start[u] - center[u], self.start[v] - center[v]
+        c, s = math.cos(t * angle), math.sin(t * angle)
+        out = [0.0, 0.0, 0.0]
+        out[u], out[v] = center[u] + c * x - s * y, center[v] + s * x + c * y
+        out[number] = self.start[number] + t * (self.end[number] - self.start[number])
+        return tuple(out)
+
+    def axis(self, t):
+        """Where the spindle points in the workpiece: the table turns it by C about Z, then by A about X."""
+        a, c = (math.radians(p + t * (q - p)) for p, q in zip(self.from_ac, self.to_ac))
+        return (math.sin(a) * math.sin(c), math.sin(a) * math.cos(c), math.cos(a))
+
+    def speed(self, reach):
+        """No point of the tool within reach of the tip goes farther while t goes from 0 to 1."""
+        if self.turn is None:
+            tip = math.dist(self.start, self.end)
+        else:
+            center, number, angle = self.turn
+            u, v = (number + 1) % 3, (number + 2) % 3
+            radius = math.hypot(self.start[u] - center[u], self.start[v] - center[v])
+            tip = math.hypot(radius * angle, self.end[number] - self.start[number])
+        swing = math.radians(abs(self.to_ac[0] - self.from_ac[0]) + abs(self.to_ac[1] - self.from_ac[1]))
+        return tip + swing * reach
+
+
+class Pair:
+    """One piece against one body of an obstacle, on one move."""
+
+    def __init__(self, piece, body, obstacle, move):
+        self.piece, self.body, self.obstacle, self.move = piece, body, obstacle, move
+        self.memory = {}
+        self.speed = move.speed(piece.reach())
+        self.is_convex = move.turn is None and not move.turns and not (isinstance(body, Pipe) and body.inside)
+
+    def gap(self, t):
+        """Negative: they overlap, or touch."""
+        tip = self.move.tip(t)
+        tip = self.obstacle.direction(tuple(a - b for a, b in zip(tip, self.obstacle.at)))
+        if not self.move.leans:
+            gap = self.body.upright(self.piece, tip)
+        else:
+            gap = self.body.tilted(self.piece, tip, self.obstacle.direction(self.move.axis(t)), self.memory)
+        # Pieces without roundness have no depth here: to touch is to overlap.
+        return -EPSILON if gap <= EPSILON else gap
+
+    def least(self, below=math.inf):
+        """(gap, t): the least on the way, if it is below that; touching ends the search."""
+        if self.gap(0.5) - self.speed / 2 >= below:
+            return below, None
+        if self.is_convex:
+            return self.least_of_convex()
+        best = [below, None]
+        exact = 5e-4 if self.move.turns else 2e-4
+
+        def search(a, b):
+            middle = (a + b) / 2
+            gap = self.gap(middle)
+            if gap < best[0]:
+                best[:] = [gap, middle]
+            if best[0] <= 0:
+                return
+            half = self.speed * (b - a) / 2
+            if gap - half < best[0] - exact:
+                search(a, middle)
+                search(middle, b)
+
+        search(0.0, 1.0)
+        return best[0], best[1]
+
+    def least_of_convex(self):
+        a, b = 0.0, 1.0
+        ends = min((self.gap(0.0), 0.0), (self.gap(1.0), 1.0))
+        ratio = (math.sqrt(5) - 1) / 2
+        x, y = b - ratio * (b - a), a + ratio * (b - a)
+        at_x, at_y = self.gap(x), self.gap(y)
+        while self.speed * (b - a) > 1e-6:
+            if at_x <= 0 or at_y <= 0:
+                break
+            if at_x < at_y:
+                b, y, at_y = y, x, at_x
+                x = b - ratio * (b - a)
+                at_x = self.gap(x)
+            else:
+                a, x, at_x = x, y, at_y
+                y = a + ratio * (b - a)
+                at_y = self.gap(y)
+        return min(ends, (at_x, x), (at_y, y))
+
+    def first(self):
+        """The first t at which they touch; None."""
+        if self.gap(0.5) > self.speed / 2:
+            return None
+        if self.is_convex:
+            gap, t = self.least_of_convex()
+            if gap > 0:
+                return None
+            if self.gap(0.0) <= 0:
+                return 0.0
+            low, high = 0.0, t
+            while self.speed * (high - low) > 1e-6:
+                middle = (low + high) / 2
+                low, high = (low, middle) if self.gap(middle) <= 0 else (middle, high)
+            return high
+
+        def search(a, b):
+            middle = (a + b) / 2
+            half = self.speed * (b - a) / 2
+            gap = self.gap(middle)
+            if gap > half:
+                return None
+            if half < 1e-5:
+                return middle if gap <= 1e-5 else None
+            first = search(a, middle)
+            return first if first is not None else search(middle, b)
+
+        return search(0.0, 1.0)
+
+
+def least_gap(pieces, obstacles, moves, below=math.inf):
+    """Of all pieces from all obstacles on all moves, if it is below that; else that."""
+    best = below
+    for move in moves:
+        for obstacle in obstacles:
+            for piece in pieces:
+                for body in obstacle.bodies:
+                    best = min(best, Pair(piece, body, obstacle, move).least(best)[0])
+                    if best <= 0:
+                        return best
+    return best
+
+
+def first_touch(pieces, obstacles, moves):
+    """(move, t) of the first touch; None."""
+    for move in moves:
+        found = [
+            t
+            for obstacle in obstacles
+            for piece in pieces
+            for body in obstacle.bodies
+            if (t := Pair(piece, body, obstacle, move).first()) is not None
+        ]
+        if found:
+            return move, min(found)
+    return None
+
+
+def heights_of(pieces):
+    return min(p.low - p.round_mm for p in pieces), max(p.high + p.round_mm for p in pieces)
+
+
+def width_of(pieces):
+    """From the axis to its farthest place."""
+    return max(p.radius + p.round_mm if isinstance(p, Cylinder) else p.corners[2][0] for p in pieces)
+
+
+def eroded(pieces, depth):
+    return [thin for piece in pieces if (thin := piece.eroded(depth)) is not None]
+
+
+def depth_of(pieces, obstacles, moves, exact=0.001):
+    """By how much the pieces would have to be thinner all around, so that none touches."""
+
+    def touches(depth):
+        return least_gap(eroded(pieces, depth), obstacles, moves, 2e-4) <= 0
+
+    low, high = 0.0, 1.0
+    while touches(high):
+        low, high = high, 2 * high
+    while high - low > exact:
+        middle = (low + high) / 2
+        if touches(middle):
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
