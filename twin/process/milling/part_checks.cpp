@@ -141,6 +141,7 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
     finding.position_mm = contact.tip_mm;
     finding.tool = move.tool;
     CollisionPair& row = row_of(part.id);
+    finding.bodies = {to_string(row.part), kWorkpieceBody};
     if (row.contacts++ == 0) row.source = finding.source;
     row.least_clearance_mm = 0;
     part.event = log_.add(std::move(finding));
