@@ -117,6 +117,12 @@ void OrbitCamera::look_from(StandardView view) {
   }
 }
 
+void OrbitCamera::look_from(double yaw_rad, double pitch_rad) {
+  if (flat_ != FlatView::kNone) return;
+  yaw_rad_ = std::remainder(yaw_rad, 2.0 * kPi);
+  pitch_rad_ = std::clamp(pitch_rad, -kMaxPitch_rad, kMaxPitch_rad);
+}
+
 Projection OrbitCamera::projection(const Box& content, glm::ivec2 size_px) const {
   const Axes a = axes();
   const Vec3 eye = target_mm_ + distance_mm() * a.back;

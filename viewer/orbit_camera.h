@@ -43,6 +43,8 @@ class OrbitCamera {
   /// changes nothing.
   void fit(const Box& box, glm::ivec2 size_px);
   void look_from(StandardView view);
+  /// The eye is so far around +Z from +X, and so far above the XY plane. Not in a flat view.
+  void look_from(double yaw_rad, double pitch_rad);
 
   void set_perspective(bool is_perspective) { is_perspective_ = is_perspective; }
   /// False in a flat view, whatever was set.

@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/translate.h"
 #include "viewer/annotations.h"
+#include "viewer/body_layer.h"
 #include "viewer/camera.h"
 #include "viewer/gl_context.h"
 #include "viewer/gl_objects.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr int kMinSize_px = 64;
 constexpr int kMaxSize_px = 8192;
 constexpr double kFieldOfView_deg = 24.0;
+/// Of what stands around the blank so much of the blank's greatest length is shown.
+constexpr double kBodyReach = 0.4;
 /// From front (-Y) right (+X) above, towards the eye.
 constexpr Vec3 kEyeDirection{0.60, -1.0, 0.86};
 
@@ -34,6 +37,28 @@ double smallest_pixel_mm(const Camera& camera, const Box& box) {
     nearest_mm = std::min(nearest_mm, -(camera.view_from_world() * at).z);
   }
   return static_cast<double>(camera.px_mm_at_1mm() * nearest_mm);
+}
+
+/// The corners of what of the bodies lies near the blank: a table is not to make the part small.
+void add_bodies(const PictureOptions& options, std::vector<Vec3>& points_mm) {
+  const Vec3 size = options.blank_mm.empty() ? Vec3(0) : options.blank_mm.size();
+  const double reach_mm = kBodyReach * std::max({size.x, size.y, size.z});
+  for (const PictureBody& body : options.bodies) {
+    if (!body.mesh) continue;
+    Box box;
+    for (const glm::vec3& p : body.mesh->positions_mm)
+      box.extend(Vec3(body.pose * glm::vec4(p, 1.0f)));
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] = std::max(box.min[axis], options.blank_mm.min[axis] - reach_mm);
+      box.max[axis] = std::min(box.max[axis], options.blank_mm.max[axis] + reach_mm);
+    }
+    if (box.empty()) continue;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      points_mm.emplace_back((corner & 1u) ? box.max.x : box.min.x,
+                             (corner & 2u) ? box.max.y : box.min.y,
+                             (corner & 4u) ? box.max.z : box.min.z);
+    }
+  }
 }
 
 }  // namespace
@@ -49,7 +74,8 @@ Result<Picture> draw_part(const PartPatches& part, const PictureOptions& options
     return Error{tr("nothing to draw: the part is empty and no blank is given")};
   }
   const Annotations annotations(options.blank_mm, part.bounds_mm, kEyeDirection, size_px);
-  const std::vector<Vec3> points_mm = annotations.points_to_fit();
+  std::vector<Vec3> points_mm = annotations.points_to_fit();
+  add_bodies(options, points_mm);
   const Camera camera =
       Camera::fit(points_mm, kEyeDirection, kFieldOfView_deg, size_px, annotations.margins());
 
@@ -76,6 +102,13 @@ Result<Picture> draw_part(const PartPatches& part, const PictureOptions& options
                               }
                             }};
   renderer->draw(surface, camera, framebuffer.name());
+  if (!options.bodies.empty()) {
+    const Result<BodyLayer> layer = BodyLayer::create();
+    if (!layer) return Error{layer.error()};
+    const Done done =
+        layer->draw(options.bodies, camera, renderer->depths(), size_px, framebuffer.name());
+    if (!done) return Error{done.error()};
+  }
   strokes->draw(annotations.layout(camera, options.caption), size_px, renderer->depths());
   Picture picture = read_framebuffer(framebuffer.name(), size_px);
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {

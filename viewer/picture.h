@@ -4,19 +4,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/mat4x4.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/geometry.h"
 #include "base/mesh_patch.h"
 #include "base/result.h"
+#include "base/triangle_mesh.h"
 
 namespace kerf {
+
+/// What stands around a part: a fixture.
+struct PictureBody {
+  std::shared_ptr<const TriangleMesh> mesh;  ///< in its own frame
+  glm::mat4 pose{1.0f};                      ///< from there to that of the part
+  std::uint32_t color = 0xffa0a0a0;          ///< 0xAABBGGRR; alpha is not looked at
+};
 
 struct PictureOptions {
   int width_px = 1600;  ///< 64 to 8192, both
   int height_px = 1200;
-  Box blank_mm;         ///< drawn as a thin outline with its sizes written on it
+  Box blank_mm;                       ///< drawn as a thin outline with its sizes written on it
+  std::vector<PictureBody> bodies{};  ///< seen through; those far away may lie outside the picture
   std::string caption;  ///< small text at the lower left ("3D_Chips.ngc  zmap 0.05 mm")
 };
 

@@ -32,12 +32,17 @@ struct ProfilePoint {
 };
 
 /// Outlines from below to above. Corners between segments are drawn sharp, so arcs come as short
-/// segments of a few degrees. Open ends are closed with a disc. Any of the three may be empty.
+/// segments of a few degrees. Open ends are closed with a disc. Any of the four may be empty.
 struct ToolShape {
   std::vector<ProfilePoint> cutter;
   std::vector<ProfilePoint> shank;
   std::vector<ProfilePoint> holder;
+  std::vector<ProfilePoint> spindle;
 };
+
+/// One of these four.
+enum class ToolPiece : std::uint8_t { kCutter, kShank, kHolder, kSpindle };
+inline constexpr std::size_t kToolPieceCount = 4;
 
 struct ToolPose {
   Vec3 tip_mm{0.0};
@@ -249,6 +254,24 @@ struct SceneMachine {
   std::vector<MachineLink> links;
 };
 
+/// Two bodies that touch each other, or that come near.
+struct SceneContact {
+  ToolPiece piece = ToolPiece::kCutter;
+  std::optional<std::size_t> fixture;  ///< Of SceneUpdate::fixtures; none: the workpiece.
+  std::optional<Vec3> point_mm;        ///< Where; none: not known.
+  double mark_mm = 1.0;                ///< Radius of the mark there.
+  bool is_near = false;                ///< They do not touch.
+  bool operator==(const SceneContact&) const = default;
+};
+
+/// How near the tool is to what stands around the workpiece.
+struct SceneClearance {
+  double mm = 0.0;         ///< 0: they touch.
+  bool is_beyond = false;  ///< It is more than `mm`, and of whom is not said.
+  std::string piece;       ///< "holder", in the user's language.
+  std::string fixture;     ///< Its name.
+};
+
 /// What is known of a point of the surface that was asked for.
 struct PickedPoint {
   Vec3 point_mm{0.0};
@@ -293,7 +316,10 @@ struct Moment {
   int line = 0;                     ///< 0: before the program.
   std::uint64_t past_vertices = 0;  ///< Path vertices that the tool has left behind.
   std::optional<ToolPose> tool_pose;
-  std::vector<glm::mat4> link_poses;  ///< Of SceneMachine::links, from link to workpiece frame.
+  std::vector<glm::mat4> link_poses;     ///< Of SceneMachine::links, from link to workpiece frame.
+  std::vector<glm::mat4> fixture_poses;  ///< Of SceneUpdate::fixtures, as link_poses.
+  std::vector<SceneContact> contacts;    ///< Of this moment: both bodies are red.
+  std::optional<SceneClearance> clearance;  ///< None: there are no fixtures, or no tool is known.
   int tool = 0;
   std::string tool_name;       ///< "flat 10", "" if no tool.
   double spindle_rpm = 0.0;    ///< Negative: counter-clockwise.
@@ -330,6 +356,8 @@ struct SceneUpdate {
   std::shared_ptr<const ProgramText> program;
   std::shared_ptr<const ProgramTimeline> timeline;
   std::shared_ptr<const SceneMachine> machine;
+  /// What holds the workpiece: a link each. Where they are: Moment::fixture_poses.
+  std::shared_ptr<const SceneMachine> fixtures;
   std::shared_ptr<const CutColors> colors;    ///< The answer to a ColorCommand.
   std::shared_ptr<const PickedPoint> picked;  ///< The answer to a PickCommand.
   std::shared_ptr<const Moment> moment;

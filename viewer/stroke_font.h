@@ -20,8 +20,9 @@ inline constexpr float kPenWidth = 1.75f;
 inline constexpr float kLetterGap = 4.0f;  ///< Between the widths of two neighbours.
 inline constexpr float kSpaceWidth = 4.5f;
 
-/// Glyphs of `utf8_text` in order: printable ASCII and the degree, multiplication, diameter and
-/// micro signs; any other code point, and bytes that are no UTF-8, are an empty box.
+/// Glyphs of `utf8_text` in order: printable ASCII, the letters of German, and the degree,
+/// multiplication, diameter and micro signs; any other code point, and bytes that are no UTF-8, are
+/// an empty box.
 std::vector<const Glyph*> glyphs_of(std::string_view utf8_text);
 
 }  // namespace kerf

@@ -128,6 +128,35 @@ TEST_F(PictureTest, EmptyMeshShowsTheOutlineOnly) {
   EXPECT_GT(count(empty, 0.13, 0.3, 0.9, 0.95, darker), 300);
 }
 
+/// A box of 40 mm about `middle`.
+PictureBody body_at(const glm::vec3& middle) {
+  PictureBody body;
+  body.mesh = std::make_shared<const TriangleMesh>(box_mesh({Vec3(-20), Vec3(20)}));
+  body.pose[3] = glm::vec4(middle, 1.0f);
+  body.color = 0xff2020e0;
+  return body;
+}
+
+TEST_F(PictureTest, WhatStandsBeforeThePartIsSeenThrough) {
+  const TriangleMesh mesh = box_mesh(kBlank);
+  PictureOptions options = options_of(640, 480);
+  options.bodies = {body_at({0, 0, 60})};  // above it
+  const auto reddish = [](const Color& c) { return c.r > c.b + 40; };
+  EXPECT_GT(count(draw(mesh, options), 0, 0, 1, 1, reddish), 2000);
+  // In it: the part hides it.
+  options.bodies = {body_at({0, 0, -25})};
+  EXPECT_LT(count(draw(mesh, options), 0, 0, 1, 1, reddish),
+            50 + count(draw(mesh, options_of(640, 480)), 0, 0, 1, 1, reddish));
+}
+
+TEST_F(PictureTest, AFarBodyDoesNotMakeThePartSmall) {
+  const TriangleMesh mesh = box_mesh(kBlank);
+  PictureOptions far = options_of(640, 480);
+  far.bodies = {body_at({0, 0, 5000})};
+  const Picture with = draw(mesh, far), without = draw(mesh, options_of(640, 480));
+  EXPECT_EQ(with.rgb, without.rgb);
+}
+
 TEST_F(PictureTest, NothingToDrawIsAnError) {
   PictureOptions options;
   const Result<Picture> picture = draw_part(PartPatches{}, options);

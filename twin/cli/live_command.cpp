@@ -17,6 +17,7 @@
 #include "base/translate.h"
 #include "machine_io/recorder.h"
 #include "twin/cli/console.h"
+#include "twin/cli/finding_shots.h"
 #include "twin/cli/live_console.h"
 #include "twin/cli/live_window.h"
 #include "twin/cli/scheduling.h"
@@ -181,6 +182,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   std::optional<HalObserver> pins;
   if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
+  std::optional<FindingShots> shots;
+  if (!request.finding_png.empty()) observer = &shots.emplace(*session, *observer);
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
   if (window) {
@@ -199,8 +202,11 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
-  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
-                diagnostics);
+  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
+                request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics);
+  if (shots) {
+    shots->write(request.finding_png, request.options.cutting.checks.collisions, diagnostics);
+  }
   if (console.unprinted() > 0) {
     print_text(stderr,
                trf("kerf: note: {} more findings; --json FILE lists them\n", console.unprinted()));
@@ -286,6 +292,7 @@ int live_command(const Arguments& arguments) {
   }
   show_lengths_in(request.units);
   check_output_places(request.outputs, diagnostics);
+  make_finding_folder(request.finding_png, diagnostics);
   if (request.window && (has_display() || request.needs_window)) {
     check_shapes(request.config.machine.drawn, diagnostics);
   }

@@ -164,6 +164,7 @@ void understand_outlets(OptionReader& reader, LiveRequest& request) {
   request.cpu_limit_percent = reader.number("--cpu-limit");
   request.memory_limit_mb = reader.number("--memory-limit");
   request.mesh_tolerance_mm = reader.length_mm("--mesh-tolerance");
+  if (reader.command() == kReplay) request.finding_png = reader.text("--finding-png");
   request.record = reader.text("--record");
   request.events = reader.text("--events");
   request.outputs = understand_outputs(reader);

@@ -29,6 +29,7 @@ struct LiveRequest {
   std::string record;
   std::string events;
   double mesh_tolerance_mm = 0;
+  std::string finding_png;       ///< a folder; empty: no pictures of findings
   double cpu_limit_percent = 0;  ///< 0: none
   double memory_limit_mb = 0;    ///< 0: none
   bool quiet = false;

@@ -95,6 +95,7 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
   Diagnostics diagnostics;
   options.machine = drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
+  options.collisions = request.options.cutting.checks.collisions;
   options.log = request.options.log();
   options.speed = options.log ? request.options.speed : 1.0;
   options.on_close = [stop, this]() mutable {

@@ -19,6 +19,7 @@
 #include "base/translate.h"
 #include "stock/sheet/sheet.h"
 #include "twin/program/session_parts.h"
+#include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
 #include "twin/scene/part_patches.h"
 #include "viewer/picture.h"
@@ -61,12 +62,13 @@ std::string file_name(const std::string& path) {
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const std::string& path, const StockModel& stock, const std::string& name,
-                   Diagnostics& diagnostics) {
+Done write_picture(const std::string& path, const StockModel& stock, const FixtureList& fixtures,
+                   const std::string& name, Diagnostics& diagnostics) {
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
   options.caption = fmt::format("{}  {}", file_name(name), stock.name());
   if (stock.sheet() == nullptr) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
+  if (fixtures) options.bodies = picture_bodies(*fixtures);
   Result<Picture> picture = draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
@@ -80,6 +82,7 @@ Done write_picture(const std::string& path, const StockModel& stock, const std::
   Diagnostic note;
   note.severity = Severity::kNote;
   note.message = trf("{}: drawn by rays on the CPU, not by OpenGL: {}", path, reason);
+  if (fixtures && !fixtures->empty()) note.hint = tr("fixtures are drawn by OpenGL alone");
   diagnostics.push_back(std::move(note));
   return write_png(path, *picture);
 }
@@ -146,7 +149,8 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 }
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
-                   Report& report, Diagnostics& diagnostics, std::atomic<unsigned>* dealt_with) {
+                   const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
+                   std::atomic<unsigned>* dealt_with) {
   const auto done_with = [&](const std::string& path) {
     const auto all = paths.named();
     for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
@@ -161,7 +165,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
   const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
   if (stock && !paths.png.empty()) {
-    note_failure(write_picture(paths.png, *stock, name, diagnostics), diagnostics);
+    note_failure(write_picture(paths.png, *stock, fixtures, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
   if (stock && wants_mesh) {

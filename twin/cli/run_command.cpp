@@ -18,6 +18,7 @@
 #include "base/translate.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
+#include "twin/cli/finding_shots.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/progress_bar.h"
 #include "twin/cli/stdin_program.h"
@@ -107,7 +108,7 @@ void tell_interrupted(const RunRequest& request, Report report, unsigned dealt_w
   OutputPaths paths;
   paths.json = request.outputs.json;
   Diagnostics diagnostics;
-  write_outputs(paths, 0, nullptr, report, diagnostics);
+  write_outputs(paths, 0, nullptr, nullptr, report, diagnostics);
   print_results(request, report);
   if (const std::string left = names_left(request.outputs, dealt_with); !left.empty()) {
     Diagnostic d;
@@ -144,6 +145,7 @@ StdinProgram::Listings listings_of(const SessionOptions& session) {
 RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
+  make_finding_folder(request.finding_png, diagnostics);
   if (request.view && !has_display()) {
     Diagnostic d;
     d.message = tr("--view: no window: neither DISPLAY nor WAYLAND_DISPLAY is set");
@@ -185,8 +187,12 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
-    write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->report(),
-                  diagnostics, &dealt_with);
+    write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
+                  request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
+    if (!request.finding_png.empty()) {
+      write_finding_pictures(request.finding_png, request.session, session->report(),
+                             stop.get_token(), diagnostics);
+    }
     deadline->set_last_words({}, kWritingPatience);
     print_results(request, session->report());
   }
@@ -210,6 +216,11 @@ void refuse_shared_outputs(const RunRequest& request, std::size_t programs,
     if (path->empty()) continue;
     add_fault(option, trf("{}: one file, and there are {} programs", *path, programs),
               tr("run them one by one, each with a file of its own"), diagnostics);
+  }
+  if (!request.finding_png.empty()) {
+    add_fault("--finding-png",
+              trf("{}: one folder, and there are {} programs", request.finding_png, programs),
+              tr("run them one by one, each with a folder of its own"), diagnostics);
   }
   if (request.view) {
     add_fault("--view", tr("one window, and there are several programs"), {}, diagnostics);

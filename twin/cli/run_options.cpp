@@ -97,6 +97,11 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
   if (request.quiet && request.verbose) {
     reader.fault("--verbose", tr("--quiet wants no summary at all"));
   }
+  request.finding_png = reader.text("--finding-png");
+  if (!request.finding_png.empty() && request.session.program.path == "-") {
+    reader.fault("--finding-png",
+                 tr("the program comes from standard input, which cannot be read again"));
+  }
   request.view = reader.is_yes("--view");
   request.draw = understand_draw(reader);
   if (request.draw && !request.view) {

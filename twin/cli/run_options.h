@@ -21,6 +21,7 @@ struct RunRequest {
   SessionOptions session;
   OutputPaths outputs;
   double mesh_tolerance_mm = 0;
+  std::string finding_png;       ///< a folder; empty: no pictures of findings
   bool view = false;             ///< in a window, when it is done
   std::optional<DrawMode> draw;  ///< in that window; none: as it remembers it
   MachineChoice machine;         ///< drawn there, around the workpiece

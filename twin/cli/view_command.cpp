@@ -155,7 +155,7 @@ Arguments again_in_window(Arguments arguments) {
   arguments.command = kView;
   WrittenOptions& options = arguments.options;
   for (const auto& [output, path] : OutputPaths{}.named()) options.clear(output);
-  for (const char* const option : {"--mesh-tolerance", "--view", "--verbose"}) {
+  for (const char* const option : {"--mesh-tolerance", "--view", "--verbose", "--finding-png"}) {
     options.clear(option);
   }
   options.set_flag("--quiet");

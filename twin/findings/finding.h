@@ -1,6 +1,7 @@
 // twin/findings/finding.h - what a dry run found wrong: typed, placed, one for each event.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -87,6 +88,9 @@ enum class FindingId : std::uint8_t {
 /// "rapid-contact", ...: the `id` of the report.
 const char* to_string(FindingId id);
 
+/// What a collision with the workpiece names as the other body.
+inline constexpr const char* kWorkpieceBody = "workpiece";
+
 /// One event. Position, time and depth are where it was first met and the greatest depth until it
 /// stopped.
 struct Finding {
@@ -101,6 +105,10 @@ struct Finding {
   std::string file;     ///< set where `source` cannot say it (interpreter's own messages)
   std::string excerpt;  ///< the source line, for people; may be empty
   std::string hint;     ///< what to do; may be empty
+  /// Of a collision, or of what comes near one, as reports name them: what of the tool ("cutter",
+  /// "shank", "holder", "spindle"), and a fixture's name or kWorkpieceBody. Else empty.
+  std::array<std::string, 2> bodies{};
+  bool has_bodies() const { return !bodies[0].empty(); }
 };
 
 /// "traverse touches the workpiece, 2.31 mm deep at X12.40 Y3.00 Z-1.20 (tool 3)". `depth_word` is

@@ -31,6 +31,7 @@ Json finding_json(const Finding& finding, const std::vector<std::string>& files)
   item["position_mm"] = finding.position_mm ? vector_json(*finding.position_mm) : Json(nullptr);
   item["tool"] = finding.tool ? Json(*finding.tool) : Json(nullptr);
   item["depth_mm"] = number_or_null(finding.depth_mm);
+  item["bodies"] = finding.has_bodies() ? Json(finding.bodies) : Json(nullptr);
   item["message"] = message_of(finding);
   return item;
 }

@@ -179,6 +179,7 @@ void LiveCutter::show(const Reading& now, const PathMatch& point) {
   if (place_.turns) place_.spindle = now.pose.direction(path->machine().nose_from_tip);
   place_.abc_deg = now.place.abc_deg;
   place_.uvw_mm = now.place.uvw_mm;
+  place_.tool_length_mm = now.tool_length_mm;
   place_.tool = now.tool >= 0 ? now.tool : point.on_path ? point.tool : matcher_.program_tool();
   place_.followed = point.on_path;
   place_.distance_mm = point.distance_mm;

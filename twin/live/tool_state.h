@@ -27,12 +27,13 @@ struct ToolState {
   Vec3 uvw_mm{0};
   double spindle_rpm = 0;  ///< signed; NaN: not known
   int tool = -1;
-  bool followed = false;     ///< there is a program, and the tip is on its path
-  bool off_path = false;     ///< it should be, and is not
-  double distance_mm = 0;    ///< from the path, if there is one
-  SourceRef source;          ///< of the program's motion there
-  double program_s = 0;      ///< program time, by the plan
-  std::string missing_axes;  ///< why it is not known
+  double tool_length_mm = 0;  ///< in force: from the tip to the spindle's nose
+  bool followed = false;      ///< there is a program, and the tip is on its path
+  bool off_path = false;      ///< it should be, and is not
+  double distance_mm = 0;     ///< from the path, if there is one
+  SourceRef source;           ///< of the program's motion there
+  double program_s = 0;       ///< program time, by the plan
+  std::string missing_axes;   ///< why it is not known
 };
 
 }  // namespace kerf

@@ -88,7 +88,7 @@ Json collisions_json(const Report& report) {
   for (const CollisionPair& row : report.collisions) {
     Json pair;
     pair["a"] = to_string(row.part);
-    pair["b"] = row.other.empty() ? "workpiece" : row.other;
+    pair["b"] = row.other.empty() ? kWorkpieceBody : row.other;
     pair["tool"] = row.tool;
     pair["contacts"] = row.contacts;
     pair["least_clearance_mm"] =

@@ -70,7 +70,8 @@ LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& ma
       next_(next),
       mailbox_(mailbox),
       commands_(commands),
-      resolver_(options_.tools, nullptr) {
+      resolver_(options_.tools, nullptr),
+      bodies_(options_.collisions) {
   publish_start();
   news_.stock = options_.stock;
   thread_ = std::jthread([this](std::stop_token stop) { run(std::move(stop)); });
@@ -104,6 +105,7 @@ void LiveView::on_finding(const Finding& finding, const std::vector<std::string>
   SceneFinding shown = finding_list({finding}, files)->findings.front();
   const std::lock_guard lock(mutex_);
   news_.findings.push_back(std::move(shown));
+  if (finding.has_bodies()) news_.collisions.push_back(finding);
   arrived_.notify_one();
 }
 
@@ -126,9 +128,8 @@ void LiveView::note_tool(int tool, const Cutter* cutter, News& news) {
   const std::string spec = cutter ? cutter->spec() : std::string();
   if (spec == shown_spec_) return;
   shown_spec_ = spec;
-  news.tool_shape = cutter ? tool_shape_of(*cutter) : std::make_shared<const ToolShape>();
-  news.tool_length_mm = drawn_height_mm(*news.tool_shape);
-  news.tool_name = cutter ? tool_name_of(*cutter) : std::string();
+  news.has_tool = true;
+  news.cutter = cutter ? std::make_shared<const Cutter>(*cutter) : nullptr;
 }
 
 /// Labels, with the names of their tools.
@@ -201,6 +202,7 @@ void LiveView::publish_start() {
   if (options_.machine) {
     update.machine = std::make_shared<const SceneMachine>(scene_machine(*options_.machine));
   }
+  update.fixtures = bodies_.scene();
   update.job = options_.job;
   update.moment = moment_now();
   mailbox_.publish(std::move(update));
@@ -303,11 +305,12 @@ void LiveView::take_news(News& news) {
   }
   colors_.add(news.labels, news.tools);
   colors_.update(news.uses);
-  if (news.tool_shape) {
-    update_.tool_shape = std::move(news.tool_shape);
-    tool_name_ = std::move(news.tool_name);
-    tool_length_mm_ = news.tool_length_mm;
+  if (news.has_tool) {
+    cutter_ = std::move(news.cutter);
+    tool_name_ = cutter_ ? tool_name_of(*cutter_) : std::string();
+    mount_tool();
   }
+  for (const Finding& finding : news.collisions) bodies_.add_finding(finding, watched_s());
   if (!news.findings.empty()) {
     findings_.insert(findings_.end(), std::make_move_iterator(news.findings.begin()),
                      std::make_move_iterator(news.findings.end()));
@@ -327,6 +330,7 @@ void LiveView::take_news(News& news) {
   if (!news.status) return;
   status_ = std::move(news.status);
   status_at_ = news.status_at;
+  mount_tool();
   if (status_->work.g5x_mm != shown_work_.g5x_mm || status_->work.g92_mm != shown_work_.g92_mm ||
       status_->work.rotation_deg != shown_work_.rotation_deg) {
     shown_work_ = status_->work;
@@ -339,6 +343,15 @@ void LiveView::take_news(News& news) {
   }
   update_.moment = moment_now();
 }
+
+void LiveView::mount_tool() {
+  auto shape = bodies_.mount(cutter_, status_ ? status_->place.tool_length_mm : 0);
+  if (!shape) return;
+  tool_length_mm_ = drawn_height_mm(*shape);
+  update_.tool_shape = std::move(shape);
+}
+
+double LiveView::watched_s() const { return seconds(Clock::now() - started_at_); }
 
 void LiveView::show_program(LiveProgram& program) {
   colors_.set_program_tools(program.tools);
@@ -377,6 +390,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->speed = options_.speed;
   moment->source_name = options_.source_name;
   moment->work_offset = options_.work_offset;
+  moment->fixture_poses = bodies_.poses();
   if (!status_) {
     if (!options_.log) moment->source = SourceFreshness::kStale;
     moment->notice = notice_.empty() ? tr("waiting for positions") : notice_;
@@ -409,6 +423,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   }
   if (!place.known) return moment;
   moment->tool_pose = ToolPose{place.tip_mm, place.spindle};
+  bodies_.look(*moment->tool_pose, watched_s(), 1, stock_.get(), moment.get());
   if (options_.machine) {
     std::array<double, 3> machine_abc_deg = place.abc_deg;
     for (std::size_t i = 0; i < 3; ++i) machine_abc_deg[i] += shown_work_.offset_abc_deg[i];

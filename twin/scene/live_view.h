@@ -16,6 +16,7 @@
 #include "twin/live/live_session.h"
 #include "twin/machines/machine_model.h"
 #include "twin/playback/program_track.h"
+#include "twin/scene/body_watch.h"
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
 #include "twin/scene/live_colors.h"
@@ -42,6 +43,7 @@ struct LiveViewOptions {
   std::shared_ptr<const StockModel> stock;  ///< until the first frame; null: nothing is shown
   ToolSources tools;
   std::shared_ptr<const MachineModel> machine;  ///< null: none is drawn
+  CollisionWishes collisions;                   ///< fixtures and spindle, as they are checked
   bool log = false;                             ///< may be paused
   double speed = 1;                             ///< of a log
   /// Reads the program for its path, text and times, in a thread of the view; empty: no program.
@@ -87,13 +89,13 @@ class LiveView final : public LiveObserver {
   /// What the session's thread leaves for the view's.
   struct News {
     std::shared_ptr<const StockModel> stock;
-    std::shared_ptr<const ToolShape> tool_shape;
-    std::string tool_name;
-    double tool_length_mm = 0;  ///< as drawn
+    bool has_tool = false;                 ///< another one than before:
+    std::shared_ptr<const Cutter> cutter;  ///< null: none that is known
     std::optional<LiveStatus> status;
     Clock::time_point status_at;
     std::vector<Vec3> trail;
     std::vector<SceneFinding> findings;  ///< those that are new
+    std::vector<Finding> collisions;     ///< those that are new, and not ahead
     std::vector<CutLabel> labels;        ///< those that are new
     std::vector<LabelUse> uses;          ///< of labels that have cut since they were told
     std::vector<NamedTool> tools;        ///< that are new among the labels
@@ -108,6 +110,8 @@ class LiveView final : public LiveObserver {
   void take_news(News& news);
   void show_program(LiveProgram& program);
   void extend_path(const std::vector<Vec3>& trail);
+  void mount_tool();
+  double watched_s() const;
   std::shared_ptr<const Moment> moment_now();
   void note_tool(int tool, const Cutter* cutter, News& news);
   void note_labels(std::span<const CutLabel> labels, News& news);
@@ -132,6 +136,8 @@ class LiveView final : public LiveObserver {
   // of the view's thread
   PatchFeeder feeder_;
   DrawFeeder draw_modes_;
+  BodyWatch bodies_;
+  std::shared_ptr<const Cutter> cutter_;
   std::shared_ptr<const StockModel> stock_;  ///< the newest; null: none yet
   LiveColors colors_;
   std::vector<SceneFinding> findings_;
@@ -146,6 +152,7 @@ class LiveView final : public LiveObserver {
   WorkpieceFrame shown_work_;
   bool log_paused_ = false;
   std::string notice_;  ///< of tell()
+  Clock::time_point started_at_ = Clock::now();
   bool has_rotary_ = false;
   bool has_slides_ = false;
   bool closed_ = false;

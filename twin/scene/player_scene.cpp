@@ -28,6 +28,11 @@ PlayState play_state(const PlayerState& state, std::size_t motions) {
   return motions > 0 && state.place.motion >= motions ? PlayState::kEnded : PlayState::kPaused;
 }
 
+/// Of the state's motion, which is the last one where the program is over.
+double fraction_of(const ProgramTrack& track, const PlayerState& state) {
+  return state.place.motion >= track.size() ? 1 : state.place.fraction;
+}
+
 std::string notice_of(const PlayerState& state) {
   if (!state.message.empty()) return state.message;
   if (state.stop == PlayerStop::kBreakpoint) return "breakpoint";
@@ -36,6 +41,12 @@ std::string notice_of(const PlayerState& state) {
 }
 
 }  // namespace
+
+ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state) {
+  if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
+  const Pose pose = path->pose_at(state.motion, fraction_of(track, state));
+  return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
+}
 
 ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   ViewedProgram shown;
@@ -46,6 +57,7 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
     shown.blank = loaded.player.blank->snapshot();
   }
   shown.cuts = loaded.cuts;
+  shown.collisions = loaded.player.checks.collisions;
   shown.walls = SheetQuery::of(loaded.player);
   shown.planned = loaded.player.timeline.planner.with_path;
   if (loaded.player.blank) {
@@ -78,6 +90,7 @@ PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgra
       shown_(std::move(shown)),
       draw_modes_({track_, shown_.cuts, shown_.blank, shown_.moves.path() != nullptr,
                    shown_.design != nullptr}),
+      bodies_(shown_.collisions),
       path_(track_, shown_.planned, shown_.moves) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
 }
@@ -109,6 +122,7 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   if (shown_.machine) {
     update.machine = std::make_shared<const SceneMachine>(scene_machine(*shown_.machine));
   }
+  update.fixtures = bodies_.scene();
   return update;
 }
 
@@ -173,12 +187,13 @@ SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
     }
     if (state->findings != shown_findings_) {
       shown_findings_ = state->findings;
-      if (state->findings) update.findings = finding_list(*state->findings, shown_.files);
+      if (state->findings) {
+        update.findings = finding_list(*state->findings, shown_.files);
+        bodies_.set_findings(*state->findings);
+      }
     }
-    if (state->cutter != shown_cutter_) {
-      shown_cutter_ = state->cutter;
-      update.tool_shape =
-          state->cutter ? tool_shape_of(*state->cutter) : std::make_shared<const ToolShape>();
+    if (auto shape = bodies_.mount(state->cutter, state->motion.tool_offset_mm.z)) {
+      update.tool_shape = std::move(shape);
       tool_length_mm_ = drawn_height_mm(*update.tool_shape);
       if (shown_.punch && shown_.machine) {
         // The machine has the punch, in its true shape.
@@ -216,11 +231,6 @@ double PlayerScene::removed_mm3(const PlayerState& state) {
   return removed_mm3_;
 }
 
-/// Of the state's motion, which is the last one where the program is over.
-double PlayerScene::fraction(const PlayerState& state) const {
-  return state.place.motion >= track_->size() ? 1 : state.place.fraction;
-}
-
 std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) const {
   const ToolPath* const path = shown_.moves.path();
   if (path == nullptr) {
@@ -233,21 +243,19 @@ std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) cons
     shown_.punch->place_punch(*shown_.machine, *track_, state, poses);
     return poses;
   }
-  const AxisValues axes = path->axes_at(state.motion, fraction(state));
+  const AxisValues axes = path->axes_at(state.motion, fraction_of(*track_, state));
   if (!shown_.moves.tilts()) {
-    return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)).origin_mm,
+    return drawn_poses(*shown_.machine,
+                       path->pose_at(state.motion, fraction_of(*track_, state)).origin_mm,
                        state.abc_deg, tool_length_mm_);
   }
-  return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction(state)),
+  return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction_of(*track_, state)),
                      {axes[3], axes[4], axes[5]}, tool_length_mm_);
 }
 
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
   if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
-  const ToolPath* const path = shown_.moves.path();
-  if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
-  const Pose pose = path->pose_at(state.motion, fraction(state));
-  return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
+  return tool_pose_at(shown_.moves.path(), *track_, state);
 }
 
 std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
@@ -275,6 +283,12 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   }
   has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
   has_slides_ = has_slides_ || state.uvw_mm != Vec3(0);
+  const bool is_playing = state.mode == PlayerMode::kPlaying;
+  moment->fixture_poses = bodies_.poses();
+  if (!track_->empty() && motion.start_known) {
+    bodies_.look(*moment->tool_pose, state.elapsed_s, is_playing ? speed_ : 0, state.stock.get(),
+                 moment.get());
+  }
   const SlidePlace slides{state.uvw_mm + track_->frame().offset_uvw_mm + motion.tool_offset_uvw_mm,
                           state.uvw_mm};
   moment->axes = axis_readouts(

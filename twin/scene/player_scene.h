@@ -12,6 +12,7 @@
 #include "twin/playback/cut_query.h"
 #include "twin/playback/load_program.h"
 #include "twin/playback/player.h"
+#include "twin/scene/body_watch.h"
 #include "twin/scene/compare/design_part.h"
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
@@ -41,7 +42,11 @@ struct ViewedProgram {
   std::shared_ptr<const SheetQuery> walls;      ///< the same of a sheet; null: it is none
   std::shared_ptr<const DesignPart> design;     ///< the surface is compared with; null: with none
   double tolerance_mm = 0.05;                   ///< of that comparison
+  CollisionWishes collisions;                   ///< fixtures and spindle, as they are checked
 };
+
+/// Where the tool is in the workpiece. `path`: null: nothing turns.
+ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state);
 
 /// With `title` in the title bar.
 ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title);
@@ -82,7 +87,6 @@ class PlayerScene {
 
  private:
   bool draws_mesh() const { return draw_modes_.drawn() == DrawMode::kMesh; }
-  double fraction(const PlayerState& state) const;
   std::vector<glm::mat4> machine_poses(const PlayerState& state) const;
   ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
@@ -93,6 +97,7 @@ class PlayerScene {
   ViewedProgram shown_;
   PatchFeeder feeder_;
   DrawFeeder draw_modes_;
+  BodyWatch bodies_;
   TrackPath path_;
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;
@@ -108,7 +113,6 @@ class PlayerScene {
   Clock::time_point removed_at_{};
   /// Kept, so that a new one cannot have the address of one that was shown.
   std::shared_ptr<const std::vector<Finding>> shown_findings_;
-  std::shared_ptr<const Cutter> shown_cutter_;
 };
 
 }  // namespace kerf

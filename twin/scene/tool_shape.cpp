@@ -36,7 +36,9 @@ void add_arc(const ProfilePiece& piece, std::vector<ProfilePoint>& outline) {
 
 }  // namespace
 
-std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter) {
+std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
+                                               std::span<const ToolSection> spindle,
+                                               double nose_z_mm) {
   auto shape = std::make_shared<ToolShape>();
   shape->cutter.push_back(point(0, 0));
   for (const ProfilePiece& piece : cutter.profile()) {
@@ -72,6 +74,13 @@ std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter) {
   for (const ToolSection& section : cutter.holder()) {
     shape->holder.push_back(point(section.diameter_mm / 2, section.from_z_mm));
     shape->holder.push_back(point(section.diameter_mm / 2, section.to_z_mm));
+  }
+  const double top_mm = cutter.holder().empty() ? 0 : cutter.holder().back().to_z_mm;
+  const double nose_mm = std::max(top_mm, nose_z_mm);
+  for (const ToolSection& section : spindle) {
+    if (nose_mm <= 0) break;  // it is not known where it is
+    shape->spindle.push_back(point(section.diameter_mm / 2, nose_mm + section.from_z_mm));
+    shape->spindle.push_back(point(section.diameter_mm / 2, nose_mm + section.to_z_mm));
   }
   return shape;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "stock/cutter/cutter.h"
@@ -9,9 +10,12 @@
 
 namespace kerf {
 
-/// Outlines of cutter, shank and holder. Flutes of unknown length are drawn two diameters long, as
-/// most are, a shank of unknown length as long again; a holder stands where its sections say.
-std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter);
+/// Outlines of cutter, shank, holder and spindle. Flutes of unknown length are drawn two diameters
+/// long, as most are, a shank of unknown length as long again; a holder stands where its sections
+/// say, and so does a spindle, whose nose is as in tool_bodies().
+std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
+                                               std::span<const ToolSection> spindle = {},
+                                               double nose_z_mm = 0);
 
 /// For people, from the shape's text: "ball 10", "bull 10 R2", "drill 8".
 std::string tool_name_of(const Cutter& cutter);

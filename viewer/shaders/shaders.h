@@ -24,6 +24,8 @@ extern const char* const line_vert;  ///< Lines of more than a pixel, of both ki
 extern const char* const line_frag;
 extern const char* const section_frag;    ///< The cut face of a section.
 extern const char* const glass_frag;      ///< The transparent workpiece over the rest.
+extern const char* const body_frag;       ///< What stands around a part.
+extern const char* const overlay_frag;    ///< One picture over another.
 extern const char* const workpiece_frag;  ///< The workpiece as a picture with depth.
 extern const char* const csg_solid_vert;  ///< Image-space CSG: faces lit flat.
 extern const char* const csg_solid_frag;

@@ -89,6 +89,18 @@ std::string feed_text(const PanelContext& context) {
                        : measures.feed(*measured);
 }
 
+/// "3.21 mm holder - vise"
+std::string clearance_text(const PanelContext& context) {
+  const SceneClearance& clearance = *context.shown.moment->clearance;
+  const int digits = context.measures.digits() - 1;  // it is good to some micrometres
+  if (clearance.is_beyond) {
+    return fmt::format(fmt::runtime(context.word(Text::kClearanceBeyond)),
+                       context.measures.length(clearance.mm, digits));
+  }
+  return fmt::format("{} {} - {}", context.measures.length(clearance.mm, digits), clearance.piece,
+                     clearance.fixture);
+}
+
 void draw_machine_values(const PanelContext& context) {
   const Moment& moment = *context.shown.moment;
   if (!ImGui::BeginTable("values", 2)) return;
@@ -108,6 +120,7 @@ void draw_machine_values(const PanelContext& context) {
   line(Text::kFeed, feed_text(context));
   line(Text::kCoolant, moment.coolant.empty() ? "-" : moment.coolant);
   line(Text::kRemoved, context.measures.volume(moment.removed_mm3));
+  if (moment.clearance) line(Text::kClearance, clearance_text(context));
   ImGui::EndTable();
 }
 

@@ -32,6 +32,7 @@ void MachineStore::set_machine(std::shared_ptr<const SceneMachine> machine) {
     links_.push_back(std::move(link));
   }
   set_poses(std::exchange(poses_, {}));
+  set_marks(std::exchange(marks_, {}));
 }
 
 void MachineStore::set_poses(std::span<const glm::mat4> link_poses) {
@@ -41,6 +42,16 @@ void MachineStore::set_poses(std::span<const glm::mat4> link_poses) {
         i < poses_.size() ? std::optional(poses_[i]) : std::nullopt;
     if (pose == links_[i].pose) continue;
     links_[i].pose = pose;
+    links_[i].has_changed = true;
+  }
+}
+
+void MachineStore::set_marks(std::vector<BodyMark> marks) {
+  marks_ = std::move(marks);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const BodyMark mark = i < marks_.size() ? marks_[i] : BodyMark::kNone;
+    if (mark == links_[i].mark) continue;
+    links_[i].mark = mark;
     links_[i].has_changed = true;
   }
 }
@@ -96,27 +107,42 @@ ScreenRect MachineStore::take_changed(const Projection& projection, const Box& p
   return changed;
 }
 
+float MachineStore::opacity_of(const Link& link, float opacity) {
+  if (link.mark != BodyMark::kNone) return std::max(link.rgba.a, kLeastMarkedOpacity) * opacity;
+  return std::min(link.rgba.a * opacity, link.most_opacity);
+}
+
+void MachineStore::draw_link(const Link& link, const Projection& projection,
+                             const GlProgram& program, float opacity) const {
+  program.set("clip_from_model", projection.clip_from_world * *link.pose);
+  program.set("view_from_model", projection.view_from_world * *link.pose);
+  program.set("rgba", glm::vec4(color_of(link.mark, glm::vec3(link.rgba)), opacity));
+  link.buffers.draw_all();
+}
+
+void MachineStore::draw_marked(const Projection& projection, const GlProgram& program,
+                               const ScreenRect& rect) const {
+  for (std::size_t i = 0; i < uploaded_; ++i) {
+    const Link& link = links_[i];
+    if (link.mark == BodyMark::kNone || !link.pose || !link.rect.intersects(rect)) continue;
+    draw_link(link, projection, program, kHiddenMarkOpacity);
+  }
+}
+
 void MachineStore::draw(const Projection& projection, const GlProgram& program, float opacity,
                         bool opaque_parts, const ScreenRect& rect) const {
-  const auto opacity_of = [opacity](const Link& link) {
-    return std::min(link.rgba.a * opacity, link.most_opacity);
-  };
   std::vector<std::pair<double, std::size_t>> order;  // by height above the plane of the eye
   for (std::size_t i = 0; i < uploaded_; ++i) {
     const Link& link = links_[i];
     if (!link.pose || !link.rect.intersects(rect)) continue;
-    if ((opacity_of(link) >= 1.0f) != opaque_parts) continue;
+    if ((opacity_of(link, opacity) >= 1.0f) != opaque_parts) continue;
     const Vec3 middle = 0.5 * (link.box_mm.min + link.box_mm.max);
     const glm::vec4 seen = projection.view_from_world * *link.pose * glm::vec4(middle, 1.0f);
     order.emplace_back(static_cast<double>(seen.z), i);
   }
   std::sort(order.begin(), order.end());
   for (const auto& [height, i] : order) {
-    const Link& link = links_[i];
-    program.set("clip_from_model", projection.clip_from_world * *link.pose);
-    program.set("view_from_model", projection.view_from_world * *link.pose);
-    program.set("rgba", glm::vec4(glm::vec3(link.rgba), opacity_of(link)));
-    link.buffers.draw_all();
+    draw_link(links_[i], projection, program, opacity_of(links_[i], opacity));
   }
 }
 

@@ -1,5 +1,5 @@
-// viewer/window/machine_store.h - the machine's links on the graphics card. For the sources of
-// viewer/ only.
+// viewer/window/machine_store.h - the machine's links, or fixtures, on the graphics card. For the
+// sources of viewer/ only.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
+#include "viewer/window/body_mark.h"
 #include "viewer/window/mesh_buffers.h"
 #include "viewer/window/mesh_rays.h"
 #include "viewer/window/screen_rect.h"
@@ -32,6 +33,8 @@ class MachineStore {
   void set_machine(std::shared_ptr<const SceneMachine> machine);
   /// One a link; links beyond have none.
   void set_poses(std::span<const glm::mat4> link_poses);
+  /// One a link; links beyond have none. Those that are marked do not fade.
+  void set_marks(std::vector<BodyMark> marks);
 
   /// Uploads links until `budget_bytes` are used up, but at least one: shading a mesh takes about
   /// 0.5 us a triangle. Returns the bytes.
@@ -47,6 +50,9 @@ class MachineStore {
   /// own colour), from back to front.
   void draw(const Projection& projection, const GlProgram& program, float opacity,
             bool opaque_parts, const ScreenRect& rect) const;
+  /// Those that are marked, as they shine through what hides them.
+  void draw_marked(const Projection& projection, const GlProgram& program,
+                   const ScreenRect& rect) const;
 
   /// Of all links that have a pose, in the workpiece frame.
   Box bounds_mm() const;
@@ -60,15 +66,20 @@ class MachineStore {
     std::optional<glm::mat4> pose;
     MeshBuffers buffers;
     MeshRays rays;
+    BodyMark mark = BodyMark::kNone;
     float most_opacity = 1.0f;  // less where it hides the workpiece
     ScreenRect rect;            // at the last take_changed()
     bool has_changed = false;
   };
 
   float most_opacity_of(const Link& link) const;
+  static float opacity_of(const Link& link, float opacity);
+  void draw_link(const Link& link, const Projection& projection, const GlProgram& program,
+                 float opacity) const;
 
   std::vector<Link> links_;
   std::vector<glm::mat4> poses_;
+  std::vector<BodyMark> marks_;
   std::size_t uploaded_ = 0;  // the first of the links
   ScreenRect dropped_rect_;   // of links that are no more
   Projection projection_;     // of the last take_changed()

@@ -15,15 +15,14 @@
 #include "viewer/window/gl_failure.h"
 #include "viewer/window/gpu_timer.h"
 #include "viewer/window/layer.h"
-#include "viewer/window/machine_store.h"
 #include "viewer/window/marker_store.h"
+#include "viewer/window/moving_bodies.h"
 #include "viewer/window/patch_store.h"
 #include "viewer/window/path_store.h"
 #include "viewer/window/scene_pace.h"
 #include "viewer/window/scene_programs.h"
 #include "viewer/window/section_face.h"
 #include "viewer/window/surface_colors.h"
-#include "viewer/window/tool_store.h"
 #include "viewer/window/workpiece_renderer.h"
 
 namespace kerf {
@@ -71,7 +70,7 @@ class SceneRenderer::Impl {
   void keep_pace() { pace_.emplace(); }
   bool has_waiting() const {
     return (pace_ && pace_->has_waiting()) || patches_.waiting_bytes() > 0 || path_.has_waiting() ||
-           machine_.has_waiting() || draw_modes_.has_waiting();
+           bodies_.has_waiting() || draw_modes_.has_waiting();
   }
   bool is_full() const { return divisor_ == 1 && draw_modes_.is_full(); }
   ScreenRect take_changed() {
@@ -92,7 +91,6 @@ class SceneRenderer::Impl {
   DrawCounters counters;
 
  private:
-  void take_moment(const Moment& moment);
   void grow_depth_box(const Box& box);
   Done resize(glm::ivec2 size_px);
   Done take_options(const Projection& projection, const DrawOptions& options);
@@ -104,7 +102,6 @@ class SceneRenderer::Impl {
   void draw_section_face(const glm::dvec4& kept);
   void draw_lines(const ScreenRect& rect) const;
   void draw_shown(ScreenRect rect);
-  void draw_moving(const ScreenRect& rect, const GlProgram& program, bool opaque_parts) const;
   void draw_moving_beside_glass(const ScreenRect& rect, bool is_behind) const;
   void draw_seen_through(const ScreenRect& rect);
   void draw_glass();
@@ -124,8 +121,7 @@ class SceneRenderer::Impl {
   SurfaceColors colors_;
   PathStore path_;
   MarkerStore markers_;
-  ToolStore tool_;
-  MachineStore machine_;
+  MovingBodies bodies_;
   WorkpieceRenderer draw_modes_;
   DrawMode draw_mode_ = DrawMode::kMesh;  // drawn last
   Layer kept_;
@@ -150,8 +146,7 @@ class SceneRenderer::Impl {
   glm::ivec2 size_px_{0};
   bool is_kept_old_ = true;  // all of it
   std::vector<Box> changed_mm_;
-  ScreenRect tool_rect_;  // where the tool is in shown_
-  ScreenRect changed_;    // of shown_, since take_changed()
+  ScreenRect changed_;  // of shown_, since take_changed()
 };
 
 void SceneRenderer::Impl::grow_depth_box(const Box& box) {
@@ -200,21 +195,15 @@ void SceneRenderer::Impl::apply(const SceneUpdate& update) {
     grow_depth_box(box);
   }
   draw_modes_.apply(update);
-  if (update.tool_shape) tool_.set_shape(*update.tool_shape);
-  if (update.machine) machine_.set_machine(update.machine);
+  bodies_.apply(update);
   if (update.colors) {
     colors_.set(update.colors);
     if (update.colors->mode == options_.color_by) is_kept_old_ = true;
   }
-  if (update.moment) take_moment(*update.moment);
-  if (update.machine || update.moment) grow_depth_box(machine_.bounds_mm());
-  if (update.tool_shape || update.moment) grow_depth_box(tool_.bounds_mm());
-}
-
-void SceneRenderer::Impl::take_moment(const Moment& moment) {
-  tool_.set_pose(moment.tool_pose);
-  machine_.set_poses(moment.link_poses);
-  path_.set_past(moment.past_vertices, &changed_mm_);
+  if (update.moment) path_.set_past(update.moment->past_vertices, &changed_mm_);
+  if (update.tool_shape || update.machine || update.fixtures || update.moment) {
+    grow_depth_box(bodies_.bounds_mm());
+  }
 }
 
 Done SceneRenderer::Impl::resize(glm::ivec2 size_px) {
@@ -269,7 +258,7 @@ void SceneRenderer::Impl::set_divisor(int divisor) {
 std::size_t SceneRenderer::Impl::upload(std::size_t budget_bytes) {
   std::size_t bytes = patches_.upload(budget_bytes, &changed_mm_);
   if (bytes < budget_bytes) bytes += path_.upload(budget_bytes - bytes, &changed_mm_);
-  if (bytes < budget_bytes) bytes += machine_.upload(budget_bytes - bytes);
+  if (bytes < budget_bytes) bytes += bodies_.upload(budget_bytes - bytes);
   return bytes;
 }
 
@@ -324,9 +313,8 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
 }
 
 std::size_t SceneRenderer::Impl::gpu_bytes() const {
-  return patches_.gpu_bytes() + path_.gpu_bytes() + machine_.gpu_bytes() + tool_.gpu_bytes() +
-         colors_.gpu_bytes() + draw_modes_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() +
-         shown_.gpu_bytes();
+  return patches_.gpu_bytes() + path_.gpu_bytes() + bodies_.gpu_bytes() + colors_.gpu_bytes() +
+         draw_modes_.gpu_bytes() + kept_.gpu_bytes() + glass_.gpu_bytes() + shown_.gpu_bytes();
 }
 
 std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
@@ -440,18 +428,9 @@ void SceneRenderer::Impl::draw_lines(const ScreenRect& rect) const {
 }
 
 void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
-  const ToolLook tool_look{look(SceneObject::kCutter).is_visible,
-                           look(SceneObject::kHolder).is_visible, 1.0f, 1.0f};
-  const ScreenRect tool_rect = tool_.rect(projection_, tool_look);
-  if (tool_.take_changed() || tool_rect != tool_rect_) {
-    rect.extend(tool_rect_);
-    rect.extend(tool_rect);
-  }
-  tool_rect_ = tool_rect;
   const bool is_part_seen = setup_ && look(SceneObject::kWorkpiece).is_visible;
-  const ScreenRect machine_rect =
-      machine_.take_changed(projection_, is_part_seen ? setup_->bounds_mm : Box{});
-  if (look(SceneObject::kMachine).is_visible) rect.extend(machine_rect);
+  rect.extend(
+      bodies_.take_changed(projection_, options_.looks, is_part_seen ? setup_->bounds_mm : Box{}));
   if (rect.empty()) return;
   changed_.extend(rect);
   counters.shown_pixels += static_cast<std::uint64_t>(rect.pixels());
@@ -460,31 +439,12 @@ void SceneRenderer::Impl::draw_shown(ScreenRect rect) {
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_LESS);
-  draw_moving(rect, programs_.moving(), true);
+  bodies_.draw_hidden_marks(rect, programs_.moving());
+  bodies_.draw(rect, programs_.moving(), true);
   draw_seen_through(rect);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_SCISSOR_TEST);
-}
-
-/// Tool and machine, as far as they are opaque or as far as they are not.
-void SceneRenderer::Impl::draw_moving(const ScreenRect& rect, const GlProgram& program,
-                                      bool opaque_parts) const {
-  program.use();
-  program.set("up_view", glm::vec3(projection_.view_from_world[2]));
-  const ObjectLook& machine = look(SceneObject::kMachine);
-  if (machine.is_visible) {
-    machine_.draw(projection_, program, machine.opacity, opaque_parts, rect);
-  }
-  if (tool_rect_.intersects(rect)) {
-    const ObjectLook& cutter = look(SceneObject::kCutter);
-    const ObjectLook& holder = look(SceneObject::kHolder);
-    glEnable(GL_CULL_FACE);  // tools are closed; what others drew of a machine may not be
-    tool_.draw(projection_, program,
-               {cutter.is_visible, holder.is_visible, cutter.opacity, holder.opacity},
-               opaque_parts);
-    if (opaque_parts) glDisable(GL_CULL_FACE);
-  }
 }
 
 void SceneRenderer::Impl::draw_moving_beside_glass(const ScreenRect& rect, bool is_behind) const {
@@ -493,7 +453,7 @@ void SceneRenderer::Impl::draw_moving_beside_glass(const ScreenRect& rect, bool 
   bind_texture(0, glass_.depth());
   program.set("glass_depths", 0);
   program.set("is_behind", is_behind ? 1 : 0);
-  draw_moving(rect, program, false);
+  bodies_.draw(rect, program, false);
 }
 
 /// What is seen through, over what is not: first what lies behind the surface of a transparent
@@ -508,7 +468,7 @@ void SceneRenderer::Impl::draw_seen_through(const ScreenRect& rect) {
     draw_glass();
     draw_moving_beside_glass(rect, false);
   } else {
-    draw_moving(rect, programs_.moving(), false);
+    bodies_.draw(rect, programs_.moving(), false);
   }
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);

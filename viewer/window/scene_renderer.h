@@ -20,7 +20,7 @@ namespace kerf {
 enum class SceneObject {
   kWorkpiece,
   kCutter,
-  kHolder,  ///< and shank
+  kHolder,  ///< and shank, and spindle
   kTraverses,
   kFeeds,
   kPlanned,
@@ -28,8 +28,9 @@ enum class SceneObject {
   kFrames,
   kFindings,
   kMachine,
+  kFixtures,
 };
-inline constexpr std::size_t kSceneObjectCount = 10;
+inline constexpr std::size_t kSceneObjectCount = 11;
 
 struct ObjectLook {
   bool is_visible = true;

@@ -25,8 +25,8 @@ constexpr float kMinOpacity = 0.05f;
 constexpr std::uintmax_t kMaxBytes = 64 * 1024;
 
 constexpr std::array<std::string_view, kSceneObjectCount> kObjectNames{
-    "workpiece", "cutter", "holder", "traverses", "feeds",
-    "planned",   "blank",  "frames", "findings",  "machine"};
+    "workpiece", "cutter", "holder",   "traverses", "feeds",   "planned",
+    "blank",     "frames", "findings", "machine",   "fixtures"};
 
 /// One name, how it is written, and how it is read: the reader returns what is allowed if the value
 /// is not.

@@ -39,6 +39,7 @@ constexpr std::array kShortcuts{
     Shortcut{"v", U'v', 0, Action::kNextColors, Text::kNextColors},
     Shortcut{"w", U'w', 0, Action::kWorkpiece, Text::kToggleWorkpiece},
     Shortcut{"h", U'h', 0, Action::kHolder, Text::kHolder},
+    Shortcut{"e", U'e', 0, Action::kFixtures, Text::kFixtures},
     Shortcut{"k", U'k', 0, Action::kFeeds, Text::kFeeds},
     Shortcut{"j", U'j', 0, Action::kTraverses, Text::kTraverses},
     Shortcut{"u", U'u', 0, Action::kPathTail, Text::kPathTail},

@@ -40,6 +40,7 @@ enum class Action {
   kNextColors,
   kWorkpiece,
   kHolder,
+  kFixtures,
   kFeeds,
   kTraverses,
   kPathTail,

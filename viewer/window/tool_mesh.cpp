@@ -86,9 +86,8 @@ class Lathe {
 ToolMesh revolve(const ToolShape& shape) {
   ToolMesh mesh;
   Lathe lathe(&mesh);
-  mesh.cutter = lathe.add(shape.cutter);
-  mesh.shank = lathe.add(shape.shank);
-  mesh.holder = lathe.add(shape.holder);
+  mesh.pieces = {lathe.add(shape.cutter), lathe.add(shape.shank), lathe.add(shape.holder),
+                 lathe.add(shape.spindle)};
   return mesh;
 }
 

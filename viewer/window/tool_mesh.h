@@ -1,6 +1,7 @@
 // viewer/window/tool_mesh.h - turns the outline of a tool around its axis.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,7 +18,7 @@ struct ToolMesh {
   };
   std::vector<MeshVertex> vertices;  ///< Tip at the origin, axis along +Z.
   std::vector<std::uint32_t> indices;
-  Part cutter, shank, holder;
+  std::array<Part, kToolPieceCount> pieces;  ///< By ToolPiece.
   Box bounds_mm;
 };
 

@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kMegabyte = 1024.0 * 1024.0;
 constexpr int kMostLine = 99'999'999;
-constexpr std::array kObjects{Text::kWorkpiece, Text::kCutter,      Text::kHolder, Text::kTraverses,
-                              Text::kFeeds,     Text::kPlanned,     Text::kBlank,  Text::kFrames,
-                              Text::kFindings,  Text::kMachineParts};
+constexpr std::array kObjects{Text::kWorkpiece,    Text::kCutter,  Text::kHolder,
+                              Text::kTraverses,    Text::kFeeds,   Text::kPlanned,
+                              Text::kBlank,        Text::kFrames,  Text::kFindings,
+                              Text::kMachineParts, Text::kFixtures};
 static_assert(kObjects.size() == kSceneObjectCount);
 constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
                                  Text::kColorTool,      Text::kColorRemovalRate,

@@ -101,6 +101,9 @@ void Window::Impl::act_on_panels(Action action) {
     case Action::kHolder:
       toggle(SceneObject::kHolder);
       break;
+    case Action::kFixtures:
+      toggle(SceneObject::kFixtures);
+      break;
     case Action::kFeeds:
       toggle(SceneObject::kFeeds);
       break;

@@ -77,8 +77,9 @@ TEST(ReportJson, HasThePublishedKeys) {
   EXPECT_EQ(keys(json["tools"][0]),
             (Keys{"number", "shape", "origin", "guessed", "shank_checked", "holder_checked",
                   "cut_s", "feed_mm", "removed_mm3", "max_depth_mm", "peak_mm3_per_s"}));
-  EXPECT_EQ(keys(json["findings"][0]), (Keys{"id", "severity", "file", "line", "time_s",
-                                             "position_mm", "tool", "depth_mm", "message"}));
+  EXPECT_EQ(keys(json["findings"][0]),
+            (Keys{"id", "severity", "file", "line", "time_s", "position_mm", "tool", "depth_mm",
+                  "bodies", "message"}));
   EXPECT_EQ(keys(json["timing_s"]), (Keys{"interpret", "cut", "cut_cpu", "mesh", "total"}));
 }
 

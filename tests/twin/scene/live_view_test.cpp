@@ -102,6 +102,31 @@ class LiveViewTest : public testing::Test {
   std::unique_ptr<LiveView> view_;
 };
 
+TEST_F(LiveViewTest, ShowsFixturesAndHowNearTheToolIs) {
+  const FixtureSpec post[] = {parse_fixture("post=box:41,0,-10:50,20,10").value()};
+  Diagnostics diagnostics;
+  LiveViewOptions with_post = options();
+  with_post.collisions.fixtures = load_fixtures(post, diagnostics);
+  open(std::move(with_post));
+  ASSERT_TRUE(until([&] { return known_.fixtures && known_.moment; }));
+  ASSERT_EQ(known_.fixtures->links.size(), 1u);
+  EXPECT_EQ(known_.moment->fixture_poses.size(), 1u) << "before the first position";
+  frame(at({33, 10, 3}));
+  ASSERT_TRUE(moment([](const Moment& m) { return m.clearance.has_value(); }));
+  EXPECT_NEAR(known_.moment->clearance->mm, 5, 0.003) << "the ball of 6 mm reaches to X36";
+  EXPECT_TRUE(known_.moment->contacts.empty());
+  Finding told = finding("holder touches the workpiece", 7);
+  told.bodies = {"holder", kWorkpieceBody};
+  view_->on_finding(told, {"part.ngc"});
+  frame(at({33, 10, 3}));
+  ASSERT_TRUE(moment([](const Moment& m) { return !m.contacts.empty(); }));
+  EXPECT_EQ(known_.moment->contacts[0].piece, ToolPiece::kHolder);
+  frame(at({39, 10, 3}));
+  ASSERT_TRUE(moment([](const Moment& m) {
+    return !m.contacts.empty() && m.contacts[0].fixture == std::size_t{0};
+  })) << "it is in the post now";
+}
+
 TEST_F(LiveViewTest, ShowsTheWorkpieceToolAndPlace) {
   open(options());
   ASSERT_TRUE(view_->wants_frames());

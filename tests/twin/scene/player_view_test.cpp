@@ -13,12 +13,15 @@ namespace {
 /// A window without a screen: takes what the view publishes, says what a user would.
 class PlayerViewTest : public testing::Test {
  protected:
-  void open(const MotionList& program, std::vector<std::string> files = {"/nc/part.ngc"}) {
+  void open(const MotionList& program, std::vector<std::string> files = {"/nc/part.ngc"},
+            const CollisionWishes& collisions = {}) {
     PlayerProgram played;
     played.track = test::track_of(program.list());
     played.blank = test::block_40(0.2);
     played.tools = test::two_tools();
+    played.checks.collisions = collisions;
     ViewedProgram shown;
+    shown.collisions = collisions;
     shown.title = "part.ngc";
     shown.files = std::move(files);
     shown.work_offset = "G54";
@@ -102,6 +105,36 @@ TEST_F(PlayerViewTest, GoesToALineAndShowsWhatIsCutThere) {
   EXPECT_TRUE(until([&] { return known_.moment->removed_mm3 > 100; })) << "the first slot";
   ASSERT_TRUE(until([&] { return static_cast<bool>(known_.tool_shape); }));
   EXPECT_NEAR(known_.tool_shape->cutter.back().radius_mm, 2, 1e-5);
+}
+
+TEST_F(PlayerViewTest, AChosenCollisionIsJumpedToAndItsBodiesAreMarked) {
+  // The ball of 6 mm meets the post in the first slot, with its tip at X38.
+  const FixtureSpec post[] = {parse_fixture("post=box:41,0,-10:50,20,10:in-blank").value()};
+  Diagnostics diagnostics;
+  CollisionWishes collisions;
+  collisions.fixtures = load_fixtures(post, diagnostics);
+  open(two_slots(), {"/nc/part.ngc"}, collisions);
+  ASSERT_TRUE(until([&] { return known_.findings && !known_.findings->findings.empty(); }));
+  ASSERT_TRUE(known_.fixtures);
+  ASSERT_EQ(known_.fixtures->links.size(), 1u);
+  EXPECT_EQ(known_.fixtures->links[0].name, "post");
+  commands_.push(SeekLineCommand{"/nc/part.ngc", 3});
+  ASSERT_TRUE(at_line(3));
+  EXPECT_EQ(known_.moment->fixture_poses.size(), 1u);
+  EXPECT_TRUE(known_.moment->contacts.empty());
+  ASSERT_TRUE(known_.moment->clearance);
+  EXPECT_TRUE(known_.moment->clearance->is_beyond) << "46 mm to go";
+  const auto& findings = known_.findings->findings;
+  std::size_t contact = 0;
+  while (contact < findings.size() && findings[contact].line != 3) ++contact;
+  ASSERT_LT(contact, findings.size());
+  commands_.push(SeekFindingCommand{static_cast<int>(contact)});
+  ASSERT_TRUE(until([&] { return !known_.moment->contacts.empty(); }));
+  EXPECT_EQ(known_.moment->contacts[0].piece, ToolPiece::kCutter);
+  EXPECT_EQ(known_.moment->contacts[0].fixture, std::size_t{0});
+  EXPECT_NEAR(known_.moment->tool_pose->tip_mm.x, 38, 0.05);
+  EXPECT_LT(known_.moment->clearance->mm, 0.01);
+  EXPECT_EQ(known_.moment->clearance->fixture, "post");
 }
 
 TEST_F(PlayerViewTest, StepsAndTools) {

@@ -10,6 +10,7 @@
 
 #include "base/translate.h"
 #include "stock/way_contact.h"
+#include "twin/collision/tool_bodies.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -148,6 +149,7 @@ bool Checks::check_traverse(const CheckedMove& move) {
   if (!rapid_) {
     Finding finding = finding_at(FindingId::kRapidContact, move, touch->contact.tip_mm,
                                  touch->fraction, tr("traverse touches the workpiece"));
+    finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
     rapid_ = log_.add(std::move(finding));
   }
   log_.deepen(*rapid_, touch->contact.depth_mm);
@@ -163,6 +165,7 @@ std::optional<FindingLog::Handle> Checks::check_standing_spindle(const CheckedMo
                                touch->fraction, std::string(text));
   finding.severity = std::min(finding.severity, severity);
   finding.depth_mm = touch->contact.depth_mm;
+  finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
   return spindle_ = log_.add(std::move(finding));
 }
 

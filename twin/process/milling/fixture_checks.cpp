@@ -198,6 +198,7 @@ void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std
         move.step.start_s + (static_cast<double>(which) + t) / count * move.step.duration_s;
     finding.position_mm = way.tool_way.pose(t).origin_mm;
     finding.tool = tool_;
+    finding.bodies = {to_string(part.body.part), name};
     pair.event = log_.add(std::move(finding));
     pair.depth_mm = 0;
     if (pair.row.contacts++ == 0) pair.row.source = move.motion.source;
@@ -227,6 +228,7 @@ void FixtureChecks::finish() {
     Finding near = pair.nearest;
     near.id = FindingId::kNearMiss;
     near.severity = Severity::kNote;
+    near.bodies = {to_string(pair.row.part), pair.row.other};
     near.text = trf("{} comes as near as {:.2f} mm to fixture '{}'", name_of(pair.row.part),
                     pair.least_mm, pair.row.other);
     log_.add(std::move(near));

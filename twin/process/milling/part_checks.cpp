@@ -231,6 +231,7 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
     finding.position_mm = contact.tip_mm;
     finding.tool = move.tool;
     CollisionPair& row = table_[part.row];
+    finding.bodies = {to_string(row.part), kWorkpieceBody};
     if (row.contacts++ == 0) row.source = finding.source;
     row.least_clearance_mm = 0;
     part.event = log_.add(std::move(finding));
@@ -270,6 +271,7 @@ void PartChecks::finish() {
     Finding near = nearest_[i];
     near.id = FindingId::kNearMiss;
     near.severity = Severity::kNote;
+    near.bodies = {to_string(row.part), kWorkpieceBody};
     near.text = trf("{} comes as near as {:.2f} mm to the workpiece", name_of(row.part),
                     *row.least_clearance_mm) +
                 near.text;

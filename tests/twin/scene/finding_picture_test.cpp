@@ -1,0 +1,136 @@
+#include "twin/scene/finding_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <glm/geometric.hpp>
+
+#include "stock/cutter/shape_spec.h"
+#include "tests/twin/playback/tracks.h"
+#include "twin/scene/finding_view.h"
+
+namespace kerf {
+namespace {
+
+CollisionWishes with_clamp() {
+  const FixtureSpec clamp[] = {parse_fixture("clamp=box:40.2,15,-10:50,25,3").value()};
+  Diagnostics diagnostics;
+  CollisionWishes wishes;
+  wishes.fixtures = load_fixtures(clamp, diagnostics);
+  return wishes;
+}
+
+/// A slot along Y20 up to the clamp at the end of the block.
+FindingShot shot_at_clamp() {
+  FindingShot shot;
+  shot.cutter = std::make_shared<const Cutter>(
+      parse_shape("flat:6:flute=15:shank=6:holder=30x20:stickout=25").value());
+  auto stock = test::block_40(0.2);
+  std::vector<CutReport> reports;
+  CutMove slot;
+  slot.from_mm = {-5, 20, -2};
+  slot.to_mm = {37.201, 20, -2};
+  stock->cut(*shot.cutter, {&slot, 1}, reports);
+  shot.stock = stock->snapshot();
+  shot.tool = {slot.to_mm, {0, 0, 1}};
+  shot.finding.id = FindingId::kFixtureContact;
+  shot.finding.source.line = 12;
+  shot.finding.bodies = {"cutter", "clamp"};
+  shot.place = "part.ngc:12";
+  shot.message = "cutter touches fixture 'clamp', 3.00 mm deep";
+  return shot;
+}
+
+int red_pixels(const Picture& picture) {
+  int count = 0;
+  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
+    count += picture.rgb[i] > 110 && picture.rgb[i + 1] < picture.rgb[i] / 2 &&
+             picture.rgb[i + 2] < picture.rgb[i] / 2;
+  }
+  return count;
+}
+
+TEST(FindingPicture, NamesSayWhatAndWhere) {
+  Finding finding;
+  finding.id = FindingId::kHolderContact;
+  finding.source.line = 120;
+  EXPECT_EQ(finding_picture_name(3, finding), "03-holder-contact-line-120.png");
+  finding.source.line = 0;
+  EXPECT_EQ(finding_picture_name(20, finding), "20-holder-contact.png");
+}
+
+TEST(FindingView, ShowsWhereTheyTouchAndBothBodies) {
+  BodyWatch watch(with_clamp());
+  const FindingShot shot = shot_at_clamp();
+  const FindingView view = finding_view(shot, watch);
+  ASSERT_TRUE(view.contact);
+  EXPECT_EQ(view.tool_name, "cutter");
+  EXPECT_EQ(view.other_name, "clamp");
+  EXPECT_NEAR(view.place_mm.x, 40.2, 0.2);
+  EXPECT_NEAR(glm::distance(view.axis_mm, Vec3(37.201, 20, view.place_mm.z)), 0, 1e-9);
+  // The whole tool, and the clamp.
+  EXPECT_LE(view.frame_mm.min.x, 37.2 - 15);
+  EXPECT_GE(view.frame_mm.max.x, 50 - 1e-9);
+  EXPECT_GE(view.frame_mm.max.z, 43 - 1e-9);
+  EXPECT_FALSE(view.close_mm.empty());
+}
+
+TEST(FindingView, ASpindleIsShownInPart) {
+  CollisionWishes wishes;
+  wishes.spindle = {{80, 0, 400}};
+  BodyWatch watch(wishes);
+  FindingShot shot = shot_at_clamp();
+  shot.finding.bodies = {"spindle", kWorkpieceBody};
+  EXPECT_NEAR(finding_view(shot, watch).frame_mm.max.z, -2 + 45 + 60, 1e-6);
+  shot.finding.bodies = {"cutter", kWorkpieceBody};
+  EXPECT_NEAR(finding_view(shot, watch).frame_mm.max.z, -2 + 45, 1e-6) << "not where it is free";
+}
+
+TEST(FindingView, IsSeenFromBesideRatherThanThroughABody) {
+  FindingView view;
+  view.place_mm = {3, 0, 0};  // on the side of the tool towards +X
+  const auto score = [&](double yaw_deg, double pitch_deg, bool shows_place) {
+    const ViewAngles angles{yaw_deg * kPi / 180, pitch_deg * kPi / 180};
+    return score_of(view, angles, shows_place, true, true);
+  };
+  EXPECT_GT(score(-75, 28, true), score(0, 28, true)) << "what is touched hides it";
+  EXPECT_GT(score(-75, 28, true), score(180, 28, true)) << "the tool hides it";
+  EXPECT_GT(score(0, 28, true), score(-75, 28, false)) << "but it is to be seen";
+  EXPECT_GT(score(-75, 28, true), score(-75, 75, true)) << "not from high above";
+  EXPECT_GT(score(-75, 28, true), score(75, 28, true)) << "from the front, all else being equal";
+  EXPECT_TRUE(tool_hides_place(view, {kPi, 0.5}));
+  EXPECT_FALSE(tool_hides_place(view, {0, 0.5}));
+  view.place_mm = {0, 0, 0};
+  EXPECT_FALSE(tool_hides_place(view, {kPi, 0.5})) << "it is on the axis";
+  EXPECT_GE(candidate_views().size(), 12u);
+}
+
+TEST(FindingPicture, BothBodiesAreRed) {
+  unsetenv("DISPLAY");
+  Result<FindingPictures> pictures = FindingPictures::create(with_clamp(), {640, 480});
+  ASSERT_TRUE(pictures) << pictures.error();
+  FindingShot shot = shot_at_clamp();
+  const Result<Picture> red = pictures->draw(shot);
+  ASSERT_TRUE(red) << red.error();
+  EXPECT_EQ(red->width_px, 640);
+  EXPECT_EQ(red->height_px, 480);
+  EXPECT_GT(red_pixels(*red), 3000);
+  EXPECT_EQ(pictures->draw(shot)->rgb, red->rgb) << "whatever was drawn before";
+  shot.finding.bodies = {"holder", kWorkpieceBody};
+  EXPECT_GT(red_pixels(*pictures->draw(shot)), 1000) << "the holder alone";
+  // What tells of no two bodies makes nothing red.
+  shot.finding.bodies = {};
+  EXPECT_EQ(red_pixels(*pictures->draw(shot)), 0);
+}
+
+TEST(FindingPicture, AToolThatIsNotKnownIsLeftOut) {
+  unsetenv("DISPLAY");
+  Result<FindingPictures> pictures = FindingPictures::create({}, {320, 240});
+  ASSERT_TRUE(pictures) << pictures.error();
+  FindingShot shot = shot_at_clamp();
+  shot.cutter = nullptr;
+  EXPECT_TRUE(pictures->draw(shot));
+}
+
+}  // namespace
+}  // namespace kerf

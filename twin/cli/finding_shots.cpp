@@ -1,0 +1,183 @@
+#include "twin/cli/finding_shots.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/cli/console.h"
+#include "twin/playback/load_program.h"
+#include "twin/report/shown_lengths.h"
+#include "twin/scene/player_scene.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::chrono::milliseconds kSeekPatience{50};
+
+void tell_trouble(Diagnostics& diagnostics, std::string message) {
+  Diagnostic d;
+  d.message = std::move(message);
+  diagnostics.push_back(std::move(d));
+}
+
+FindingShot shot_of(const Finding& finding, const std::vector<std::string>& files) {
+  FindingShot shot;
+  shot.finding = finding;
+  const std::string file = diagnostic_of(finding, files).file;
+  shot.place =
+      fmt::format("{}:{}", std::filesystem::path(file).filename().string(), finding.source.line);
+  std::string message = message_of(finding);
+  if (!finding.hint.empty()) message += "; " + finding.hint;
+  shot.message = in_unit(message, shown_unit());
+  return shot;
+}
+
+/// Makes the renderer when there is something to be drawn.
+class Album {
+ public:
+  Album(const std::string& folder, CollisionWishes wishes, Diagnostics& diagnostics)
+      : folder_(folder), wishes_(std::move(wishes)), diagnostics_(diagnostics) {}
+
+  /// False: no more can be drawn either.
+  bool add(const FindingShot& shot) {
+    if (!pictures_) {
+      Result<FindingPictures> made = FindingPictures::create(wishes_);
+      if (!made) return refuse(made.error());
+      pictures_ = std::make_unique<FindingPictures>(std::move(*made));
+    }
+    const Result<Picture> picture = pictures_->draw(shot);
+    if (!picture) return refuse(picture.error());
+    const std::filesystem::path path =
+        std::filesystem::path(folder_) / finding_picture_name(++count_, shot.finding);
+    const Done done = write_png(path.string(), *picture);
+    return done || refuse(done.error());
+  }
+
+ private:
+  bool refuse(const std::string& why) {
+    tell_trouble(diagnostics_, fmt::format("--finding-png: {}", why));
+    return false;
+  }
+
+  const std::string& folder_;
+  CollisionWishes wishes_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<FindingPictures> pictures_;
+  std::size_t count_ = 0;
+};
+
+/// Goes to the findings of a program that is played once more.
+class SecondPass {
+ public:
+  SecondPass(std::unique_ptr<LoadedProgram> loaded, std::stop_token stop)
+      : path_(viewed_program(*loaded, {}).moves),
+        resolver_(loaded->player.tools, nullptr),
+        player_(std::move(loaded->player), options()),
+        stop_(std::move(stop)) {}
+
+  /// False: stopped.
+  bool take(FindingShot& shot) {
+    const Player::Ticket ticket = player_.seek_time(*shot.finding.time_s);
+    while (!player_.wait(ticket, kSeekPatience))
+      if (stop_.stop_requested()) return false;
+    const std::shared_ptr<const PlayerState> state = player_.state();
+    shot.stock = state->stock;
+    shot.tool = tool_pose_at(path_.path(), player_.track(), *state);
+    shot.nose_z_mm = state->motion.tool_offset_mm.z;
+    shot.cutter = state->cutter;
+    // Of a tool that has cut nothing yet the player has no shape.
+    if (!shot.cutter) {
+      const ResolvedTool& tool = resolver_.mount(state->motion.tool, state->motion.source.line);
+      if (tool.cutter) shot.cutter = std::make_shared<const Cutter>(*tool.cutter);
+    }
+    return true;
+  }
+
+ private:
+  static PlayerOptions options() {
+    PlayerOptions options;
+    options.check_ahead = false;
+    return options;
+  }
+
+  MotionMoves path_;
+  ToolResolver resolver_;
+  Player player_;
+  std::stop_token stop_;
+};
+
+}  // namespace
+
+void make_finding_folder(const std::string& folder, Diagnostics& diagnostics) {
+  if (folder.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    return tell_trouble(diagnostics, fmt::format("--finding-png: {}: {}", folder, error.message()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    tell_trouble(diagnostics, fmt::format("--finding-png: {}: {}", folder, std::strerror(errno)));
+}
+
+void write_finding_pictures(const std::string& folder, const SessionOptions& options,
+                            const Report& report, const std::stop_token& stop,
+                            Diagnostics& diagnostics) {
+  std::vector<FindingShot> shots;
+  for (const Finding& finding : report.findings.kept()) {
+    if (!finding.position_mm || !finding.time_s) continue;
+    shots.push_back(shot_of(finding, report.program.files));
+    if (shots.size() == kMostFindingPictures) break;
+  }
+  if (shots.empty()) return;
+  LoadControl control;
+  control.stop = stop;
+  Diagnostics said;  // by the run
+  Outcome outcome = Outcome::kFailed;
+  std::unique_ptr<LoadedProgram> loaded = load_program(options, control, said, outcome);
+  if (!loaded) {
+    return tell_trouble(diagnostics, tr("--finding-png: the program cannot be read a second time"));
+  }
+  SecondPass pass(std::move(loaded), stop);
+  Album album(folder, options.collisions, diagnostics);
+  for (FindingShot& shot : shots) {
+    if (!pass.take(shot) || !album.add(shot)) return;
+    shot.stock = nullptr;
+  }
+}
+
+FindingShots::FindingShots(const LiveSession& session, LiveObserver& next)
+    : session_(session), next_(next), resolver_(session.tool_sources(), nullptr) {}
+
+void FindingShots::on_status(const LiveStatus& status) {
+  place_ = status.place;
+  next_.on_status(status);
+}
+
+void FindingShots::on_finding(const Finding& finding, const std::vector<std::string>& files) {
+  next_.on_finding(finding, files);
+  if (!finding.position_mm || shots_.size() == kMostFindingPictures) return;
+  FindingShot shot = shot_of(finding, files);
+  shot.stock = session_.stock()->snapshot();
+  shot.tool = {*finding.position_mm, place_.spindle};
+  shot.nose_z_mm = place_.tool_length_mm;
+  if (finding.tool) {
+    const ResolvedTool& tool = resolver_.mount(*finding.tool, 0);
+    if (tool.cutter) shot.cutter = std::make_shared<const Cutter>(*tool.cutter);
+  }
+  shots_.push_back(std::move(shot));
+}
+
+void FindingShots::write(const std::string& folder, const CollisionWishes& wishes,
+                         Diagnostics& diagnostics) {
+  Album album(folder, wishes, diagnostics);
+  for (const FindingShot& shot : shots_)
+    if (!album.add(shot)) return;
+}
+
+}  // namespace kerf

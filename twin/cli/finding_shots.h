@@ -1,0 +1,62 @@
+// twin/cli/finding_shots.h - --finding-png: a picture of each finding, in a folder.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "twin/job/tools.h"
+#include "twin/live/live_session.h"
+#include "twin/program/program_front.h"
+#include "twin/report/report.h"
+#include "twin/scene/finding_picture.h"
+
+namespace kerf {
+
+/// So many are drawn.
+inline constexpr std::size_t kMostFindingPictures = 20;
+
+/// Makes the folder, if there is to be one (`folder` not empty). Faults say why it cannot be
+/// written into.
+void make_finding_folder(const std::string& folder, Diagnostics& diagnostics);
+
+/// Of a program that has been run, the findings of its report in their order, as far as they have a
+/// place. Where there are such it is read and cut a second time, up to the last of them: the
+/// workpiece in each picture is that of the finding's time. Faults: no OpenGL, a disk that is full.
+void write_finding_pictures(const std::string& folder, const SessionOptions& options,
+                            const Report& report, const std::stop_token& stop,
+                            Diagnostics& diagnostics);
+
+/// Beside a machine: takes the workpiece when a finding is told, some hundredths of a second after
+/// it, and passes all on to another observer.
+class FindingShots final : public LiveObserver {
+ public:
+  /// The references must outlive it.
+  FindingShots(const LiveSession& session, LiveObserver& next);
+
+  void on_status(const LiveStatus& status) override;
+  void on_finding(const Finding& finding, const std::vector<std::string>& files) override;
+  void on_warning(const AheadWarning& warning, const std::vector<std::string>& files) override {
+    next_.on_warning(warning, files);
+  }
+  void on_run(const LiveRun& run) override { next_.on_run(run); }
+  bool wants_frames() const override { return next_.wants_frames(); }
+  void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
+                std::span<const Vec3> trail, std::span<const CutLabel> labels) override {
+    next_.on_frame(stock, cutter, status, trail, labels);
+  }
+
+  /// Draws what has been taken.
+  void write(const std::string& folder, const CollisionWishes& wishes, Diagnostics& diagnostics);
+
+ private:
+  const LiveSession& session_;
+  LiveObserver& next_;
+  ToolResolver resolver_;
+  ToolState place_;
+  std::vector<FindingShot> shots_;
+};
+
+}  // namespace kerf

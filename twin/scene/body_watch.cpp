@@ -1,0 +1,197 @@
+#include "twin/scene/body_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "twin/scene/contact_places.h"
+#include "twin/scene/fixture_bodies.h"
+#include "twin/scene/tool_shape.h"
+
+namespace kerf {
+namespace {
+
+/// Distances are shown in hundredths.
+constexpr double kExact_mm = 0.002;
+/// What goes less deep is no contact (fixture-contact).
+constexpr double kTouchDepth_mm = 0.01;
+/// Times that differ by less are the same.
+constexpr double kSameTime_s = 1e-6;
+/// Of the mark on the workpiece: of the width of what touches it there, and in all.
+constexpr double kMarkShare = 0.06, kLeastMark_mm = 0.4, kMostMark_mm = 4;
+
+constexpr std::array kParts{ToolPart::kCutter, ToolPart::kShank, ToolPart::kHolder,
+                            ToolPart::kSpindle};
+
+ToolPiece piece_of(ToolPart part) {
+  switch (part) {
+    case ToolPart::kShank:
+      return ToolPiece::kShank;
+    case ToolPart::kHolder:
+      return ToolPiece::kHolder;
+    case ToolPart::kSpindle:
+      return ToolPiece::kSpindle;
+    case ToolPart::kCutter:
+      break;
+  }
+  return ToolPiece::kCutter;
+}
+
+/// Both have the point (piece and fixture) in common.
+bool is_same_pair(const SceneContact& a, const SceneContact& b) {
+  return a.piece == b.piece && a.fixture == b.fixture;
+}
+
+double distance_mm(const ToolBody& body, const Pose& fixture_from_tool, const Solid& solid,
+                   double cutoff_mm) {
+  double least = cutoff_mm;
+  for (const Convex& piece : body.solid->pieces()) {
+    const MovingConvex still{piece, fixture_from_tool, fixture_from_tool};
+    least = std::min(least, solid.gap_to(still, least, kExact_mm).high_mm);
+    if (least <= 0) return 0;
+  }
+  return solid.encloses(fixture_from_tool.origin_mm) ? 0 : least;
+}
+
+bool touches(const ToolBody& body, const Pose& fixture_from_tool, const Solid& solid) {
+  if (solid.encloses(fixture_from_tool.origin_mm)) return true;
+  std::vector<RoundedDisc> discs;
+  std::array<Vec3, 2> corners{};
+  return std::ranges::any_of(body.solid->pieces(), [&](const Convex& piece) {
+    const Convex thin = eroded(piece, kTouchDepth_mm, discs, corners);
+    const MovingConvex still{thin, fixture_from_tool, fixture_from_tool};
+    return solid.gap_to(still, 0, kExact_mm).high_mm <= 0;
+  });
+}
+
+}  // namespace
+
+Pose pose_of(const ToolPose& tool) {
+  const Vec3 z = glm::normalize(tool.axis);
+  const Vec3 across = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = glm::normalize(glm::cross(z, across));
+  return {glm::dmat3(glm::cross(y, z), y, z), tool.tip_mm};
+}
+
+std::optional<SceneContact> contact_of(const Finding& finding,
+                                       const std::vector<Fixture>* fixtures) {
+  if (!finding.has_bodies()) return std::nullopt;
+  SceneContact contact;
+  const auto part =
+      std::ranges::find_if(kParts, [&](ToolPart p) { return finding.bodies[0] == to_string(p); });
+  if (part == kParts.end()) return std::nullopt;
+  contact.piece = piece_of(*part);
+  contact.is_near = finding.id == FindingId::kNearMiss;
+  const std::string& other = finding.bodies[1];
+  for (std::size_t i = 0; fixtures && i < fixtures->size(); ++i)
+    if ((*fixtures)[i].name == other) contact.fixture = i;
+  if (!contact.fixture && other != kWorkpieceBody) return std::nullopt;
+  return contact;
+}
+
+BodyWatch::BodyWatch(CollisionWishes wishes)
+    : wishes_(std::move(wishes)), scene_(std::make_shared<const SceneMachine>()) {
+  if (!fixtures()) return;
+  scene_ = std::make_shared<const SceneMachine>(scene_fixtures(*fixtures()));
+  poses_ = fixture_poses(*fixtures());
+}
+
+std::shared_ptr<const ToolShape> BodyWatch::mount(const std::shared_ptr<const Cutter>& cutter,
+                                                  double nose_z_mm) {
+  // Without a spindle it does not matter where its nose would be.
+  const double nose_mm = wishes_.spindle.empty() ? 0 : nose_z_mm;
+  if (std::exchange(is_mounted_, true) && cutter == cutter_ && nose_mm == nose_z_mm_)
+    return nullptr;
+  cutter_ = cutter;
+  nose_z_mm_ = nose_mm;
+  measured_.reset();
+  for (Told& told : told_) told.seen_from.reset();
+  bodies_.clear();
+  if (!cutter) return std::make_shared<const ToolShape>();
+  bodies_ = tool_bodies(*cutter, wishes_.spindle, nose_mm);
+  return tool_shape_of(*cutter, wishes_.spindle, nose_mm);
+}
+
+void BodyWatch::set_findings(const std::vector<Finding>& findings) {
+  std::vector<Told> told;
+  for (const Finding& finding : findings) {
+    if (!finding.time_s) continue;
+    if (const auto contact = contact_of(finding, fixtures()))
+      told.push_back({*finding.time_s, *contact, std::nullopt});
+  }
+  told_ = std::move(told);
+}
+
+void BodyWatch::add_finding(const Finding& finding, double time_s) {
+  std::erase_if(told_, [&](const Told& told) { return told.time_s < time_s - kRed_s; });
+  if (const auto contact = contact_of(finding, fixtures()))
+    told_.push_back({time_s, *contact, std::nullopt});
+}
+
+const ToolBody* BodyWatch::body_of(ToolPiece piece) const {
+  for (const ToolBody& body : bodies_)
+    if (piece_of(body.part) == piece) return &body;
+  return nullptr;
+}
+
+/// Each part of the tool against each fixture, as it stands.
+void BodyWatch::measure(const ToolPose& tool) {
+  if (measured_ == tool) return;
+  measured_ = tool;
+  clearance_.reset();
+  touched_.clear();
+  if (!fixtures() || fixtures()->empty() || bodies_.empty()) return;
+  SceneClearance nearest;
+  nearest.mm = kReach_mm;
+  nearest.is_beyond = true;
+  const Pose pose = pose_of(tool);
+  for (std::size_t i = 0; i < fixtures()->size(); ++i) {
+    const Fixture& fixture = (*fixtures())[i];
+    const Pose fixture_from_tool = fixture.fixture_from_workpiece * pose;
+    for (const ToolBody& body : bodies_) {
+      const double mm = distance_mm(body, fixture_from_tool, *fixture.solid, kReach_mm);
+      if (mm <= 0 && touches(body, fixture_from_tool, *fixture.solid)) {
+        SceneContact contact;
+        contact.piece = piece_of(body.part);
+        contact.fixture = i;
+        touched_.push_back(contact);
+      }
+      if (mm >= nearest.mm) continue;
+      nearest = {mm, false, name_of(body.part), fixture.name};
+    }
+  }
+  clearance_ = std::move(nearest);
+}
+
+void BodyWatch::add_told(const ToolPose& tool, double time_s, double speed, const StockModel* stock,
+                         std::vector<SceneContact>& contacts) {
+  for (Told& told : told_) {
+    const double since_s = time_s - told.time_s;
+    if (since_s < -kSameTime_s || since_s > kRed_s * speed + kSameTime_s) continue;
+    const bool is_known = std::ranges::any_of(
+        contacts, [&](const SceneContact& c) { return is_same_pair(c, told.contact); });
+    if (is_known) continue;
+    const ToolBody* const body = body_of(told.contact.piece);
+    // Where the event began it is looked for once, not for each picture after it.
+    if (!told.seen_from && !told.contact.fixture && body && stock) {
+      told.seen_from = tool;
+      told.contact.mark_mm = std::clamp(kMarkShare * body->width_mm, kLeastMark_mm, kMostMark_mm);
+      told.contact.point_mm = body->part == ToolPart::kCutter
+                                  ? tool.tip_mm
+                                  : place_on_workpiece(*body, pose_of(tool), *stock);
+    }
+    contacts.push_back(told.contact);
+  }
+}
+
+void BodyWatch::look(const ToolPose& tool, double time_s, double speed, const StockModel* stock,
+                     Moment* moment) {
+  measure(tool);
+  moment->clearance = clearance_;
+  moment->contacts = touched_;
+  add_told(tool, time_s, std::isfinite(speed) ? speed : 1.0, stock, moment->contacts);
+}
+
+}  // namespace kerf

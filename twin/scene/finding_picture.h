@@ -1,0 +1,58 @@
+// twin/scene/finding_picture.h - pictures of findings: part, tool, fixtures, and where they touch.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "stock/cutter/cutter.h"
+#include "stock/stock_model.h"
+#include "twin/findings/finding.h"
+#include "twin/process/check_options.h"
+#include "viewer/picture.h"
+#include "viewer/scene.h"
+
+namespace kerf {
+
+/// A finding that has a place, and what was there at that time.
+struct FindingShot {
+  Finding finding;
+  std::string place;    ///< for the caption: "part.ngc:12"
+  std::string message;  ///< message_of() and what to do, in the units of who reads it
+  std::shared_ptr<const StockModel> stock;
+  std::shared_ptr<const Cutter> cutter;  ///< null: none that is known
+  double nose_z_mm = 0;                  ///< of the spindle above the tip; 0: not known
+  ToolPose tool;
+};
+
+/// "01-fixture-contact-line-12.png"; of the finding in that place of the list, from 1 on.
+std::string finding_picture_name(std::size_t number, const Finding& finding);
+
+/// Draws them by the window's renderer, without a display. One thread, which must not have another
+/// OpenGL context.
+class FindingPictures {
+ public:
+  /// `wishes`: the fixtures and the spindle that the checks had. Error: no OpenGL, and why.
+  static Result<FindingPictures> create(CollisionWishes wishes,
+                                        glm::ivec2 size_px = glm::ivec2(1280, 960));
+  FindingPictures(FindingPictures&&) noexcept;
+  FindingPictures& operator=(FindingPictures&&) noexcept;
+  ~FindingPictures();
+
+  /// The tool with its holder, and what of fixtures and workpiece is about it; both bodies are red
+  /// (amber if they only come near), a ring marks where they touch, once more and larger in a
+  /// corner, a caption says what, the file and the line. Seen from the side on which the workpiece
+  /// does not hide the place; where it does on all sides, it is seen through. About a second on a
+  /// core without a graphics card; less for workpieces that share tiles with the one before. Error:
+  /// OpenGL failed.
+  Result<Picture> draw(const FindingShot& shot);
+
+ private:
+  class Impl;
+  explicit FindingPictures(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kerf
