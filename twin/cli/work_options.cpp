@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
+#include "base/suggest.h"
 #include "base/translate.h"
 #include "stock/zmap/zmap_kernel.h"
 #include "twin/config/tool_library_reader.h"
+#include "twin/machine/machine_setup.h"
+#include "twin/machines/builtin_models.h"
+#include "twin/machines/machine_bodies.h"
+#include "twin/machines/machine_choice.h"
 
 namespace kerf {
 namespace {
@@ -79,6 +85,98 @@ void read_stock(const LiveConfig* config, OptionReader& reader, WorkRequest& wor
   }
 }
 
+bool is_mill(MachineKind kind) {
+  switch (kind) {
+    case MachineKind::kKneeMill:
+    case MachineKind::kGantry:
+    case MachineKind::kTrunnion:
+    case MachineKind::kBridgeMill:
+    case MachineKind::kSwivelMill:
+      return true;
+    case MachineKind::kNone:
+    case MachineKind::kLathe:
+    case MachineKind::kPlasma:
+    case MachineKind::kPunch:
+      break;
+  }
+  return false;
+}
+
+/// From its tip to the nose, of tools of which nobody knows it: as far as machines are built for.
+constexpr double kUsualTool_mm = 100;
+
+/// A machine of that kind, as far as the INI says how large it is.
+void build_in(MachineKind kind, const std::string& ini, WorkRequest& work) {
+  Diagnostics said;  // by whoever reads it for the program
+  MachineSetup setup;
+  if (!read_machine_setup(ini, setup, said)) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisLimits& limits = setup.timeline.limits.axes[axis];
+    if (!limits.present || !std::isfinite(limits.min) || !std::isfinite(limits.max)) return;
+  }
+  work.collisions.built_in = [kind, setup](const WorkpieceFrame& frame, const Box& blank_mm) {
+    return bodies_of(
+        builtin_machine(kind, machine_room(&setup, frame, blank_mm, {}, kUsualTool_mm)));
+  };
+}
+
+/// What moves, as far as somebody has described it, and who may touch whom.
+void read_machine(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
+  if (!config) return;
+  const ConfigMachine& machine = config->machine;
+  work.collisions.rules = {machine.ignore, config->clearances};
+  if (machine.drawn.links) {
+    work.collisions.machine = bodies_of(*machine.drawn.links, reader.diagnostics());
+  } else if (machine.drawn.kind && is_mill(*machine.drawn.kind) && !reader.text("--ini").empty()) {
+    build_in(*machine.drawn.kind, reader.text("--ini"), work);
+  }
+}
+
+void fault(Diagnostics& diagnostics, std::string message, std::string hint = {}) {
+  diagnostics.push_back(general_error(std::move(message), std::move(hint)));
+}
+
+std::string nearest_of(const std::string& word, const std::vector<std::string>& allowed) {
+  const std::vector<std::string_view> words(allowed.begin(), allowed.end());
+  return did_you_mean(word, words);
+}
+
+/// Fixtures stand on links that there are, and rules are about bodies that there are. The links of
+/// a machine that is built in are named where it is made.
+void check_names(const LiveConfig* config, const std::vector<FixtureSpec>& fixtures,
+                 Diagnostics& diagnostics) {
+  std::vector<std::string> links, bodies;
+  const bool has_links = config && config->machine.drawn.links;
+  if (has_links)
+    for (const LinkSpec& link : config->machine.drawn.links->links)
+      links.push_back(link.chain.name);
+  bodies = links;
+  for (const FixtureSpec& fixture : fixtures) {
+    bodies.push_back(fixture.name);
+    if (fixture.on.empty()) continue;
+    if (!has_links) {
+      fault(diagnostics,
+            trf("fixture '{}' stands on '{}', but there are no links", fixture.name, fixture.on),
+            tr("machine.links of a configuration describes the machine"));
+    } else if (std::ranges::find(links, fixture.on) == links.end()) {
+      fault(diagnostics,
+            trf("fixture '{}' stands on '{}', which is no link{} There are {}", fixture.name,
+                fixture.on, nearest_of(fixture.on, links), fmt::join(links, ", ")));
+    }
+  }
+  if (!config || config->machine.drawn.kind) return;
+  const std::vector<std::string> known = PairRules::names(bodies);
+  const auto check = [&](const char* key, const NamedPair& pair) {
+    for (const std::string& name : pair) {
+      if (std::ranges::find(known, name) != known.end()) continue;
+      fault(diagnostics, trf("{}: '{}' is no link and no fixture{} There are {}", key, name,
+                             nearest_of(name, known), fmt::join(known, ", ")));
+    }
+  };
+  for (const NamedPair& pair : config->machine.ignore) check("machine.ignore", pair);
+  for (const PairClearance& one : config->clearances) check("clearances", one.pair);
+}
+
 /// Those of the command line, else those of the configuration. Meshes are read at once: what is
 /// wrong with one is said before anything runs.
 void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
@@ -94,6 +192,9 @@ void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& 
       reader.fault("--fixture", spec.error());
     }
   }
+  name_fixtures(specs);
+  read_machine(config, reader, work);
+  check_names(config, specs, reader.diagnostics());
   work.collisions.fixtures = load_fixtures(specs, reader.diagnostics());
   work.collisions.clearance_mm = reader.length_mm("--clearance");
   if (config) work.collisions.spindle = config->machine.spindle;

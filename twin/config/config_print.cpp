@@ -121,6 +121,10 @@ void print_kinematics(Printer& printer, const KinematicsRequest& kinematics) {
   if (kinematics.told_tool_mm) printer.put("told_tool_length", *kinematics.told_tool_mm);
 }
 
+std::string pair_text(const NamedPair& pair) {
+  return fmt::format("[{}, {}]", quoted(pair[0]), quoted(pair[1]));
+}
+
 void print_machine(Printer& printer, const ConfigMachine& machine) {
   printer.open("machine");
   printer.text("ini", machine.ini);
@@ -151,6 +155,11 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
+  if (!machine.ignore.empty()) {
+    printer.open("ignore");
+    for (const NamedPair& pair : machine.ignore) printer.line("- " + pair_text(pair));
+    printer.close();
+  }
   printer.close();
 }
 
@@ -178,6 +187,7 @@ std::string fixture_text(const FixtureSpec& fixture) {
   if (fixture.at_mm != Vec3{0}) text += fmt::format(", at: {}", vector_text(fixture.at_mm));
   if (fixture.turn_deg != 0) text += fmt::format(", turn: {}", fixture.turn_deg);
   if (fixture.in_blank) text += ", in_blank: yes";
+  if (!fixture.on.empty()) text += fmt::format(", on: {}", quoted(fixture.on));
   if (fixture.clearance_mm) text += fmt::format(", clearance_mm: {}", *fixture.clearance_mm);
   return text;
 }
@@ -198,6 +208,12 @@ void print_work(Printer& printer, const LiveConfig& config) {
     printer.close();
   }
   printer.put("clearance_mm", config.clearance_mm);
+  if (!config.clearances.empty()) {
+    printer.open("clearances");
+    for (const PairClearance& one : config.clearances)
+      printer.line(fmt::format("- {{pair: {}, mm: {}}}", pair_text(one.pair), one.mm));
+    printer.close();
+  }
   if (!config.tool_libraries.empty()) {
     printer.open("tool_libraries");
     for (const std::string& path : config.tool_libraries) printer.line("- " + quoted(path));

@@ -42,6 +42,13 @@ void read_joints(const GroupReader& machine, std::string& joints) {
   joints = letters;
 }
 
+void read_ignored(const GroupReader& machine, std::vector<NamedPair>& out) {
+  const ConfigNode* const list = machine.find("ignore");
+  if (list == nullptr) return;
+  for (const auto& pair : list->children)
+    out.push_back({pair->children[0]->scalar, pair->children[1]->scalar});
+}
+
 /// Sections as holders have them.
 void read_spindle(const GroupReader& machine, ConfigMachine& out) {
   ConfigNode* const node = machine.find("spindle");
@@ -80,6 +87,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
   machine.number("max_acceleration_mm_per_s2", out.max_mm_per_s2);
   read_drawn_machine(machine, out.drawn);
+  read_ignored(machine, out.ignore);
   read_spindle(machine, out);
   read_kinematics(machine, out);
 }
@@ -131,7 +139,28 @@ void read_fixtures(const GroupReader& root, std::vector<FixtureSpec>& out) {
     group.number("turn", spec->turn_deg);
     group.number("in_blank", spec->in_blank);
     group.number("clearance_mm", spec->clearance_mm);
+    if (const auto on = group.text("on")) spec->on = *on;
     out.push_back(std::move(spec.value()));
+  }
+}
+
+void read_clearances(const GroupReader& root, std::vector<PairClearance>& out) {
+  ConfigNode* const list = root.find("clearances");
+  if (list == nullptr) return;
+  for (const auto& element : list->children) {
+    if (element->faulty) continue;
+    const GroupReader group(element.get(), root.faults());
+    group.missing("pair", tr("two names, [a, b]"));
+    group.missing("mm", tr("a length"));
+    ConfigNode* const pair = group.find("pair");
+    if (pair == nullptr) continue;
+    if (pair->children.size() != 2) {
+      root.faults().at_value(*pair, tr("must be two names, [a, b]"));
+      continue;
+    }
+    PairClearance clearance{{pair->children[0]->scalar, pair->children[1]->scalar}};
+    group.number("mm", clearance.mm);
+    out.push_back(std::move(clearance));
   }
 }
 
@@ -287,6 +316,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_tools(root.group("tools"), config.stock.model, config.tools);
   read_fixtures(root, config.fixtures);
   root.number("clearance_mm", config.clearance_mm);
+  read_clearances(root, config.clearances);
   read_tool_libraries_key(root, config.tool_libraries);
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);

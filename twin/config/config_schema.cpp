@@ -33,6 +33,8 @@ std::string form_of(const Setting& spec) {
       return " yes|no";
     case KeyType::kTexts:
       return " [TEXT, ..]";
+    case KeyType::kPairs:
+      return " [[TEXT, TEXT], ..]";
     case KeyType::kWord:
       break;
   }

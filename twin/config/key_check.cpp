@@ -174,6 +174,10 @@ class KeyChecker {
       check_list(node, spec);
       return;
     }
+    if (spec.type == KeyType::kPairs) {
+      check_pairs(node, spec);
+      return;
+    }
     if (spec.type == KeyType::kGroups) {
       check_groups(node, spec);
       return;
@@ -194,6 +198,21 @@ class KeyChecker {
       if (element->kind == NodeKind::kScalar) continue;
       faults_.at_value(*element,
                        trf("{} is not allowed; must be a text", to_string(element->kind)));
+      node.faulty = true;
+    }
+  }
+
+  void check_pairs(ConfigNode& node, const Setting& spec) {
+    if (node.kind != NodeKind::kList) {
+      wrong(node, spec);
+      return;
+    }
+    for (const auto& pair : node.children) {
+      const auto is_text = [](const auto& one) { return one->kind == NodeKind::kScalar; };
+      if (pair->kind == NodeKind::kList && pair->children.size() == 2 &&
+          std::all_of(pair->children.begin(), pair->children.end(), is_text))
+        continue;
+      faults_.at_value(*pair, trf("{} is not allowed; must be two names, [a, b]", shown(*pair)));
       node.faulty = true;
     }
   }
@@ -242,6 +261,7 @@ class KeyChecker {
         break;
       case KeyType::kGroup:
       case KeyType::kTexts:
+      case KeyType::kPairs:
       case KeyType::kGroups:
         break;  // check_value() has seen to these
     }

@@ -78,6 +78,8 @@ std::string allowed_text(const Setting& spec) {
       return tr("yes or no");
     case KeyType::kTexts:
       return tr("a list of texts");
+    case KeyType::kPairs:
+      return tr("a list of pairs, [[a, b], ..]");
     case KeyType::kGroups:
       return tr("a list of groups of keys");
     case KeyType::kWord:

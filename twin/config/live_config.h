@@ -18,6 +18,7 @@
 #include "machine_io/recorder.h"
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
+#include "twin/collision/pair_rules.h"
 #include "twin/config/option_layers.h"
 #include "twin/job/fixtures.h"
 #include "twin/job/stock_choice.h"
@@ -49,7 +50,8 @@ struct ConfigMachine {
   MachineChoice drawn;                   ///< `model` and `links`
   /// `spindle`: sections from its nose upward, the first begins at 0; empty: it is not described.
   std::vector<ToolSection> spindle;
-  std::string spindle_spec;  ///< the text that `spindle` was read from
+  std::string spindle_spec;       ///< the text that `spindle` was read from
+  std::vector<NamedPair> ignore;  ///< PairRules::ignored
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.
   std::optional<KinematicsRequest> kinematics;
 };
@@ -115,6 +117,7 @@ struct LiveConfig {
   std::vector<ToolShapeArgument> tools;
   std::vector<FixtureSpec> fixtures;        ///< `fixtures:`
   double clearance_mm = 0.5;                ///< near-miss
+  std::vector<PairClearance> clearances;    ///< of single pairs
   std::vector<std::string> tool_libraries;  ///< paths
   ConfigStock stock;
   ConfigBeam beam;

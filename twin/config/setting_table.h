@@ -25,6 +25,7 @@ enum class KeyType : std::uint8_t {
   kYesNo,
   kWord,    ///< one of Setting::words
   kTexts,   ///< a list of texts
+  kPairs,   ///< a list of lists of two texts
   kGroups,  ///< a list of groups; the keys below it are those of each
 };
 

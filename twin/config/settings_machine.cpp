@@ -248,6 +248,10 @@ constexpr std::array kMachineSettings{
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
+    Setting{.key = "machine.ignore",
+            .type = T::kPairs,
+            .purpose = tr_noop("pairs that may touch: links and fixtures by their names, tool (or "
+                               "cutter, shank, holder), spindle, workpiece")},
     Setting{.option = "--interp",
             .commands = kCutting | kCanon,
             .type = T::kWord,

@@ -106,7 +106,7 @@ constexpr std::array kWorkpieceSettings{
                 "what stands around the workpiece, repeatable: [NAME=]box:x0,y0,z0:x1,y1,z1 | "
                 "cylinder:.. | tube:.. | stl:FILE[:inch] | vise:JAW_WIDTH:OPENING:HEIGHT | "
                 "clamp:LENGTH:WIDTH:HEIGHT | screw:D:LENGTH, with [:at=x,y,z][:turn=DEG]"
-                "[:in-blank]"),
+                "[:in-blank][:on=LINK]"),
             .value_name = "SPEC",
             .repeatable = true},
     Setting{.key = "fixtures.at",
@@ -125,6 +125,11 @@ constexpr std::array kWorkpieceSettings{
             .type = T::kYesNo,
             .fallback = "no",
             .purpose = tr_noop("it may stand in the blank: a screw, a mandrel")},
+    Setting{
+        .key = "fixtures.on",
+        .type = T::kText,
+        .purpose = tr_noop("link of machine.links that it stands on, and moves with: `at` is in "
+                           "the link's frame then")},
     Setting{.key = "fixtures.clearance_mm",
             .type = T::kNumber,
             .unit = "mm",
@@ -144,6 +149,18 @@ constexpr std::array kWorkpieceSettings{
             .help = tr_noop("near-miss: what comes nearer to a fixture without touching it is told "
                             "(default {}; 0: it is not)"),
             .value_name = "LENGTH"},
+    Setting{.key = "clearances",
+            .type = T::kGroups,
+            .purpose = tr_noop("near-miss of single pairs, instead of clearance_mm")},
+    Setting{.key = "clearances.pair",
+            .type = T::kTexts,
+            .purpose = tr_noop("two names, as machine.ignore has them: [head, vise]")},
+    Setting{.key = "clearances.mm",
+            .type = T::kNumber,
+            .unit = "mm",
+            .least = 0,
+            .most = 1000,
+            .purpose = tr_noop("what comes nearer is told; 0: it is not")},
     Setting{.key = "tool_libraries",
             .option = "--tools",
             .commands = kCutting,

@@ -153,6 +153,8 @@ const char* to_string(FindingId id) {
       return "fixture-contact";
     case FindingId::kSpindleContact:
       return "spindle-contact";
+    case FindingId::kMachineCollision:
+      return "machine-collision";
     case FindingId::kNearMiss:
       return "near-miss";
     case FindingId::kThinFilm:

@@ -81,6 +81,7 @@ enum class FindingId : std::uint8_t {
   kFluteTooShort,     ///< material stands higher than the flutes reach, and the shank rubs
   kFixtureContact,    ///< cutter, shank, holder or spindle touches a fixture
   kSpindleContact,    ///< the spindle touches the workpiece
+  kMachineCollision,  ///< what a machine carries touches what else it carries
   kNearMiss,          ///< two bodies come near each other, and do not touch
   kFeedLost,          ///< LinuxCNC does not run a feed that M61 comes right after
 };

@@ -27,12 +27,12 @@ constexpr double kJawThickness = 0.25;
 
 constexpr std::array<std::string_view, 7> kShapes{"box",  "cylinder", "tube", "stl",
                                                   "vise", "clamp",    "screw"};
-constexpr std::array<std::string_view, 4> kOptions{"at", "turn", "in-blank", "inch"};
+constexpr std::array<std::string_view, 5> kOptions{"at", "turn", "in-blank", "on", "inch"};
 constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], several "
     "of these joined by +, stl:FILE[:inch], vise:JAW_WIDTH:OPENING:HEIGHT, "
     "clamp:LENGTH:WIDTH:HEIGHT, screw:D:LENGTH[:HEAD_D:HEAD_H]; each with [:at=x,y,z][:turn=DEG]"
-    "[:in-blank]");
+    "[:in-blank][:on=LINK]");
 
 BlankBody box(const Vec3& low, const Vec3& high) {
   BlankBody body;
@@ -111,7 +111,7 @@ Done parse_at(std::string_view text, LengthUnit unit, Vec3& out) {
   return Done{std::monostate{}};
 }
 
-/// at=, turn=, in-blank, inch from the end of the fields. What stays is the shape's.
+/// at=, turn=, in-blank, on=, inch from the end of the fields. What stays is the shape's.
 Done take_options(std::vector<std::string_view>& fields, LengthUnit unit, FixtureSpec& out) {
   bool inch = false;
   while (fields.size() > 1) {
@@ -130,11 +130,15 @@ Done take_options(std::vector<std::string_view>& fields, LengthUnit unit, Fixtur
       const Result<double> turn = parse_within("turn", value, -360, 360, tr("degrees"));
       if (!turn) return Error{turn.error()};
       out.turn_deg = *turn;
+    } else if (!word && name == "on") {
+      out.on = std::string(value);
+      if (out.on.empty()) return Error{tr("on: the name of a link of the machine is missing")};
     } else if (word) {
       break;
     } else {
-      return Error{trf("unknown option '{}'{} Options: at=x,y,z, turn=DEG, in-blank, inch (of stl)",
-                       shown(name), did_you_mean(name, kOptions))};
+      return Error{
+          trf("unknown option '{}'{} Options: at=x,y,z, turn=DEG, in-blank, on=LINK, inch (of stl)",
+              shown(name), did_you_mean(name, kOptions))};
     }
     fields.pop_back();
   }
@@ -266,17 +270,23 @@ Result<FixtureSpec> parse_fixture(std::string_view text, LengthUnit unit) {
   return out;
 }
 
+void name_fixtures(std::span<FixtureSpec> specs) {
+  std::map<std::string, int> of_shape;
+  for (FixtureSpec& spec : specs) {
+    if (!spec.name.empty()) continue;
+    const std::string shape =
+        to_lower(trim(std::string_view(spec.text).substr(0, spec.text.find(':'))));
+    const int count = ++of_shape[shape];
+    spec.name = count == 1 ? shape : fmt::format("{} {}", shape, count);
+  }
+}
+
 FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagnostics) {
   auto out = std::make_shared<std::vector<Fixture>>();
-  std::map<std::string, int> of_shape;
+  std::vector<FixtureSpec> named(specs.begin(), specs.end());
+  name_fixtures(named);
   bool complete = true;
-  for (FixtureSpec spec : specs) {
-    if (spec.name.empty()) {
-      const std::string shape =
-          to_lower(trim(std::string_view(spec.text).substr(0, spec.text.find(':'))));
-      const int count = ++of_shape[shape];
-      spec.name = count == 1 ? shape : fmt::format("{} {}", shape, count);
-    }
+  for (const FixtureSpec& spec : named) {
     const bool twice =
         std::ranges::any_of(*out, [&](const Fixture& other) { return other.name == spec.name; });
     if (twice) {
@@ -295,6 +305,7 @@ FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagn
     fixture.fixture_from_workpiece = fixture.workpiece_from_fixture.inverse();
     fixture.in_blank = spec.in_blank;
     fixture.clearance_mm = spec.clearance_mm;
+    fixture.on = spec.on;
     out->push_back(std::move(fixture));
   }
   if (!complete) return nullptr;
@@ -312,7 +323,7 @@ bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& bl
   const SolidPointer whole = Solid::of_bodies(blank.bodies);
   bool beside = true;
   for (const Fixture& fixture : fixtures) {
-    if (fixture.in_blank) continue;
+    if (fixture.in_blank || !fixture.on.empty()) continue;
     const double depth =
         std::max(overlap_mm(*whole, fixture.fixture_from_workpiece, *fixture.solid),
                  overlap_mm(*fixture.solid, fixture.workpiece_from_fixture, *whole));

@@ -24,13 +24,14 @@ struct FixtureSpec {
   std::vector<BlankBody> bodies;       ///< in its own frame
   std::string mesh_path;               ///< an STL file; empty: none
   double mm_per_unit = 1;              ///< of it
-  Vec3 at_mm{0};                       ///< of its frame's origin in the workpiece frame
+  Vec3 at_mm{0};                       ///< of its frame's origin in the workpiece frame, or ..
   double turn_deg = 0;                 ///< of its frame about Z
   bool in_blank = false;               ///< it may stand in the blank: a screw, a mandrel
   std::optional<double> clearance_mm;  ///< of its own; else that of all
+  std::string on;                      ///< a link of the machine; empty: the workpiece frame
 };
 
-/// [NAME=]SHAPE[:at=x,y,z][:turn=DEG][:in-blank], where SHAPE is
+/// [NAME=]SHAPE[:at=x,y,z][:turn=DEG][:in-blank][:on=LINK], where SHAPE is
 ///
 ///     box:.. | cylinder:.. | tube:..    as parse_blank() has them, several joined by +
 ///     stl:FILE[:inch]                   a mesh, in mm or inches
@@ -48,14 +49,18 @@ Result<FixtureSpec> parse_fixture(std::string_view text, LengthUnit unit = Lengt
 struct Fixture {
   std::string name;
   SolidPointer solid;
-  Pose workpiece_from_fixture;
+  Pose workpiece_from_fixture;  ///< on a link: the link's frame is in the workpiece's place
   Pose fixture_from_workpiece;
   bool in_blank = false;
   std::optional<double> clearance_mm;
+  std::string on;  ///< FixtureSpec::on
 };
 using FixtureList = std::shared_ptr<const std::vector<Fixture>>;
 
-/// Reads meshes and names what has no name after its shape ("vise", "box 2"). Null with
+/// Names what has no name after its shape: "vise", "box 2".
+void name_fixtures(std::span<FixtureSpec> specs);
+
+/// Reads meshes, and name_fixtures(). Null with
 /// diagnostics: two of one name, files that are missing or broken, meshes of more than
 /// kMostTriangles. Notes: meshes that do not enclose a space, meshes larger than a machine (in
 /// inches?).
@@ -64,6 +69,7 @@ inline constexpr std::size_t kMostTriangles = 2'000'000;
 
 /// False with an error for each fixture that stands in the blank, and how deep, unless it may; or
 /// if the blank is a sheet, beside which nothing looks for them.
+/// Those on links are not looked at.
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
                            Diagnostics& diagnostics);
 

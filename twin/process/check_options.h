@@ -2,16 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "base/geometry.h"
+#include "interp_bridge/motion.h"
 #include "stock/cutter/cutter.h"
+#include "twin/collision/pair_rules.h"
 #include "twin/job/fixtures.h"
+#include "twin/machines/machine_bodies.h"
 
 namespace kerf {
 
-/// What the tool is held against, besides the workpiece.
+/// What is held against each other, besides the tool and the workpiece.
 struct CollisionWishes {
   FixtureList fixtures;  ///< may be null: none
+  /// The machine's links; null: nobody has described them. Fixtures that stand on a link stand on
+  /// one of these.
+  MachineBodiesPointer machine;
+  /// Else one that is built around the workpiece, once it is known where that lies; empty: none.
+  std::function<MachineBodiesPointer(const WorkpieceFrame&, const Box& blank_mm)> built_in{};
+  PairRules rules;
   /// The spindle's sections from its nose upward; empty: nobody described it.
   std::vector<ToolSection> spindle;
   double clearance_mm = 0.5;  ///< near-miss: what comes nearer without touching; 0: nothing does

@@ -11,11 +11,12 @@
 
 namespace kerf {
 
-/// A part of a tool, and what it was held against.
+/// A part of a tool, or a body that is no tool's, and what it was held against.
 struct CollisionPair {
   int tool = 0;
   ToolPart part = ToolPart::kCutter;
-  std::string other;           ///< a fixture's name; empty: the workpiece
+  std::string first;           ///< empty: `part` of `tool`; else the body instead
+  std::string other;           ///< name of a fixture or a link; empty: the workpiece
   std::uint32_t contacts = 0;  ///< events, each a finding
   /// 0: they touched. Nothing: it is not known, as nothing but contacts was looked for.
   std::optional<double> least_clearance_mm;

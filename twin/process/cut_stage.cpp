@@ -25,6 +25,8 @@ CutStage::CutStage(StockModel& stock, ToolResolver& tools, FindingLog& log,
 
 void CutStage::set_frame(const WorkpieceFrame& frame) {
   axis_limits_.set_frame(frame);
+  site_.kinematics = kinematics_;
+  site_.frame = frame;
   if (!kinematics_) return;
   const ToolPath* const before = machine_moves_.path();
   const Result<bool> follows = machine_moves_.follow(kinematics_, frame, site_.stock.cell_mm());

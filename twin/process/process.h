@@ -47,6 +47,9 @@ struct ProcessSite {
   bool timed = false;    ///< motions come with their times: CutStage::take_timed()
   bool watched = false;  ///< CutStage::watch_machine()
   bool holding = false;  ///< nothing is reported on yet
+  /// How the machine turns tool and workpiece, whatever the model takes; null: nobody has said.
+  std::shared_ptr<const MachineKinematics> kinematics{};
+  WorkpieceFrame frame{};  ///< where the workpiece lies in the machine
 };
 
 /// What a process has done, as its section of the report. Immutable.

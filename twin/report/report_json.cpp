@@ -87,9 +87,9 @@ Json collisions_json(const Report& report) {
   Json pairs = Json::array();
   for (const CollisionPair& row : report.collisions) {
     Json pair;
-    pair["a"] = to_string(row.part);
+    pair["a"] = row.first.empty() ? to_string(row.part) : row.first;
     pair["b"] = row.other.empty() ? kWorkpieceBody : row.other;
-    pair["tool"] = row.tool;
+    if (row.first.empty()) pair["tool"] = row.tool;
     pair["contacts"] = row.contacts;
     pair["least_clearance_mm"] =
         row.least_clearance_mm ? Json(rounded(*row.least_clearance_mm)) : Json(nullptr);

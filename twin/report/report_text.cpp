@@ -122,7 +122,7 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
   }
 }
 
-/// Of each fixture the part of a tool that came nearest to it.
+/// Of each fixture and link what came nearest to it.
 void add_clearances(std::string& out, const Report& report) {
   std::vector<const CollisionPair*> nearest;
   for (const CollisionPair& row : report.collisions) {
@@ -137,7 +137,8 @@ void add_clearances(std::string& out, const Report& report) {
   }
   const char* head = tr("clearance ");
   for (const CollisionPair* row : nearest) {
-    const std::string what = trf("{} of tool {}", name_of(row->part), row->tool);
+    const std::string what =
+        row->first.empty() ? trf("{} of tool {}", name_of(row->part), row->tool) : row->first;
     if (row->contacts > 0) {
       out += trf("{}{}: touched by {}, line {}\n", head, row->other, what, row->source.line);
     } else {

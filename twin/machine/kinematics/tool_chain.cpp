@@ -33,9 +33,13 @@ Vec3 PoseJet::bend(const Vec3& direction) const {
   return glm::cross(turning_rate, n) + glm::cross(turning, glm::cross(turning, n));
 }
 
-ToolChain::ToolChain(const KinematicChain& chain, std::string_view joint_letters) {
-  std::vector<std::size_t> up = branch(chain, chain.workpiece_link());
-  std::vector<std::size_t> down = branch(chain, chain.tool_link());
+ToolChain::ToolChain(const KinematicChain& chain, std::string_view joint_letters)
+    : ToolChain(chain, joint_letters, chain.workpiece_link(), chain.tool_link()) {}
+
+ToolChain::ToolChain(const KinematicChain& chain, std::string_view joint_letters,
+                     std::size_t from_link, std::size_t to_link) {
+  const std::vector<std::size_t> up = branch(chain, from_link);
+  const std::vector<std::size_t> down = branch(chain, to_link);
   // What both hang on does not matter.
   std::size_t common = 0;
   while (common < up.size() && common < down.size() && up[common] == down[common]) ++common;
@@ -119,10 +123,10 @@ PoseJet ToolChain::jet(const InputJet& inputs, const Vec3& end_mm) const {
 }
 
 PathBounds ToolChain::bounds(const AxisValues& middle, const InputBounds& inputs, double h,
-                             const Vec3& end_mm) const {
+                             const Vec3& end_mm, double around_mm) const {
   PathBounds out;
   // Of the point as seen from the frame reached so far, going from the tool to the workpiece.
-  double b0 = 0, b1 = 0, b2 = 0, b3 = 0;
+  double b0 = around_mm, b1 = 0, b2 = 0, b3 = 0;
   Vec3 level = end_mm;  // sum of what lies between two turns, at the middle
   const auto close_level = [&] {
     b0 += glm::length(level);

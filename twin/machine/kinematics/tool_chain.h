@@ -63,6 +63,10 @@ class ToolChain {
   /// From the workpiece link of `chain` to its tool link. A link that is driven by joint n follows
   /// the axis that `joint_letters` has there.
   ToolChain(const KinematicChain& chain, std::string_view joint_letters);
+  /// Between any two links: the second as seen from the first. No steps: they move as one, and lie
+  /// in the same place.
+  ToolChain(const KinematicChain& chain, std::string_view joint_letters, std::size_t from_link,
+            std::size_t to_link);
 
   const std::vector<Step>& steps() const { return steps_; }
   std::vector<Step>& steps() { return steps_; }
@@ -73,9 +77,10 @@ class ToolChain {
   /// Exact, by the composition of moving frames. Of the origin; `end` is a point of the last frame.
   PoseJet jet(const InputJet& inputs, const Vec3& end_mm) const;
   /// For the point `end_mm` of the last frame while the inputs stay within `h` / 2 of those of
-  /// `middle` in t. Rigorous: norms of all terms are added.
+  /// `middle` in t. Rigorous: norms of all terms are added. `around_mm`: for all points of the last
+  /// frame that are no farther from `end_mm`.
   PathBounds bounds(const AxisValues& middle, const InputBounds& inputs, double h,
-                    const Vec3& end_mm) const;
+                    const Vec3& end_mm, double around_mm = 0) const;
 
  private:
   std::vector<Step> steps_;

@@ -6,6 +6,7 @@
 
 #include "base/translate.h"
 #include "interp_bridge/motion_kinds.h"
+#include "twin/machine/kinematics/arc_bounds.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -27,26 +28,6 @@ constexpr std::size_t kFirstSlide = 6;
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-/// Longest and steepest that an arc gets.
-struct ArcBounds {
-  double speed = 0, acceleration = 0, jerk = 0;
-};
-
-ArcBounds arc_bounds(const Motion& m) {
-  const Vec3 d0 = m.from_mm - m.arc.center_mm;
-  const Vec3 d1 = m.to_mm - m.arc.center_mm;
-  const double along0 = glm::dot(d0, m.arc.axis);
-  const double along1 = glm::dot(d1, m.arc.axis);
-  const double r0 = glm::length(d0 - along0 * m.arc.axis);
-  const double r1 = glm::length(d1 - along1 * m.arc.axis);
-  const double radius = std::max(r0, r1);
-  const double growth = std::abs(r1 - r0);
-  const double sweep = std::abs(m.arc.sweep_rad);
-  return {radius * sweep + growth + std::abs(along1 - along0),
-          radius * sweep * sweep + 2 * growth * sweep,
-          radius * sweep * sweep * sweep + 3 * growth * sweep * sweep};
 }
 
 /// Second derivative of point_at() in t.
@@ -78,8 +59,6 @@ Vec3 arc_velocity(const Motion& m, double t) {
   return m.arc.sweep_rad * glm::cross(m.arc.axis, out) + growth * outward +
          (along1 - along0) * m.arc.axis;
 }
-
-bool is_arc(const Motion& m) { return m.kind == MotionKind::kArc && m.arc.sweep_rad != 0; }
 
 /// Where X Y Z go in the place of U V W: in the frame that the step has there, against it.
 ToolChain::Step in_place_of(const ToolChain::Step& slide) {

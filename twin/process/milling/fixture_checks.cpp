@@ -67,6 +67,14 @@ struct FixtureChecks::Way final : RigidWay {
   const Pose& fixture_from_workpiece;
 };
 
+void FixtureChecks::set_wishes(const CollisionWishes& wishes) {
+  wishes_ = wishes;
+  if (!wishes.fixtures) return;
+  auto here = std::make_shared<std::vector<Fixture>>(*wishes.fixtures);
+  std::erase_if(*here, [](const Fixture& fixture) { return !fixture.on.empty(); });
+  wishes_.fixtures = std::move(here);
+}
+
 bool FixtureChecks::checks_spindle() const {
   return std::ranges::any_of(
       mounted_, [](const Mounted& part) { return part.body.part == ToolPart::kSpindle; });
@@ -85,7 +93,9 @@ std::size_t FixtureChecks::pair_of(int tool, const ToolBody& body, std::size_t f
   pair.fixture = fixture;
   pair.width_mm = body.width_mm;
   pair.from_z_mm = body.from_z_mm;
-  pair.near_mm = other.clearance_mm.value_or(wishes_.clearance_mm);
+  pair.ignored = wishes_.rules.ignores(to_string(body.part), other.name);
+  pair.near_mm = wishes_.rules.clearance_mm(to_string(body.part), other.name)
+                     .value_or(other.clearance_mm.value_or(wishes_.clearance_mm));
   pairs_.push_back(std::move(pair));
   return pairs_.size() - 1;
 }
@@ -135,6 +145,7 @@ void FixtureChecks::check(const CheckedMove& move) {
 void FixtureChecks::check_pair(Mounted& part, std::size_t fixture, const CheckedMove& move,
                                std::size_t which, const Way& way, bool& touched) {
   Pair& pair = pairs_[part.pairs[fixture]];
+  if (pair.ignored) return;
   const Solid& still = *(*wishes_.fixtures)[fixture].solid;
   double& spare = part.spare_mm[fixture];
   Vec3& guess = part.guess[fixture];
@@ -238,6 +249,7 @@ void FixtureChecks::finish() {
 std::vector<CollisionPair> FixtureChecks::table() const {
   std::vector<CollisionPair> out;
   for (const Pair& pair : pairs_) {
+    if (pair.ignored) continue;
     out.push_back(pair.row);
     if (std::isfinite(pair.least_mm))
       out.back().least_clearance_mm = pair.row.contacts > 0 ? 0 : pair.least_mm;

@@ -21,7 +21,8 @@ class FixtureChecks {
  public:
   explicit FixtureChecks(FindingLog& log) : log_(log) {}
 
-  void set_wishes(const CollisionWishes& wishes) { wishes_ = wishes; }
+  /// Fixtures on links of the machine are left to MachineChecks.
+  void set_wishes(const CollisionWishes& wishes);
   /// Something is to be looked for.
   bool active() const { return wishes_.fixtures && !wishes_.fixtures->empty(); }
   /// `nose_mm`: of the spindle above the tip; 0: not known.
@@ -47,9 +48,10 @@ class FixtureChecks {
     double width_mm = 0, from_z_mm = 0;  ///< of the part
     double least_mm = std::numeric_limits<double>::infinity();
     std::optional<FindingLog::Handle> event;
-    double depth_mm = 0;  ///< of the event
-    Finding nearest;      ///< text and place of the least clearance
-    double near_mm = 0;   ///< what counts as near
+    double depth_mm = 0;   ///< of the event
+    Finding nearest;       ///< text and place of the least clearance
+    double near_mm = 0;    ///< what counts as near
+    bool ignored = false;  ///< PairRules
   };
   /// A part of the tool in the spindle.
   struct Mounted {

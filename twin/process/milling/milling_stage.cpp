@@ -50,6 +50,7 @@ MillingStage::MillingStage(ProcessSite& site)
       films_(stock_, log_),
       parts_(stock_, log_),
       fixtures_(log_),
+      machine_(stock_.bare(), log_, [this] { complete(); }),
       moves_per_cut_(stock_.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
@@ -67,6 +68,7 @@ void MillingStage::begin_reporting() {
   films_.forget();
   parts_.begin_reporting();
   fixtures_.unmount();
+  machine_.forget();
   program_.forget_events();
   speed_unsaid_.reset();
   uses_.clear();
@@ -78,6 +80,7 @@ void MillingStage::begin_reporting() {
 void MillingStage::finish(bool whole) {
   parts_.finish();
   fixtures_.finish();
+  machine_.finish();
   program_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
@@ -96,6 +99,7 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
     mounted_ = nullptr;
     parts_.unmount();
     fixtures_.unmount();
+    machine_.unmount();
   }
   if (!stands(m) && checks_.spindle_event_open()) {
     complete();  // the depths still to come belong to the event
@@ -105,6 +109,8 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
     take_traverse(m, step);
   } else if (is_feed(m)) {
     take_feed(m, step);
+  } else {
+    check_machine(m, step);
   }
 }
 
@@ -113,6 +119,8 @@ void MillingStage::mount_parts(const Motion& m) {
   nose_mm_ = m.tool_offset_mm.z;
   parts_.mount(*mounted_->cutter, mounted_->number, spindle_, nose_mm_);
   fixtures_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
+  if (machine_.active()) machine_.set_place(site_.kinematics, site_.frame);
+  machine_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
 }
 
 /// Mounts the tool of this motion if that has not been done since the last change. True if it can
@@ -134,10 +142,15 @@ bool MillingStage::mount_for(const Motion& m) {
 void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
   // With an empty spindle a comment without a number waits for the first feed move: the traverse
   // may just clear the way for the tool change that the comment announces.
-  if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) return;
+  if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) {
+    check_machine(m, step);
+    return;
+  }
   // Nor does a move to where nobody knows say which tool is in the spindle: many programs begin so.
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
-  if (!mount_for(m) || !m.start_known) {
+  const bool known = mount_for(m);
+  check_machine(m, step);
+  if (!known || !m.start_known) {
     check_length(m, step, false);
     return;
   }
@@ -158,6 +171,7 @@ void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
 void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   if (stands_still(m)) return;
   const bool known = mount_for(m);
+  check_machine(m, step);
   check_length(m, step, false);
   if (!known) {
     report_undefined(m, step);
@@ -195,9 +209,17 @@ void MillingStage::check_parts(const Motion& m, const CheckedMove& move) {
   parts_.check(move);
 }
 
+/// Of all motions, whatever they are cut with.
+void MillingStage::check_machine(const Motion& m, const TimedStep& step) {
+  if (!machine_.active()) return;
+  machine_.set_place(site_.kinematics, site_.frame);
+  machine_.check(m, step);
+}
+
 std::vector<CollisionPair> MillingStage::collisions() const {
   std::vector<CollisionPair> out = parts_.table();
   for (CollisionPair& row : fixtures_.table()) out.push_back(std::move(row));
+  for (CollisionPair& row : machine_.table()) out.push_back(std::move(row));
   return out;
 }
 

@@ -20,6 +20,7 @@
 #include "twin/process/milling/fixture_checks.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
+#include "twin/process/milling/machine_checks.h"
 #include "twin/process/milling/part_checks.h"
 #include "twin/process/milling/program_checks.h"
 #include "twin/process/process.h"
@@ -47,6 +48,7 @@ class MillingStage final : public Process {
     parts_.set_blank_guessed(options.blank_guessed);
     parts_.set_clearance(options.collisions.clearance_mm);
     fixtures_.set_wishes(options.collisions);
+    machine_.set_options(options);
     spindle_ = options.collisions.spindle;
   }
   void stop_by(const std::stop_token& stop) override;
@@ -94,6 +96,7 @@ class MillingStage final : public Process {
   void report_endless_turn(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
   void check_parts(const Motion& motion, const CheckedMove& move);
+  void check_machine(const Motion& motion, const TimedStep& step);
   void check_length(const Motion& motion, const TimedStep& step, bool touches);
   void report_nothing_cut();
   void note_contact(const CheckedMove& move);
@@ -127,6 +130,7 @@ class MillingStage final : public Process {
   FilmEvents films_;
   PartChecks parts_;
   FixtureChecks fixtures_;
+  MachineChecks machine_;
   std::vector<ToolSection> spindle_;
   double nose_mm_ = 0;  ///< of the spindle above the tip, by the tool length offset
   std::vector<ToolUse> uses_;
