@@ -30,9 +30,10 @@ void tell_trouble(Diagnostics& diagnostics, std::string message) {
 FindingShot shot_of(const Finding& finding, const std::vector<std::string>& files) {
   FindingShot shot;
   shot.finding = finding;
-  const std::string file = diagnostic_of(finding, files).file;
-  shot.place =
-      fmt::format("{}:{}", std::filesystem::path(file).filename().string(), finding.source.line);
+  if (const std::uint32_t line = finding.source.line; line > 0) {
+    const std::filesystem::path file = diagnostic_of(finding, files).file;
+    shot.place = fmt::format("{}:{}", file.filename().string(), line);
+  }
   std::string message = message_of(finding);
   if (!finding.hint.empty()) message += "; " + finding.hint;
   shot.message = in_unit(message, shown_unit());
