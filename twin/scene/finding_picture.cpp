@@ -146,8 +146,6 @@ class FindingPictures::Impl {
         size_px_(size_px) {
     options_.upload_bytes_per_frame = std::numeric_limits<std::size_t>::max();
     options_.is_local = false;
-    for (const SceneObject hidden : {SceneObject::kFrames, SceneObject::kFindings})
-      options_.looks[static_cast<std::size_t>(hidden)].is_visible = false;
     SceneUpdate update;
     update.fixtures = watch_.scene();
     scout_.apply(update);
