@@ -115,6 +115,7 @@ TEST_F(BodiesTest, APlaceOnTheWorkpieceIsMarked) {
   const Color plain = color_at(&renderer, {40, 20, 0}, everything_);
   renderer.apply(moment({20, 20, 12}, {contact}));
   EXPECT_TRUE(is_red(color_at(&renderer, {40, 20, 0}, everything_)));
+  EXPECT_EQ(color_at(&renderer, {40, 20, 0}, without(SceneObject::kFindings)), plain);
   renderer.apply(moment({20, 20, 12}));
   EXPECT_EQ(color_at(&renderer, {40, 20, 0}, everything_), plain);
 }

@@ -176,8 +176,10 @@ TEST_F(SceneRendererTest, EveryObjectCanBeHidden) {
   Moment moment;
   moment.tool_pose = ToolPose{Vec3(100, 80, 0)};
   moment.link_poses = {glm::mat4(1.0f)};
+  moment.fixture_poses = {glm::mat4(1.0f)};
   update.moment = std::make_shared<const Moment>(moment);
   update.machine = box_machine({{{-40, -40, -60}, {0, 0, 20}}});
+  update.fixtures = box_machine({{{160, 140, 0}, {190, 160, 20}}});
   std::vector<PathVertex> path{{{0, 0, 5}, PathKind::kFeed},
                                {{50, 0, 5}, PathKind::kFeed},
                                {{50, 50, 5}, PathKind::kTraverse},

@@ -494,6 +494,47 @@ TEST_F(WindowTest, FlatViewMovesButDoesNotTurn) {
   EXPECT_NE(picture.rgb, window_->read_scene().rgb);
 }
 
+TEST_F(WindowTest, HowNearTheToolIsStandsInThePanel) {
+  open();
+  Moment moment = test_moment();
+  publish(moment);
+  settle();
+  const Picture without = window_->read();
+  moment.clearance = SceneClearance{3.214, false, "holder", "vise"};
+  publish(moment);
+  settle();
+  const Picture near = window_->read();
+  EXPECT_GT(mean_difference(without, near, kInfo), 0.0);
+  EXPECT_EQ(mean_difference(without, near, kScene), 0.0);
+  const PixelBox values{980, 0, 1280, 260};
+  EXPECT_EQ(count_pixels(near, values, kErrorText), 0);
+  moment.clearance = SceneClearance{0, false, "holder", "vise"};
+  publish(moment);
+  settle();
+  EXPECT_GT(count_pixels(window_->read(), values, kErrorText), 20) << "they touch";
+  moment.clearance = SceneClearance{20, true, "", ""};
+  publish(moment);
+  settle();
+  EXPECT_EQ(count_pixels(window_->read(), values, kErrorText), 0);
+  EXPECT_GT(mean_difference(near, window_->read(), kInfo), 0.0);
+}
+
+TEST_F(WindowTest, FixturesAreHiddenByAKey) {
+  open();
+  const auto is_shown = [this] {
+    return window_->settings()
+        .drawing.looks[static_cast<std::size_t>(SceneObject::kFixtures)]
+        .is_visible;
+  };
+  EXPECT_TRUE(is_shown());
+  key("e");
+  settle();
+  EXPECT_FALSE(is_shown());
+  key("e");
+  settle();
+  EXPECT_TRUE(is_shown());
+}
+
 TEST_F(WindowTest, AgeOfALostSourceGrowsOnTheScreen) {
   open();
   Moment moment = test_moment();

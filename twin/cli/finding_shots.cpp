@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -20,6 +22,8 @@ namespace kerf {
 namespace {
 
 constexpr std::chrono::milliseconds kSeekPatience{50};
+/// It goes forward alone.
+constexpr std::size_t kKeyframe_bytes = std::size_t{1} << 20;
 
 void tell_trouble(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -30,9 +34,10 @@ void tell_trouble(Diagnostics& diagnostics, std::string message) {
 FindingShot shot_of(const Finding& finding, const std::vector<std::string>& files) {
   FindingShot shot;
   shot.finding = finding;
-  const std::string file = diagnostic_of(finding, files).file;
-  shot.place =
-      fmt::format("{}:{}", std::filesystem::path(file).filename().string(), finding.source.line);
+  if (const std::uint32_t line = finding.source.line; line > 0) {
+    const std::filesystem::path file = diagnostic_of(finding, files).file;
+    shot.place = fmt::format("{}:{}", file.filename().string(), line);
+  }
   std::string message = message_of(finding);
   if (!finding.hint.empty()) message += "; " + finding.hint;
   shot.message = in_unit(message, shown_unit());
@@ -45,8 +50,8 @@ class Album {
   Album(const std::string& folder, CollisionWishes wishes, Diagnostics& diagnostics)
       : folder_(folder), wishes_(std::move(wishes)), diagnostics_(diagnostics) {}
 
-  /// False: no more can be drawn either.
-  bool add(const FindingShot& shot) {
+  /// `number`: its place in the list, from 1 on. False: no more can be drawn either.
+  bool add(const FindingShot& shot, std::size_t number) {
     if (!pictures_) {
       Result<FindingPictures> made = FindingPictures::create(wishes_);
       if (!made) return refuse(made.error());
@@ -55,7 +60,7 @@ class Album {
     const Result<Picture> picture = pictures_->draw(shot);
     if (!picture) return refuse(picture.error());
     const std::filesystem::path path =
-        std::filesystem::path(folder_) / finding_picture_name(++count_, shot.finding);
+        std::filesystem::path(folder_) / finding_picture_name(number, shot.finding);
     const Done done = write_png(path.string(), *picture);
     return done || refuse(done.error());
   }
@@ -70,7 +75,6 @@ class Album {
   CollisionWishes wishes_;
   Diagnostics& diagnostics_;
   std::unique_ptr<FindingPictures> pictures_;
-  std::size_t count_ = 0;
 };
 
 /// Goes to the findings of a program that is played once more.
@@ -104,6 +108,7 @@ class SecondPass {
   static PlayerOptions options() {
     PlayerOptions options;
     options.check_ahead = false;
+    options.keyframe_bytes = kKeyframe_bytes;
     return options;
   }
 
@@ -145,9 +150,13 @@ void write_finding_pictures(const std::string& folder, const SessionOptions& opt
   }
   SecondPass pass(std::move(loaded), stop);
   Album album(folder, options.collisions, diagnostics);
-  for (FindingShot& shot : shots) {
-    if (!pass.take(shot) || !album.add(shot)) return;
-    shot.stock = nullptr;
+  std::vector<std::size_t> order(shots.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&shots](std::size_t i) { return shots[i].finding.time_s.value_or(0); });
+  for (const std::size_t i : order) {
+    if (!pass.take(shots[i]) || !album.add(shots[i], i + 1)) return;
+    shots[i].stock = nullptr;
   }
 }
 
@@ -176,8 +185,8 @@ void FindingShots::on_finding(const Finding& finding, const std::vector<std::str
 void FindingShots::write(const std::string& folder, const CollisionWishes& wishes,
                          Diagnostics& diagnostics) {
   Album album(folder, wishes, diagnostics);
-  for (const FindingShot& shot : shots_)
-    if (!album.add(shot)) return;
+  for (std::size_t i = 0; i < shots_.size(); ++i)
+    if (!album.add(shots_[i], i + 1)) return;
 }
 
 }  // namespace kerf

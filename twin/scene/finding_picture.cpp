@@ -146,8 +146,6 @@ class FindingPictures::Impl {
         size_px_(size_px) {
     options_.upload_bytes_per_frame = std::numeric_limits<std::size_t>::max();
     options_.is_local = false;
-    for (const SceneObject hidden : {SceneObject::kFrames, SceneObject::kFindings})
-      options_.looks[static_cast<std::size_t>(hidden)].is_visible = false;
     SceneUpdate update;
     update.fixtures = watch_.scene();
     scout_.apply(update);
@@ -267,7 +265,8 @@ void FindingPictures::Impl::add_caption(const FindingShot& shot,
                                         std::vector<Stroke>* strokes) const {
   const float width = static_cast<float>(size_px_.x) - 2 * kMargin_px;
   std::vector<std::string> lines = wrapped(shot.message, width);
-  lines.insert(lines.begin(), shot.place + "  " + to_string(shot.finding.id));
+  const std::string where = shot.place.empty() ? "" : shot.place + "  ";
+  lines.insert(lines.begin(), where + to_string(shot.finding.id));
   float y = static_cast<float>(size_px_.y) - kMargin_px;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
     add_text(*line, {kMargin_px, y}, {0, 0}, kCaption_px, strokes);

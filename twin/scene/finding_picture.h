@@ -19,7 +19,7 @@ namespace kerf {
 /// A finding that has a place, and what was there at that time.
 struct FindingShot {
   Finding finding;
-  std::string place;    ///< for the caption: "part.ngc:12"
+  std::string place;    ///< for the caption: "part.ngc:12"; may be empty
   std::string message;  ///< message_of() and what to do, in the units of who reads it
   std::shared_ptr<const StockModel> stock;
   std::shared_ptr<const Cutter> cutter;  ///< null: none that is known

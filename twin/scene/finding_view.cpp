@@ -76,13 +76,15 @@ FindingView finding_view(const FindingShot& shot, BodyWatch& watch) {
     const Box own = body->solid->box_mm();
     const double half_mm = std::min(0.5 * own.size().z, 0.5 * kSpindleShown_mm);
     view.tool_mm = pose.point({0, 0, own.min.z + half_mm});
+    const bool is_cutter = body->part == ToolPart::kCutter;
     std::optional<Vec3> place;
     if (view.contact->fixture) {
       place = place_between(*body, pose, (*watch.fixtures())[*view.contact->fixture]);
-    } else if (body->part != ToolPart::kCutter) {
+    } else if (!is_cutter) {
       place = place_on_workpiece(*body, pose, *shot.stock);
     }
-    if (place) view.place_mm = *place;
+    // Deep in the material there is no surface; of a cutter the tip is where it works.
+    view.place_mm = place ? *place : is_cutter ? shot.tool.tip_mm : view.tool_mm;
     // Between two red bodies a red mark would say nothing.
     if (!view.contact->fixture) view.contact->point_mm = place;
     view.axis_mm =

@@ -106,12 +106,12 @@ void draw_machine_values(const PanelContext& context) {
   if (!ImGui::BeginTable("values", 2)) return;
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 92.0f * context.scale);
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
-  const auto line = [&](Text label, const std::string& value) {
+  const auto line = [&](Text label, const std::string& value, const ImVec4& color = theme::kText) {
     ImGui::TableNextColumn();
     ImGui::TextColored(theme::kDim, "%s", context.word(label));
     ImGui::TableNextColumn();
     const bool is_cut_off = ImGui::CalcTextSize(value.c_str()).x > ImGui::GetContentRegionAvail().x;
-    ImGui::TextUnformatted(value.c_str());
+    ImGui::TextColored(color, "%s", value.c_str());
     if (is_cut_off && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", value.c_str());
   };
   line(Text::kTool, tool_text(context));
@@ -120,7 +120,10 @@ void draw_machine_values(const PanelContext& context) {
   line(Text::kFeed, feed_text(context));
   line(Text::kCoolant, moment.coolant.empty() ? "-" : moment.coolant);
   line(Text::kRemoved, context.measures.volume(moment.removed_mm3));
-  if (moment.clearance) line(Text::kClearance, clearance_text(context));
+  if (const auto& clearance = moment.clearance) {
+    line(Text::kClearance, clearance_text(context),
+         clearance->mm > 0 ? theme::kText : theme::kError);
+  }
   ImGui::EndTable();
 }
 

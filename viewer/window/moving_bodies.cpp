@@ -82,7 +82,9 @@ void MovingBodies::draw(const ScreenRect& rect, const GlProgram& program, bool o
     tool_.draw(projection_, program, tool_look(), opaque_parts);
     if (opaque_parts) glDisable(GL_CULL_FACE);
   }
-  if (!opaque_parts) contacts_.draw(projection_, program, kLeastMarkedOpacity);
+  if (!opaque_parts && look(SceneObject::kFindings).is_visible) {
+    contacts_.draw(projection_, program, kLeastMarkedOpacity);
+  }
 }
 
 void MovingBodies::draw_hidden_marks(const ScreenRect& rect, const GlProgram& program) const {
@@ -95,7 +97,9 @@ void MovingBodies::draw_hidden_marks(const ScreenRect& rect, const GlProgram& pr
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   if (look(SceneObject::kFixtures).is_visible) fixtures_.draw_marked(projection_, program, rect);
   if (tool_rect_.intersects(rect)) tool_.draw_marked(projection_, program, tool_look());
-  contacts_.draw(projection_, program, kHiddenMarkOpacity);
+  if (look(SceneObject::kFindings).is_visible) {
+    contacts_.draw(projection_, program, kHiddenMarkOpacity);
+  }
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);

@@ -139,6 +139,64 @@ TEST_F(RunCommand, FindingsAreSaidAndGiveExitCodeOne) {
   EXPECT_EQ(result.out.rfind("verdict   slot.canon: 1 error\nerrors    1 rapid-contact\n", 0), 0U);
 }
 
+TEST_F(RunCommand, DrawsEachFinding) {
+  folder_.write("rapid.canon", listing_text(kRapidAcross));
+  std::vector<std::string> arguments = {"rapid.canon", "--stock",       "box:-5,-5,-5:25,15,0",
+                                        "--tool",      "1=flat:6",      "--cell",
+                                        "0.1",         "--json",        "r.json",
+                                        "--quiet",     "--finding-png", "shots/all"};
+  EXPECT_EQ(run(arguments).exit_code, 1);
+  EXPECT_EQ(listing(folder_.file("shots/all")), "01-rapid-contact-line-6.png");
+  EXPECT_EQ(read_file(folder_.file("shots/all/01-rapid-contact-line-6.png")).substr(0, 4),
+            "\x89PNG");
+  EXPECT_EQ(json("r.json")["findings"][0]["bodies"], Json({"cutter", "workpiece"}));
+  // Nothing is found, and nothing drawn.
+  EXPECT_EQ(run(slot({"--finding-png", "none", "--quiet"})).exit_code, 0);
+  EXPECT_EQ(listing(folder_.file("none")), "");
+}
+
+TEST_F(RunCommand, FindingsAreDrawnIntoAFolderOrNotAtAll) {
+  const KerfResult no_folder = run(slot({"--finding-png", "slot.canon/shots"}));
+  EXPECT_EQ(no_folder.exit_code, 4);
+  EXPECT_EQ(no_folder.err.rfind("kerf: error: --finding-png: slot.canon/shots: ", 0), 0U)
+      << no_folder.err;
+  EXPECT_EQ(no_folder.out, "") << "before a minute of cutting";
+  std::vector<std::string> standard_input = slot({"--finding-png", "shots"});
+  standard_input[0] = "-";
+  const KerfResult once = run(standard_input, listing_text());
+  EXPECT_EQ(once.exit_code, 2);
+  EXPECT_NE(once.err.find("--finding-png"), std::string::npos) << once.err;
+  std::vector<std::string> two = slot({"--finding-png", "shots"});
+  two.insert(two.begin(), "slot.canon");
+  EXPECT_EQ(run(two).exit_code, 2);
+}
+
+TEST_F(RunCommand, DrawsWhatALogMeets) {
+  std::string log =
+      "# kerf-recording/1\n# units: mm\n# coordinates: axes workpiece\n"
+      "t_host,t_device,x,y,z,tool,line,spindle_rpm\n";
+  double t_s = 1000;
+  const auto go = [&](double x_mm, double z_mm) {
+    log += fmt::format("{:.3f},,{:.3f},5,{:.3f},1,0,8000\n", t_s += 0.01, x_mm, z_mm);
+  };
+  for (int i = 0; i <= 60; ++i) go(-10, 5 - 0.1 * i);
+  for (int i = 0; i <= 150; ++i) go(-10 + 0.2 * i, -1);
+  folder_.write("log.csv", log);
+  KerfCall call;
+  call.folder = folder_.path();
+  call.arguments = {"replay",        "log.csv",
+                    "--stock",       "box:-5,-5,-5:25,15,0",
+                    "--tool",        "1=flat:6",
+                    "--cell",        "0.1",
+                    "--fixture",     "clamp=box:18.5,0,0:25,10,4",
+                    "--speed",       "max",
+                    "--no-view",     "--quiet",
+                    "--finding-png", "shots"};
+  const KerfResult result = run_kerf(call);
+  EXPECT_NE(result.err.find("fixture 'clamp'"), std::string::npos) << result.err;
+  EXPECT_EQ(listing(folder_.file("shots")), "01-fixture-contact.png");
+}
+
 TEST_F(RunCommand, ReportOnStdoutSendsTheSummaryToStderr) {
   const KerfResult result = run(slot({"--json", "-"}));
   EXPECT_FALSE(Json::parse(result.out, nullptr, false).is_discarded());
