@@ -198,6 +198,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
     printer.close();
   }
   printer.put("clearance_mm", config.clearance_mm);
+  printer.put("cut_by_shank", config.cut_by_shank ? "yes" : "no");
   if (!config.tool_libraries.empty()) {
     printer.open("tool_libraries");
     for (const std::string& path : config.tool_libraries) printer.line("- " + quoted(path));
