@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/geometry.h"
 #include "stock/cutter/cutter.h"
+#include "stock/cutter/cutting_shank.h"
 #include "stock/cutter/shape_spec.h"
 
 namespace kerf {
@@ -186,6 +188,33 @@ TEST(CutterProfile, NamesWhatIsWrongWithAnArc) {
             "profile piece 1: the arc turns back past the outer end; split or shorten it");
   EXPECT_EQ(error_of({arc(0, 0, 6, 0, 3, 4, true)}),
             "profile: the lowest point is at Z-1; it must be at Z0, the tip");
+}
+
+TEST(CuttingShank, CarriesTheProfileOn) {
+  const Cutter cutter = *parse_shape("ball:6:flute=9:shank=4x3+10x5+8:holder=20x10");
+  ASSERT_TRUE(has_wider_shank(cutter));
+  const std::optional<Cutter> wider = with_cutting_shank(cutter);
+  ASSERT_TRUE(wider);
+  // The neck of 4 mm is within the ball's cylinder, the shank of 8 within that of the 10.
+  EXPECT_DOUBLE_EQ(wider->radius_mm(), 5);
+  EXPECT_DOUBLE_EQ(wider->height_mm(2), cutter.height_mm(2));
+  EXPECT_NEAR(wider->height_mm(3), 3, kRounding_mm);
+  EXPECT_NEAR(wider->height_mm(3.01), 12, kRounding_mm);
+  EXPECT_NEAR(wider->height_mm(5), 12, kRounding_mm);
+  EXPECT_EQ(wider->flute_length_mm(), cutter.flute_length_mm());
+  EXPECT_EQ(wider->holder().size(), 1u);
+  EXPECT_NE(wider->spec(), cutter.spec());
+}
+
+TEST(CuttingShank, IsNoneWhereNothingIsWider) {
+  for (const char* shape : {"flat:6:flute=10:shank=6", "flat:6:flute=10:shank=3", "flat:6:shank=8",
+                            "tslot:20:4:8:flute=4"}) {
+    EXPECT_FALSE(with_cutting_shank(*parse_shape(shape))) << shape;
+    EXPECT_FALSE(has_wider_shank(*parse_shape(shape))) << shape;
+  }
+  const Cutter slot = *parse_shape("tslot:20:4:8:flute=8:shank=12");
+  EXPECT_TRUE(has_wider_shank(slot));
+  EXPECT_FALSE(with_cutting_shank(slot));
 }
 
 }  // namespace

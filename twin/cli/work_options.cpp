@@ -197,6 +197,7 @@ void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& 
   check_names(config, specs, reader.diagnostics());
   work.collisions.fixtures = load_fixtures(specs, reader.diagnostics());
   work.collisions.clearance_mm = reader.length_mm("--clearance");
+  work.collisions.cut_by_shank = reader.is_yes("--cut-by-shank");
   if (config) work.collisions.spindle = config->machine.spindle;
 }
 

@@ -214,6 +214,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
       printer.line(fmt::format("- {{pair: {}, mm: {}}}", pair_text(one.pair), one.mm));
     printer.close();
   }
+  printer.put("cut_by_shank", config.cut_by_shank ? "yes" : "no");
   if (!config.tool_libraries.empty()) {
     printer.open("tool_libraries");
     for (const std::string& path : config.tool_libraries) printer.line("- " + quoted(path));

@@ -317,6 +317,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_fixtures(root, config.fixtures);
   root.number("clearance_mm", config.clearance_mm);
   read_clearances(root, config.clearances);
+  root.number("cut_by_shank", config.cut_by_shank);
   read_tool_libraries_key(root, config.tool_libraries);
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);

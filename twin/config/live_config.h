@@ -118,6 +118,7 @@ struct LiveConfig {
   std::vector<FixtureSpec> fixtures;        ///< `fixtures:`
   double clearance_mm = 0.5;                ///< near-miss
   std::vector<PairClearance> clearances;    ///< of single pairs
+  bool cut_by_shank = false;                ///< CollisionWishes::cut_by_shank
   std::vector<std::string> tool_libraries;  ///< paths
   ConfigStock stock;
   ConfigBeam beam;

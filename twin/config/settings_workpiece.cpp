@@ -144,10 +144,12 @@ constexpr std::array kWorkpieceSettings{
             .least = 0,
             .most = 1000,
             .fallback = "0.5",
-            .purpose =
-                tr_noop("what comes nearer to a fixture without touching it is told; 0: it is not"),
-            .help = tr_noop("near-miss: what comes nearer to a fixture without touching it is told "
-                            "(default {}; 0: it is not)"),
+            .purpose = tr_noop(
+                "what comes nearer to a fixture or, above the cutter, to the workpiece without "
+                "touching it is told; 0: it is not"),
+            .help = tr_noop(
+                "near-miss: what comes nearer to a fixture or, above the cutter, to the workpiece "
+                "without touching it is told (default {}; 0: it is not)"),
             .value_name = "LENGTH"},
     Setting{.key = "clearances",
             .type = T::kGroups,
@@ -161,6 +163,15 @@ constexpr std::array kWorkpieceSettings{
             .least = 0,
             .most = 1000,
             .purpose = tr_noop("what comes nearer is told; 0: it is not")},
+    Setting{
+        .key = "cut_by_shank",
+        .option = "--cut-by-shank",
+        .commands = kCutting,
+        .type = T::kYesNo,
+        .fallback = "no",
+        .purpose = tr_noop("what the shank of a tool touches is cut away (--cut-by-shank)"),
+        .help = tr_noop("what the shank of a tool touches is cut away; it is told all the same"),
+        .flag = "yes"},
     Setting{.key = "tool_libraries",
             .option = "--tools",
             .commands = kCutting,

@@ -35,11 +35,16 @@ MotionMoves MotionMoves::of(const StockModel& stock,
 
 bool MotionMoves::append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
                          std::vector<CutMove>& out) const {
+  return append_reaching(motion, reach_mm(cutter), id, out);
+}
+
+bool MotionMoves::append_reaching(const Motion& motion, double reach_mm, std::uint64_t id,
+                                  std::vector<CutMove>& out) const {
   if (is_upright(motion)) {
     out.push_back(cut_move_from(motion, id));
     return true;
   }
-  return path_->moves_of(motion, reach_mm(cutter), id, out);
+  return path_->moves_of(motion, reach_mm, id, out);
 }
 
 double MotionMoves::reach_mm(const Cutter& cutter) {

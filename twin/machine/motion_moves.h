@@ -56,6 +56,10 @@ class MotionMoves {
   bool append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
               std::vector<CutMove>& out) const;
 
+  /// The same, divided so that all that is within `reach_mm` of the tip is within the tolerance.
+  bool append_reaching(const Motion& motion, double reach_mm, std::uint64_t id,
+                       std::vector<CutMove>& out) const;
+
   /// Of a machine over this model: as the machine moves, while nothing turns if the model does not
   /// take tilted tools (null: every motion is upright). The machine can have that frame.
   static MotionMoves of(const StockModel& stock, std::shared_ptr<const MachineKinematics> machine,

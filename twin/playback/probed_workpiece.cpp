@@ -13,7 +13,9 @@ ProbedWorkpiece::ProbedWorkpiece(const SessionOptions& options, const ProgramFro
       stage_(*stock_, resolver_, log_, options.timeline) {
   log_.set_muted(true);
   stage_.stop_by(std::move(stop));
-  stage_.check_by({.blank_guessed = front.blank_guessed, .below_mm = options.below_mm});
+  CheckOptions checks{.blank_guessed = front.blank_guessed, .below_mm = options.below_mm};
+  checks.collisions.cut_by_shank = options.collisions.cut_by_shank;
+  stage_.check_by(checks);
 }
 
 void ProbedWorkpiece::take(std::span<const Motion> motions, const WorkpieceFrame& frame) {

@@ -26,6 +26,7 @@ struct CollisionWishes {
   /// The spindle's sections from its nose upward; empty: nobody described it.
   std::vector<ToolSection> spindle;
   double clearance_mm = 0.5;  ///< near-miss: what comes nearer without touching; 0: nothing does
+  bool cut_by_shank = false;  ///< the workpiece, by what of a shank touches it
 };
 
 /// What findings are judged by.

@@ -153,13 +153,15 @@ void add_clearances(std::string& out, const Report& report) {
 void add_unchecked(std::string& out, const Report& report) {
   if (!report.stock || report.stock->model == "sheet") return;
   std::string numbers;
+  bool described = false;
   for (const ToolUse& use : report.tools) {
     if (use.holder_checked || use.shape.empty()) continue;
+    described |= use.shape.find("holder=") != std::string::npos;
     numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", use.number);
   }
   if (numbers.empty()) return;
-  if (report.stock->model == "octree") {
-    out += tr("unchecked shank and holder: not in an octree\n");
+  if (described) {
+    out += tr("unchecked shank and holder: not where material is added\n");
     return;
   }
   out += trf(

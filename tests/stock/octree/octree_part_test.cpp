@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "stock/cutter/cutting_shank.h"
 #include "tests/stock/octree/octree_samples.h"
 
 namespace kerf::test {
@@ -119,6 +120,27 @@ TEST(OctreePart, FlutesThatAreTooShortLeaveWhatTheShankRubs) {
   EXPECT_TRUE(contact(*tree, "flat:6:flute=6", {3, 6}, second));
   cut(*tree, make_cutter("flat:6:flute=6"), {first});
   EXPECT_FALSE(contact(*tree, "flat:6:flute=6", {3, 6}, second));
+}
+
+TEST(OctreePart, AShankThatCutsLeavesRoomForItself) {
+  // A tilted plunge into the block, by a cutter whose shank is wider; then the same again.
+  const Cutter cutter = make_cutter("flat:4:flute=6:shank=8");
+  const std::optional<Cutter> cutting = with_cutting_shank(cutter);
+  ASSERT_TRUE(cutting);
+  const Vec3 axis = tilted(0.5, 2);
+  const CutMove down = line(Vec3(15, 15, 0) + 12.0 * axis, Vec3(15, 15, 0) - 9.0 * axis, 0, axis);
+  const auto tree = make_octree("box:0,0,-20:30,30,0", 0.5);
+  const CarriedPart shank{4, 6};
+  const auto met = tree->part_contact(cutter, shank, down, kTolerance_mm);
+  ASSERT_TRUE(met);
+  // Where the axis goes in the shank is 3 mm deep; at its rim, 4 mm from it, 4 tan 0.5 more.
+  EXPECT_NEAR(met->depth_mm, 3 + 4 * std::tan(0.5), 0.1);
+  cut(*tree, cutter, {down});
+  EXPECT_TRUE(tree->part_contact(cutter, shank, down, kTolerance_mm));
+  cut(*tree, *cutting, {down});
+  EXPECT_FALSE(tree->part_contact(cutter, shank, down, kTolerance_mm));
+  // Cylinders cut off by the top: as long as along the axis.
+  EXPECT_NEAR(tree->blank_mm3() - tree->remaining_mm3(), kPi * 4 * 9 + kPi * (16 - 4) * 3, 1.5);
 }
 
 TEST(OctreePart, SpareIsNeverMoreThanTheDistance) {

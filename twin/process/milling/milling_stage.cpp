@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/cutter/cutting_shank.h"
 #include "twin/machine/planned_pieces.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/milling/probe_contact.h"
@@ -72,6 +73,7 @@ void MillingStage::begin_reporting() {
   program_.forget_events();
   speed_unsaid_.reset();
   uses_.clear();
+  shank_told_.clear();
   deepest_.clear();
   mounted_ = nullptr;
   drawn_told_ = false;
@@ -123,6 +125,22 @@ void MillingStage::mount_parts(const Motion& m) {
   machine_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
 }
 
+/// A tool whose shank cuts.
+void MillingStage::mount_shank(const Motion& m) {
+  shank_.reset();
+  if (!cut_by_shank_ || !mounted_->cutter) return;
+  shank_ = with_cutting_shank(*mounted_->cutter);
+  if (shank_ || !has_wider_shank(*mounted_->cutter)) return;
+  if (!shank_told_.insert(mounted_->number).second) return;
+  Finding finding;
+  finding.id = FindingId::kNotSimulated;
+  finding.severity = Severity::kNote;
+  finding.text = tr("the shank is wider than the neck of this cutter: what it touches is not cut");
+  finding.source = m.source;
+  finding.tool = mounted_->number;
+  log_.add(std::move(finding));
+}
+
 /// Mounts the tool of this motion if that has not been done since the last change. True if it can
 /// cut.
 bool MillingStage::mount_for(const Motion& m) {
@@ -133,6 +151,7 @@ bool MillingStage::mount_for(const Motion& m) {
   }
   mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
   announce(*mounted_, m);
+  mount_shank(m);
   if (mounted_->cutter) mount_parts(m);
   uses_[use_].shank_checked = parts_.checks_shank();
   uses_[use_].holder_checked = parts_.checks_holder();
@@ -198,15 +217,27 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   push(m, step, spindle_off);
 }
 
-void MillingStage::check_parts(const Motion& m, const CheckedMove& move) {
-  if (fixtures_.active()) fixtures_.check(move);
-  const bool as_cut = stock_.takes_tilted_tools() || site_.moves.is_upright(m);
-  if (!as_cut || !parts_.may_matter(divided_)) {
+void MillingStage::check_parts(const Motion& m, const CheckedMove& cut) {
+  if (fixtures_.active()) fixtures_.check(cut);
+  const bool upright = site_.moves.is_upright(m);
+  if (!upright && !stock_.takes_tilted_tools()) {
+    parts_.pass(m);
+    return;
+  }
+  // What turns is divided so that its flutes are where they should be; what is far above them needs
+  // shorter pieces for that.
+  std::span<const CutMove> moves = divided_;
+  const double reach_mm = upright ? 0 : parts_.reach_mm();
+  if (reach_mm > MotionMoves::reach_mm(cut.cutter)) {
+    finer_.clear();
+    if (site_.moves.append_reaching(m, reach_mm, 0, finer_)) moves = finer_;
+  }
+  if (!parts_.may_matter(moves)) {
     parts_.pass(m);
     return;
   }
   complete();
-  parts_.check(move);
+  parts_.check({cut.motion, cut.step, cut.cutter, moves, cut.tool, cut.tool_guessed});
 }
 
 /// Of all motions, whatever they are cut with.
@@ -330,7 +361,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
 void MillingStage::hand_over() {
   if (moves_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
-  stock_.cut(*mounted_->cutter, moves_, reports_);
+  stock_.cut(cutting(), moves_, reports_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);
   const double grown = std::min(fits, kGrowth * static_cast<double>(moves_per_cut_));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -50,6 +51,7 @@ class MillingStage final : public Process {
     fixtures_.set_wishes(options.collisions);
     machine_.set_options(options);
     spindle_ = options.collisions.spindle;
+    cut_by_shank_ = options.collisions.cut_by_shank;
   }
   void stop_by(const std::stop_token& stop) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
@@ -87,6 +89,9 @@ class MillingStage final : public Process {
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   void mount_parts(const Motion& motion);
+  void mount_shank(const Motion& motion);
+  /// What the model cuts with.
+  const Cutter& cutting() const { return shank_ ? *shank_ : *mounted_->cutter; }
   bool mount_for(const Motion& motion);
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
@@ -132,7 +137,11 @@ class MillingStage final : public Process {
   FixtureChecks fixtures_;
   MachineChecks machine_;
   std::vector<ToolSection> spindle_;
-  double nose_mm_ = 0;  ///< of the spindle above the tip, by the tool length offset
+  std::vector<CutMove> finer_;  ///< the present motion, for what is far above the tip
+  bool cut_by_shank_ = false;
+  std::optional<Cutter> shank_;  ///< the tool in the spindle, where its shank cuts as well
+  std::set<int> shank_told_;     ///< tools whose shank should cut, and does not
+  double nose_mm_ = 0;           ///< of the spindle above the tip, by the tool length offset
   std::vector<ToolUse> uses_;
   std::vector<Deepest> deepest_;           ///< one for each of uses_
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move

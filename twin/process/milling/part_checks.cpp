@@ -30,8 +30,8 @@ double turn_rad_of(const CutMove& move) {
                     glm::dot(move.axis_from, move.axis_to));
 }
 
-/// No point of `part` that can be near `box` goes farther on the move.
-double travel_mm(const CutMove& move, const CarriedPart& part, const Box& box) {
+/// No point of `part` that can come nearer to `box` than `near_mm` goes farther on the move.
+double travel_mm(const CutMove& move, const CarriedPart& part, const Box& box, double near_mm) {
   double way = glm::length(move.to_mm - move.from_mm);
   if (move.arc) {
     const double arm = std::max(glm::length(move.from_mm - move.arc->center_mm),
@@ -41,7 +41,7 @@ double travel_mm(const CutMove& move, const CarriedPart& part, const Box& box) {
   const double turn = turn_rad_of(move);
   if (turn == 0) return way;
   const double to_box = glm::length(move.from_mm - 0.5 * (box.min + box.max)) + way +
-                        0.5 * glm::length(box.size()) + kAhead_mm;
+                        0.5 * glm::length(box.size()) + near_mm;
   return way + turn * (std::min(part.to_z_mm, to_box) + part.radius_mm);
 }
 
@@ -141,6 +141,14 @@ void PartChecks::mount(const Cutter& cutter, int tool, std::span<const ToolSecti
   }
 }
 
+double PartChecks::reach_mm() const {
+  const double across = glm::length(stock_.bounds_mm().size());
+  double reach = 0;
+  for (const Part& part : parts_)
+    reach = std::max(reach, std::min(part.body.to_z_mm, part.body.from_z_mm + across));
+  return reach;
+}
+
 void PartChecks::begin_reporting() {
   unmount();
   table_.clear();
@@ -167,20 +175,20 @@ double PartChecks::counts_mm(const Part& part) const {
 }
 
 bool PartChecks::comes_near(Part& part, const CutMove& move) const {
-  const double travel = travel_mm(move, part.body, stock_.bounds_mm());
   const double counts = counts_mm(part);
-  part.spare_mm -= travel;
-  if (part.spare_mm >= counts) return false;
   const double most = counts + kAhead_mm;
+  const double travel = travel_mm(move, part.body, stock_.bounds_mm(), most);
+  // A distance of 0 may be a contact.
+  const auto is_far = [&] { return part.spare_mm >= counts && part.spare_mm > 0; };
+  part.spare_mm -= travel;
+  if (is_far()) return false;
   if (travel < kAhead_mm) {
     const double enough = counts + travel;
-    const double here =
-        stock_.part_spare_mm(part.body, begin_of(move), enough, most + travel) - travel;
-    part.spare_mm = here;
-    if (here >= counts) return false;
+    part.spare_mm = stock_.part_spare_mm(part.body, begin_of(move), enough, most + travel) - travel;
+    if (is_far()) return false;
   }
   part.spare_mm = stock_.part_spare_mm(part.body, move, counts, most);
-  return part.spare_mm < counts || part.spare_mm <= 0;
+  return !is_far();
 }
 
 bool PartChecks::may_matter(std::span<const CutMove> moves) {

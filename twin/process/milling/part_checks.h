@@ -40,6 +40,8 @@ class PartChecks {
     return has(FindingId::kShankContact) || has(FindingId::kFluteTooShort);
   }
   bool checks_holder() const { return has(FindingId::kHolderContact); }
+  /// From the tip to the highest place of it that can come near the workpiece; 0: nothing.
+  double reach_mm() const;
   /// False: none of it comes near enough to matter on these moves, the next of the program. Cheap:
   /// how far away it was at least is remembered. Moves that the model holds back may be among what
   /// has been cut.
