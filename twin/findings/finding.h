@@ -107,7 +107,8 @@ struct Finding {
   std::string excerpt;  ///< the source line, for people; may be empty
   std::string hint;     ///< what to do; may be empty
   /// Of a collision, or of what comes near one, as reports name them: what of the tool ("cutter",
-  /// "shank", "holder", "spindle"), and a fixture's name or kWorkpieceBody. Else empty.
+  /// "shank", "holder", "spindle"), or of the machine a link's or a fixture's name; and a fixture's
+  /// or a link's name or kWorkpieceBody. Else empty.
   std::array<std::string, 2> bodies{};
   bool has_bodies() const { return !bodies[0].empty(); }
 };

@@ -13,11 +13,22 @@ namespace {
 constexpr double kSameEvent_s = 1.0;
 
 /// A head that meets a part which has tipped is a collision, as far as anybody can tell. So is what
-/// would be one if the blank is as it was guessed.
+/// would be one if blank, tool and machine are as they were guessed.
 bool is_hit(const Finding& finding) {
-  return finding.severity == Severity::kError || finding.id == FindingId::kCrossesPart ||
-         finding.id == FindingId::kRapidContact || finding.id == FindingId::kSpindleOffContact ||
-         finding.id == FindingId::kBelowStock;
+  switch (finding.id) {
+    case FindingId::kCrossesPart:
+    case FindingId::kRapidContact:
+    case FindingId::kSpindleOffContact:
+    case FindingId::kBelowStock:
+    case FindingId::kFixtureContact:
+    case FindingId::kShankContact:
+    case FindingId::kHolderContact:
+    case FindingId::kSpindleContact:
+    case FindingId::kMachineCollision:
+      return finding.severity != Severity::kNote;
+    default:
+      return finding.severity == Severity::kError;
+  }
 }
 
 }  // namespace

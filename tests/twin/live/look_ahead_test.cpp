@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/twin/live/cutter_shop.h"
+#include "twin/job/fixtures.h"
 #include "twin/program/session_parts.h"
 
 namespace kerf {
@@ -54,6 +55,35 @@ TEST(LookAhead, NothingIsToldFartherAheadThanAskedFor) {
       EXPECT_GT(told.warning.in_s, guard_s - 0.1) << told.at_s;
       EXPECT_NEAR(told.warning.t_s, told.at_s, 0.06);
     }
+  }
+}
+
+TEST(LookAhead, AFixtureInTheWayIsToldBeforeItIsMet) {
+  Diagnostics diagnostics;
+  const std::vector<FixtureSpec> specs{parse_fixture("clamp=box:20,15,-2:24,25,6").value()};
+  for (const double height_mm : {5.0, 6.3}) {
+    MotionList program;
+    program.at({5, 20, 20}).tool(1).spindle(true).feed_rate(600);
+    program.feed({5, 20, 12}).traverse({5, 20, height_mm}).traverse({35, 20, height_mm});
+    const RunningMachine machine(program.list());
+    LiveCutOptions options;
+    options.guard_s = 0.5;
+    options.checks.collisions.fixtures = load_fixtures(specs, diagnostics);
+    ASSERT_TRUE(options.checks.collisions.fixtures);
+    Watch watch(options, &program);
+    watch.run(machine, 100, true);
+    if (height_mm > 6) {
+      EXPECT_TRUE(watch.warnings.empty());
+      continue;
+    }
+    ASSERT_EQ(watch.warnings.size(), 1U);
+    const AheadWarning& warning = watch.warnings[0].warning;
+    EXPECT_EQ(warning.finding.id, FindingId::kFixtureContact);
+    // The cutter of 4 mm meets the side at X20.
+    EXPECT_NEAR(warning.finding.position_mm->x, 18, 0.01);
+    EXPECT_GT(warning.in_s, 0.4);
+    EXPECT_LE(warning.in_s, 0.5);
+    EXPECT_EQ(watch.ids(), std::vector<FindingId>{FindingId::kFixtureContact});
   }
 }
 

@@ -392,7 +392,10 @@ Finding MachineChecks::finding_of(const WorkingPair& pair, double t) const {
   finding.time_s = step_->start_s + t * step_->duration_s;
   finding.position_mm =
       moves_are_known_ ? runs_->path().pose_at(*motion_, t).origin_mm : point_at(*motion_, t);
-  if (pair.row.first.empty()) finding.tool = pair.row.tool;
+  const CollisionPair& row = pair.row;
+  if (row.first.empty()) finding.tool = row.tool;
+  finding.bodies = {row.first.empty() ? to_string(row.part) : row.first,
+                    row.other.empty() ? kWorkpieceBody : row.other};
   return finding;
 }
 
