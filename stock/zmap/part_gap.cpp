@@ -24,6 +24,13 @@ double gap_of(double across_mm, double above_mm) {
   return across == 0 ? above : above == 0 ? across : std::sqrt(across * across + above * above);
 }
 
+/// Cells that are within `around_mm` of the axis, in boxes.
+PartCells cells_around(const TileGrid& grid, const PartPiece& piece, double around_mm) {
+  Vec2 low, high;
+  piece.bounds(low, high);
+  return cells_of(grid, low - around_mm, high + around_mm);
+}
+
 /// Calls visit(tile, low) for each tile that may be nearer to the part than `within`: nothing of it
 /// is nearer than low. visit() may lessen `within`.
 template <class Visit>
@@ -31,10 +38,7 @@ void for_each_near_tile(const TileGrid& grid, TileTops& tops, const CarriedPart&
                         const PartPiece& piece, double& within, const Visit& visit) {
   const double bottom = std::min(piece.z(0), piece.z(1)) + part.from_z_mm;
   if (bottom - grid.bounds_mm().max.z >= within) return;
-  Vec2 low, high;
-  piece.bounds(low, high);
-  const double around = part.radius_mm + std::max(0.0, within);
-  const PartCells all = cells_of(grid, low - around, high + around);
+  const PartCells all = cells_around(grid, piece, part.radius_mm + std::max(0.0, within));
   if (all.i0 > all.i1 || all.j0 > all.j1) return;
   for (int ty = all.j0 / kTileCells; ty <= all.j1 / kTileCells; ++ty) {
     for (int tx = all.i0 / kTileCells; tx <= all.i1 / kTileCells; ++tx) {
@@ -53,18 +57,18 @@ void for_each_near_tile(const TileGrid& grid, TileTops& tops, const CarriedPart&
   }
 }
 
-/// Calls visit(x, y, material) for each cell of a tile that is higher than `level`.
+/// Calls visit(x, y, material) for each of those cells of a tile that is higher than `level`.
 template <class Visit>
-void for_each_high_cell(const TileGrid& grid, std::size_t tile, double level, const Visit& visit) {
+void for_each_high_cell(const TileGrid& grid, std::size_t tile, const PartCells& cells,
+                        double level, const Visit& visit) {
   const Box& box = grid.bounds_mm();
-  const int tx = static_cast<int>(tile) % grid.tiles_x(),
-            ty = static_cast<int>(tile) / grid.tiles_x();
-  const int i1 = std::min(grid.nx(), (tx + 1) * kTileCells);
-  const int j1 = std::min(grid.ny(), (ty + 1) * kTileCells);
-  for (int j = ty * kTileCells; j < j1; ++j) {
+  const int i0 = static_cast<int>(tile) % grid.tiles_x() * kTileCells;
+  const int j0 = static_cast<int>(tile) / grid.tiles_x() * kTileCells;
+  const float* const heights = grid.tile(tile);
+  for (int j = std::max(j0, cells.j0); j < j0 + kTileCells && j <= cells.j1; ++j) {
     const double y = box.min.y + (j + 0.5) * grid.cell_y_mm();
-    for (int i = tx * kTileCells; i < i1; ++i) {
-      const double material = static_cast<double>(grid.height(i, j));
+    for (int i = std::max(i0, cells.i0); i < i0 + kTileCells && i <= cells.i1; ++i) {
+      const double material = static_cast<double>(heights[TileGrid::offset(i, j)]);
       if (material <= level || material <= box.min.z) continue;
       visit(box.min.x + (i + 0.5) * grid.cell_x_mm(), y, material);
     }
@@ -208,9 +212,10 @@ void GapSearch::run(const TileGrid& grid, TileTops& tops) {
     part.sweep_rad *= level.to_t - level.from_t;
     part.from = {level.a.x, level.a.y, level.z};
     part.step = {level.b.x - level.a.x, level.b.y - level.a.y, 0};
+    const PartCells cells = cells_around(grid, part, part_.radius_mm + least_mm_);
     for_each_near_tile(grid, tops, part_, part, least_mm_, [&](std::size_t tile, double) {
       const double lowest = level.z + part_.from_z_mm - least_mm_;
-      for_each_high_cell(grid, tile, lowest,
+      for_each_high_cell(grid, tile, cells, lowest,
                          [&](double x, double y, double material) { look(level, x, y, material); });
     });
   }
@@ -224,17 +229,19 @@ double find_part_spare_mm(const TileGrid& grid, TileTops& tops, const CarriedPar
   double spare = most_mm;
   for (const PartPiece& piece : pieces_of(move, kChord_mm)) {
     const double bottom = std::min(piece.z(0), piece.z(1)) + part.from_z_mm;
+    const PartCells cells = cells_around(grid, piece, part.radius_mm + enough_mm + half_cell);
     for_each_near_tile(grid, tops, part, piece, spare, [&](std::size_t tile, double low) {
       if (low >= enough_mm) {
         spare = std::min(spare, low);
         return;
       }
-      // Nothing of it is farther than `spare`, or it is not among these cells.
-      double least = spare;
-      for_each_high_cell(grid, tile, bottom - spare, [&](double x, double y, double material) {
-        const double across = piece.distance(x, y, kWhole) - half_cell - part.radius_mm;
-        least = std::min(least, gap_of(across, bottom - material));
-      });
+      // Cells that are farther than `enough_mm` are not told apart.
+      double least = std::min(spare, enough_mm);
+      for_each_high_cell(
+          grid, tile, cells, bottom - least, [&](double x, double y, double material) {
+            const double across = piece.distance(x, y, kWhole) - half_cell - part.radius_mm;
+            least = std::min(least, gap_of(across, bottom - material));
+          });
       spare = std::min(spare, least);
     });
     if (spare <= 0) return 0;
