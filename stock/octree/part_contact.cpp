@@ -63,6 +63,7 @@ class PartSearch {
   std::optional<PartContact> run();
 
  private:
+  double depth_mm();
   std::vector<Sweep> sweeps_of(const std::vector<ToolBody>& bodies, const CutMove& move,
                                double shrink_mm) const {
     std::vector<Sweep> sweeps;
@@ -196,12 +197,22 @@ std::optional<PartContact> PartSearch::run() {
     const double middle = 0.5 * (clear + meets_at);
     (touches(middle, 0) ? meets_at : clear) = middle;
   }
-  double deep = 0, too_deep = std::min(reach_mm_, part_.to_z_mm - part_.from_z_mm);
+  return PartContact{first_part(move_, meets_at).to_mm, meets_at, depth_mm()};
+}
+
+/// It touches.
+double PartSearch::depth_mm() {
+  const double length = part_.to_z_mm - part_.from_z_mm;
+  double deep = 0, too_deep = std::min(reach_mm_, length);
   for (int n = 0; n < kHalvings; ++n) {
     const double middle = 0.5 * (deep + too_deep);
     (touches(1, middle) ? deep : too_deep) = middle;
   }
-  return PartContact{first_part(move_, meets_at).to_mm, meets_at, too_deep + tolerance_mm_};
+  if (!std::isfinite(length) || too_deep < length - kAtOnce_mm) return too_deep + tolerance_mm_;
+  // What is in its upper end would be in it still if it were as much higher: as if it had no end.
+  PartSearch endless(field_, flutes_, {part_.radius_mm, part_.from_z_mm}, move_, tolerance_mm_);
+  endless.collect();
+  return endless.depth_mm();
 }
 
 }  // namespace

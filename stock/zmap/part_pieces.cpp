@@ -1,5 +1,6 @@
 #include "stock/zmap/part_pieces.h"
 
+#include <glm/geometric.hpp>
 #include <optional>
 
 #include "stock/zmap/path_builder.h"
@@ -27,12 +28,11 @@ void PartPiece::bounds(Vec2& low, Vec2& high) const {
 }
 
 double PartPiece::distance(double x, double y, const PartWindow& window) const {
-  if (turns) return std::abs(std::hypot(x - center.x, y - center.y) - arm);
-  const double px = x - from.x, py = y - from.y;
-  const double length2 = step.x * step.x + step.y * step.y;
-  const double along = length2 > 0 ? (px * step.x + py * step.y) / length2 : 0.0;
-  const double t = std::clamp(along, window.t0, window.t1);
-  return std::hypot(px - t * step.x, py - t * step.y);
+  if (turns) return std::abs(glm::length(Vec2(x, y) - center) - arm);
+  const Vec2 p(x - from.x, y - from.y), way(step);
+  const double length2 = glm::dot(way, way);
+  const double along = length2 > 0 ? glm::dot(p, way) / length2 : 0.0;
+  return glm::length(p - std::clamp(along, window.t0, window.t1) * way);
 }
 
 void PartPiece::windows(double x, double y, double radius, PartWindows& out) const {

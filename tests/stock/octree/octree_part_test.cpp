@@ -81,6 +81,9 @@ TEST(OctreePart, AHolderEnds) {
   EXPECT_FALSE(contact(*tree, "ball:4:flute=10", {10, 20, 44}, along));
   EXPECT_TRUE(contact(*tree, "ball:4:flute=10", {10, 20, 46}, along));
   EXPECT_TRUE(contact(*tree, "ball:4:flute=10", {10, 20}, along));
+  // Its upper end is 1 mm in the wall above; a holder that is higher is so all the more.
+  const auto deep = contact(*tree, "ball:4:flute=10", {10, 20, 46}, along);
+  EXPECT_NEAR(deep->depth_mm, 35, 0.01);
   const auto gap = tree->part_gap(make_cutter("ball:4:flute=10"), {10, 20, 44.4}, along, 2);
   ASSERT_TRUE(gap);
   EXPECT_NEAR(gap->mm, 0.6, 1e-3);

@@ -184,8 +184,10 @@ bool PartChecks::comes_near(Part& part, const CutMove& move) const {
   if (is_far()) return false;
   if (travel < kAhead_mm) {
     const double enough = counts + travel;
-    part.spare_mm = stock_.part_spare_mm(part.body, begin_of(move), enough, most + travel) - travel;
+    const double here = stock_.part_spare_mm(part.body, begin_of(move), enough, most + travel);
+    part.spare_mm = here - travel;
     if (is_far()) return false;
+    if (here <= 0) return true;
   }
   part.spare_mm = stock_.part_spare_mm(part.body, move, counts, most);
   return !is_far();
