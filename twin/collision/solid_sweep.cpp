@@ -13,6 +13,8 @@ namespace {
 /// Of boxes about pieces: they only say where it is worth to look.
 constexpr double kBoxExact_mm = 0.1;
 constexpr double kPieceExact_mm = 1e-3;
+/// Who goes deeper than known by less is not measured again.
+constexpr double kDeeper_mm = 0.005;
 /// A way is halved before a box is, where it bends by more than this part of the box.
 constexpr double kBend = 0.25;
 /// Halvings of a way at most, for boxes.
@@ -198,8 +200,9 @@ double touch_depth_mm(const Solid& moving, const RigidWay& way, const Solid& sti
   std::array<Vec3, 2> corners{};
   Vec3 guess{0};
   for (const Convex& piece : moving.pieces()) {
-    if (depth >= half_thickness_mm(piece)) continue;
-    if (!first_touch(eroded(piece, depth, discs, corners), way, still, guess)) continue;
+    const double deeper = depth > 0 ? depth + kDeeper_mm : 0;
+    if (deeper >= half_thickness_mm(piece)) continue;
+    if (!first_touch(eroded(piece, deeper, discs, corners), way, still, guess)) continue;
     depth = std::max(depth, touch_depth_mm(piece, way, still));
   }
   return depth;

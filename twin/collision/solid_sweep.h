@@ -25,8 +25,8 @@ std::optional<LeastGap> least_gap(const Solid& moving, const RigidWay& way, cons
 std::optional<double> first_touch(const Solid& moving, const RigidWay& way, const Solid& still,
                                   double thinner_mm);
 
-/// How deep its boxes and bodies of revolution go at most, if that is more than `known_mm`; else
-/// that. Of meshes, nobody measures it.
+/// How deep its boxes and bodies of revolution go at most, to 0.01 mm, if that is more than
+/// `known_mm`; else that. Of meshes, nobody measures it.
 double touch_depth_mm(const Solid& moving, const RigidWay& way, const Solid& still,
                       double known_mm);
 

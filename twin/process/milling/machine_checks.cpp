@@ -28,8 +28,6 @@ constexpr double kTouchGap_mm = 1e-3;
 constexpr double kClose_mm = 5;
 /// Of what is left to the others, no more is counted on: bounds on what turns grow with it.
 constexpr double kMostFar_mm = 200;
-/// How far from the workpiece's surface it is measured: the workpiece only becomes less.
-constexpr double kSurfaceAhead_mm = 3;
 /// Where the links have the tip may be off by rounding of what is written in files.
 constexpr double kSamePlace_mm = 0.05;
 constexpr double kSameDirection = 1e-4;
@@ -288,6 +286,11 @@ void MachineChecks::look(WorkingPair& pair) {
     return;
   }
   if (is_apart(pair, counts)) return;
+  if (pair.event && !is_traverse(*motion_)) {
+    // It goes on: all that may be new is that it goes deeper.
+    deepen(pair, way);
+    return;
+  }
   pair.with_workpiece ? look_at_workpiece(pair, way) : look_near(pair, way);
 }
 
@@ -301,11 +304,12 @@ void MachineChecks::stand(WorkingPair& pair, const LinkWay& way) {
   bool overlaps = false;
   if (pair.with_workpiece) {
     for (const SolidPointer& solid : moving.solids) {
-      const double box_mm = gap_at(*solid, pose, *still.solids[0], kSurfaceAhead_mm);
-      overlaps = overlaps || (box_mm <= 0 && surface_.gap_at(*solid, pose, kSurfaceAhead_mm) <= 0);
+      const double box_mm = gap_at(*solid, pose, *still.solids[0], WorkpieceSurface::kFarthest_mm);
+      overlaps = overlaps || (box_mm <= 0 &&
+                              surface_.gap_at(*solid, pose, WorkpieceSurface::kFarthest_mm) <= 0);
     }
   } else {
-    overlaps = gap(pair, pose, kSurfaceAhead_mm) <= 0;
+    overlaps = gap(pair, pose, WorkpieceSurface::kFarthest_mm) <= 0;
     for (const SolidPointer& a : moving.solids)
       for (const SolidPointer& b : still.solids)
         overlaps = overlaps || encloses_any(*b, pose, *a) || encloses_any(*a, pose.inverse(), *b);
@@ -380,7 +384,7 @@ void MachineChecks::look_at_workpiece(WorkingPair& pair, const LinkWay& way) {
     meet(pair, way, *first);
     return;
   }
-  pair.spare_mm = kSurfaceAhead_mm;
+  pair.spare_mm = WorkpieceSurface::kFarthest_mm;
   for (const SolidPointer& moving : solids)
     pair.spare_mm = surface_.gap_at(*moving, way.pose(1), pair.spare_mm);
 }
@@ -425,6 +429,11 @@ void MachineChecks::meet(WorkingPair& pair, const LinkWay& way, double t) {
     if (pair.row.contacts++ == 0) pair.row.source = motion_->source;
   }
   pair.least_mm = 0;
+  deepen(pair, way);
+}
+
+void MachineChecks::deepen(WorkingPair& pair, const LinkWay& way) {
+  if (!pairs_.bodies()[pair.moving].has_depth) return;
   const double known = pair.depth_mm;
   for (const SolidPointer& moving : pairs_.bodies()[pair.moving].solids) {
     if (pair.with_workpiece) {

@@ -71,6 +71,7 @@ class MachineChecks {
   std::optional<double> touch(const WorkingPair& pair, const LinkWay& way);
   void note_least(WorkingPair& pair, const LeastGap& gap);
   void meet(WorkingPair& pair, const LinkWay& way, double t);
+  void deepen(WorkingPair& pair, const LinkWay& way);
   void end_events();
   Finding finding_of(const WorkingPair& pair, double t) const;
   LinkWay way_of(const WorkingPair& pair) const;

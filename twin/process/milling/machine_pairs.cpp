@@ -15,8 +15,10 @@ void measure(WorkingBody& body) {
   for (const SolidPointer& solid : body.solids) {
     body.has_triangles = body.has_triangles || has_triangles(*solid);
     body.pieces += solid->pieces().size();
-    for (const Convex& piece : solid->pieces())
+    for (const Convex& piece : solid->pieces()) {
       body.reach_mm = std::max(body.reach_mm, reach_of(piece));
+      body.has_depth = body.has_depth || piece.kind != Convex::Kind::kHull;
+    }
   }
 }
 

@@ -36,6 +36,7 @@ struct WorkingBody {
   std::optional<double> clearance_mm;  ///< of a fixture
   double reach_mm = 0;                 ///< from its origin
   bool has_triangles = false;
+  bool has_depth = false;  ///< some of it is no mesh: it can be measured how deep it goes
   std::size_t pieces = 0;
 
   /// For sentences.
