@@ -33,6 +33,21 @@ TEST(Fixtures, AreReadFromTheirText) {
   EXPECT_EQ(mesh.mm_per_unit, 25.4);
   EXPECT_EQ(parse_fixture("box:0,0,0:1,1,1", LengthUnit::kInch)->bodies[0].bounds_mm.max.x, 25.4);
   EXPECT_EQ(parse_fixture("box:0,0,0:1,1,1+cylinder:0,0,0:5:3")->bodies.size(), 2U);
+  const FixtureSpec on_link = parse_fixture("stl:a.stl:inch:on=rotary table:at=1,2,3").value();
+  EXPECT_EQ(on_link.on, "rotary table");
+  EXPECT_EQ(on_link.mesh_path, "a.stl");
+}
+
+TEST(Fixtures, ThoseOnALinkAreNotHeldAgainstTheBlank) {
+  Diagnostics diagnostics;
+  const std::vector<FixtureSpec> specs{
+      parse_fixture("box:0,0,-20:10,10,0:on=table").value(),
+  };
+  const FixtureList list = load_fixtures(specs, diagnostics);
+  ASSERT_TRUE(list);
+  EXPECT_EQ((*list)[0].on, "table");
+  const Blank blank = parse_blank("box:0,0,-40:40,30,0").value();
+  EXPECT_TRUE(check_fixtures_beside(*list, blank, diagnostics));
 }
 
 TEST(Fixtures, FaultsAreSaidWithWhatIsAllowed) {
@@ -42,6 +57,7 @@ TEST(Fixtures, FaultsAreSaidWithWhatIsAllowed) {
   EXPECT_NE(error_of("vise:125:nan:40").find("'nan'"), std::string::npos);
   EXPECT_NE(error_of("box:0,0,0:1,1,1:at=1,2").find("must be three numbers"), std::string::npos);
   EXPECT_NE(error_of("box:0,0,0:1,1,1:tilt=4").find("unknown option 'tilt'"), std::string::npos);
+  EXPECT_NE(error_of("box:0,0,0:1,1,1:on=").find("name of a link"), std::string::npos);
   EXPECT_NE(error_of("clamp:30:20:12:inch").find("stl"), std::string::npos);
   EXPECT_NE(error_of("screw:4:12:turn=400").find("-360"), std::string::npos);
   for (const char* const text :

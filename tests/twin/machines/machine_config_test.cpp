@@ -1,4 +1,5 @@
 // machine.model and machine.links of a configuration.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/twin/config/config_support.h"
@@ -111,6 +112,48 @@ TEST(MachineConfig, FaultsPointAtTheirPlace) {
             "1:1: machine: workpiece_on is missing; must be the name of a link\n"
             "2:3: machine.model: has no place beside links\n"
             "3:12: machine.tool_on: 'b' is no link; there are t\n");
+}
+
+TEST(MachineConfig, PairsAndTheirClearancesArrive) {
+  const ReadText read(std::string(kLinks) +
+                      "  ignore: [[head, table], [tool, 'my vise']]\n"
+                      "fixtures:\n"
+                      "  - {name: my vise, shape: 'box:0,0,0:1,1,1', at: '1,2,3', on: table}\n"
+                      "clearances:\n"
+                      "  - {pair: [head, my vise], mm: 2.5}\n");
+  ASSERT_TRUE(read.config) << read.said();
+  const std::vector<NamedPair> pairs{{"head", "table"}, {"tool", "my vise"}};
+  EXPECT_EQ(read.config->machine.ignore, pairs);
+  ASSERT_EQ(read.config->fixtures.size(), 1U);
+  EXPECT_EQ(read.config->fixtures[0].on, "table");
+  ASSERT_EQ(read.config->clearances.size(), 1U);
+  EXPECT_EQ(read.config->clearances[0].pair, (NamedPair{"head", "my vise"}));
+  EXPECT_EQ(read.config->clearances[0].mm, 2.5);
+  const std::string printed = effective_yaml(*read.config);
+  Diagnostics diagnostics;
+  const auto again = parse_config(printed, "printed.yaml", {}, diagnostics);
+  ASSERT_TRUE(again) << printed;
+  EXPECT_EQ(effective_yaml(*again), printed);
+  EXPECT_EQ(again->machine.ignore, pairs);
+}
+
+TEST(MachineConfig, PairsAreOfTwo) {
+  const auto said = [](const std::string& text) {
+    const ReadText read(text);
+    EXPECT_FALSE(read.config) << text;
+    return read.said();
+  };
+  for (const char* pairs : {"[[a]]", "[[a, b, c]]", "[a, b]", "[[a, [b]]]", "[{a: b}]"}) {
+    EXPECT_NE(said(fmt::format("machine: {{ignore: {}}}\n", pairs))
+                  .find("is not allowed; must be two names, [a, b]"),
+              std::string::npos)
+        << pairs;
+  }
+  EXPECT_NE(said("machine: {ignore: 3}\n").find("a list of pairs"), std::string::npos);
+  EXPECT_NE(said("clearances: [{pair: [a], mm: 1}]\n").find("must be two names"),
+            std::string::npos);
+  EXPECT_NE(said("clearances: [{mm: 1}]\n").find("pair is missing"), std::string::npos);
+  EXPECT_NE(said("clearances: [{pair: [a, b]}]\n").find("mm is missing"), std::string::npos);
 }
 
 }  // namespace
