@@ -9,8 +9,8 @@
 namespace kerf {
 namespace {
 
-/// So many are kept of tiles that no body is near: some 20 MB.
-constexpr std::size_t kKeptTriangles = 100'000;
+/// So many are kept of tiles that no body is near: some 10 MB.
+constexpr std::size_t kKeptTriangles = 50'000;
 /// Tiles are side by side in time (WorkpieceSurface) up to here: bodies that are not asked for on
 /// the way go no farther.
 constexpr double kNear_mm = WorkpieceSurface::kFarthest_mm;
