@@ -132,6 +132,7 @@ void make_finding_folder(const std::string& folder, Diagnostics& diagnostics) {
 
 void write_finding_pictures(const std::string& folder, const SessionOptions& options,
                             const Report& report, const std::stop_token& stop,
+                            const std::function<void(double)>& on_picture,
                             Diagnostics& diagnostics) {
   std::vector<FindingShot> shots;
   for (const Finding& finding : report.findings.kept()) {
@@ -154,9 +155,11 @@ void write_finding_pictures(const std::string& folder, const SessionOptions& opt
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {},
                            [&shots](std::size_t i) { return shots[i].finding.time_s.value_or(0); });
+  std::size_t drawn = 0;
   for (const std::size_t i : order) {
     if (!pass.take(shots[i]) || !album.add(shots[i], i + 1)) return;
     shots[i].stock = nullptr;
+    on_picture(static_cast<double>(++drawn) / static_cast<double>(shots.size()));
   }
 }
 

@@ -1,7 +1,10 @@
 // twin/cli/finding_shots.h - --finding-png: a picture of each finding, in a folder.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -24,9 +27,11 @@ void make_finding_folder(const std::string& folder, Diagnostics& diagnostics);
 
 /// Of a program that has been run, the findings of its report in their order, as far as they have a
 /// place. Where there are such it is read and cut a second time, up to the last of them: the
-/// workpiece in each picture is that of the finding's time. Faults: no OpenGL, a disk that is full.
+/// workpiece in each picture is that of the finding's time. `on_picture` gets the share that is
+/// done, 0..1. Faults: no OpenGL, a disk that is full.
 void write_finding_pictures(const std::string& folder, const SessionOptions& options,
                             const Report& report, const std::stop_token& stop,
+                            const std::function<void(double)>& on_picture,
                             Diagnostics& diagnostics);
 
 /// Beside a machine: takes the workpiece when a finding is told, some hundredths of a second after

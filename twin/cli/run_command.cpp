@@ -190,8 +190,11 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
                   request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
     if (!request.finding_png.empty()) {
-      write_finding_pictures(request.finding_png, request.session, session->report(),
-                             stop.get_token(), diagnostics);
+      std::atomic<double> share{0};
+      const ProgressBar bar([&] { return share.load(); }, !request.quiet);
+      write_finding_pictures(
+          request.finding_png, request.session, session->report(), stop.get_token(),
+          [&](double done) { share = done; }, diagnostics);
     }
     deadline->set_last_words({}, kWritingPatience);
     print_results(request, session->report());

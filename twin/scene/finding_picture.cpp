@@ -248,6 +248,7 @@ void FindingPictures::Impl::name_bodies(const FindingView& view, const OrbitCame
   if (!place) return;
   constexpr float kBeside_px = 12;
   add_ring(*place, strokes);
+  if (!view.contact) return;
   if (const auto tool = picture_px(view.tool_mm, projection)) {
     const auto radius_px =
         static_cast<float>(view.tool_radius_mm / camera.pixel_mm(size_px_)) + kBeside_px;
@@ -297,7 +298,7 @@ Result<Picture> FindingPictures::Impl::draw(const FindingShot& shot) {
   Result<Picture> picture = drawn(*camera, size_px_, is_hidden);
   if (!picture) return picture;
   std::vector<Stroke> strokes;
-  if (view.contact) name_bodies(view, *camera, &strokes);
+  name_bodies(view, *camera, &strokes);
   if (!view.close_mm.empty()) {
     OrbitCamera close = *camera;
     close.fit(view.close_mm, kInset_px);

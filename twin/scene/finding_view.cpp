@@ -136,14 +136,15 @@ bool tool_hides_place(const FindingView& view, const ViewAngles& angles) {
 
 double score_of(const FindingView& view, const ViewAngles& angles, bool shows_place,
                 bool shows_tool, bool shows_other) {
-  constexpr double kPlace = 4, kBody = 1, kBeside = 1, kHigh = 1.2, kFront = 0.1;
+  constexpr double kPlace = 4, kBody = 1, kBeside = 1, kAlong = 1.2, kFront = 0.1;
   double score = kPlace * shows_place + kBody * shows_tool + kBody * shows_other;
   // What the tool touches hides it on the near side.
   constexpr double kALittleBefore = 0.3;
   if (const auto facing = facing_of(view, angles))
     score -= kBeside * std::abs(*facing - kALittleBefore);
-  // From high above what is long is short.
-  score -= kHigh * std::max(0.0, std::sin(angles.pitch_rad) - 0.5);
+  // Along its axis a tool is short.
+  const double along = std::abs(glm::dot(direction_of(angles), view.axis));
+  score -= kAlong * std::max(0.0, along - 0.5);
   // Else from where the operator stands.
   score -= kFront * (1 + std::sin(angles.yaw_rad));
   return score;

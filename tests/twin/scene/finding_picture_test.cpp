@@ -97,6 +97,9 @@ TEST(FindingView, IsSeenFromBesideRatherThanThroughABody) {
   EXPECT_GT(score(-75, 28, true), score(180, 28, true)) << "the tool hides it";
   EXPECT_GT(score(0, 28, true), score(-75, 28, false)) << "but it is to be seen";
   EXPECT_GT(score(-75, 28, true), score(-75, 75, true)) << "not from high above";
+  view.axis = {0.87, 0, 0.5};
+  EXPECT_GT(score(90, 28, true), score(0, 28, true)) << "nor along a tilted tool";
+  view.axis = {0, 0, 1};
   EXPECT_GT(score(-75, 28, true), score(75, 28, true)) << "from the front, all else being equal";
   EXPECT_TRUE(tool_hides_place(view, {kPi, 0.5}));
   EXPECT_FALSE(tool_hides_place(view, {0, 0.5}));
