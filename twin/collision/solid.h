@@ -20,8 +20,8 @@ namespace kerf {
 /// Immutable; any number of threads. mm, in its own frame.
 class Solid {
  public:
-  /// Boxes and cylinders exactly; a tube by flat facets that are nowhere farther than half a micrometre
-  /// from it.
+  /// Boxes and cylinders exactly; a tube by flat facets that are nowhere farther than half a
+  /// micrometre from it.
   static std::shared_ptr<const Solid> of_bodies(std::span<const BlankBody> bodies);
   /// The surface; and what it encloses, if it is closed().
   static std::shared_ptr<const Solid> of_mesh(const TriangleMesh& mesh);

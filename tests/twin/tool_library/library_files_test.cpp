@@ -1,26 +1,17 @@
 // Files that hold a library, and such that hold none.
 #include <gtest/gtest.h>
-#include <zip.h>
 
 #include <fstream>
 
 #include "base/small_file.h"
 #include "tests/base/temporary_folder.h"
+#include "tests/base/zip_writer.h"
 #include "tests/twin/tool_library/library_support.h"
 
 namespace kerf {
 namespace {
 
-/// A zip file with one member.
-std::string zipped(const char* name, const std::string& text) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "library.tools";
-  zip_t* const archive = zip_open(path.c_str(), ZIP_CREATE, nullptr);
-  zip_source_t* const source = zip_source_buffer(archive, text.data(), text.size(), 0);
-  EXPECT_GE(zip_file_add(archive, name, source, 0), 0);
-  EXPECT_EQ(zip_close(archive), 0);
-  return read_small_file(path, std::size_t{1} << 28U).value();
-}
+std::string zipped(const char* name, const std::string& text) { return zipped({{name, text}}); }
 
 constexpr const char* kTool =
     R"({"data": [{"type": "flat end mill", "geometry": {"DC": 6}, "post-process": {"number": 1}}]})";
