@@ -7,11 +7,17 @@
 
 #include "base/result.h"
 #include "base/triangle_mesh.h"
+#include "twin/collision/mesh_joiner.h"
 
 namespace kerf {
 
 /// Larger ones are refused before they are read: no link of a machine needs that.
 inline constexpr std::size_t kMaxStl_bytes = std::size_t{512} << 20U;
+
+/// Of a binary STL: a text, and how many triangles follow, 50 bytes each.
+inline constexpr std::size_t kStlHead_bytes = 84;
+/// As the head of a file of `size` bytes says; 0: it is no binary STL.
+std::size_t triangles_of_stl(std::string_view head, std::size_t size);
 
 /// Binary or ASCII STL (told apart by size: a binary file is 84 bytes and 50 a triangle, whatever
 /// its head says). Corners that are equal become one, so that the mesh shades smooth; normals of
@@ -24,5 +30,7 @@ Result<TriangleMesh> read_stl(const std::string& path, double mm_per_unit);
 
 /// The same from the file's bytes; `path` names them. Any bytes are accepted.
 Result<TriangleMesh> parse_stl(std::string_view bytes, const std::string& path, double mm_per_unit);
+Done parse_stl(std::string_view bytes, const std::string& path, double mm_per_unit,
+               MeshJoiner& joiner);
 
 }  // namespace kerf

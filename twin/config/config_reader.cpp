@@ -129,7 +129,12 @@ void read_fixtures(const GroupReader& root, std::vector<FixtureSpec>& out) {
     group.missing("shape", tr("a shape, as --fixture has it"));
     ConfigNode* const shape = group.find("shape");
     if (shape == nullptr) continue;
-    Result<FixtureSpec> spec = parse_fixture(resolved_spec(*shape, "stl:", root.faults()));
+    std::string text(trim(shape->scalar));
+    for (const std::string_view prefix : {"stl:", "obj:", "3mf:"}) {
+      const std::string resolved = resolved_spec(*shape, prefix, root.faults());
+      if (resolved != text) text = resolved;
+    }
+    Result<FixtureSpec> spec = parse_fixture(text);
     if (!spec) {
       root.faults().at_value(*shape, spec.error());
       continue;

@@ -104,7 +104,8 @@ constexpr std::array kWorkpieceSettings{
             .purpose = tr_noop("as --fixture has it: vise:125:60:40:at=50,30,-20, stl:clamp.stl"),
             .help = tr_noop(
                 "what stands around the workpiece, repeatable: [NAME=]box:x0,y0,z0:x1,y1,z1 | "
-                "cylinder:.. | tube:.. | stl:FILE[:inch] | vise:JAW_WIDTH:OPENING:HEIGHT | "
+                "cylinder:.. | tube:.. | stl:FILE[:inch] | obj:FILE[:inch] | 3mf:FILE | "
+                "vise:JAW_WIDTH:OPENING:HEIGHT | "
                 "clamp:LENGTH:WIDTH:HEIGHT | screw:D:LENGTH, with [:at=x,y,z][:turn=DEG]"
                 "[:in-blank][:on=LINK]"),
             .value_name = "SPEC",

@@ -9,6 +9,7 @@
 #include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "base/zip_file.h"
 #include "twin/config/live_config.h"
 #include "twin/config/tool_list_reader.h"
 #include "twin/tool_library/freecad_library.h"

@@ -10,7 +10,7 @@
 #include "base/suggest.h"
 #include "base/translate.h"
 #include "stock/cutter/scan.h"
-#include "twin/collision/stl_mesh.h"
+#include "twin/collision/mesh_reader.h"
 #include "twin/collision/sweep.h"
 
 namespace kerf {
@@ -20,17 +20,28 @@ constexpr double kMost_mm = 1e5;
 constexpr double kLeast_mm = 0.001;
 /// A vise is no wider, nor is what stands on a table: what is, was drawn in other units.
 constexpr double kLargeMesh_mm = 2000;
+/// What is smaller holds nothing: it may be in inches.
+constexpr double kSmallMesh_mm = 10;
 /// What stands so deep in the blank touches it.
 constexpr double kTouching_mm = 0.01;
 /// Of a jaw's width: how thick it is.
 constexpr double kJawThickness = 0.25;
 
-constexpr std::array<std::string_view, 7> kShapes{"box",  "cylinder", "tube", "stl",
-                                                  "vise", "clamp",    "screw"};
+constexpr std::array<std::string_view, 9> kShapes{"box", "cylinder", "tube",  "stl",  "obj",
+                                                  "3mf", "vise",     "clamp", "screw"};
+struct MeshShape {
+  std::string_view word;
+  MeshFormat format;
+  const char* form;
+};
+constexpr std::array kMeshes{MeshShape{"stl", MeshFormat::kStl, "stl:FILE[:inch]"},
+                             MeshShape{"obj", MeshFormat::kObj, "obj:FILE[:inch]"},
+                             MeshShape{"3mf", MeshFormat::k3mf, "3mf:FILE"}};
 constexpr std::array<std::string_view, 5> kOptions{"at", "turn", "in-blank", "on", "inch"};
 constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], several "
-    "of these joined by +, stl:FILE[:inch], vise:JAW_WIDTH:OPENING:HEIGHT, "
+    "of these joined by +, stl:FILE[:inch], obj:FILE[:inch], 3mf:FILE, "
+    "vise:JAW_WIDTH:OPENING:HEIGHT, "
     "clamp:LENGTH:WIDTH:HEIGHT, screw:D:LENGTH[:HEAD_D:HEAD_H]; each with [:at=x,y,z][:turn=DEG]"
     "[:in-blank][:on=LINK]");
 
@@ -137,14 +148,32 @@ Done take_options(std::vector<std::string_view>& fields, LengthUnit unit, Fixtur
       break;
     } else {
       return Error{
-          trf("unknown option '{}'{} Options: at=x,y,z, turn=DEG, in-blank, on=LINK, inch (of stl)",
+          trf("unknown option '{}'{} Options: at=x,y,z, turn=DEG, in-blank, on=LINK, inch (of stl "
+              "and obj)",
               shown(name), did_you_mean(name, kOptions))};
     }
     fields.pop_back();
   }
-  if (inch && to_lower(trim(fields[0])) != "stl")
-    return Error{tr("inch is of stl:FILE; all other numbers are in --units")};
-  if (inch) out.mm_per_unit = kMmPerInch;
+  if (!inch) return Done{std::monostate{}};
+  const std::string shape = to_lower(trim(fields[0]));
+  if (shape == "3mf") return Error{tr("a 3MF file says its unit itself")};
+  if (shape != "stl" && shape != "obj")
+    return Error{tr("inch is of stl:FILE and obj:FILE; all other numbers are in --units")};
+  out.mm_per_unit = kMmPerInch;
+  return Done{std::monostate{}};
+}
+
+Done parse_mesh_fields(const std::vector<std::string_view>& fields, MeshFormat format,
+                       const char* form, FixtureSpec& out) {
+  out.mesh_format = format;
+  if (fields.size() > 1) {
+    // A file's name may hold a colon.
+    const char* const begin = fields[1].data();
+    const auto length =
+        static_cast<std::size_t>(fields.back().data() + fields.back().size() - begin);
+    out.mesh_path = std::string(trim({begin, length}));
+  }
+  if (out.mesh_path.empty()) return Error{trf("the form is {}", form)};
   return Done{std::monostate{}};
 }
 
@@ -155,16 +184,8 @@ Done parse_shape_fields(const std::vector<std::string_view>& fields, LengthUnit 
   if (shape == "vise") return parse_vise(rest, unit, out);
   if (shape == "clamp") return parse_clamp(rest, unit, out);
   if (shape == "screw") return parse_screw(rest, unit, out);
-  if (shape == "stl") {
-    if (rest.empty()) return Error{tr("the form is stl:FILE[:inch]")};
-    // A file's name may hold a colon.
-    const char* const begin = rest[0].data();
-    const auto length =
-        static_cast<std::size_t>(fields.back().data() + fields.back().size() - begin);
-    out.mesh_path = std::string(trim({begin, length}));
-    if (out.mesh_path.empty()) return Error{tr("the form is stl:FILE[:inch]")};
-    return Done{std::monostate{}};
-  }
+  for (const auto& [word, format, form] : kMeshes)
+    if (shape == word) return parse_mesh_fields(fields, format, form, out);
   if (shape == "box" || shape == "cylinder" || shape == "tube") {
     const char* const begin = fields[0].data();
     const auto length =
@@ -191,19 +212,18 @@ void tell(Diagnostics& diagnostics, Severity severity, std::string message, std:
 
 /// Null with an error.
 SolidPointer load_mesh(const FixtureSpec& spec, Diagnostics& diagnostics) {
-  const Result<TriangleMesh> mesh = read_stl(spec.mesh_path, spec.mm_per_unit);
-  if (!mesh) {
-    tell(diagnostics, Severity::kError, trf("fixture '{}': {}", spec.name, mesh.error()));
+  const Result<MeshFromFile> read =
+      read_mesh(spec.mesh_path, spec.mesh_format, spec.mm_per_unit, kMostTriangles);
+  if (!read) {
+    tell(diagnostics, Severity::kError, trf("fixture '{}': {}", spec.name, read.error()));
     return nullptr;
   }
-  if (mesh->triangles.empty() || mesh->triangles.size() > kMostTriangles) {
-    tell(diagnostics, Severity::kError,
-         trf("fixture '{}': {} has {} triangles; must be from 1 to {}", spec.name, spec.mesh_path,
-             mesh->triangles.size(), kMostTriangles),
-         tr("a mesh of fewer triangles does as well: holes and rounds need not be in it"));
-    return nullptr;
+  if (read->flat > 0) {
+    tell(diagnostics, Severity::kNote,
+         trf("fixture '{}': {} has triangles without area; they are left out: {}", spec.name,
+             spec.mesh_path, read->flat));
   }
-  SolidPointer solid = Solid::of_mesh(*mesh);
+  SolidPointer solid = Solid::of_mesh(read->mesh);
   if (!solid->is_closed()) {
     tell(diagnostics, Severity::kNote,
          trf("fixture '{}': the surface in {} has holes; what is inside of it counts as air, its "
@@ -216,10 +236,11 @@ SolidPointer load_mesh(const FixtureSpec& spec, Diagnostics& diagnostics) {
     tell(diagnostics, Severity::kNote,
          trf("fixture '{}': {} is {:.0f} mm large; is it drawn in other units?", spec.name,
              spec.mesh_path, largest));
-  } else if (spec.mm_per_unit == 1 && largest < 10) {
+  } else if (spec.mesh_format != MeshFormat::k3mf && spec.mm_per_unit == 1 &&
+             largest < kSmallMesh_mm) {
     tell(diagnostics, Severity::kNote,
          trf("fixture '{}': {} is {:.1f} mm large; in inches?", spec.name, spec.mesh_path, largest),
-         tr("stl:FILE:inch takes its numbers for inches"));
+         tr(":inch behind the file takes its numbers for inches"));
   }
   return solid;
 }

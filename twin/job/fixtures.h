@@ -13,16 +13,18 @@
 #include "base/length_unit.h"
 #include "base/result.h"
 #include "stock/blank.h"
+#include "twin/collision/mesh_reader.h"
 #include "twin/collision/solid.h"
 
 namespace kerf {
 
 /// A fixture as --fixture describes it; its mesh, if it has one, is not read yet. mm.
 struct FixtureSpec {
-  std::string name;                    ///< "vise"; empty: name_fixtures() gives one
-  std::string text;                    ///< the SPEC, as it was given
-  std::vector<BlankBody> bodies;       ///< in its own frame
-  std::string mesh_path;               ///< an STL file; empty: none
+  std::string name;               ///< "vise"; empty: name_fixtures() gives one
+  std::string text;               ///< the SPEC, as it was given
+  std::vector<BlankBody> bodies;  ///< in its own frame
+  std::string mesh_path;          ///< a mesh file; empty: none
+  MeshFormat mesh_format = MeshFormat::kStl;
   double mm_per_unit = 1;              ///< of it
   Vec3 at_mm{0};                       ///< of its frame's origin in the workpiece frame, or ..
   double turn_deg = 0;                 ///< of its frame about Z
@@ -34,7 +36,8 @@ struct FixtureSpec {
 /// [NAME=]SHAPE[:at=x,y,z][:turn=DEG][:in-blank][:on=LINK], where SHAPE is
 ///
 ///     box:.. | cylinder:.. | tube:..    as parse_blank() has them, several joined by +
-///     stl:FILE[:inch]                   a mesh, in mm or inches
+///     stl:FILE[:inch], obj:FILE[:inch]  a mesh, in mm or inches
+///     3mf:FILE                          a mesh, in the unit that the file says
 ///     vise:JAW_WIDTH:OPENING:HEIGHT     two jaws along X, OPENING apart in Y, HEIGHT above the
 ///     bed;
 ///                                       0,0,0 lies on the bed, in the middle between them
@@ -62,8 +65,8 @@ void name_fixtures(std::span<FixtureSpec> specs);
 
 /// Reads meshes, and name_fixtures(). Null with
 /// diagnostics: two of one name, files that are missing or broken, meshes of more than
-/// kMostTriangles. Notes: meshes that do not enclose a space, meshes larger than a machine (in
-/// inches?).
+/// kMostTriangles. Notes: meshes that do not enclose a space, flat triangles, meshes larger than
+/// a machine (in inches?).
 FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagnostics);
 inline constexpr std::size_t kMostTriangles = 2'000'000;
 

@@ -149,24 +149,48 @@ void add_clearances(std::string& out, const Report& report) {
   }
 }
 
-/// Whose collisions nobody looked for.
+/// "T1, T3": the tools of which `is_known` is not so.
+std::string unknown_of(const Report& report, bool ToolUse::*is_known) {
+  std::string out;
+  for (const ToolUse& use : report.tools) {
+    if (use.*is_known || use.shape.empty()) continue;
+    out += fmt::format("{}T{}", out.empty() ? "" : ", ", use.number);
+  }
+  return out;
+}
+
+/// What nobody looked for: one line a run, whatever the number of tools.
 void add_unchecked(std::string& out, const Report& report) {
   if (!report.stock || report.stock->model == "sheet") return;
-  std::string numbers;
-  bool described = false;
-  for (const ToolUse& use : report.tools) {
-    if (use.holder_checked || use.shape.empty()) continue;
-    described |= use.shape.find("holder=") != std::string::npos;
-    numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", use.number);
-  }
-  if (numbers.empty()) return;
-  if (described) {
+  const std::string holders = unknown_of(report, &ToolUse::holder_checked);
+  const std::string shanks = unknown_of(report, &ToolUse::shank_checked);
+  if (holders.empty() && shanks.empty()) return;
+  const bool is_described = std::ranges::any_of(report.tools, [](const ToolUse& use) {
+    return !use.holder_checked && use.shape.find("holder=") != std::string::npos;
+  });
+  if (is_described) {
     out += tr("unchecked shank and holder: not where material is added\n");
     return;
   }
-  out += trf(
-      "unchecked holder of tool {}: nobody described it (--tool N=SHAPE:holder=er20:stickout=L)\n",
-      numbers);
+  const std::string first = (holders.empty() ? shanks : holders).substr(1);
+  const std::string number = first.substr(0, first.find(','));
+  if (shanks.empty()) {
+    out += trf("unchecked {}: no holder known (--tool {}=SHAPE:holder=er20:stickout=L)\n", holders,
+               number);
+  } else if (holders.empty()) {
+    out +=
+        trf("unchecked {}: no length of flutes known (--tool {}=SHAPE:flute=L)\n", shanks, number);
+  } else if (holders == shanks) {
+    out +=
+        trf("unchecked {}: no holder and no length of flutes known "
+            "(--tool {}=SHAPE:flute=L:holder=er20:stickout=L)\n",
+            holders, number);
+  } else {
+    out +=
+        trf("unchecked {}: no holder known; {}: no length of flutes "
+            "(--tool {}=SHAPE:flute=L:holder=er20:stickout=L)\n",
+            holders, shanks, number);
+  }
 }
 
 void add_live(std::string& out, const LiveReport& live) {

@@ -1,5 +1,4 @@
-// twin/tool_library/zip_member.h - the text within a zip file: .tools of Fusion. The only user of
-// libzip.
+// twin/tool_library/zip_member.h - the text within a zip file: .tools of Fusion.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +8,6 @@
 #include "base/result.h"
 
 namespace kerf {
-
-/// Begins as a zip file does.
-bool is_zip(std::string_view bytes);
 
 /// Its first member whose name ends in ".json". At most `max_bytes` are unpacked, whatever the file
 /// says of its size. Error: without the name of the file.

@@ -31,6 +31,11 @@ TEST(Fixtures, AreReadFromTheirText) {
   const FixtureSpec mesh = parse_fixture("stl:a b/c:d.stl:inch:at=1,2,3").value();
   EXPECT_EQ(mesh.mesh_path, "a b/c:d.stl");
   EXPECT_EQ(mesh.mm_per_unit, 25.4);
+  const FixtureSpec obj = parse_fixture("obj:a.obj:inch").value();
+  EXPECT_EQ(obj.mesh_path, "a.obj");
+  EXPECT_EQ(obj.mesh_format, MeshFormat::kObj);
+  EXPECT_EQ(obj.mm_per_unit, 25.4);
+  EXPECT_EQ(parse_fixture("3mf:a.3mf").value().mesh_format, MeshFormat::k3mf);
   EXPECT_EQ(parse_fixture("box:0,0,0:1,1,1", LengthUnit::kInch)->bodies[0].bounds_mm.max.x, 25.4);
   EXPECT_EQ(parse_fixture("box:0,0,0:1,1,1+cylinder:0,0,0:5:3")->bodies.size(), 2U);
   const FixtureSpec on_link = parse_fixture("stl:a.stl:inch:on=rotary table:at=1,2,3").value();
@@ -59,6 +64,8 @@ TEST(Fixtures, FaultsAreSaidWithWhatIsAllowed) {
   EXPECT_NE(error_of("box:0,0,0:1,1,1:tilt=4").find("unknown option 'tilt'"), std::string::npos);
   EXPECT_NE(error_of("box:0,0,0:1,1,1:on=").find("name of a link"), std::string::npos);
   EXPECT_NE(error_of("clamp:30:20:12:inch").find("stl"), std::string::npos);
+  EXPECT_NE(error_of("3mf:a.3mf:inch").find("says its unit itself"), std::string::npos);
+  EXPECT_NE(error_of("obj").find("obj:FILE[:inch]"), std::string::npos);
   EXPECT_NE(error_of("screw:4:12:turn=400").find("-360"), std::string::npos);
   for (const char* const text :
        {"", "=box:0,0,0:1,1,1", "stl:", "stl", "state:a", "box", ":::", "="})
@@ -102,6 +109,33 @@ TEST(Fixtures, MeshesThatAreMissingOrBrokenAreErrors) {
   diagnostics.clear();
   std::ofstream(path) << "solid a\nendsolid a\n";
   EXPECT_FALSE(load_fixtures(spec, diagnostics));
+}
+
+TEST(Fixtures, MeshesWithDoubtsAreNoted) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/clamp.obj";
+  const auto notes_of = [&](const std::string& text, const std::string& option = "") {
+    std::ofstream(path) << text;
+    Diagnostics diagnostics;
+    const std::vector<FixtureSpec> spec{parse_fixture("obj:" + path + option).value()};
+    EXPECT_TRUE(load_fixtures(spec, diagnostics));
+    std::string out;
+    for (const Diagnostic& diagnostic : diagnostics) {
+      EXPECT_EQ(diagnostic.severity, Severity::kNote);
+      out += diagnostic.message.substr(diagnostic.message.find(':') + 2) + "\n";
+    }
+    return out;
+  };
+  const std::string faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const std::string sound = "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\n" + faces;
+  EXPECT_EQ(notes_of(sound), "");
+  EXPECT_EQ(notes_of(sound + "f 1 1 2\n"),
+            path + " has triangles without area; they are left out: 1\n");
+  EXPECT_EQ(notes_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces),
+            path + " is 1.0 mm large; in inches?\n");
+  EXPECT_EQ(notes_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces, ":inch"), "");
+  EXPECT_EQ(notes_of("v 0 0 0\nv 2001 0 0\nv 0 1 0\nv 0 0 1\n" + faces),
+            path + " is 2001 mm large; is it drawn in other units?\n");
 }
 
 TEST(Fixtures, MustNotStandInTheBlank) {

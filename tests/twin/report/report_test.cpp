@@ -128,9 +128,35 @@ TEST(ReportText, IsAPageThatReadsInTenSeconds) {
       "removed   30.000 cm3 of 120.000 cm3 (25.0 %)\n"
       "tools     3   ball:6 (--tool)\n"
       "              removed 30.000 cm3, cutting 1 min 01 s, deepest cut 2.50 mm, peak 40.0 mm3/s\n"
-      "unchecked holder of tool 3: nobody described it (--tool N=SHAPE:holder=er20:stickout=L)\n"
+      "unchecked T3: no holder and no length of flutes known (--tool "
+      "3=SHAPE:flute=L:holder=er20:stickout=L)\n"
       "stock     box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0 (--stock)\n"
       "          zmap, cells of 0.05 mm, 2.40 million\n");
+}
+
+TEST(ReportText, WhatIsUnknownOfToolsIsOneLine) {
+  const auto line_of = [](std::initializer_list<std::pair<bool, bool>> shank_and_holder) {
+    Report r = sample();
+    const ToolUse use = r.tools.front();
+    r.tools.clear();
+    for (const auto& [shank, holder] : shank_and_holder) {
+      r.tools.push_back(use);
+      r.tools.back().number = static_cast<int>(r.tools.size());
+      r.tools.back().shank_checked = shank;
+      r.tools.back().holder_checked = holder;
+    }
+    const std::string text = summary_text(r);
+    const std::size_t at = text.find("unchecked");
+    return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(line_of({{true, true}}), "");
+  EXPECT_EQ(line_of({{true, true}, {true, false}, {true, false}}),
+            "unchecked T2, T3: no holder known (--tool 2=SHAPE:holder=er20:stickout=L)");
+  EXPECT_EQ(line_of({{true, true}, {false, true}}),
+            "unchecked T2: no length of flutes known (--tool 2=SHAPE:flute=L)");
+  EXPECT_EQ(line_of({{false, false}, {true, false}}),
+            "unchecked T1, T2: no holder known; T1: no length of flutes "
+            "(--tool 1=SHAPE:flute=L:holder=er20:stickout=L)");
 }
 
 TEST(ReportText, TellsFindingsBySeverityAndKind) {

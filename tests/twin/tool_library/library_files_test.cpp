@@ -1,40 +1,31 @@
 // Files that hold a library, and such that hold none.
 #include <gtest/gtest.h>
-#include <zip.h>
 
 #include <fstream>
 
 #include "base/small_file.h"
 #include "tests/base/temporary_folder.h"
+#include "tests/base/zip_writer.h"
 #include "tests/twin/tool_library/library_support.h"
 
 namespace kerf {
 namespace {
 
-/// A zip file with one member.
-std::string zipped(const char* name, const std::string& text) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "library.tools";
-  zip_t* const archive = zip_open(path.c_str(), ZIP_CREATE, nullptr);
-  zip_source_t* const source = zip_source_buffer(archive, text.data(), text.size(), 0);
-  EXPECT_GE(zip_file_add(archive, name, source, 0), 0);
-  EXPECT_EQ(zip_close(archive), 0);
-  return read_small_file(path, std::size_t{1} << 28U).value();
-}
+std::string one_zipped(const char* name, const std::string& text) { return zipped({{name, text}}); }
 
 constexpr const char* kTool =
     R"({"data": [{"type": "flat end mill", "geometry": {"DC": 6}, "post-process": {"number": 1}}]})";
 
 TEST(LibraryFiles, ZippedOnesOfFusion) {
-  const ReadLibrary read(zipped("tools.json", kTool));
+  const ReadLibrary read(one_zipped("tools.json", kTool));
   EXPECT_EQ(text_of(read), "1: flat:6\n");
   EXPECT_EQ(read.library->format, "Fusion");
 }
 
 TEST(LibraryFiles, ZipFilesThatAreNone) {
-  EXPECT_EQ(text_of(ReadLibrary(zipped("readme.txt", kTool))),
+  EXPECT_EQ(text_of(ReadLibrary(one_zipped("readme.txt", kTool))),
             "is a zip file without a .json in it; tools.json is needed\n");
-  const std::string whole = zipped("tools.json", kTool);
+  const std::string whole = one_zipped("tools.json", kTool);
   for (std::size_t size = 4; size < whole.size(); ++size) {
     ASSERT_FALSE(ReadLibrary(std::string_view(whole).substr(0, size)).library) << size;
   }
@@ -45,7 +36,7 @@ TEST(LibraryFiles, ZipFilesThatAreNone) {
 
 /// A few hundred kilobytes that would be more than is taken.
 TEST(LibraryFiles, AZipFileThatUnpacksToFarMore) {
-  const std::string bomb = zipped("tools.json", std::string(kMaxToolLibrary_bytes + 1, ' '));
+  const std::string bomb = one_zipped("tools.json", std::string(kMaxToolLibrary_bytes + 1, ' '));
   EXPECT_LT(bomb.size(), 1U << 20U);
   EXPECT_EQ(text_of(ReadLibrary(bomb)), "its .json is larger than 64 MB\n");
 }

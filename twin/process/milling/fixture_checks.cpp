@@ -69,10 +69,12 @@ struct FixtureChecks::Way final : RigidWay {
 
 void FixtureChecks::set_wishes(const CollisionWishes& wishes) {
   wishes_ = wishes;
-  if (!wishes.fixtures) return;
+  boxes_.clear();
+  if (!wishes_.fixtures) return;
   auto here = std::make_shared<std::vector<Fixture>>(*wishes.fixtures);
   std::erase_if(*here, [](const Fixture& fixture) { return !fixture.on.empty(); });
   wishes_.fixtures = std::move(here);
+  for (const Fixture& fixture : *wishes_.fixtures) boxes_.emplace_back(*fixture.solid);
 }
 
 bool FixtureChecks::checks_spindle() const {
@@ -132,9 +134,10 @@ void FixtureChecks::check(const CheckedMove& move) {
     const ToolWay tool_way(now);
     for (std::size_t fixture = 0; fixture < count; ++fixture) {
       const Way way(tool_way, (*wishes_.fixtures)[fixture]);
+      const std::optional<Box> tip = upright_tip_box(now, way.fixture_from_workpiece);
       for (Mounted& part : mounted_) {
         bool touched = false;
-        check_pair(part, fixture, move, which, way, touched);
+        check_pair(part, fixture, move, which, way, tip, touched);
         Pair& pair = pairs_[part.pairs[fixture]];
         if (pair.event && !touched && is_traverse(move.motion)) pair.event.reset();
       }
@@ -143,7 +146,8 @@ void FixtureChecks::check(const CheckedMove& move) {
 }
 
 void FixtureChecks::check_pair(Mounted& part, std::size_t fixture, const CheckedMove& move,
-                               std::size_t which, const Way& way, bool& touched) {
+                               std::size_t which, const Way& way, const std::optional<Box>& tip,
+                               bool& touched) {
   Pair& pair = pairs_[part.pairs[fixture]];
   if (pair.ignored) return;
   const Solid& still = *(*wishes_.fixtures)[fixture].solid;
@@ -154,6 +158,14 @@ void FixtureChecks::check_pair(Mounted& part, std::size_t fixture, const Checked
   const double counts = std::max(pair.least_mm - kGrain_mm, 0.0);
   spare -= travel;
   if (spare > 0 && spare >= counts) return;
+  if (tip) {
+    const Box& own = part.body.solid->box_mm();
+    const double apart = boxes_[fixture].gap_mm({tip->min + own.min, tip->max + own.max});
+    if (apart > kContactGap_mm && apart >= counts) {
+      spare = apart;
+      return;
+    }
+  }
   const auto pieces = part.body.solid->pieces();
   if (pair.least_mm > kGrain_mm) {
     std::optional<LeastGap> least;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/collision/box_bound.h"
 #include "twin/collision/sweep.h"
 #include "twin/findings/finding.h"
 #include "twin/process/collision_table.h"
@@ -65,8 +66,9 @@ class FixtureChecks {
   };
   struct Way;
   std::size_t pair_of(int tool, const ToolBody& body, std::size_t fixture);
+  /// `tip`: around the tip's way in the fixture's frame; nullopt: the tool leans.
   void check_pair(Mounted& part, std::size_t fixture, const CheckedMove& move, std::size_t which,
-                  const Way& way, bool& touched);
+                  const Way& way, const std::optional<Box>& tip, bool& touched);
   void note_least(Pair& pair, const CheckedMove& move, std::size_t which, const Way& way,
                   const LeastGap& gap);
   void meet(Mounted& part, Pair& pair, const CheckedMove& move, std::size_t which, const Way& way,
@@ -74,6 +76,7 @@ class FixtureChecks {
 
   FindingLog& log_;
   CollisionWishes wishes_;
+  std::vector<SolidBoxes> boxes_;  ///< by fixture
   int tool_ = 0;
   bool guessed_ = false;
   std::optional<CutMove> last_;  ///< where it ended is where Mounted::spare_mm counts from

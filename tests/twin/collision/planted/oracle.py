@@ -24,7 +24,7 @@ class Cylinder:
         return math.hypot(self.radius + self.round_mm, max(abs(self.low), abs(self.high)) + self.round_mm)
 
     def eroded(self, depth):
-        """Thinner by depth all around; None: nothing is left."""
+        """Thinner by depth all around; None: nothing is left. Less than 0: thicker."""
         from_round = min(self.round_mm, depth)
         rest = depth - from_round
         low = max(self.low, rest) if self.seated else self.low + rest
@@ -46,6 +46,8 @@ class Cylinder:
 
 
 class Cone:
+    """Below a cylinder of the same width."""
+
     round_mm = 0.0
 
     def __init__(self, radius_low, radius_high, low, high):
@@ -57,7 +59,7 @@ class Cone:
 
     def eroded(self, depth):
         (_, low), (r_low, _), (r_high, _), (_, high) = self.corners
-        if low + depth >= high - depth or r_high <= depth:
+        if low + depth >= high or r_high <= depth:
             return None
         return Cone(max(r_low - depth, 0.0), r_high - depth, low + depth, high)
 
@@ -409,11 +411,11 @@ def eroded(pieces, depth):
     return [thin for piece in pieces if (thin := piece.eroded(depth)) is not None]
 
 
-def depth_of(pieces, obstacles, moves, exact=0.001):
+def depth_of(pieces, obstacles, moves, thinner=eroded, exact=0.001):
     """By how much the pieces would have to be thinner all around, so that none touches."""
 
     def touches(depth):
-        return least_gap(eroded(pieces, depth), obstacles, moves, 2e-4) <= 0
+        return least_gap(thinner(pieces, depth), obstacles, moves, 2e-4) <= 0
 
     low, high = 0.0, 1.0
     while touches(high):

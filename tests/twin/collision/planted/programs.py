@@ -15,6 +15,10 @@ CLEAR_mm = 0.02
 OTHERS_mm = 0.1
 # kerf calls it no contact up to 0.01 mm; programs in which that would decide on the line are drawn again.
 SURELY_NONE_mm, SURELY_ONE_mm = 0.004, 0.0145
+# Of the place of a contact, along the tool's way.
+PLACE_mm = 0.01
+# So deep rounding may be: of a tool that runs almost along an obstacle the place is not sharper than that.
+ROUNDING_mm = 1.5e-4
 # Farther than this nothing is measured.
 NEAR_mm = 0.1
 HIGH_mm = 150.0
@@ -108,7 +112,7 @@ def plus(p, q, times=1.0):
     return tuple(a + times * b for a, b in zip(p, q))
 
 
-def draw_way(rng, middle, kind, part):
+def draw_way(rng, middle, kind):
     """middle: where the tip is when it comes nearest, about."""
     angle = rng.uniform(0, 2 * math.pi)
     along, across = unit(angle), unit(angle + math.pi / 2)
@@ -260,6 +264,11 @@ def approach(program, place, ac=None):
     program.go(place, "G0", ac)
 
 
+def finish(program):
+    program.go((program.at[0], program.at[1], HIGH_mm), "G0")
+    program.lines += ["M5", "M2"]
+
+
 def text_of(values):
     return ",".join(f"{x:.6f}" for x in values)
 
@@ -351,9 +360,8 @@ class Planted:
     title: str
     finding: str
     arguments: list
-    fixture: str  # the text up to its place
+    shape: Shape
     program: str
-    files: dict
     sound_at: tuple
     fault_at: tuple
     turn_deg: float
@@ -361,15 +369,25 @@ class Planted:
     place: tuple
     depth: float
     place_mm: float  # how far off it may be
+    way_mm: float
     part: str
+    on_blank: bool = False  # the obstacle is the blank
 
 
 WAYS = ("feed", "rapid", "slope", "arc", "helix", "plunge", "dip", "steps", "incremental", "subroutine")
 SHAPES = ("box", "wall", "rod", "bar", "pipe", "bore", "vise", "clamp", "screw", "mesh")
 
 
-def place_text(at, turn_deg):
-    return f":at={text_of(at)}" + (f":turn={turn_deg}" if turn_deg else "")
+def obstacle_arguments(planted, at):
+    """What describes it to kerf."""
+    if not planted.on_blank:
+        turn = f":turn={planted.turn_deg}" if planted.turn_deg else ""
+        return ["--stock", "box:0,0,-200:4,4,-196", "--fixture", f"it={planted.shape.text}:at={text_of(at)}{turn}"]
+    body = planted.shape.bodies[0]
+    if isinstance(body, Rod):
+        center = f"{at[0]:.6f},{at[1]:.6f}"
+        return ["--stock", f"cylinder:{center},{body.low + at[2]:.6f}:{body.high + at[2]:.6f}:{2 * body.radius}"]
+    return ["--stock", f"box:{text_of(plus(body.low, at))}:{text_of(plus(body.high, at))}"]
 
 
 def draw_standing(rng, number, part):
@@ -382,11 +400,10 @@ def draw_standing(rng, number, part):
     else:
         tool = draw_tool(rng)
     middle = tuple(round(x, 4) for x in (rng.uniform(80, 140), rng.uniform(60, 120), rng.uniform(-20, 5)))
-    way = draw_way(rng, middle, way_kind, part)
+    way = draw_way(rng, middle, way_kind)
     program = Program()
     way.write(program)
-    program.go((program.at[0], program.at[1], HIGH_mm), "G0")
-    program.lines += ["M5", "M2"]
+    finish(program)
     low, high = heights_of(tool.parts[part])
     if way.push[2] < 0:
         # From below: beside what is lower and thinner.
@@ -417,8 +434,10 @@ def draw_standing(rng, number, part):
     return settle(rng, number, part, way_kind, kind, tool, program, shape, obstacle, way.push, tries)
 
 
-def settle(rng, number, part, way_kind, kind, tool, program, shape, obstacle, push, tries, arguments=(), place_mm=0.01):
-    """Pushes the obstacle until CLEAR_mm are left, and then a little further."""
+def settle(rng, number, part, way_kind, kind, tool, program, shape, obstacle, push, tries, arguments=(), way_mm=0.0,
+           thinner=eroded):
+    """Pushes the obstacle until CLEAR_mm are left, and then a little further. way_mm: so far kerf's way may be beside the tool's, or its walls
+    beside those of a blank. thinner(pieces, depth): what a part that deep would have to be, to be clear."""
     pieces, moves = tool.parts[part], program.moves
 
     def gap_at(s):
@@ -445,7 +464,8 @@ def settle(rng, number, part, way_kind, kind, tool, program, shape, obstacle, pu
     if abs(gap - CLEAR_mm) > 4e-4:
         return None
     sound_s = s
-    further = CLEAR_mm + rng.choice((0.02, 0.02, rng.uniform(0.05, 0.4), rng.uniform(0.5, 3)))
+    grazing = max(0.02, 3 * way_mm if thinner is not eroded else 0)
+    further = CLEAR_mm + rng.choice((grazing, grazing, rng.uniform(max(grazing, 0.05), 0.4), rng.uniform(0.5, 3)))
     fault_s = sound_s - further if tries[1] < tries[0] else sound_s + further
     sound = obstacle.moved(tuple(round(sound_s * x, 6) for x in push))
     fault = obstacle.moved(tuple(round(fault_s * x, 6) for x in push))
@@ -458,21 +478,26 @@ def settle(rng, number, part, way_kind, kind, tool, program, shape, obstacle, pu
     sure = first_touch(eroded(pieces, SURELY_ONE_mm), [fault], moves)
     if sure is None or sure[0] is not move or first_touch(eroded(pieces, SURELY_NONE_mm), [fault], moves)[0] is not move:
         return None
+    place_mm = PLACE_mm
+    for by in (max(way_mm, ROUNDING_mm), -max(way_mm, ROUNDING_mm)):
+        other = first_touch(eroded(pieces, by), [fault], [move])
+        if other:
+            place_mm = max(place_mm, PLACE_mm + math.dist(move.tip(t), move.tip(other[1])))
     return Planted(
         number,
         f"{part} against {kind}, {way_kind}",
         "fixture-contact",
-        ["--stock", "box:0,0,-200:4,4,-196", "--tool", f"1={tool.shape}", "--set", f"machine.spindle={tool.spindle}", *arguments],
-        f"it={shape.text}",
+        ["--tool", f"1={tool.shape}", "--set", f"machine.spindle={tool.spindle}", *arguments],
+        shape,
         program.text(),
-        shape.files,
         sound.at,
         fault.at,
         obstacle.turn_deg,
         move.line,
         move.tip(t),
-        depth_of(pieces, [fault], moves),
+        depth_of(pieces, [fault], moves, thinner),
         place_mm,
+        way_mm,
         part,
     )
 

@@ -5,8 +5,8 @@ import math
 from oracle import Cylinder, Obstacle, Move, heights_of
 from programs import Program, HIGH_mm, approach, draw_shape, draw_tool, settle, plus
 
-# The move is cut as pieces that are straight to a hundredth of a millimetre.
-PLACE_mm = 0.02
+# While the table turns, the way is taken as pieces that are so near to it.
+WAY_mm = 0.01
 
 
 def draw_tilting(rng, number, part):
@@ -43,5 +43,6 @@ def draw_tilting(rng, number, part):
     turn = rng.choice((0.0, 30.0, -17.5))
     far = shape.half_mm + 40
     arguments = ["--set", "machine.kinematics=xyzac-trt-kins", "--cell", "1"]
+    way_mm = WAY_mm if first != second else 0.0
     tries = [far - 2 * x for x in range(0, int(far / 2))]
-    return settle(rng, number, part, way_kind, kind, tool, program, shape, Obstacle(shape.bodies, base, turn), push, tries, arguments, PLACE_mm)
+    return settle(rng, number, part, way_kind, kind, tool, program, shape, Obstacle(shape.bodies, base, turn), push, tries, arguments, way_mm)

@@ -1,0 +1,66 @@
+#include "twin/collision/mesh_reader.h"
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "base/small_file.h"
+#include "twin/collision/mesh_joiner.h"
+#include "twin/collision/obj_mesh.h"
+#include "twin/collision/stl_mesh.h"
+#include "twin/collision/threemf_mesh.h"
+
+namespace kerf {
+namespace {
+
+/// What the head of a binary STL announces; files of other kinds pass.
+Done check_head(const std::string& path, std::size_t most_triangles) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  // What cannot be read, read_small_file() has words for.
+  if (!file) return Done{std::monostate{}};
+  const auto size = static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0));
+  file.seekg(0);
+  const std::string head = read_up_to(file, kStlHead_bytes);
+  const std::size_t triangles = triangles_of_stl(head, size);
+  return MeshJoiner(most_triangles).announce(triangles, path);
+}
+
+Done parse(std::string_view bytes, const std::string& path, MeshFormat format, double mm_per_unit,
+           MeshJoiner& joiner) {
+  switch (format) {
+    case MeshFormat::kStl:
+      return parse_stl(bytes, path, mm_per_unit, joiner);
+    case MeshFormat::kObj:
+      return parse_obj(bytes, path, mm_per_unit, joiner);
+    case MeshFormat::k3mf:
+      break;
+  }
+  return parse_3mf(bytes, path, joiner);
+}
+
+}  // namespace
+
+Result<MeshFromFile> parse_mesh(std::string_view bytes, const std::string& path, MeshFormat format,
+                                double mm_per_unit, std::size_t most_triangles) {
+  MeshJoiner joiner(most_triangles);
+  if (const Done parsed = parse(bytes, path, format, mm_per_unit, joiner); !parsed)
+    return Error{parsed.error()};
+  MeshFromFile out;
+  out.flat = joiner.flat();
+  Result<TriangleMesh> mesh = joiner.take(path);
+  if (!mesh) return Error{mesh.error()};
+  out.mesh = std::move(mesh.value());
+  return out;
+}
+
+Result<MeshFromFile> read_mesh(const std::string& path, MeshFormat format, double mm_per_unit,
+                               std::size_t most_triangles) {
+  if (format == MeshFormat::kStl) {
+    if (const Done fits = check_head(path, most_triangles); !fits) return Error{fits.error()};
+  }
+  const Result<std::string> bytes = read_small_file(path, kMaxStl_bytes);
+  if (!bytes) return Error{bytes.error()};
+  return parse_mesh(*bytes, path, format, mm_per_unit, most_triangles);
+}
+
+}  // namespace kerf
