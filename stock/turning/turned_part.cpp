@@ -8,8 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "stock/turning/engagement.h"
-
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -111,7 +109,8 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
 }
 
 /// Calls each(chord, way) with what is common in scratch_.cut, for every part of the tool on every
-/// chord, above the axis and below, that meets material.
+/// chord, above the axis and below, that meets material. The side that the tool comes from is
+/// first: beyond the axis it finds what it has left.
 template <class Each>
 void TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const {
   Scratch& s = scratch_;
@@ -120,13 +119,15 @@ void TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move, Each&
   for (const turning::WayChord& chord : s.chords) {
     const Point from = turning::to_units(chord.from.at_mm), to = turning::to_units(chord.to.at_mm);
     for (std::size_t i = 0; i < tool.parts_.size(); ++i) {
-      tool.parts_[i].sweep(from, to, s.sweep, s.swept, s.lead);
-      if (s.swept.empty()) continue;
-      const bool above = s.swept.box().max_y > 0, below = s.swept.box().min_y < 0;
-      if (above && s.cut.look(contours_, s.swept)) each(chord, Point{to.X - from.X, to.Y - from.Y});
-      if (!below) continue;
-      tool.below_[i].sweep(mirrored(from), mirrored(to), s.sweep, s.swept, s.lead);
-      if (s.cut.look(contours_, s.swept)) each(chord, Point{to.X - from.X, from.Y - to.Y});
+      for (const bool is_below : {from.Y < 0, from.Y >= 0}) {
+        const Point a = is_below ? mirrored(from) : from, b = is_below ? mirrored(to) : to;
+        const turning::GridPart& part = is_below ? tool.below_[i] : tool.parts_[i];
+        if (std::max(a.Y, b.Y) + turning::to_units(part.reach_mm()) <= 0) continue;
+        part.sweep(a, b, s.sweep, s.swept, s.lead);
+        if (s.swept.empty() || s.swept.box().max_y <= 0 || !s.cut.look(contours_, s.swept))
+          continue;
+        each(chord, Point{b.X - a.X, b.Y - a.Y});
+      }
     }
   }
 }
@@ -137,12 +138,13 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   const Wide before = moment6();
   turning::Engagement engagement;
   each_swept(tool, move, [&](const turning::WayChord&, const Point& way) {
-    engagement.extend(turning::engagement_of(scratch_.cut, scratch_.lead, way));
+    engagement.extend(scratch_.gauge.measure(scratch_.cut, scratch_.lead, way));
     mark_removed();
     scratch_.cut.apply(contours_);
   });
   report.removed_mm3 = turning::volume_mm3(before - moment6());
   report.depth_mm = engagement.across_mm;
+  report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
   drop_free_pieces(move.id);
   return report;
@@ -154,7 +156,7 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
   TurnContact contact;
   contact.t = 2;  // not yet
   each_swept(tool, move, [&](const turning::WayChord& chord, const Point& way) {
-    const turning::Engagement met = turning::engagement_of(scratch_.cut, scratch_.lead, way);
+    const turning::Engagement met = scratch_.gauge.measure(scratch_.cut, scratch_.lead, way);
     engagement.extend(met);
     const double t = chord.from.t + met.first * (chord.to.t - chord.from.t);
     if (!met.any || t >= contact.t) return;
@@ -162,7 +164,7 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
     contact.at_mm = chord.from.at_mm + met.first * (chord.to.at_mm - chord.from.at_mm);
   });
   if (!engagement.any) return std::nullopt;
-  contact.depth_mm = engagement.depth_mm;
+  contact.depth_mm = std::min(engagement.across_mm, engagement.way_mm);
   contact.side_mm = engagement.side_mm;
   return contact;
 }
@@ -191,8 +193,11 @@ void TurnedPart::touch_bands(const Rect& box) {
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
   std::size_t outer = 0, held = 0;
   const auto before = [&](const Contour& a, const Contour& b) {
-    return chuck_ == ChuckSide::kLowZ ? a.box().min_x < b.box().min_x
-                                      : a.box().max_x > b.box().max_x;
+    const turning::Unit reach =
+        chuck_ == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
+    if (reach != 0) return reach > 0;
+    const turning::Unit wider = a.box().max_y - b.box().max_y;
+    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
   };
   for (std::size_t i = 0; i < contours_.size(); ++i) {
     if (!contours_[i].is_outer()) continue;

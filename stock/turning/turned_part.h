@@ -18,6 +18,7 @@
 #include "stock/cutter/insert.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_cut.h"
+#include "stock/turning/engagement.h"
 #include "stock/turning/insert_sweep.h"
 #include "stock/turning/turn_move.h"
 
@@ -29,7 +30,8 @@ using TurnedProfile = std::vector<std::vector<Vec2>>;
 TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm);
 TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm);
 
-/// The side that the chuck holds: of two pieces the one that reaches farther there stays.
+/// The side that the chuck holds: of two pieces the one that reaches farther there stays; of those
+/// that reach as far, the one of the larger diameter; of those, the larger one.
 enum class ChuckSide : std::uint8_t { kLowZ, kHighZ };
 
 /// An insert as the part takes it: made once, used for all moves.
@@ -49,11 +51,12 @@ class TurningTool {
 struct TurnCut {
   std::uint64_t id = 0;
   double removed_mm3 = 0;  ///< by the insert, without what came free
-  /// The depth of cut: how wide the material was that the tool went through at once, measured
-  /// across its way. So it is radial for turning along the axis, axial for facing, and a groove's
-  /// width for plunging. 0 for a tool that stands still.
+  /// The depth of cut: how wide the material before the tool was at once (on the average of 10 um
+  /// of its way), measured across its way. So it is radial for turning along the axis, axial for
+  /// facing, and a groove's width for plunging. 0 for a tool that stands still.
   double depth_mm = 0;
-  /// The same, for each InsertSide that went through material ahead of the rest of the tool.
+  double way_mm = 0;  ///< length of the way in material
+  /// By InsertSide, width of the material, across the way, that edges of this side came to first.
   std::array<double, kInsertSides> side_mm{};
 };
 
@@ -130,6 +133,7 @@ class TurnedPart {
     turning::ConvexRegion swept;
     turning::GridPart::Lead lead;
     turning::GridPart::Scratch sweep;
+    turning::EngagementGauge gauge;
     std::vector<turning::WayChord> chords;
   };
 
