@@ -43,17 +43,20 @@ Ring Contour::ring() const {
   return ring;
 }
 
-double Contour::mean_thickness() const {
+bool Contour::is_thinner(double units) const {
+  const double area2 = std::abs(static_cast<double>(area2_));
+  const auto across = static_cast<double>(box_.max_x - box_.min_x + box_.max_y - box_.min_y);
+  if (area2 >= units * across * static_cast<double>(corner_count())) return false;
   double around = 0;
   const Point* before = &runs_.back()->points.back();
   for (const RunPointer& run : runs_) {
     for (const Point& p : run->points) {
-      around +=
-          std::hypot(static_cast<double>(p.X - before->X), static_cast<double>(p.Y - before->Y));
+      const auto x = static_cast<double>(p.X - before->X), y = static_cast<double>(p.Y - before->Y);
+      around += std::sqrt(x * x + y * y);
       before = &p;
     }
   }
-  return std::abs(static_cast<double>(area2_)) / around;
+  return area2 < units * around;
 }
 
 const Point& ContourBuilder::from_end(std::size_t back) const {

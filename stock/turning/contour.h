@@ -37,8 +37,9 @@ class Contour {
   bool is_outer() const { return area2_ > 0; }
   std::size_t corner_count() const;
   Ring ring() const;
-  /// Area over half the way round: how thick it is, in units, if it is long and thin.
-  double mean_thickness() const;
+  /// Whether area over half the way round, which is the thickness of what is long and thin, is less
+  /// than this. O(runs) for most that are not.
+  bool is_thinner(double units) const;
 
  private:
   std::vector<RunPointer> runs_;

@@ -123,33 +123,35 @@ void ConvexCut::cross(const Point& a, const Point& b, const ConvexRegion& tool,
   const Rect box = box_of(a, b);
   if (!box.meets(tool.box())) return;
   const std::size_t before = crossings_.size();
-  const auto cross_edges = [&](ConvexRegion::EdgeRange range) {
-    for (std::size_t e = range.first; e < range.second; ++e) {
-      const Point &p = tool.corner(e), &q = tool.after(e);
-      if (!box.meets(box_of(p, q))) continue;
-      const std::int64_t from = turn(p, q, a), to = turn(p, q, b);
-      if ((from >= 0) == (to >= 0)) continue;
-      const std::int64_t low = turn(a, b, p), high = turn(a, b, q);
-      if (tool.is_left(a, b, low) == tool.is_left(a, b, high)) continue;
-      Crossing& crossing = crossings_.emplace_back(place);
-      crossing.edge = static_cast<std::uint32_t>(e);
-      crossing.enters = to >= 0;
-      const double along =
-          static_cast<double>(from) / (static_cast<double>(from) - static_cast<double>(to));
-      crossing.at = {between(a.X, b.X, along), between(a.Y, b.Y, along)};
-      // With a positive denominator.
-      const int sign = low - high > 0 ? 1 : -1;
-      crossing.share = sign * low;
-      crossing.whole = sign * (low - high);
-      // Outward along S, as the tool would become larger.
-      const int out = crossing.enters ? -1 : 1;
-      const Unit x = (b.X - a.X) * out, y = (b.Y - a.Y) * out;
-      crossing.sideways = x * (q.X - p.X) + y * (q.Y - p.Y);
-      crossing.across = x * (q.Y - p.Y) - y * (q.X - p.X);
-    }
+  const auto cross_edge = [&](std::size_t e) {
+    const Point &p = tool.corner(e), &q = tool.after(e);
+    if (!box.meets(box_of(p, q))) return;
+    const std::int64_t from = turn(p, q, a), to = turn(p, q, b);
+    if ((from >= 0) == (to >= 0)) return;
+    const std::int64_t low = turn(a, b, p), high = turn(a, b, q);
+    if (tool.is_left(a, b, low) == tool.is_left(a, b, high)) return;
+    Crossing& crossing = crossings_.emplace_back(place);
+    crossing.edge = static_cast<std::uint32_t>(e);
+    crossing.enters = to >= 0;
+    const double along =
+        static_cast<double>(from) / (static_cast<double>(from) - static_cast<double>(to));
+    crossing.at = {between(a.X, b.X, along), between(a.Y, b.Y, along)};
+    // With a positive denominator.
+    const int sign = low - high > 0 ? 1 : -1;
+    crossing.share = sign * low;
+    crossing.whole = sign * (low - high);
+    // Outward along S, as the tool would become larger.
+    const int out = crossing.enters ? -1 : 1;
+    const Unit x = (b.X - a.X) * out, y = (b.Y - a.Y) * out;
+    crossing.sideways = x * (q.X - p.X) + y * (q.Y - p.Y);
+    crossing.across = x * (q.Y - p.Y) - y * (q.X - p.X);
   };
-  cross_edges(tool.lower_edges(box.min_x, box.max_x));
-  cross_edges(tool.upper_edges(box.min_x, box.max_x));
+  lower_hint_ = tool.first_lower(box.min_x, lower_hint_);
+  for (std::size_t e = lower_hint_; e < tool.rightmost() && tool.corner(e).X <= box.max_x; ++e)
+    cross_edge(e);
+  upper_hint_ = tool.first_upper(box.max_x, upper_hint_);
+  for (std::size_t e = upper_hint_; e < tool.corners().size() && tool.corner(e).X >= box.min_x; ++e)
+    cross_edge(e);
   // A line goes into something convex once, and then out.
   if (crossings_.size() == before + 2 && !crossings_[before].enters)
     std::swap(crossings_[before], crossings_[before + 1]);
@@ -303,8 +305,7 @@ void ConvexCut::apply(std::vector<Contour>& region) {
     region.resize(kept);
   }
   for (Contour& contour : fresh) {
-    if (contour.runs().empty() || (contour.is_outer() && contour.mean_thickness() < kFilm))
-      continue;
+    if (contour.runs().empty() || (contour.is_outer() && contour.is_thinner(kFilm))) continue;
     region.push_back(std::move(contour));
   }
 }

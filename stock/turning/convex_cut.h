@@ -69,6 +69,7 @@ class ConvexCut {
   std::uint32_t next_on_tool(std::uint32_t crossing) const;
   std::uint32_t previous_on_tool(std::uint32_t crossing) const;
 
+  std::size_t lower_hint_ = 0, upper_hint_ = 0;  // edges of K near the last edge of S
   std::vector<Crossing> crossings_;
   std::vector<std::uint32_t> first_;  // of each contour, and the end
   std::vector<std::uint32_t> order_;  // along K

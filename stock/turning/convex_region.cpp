@@ -24,33 +24,26 @@ void ConvexRegion::assign(std::vector<Point>& corners) {
          turn(corners_[corners_.size() - 2], corners_.back(), corners_.front()) <= 0)
     corners_.pop_back();
   if (empty()) return;
-  turn_ = top_ = 0;
+  rightmost_ = top_ = 0;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     box_.extend(corners_[i]);
-    if (comes_first(corners_[turn_], corners_[i])) turn_ = i;
+    if (comes_first(corners_[rightmost_], corners_[i])) rightmost_ = i;
     if (corners_[i].Y > corners_[top_].Y) top_ = i;
   }
 }
 
-ConvexRegion::EdgeRange ConvexRegion::lower_edges(Unit low_z, Unit high_z) const {
-  const auto begin = corners_.begin(), end = begin + static_cast<std::ptrdiff_t>(turn_) + 1;
-  // The first edge that ends at low_z or beyond; the last that begins at high_z or before.
-  auto first = std::lower_bound(begin, end, low_z, [](const Point& p, Unit z) { return p.X < z; });
-  const auto last =
-      std::upper_bound(begin, end, high_z, [](Unit z, const Point& p) { return z < p.X; });
-  if (first != begin) --first;
-  const auto from = static_cast<std::size_t>(first - begin);
-  return {from, std::max(from, std::min(static_cast<std::size_t>(last - begin), turn_))};
+std::size_t ConvexRegion::first_lower(Unit low_z, std::size_t hint) const {
+  std::size_t edge = std::min(hint, rightmost_ - 1);
+  while (edge > 0 && corners_[edge].X >= low_z) --edge;
+  while (edge + 1 < rightmost_ && corners_[edge + 1].X < low_z) ++edge;
+  return edge;
 }
 
-ConvexRegion::EdgeRange ConvexRegion::upper_edges(Unit low_z, Unit high_z) const {
-  const auto begin = corners_.begin() + static_cast<std::ptrdiff_t>(turn_), end = corners_.end();
-  auto first = std::lower_bound(begin, end, high_z, [](const Point& p, Unit z) { return p.X > z; });
-  const auto last =
-      std::upper_bound(begin, end, low_z, [](Unit z, const Point& p) { return p.X < z; });
-  if (first != begin) --first;
-  return {static_cast<std::size_t>(first - corners_.begin()),
-          static_cast<std::size_t>(last - corners_.begin())};
+std::size_t ConvexRegion::first_upper(Unit high_z, std::size_t hint) const {
+  std::size_t edge = std::clamp(hint, rightmost_, corners_.size() - 1);
+  while (edge > rightmost_ && corners_[edge].X <= high_z) --edge;
+  while (edge + 1 < corners_.size() && corners_[edge + 1].X > high_z) ++edge;
+  return edge;
 }
 
 bool ConvexRegion::holds(const Point& p) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "stock/turning/grid.h"
@@ -27,11 +26,14 @@ class ConvexRegion {
   const Point& corner(std::size_t i) const { return corners_[i]; }
   const Point& after(std::size_t i) const { return corners_[i + 1 == corners_.size() ? 0 : i + 1]; }
 
-  /// Edges, each from a corner to the next, that may meet low_z .. high_z: of the lower side and of
-  /// the upper one, first and one past the last. O(log n).
-  using EdgeRange = std::pair<std::size_t, std::size_t>;
-  EdgeRange lower_edges(Unit low_z, Unit high_z) const;
-  EdgeRange upper_edges(Unit low_z, Unit high_z) const;
+  /// The corners from 0 to this one are the lower side, by rising z, those from it on and corner 0
+  /// the upper side, by falling z.
+  std::size_t rightmost() const { return rightmost_; }
+  /// Of the lower side the first edge (by the corner where it begins) that ends at `low_z` or
+  /// beyond, of the upper side the first that ends at `high_z` or before; the last edge where there
+  /// is none. Looked for from `hint` on, an answer to another question: O(edges between them).
+  std::size_t first_lower(Unit low_z, std::size_t hint) const;
+  std::size_t first_upper(Unit high_z, std::size_t hint) const;
 
   /// Whether p lies inward of the edge's line.
   bool is_inward(std::size_t edge, const Point& p) const {
@@ -52,7 +54,7 @@ class ConvexRegion {
   bool is_right_of_inside(const Point& a, const Point& b) const;
 
   std::vector<Point> corners_;  // from the one of lowest z, of these the lowest
-  std::size_t turn_ = 0;        // the one of highest z, of these the highest
+  std::size_t rightmost_ = 0;   // the one of highest z, of these the highest
   std::size_t top_ = 0;
   Rect box_;
 };
