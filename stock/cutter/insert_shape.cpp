@@ -103,7 +103,8 @@ std::optional<InsertOutline> about_nose(std::span<const Corner> corners, const V
 std::optional<InsertOutline> nose_insert(const NoseInsert& insert) {
   const std::optional<Vec2> direction = nose_direction(insert.orientation);
   const double r = insert.radius_mm, length = insert.edge_mm;
-  if (!direction || !is_size(r)) return std::nullopt;
+  const bool are_angles = std::isfinite(insert.front_rad) && std::isfinite(insert.back_rad);
+  if (!direction || !is_size(r) || !are_angles) return std::nullopt;
   const Vec2 center = r * *direction;
   if (insert.orientation == kOrientations) {
     if (r < kMinEdge_mm) return std::nullopt;
@@ -179,7 +180,8 @@ std::optional<double> iso_circle_mm(char shape, int size) {
   if (row == nullptr) return std::nullopt;
   for (const double circle : kIsoCircles_mm) {
     const double edge = row->corners == 0 ? circle : side_mm(*row, circle, true);
-    if (static_cast<int>(edge) == size) return circle;
+    // Catalogues give tenths, and the size is these without their decimal: T of 6.35 mm is 11.
+    if (static_cast<int>(std::round(10 * edge)) / 10 == size) return circle;
   }
   return std::nullopt;
 }
