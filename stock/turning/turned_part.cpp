@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "stock/turning/revolve.h"
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -26,6 +28,9 @@ constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
 /// some more.
 constexpr double kWayReach_mm = 2300;
 static_assert(kWayReach_mm + 200 < turning::kMaxCoordinate_mm);
+
+/// Of level 0: what no view shows.
+constexpr double kPatchTolerance_mm = 0.002;
 
 std::uint64_t next_version() {
   static std::atomic<std::uint64_t> last{0};
@@ -178,15 +183,11 @@ void TurnedPart::mark_removed() {
 }
 
 void TurnedPart::touch_bands(const Rect& box) {
-  const double width = static_cast<double>(blank_.max_x - blank_.min_x) / kBands;
-  const auto band = [&](turning::Unit z) {
-    const double at = static_cast<double>(z - blank_.min_x) / width;
-    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(kBands - 1)));
-  };
-  // A border belongs to both of its bands.
-  const std::size_t first = band(box.min_x - 1), last = band(box.max_x + 1);
   const std::uint64_t version = next_version();
-  for (std::size_t i = first; i <= last; ++i) versions_[i] = version;
+  // A border belongs to both of its bands.
+  for (std::size_t i = 0; i < kBands; ++i) {
+    if (band_low(i) <= box.max_x && band_low(i + 1) >= box.min_x) versions_[i] = version;
+  }
 }
 
 /// What the chuck does not hold falls, with the holes in it.
@@ -293,9 +294,26 @@ std::size_t TurnedPart::unique_bytes() const {
   return bytes;
 }
 
-double TurnedPart::band_low_z_mm(std::size_t band) const {
-  const double low = turning::to_mm(blank_.min_x), high = turning::to_mm(blank_.max_x);
-  return low + (high - low) * static_cast<double>(band) / static_cast<double>(kBands);
+turning::Unit TurnedPart::band_low(std::size_t band) const {
+  const turning::Unit width = blank_.max_x - blank_.min_x;
+  return blank_.min_x +
+         width * static_cast<turning::Unit>(band) / static_cast<turning::Unit>(kBands);
+}
+
+double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
+
+TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
+  return turning::revolve(contours_, tolerance_mm);
+}
+
+MeshPatch TurnedPart::patch(std::size_t band, int level) const {
+  const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
+  MeshPatch patch = turning::revolve_band(contours_, band_low(band), band_low(band + 1),
+                                          band + 1 == kBands, tolerance_mm);
+  patch.tile = static_cast<std::uint32_t>(band);
+  patch.version = versions_[band];
+  patch.level = level;
+  return patch;
 }
 
 }  // namespace kerf

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/mesh_patch.h"
+#include "base/triangle_mesh.h"
 #include "stock/cutter/insert.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_cut.h"
@@ -112,12 +114,18 @@ class TurnedPart {
   /// Memory for runs that no copy has.
   std::size_t unique_bytes() const;
 
+  /// Closed surface (revolve.h), about the z axis of the workpiece frame.
+  TriangleMesh mesh(double tolerance_mm) const;
+
   /// For views the part is divided along z into kBands of equal width.
   static constexpr std::size_t kBands = 64;
   /// Grows whenever something within the band has changed; equal numbers mean equal bands,
   /// whichever copies they come from.
   std::uint64_t band_version(std::size_t band) const { return versions_[band]; }
   double band_low_z_mm(std::size_t band) const;
+  /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
+  /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
+  MeshPatch patch(std::size_t band, int level) const;
 
   /// How often a general polygon library was asked: for measurements.
   std::uint64_t library_calls() const { return scratch_.cut.library_calls(); }
@@ -144,6 +152,7 @@ class TurnedPart {
   void mark_removed();
   void drop_free_pieces(std::uint64_t id);
   void touch_bands(const turning::Rect& box);
+  turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
   turning::Rect blank_;
