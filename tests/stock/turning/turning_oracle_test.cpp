@@ -132,5 +132,87 @@ TEST(TurningOracle, first_contact_is_where_the_tool_comes_to_material) {
   EXPECT_GT(missed, 1);
 }
 
+/// How far ahead the outline reaches at an offset across the way; none where it is not.
+std::optional<double> front_at(const std::vector<Vec2>& outline, const Vec2& way, double across) {
+  std::optional<double> front;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    const double from = cross(way, a) - across, to = cross(way, b) - across;
+    if ((from > 0) == (to > 0)) continue;
+    const double ahead = glm::dot(way, a + from / (from - to) * (b - a));
+    front = std::max(front.value_or(-1e300), ahead);
+  }
+  return front;
+}
+
+/// The outline as a polygon.
+std::vector<Vec2> polygon_of(const InsertPart& part) {
+  std::vector<Vec2> points;
+  Vec2 from = part.back().end_mm;
+  for (const InsertEdge& edge : part) {
+    if (edge.center_mm) {
+      const Vec2 a = from - *edge.center_mm, b = edge.end_mm - *edge.center_mm;
+      double sweep = std::atan2(cross(a, b), glm::dot(a, b));
+      if (sweep <= 0) sweep += 2 * kPi;
+      for (int k = 1; k < 100; ++k) {
+        const double c = std::cos(sweep * k / 100), d = std::sin(sweep * k / 100);
+        points.push_back(*edge.center_mm + Vec2(c * a.x - d * a.y, d * a.x + c * a.y));
+      }
+    }
+    points.push_back(edge.end_mm);
+    from = edge.end_mm;
+  }
+  return points;
+}
+
+/// The most of the front, at places of a straight way, that is in the material there was before.
+double deepest_front(const InsertPart& part, const Vec2& from, const Vec2& to,
+                     const TurnedProfile& before) {
+  constexpr double kAcross_mm = 0.04;
+  constexpr int kPlaces = 800;
+  const std::vector<Vec2> outline = polygon_of(part);
+  const Vec2 way = glm::normalize(to - from), side(-way.y, way.x);
+  std::vector<Vec2> front;  // just before it, so that what it is on counts
+  for (double across = -15; across < 15; across += kAcross_mm) {
+    if (const std::optional<double> ahead = front_at(outline, way, across))
+      front.push_back((*ahead + 1e-4) * way + across * side);
+  }
+  double deepest = 0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const Vec2 place = from + (i + 0.5) / kPlaces * (to - from);
+    const auto in = std::count_if(front.begin(), front.end(),
+                                  [&](const Vec2& p) { return is_within(before, place + p); });
+    deepest = std::max(deepest, kAcross_mm * static_cast<double>(in));
+  }
+  return deepest;
+}
+
+TEST(TurningOracle, depths_are_how_much_of_the_front_is_in_material) {
+  int cuts = 0;
+  for (unsigned seed = 300; seed < 315; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> z(-32, 4), x(12, 24);
+    TurnedPart part = *TurnedPart::create(bar_profile(-30, 0, 40));
+    InsertOutline outline = round_insert(1.5);
+    if (seed % 3 == 1) outline = right_hand(0.8);
+    if (seed % 3 == 2) outline = *groove_insert({3, 0.4, 12, 6, false, radians(2)});
+    const TurningTool tool(outline);
+    Vec2 at(2, 24);
+    for (int i = 0; i < 6; ++i) {
+      const Vec2 to(z(random), x(random));
+      const TurnedProfile before = part.profile();
+      const TurnCut cut = part.cut(tool, line(at, to));
+      if (cut.depth_mm > 0.2) {
+        // Steps across, at both ends of each stretch, and a place between two where it is deepest.
+        const double deepest = deepest_front(outline.parts[0], at, to, before);
+        EXPECT_NEAR(cut.depth_mm, deepest, 0.1 + 0.03 * deepest) << "seed " << seed << ' ' << i;
+        ++cuts;
+      }
+      at = to;
+    }
+  }
+  EXPECT_GT(cuts, 30);
+}
+
 }  // namespace
 }  // namespace kerf
