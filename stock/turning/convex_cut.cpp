@@ -68,6 +68,7 @@ bool ConvexCut::look(std::span<const Contour> region, const ConvexRegion& tool) 
   removed_.clear();
   removed_ends_.clear();
   drowned_ = by_library_ = false;
+  changed_ = {};
   if (tool.empty()) return false;
   for (std::uint32_t i = 0; i < region.size(); ++i) {
     first_.push_back(static_cast<std::uint32_t>(crossings_.size()));
@@ -79,13 +80,13 @@ bool ConvexCut::look(std::span<const Contour> region, const ConvexRegion& tool) 
   if (crossings_.empty()) {
     drowned_ = holds_top(region, tool);
     if (drowned_) add_removed(tool.corners());
-    return drowned_ || swallows;
-  }
-  if (sort_along_tool()) {
+    if (!drowned_ && !swallows) return false;
+  } else if (sort_along_tool()) {
     trace_removed(region, tool);
   } else {
     look_by_library(region, tool);
   }
+  for (const Point& p : removed_) changed_.extend(p);
   return true;
 }
 
@@ -145,6 +146,7 @@ void ConvexCut::cross(const Point& a, const Point& b, const ConvexRegion& tool,
     const Unit x = (b.X - a.X) * out, y = (b.Y - a.Y) * out;
     crossing.sideways = x * (q.X - p.X) + y * (q.Y - p.Y);
     crossing.across = x * (q.Y - p.Y) - y * (q.X - p.X);
+    if (a.X != b.X && a.Y != b.Y) changed_.extend(box);
   };
   lower_hint_ = tool.first_lower(box.min_x, lower_hint_);
   for (std::size_t e = lower_hint_; e < tool.rightmost() && tool.corner(e).X <= box.max_x; ++e)
@@ -277,6 +279,7 @@ void ConvexCut::look_by_library(std::span<const Contour> region, const ConvexReg
                   ClipperLib::pftNonZero);
   removed_.clear();
   removed_ends_.clear();
+  for (const Contour& contour : region) changed_.extend(contour.box());
   for (const Ring& ring : common) {
     if (plane::twice_area(ring) > 0) add_removed(ring);
   }

@@ -32,6 +32,10 @@ class ConvexCut {
   std::size_t removed_count() const { return removed_ends_.size(); }
   std::span<const Point> removed(std::size_t i) const;
 
+  /// Round all that changes with it: what is removed, and edges that are cut off somewhere and do
+  /// not run along an axis (the rest of them turns by a fraction of a unit).
+  const Rect& changed() const { return changed_; }
+
   /// Takes it out of the region that was looked at. Shreds thinner than kFilm on the average go
   /// with it.
   void apply(std::vector<Contour>& region);
@@ -75,6 +79,7 @@ class ConvexCut {
   std::vector<std::uint32_t> order_;  // along K
   std::vector<char> swallowed_;       // contours in K
   std::vector<Point> tool_;
+  Rect changed_;
   std::vector<Point> removed_;
   std::vector<std::size_t> removed_ends_;
   bool drowned_ = false;     // K lies in material

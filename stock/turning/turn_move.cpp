@@ -4,8 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "stock/turning/insert_sweep.h"
-
 namespace kerf::turning {
 namespace {
 
@@ -32,6 +30,15 @@ bool clip(WayChord& chord, double reach) {
 
 }  // namespace
 
+std::optional<ArcSteps> way_steps(double radius_mm, double sweep_rad) {
+  const double sweep = std::abs(sweep_rad);
+  if (!std::isfinite(radius_mm) || !std::isfinite(sweep)) return std::nullopt;
+  // Before they are counted: a whole number may not hold how many there would be.
+  if (sweep * std::max(1.0, std::sqrt(radius_mm / (12 * kWayBound_mm))) > kMostSteps)
+    return std::nullopt;
+  return arc_steps(radius_mm, sweep, kWayBound_mm);
+}
+
 void append_way(const TurnMove& move, double reach_mm, std::vector<WayChord>& chords) {
   if (!is_finite(move.from_mm) || !is_finite(move.to_mm)) return;
   const auto append = [&](const WayPoint& from, const WayPoint& to) {
@@ -42,15 +49,12 @@ void append_way(const TurnMove& move, double reach_mm, std::vector<WayChord>& ch
   if (move.arc) {
     const Vec2 from = move.from_mm - move.arc->center_mm, to = move.to_mm - move.arc->center_mm;
     const double r0 = glm::length(from), r1 = glm::length(to), sweep = move.arc->sweep_rad;
-    const double largest = std::max(r0, r1), turns = std::abs(sweep);
-    if (!std::isfinite(largest) || !std::isfinite(sweep)) return;
-    // Before they are made: a whole number may not hold how many there would be.
-    if (turns * std::sqrt(largest / (12 * kWayBound_mm)) > kMostSteps) return;
-    const ArcSteps steps = arc_steps(largest, turns, kWayBound_mm);
+    const std::optional<ArcSteps> steps = way_steps(std::max(r0, r1), sweep);
+    if (!steps) return;
     const double start = std::atan2(from.y, from.x);
-    for (int i = 0; i < steps.count && turns > 0; ++i) {
-      const double t = (i + 0.5) / steps.count;
-      const double angle = start + t * sweep, r = (r0 + t * (r1 - r0)) * steps.outward;
+    for (int i = 0; i < steps->count; ++i) {
+      const double t = (i + 0.5) / steps->count;
+      const double angle = start + t * sweep, r = (r0 + t * (r1 - r0)) * steps->outward;
       const WayPoint next{move.arc->center_mm + r * Vec2(std::cos(angle), std::sin(angle)), t};
       append(at, next);
       at = next;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "stock/turning/insert_sweep.h"
 
 namespace kerf {
 
@@ -44,6 +45,8 @@ struct WayChord {
 void append_way(const TurnMove& move, double reach_mm, std::vector<WayChord>& chords);
 
 inline constexpr int kMostSteps = 1'000'000;
+/// How an arc of a way is divided. None: into more than kMostSteps, or numbers that are none.
+std::optional<ArcSteps> way_steps(double radius_mm, double sweep_rad);
 
 }  // namespace turning
 }  // namespace kerf

@@ -144,7 +144,7 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   turning::Engagement engagement;
   each_swept(tool, move, [&](const turning::WayChord&, const Point& way) {
     engagement.extend(scratch_.gauge.measure(scratch_.cut, scratch_.lead, way));
-    mark_removed();
+    touch_bands(scratch_.cut.changed());
     scratch_.cut.apply(contours_);
   });
   report.removed_mm3 = turning::volume_mm3(before - moment6());
@@ -172,14 +172,6 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
   contact.depth_mm = std::min(engagement.across_mm, engagement.way_mm);
   contact.side_mm = engagement.side_mm;
   return contact;
-}
-
-void TurnedPart::mark_removed() {
-  for (std::size_t i = 0; i < scratch_.cut.removed_count(); ++i) {
-    Rect box;
-    for (const Point& p : scratch_.cut.removed(i)) box.extend(p);
-    touch_bands(box);
-  }
 }
 
 void TurnedPart::touch_bands(const Rect& box) {

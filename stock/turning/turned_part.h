@@ -149,7 +149,6 @@ class TurnedPart {
   template <class Each>
   void each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
   turning::Wide moment6() const;
-  void mark_removed();
   void drop_free_pieces(std::uint64_t id);
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;
