@@ -21,14 +21,23 @@ double front_at(const GridPart::Lead& lead, double across) {
 
 }  // namespace
 
-void Engagement::extend(const Engagement& other) {
+void Engagement::join(const Engagement& other) {
   if (!other.any) return;
-  if (!any) first = other.first;
+  first = any ? std::min(first, other.first) : other.first;
   any = true;
   across_mm = std::max(across_mm, other.across_mm);
-  way_mm += other.way_mm;
+  way_mm = std::max(way_mm, other.way_mm);
   for (std::size_t i = 0; i < side_mm.size(); ++i)
     side_mm[i] = std::max(side_mm[i], other.side_mm[i]);
+}
+
+void Engagement::extend(const Engagement& other) {
+  const double before_mm = way_mm;
+  const bool was_any = any;
+  const double was_first = first;
+  join(other);
+  way_mm = before_mm + other.way_mm;
+  if (was_any) first = was_first;
 }
 
 void Sections::add_edge(double from, double from_height, double to, double to_height) {

@@ -24,6 +24,8 @@ struct Engagement {
   double first = 0;      ///< share of the way after which it first was
   std::array<double, kInsertSides> side_mm{};  ///< width of material that edges of that side met
 
+  /// With another part of the tool on the same way: all is the greatest, `first` the least.
+  void join(const Engagement& other);
   /// Of a way that goes on: widths are the greatest, lengths add up.
   void extend(const Engagement& other);
 };

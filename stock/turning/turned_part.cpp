@@ -113,16 +113,19 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
   return part;
 }
 
-/// Calls each(chord, way) with what is common in scratch_.cut, for every part of the tool on every
-/// chord, above the axis and below, that meets material. The side that the tool comes from is
-/// first: beyond the axis it finds what it has left.
+/// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
+/// on every chord, above the axis and below, that meets material, which is then in scratch_.cut.
+/// The side that the tool comes from is first: beyond the axis it finds what it has left.
 template <class Each>
-void TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const {
+turning::Engagement TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move,
+                                           Each&& each) const {
   Scratch& s = scratch_;
   s.chords.clear();
   turning::append_way(move, kWayReach_mm, s.chords);
+  turning::Engagement whole;
   for (const turning::WayChord& chord : s.chords) {
     const Point from = turning::to_units(chord.from.at_mm), to = turning::to_units(chord.to.at_mm);
+    turning::Engagement on_chord;
     for (std::size_t i = 0; i < tool.parts_.size(); ++i) {
       for (const bool is_below : {from.Y < 0, from.Y >= 0}) {
         const Point a = is_below ? mirrored(from) : from, b = is_below ? mirrored(to) : to;
@@ -131,22 +134,25 @@ void TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move, Each&
         part.sweep(a, b, s.sweep, s.swept, s.lead);
         if (s.swept.empty() || s.swept.box().max_y <= 0 || !s.cut.look(contours_, s.swept))
           continue;
-        each(chord, Point{b.X - a.X, b.Y - a.Y});
+        const turning::Engagement met = s.gauge.measure(s.cut, s.lead, Point{b.X - a.X, b.Y - a.Y});
+        on_chord.join(met);
+        each(chord, met);
       }
     }
+    whole.extend(on_chord);
   }
+  return whole;
 }
 
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
-  turning::Engagement engagement;
-  each_swept(tool, move, [&](const turning::WayChord&, const Point& way) {
-    engagement.extend(scratch_.gauge.measure(scratch_.cut, scratch_.lead, way));
-    touch_bands(scratch_.cut.changed());
-    scratch_.cut.apply(contours_);
-  });
+  const turning::Engagement engagement =
+      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement&) {
+        touch_bands(scratch_.cut.changed());
+        scratch_.cut.apply(contours_);
+      });
   report.removed_mm3 = turning::volume_mm3(before - moment6());
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
@@ -157,17 +163,15 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
 
 std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
                                                      const TurnMove& move) const {
-  turning::Engagement engagement;
   TurnContact contact;
   contact.t = 2;  // not yet
-  each_swept(tool, move, [&](const turning::WayChord& chord, const Point& way) {
-    const turning::Engagement met = scratch_.gauge.measure(scratch_.cut, scratch_.lead, way);
-    engagement.extend(met);
-    const double t = chord.from.t + met.first * (chord.to.t - chord.from.t);
-    if (!met.any || t >= contact.t) return;
-    contact.t = t;
-    contact.at_mm = chord.from.at_mm + met.first * (chord.to.at_mm - chord.from.at_mm);
-  });
+  const turning::Engagement engagement =
+      each_swept(tool, move, [&](const turning::WayChord& chord, const turning::Engagement& met) {
+        const double t = chord.from.t + met.first * (chord.to.t - chord.from.t);
+        if (!met.any || t >= contact.t) return;
+        contact.t = t;
+        contact.at_mm = chord.from.at_mm + met.first * (chord.to.at_mm - chord.from.at_mm);
+      });
   if (!engagement.any) return std::nullopt;
   contact.depth_mm = std::min(engagement.across_mm, engagement.way_mm);
   contact.side_mm = engagement.side_mm;

@@ -55,7 +55,8 @@ struct TurnCut {
   double removed_mm3 = 0;  ///< by the insert, without what came free
   /// The depth of cut: how wide the material before the tool was at once (on the average of 10 um
   /// of its way), measured across its way. So it is radial for turning along the axis, axial for
-  /// facing, and a groove's width for plunging. 0 for a tool that stands still.
+  /// facing, and a groove's width for plunging. Of an outline of several parts that of the one that
+  /// cuts deepest. 0 for a tool that stands still.
   double depth_mm = 0;
   double way_mm = 0;  ///< length of the way in material
   /// By InsertSide, width of the material, across the way, that edges of this side came to first.
@@ -77,8 +78,9 @@ struct TurnedPiece {
   double low_z_mm = 0, high_z_mm = 0, low_r_mm = 0, high_r_mm = 0;
 };
 
-/// Coordinates are whole steps of 10 nm. Straight ways of straight edges are exact to that; arcs of
-/// the outline and of the way keep within 0.1 um, and keep their area. Volumes are those of the
+/// Coordinates are whole steps of 10 nm. What straight ways make of edges and noses is exact to
+/// that; the trace that an arc of the outline leaves where it stands keeps within 0.1 um of it, an
+/// arc of the way within 0.02 um, and both keep their area. Volumes are those of the
 /// polygons, exact. Order of moves, cutting twice, and moves in halves change corners by a few
 /// steps. Every move is cut when it is given: any division into calls gives the same bits. One
 /// thread. A copy shares what neither of the two changes, and may go to another thread.
@@ -147,7 +149,7 @@ class TurnedPart {
 
   TurnedPart() = default;
   template <class Each>
-  void each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
+  turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
   turning::Wide moment6() const;
   void drop_free_pieces(std::uint64_t id);
   void touch_bands(const turning::Rect& box);

@@ -42,6 +42,30 @@ TEST(TurningCuts, way_is_how_long_the_tool_was_in_material) {
   EXPECT_NEAR(cut.depth_mm, 2, kNear_mm);
 }
 
+TEST(TurningCuts, parts_of_an_outline_are_one_tool) {
+  // A blade of 2 mm with a shoulder of 6 mm that is 5 mm behind its front.
+  InsertOutline stepped = *groove_insert({2, 0, 20, 6});
+  InsertOutline shoulder = *groove_insert({6, 0, 20, 6});
+  for (InsertEdge& edge : shoulder.parts[0]) {
+    edge.end_mm.y += 5;
+    edge.side = InsertSide::kBody;
+  }
+  stepped.parts.push_back(shoulder.parts[0]);
+  TurnedPart part = bar();
+  const TurnCut cut = part.cut(TurningTool(stepped), line({-20, 21}, {-20, 13}));
+  EXPECT_NEAR(cut.removed_mm3,
+              cylinder_mm3(40, 2) - cylinder_mm3(26, 2) + cylinder_mm3(40, 4) - cylinder_mm3(36, 4),
+              1e-3);
+  EXPECT_NEAR(cut.way_mm, 7, kNear_mm);
+  EXPECT_NEAR(side(cut, InsertSide::kNose), 2, kNear_mm);
+  EXPECT_NEAR(side(cut, InsertSide::kBody), 4, kNear_mm);
+  // The shoulder is met later than the blade.
+  const std::optional<TurnContact> contact =
+      bar().first_contact(TurningTool(stepped), line({-20, 21}, {-20, 13}));
+  ASSERT_TRUE(contact);
+  EXPECT_NEAR(contact->t, 1.0 / 8, 1e-6);
+}
+
 TEST(TurningCuts, sides_that_cut_are_told) {
   // Longitudinal turning: nose, and the front flank for what is deeper than the nose.
   TurnedPart part = bar();
