@@ -87,7 +87,14 @@ bool ConvexCut::look(std::span<const Contour> region, const ConvexRegion& tool) 
     look_by_library(region, tool);
   }
   for (const Point& p : removed_) changed_.extend(p);
-  return true;
+  return removes_area();
+}
+
+bool ConvexCut::removes_area() const {
+  for (std::size_t i = 0; i < removed_count(); ++i) {
+    if (twice_area(removed(i)) != 0) return true;
+  }
+  return false;
 }
 
 bool ConvexCut::swallow(std::span<const Contour> region, const ConvexRegion& tool) {
@@ -281,7 +288,7 @@ void ConvexCut::look_by_library(std::span<const Contour> region, const ConvexReg
   removed_ends_.clear();
   for (const Contour& contour : region) changed_.extend(contour.box());
   for (const Ring& ring : common) {
-    if (plane::twice_area(ring) > 0) add_removed(ring);
+    if (twice_area(ring) > 0) add_removed(ring);
   }
 }
 

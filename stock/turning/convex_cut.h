@@ -25,7 +25,7 @@ namespace kerf::turning {
 /// sorting", SIGGRAPH 1977.
 class ConvexCut {
  public:
-  /// False: nothing in common. O(runs + edges near the tool).
+  /// False: nothing in common but lines and points. O(runs + edges near the tool).
   bool look(std::span<const Contour> region, const ConvexRegion& tool);
 
   /// What is common: rings round it, without those of holes in it.
@@ -61,6 +61,7 @@ class ConvexCut {
   void look_at(const Contour& contour, std::uint32_t number, const ConvexRegion& tool);
   void cross(const Point& a, const Point& b, const ConvexRegion& tool, const Crossing& place);
   bool sort_along_tool();
+  bool removes_area() const;
   bool swallow(std::span<const Contour> region, const ConvexRegion& tool);
   void trace_removed(std::span<const Contour> region, const ConvexRegion& tool);
   void trace_rest(std::span<const Contour> region, std::vector<Contour>& fresh);

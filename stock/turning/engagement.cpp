@@ -125,11 +125,8 @@ Engagement EngagementGauge::measure(const ConvexCut& cut, const GridPart::Lead& 
   const double length = std::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
   if (length == 0) {
     for (std::size_t i = 0; i < cut.removed_count(); ++i) {
-      const std::span<const Point> ring = cut.removed(i);
-      std::int64_t area2 = 0;
-      for (std::size_t k = 2; k < ring.size(); ++k) area2 += turn(ring[0], ring[k - 1], ring[k]);
       constexpr double kLeast = 2 * ConvexCut::kFilm * ConvexCut::kFilm;
-      engagement.any = engagement.any || static_cast<double>(area2) > kLeast;
+      engagement.any = engagement.any || static_cast<double>(twice_area(cut.removed(i))) > kLeast;
     }
     return engagement;
   }

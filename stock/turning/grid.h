@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "base/geometry.h"
 #include "stock/plane/polygon.h"
@@ -36,6 +38,13 @@ inline std::int64_t area2_of(const Point& p, const Point& q) {
 }
 inline Wide moment6_of(const Point& p, const Point& q) {
   return static_cast<Wide>(area2_of(p, q)) * (p.Y + q.Y);
+}
+/// Of a ring; sums on the way may wrap round and come back.
+inline std::int64_t twice_area(std::span<const Point> ring) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 2; i < ring.size(); ++i)
+    sum += static_cast<std::uint64_t>(turn(ring[0], ring[i - 1], ring[i]));
+  return static_cast<std::int64_t>(sum);
 }
 /// What turns about the axis: 2 pi times the moment (Pappus).
 inline double volume_mm3(Wide moment6) {

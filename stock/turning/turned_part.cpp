@@ -153,7 +153,8 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
         touch_bands(scratch_.cut.changed());
         scratch_.cut.apply(contours_);
       });
-  report.removed_mm3 = turning::volume_mm3(before - moment6());
+  // Corners are rounded either way: what is cut may become larger by some of their steps.
+  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()), 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
