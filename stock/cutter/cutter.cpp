@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "base/translate.h"
 
@@ -150,6 +151,25 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
   Cutter cutter;
   cutter.spec_ = std::move(spec);
   cutter.pieces_ = std::move(pieces);
+  return cutter;
+}
+
+Cutter Cutter::from_insert(std::string spec, InsertOutline outline) {
+  ProfilePiece flat;
+  for (const InsertPart& part : outline.parts) {
+    for (const InsertEdge& edge : part) {
+      flat.r1 = std::max(flat.r1, glm::length(edge.end_mm));
+      // An arc reaches no farther than its circle.
+      if (edge.center_mm) {
+        flat.r1 = std::max(
+            flat.r1, glm::length(*edge.center_mm) + glm::distance(*edge.center_mm, edge.end_mm));
+      }
+    }
+  }
+  Cutter cutter;
+  cutter.spec_ = std::move(spec);
+  cutter.pieces_ = {flat};
+  cutter.insert_ = std::make_shared<const InsertOutline>(std::move(outline));
   return cutter;
 }
 

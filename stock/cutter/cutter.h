@@ -20,6 +20,7 @@
 
 #include "base/geometry.h"
 #include "base/result.h"
+#include "stock/cutter/insert.h"
 
 namespace kerf {
 
@@ -53,6 +54,10 @@ class Cutter {
   /// point, radius not decreasing, last radius above 0. Vertical steps are allowed (a line with r0
   /// == r1). The message names the piece.
   static Result<Cutter> from_profile(std::string spec, std::vector<ProfilePiece> pieces);
+
+  /// A turning tool, which does not turn: insert() is what it is. Its profile is a flat disc as
+  /// wide as the outline reaches, for who asks no more than how far a tool reaches.
+  static Cutter from_insert(std::string spec, InsertOutline outline);
 
   /// Canonical SHAPE text, e.g. "bull:10:2:flute=22".
   const std::string& spec() const { return spec_; }
@@ -104,6 +109,9 @@ class Cutter {
   void set_footprint(Footprint rings) {
     footprint_ = std::make_shared<const Footprint>(std::move(rings));
   }
+  /// Of a turning tool: its outline in the plane of the lathe's axis. Null: a cutter that turns.
+  /// Copies of the cutter share it.
+  const std::shared_ptr<const InsertOutline>& insert() const { return insert_; }
   std::span<const ToolSection> holder() const { return holder_; }
   void set_holder(std::vector<ToolSection> holder) { holder_ = std::move(holder); }
   void set_spec(std::string spec) { spec_ = std::move(spec); }
@@ -121,6 +129,7 @@ class Cutter {
   std::vector<ToolSection> holder_;
   std::optional<int> teeth_;
   std::shared_ptr<const Footprint> footprint_;
+  std::shared_ptr<const InsertOutline> insert_;
 };
 
 }  // namespace kerf

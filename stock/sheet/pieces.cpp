@@ -6,7 +6,7 @@
 namespace kerf::sheet {
 namespace {
 
-double box_area(const Rect& box) { return box.width_mm() * box.height_mm(); }
+double box_area(const Rect& box) { return width_mm(box) * height_mm(box); }
 
 /// Reaches one of the sides of the outer box.
 bool reaches_out(const Rect& inner, const Rect& outer) {

@@ -1,27 +1,27 @@
-// stock/sheet/polygon.h - plane polygons on an integer grid: what the sheet is made of.
-//
-// A ring is a closed chain of corners, the last one joined to the first. Counter-clockwise rings
-// bound material from outside, clockwise ones are holes in it:
-//
-//      +-------------+        A flat list of rings is a region if no two of them cross: the
-//      |   .-<-.     |        material is where the rings wind once.
-//      v   |   |     ^
-//      |   `->-'     |
-//      +------>------+
+// stock/sheet/polygon.h - what the sheet is made of: plane polygons in tenths of a micrometre.
 #pragma once
 
 #include <cstdint>
-#include <polyclipping/clipper.hpp>
 #include <vector>
 
 #include "base/geometry.h"
+#include "stock/plane/polygon.h"
 
 namespace kerf::sheet {
 
-using Unit = ClipperLib::cInt;
-using Point = ClipperLib::IntPoint;
-using Ring = ClipperLib::Path;
-using Rings = ClipperLib::Paths;
+using plane::bounds_of;
+using plane::locate;
+using plane::Point;
+using plane::Rect;
+using plane::Ring;
+using plane::Rings;
+using plane::shorten_beyond;
+using plane::Side;
+using plane::turn;
+using plane::twice_area;
+using plane::twice_area_of;
+using plane::Unit;
+using plane::winding_number;
 
 /// One unit is 0.1 um: ten times finer than any drawing, and so coarse that 100 m (what a blank may
 /// span) stays below 2^30 units, where the clipping library computes with 64 bits.
@@ -37,54 +37,11 @@ Unit to_units(double mm);
 Point to_units(const Vec2& mm);
 inline double to_mm(Unit units) { return static_cast<double>(units) / kUnitsPerMm; }
 inline Vec2 to_mm(const Point& p) { return {to_mm(p.X), to_mm(p.Y)}; }
+inline double width_mm(const Rect& rect) { return to_mm(rect.max_x - rect.min_x); }
+inline double height_mm(const Rect& rect) { return to_mm(rect.max_y - rect.min_y); }
 /// Closed chains; corners that fall together are one.
 Rings to_rings(const std::vector<std::vector<Vec2>>& chains_mm);
 /// Of twice an area in square units.
 double twice_area_to_mm2(std::int64_t twice_area);
-
-/// Closed on all sides; default-constructed it is empty.
-struct Rect {
-  Unit min_x = INT64_MAX, min_y = INT64_MAX, max_x = INT64_MIN, max_y = INT64_MIN;
-
-  bool empty() const { return min_x > max_x; }
-  void extend(const Point& p);
-  void extend(const Rect& other);
-  bool meets(const Rect& other) const {
-    return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y &&
-           other.min_y <= max_y;
-  }
-  bool holds(const Point& p) const {
-    return p.X >= min_x && p.X <= max_x && p.Y >= min_y && p.Y <= max_y;
-  }
-  double width_mm() const { return to_mm(max_x - min_x); }
-  double height_mm() const { return to_mm(max_y - min_y); }
-};
-
-Rect bounds_of(const Ring& ring);
-
-/// Positive for counter-clockwise rings. Exact for rings that fit into 100 m x 100 m.
-std::int64_t twice_area(const Ring& ring);
-
-/// Positive if c lies to the left of the line from a to b. Exact for points less than 200 m apart.
-inline std::int64_t turn(const Point& a, const Point& b, const Point& c) {
-  return static_cast<std::int64_t>((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
-}
-
-inline std::int64_t twice_area_of(const Rect& rect) {
-  return 2 * static_cast<std::int64_t>(rect.max_x - rect.min_x) *
-         static_cast<std::int64_t>(rect.max_y - rect.min_y);
-}
-
-enum class Side { kOutside, kInside, kBorder };
-/// Exact. Whichever way the ring turns.
-Side locate(const Point& p, const Ring& ring);
-
-/// A chain of fewer corners that winds round every point of `rect` as `ring` does, and has the same
-/// edges within it: chains of corners beyond one and the same side of it are shortened. Extends
-/// `edges` by a box round the edges that may meet the rectangle, as far as within it.
-void shorten_beyond(const Ring& ring, const Rect& rect, Ring& shortened, Rect& edges);
-
-/// How often the rings wind round p, which lies on none of them.
-int winding_number(const Rings& rings, const Point& p);
 
 }  // namespace kerf::sheet

@@ -42,11 +42,11 @@ Tiling tiling_for(const SheetOptions& options, const sheet::Rect& box) {
   const std::size_t moves = options.expected_moves > 0 ? options.expected_moves : kUsualMoves;
   const double tiles = std::clamp(kTilesPerMove * static_cast<double>(moves), kMinTiles, kMaxTiles);
   const double edge =
-      std::max(std::sqrt(box.width_mm() * box.height_mm() / tiles), kMinTileEdge_mm);
+      std::max(std::sqrt(sheet::width_mm(box) * sheet::height_mm(box) / tiles), kMinTileEdge_mm);
   const auto count = [edge](double length) {
     return static_cast<int>(std::clamp(std::round(length / edge), 1.0, kMaxTiles));
   };
-  return {count(box.width_mm()), count(box.height_mm())};
+  return {count(sheet::width_mm(box)), count(sheet::height_mm(box))};
 }
 
 /// Rings that wind once round what the even-odd rings enclose.

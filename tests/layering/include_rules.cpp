@@ -21,6 +21,7 @@ const std::array kFolderRules{
     FolderRule{"base/", {"base/"}},
     FolderRule{"surface/", {"base/", "surface/"}},
     FolderRule{"stock/cutter/", {"base/", "stock/cutter/", "stock/blank.h"}},
+    FolderRule{"stock/plane/", {"base/", "stock/plane/"}},
     FolderRule{"stock/", {"base/", "surface/", "stock/"}},
     FolderRule{"interp_bridge/", {"base/", "interp_bridge/"}},
     FolderRule{"machine_io/", {"base/", "machine_io/"}},
@@ -114,8 +115,8 @@ constexpr std::array kLibraryRules{
     LibraryRule{"zip.h", "base/"},
     LibraryRule{"expat.h", "twin/collision/"},
     LibraryRule{"xxhash.h", "stock/"},
-    LibraryRule{"polyclipping/", "stock/sheet/"},
-    LibraryRule{"clipper.hpp", "stock/sheet/"},
+    LibraryRule{"polyclipping/", "stock/plane/"},
+    LibraryRule{"clipper.hpp", "stock/plane/"},
     LibraryRule{"canon.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_base.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_return.hh", "interp_bridge/kerf_interp/"},
@@ -146,7 +147,8 @@ bool starts_with_any(std::string_view text, std::span<const std::string_view> pr
 /// The folder of the stock model that `path` belongs to ("stock/zmap/"), or "".
 std::string_view stock_model_of(std::string_view path) {
   constexpr std::string_view kStock = "stock/";
-  if (!path.starts_with(kStock) || path.starts_with("stock/cutter/")) return {};
+  const bool is_shared = path.starts_with("stock/cutter/") || path.starts_with("stock/plane/");
+  if (!path.starts_with(kStock) || is_shared) return {};
   const std::size_t end = path.find('/', kStock.size());
   return end == std::string_view::npos ? std::string_view{} : path.substr(0, end + 1);
 }

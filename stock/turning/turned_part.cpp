@@ -1,0 +1,316 @@
+#include "stock/turning/turned_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "stock/turning/revolve.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace kerf {
+namespace {
+
+using turning::Contour;
+using turning::Point;
+using turning::Rect;
+using turning::Ring;
+using turning::Wide;
+
+/// What a lathe may hold.
+constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
+/// The controlled point is followed as far as a tool of 200 mm can reach the farthest blank, and
+/// some more.
+constexpr double kWayReach_mm = 2300;
+static_assert(kWayReach_mm + 200 < turning::kMaxCoordinate_mm);
+
+/// Of level 0: what no view shows.
+constexpr double kPatchTolerance_mm = 0.002;
+
+std::uint64_t next_version() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+bool is_allowed(const Vec2& p) {
+  return std::abs(p.x) <= kMaxZ_mm && p.y >= 0 && p.y <= kMaxRadius_mm;  // not true of NaN
+}
+
+bool lies_in(const Contour& hole, const Ring& ring) {
+  for (const Point& p : hole.ring()) {
+    const plane::Side side = plane::locate(p, ring);
+    if (side != plane::Side::kBorder) return side == plane::Side::kInside;
+  }
+  return false;
+}
+
+Contour contour_of(const Ring& ring) {
+  turning::ContourBuilder builder;
+  for (const Point& p : ring) builder.append(p);
+  return builder.close();
+}
+
+Point mirrored(const Point& p) { return {p.X, -p.Y}; }
+
+}  // namespace
+
+TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm) {
+  const double r = diameter_mm / 2;
+  return {{{low_z_mm, 0}, {high_z_mm, 0}, {high_z_mm, r}, {low_z_mm, r}}};
+}
+
+TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm) {
+  const double r = diameter_mm / 2, bore = bore_mm / 2;
+  return {{{low_z_mm, bore}, {high_z_mm, bore}, {high_z_mm, r}, {low_z_mm, r}}};
+}
+
+TurningTool::TurningTool(const InsertOutline& outline) {
+  for (const InsertPart& part : outline.parts) parts_.emplace_back(part);
+  for (const InsertPart& part : mirrored_in_x(outline).parts) below_.emplace_back(part);
+}
+
+TurningTool TurningTool::inset(double width_mm) const {
+  TurningTool tool;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    turning::GridPart part = parts_[i].inset(width_mm);
+    if (part.empty()) continue;
+    tool.parts_.push_back(std::move(part));
+    tool.below_.push_back(below_[i].inset(width_mm));
+  }
+  return tool;
+}
+
+std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck) {
+  turning::Rings rings, united;
+  for (const std::vector<Vec2>& chain : blank) {
+    Ring& ring = rings.emplace_back();
+    for (const Vec2& p : chain) {
+      if (!is_allowed(p)) return std::nullopt;
+      ring.push_back(turning::to_units(p));
+    }
+  }
+  ClipperLib::Clipper clipper;
+  clipper.AddPaths(rings, ClipperLib::ptSubject, true);
+  clipper.Execute(ClipperLib::ctUnion, united, ClipperLib::pftEvenOdd, ClipperLib::pftEvenOdd);
+  TurnedPart part;
+  std::size_t pieces = 0;
+  for (const Ring& ring : united) {
+    Contour contour = contour_of(ring);
+    if (contour.runs().empty()) continue;
+    pieces += contour.is_outer() ? 1 : 0;
+    part.blank_.extend(contour.box());
+    part.contours_.push_back(std::move(contour));
+  }
+  if (pieces != 1) return std::nullopt;
+  part.blank_moment6_ = part.moment6();
+  part.chuck_ = chuck;
+  part.versions_.fill(next_version());
+  return part;
+}
+
+/// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
+/// on every chord, above the axis and below, that meets material, which is then in scratch_.cut.
+/// The side that the tool comes from is first: beyond the axis it finds what it has left.
+template <class Each>
+turning::Engagement TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move,
+                                           Each&& each) const {
+  Scratch& s = scratch_;
+  s.chords.clear();
+  turning::append_way(move, kWayReach_mm, s.chords);
+  turning::Engagement whole;
+  for (const turning::WayChord& chord : s.chords) {
+    const Point from = turning::to_units(chord.from.at_mm), to = turning::to_units(chord.to.at_mm);
+    turning::Engagement on_chord;
+    for (std::size_t i = 0; i < tool.parts_.size(); ++i) {
+      for (const bool is_below : {from.Y < 0, from.Y >= 0}) {
+        const Point a = is_below ? mirrored(from) : from, b = is_below ? mirrored(to) : to;
+        const turning::GridPart& part = is_below ? tool.below_[i] : tool.parts_[i];
+        if (std::max(a.Y, b.Y) + turning::to_units(part.reach_mm()) <= 0) continue;
+        part.sweep(a, b, s.sweep, s.swept, s.lead);
+        if (s.swept.empty() || s.swept.box().max_y <= 0 || !s.cut.look(contours_, s.swept))
+          continue;
+        const turning::Engagement met = s.gauge.measure(s.cut, s.lead, Point{b.X - a.X, b.Y - a.Y});
+        on_chord.join(met);
+        each(chord, met);
+      }
+    }
+    whole.extend(on_chord);
+  }
+  return whole;
+}
+
+TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
+  TurnCut report;
+  report.id = move.id;
+  const Wide before = moment6();
+  const turning::Engagement engagement =
+      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement&) {
+        touch_bands(scratch_.cut.changed());
+        scratch_.cut.apply(contours_);
+      });
+  // Corners are rounded either way: what is cut may become larger by some of their steps.
+  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()), 0.0);
+  report.depth_mm = engagement.across_mm;
+  report.way_mm = engagement.way_mm;
+  report.side_mm = engagement.side_mm;
+  drop_free_pieces(move.id);
+  return report;
+}
+
+std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
+                                                     const TurnMove& move) const {
+  TurnContact contact;
+  contact.t = 2;  // not yet
+  const turning::Engagement engagement =
+      each_swept(tool, move, [&](const turning::WayChord& chord, const turning::Engagement& met) {
+        const double t = chord.from.t + met.first * (chord.to.t - chord.from.t);
+        if (!met.any || t >= contact.t) return;
+        contact.t = t;
+        contact.at_mm = chord.from.at_mm + met.first * (chord.to.at_mm - chord.from.at_mm);
+      });
+  if (!engagement.any) return std::nullopt;
+  contact.depth_mm = std::min(engagement.across_mm, engagement.way_mm);
+  contact.side_mm = engagement.side_mm;
+  return contact;
+}
+
+void TurnedPart::touch_bands(const Rect& box) {
+  const std::uint64_t version = next_version();
+  // A border belongs to both of its bands.
+  for (std::size_t i = 0; i < kBands; ++i) {
+    if (band_low(i) <= box.max_x && band_low(i + 1) >= box.min_x) versions_[i] = version;
+  }
+}
+
+/// What the chuck does not hold falls, with the holes in it.
+void TurnedPart::drop_free_pieces(std::uint64_t id) {
+  std::size_t outer = 0, held = 0;
+  const auto before = [&](const Contour& a, const Contour& b) {
+    const turning::Unit reach =
+        chuck_ == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
+    if (reach != 0) return reach > 0;
+    const turning::Unit wider = a.box().max_y - b.box().max_y;
+    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
+  };
+  for (std::size_t i = 0; i < contours_.size(); ++i) {
+    if (!contours_[i].is_outer()) continue;
+    if (outer++ == 0 || before(contours_[i], contours_[held])) held = i;
+  }
+  if (outer < 2) return;
+  std::vector<Contour> kept;
+  for (std::size_t i = 0; i < contours_.size(); ++i) {
+    if (i == held) kept.push_back(contours_[i]);
+    if (i == held || !contours_[i].is_outer()) continue;
+    const Rect& box = contours_[i].box();
+    const Ring ring = contours_[i].ring();
+    Wide moment6 = contours_[i].moment6();
+    for (const Contour& hole : contours_) {
+      if (!hole.is_outer() && lies_in(hole, ring)) moment6 += hole.moment6();
+    }
+    freed_.push_back({id, turning::volume_mm3(moment6), turning::to_mm(box.min_x),
+                      turning::to_mm(box.max_x), turning::to_mm(box.min_y),
+                      turning::to_mm(box.max_y)});
+    touch_bands(box);
+  }
+  const Ring ring = contours_[held].ring();
+  for (Contour& contour : contours_) {
+    if (!contour.is_outer() && lies_in(contour, ring)) kept.push_back(std::move(contour));
+  }
+  contours_ = std::move(kept);
+}
+
+Wide TurnedPart::moment6() const {
+  Wide sum = 0;
+  for (const Contour& contour : contours_) sum += contour.moment6();
+  return sum;
+}
+
+double TurnedPart::blank_mm3() const { return turning::volume_mm3(blank_moment6_); }
+double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()); }
+
+Box TurnedPart::bounds_mm() const {
+  const double r = turning::to_mm(blank_.max_y);
+  return {{-r, -r, turning::to_mm(blank_.min_x)}, {r, r, turning::to_mm(blank_.max_x)}};
+}
+
+TurnedProfile TurnedPart::profile() const {
+  TurnedProfile profile;
+  for (const Contour& contour : contours_) {
+    std::vector<Vec2>& chain = profile.emplace_back();
+    for (const Point& p : contour.ring()) chain.push_back(turning::to_mm(p));
+  }
+  return profile;
+}
+
+std::size_t TurnedPart::corner_count() const {
+  std::size_t count = 0;
+  for (const Contour& contour : contours_) count += contour.corner_count();
+  return count;
+}
+
+std::string TurnedPart::digest() const {
+  // From the corner of lowest z, of these the lowest, contour by contour in the order of these.
+  const auto comes_first = [](const Point& a, const Point& b) {
+    return a.X != b.X ? a.X < b.X : a.Y < b.Y;
+  };
+  std::vector<Ring> rings;
+  for (const Contour& contour : contours_) {
+    Ring& ring = rings.emplace_back(contour.ring());
+    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), comes_first), ring.end());
+  }
+  // Contours that touch may share that corner.
+  std::sort(rings.begin(), rings.end(), [&](const Ring& a, const Ring& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_first);
+  });
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  const std::int64_t frame[4] = {blank_.min_x, blank_.min_y, blank_.max_x, blank_.max_y};
+  XXH3_128bits_update(&state, frame, sizeof frame);
+  for (const Ring& ring : rings) {
+    const std::uint64_t size = ring.size();
+    XXH3_128bits_update(&state, &size, sizeof size);
+    XXH3_128bits_update(&state, ring.data(), ring.size() * sizeof(Point));
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state);
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::size_t TurnedPart::unique_bytes() const {
+  std::size_t bytes = 0;
+  for (const Contour& contour : contours_) {
+    bytes += contour.runs().capacity() * sizeof(turning::RunPointer);
+    for (const turning::RunPointer& run : contour.runs()) {
+      if (run.use_count() == 1) bytes += sizeof *run + run->points.capacity() * sizeof(Point);
+    }
+  }
+  return bytes;
+}
+
+turning::Unit TurnedPart::band_low(std::size_t band) const {
+  const turning::Unit width = blank_.max_x - blank_.min_x;
+  return blank_.min_x +
+         width * static_cast<turning::Unit>(band) / static_cast<turning::Unit>(kBands);
+}
+
+double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
+
+TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
+  return turning::revolve(contours_, tolerance_mm);
+}
+
+MeshPatch TurnedPart::patch(std::size_t band, int level) const {
+  const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
+  MeshPatch patch = turning::revolve_band(contours_, band_low(band), band_low(band + 1),
+                                          band + 1 == kBands, tolerance_mm);
+  patch.tile = static_cast<std::uint32_t>(band);
+  patch.version = versions_[band];
+  patch.level = level;
+  return patch;
+}
+
+}  // namespace kerf

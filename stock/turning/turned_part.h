@@ -1,0 +1,167 @@
+// stock/turning/turned_part.h - a workpiece that turns, as a region of the half plane beside its
+// axis.
+//
+//      r ^   ._______                  What the region sweeps about the z axis is the workpiece:
+//        |   |       `-.__.-----.      bores, grooves, undercuts and faces as they are. An insert
+//        |   |  .____           |      does not turn; it cuts what lies in the way of its outline,
+//        |   |  |    |          |      and below the axis (x < 0) what lies at r = -x.
+//        +---'--'----'----------'--> z
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/mesh_patch.h"
+#include "base/triangle_mesh.h"
+#include "stock/cutter/insert.h"
+#include "stock/turning/contour.h"
+#include "stock/turning/convex_cut.h"
+#include "stock/turning/engagement.h"
+#include "stock/turning/insert_sweep.h"
+#include "stock/turning/turn_move.h"
+
+namespace kerf {
+
+/// Closed chains of (z, r), mm: even-odd, so holes may run either way.
+using TurnedProfile = std::vector<std::vector<Vec2>>;
+
+TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm);
+TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm);
+
+/// The side that the chuck holds: of two pieces the one that reaches farther there stays; of those
+/// that reach as far, the one of the larger diameter; of those, the larger one.
+enum class ChuckSide : std::uint8_t { kLowZ, kHighZ };
+
+/// An insert as the part takes it: made once, used for all moves.
+class TurningTool {
+ public:
+  explicit TurningTool(const InsertOutline& outline);
+  /// The same without a border of this width: what touches with it is that much inside the tool.
+  TurningTool inset(double width_mm) const;
+
+ private:
+  friend class TurnedPart;
+  TurningTool() = default;
+  std::vector<turning::GridPart> parts_, below_;  // as it is, and mirrored in the axis
+};
+
+/// What one move did.
+struct TurnCut {
+  std::uint64_t id = 0;
+  double removed_mm3 = 0;  ///< by the insert, without what came free
+  /// The depth of cut: how wide the material before the tool was at once (on the average of 10 um
+  /// of its way), measured across its way. So it is radial for turning along the axis, axial for
+  /// facing, and a groove's width for plunging. Of an outline of several parts that of the one that
+  /// cuts deepest. 0 for a tool that stands still.
+  double depth_mm = 0;
+  double way_mm = 0;  ///< length of the way in material
+  /// By InsertSide, width of the material, across the way, that edges of this side came to first.
+  std::array<double, kInsertSides> side_mm{};
+};
+
+/// Where a move first meets material.
+struct TurnContact {
+  Vec2 at_mm{0};        ///< the controlled point then, (z, x)
+  double t = 0;         ///< fraction of the move
+  double depth_mm = 0;  ///< greatest way into material, along the move or across it: the lesser
+  std::array<double, kInsertSides> side_mm{};  ///< as in TurnCut, over the whole move
+};
+
+/// A piece that has come off; it is no part of the workpiece any more.
+struct TurnedPiece {
+  std::uint64_t freed_by = 0;  ///< TurnMove::id
+  double volume_mm3 = 0;
+  double low_z_mm = 0, high_z_mm = 0, low_r_mm = 0, high_r_mm = 0;
+};
+
+/// Coordinates are whole steps of 10 nm. What straight ways make of edges and noses is exact to
+/// that; the trace that an arc of the outline leaves where it stands keeps within 0.1 um of it, an
+/// arc of the way within 0.02 um, and both keep their area. Volumes are those of the
+/// polygons, exact. Order of moves, cutting twice, and moves in halves change corners by a few
+/// steps. Every move is cut when it is given: any division into calls gives the same bits. One
+/// thread. A copy shares what neither of the two changes, and may go to another thread.
+///
+/// Not held: threads (a groove that winds is cut as a ring), a bar that is not round, runout.
+class TurnedPart {
+ public:
+  /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
+  static std::optional<TurnedPart> create(const TurnedProfile& blank,
+                                          ChuckSide chuck = ChuckSide::kLowZ);
+
+  /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
+  /// arc as it has chords.
+  TurnCut cut(const TurningTool& tool, const TurnMove& move);
+
+  /// Where the tool first meets material; nothing is changed. With TurningTool::inset() only what
+  /// is deeper counts.
+  std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
+
+  /// What came off so far, in order.
+  const std::vector<TurnedPiece>& freed() const { return freed_; }
+
+  double blank_mm3() const;
+  double remaining_mm3() const;
+  /// Of the blank. x and y from -r to r.
+  Box bounds_mm() const;
+  /// Rings round the material, holes clockwise. Corners (z, r).
+  TurnedProfile profile() const;
+  const std::vector<turning::Contour>& contours() const { return contours_; }
+  std::size_t corner_count() const;
+  /// Hash of the contours, 32 hex digits; whatever the runs that they are kept in.
+  std::string digest() const;
+  /// Memory for runs that no copy has.
+  std::size_t unique_bytes() const;
+
+  /// Closed surface (revolve.h), about the z axis of the workpiece frame.
+  TriangleMesh mesh(double tolerance_mm) const;
+
+  /// For views the part is divided along z into kBands of equal width.
+  static constexpr std::size_t kBands = 64;
+  /// Grows whenever something within the band has changed; equal numbers mean equal bands,
+  /// whichever copies they come from.
+  std::uint64_t band_version(std::size_t band) const { return versions_[band]; }
+  double band_low_z_mm(std::size_t band) const;
+  /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
+  /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
+  MeshPatch patch(std::size_t band, int level) const;
+
+  /// How often a general polygon library was asked: for measurements.
+  std::uint64_t library_calls() const { return scratch_.cut.library_calls(); }
+
+ private:
+  /// Kept between moves for its memory; a copy has its own.
+  struct Scratch {
+    Scratch() = default;
+    Scratch(const Scratch&) {}
+    Scratch& operator=(const Scratch&) { return *this; }
+
+    turning::ConvexCut cut;
+    turning::ConvexRegion swept;
+    turning::GridPart::Lead lead;
+    turning::GridPart::Scratch sweep;
+    turning::EngagementGauge gauge;
+    std::vector<turning::WayChord> chords;
+  };
+
+  TurnedPart() = default;
+  template <class Each>
+  turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
+  turning::Wide moment6() const;
+  void drop_free_pieces(std::uint64_t id);
+  void touch_bands(const turning::Rect& box);
+  turning::Unit band_low(std::size_t band) const;
+
+  std::vector<turning::Contour> contours_;
+  turning::Rect blank_;
+  turning::Wide blank_moment6_ = 0;
+  ChuckSide chuck_ = ChuckSide::kLowZ;
+  std::vector<TurnedPiece> freed_;
+  std::array<std::uint64_t, kBands> versions_{};
+  mutable Scratch scratch_;
+};
+
+}  // namespace kerf

@@ -1,0 +1,183 @@
+#include "stock/turning/turning_stock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "base/translate.h"
+#include "stock/cutter/insert_shape.h"
+
+namespace kerf {
+namespace {
+
+/// Of a tool that stands still along the axis: what its shank does beyond is not looked at.
+constexpr double kAxialLength_mm = 200;
+
+std::shared_ptr<const InsertOutline> outline_of(const Cutter& cutter) {
+  if (cutter.insert() != nullptr) return cutter.insert();
+  std::optional<InsertOutline> axial = axial_outline(cutter, kAxialLength_mm);
+  return axial ? std::make_shared<const InsertOutline>(std::move(*axial)) : nullptr;
+}
+
+Vec2 in_plane(const Vec3& p) { return {p.z, p.x}; }
+
+Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * v + s * glm::cross(axis, v) + (1 - c) * glm::dot(axis, v) * axis;
+}
+
+/// An arc that is none in the plane, in straight ways.
+void append_chords(const CutMove& move, std::vector<TurnMove>& moves) {
+  const CutArc& arc = *move.arc;
+  const Vec3 from = move.from_mm - arc.center_mm, to = move.to_mm - arc.center_mm;
+  const double low = glm::dot(from, arc.axis), high = glm::dot(to, arc.axis);
+  const Vec3 across = from - low * arc.axis;
+  const double r0 = glm::length(across), r1 = glm::length(to - high * arc.axis);
+  const std::optional<turning::ArcSteps> steps =
+      turning::way_steps(std::max(r0, r1), arc.sweep_rad);
+  if (!steps) return;
+  Vec2 at = in_plane(move.from_mm);
+  for (int i = 0; i < steps->count && r0 > 0; ++i) {
+    const double t = (i + 0.5) / steps->count;
+    const double radius = (r0 + t * (r1 - r0)) * steps->outward;
+    const Vec3 p = arc.center_mm + radius / r0 * rotated(across, arc.axis, t * arc.sweep_rad) +
+                   (low + t * (high - low)) * arc.axis;
+    moves.push_back({at, in_plane(p), std::nullopt, move.id});
+    at = in_plane(p);
+  }
+  moves.push_back({at, in_plane(move.to_mm), std::nullopt, move.id});
+}
+
+/// What a move is in the plane: one move as a rule.
+std::vector<TurnMove> moves_of(const CutMove& move) {
+  TurnMove turn{in_plane(move.from_mm), in_plane(move.to_mm), std::nullopt, move.id};
+  if (!move.arc) return {turn};
+  const CutArc& arc = *move.arc;
+  if (std::abs(arc.axis.y) == 1) {
+    turn.arc = TurnArc{in_plane(arc.center_mm), arc.axis.y * arc.sweep_rad};
+    return {turn};
+  }
+  std::vector<TurnMove> moves;
+  append_chords(move, moves);
+  return moves;
+}
+
+void extend(TurnCut& whole, const TurnCut& part) {
+  whole.removed_mm3 += part.removed_mm3;
+  whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
+  whole.way_mm += part.way_mm;
+  for (std::size_t i = 0; i < kInsertSides; ++i)
+    whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
+}
+
+}  // namespace
+
+TurningStock::TurningStock(TurnedPart part) : part_(std::move(part)) {}
+
+const TurningTool& TurningStock::tool_of(const Cutter& cutter) const {
+  // Of a cutter without one the outline is made each time: calls take many moves.
+  if (!ready_.tool || cutter.insert() == nullptr || cutter.insert() != ready_.outline) {
+    ready_ = {};
+    ready_.outline = outline_of(cutter);
+    ready_.tool.emplace(*ready_.outline);
+  }
+  return *ready_.tool;
+}
+
+void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
+                       std::vector<CutReport>& reports) {
+  last_cuts_.clear();
+  const TurningTool& tool = tool_of(cutter);
+  for (const CutMove& move : moves) {
+    TurnCut& whole = last_cuts_.emplace_back();
+    whole.id = move.id;
+    for (const TurnMove& turn : moves_of(move)) extend(whole, part_.cut(tool, turn));
+    CutReport report;
+    report.id = move.id;
+    report.removed_mm3 = whole.removed_mm3;
+    report.depth_mm = whole.depth_mm;
+    reports.push_back(report);
+  }
+}
+
+void TurningStock::finish(std::vector<CutReport>&) {}
+
+std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const CutMove& move,
+                                                   double tolerance_mm) const {
+  const TurningTool& tool = tool_of(cutter);
+  if (ready_.inset_mm != tolerance_mm) {
+    ready_.inset = tool.inset(tolerance_mm);
+    ready_.inset_mm = tolerance_mm;
+  }
+  std::optional<Contact> contact;
+  for (const TurnMove& turn : moves_of(move)) {
+    const std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turn);
+    if (!met) continue;
+    if (!contact) contact = Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), 0};
+    contact->depth_mm = std::max(contact->depth_mm, met->depth_mm + tolerance_mm);
+  }
+  return contact;
+}
+
+std::unique_ptr<StockModel> TurningStock::snapshot() const {
+  auto copy = std::make_unique<TurningStock>(part_);
+  return copy;
+}
+
+std::size_t TurningStock::unique_bytes() const { return part_.unique_bytes(); }
+
+Done TurningStock::accepts(const Cutter& cutter) const {
+  if (outline_of(cutter) != nullptr) return std::monostate{};
+  return Error{
+      trf("{}: cannot be cut with on a lathe; a tool that stands still has no hollow arcs "
+          "and is at most {} mm long",
+          cutter.spec(), kAxialLength_mm)};
+}
+
+Box TurningStock::bounds_mm() const { return part_.bounds_mm(); }
+double TurningStock::cell_mm() const { return 1 / turning::kUnitsPerMm; }
+std::size_t TurningStock::cell_count() const { return part_.corner_count(); }
+double TurningStock::blank_mm3() const { return part_.blank_mm3(); }
+double TurningStock::remaining_mm3() const { return part_.remaining_mm3(); }
+std::string TurningStock::digest() const { return part_.digest(); }
+TriangleMesh TurningStock::mesh(double tolerance_mm) const { return part_.mesh(tolerance_mm); }
+
+Box TurningStock::tile_box(std::uint32_t tile) const {
+  Box box = part_.bounds_mm();
+  box.min.z = part_.band_low_z_mm(tile);
+  box.max.z = part_.band_low_z_mm(tile + 1);
+  return box;
+}
+
+std::vector<std::uint32_t> TurningStock::take_dirty_tiles() {
+  seen_versions_.resize(tile_count(), 0);  // no band has version 0
+  std::vector<std::uint32_t> dirty;
+  for (std::uint32_t t = 0; t < tile_count(); ++t) {
+    if (seen_versions_[t] != part_.band_version(t)) dirty.push_back(t);
+    seen_versions_[t] = part_.band_version(t);
+  }
+  return dirty;
+}
+
+std::vector<std::uint32_t> TurningStock::differing_tiles(const StockModel& other) const {
+  const auto* const turned = dynamic_cast<const TurningStock*>(&other);
+  const bool comparable = turned != nullptr && turned->bounds_mm() == bounds_mm();
+  std::vector<std::uint32_t> differing;
+  for (std::uint32_t t = 0; t < tile_count(); ++t) {
+    if (!comparable || turned->part_.band_version(t) != part_.band_version(t))
+      differing.push_back(t);
+  }
+  return differing;
+}
+
+std::uint64_t TurningStock::patch_version(std::uint32_t tile) const {
+  return part_.band_version(tile);
+}
+
+MeshPatch TurningStock::patch(std::uint32_t tile, int level) const {
+  return part_.patch(tile, level);
+}
+
+}  // namespace kerf

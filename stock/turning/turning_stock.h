@@ -1,0 +1,74 @@
+// stock/turning/turning_stock.h - a turned part as a stock model.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "stock/stock_model.h"
+#include "stock/turning/turned_part.h"
+
+namespace kerf {
+
+/// A workpiece on a lathe: it turns about the z axis of the workpiece frame. x of a move's tip is
+/// how far the controlled point is from the axis, negative beyond it; y plays no part, nor does the
+/// spindle's direction. Arcs about the y axis are cut as such, others as what they are in the plane
+/// of z and x, within 0.02 um.
+///
+/// Of a cutter with an outline (Cutter::insert()) that is cut; any other stands still along the
+/// axis with its tip towards -z, as a drill in the tailstock does.
+///
+/// Nothing is held back: finish() has nothing to do. Not saved yet. One thread.
+class TurningStock final : public StockModel {
+ public:
+  explicit TurningStock(TurnedPart part);
+
+  void cut(const Cutter& cutter, std::span<const CutMove> moves,
+           std::vector<CutReport>& reports) override;
+  void finish(std::vector<CutReport>& reports) override;
+  std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
+                                       double tolerance_mm) const override;
+  /// With which sides they were made, and how long the tool was in material: of the moves of the
+  /// last call of cut(), in order.
+  std::span<const TurnCut> last_cuts() const { return last_cuts_; }
+  /// With what has come off.
+  const TurnedPart& part() const { return part_; }
+
+  std::unique_ptr<StockModel> snapshot() const override;
+  std::size_t unique_bytes() const override;
+  /// Error for a cutter without an outline whose profile has hollow arcs or that is too long.
+  Done accepts(const Cutter& cutter) const override;
+  std::string name() const override { return "turning"; }
+  Box bounds_mm() const override;
+  double cell_mm() const override;          ///< the step of the coordinates
+  std::size_t cell_count() const override;  ///< corners
+  double blank_mm3() const override;
+  double remaining_mm3() const override;
+  std::string digest() const override;
+  TriangleMesh mesh(double tolerance_mm) const override;
+
+  /// Tiles are bands along z.
+  std::size_t tile_count() const override { return TurnedPart::kBands; }
+  Box tile_box(std::uint32_t tile) const override;
+  std::vector<std::uint32_t> take_dirty_tiles() override;
+  std::vector<std::uint32_t> differing_tiles(const StockModel& other) const override;
+  std::uint64_t patch_version(std::uint32_t tile) const override;
+  MeshPatch patch(std::uint32_t tile, int level) const override;
+
+ private:
+  /// A tool as the part takes it, kept while the same cutter cuts on.
+  struct Ready {
+    std::shared_ptr<const InsertOutline> outline;
+    std::optional<TurningTool> tool;
+    std::optional<double> inset_mm;
+    std::optional<TurningTool> inset;
+  };
+  const TurningTool& tool_of(const Cutter& cutter) const;
+
+  TurnedPart part_;
+  std::vector<TurnCut> last_cuts_;
+  std::vector<std::uint64_t> seen_versions_;  // by take_dirty_tiles()
+  mutable Ready ready_;
+};
+
+}  // namespace kerf
