@@ -6,8 +6,8 @@
 namespace kerf::octree {
 namespace {
 
-/// Of solid bricks: the material around them has its surface elsewhere.
-constexpr int kSparse = 4;
+/// Of solid bricks one node: the material around them has its surface elsewhere.
+constexpr int kSparse = kBrick;
 
 Vec3 node_place(const Lattice& lattice, const int brick[3], int i, int j, int k) {
   return {lattice.place_mm(0, brick[0] * kBrick + i), lattice.place_mm(1, brick[1] * kBrick + j),

@@ -34,7 +34,7 @@ void field_of(const SweepKernel& kernel, std::span<const Sweep> sweeps, const Pa
 
 /// The places where the surface crosses edges of this brick.
 void add_crossings(const BrickTree& tree, int bx, int by, int bz, PartPoints& points);
-/// And its solid nodes; of a brick that is all solid every fourth along each axis.
+/// And its solid nodes; one of a brick that is all solid.
 void add_material(const BrickTree& tree, int bx, int by, int bz, PartPoints& points);
 
 }  // namespace kerf::octree

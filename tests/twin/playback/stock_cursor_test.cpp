@@ -107,6 +107,32 @@ TEST(StockCursor, PartOfAMoveIsInThePictureOnly) {
   EXPECT_EQ(shop.digest_at(3), test::digest_after(program.list(), 3));
 }
 
+TEST(StockCursor, AShankThatCutsDoesSoHereAsInADryRun) {
+  MotionList program;
+  program.at({20, 20, 5}).tool(1).spindle(true).feed({20, 20, -6}).feed({30, 20, -6});
+  ToolSources tools;
+  tools.arguments.push_back(parse_tool_argument("1=flat:4:flute=2:shank=8").value());
+  const auto track = test::track_of(program.list());
+  std::map<bool, double> removed_mm3;
+  for (const bool by_shank : {false, true}) {
+    CheckOptions checks;
+    checks.collisions.cut_by_shank = by_shank;
+    KeyframeStore store(kPlenty);
+    Frontier frontier(*track, test::block_40(), tools, {}, store, {}, *default_process(), {},
+                      checks);
+    while (!frontier.complete()) frontier.advance(track->size());
+    StockCursor cursor(*track, frontier.moves(), frontier.record(), store);
+    while (!cursor.approach(program.list().size())) {
+    }
+    const auto seen = cursor.picture(0);
+    removed_mm3[by_shank] = seen->blank_mm3() - seen->remaining_mm3();
+    EXPECT_EQ(frontier.findings().kept().size(), 1u);  // told all the same
+  }
+  // Slots of 10 mm with round ends: 6 mm deep by the cutter; 4 mm deep by its shank.
+  EXPECT_NEAR(removed_mm3[false], 6 * (40 + 4 * kPi), 3);
+  EXPECT_NEAR(removed_mm3[true], 6 * (40 + 4 * kPi) + 4 * (40 + 12 * kPi), 3);
+}
+
 TEST(Frontier, FindsWhatADryRunFinds) {
   for (unsigned seed = 31; seed <= 33; ++seed) {
     const std::vector<Motion> motions = test::varied_program(seed, 500);
