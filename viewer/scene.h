@@ -254,13 +254,16 @@ struct SceneMachine {
   std::vector<MachineLink> links;
 };
 
-/// Two bodies that touch each other, or that come near.
+/// Two bodies that touch each other, or that come near: a piece of the tool, a fixture, links of
+/// the machine, the workpiece. Those that are not drawn may be left out.
 struct SceneContact {
-  ToolPiece piece = ToolPiece::kCutter;
-  std::optional<std::size_t> fixture;  ///< Of SceneUpdate::fixtures; none: the workpiece.
-  std::optional<Vec3> point_mm;        ///< Where; none: not known.
-  double mark_mm = 1.0;                ///< Radius of the mark there.
-  bool is_near = false;                ///< They do not touch.
+  std::optional<ToolPiece> piece;
+  std::optional<std::size_t> fixture;  ///< Of SceneUpdate::fixtures.
+  std::vector<std::size_t> links;      ///< Of SceneUpdate::machine.
+  bool has_workpiece = false;
+  std::optional<Vec3> point_mm;  ///< Where; none: not known.
+  double mark_mm = 1.0;          ///< Radius of the mark there.
+  bool is_near = false;          ///< They do not touch.
   bool operator==(const SceneContact&) const = default;
 };
 

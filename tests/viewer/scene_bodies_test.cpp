@@ -95,6 +95,27 @@ TEST_F(BodiesTest, OneThatTouchesShinesThroughTheWorkpiece) {
   EXPECT_EQ(color_at(&renderer, {20, 20, 0}, without(SceneObject::kFixtures)), covered);
 }
 
+TEST_F(BodiesTest, LinksOfAMachineAreMarkedToo) {
+  SceneRenderer renderer = scene();
+  SceneUpdate update = moment({20, 20, 12});
+  update.machine = box_machine({{Vec3(-6), Vec3(6)}, {Vec3(-6), Vec3(6)}});
+  Moment values = *update.moment;
+  for (const glm::vec3& middle : {glm::vec3(48, 16, 12), glm::vec3(16, 48, 12)})
+    values.link_poses.push_back(glm::translate(glm::mat4(1.0f), middle));
+  update.moment = std::make_shared<const Moment>(values);
+  renderer.apply(update);
+  const Vec3 one(48, 16, 18), other(16, 48, 18);
+  EXPECT_FALSE(is_red(color_at(&renderer, other, everything_)));
+  SceneContact contact;
+  contact.links = {1};
+  values.contacts = {contact};
+  SceneUpdate touched;
+  touched.moment = std::make_shared<const Moment>(values);
+  renderer.apply(touched);
+  EXPECT_TRUE(is_red(color_at(&renderer, other, everything_)));
+  EXPECT_FALSE(is_red(color_at(&renderer, one, everything_)));
+}
+
 TEST_F(BodiesTest, WhatComesNearIsAmber) {
   SceneRenderer renderer = scene();
   SceneContact contact;

@@ -39,9 +39,29 @@ ToolPiece piece_of(ToolPart part) {
   return ToolPiece::kCutter;
 }
 
-/// Both have the point (piece and fixture) in common.
 bool is_same_pair(const SceneContact& a, const SceneContact& b) {
-  return a.piece == b.piece && a.fixture == b.fixture;
+  return a.piece == b.piece && a.fixture == b.fixture && a.links == b.links &&
+         a.has_workpiece == b.has_workpiece;
+}
+
+/// By the name that reports have for it: of the tool, of a fixture, of a link, the workpiece.
+void add_body(const std::string& name, const DrawnBodies& drawn, SceneContact& contact) {
+  for (const ToolPart part : kParts) {
+    if (name != to_string(part) || contact.piece) continue;
+    contact.piece = piece_of(part);
+    return;
+  }
+  for (std::size_t i = 0; drawn.fixtures && i < drawn.fixtures->size(); ++i) {
+    if ((*drawn.fixtures)[i].name != name) continue;
+    contact.fixture = i;
+    return;
+  }
+  for (std::size_t i = 0; drawn.machine && i < drawn.machine->links.size(); ++i) {
+    if (drawn.machine->links[i].name != name) continue;
+    contact.links.push_back(i);
+    return;
+  }
+  contact.has_workpiece = contact.has_workpiece || name == kWorkpieceBody;
 }
 
 double distance_mm(const ToolBody& body, const Pose& fixture_from_tool, const Solid& solid,
@@ -75,20 +95,13 @@ Pose pose_of(const ToolPose& tool) {
   return {glm::dmat3(glm::cross(y, z), y, z), tool.tip_mm};
 }
 
-std::optional<SceneContact> contact_of(const Finding& finding,
-                                       const std::vector<Fixture>* fixtures) {
+std::optional<SceneContact> contact_of(const Finding& finding, const DrawnBodies& drawn) {
   if (!finding.has_bodies()) return std::nullopt;
   SceneContact contact;
-  const auto part =
-      std::ranges::find_if(kParts, [&](ToolPart p) { return finding.bodies[0] == to_string(p); });
-  if (part == kParts.end()) return std::nullopt;
-  contact.piece = piece_of(*part);
   contact.is_near = finding.id == FindingId::kNearMiss;
-  const std::string& other = finding.bodies[1];
-  for (std::size_t i = 0; fixtures && i < fixtures->size(); ++i)
-    if ((*fixtures)[i].name == other) contact.fixture = i;
-  if (!contact.fixture && other != kWorkpieceBody) return std::nullopt;
-  return contact;
+  for (const std::string& name : finding.bodies) add_body(name, drawn, contact);
+  const bool has_one = contact.piece || contact.fixture || !contact.links.empty();
+  return has_one ? std::optional(std::move(contact)) : std::nullopt;
 }
 
 BodyWatch::BodyWatch(CollisionWishes wishes)
@@ -118,7 +131,7 @@ void BodyWatch::set_findings(const std::vector<Finding>& findings) {
   std::vector<Told> told;
   for (const Finding& finding : findings) {
     if (!finding.time_s) continue;
-    if (const auto contact = contact_of(finding, fixtures()))
+    if (const auto contact = contact_of(finding, drawn()))
       told.push_back({*finding.time_s, *contact, std::nullopt});
   }
   told_ = std::move(told);
@@ -126,7 +139,7 @@ void BodyWatch::set_findings(const std::vector<Finding>& findings) {
 
 void BodyWatch::add_finding(const Finding& finding, double time_s) {
   std::erase_if(told_, [&](const Told& told) { return told.time_s < time_s - kRed_s; });
-  if (const auto contact = contact_of(finding, fixtures()))
+  if (const auto contact = contact_of(finding, drawn()))
     told_.push_back({time_s, *contact, std::nullopt});
 }
 
@@ -173,9 +186,9 @@ void BodyWatch::add_told(const ToolPose& tool, double time_s, double speed, cons
     const bool is_known = std::ranges::any_of(
         contacts, [&](const SceneContact& c) { return is_same_pair(c, told.contact); });
     if (is_known) continue;
-    const ToolBody* const body = body_of(told.contact.piece);
+    const ToolBody* const body = told.contact.piece ? body_of(*told.contact.piece) : nullptr;
     // Where the event began it is looked for once, not for each picture after it.
-    if (!told.seen_from && !told.contact.fixture && body && stock) {
+    if (!told.seen_from && told.contact.has_workpiece && body && stock) {
       told.seen_from = tool;
       told.contact.mark_mm = std::clamp(kMarkShare * body->width_mm, kLeastMark_mm, kMostMark_mm);
       told.contact.point_mm = body->part == ToolPart::kCutter

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stock/cutter/cutter.h"
@@ -20,10 +21,15 @@ namespace kerf {
 /// A tool as it stands. Which way round it is left open: tools are round.
 Pose pose_of(const ToolPose& tool);
 
+/// What may touch, besides the tool and the workpiece.
+struct DrawnBodies {
+  const std::vector<Fixture>* fixtures = nullptr;  ///< null: there are none
+  const SceneMachine* machine = nullptr;           ///< null: none is drawn
+};
+
 /// The collision that a finding tells of, as the viewer marks it: without a place. Nothing: it
-/// tells of none, or of bodies that are not of these.
-std::optional<SceneContact> contact_of(const Finding& finding,
-                                       const std::vector<Fixture>* fixtures);
+/// tells of none, or of bodies of which none is drawn.
+std::optional<SceneContact> contact_of(const Finding& finding, const DrawnBodies& drawn);
 
 /// For a view of a program or a machine. One thread.
 class BodyWatch {
@@ -41,6 +47,10 @@ class BodyWatch {
   std::span<const ToolSection> spindle() const { return wishes_.spindle; }
   /// For SceneUpdate::fixtures; never null, since what was shown before may have had some.
   std::shared_ptr<const SceneMachine> scene() const { return scene_; }
+  /// The machine that is drawn, whose links findings may name; null: none.
+  void set_machine(std::shared_ptr<const SceneMachine> machine) { machine_ = std::move(machine); }
+  const std::shared_ptr<const SceneMachine>& drawn_machine() const { return machine_; }
+  DrawnBodies drawn() const { return {fixtures(), machine_.get()}; }
 
   /// In the spindle; null: none that is known. Returns its shape if it is another one than before.
   std::shared_ptr<const ToolShape> mount(const std::shared_ptr<const Cutter>& cutter,
@@ -74,6 +84,7 @@ class BodyWatch {
 
   CollisionWishes wishes_;
   std::shared_ptr<const SceneMachine> scene_;
+  std::shared_ptr<const SceneMachine> machine_;
   std::vector<glm::mat4> poses_;
   std::shared_ptr<const Cutter> cutter_;
   double nose_z_mm_ = 0;

@@ -34,8 +34,8 @@ constexpr float kSeenThrough = 0.35f;
 
 constexpr float kCaption_px = 17, kLabel_px = 14, kMargin_px = 22;
 constexpr float kRing_px = 24;
-/// What is shown larger, in the corner.
-constexpr glm::ivec2 kInset_px(384, 288);
+/// What is shown larger, in the corner: tenths of the picture.
+constexpr int kInsetTenths = 3;
 constexpr int kInsetMargin_px = 16;
 constexpr glm::vec4 kInk{0.10f, 0.11f, 0.13f, 1.0f}, kHalo{1.0f, 1.0f, 1.0f, 0.92f};
 
@@ -301,12 +301,12 @@ Result<Picture> FindingPictures::Impl::draw(const FindingShot& shot) {
   name_bodies(view, *camera, &strokes);
   if (!view.close_mm.empty()) {
     OrbitCamera close = *camera;
-    close.fit(view.close_mm, kInset_px);
-    const Result<Picture> inset = drawn(close, kInset_px, is_hidden);
+    const glm::ivec2 inset_px = kInsetTenths * size_px_ / 10;
+    close.fit(view.close_mm, inset_px);
+    const Result<Picture> inset = drawn(close, inset_px, is_hidden);
     if (!inset) return inset;
     const glm::vec2 corner_px(lay_in(*inset, &strokes, &*picture));
-    const auto place =
-        picture_px(view.place_mm, close.projection(renderer_.depth_box(), kInset_px));
+    const auto place = picture_px(view.place_mm, close.projection(renderer_.depth_box(), inset_px));
     if (place) add_ring(corner_px + *place, &strokes);
   }
   add_caption(shot, &strokes);

@@ -35,6 +35,7 @@ std::string finding_picture_name(std::size_t number, const Finding& finding);
 class FindingPictures {
  public:
   /// `wishes`: the fixtures and the spindle that the checks had. Error: no OpenGL, and why.
+  /// `size_px`: each at least 64.
   static Result<FindingPictures> create(CollisionWishes wishes,
                                         glm::ivec2 size_px = glm::ivec2(1280, 960));
   FindingPictures(FindingPictures&&) noexcept;

@@ -63,10 +63,11 @@ FindingView finding_view(const FindingShot& shot, BodyWatch& watch) {
   FindingView view;
   view.tool_shape = watch.mount(shot.cutter, shot.nose_z_mm);
   const Pose pose = pose_of(shot.tool);
-  view.contact = contact_of(shot.finding, watch.fixtures());
+  view.contact = contact_of(shot.finding, watch.drawn());
   view.place_mm = view.tool_mm = view.axis_mm = shot.tool.tip_mm;
   view.axis = glm::normalize(shot.tool.axis);
-  const ToolBody* const body = view.contact ? watch.body_of(view.contact->piece) : nullptr;
+  const auto piece = view.contact ? view.contact->piece : std::nullopt;
+  const ToolBody* const body = piece ? watch.body_of(*piece) : nullptr;
   const bool is_spindle = body && body->part == ToolPart::kSpindle;
   view.frame_mm = box_of_tool(watch.bodies(), pose, is_spindle);
   view.frame_mm.extend(shot.tool.tip_mm);
@@ -80,13 +81,13 @@ FindingView finding_view(const FindingShot& shot, BodyWatch& watch) {
     std::optional<Vec3> place;
     if (view.contact->fixture) {
       place = place_between(*body, pose, (*watch.fixtures())[*view.contact->fixture]);
-    } else if (!is_cutter) {
+    } else if (view.contact->has_workpiece && !is_cutter) {
       place = place_on_workpiece(*body, pose, *shot.stock);
     }
     // Deep in the material there is no surface; of a cutter the tip is where it works.
     view.place_mm = place ? *place : is_cutter ? shot.tool.tip_mm : view.tool_mm;
     // Between two red bodies a red mark would say nothing.
-    if (!view.contact->fixture) view.contact->point_mm = place;
+    if (view.contact->has_workpiece) view.contact->point_mm = place;
     view.axis_mm =
         shot.tool.tip_mm + glm::dot(view.place_mm - shot.tool.tip_mm, view.axis) * view.axis;
   }
@@ -104,7 +105,7 @@ FindingView finding_view(const FindingShot& shot, BodyWatch& watch) {
   }
   const Vec3 frame = view.frame_mm.size();
   const Vec3 close(std::max(kLeastClose_mm, kCloseShare * view.tool_radius_mm));
-  if (view.contact && kCloserBy * close.x < 0.5 * std::max({frame.x, frame.y, frame.z}))
+  if (body && kCloserBy * close.x < 0.5 * std::max({frame.x, frame.y, frame.z}))
     view.close_mm = {view.place_mm - close, view.place_mm + close};
   return view;
 }

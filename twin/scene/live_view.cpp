@@ -72,6 +72,8 @@ LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& ma
       commands_(commands),
       resolver_(options_.tools, nullptr),
       bodies_(options_.collisions) {
+  if (options_.machine)
+    bodies_.set_machine(std::make_shared<const SceneMachine>(scene_machine(*options_.machine)));
   publish_start();
   news_.stock = options_.stock;
   thread_ = std::jthread([this](std::stop_token stop) { run(std::move(stop)); });
@@ -199,9 +201,7 @@ void LiveView::publish_start() {
   setup->blank_outline = options_.blank_outline;
   setup->frames = scene_frames(shown_work_, options_.work_offset);
   update.setup = std::move(setup);
-  if (options_.machine) {
-    update.machine = std::make_shared<const SceneMachine>(scene_machine(*options_.machine));
-  }
+  update.machine = bodies_.drawn_machine();
   update.fixtures = bodies_.scene();
   update.job = options_.job;
   update.moment = moment_now();

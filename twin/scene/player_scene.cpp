@@ -93,6 +93,8 @@ PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgra
       bodies_(shown_.collisions),
       path_(track_, shown_.planned, shown_.moves) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
+  if (shown_.machine)
+    bodies_.set_machine(std::make_shared<const SceneMachine>(scene_machine(*shown_.machine)));
 }
 
 SceneUpdate PlayerScene::start(const PlayerState& state) const {
@@ -119,9 +121,7 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
     timeline->tools.push_back(std::move(mark));
   }
   update.timeline = std::move(timeline);
-  if (shown_.machine) {
-    update.machine = std::make_shared<const SceneMachine>(scene_machine(*shown_.machine));
-  }
+  update.machine = bodies_.drawn_machine();
   update.fixtures = bodies_.scene();
   return update;
 }

@@ -41,20 +41,31 @@ using ToolMarks = std::array<BodyMark, kToolPieceCount>;
 inline ToolMarks tool_marks(std::span<const SceneContact> contacts) {
   ToolMarks marks{};
   for (const SceneContact& contact : contacts) {
-    BodyMark& mark = marks[static_cast<std::size_t>(contact.piece)];
+    if (!contact.piece) continue;
+    BodyMark& mark = marks[static_cast<std::size_t>(*contact.piece)];
     mark = std::max(mark, mark_of(contact));
   }
   return marks;
 }
 
+inline void add_mark(BodyMark mark, std::size_t body, std::vector<BodyMark>* marks) {
+  marks->resize(std::max(marks->size(), body + 1));
+  (*marks)[body] = std::max((*marks)[body], mark);
+}
+
 /// By fixture, as far as there are marked ones.
 inline std::vector<BodyMark> fixture_marks(std::span<const SceneContact> contacts) {
   std::vector<BodyMark> marks;
-  for (const SceneContact& contact : contacts) {
-    if (!contact.fixture) continue;
-    marks.resize(std::max(marks.size(), *contact.fixture + 1));
-    marks[*contact.fixture] = std::max(marks[*contact.fixture], mark_of(contact));
-  }
+  for (const SceneContact& contact : contacts)
+    if (contact.fixture) add_mark(mark_of(contact), *contact.fixture, &marks);
+  return marks;
+}
+
+/// By link of the machine, likewise.
+inline std::vector<BodyMark> link_marks(std::span<const SceneContact> contacts) {
+  std::vector<BodyMark> marks;
+  for (const SceneContact& contact : contacts)
+    for (const std::size_t link : contact.links) add_mark(mark_of(contact), link, &marks);
   return marks;
 }
 

@@ -13,6 +13,7 @@ void MovingBodies::apply(const SceneUpdate& update) {
   tool_.set_pose(moment.tool_pose);
   tool_.set_marks(tool_marks(moment.contacts));
   machine_.set_poses(moment.link_poses);
+  machine_.set_marks(link_marks(moment.contacts));
   fixtures_.set_poses(moment.fixture_poses);
   fixtures_.set_marks(fixture_marks(moment.contacts));
   contacts_.set_contacts(moment.contacts);
@@ -95,6 +96,7 @@ void MovingBodies::draw_hidden_marks(const ScreenRect& rect, const GlProgram& pr
   glEnable(GL_CULL_FACE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (look(SceneObject::kMachine).is_visible) machine_.draw_marked(projection_, program, rect);
   if (look(SceneObject::kFixtures).is_visible) fixtures_.draw_marked(projection_, program, rect);
   if (tool_rect_.intersects(rect)) tool_.draw_marked(projection_, program, tool_look());
   if (look(SceneObject::kFindings).is_visible) {

@@ -142,13 +142,29 @@ TEST(BodyWatch, OfAMachineFindingsAreRedFromWhenTheyCome) {
 
 TEST(BodyWatch, OtherFindingsHaveNoBodies) {
   const CollisionWishes wishes = wishes_of({"jaw=box:100,0,0:110,10,10"});
-  EXPECT_FALSE(contact_of(Finding{}, wishes.fixtures.get()));
-  EXPECT_FALSE(contact_of(collision(FindingId::kFixtureContact, "cutter", "no such", 1),
-                          wishes.fixtures.get()));
+  const DrawnBodies jaw_alone{wishes.fixtures.get(), nullptr};
+  EXPECT_FALSE(contact_of(Finding{}, jaw_alone));
   EXPECT_FALSE(
-      contact_of(collision(FindingId::kFixtureContact, "table", "jaw", 1), wishes.fixtures.get()));
-  EXPECT_TRUE(
-      contact_of(collision(FindingId::kRapidContact, "cutter", kWorkpieceBody, 1), nullptr));
+      contact_of(collision(FindingId::kFixtureContact, "table", "workpiece", 1), jaw_alone));
+}
+
+TEST(BodyWatch, BodiesAreFoundByTheirNames) {
+  const CollisionWishes wishes = wishes_of({"jaw=box:100,0,0:110,10,10"});
+  SceneMachine machine;
+  machine.links = {{"table", nullptr}, {"head", nullptr}};
+  const DrawnBodies drawn{wishes.fixtures.get(), &machine};
+  const auto contact = [&](const char* a, const char* b) {
+    return contact_of(collision(FindingId::kFixtureContact, a, b, 1), drawn).value();
+  };
+  EXPECT_EQ(contact("holder", "jaw").piece, ToolPiece::kHolder);
+  EXPECT_EQ(contact("holder", "jaw").fixture, std::size_t{0});
+  EXPECT_FALSE(contact("holder", "jaw").has_workpiece);
+  EXPECT_TRUE(contact("cutter", "workpiece").has_workpiece);
+  EXPECT_EQ(contact("head", "table").links, (std::vector<std::size_t>{1, 0}));
+  EXPECT_EQ(contact("head", "jaw").fixture, std::size_t{0});
+  EXPECT_FALSE(contact("head", "jaw").piece);
+  // What is not drawn is not marked, what it touches is.
+  EXPECT_EQ(contact("no such", "jaw").fixture, std::size_t{0});
 }
 
 TEST(BodyWatch, TheSpindleIsDrawnWhereItsNoseIs) {

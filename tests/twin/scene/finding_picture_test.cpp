@@ -126,12 +126,13 @@ TEST(FindingPicture, BothBodiesAreRed) {
   EXPECT_EQ(red_pixels(*pictures->draw(shot)), 0);
 }
 
-TEST(FindingPicture, AToolThatIsNotKnownIsLeftOut) {
+TEST(FindingPicture, IsDrawnSmallAndWithoutATool) {
   unsetenv("DISPLAY");
-  Result<FindingPictures> pictures = FindingPictures::create({}, {320, 240});
+  Result<FindingPictures> pictures = FindingPictures::create(with_clamp(), {64, 64});
   ASSERT_TRUE(pictures) << pictures.error();
   FindingShot shot = shot_at_clamp();
-  shot.cutter = nullptr;
+  EXPECT_GT(red_pixels(*pictures->draw(shot)), 10);
+  shot.cutter = nullptr;  // nobody knows it
   EXPECT_TRUE(pictures->draw(shot));
 }
 
