@@ -6,8 +6,8 @@ from oracle import Cylinder, Obstacle, heights_of, width_of
 from programs import Program, Tool, draw_shape, draw_tool, draw_way, finish, plus, settle, unit
 
 CELL_mm = 0.025
-# A wall is where the cells have it, and is touched when the middle of one is reached: a place may be so late.
-WALL_mm = CELL_mm
+# A wall is where the cells have it, and is touched when the middle of one is reached: a place may be late by the diagonal of one.
+WALL_mm = CELL_mm * math.sqrt(2)
 # They go on upward: nothing is above that would be clear of it.
 ENDLESS_mm = 500.0
 WAYS = ("feed", "rapid", "slope", "arc", "helix", "plunge", "steps", "incremental", "subroutine")
