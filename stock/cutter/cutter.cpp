@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "base/translate.h"
 
@@ -156,16 +155,7 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
 
 Cutter Cutter::from_insert(std::string spec, InsertOutline outline) {
   ProfilePiece flat;
-  for (const InsertPart& part : outline.parts) {
-    for (const InsertEdge& edge : part) {
-      flat.r1 = std::max(flat.r1, glm::length(edge.end_mm));
-      // An arc reaches no farther than its circle.
-      if (edge.center_mm) {
-        flat.r1 = std::max(
-            flat.r1, glm::length(*edge.center_mm) + glm::distance(*edge.center_mm, edge.end_mm));
-      }
-    }
-  }
+  flat.r1 = outline_reach_mm(outline);
   Cutter cutter;
   cutter.spec_ = std::move(spec);
   cutter.pieces_ = {flat};

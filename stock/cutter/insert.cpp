@@ -1,5 +1,8 @@
 #include "stock/cutter/insert.h"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
+
 namespace kerf {
 namespace {
 
@@ -19,6 +22,19 @@ InsertOutline mirrored(const InsertOutline& outline, const Vec2& factor) {
 }
 
 }  // namespace
+
+double outline_reach_mm(const InsertOutline& outline) {
+  double reach = 0;
+  for (const InsertPart& part : outline.parts) {
+    for (const InsertEdge& edge : part) {
+      reach = std::max(reach, glm::length(edge.end_mm));
+      if (!edge.center_mm) continue;
+      reach = std::max(reach,
+                       glm::length(*edge.center_mm) + glm::distance(*edge.center_mm, edge.end_mm));
+    }
+  }
+  return reach;
+}
 
 InsertOutline mirrored_in_x(const InsertOutline& outline) { return mirrored(outline, {1, -1}); }
 InsertOutline mirrored_in_z(const InsertOutline& outline) { return mirrored(outline, {-1, 1}); }

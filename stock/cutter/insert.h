@@ -44,6 +44,11 @@ struct InsertOutline {
   std::vector<InsertPart> parts;
 };
 
+/// No outline reaches farther from the controlled point.
+inline constexpr double kMaxInsertReach_mm = 300;
+/// How far it reaches; an arc as far as its circle.
+double outline_reach_mm(const InsertOutline& outline);
+
 /// The same tool seen in a mirror: for the other side of the axis, and for the other hand. Front
 /// and back stay what they are.
 InsertOutline mirrored_in_x(const InsertOutline& outline);  ///< x becomes -x

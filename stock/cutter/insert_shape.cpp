@@ -9,8 +9,6 @@
 namespace kerf {
 namespace {
 
-/// No turning tool is larger; keeps every sum far inside of what models hold.
-constexpr double kMaxInsert_mm = 200;
 /// Edges shorter than this are none: below what models tell apart.
 constexpr double kMinEdge_mm = 1e-5;
 /// Flanks closer to half a turn than this have no nose between them.
@@ -19,7 +17,7 @@ constexpr double kMinTurn_rad = 1e-6;
 Vec2 along(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
 Vec2 left_of(const Vec2& v) { return {-v.y, v.x}; }
 
-bool is_size(double mm) { return mm >= 0 && mm <= kMaxInsert_mm; }
+bool is_size(double mm) { return mm >= 0 && mm <= kMaxInsertReach_mm; }
 
 /// (dz, dx) by orientation. Source: LinuxCNC 2.9, lib/python/rs274/glcanon.py, as (dx, dz).
 constexpr std::array<std::array<int, 2>, kOrientations> kNoseDirections{
@@ -29,6 +27,11 @@ std::optional<Vec2> nose_direction(int orientation) {
   if (orientation < 1 || orientation > kOrientations) return std::nullopt;
   const std::array<int, 2>& d = kNoseDirections[static_cast<std::size_t>(orientation - 1)];
   return Vec2(d[0], d[1]);
+}
+
+std::optional<InsertOutline> within_reach(InsertOutline outline) {
+  if (!(outline_reach_mm(outline) <= kMaxInsertReach_mm)) return std::nullopt;
+  return outline;
 }
 
 InsertPart disc(const Vec2& center, double radius) {
@@ -95,7 +98,7 @@ std::optional<InsertOutline> about_nose(std::span<const Corner> corners, const V
   std::optional<InsertPart> part = rounded(corners, centers);
   if (!part) return std::nullopt;
   move(*part, corners[0].radius * direction - centers[0]);
-  return InsertOutline{{std::move(*part)}};
+  return within_reach({{std::move(*part)}});
 }
 
 }  // namespace
@@ -108,7 +111,7 @@ std::optional<InsertOutline> nose_insert(const NoseInsert& insert) {
   const Vec2 center = r * *direction;
   if (insert.orientation == kOrientations) {
     if (r < kMinEdge_mm) return std::nullopt;
-    return InsertOutline{{disc(center, r)}};
+    return within_reach({{disc(center, r)}});
   }
   const double low = std::min(insert.front_rad, insert.back_rad);
   const double high = std::max(insert.front_rad, insert.back_rad);
@@ -126,7 +129,7 @@ std::optional<InsertOutline> nose_insert(const NoseInsert& insert) {
   part.push_back({enter + length * out_high, std::nullopt, InsertSide::kBody});
   part.push_back({enter, std::nullopt, at_high});
   if (r > 0) part.push_back({leave, center, InsertSide::kNose});
-  return InsertOutline{{std::move(part)}};
+  return within_reach({{std::move(part)}});
 }
 
 namespace {
@@ -195,7 +198,7 @@ std::optional<InsertOutline> iso_insert(const IsoInsert& insert) {
   }
   if (shape->corners == 0) {
     const double r = insert.circle_mm / 2;
-    return InsertOutline{{disc(r * *direction, r)}};
+    return within_reach({{disc(r * *direction, r)}});
   }
   // Counter-clockwise from the nose along the flank of the smaller angle.
   const double low = insert.back_is_ahead ? insert.front_rad : insert.front_rad - shape->nose_rad;
@@ -248,9 +251,9 @@ std::optional<InsertOutline> groove_insert(const GrooveInsert& insert) {
         if (edge.center_mm) edge.center_mm = Vec2(-edge.center_mm->y, edge.center_mm->x);
       }
     }
-    return deep < 0 ? outline : mirrored_in_z(outline);
+    return within_reach(deep < 0 ? outline : mirrored_in_z(outline));
   }
-  return deep > 0 ? outline : mirrored_in_x(outline);
+  return within_reach(deep > 0 ? outline : mirrored_in_x(outline));
 }
 
 std::optional<InsertOutline> thread_insert(const ThreadInsert& insert) {
@@ -270,13 +273,13 @@ std::optional<InsertOutline> thread_insert(const ThreadInsert& insert) {
   part.push_back({{-wide, insert.depth_mm}, std::nullopt, InsertSide::kBody});
   part.push_back({insert.flat_mm > kMinEdge_mm ? low : Vec2(0), std::nullopt, InsertSide::kFront});
   InsertOutline outline{{std::move(part)}};
-  return direction->y > 0 ? outline : mirrored_in_x(outline);
+  return within_reach(direction->y > 0 ? outline : mirrored_in_x(outline));
 }
 
 std::optional<InsertOutline> axial_outline(const Cutter& cutter, double length_mm) {
   InsertOutline outline;
   const double flutes = std::min(cutter.flute_length_mm().value_or(length_mm), length_mm);
-  if (!is_size(length_mm) || cutter.radius_mm() > kMaxInsert_mm) return std::nullopt;
+  if (!is_size(length_mm) || cutter.radius_mm() > kMaxInsertReach_mm) return std::nullopt;
   for (const ProfilePiece& piece : cutter.profile()) {
     if (piece.r1 - piece.r0 < kMinEdge_mm) continue;  // a wall: that of the part before
     const bool is_arc = piece.kind == ProfilePiece::Kind::kArc;
@@ -305,7 +308,7 @@ std::optional<InsertOutline> axial_outline(const Cutter& cutter, double length_m
     outline.parts.push_back(std::move(part));
   }
   if (outline.parts.empty()) return std::nullopt;
-  return outline;
+  return within_reach(std::move(outline));
 }
 
 }  // namespace kerf

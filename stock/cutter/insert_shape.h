@@ -10,7 +10,8 @@
 // so that the nose touches lines through that point parallel to the axes. Angles are LinuxCNC's,
 // in radians: 0 runs along +z, a quarter turn along +x.
 //
-// What has no outline gives none; whoever reads such values from a user says which are allowed.
+// What has no outline, or reaches farther than kMaxInsertReach_mm, gives none; whoever reads such
+// values from a user says which are allowed.
 #pragma once
 
 #include <optional>
@@ -40,10 +41,9 @@ std::optional<InsertOutline> nose_insert(const NoseInsert& insert);
 /// An indexable insert by its shape in ISO 1832, lying so that the flank at its nose runs along
 /// `front_rad`.
 struct IsoInsert {
-  char shape = 'C';  ///< C D E K M P R S T V W
-  double circle_mm =
-      12.7;  ///< inscribed circle; of K the width across the long sides; of R the disc
-  double radius_mm = 0.8;  ///< of every corner
+  char shape = 'C';         ///< C D E K M P R S T V W
+  double circle_mm = 12.7;  ///< inscribed; of K between the long sides; of R the disc's
+  double radius_mm = 0.8;   ///< of every corner
   int orientation = 2;
   double front_rad = 0;
   bool back_is_ahead = false;  ///< the back flank is at front + corner angle; else at front - it

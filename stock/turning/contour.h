@@ -61,7 +61,6 @@ class ContourBuilder {
  private:
   static constexpr std::size_t kRun = 64;
 
-  std::size_t size() const { return count_; }
   const Point& from_end(std::size_t back) const;
   void pop_back();
   void pop_front();

@@ -17,9 +17,9 @@ inline constexpr double kArcBound_mm = 9e-5;
 inline constexpr double kWayBound_mm = 2e-5;
 
 /// An arc as a chain: half a step, `count` - 1 whole ones, half a step. The corners between stick
-/// out so far that the area is that of the arc.
+/// out so far that the area is that of the arc. None of an arc without radius or angle.
 struct ArcSteps {
-  int count = 1;  ///< corners between the ends, at (i + 1/2) step_rad
+  int count = 0;  ///< corners between the ends, at (i + 1/2) step_rad
   double step_rad = 0;
   double outward = 1;  ///< their distance from the centre, over the radius
 };

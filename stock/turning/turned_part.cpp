@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -24,10 +25,9 @@ using turning::Wide;
 
 /// What a lathe may hold.
 constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
-/// The controlled point is followed as far as a tool of 200 mm can reach the farthest blank, and
-/// some more.
-constexpr double kWayReach_mm = 2300;
-static_assert(kWayReach_mm + 200 < turning::kMaxCoordinate_mm);
+/// So far the controlled point is followed: farther away no tool reaches a blank.
+constexpr double kWayReach_mm = kMaxZ_mm + kMaxInsertReach_mm;
+static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
@@ -70,6 +70,7 @@ TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm
 }
 
 TurningTool::TurningTool(const InsertOutline& outline) {
+  assert(outline_reach_mm(outline) <= kMaxInsertReach_mm);
   for (const InsertPart& part : outline.parts) parts_.emplace_back(part);
   for (const InsertPart& part : mirrored_in_x(outline).parts) below_.emplace_back(part);
 }

@@ -39,8 +39,10 @@ enum class ChuckSide : std::uint8_t { kLowZ, kHighZ };
 /// An insert as the part takes it: made once, used for all moves.
 class TurningTool {
  public:
+  /// Of an outline within kMaxInsertReach_mm.
   explicit TurningTool(const InsertOutline& outline);
   /// The same without a border of this width: what touches with it is that much inside the tool.
+  /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
 
  private:
@@ -80,10 +82,10 @@ struct TurnedPiece {
 
 /// Coordinates are whole steps of 10 nm. What straight ways make of edges and noses is exact to
 /// that; the trace that an arc of the outline leaves where it stands keeps within 0.1 um of it, an
-/// arc of the way within 0.02 um, and both keep their area. Volumes are those of the
-/// polygons, exact. Order of moves, cutting twice, and moves in halves change corners by a few
-/// steps. Every move is cut when it is given: any division into calls gives the same bits. One
-/// thread. A copy shares what neither of the two changes, and may go to another thread.
+/// arc of the way within 0.02 um, and both keep their area. Volumes are those of the polygons,
+/// exact. Order of moves, cutting twice, and moves in halves change corners by a few steps. Every
+/// move is cut when it is given: any division into calls gives the same bits. One thread. A copy
+/// shares what neither of the two changes, and may go to another thread.
 ///
 /// Not held: threads (a groove that winds is cut as a ring), a bar that is not round, runout.
 class TurnedPart {

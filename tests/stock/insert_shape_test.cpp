@@ -133,7 +133,8 @@ TEST(InsertShape, rows_that_have_no_outline) {
   EXPECT_FALSE(nose_insert({0, 2, 1, 1, 10}));
   EXPECT_FALSE(nose_insert({0, 9, 0, 0, 10}));
   EXPECT_FALSE(nose_insert({0.4, 2, 1, 2, 0}));
-  EXPECT_TRUE(nose_insert({0.4, 2, 0, 0, 10}));  // a table without angles: a finger along +z
+  EXPECT_FALSE(nose_insert({200, 2, 1, 2, 200}));  // farther than any tool
+  EXPECT_TRUE(nose_insert({0.4, 2, 0, 0, 10}));    // a table without angles: a finger along +z
 }
 
 TEST(InsertShape, iso_sizes_are_lengths_of_edges) {
