@@ -70,7 +70,7 @@ bool Search::was_cut(std::size_t piece, double x, double y, double material) {
 /// The part is over a column that is so high from a to b.
 void Search::meet(std::size_t index, double level, double a, double b) {
   const PartPiece& p = pieces_[index];
-  if (a > b) return;
+  if (a > b || level <= grid_.floor_mm()) return;  // at the floor there is nothing
   const double least = std::min(p.z(a), p.z(b)) + bottom_;
   if (least >= level) return;
   double t = a;
@@ -108,7 +108,7 @@ void Search::scan_tile(std::size_t piece, const PartCells& range, double level) 
     const double y = box.min.y + (j + 0.5) * grid_.cell_y_mm();
     for (int i = range.i0; i <= range.i1; ++i) {
       const double material = static_cast<double>(grid_.height(i, j));
-      if (material <= level || material <= box.min.z) continue;
+      if (material <= level) continue;
       look(piece, box.min.x + (i + 0.5) * grid_.cell_x_mm(), y, material);
     }
   }

@@ -69,7 +69,7 @@ void for_each_high_cell(const TileGrid& grid, std::size_t tile, const PartCells&
     const double y = box.min.y + (j + 0.5) * grid.cell_y_mm();
     for (int i = std::max(i0, cells.i0); i < i0 + kTileCells && i <= cells.i1; ++i) {
       const double material = static_cast<double>(heights[TileGrid::offset(i, j)]);
-      if (material <= level || material <= box.min.z) continue;
+      if (material <= level || material <= grid.floor_mm()) continue;
       visit(box.min.x + (i + 0.5) * grid.cell_x_mm(), y, material);
     }
   }
@@ -110,6 +110,7 @@ class GapSearch {
   std::vector<PartPiece> pieces_;
   std::vector<LevelPiece> levels_;
   double least_mm_;
+  double floor_mm_ = 0;
   std::size_t piece_ = 0;
   double t_ = 0;
   PartWindows cut_;
@@ -196,7 +197,9 @@ void GapSearch::look(const LevelPiece& level, double x, double y, double materia
   const double beside = across(level, x, y) - part_.radius_mm;
   const double bottom = level.z + part_.from_z_mm;
   if (beside >= least_mm_ || gap_of(beside, bottom - material) >= least_mm_) return;
-  const double gap = gap_of(beside, bottom - left_of(x, y, material));
+  const double left = left_of(x, y, material);
+  if (left <= floor_mm_) return;  // there is nothing
+  const double gap = gap_of(beside, bottom - left);
   if (gap >= least_mm_) return;
   least_mm_ = gap;
   piece_ = level.piece;
@@ -205,6 +208,7 @@ void GapSearch::look(const LevelPiece& level, double x, double y, double materia
 
 void GapSearch::run(const TileGrid& grid, TileTops& tops) {
   divide(grid.bounds_mm().max.z);
+  floor_mm_ = grid.floor_mm();
   for (const LevelPiece& level : levels_) {
     const PartPiece& piece = pieces_[level.piece];
     PartPiece part = piece;
