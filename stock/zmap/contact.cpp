@@ -134,7 +134,7 @@ void Scan::scan_tile(int i0, int i1, int j0, int j1) {
     const double y = box.min.y + (j + 0.5) * grid_.cell_y_mm();
     for (int i = i0; i < i1; ++i) {
       const double material = static_cast<double>(grid_.height(i, j));
-      if (material <= low_z_ || material <= box.min.z) continue;
+      if (material <= low_z_ || material <= floor_z_) continue;
       const double x = box.min.x + (i + 0.5) * grid_.cell_x_mm();
       const double near = nearest(x, y);
       if (near > sweep_.tool.radius + half_diagonal_) continue;

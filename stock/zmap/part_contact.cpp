@@ -108,7 +108,7 @@ void Search::scan_tile(std::size_t piece, const PartCells& range, double level) 
     const double y = box.min.y + (j + 0.5) * grid_.cell_y_mm();
     for (int i = range.i0; i <= range.i1; ++i) {
       const double material = static_cast<double>(grid_.height(i, j));
-      if (material <= level) continue;
+      if (material <= level || material <= grid_.floor_mm()) continue;
       look(piece, box.min.x + (i + 0.5) * grid_.cell_x_mm(), y, material);
     }
   }

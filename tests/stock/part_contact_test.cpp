@@ -95,6 +95,21 @@ TEST(PartContact, TellsADeepPlungeToTheHundredth) {
       stock->part_contact(cutter, {3, 12}, line({15, 15, 2}, {15, 15, -18}), kTolerance_mm));
 }
 
+TEST(PartContact, WhereNothingIsNothingIsTouchedBelowTheFloor) {
+  // A quarter of an inch: as a float it is higher than as a double.
+  ZMapOptions options;
+  options.blank = *parse_blank("cylinder:15,15,-6.35:0:30");
+  options.cell_mm = 0.1;
+  const auto stock = std::move(*ZMap::create(options));
+  ASSERT_GT(static_cast<double>(-6.35f), -6.35);
+  const Cutter cutter = *parse_shape("flat:2:flute=5");
+  // In the corner beside the round, its middle 21.2 mm from that of the blank.
+  const CutMove beside = line({-1, 0, -20}, {0, -1, -20});
+  EXPECT_FALSE(stock->part_contact(cutter, {4, 5}, beside, kTolerance_mm));
+  EXPECT_FALSE(stock->first_contact(cutter, beside, kTolerance_mm));
+  EXPECT_TRUE(stock->part_contact(cutter, {7.5, 5}, beside, kTolerance_mm));
+}
+
 TEST(PartContact, TellsWhatStandsAboveTheFlutes) {
   const auto stock = block(0.1);
   const Cutter cutter = *parse_shape("flat:6:flute=8:shank=6");
