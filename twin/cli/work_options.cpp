@@ -125,6 +125,7 @@ void read_machine(const LiveConfig* config, OptionReader& reader, WorkRequest& w
   if (!config) return;
   const ConfigMachine& machine = config->machine;
   work.collisions.rules = {machine.ignore, config->clearances};
+  if (!machine.collisions) return;
   if (machine.drawn.links) {
     work.collisions.machine = bodies_of(*machine.drawn.links, reader.diagnostics());
   } else if (machine.drawn.kind && is_mill(*machine.drawn.kind) && !reader.text("--ini").empty()) {

@@ -155,6 +155,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
+  printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {
     printer.open("ignore");
     for (const NamedPair& pair : machine.ignore) printer.line("- " + pair_text(pair));

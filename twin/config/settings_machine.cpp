@@ -248,6 +248,12 @@ constexpr std::array kMachineSettings{
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
+    Setting{
+        .key = "machine.collisions",
+        .type = T::kYesNo,
+        .fallback = "yes",
+        .purpose = tr_noop("links (of a model only with the travels of an INI) are held against "
+                           "each other, tool, fixtures and workpiece")},
     Setting{.key = "machine.ignore",
             .type = T::kPairs,
             .purpose = tr_noop("pairs that may touch: links and fixtures by their names, tool (or "

@@ -16,12 +16,20 @@ void tell(Diagnostics& diagnostics, Severity severity, std::string message) {
 }
 
 /// False with an error.
-bool add_stl(const LinkSpec& link, LinkBody& body, Diagnostics& diagnostics) {
+bool add_stl(const LinkSpec& link, std::size_t most_triangles, LinkBody& body,
+             Diagnostics& diagnostics) {
   Result<TriangleMesh> mesh = read_stl(link.stl_path, link.mm_per_unit);
   if (!mesh) {
     tell(diagnostics, Severity::kError,
          trf("the link '{}' of the machine cannot be drawn: {}", link.chain.name, mesh.error()));
     return false;
+  }
+  if (mesh->triangles.size() > most_triangles) {
+    tell(diagnostics, Severity::kNote,
+         trf("the link '{}': {} has {} triangles; for collisions {} are the most, and it is left "
+             "out there",
+             link.chain.name, link.stl_path, mesh->triangles.size(), most_triangles));
+    return true;
   }
   for (glm::vec3& corner : mesh->positions_mm) corner += glm::vec3(link.mesh_offset_mm);
   body.solids.push_back(Solid::of_mesh(*mesh));
@@ -36,7 +44,8 @@ bool add_stl(const LinkSpec& link, LinkBody& body, Diagnostics& diagnostics) {
 
 }  // namespace
 
-MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& diagnostics) {
+MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& diagnostics,
+                               std::size_t most_triangles) {
   Result<KinematicChain> chain = KinematicChain::create(
       description.links_of_chain(), description.workpiece_on, description.tool_on);
   if (!chain) {
@@ -49,7 +58,8 @@ MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& di
     const LinkSpec& link = description.links[i];
     LinkBody body{link.chain.name, i, {}};
     if (!link.bodies.empty()) body.solids.push_back(Solid::of_bodies(link.bodies));
-    if (!link.stl_path.empty()) complete = add_stl(link, body, diagnostics) && complete;
+    if (!link.stl_path.empty())
+      complete = add_stl(link, most_triangles, body, diagnostics) && complete;
     if (!body.solids.empty()) machine->bodies.push_back(std::move(body));
   }
   if (!complete) return nullptr;

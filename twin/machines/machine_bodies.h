@@ -31,8 +31,11 @@ struct MachineBodies {
 using MachineBodiesPointer = std::shared_ptr<const MachineBodies>;
 
 /// Reads the STL files. Boxes and cylinders are taken exactly, meshes by their triangles. Null with
-/// an error as linked_machine() has them. Notes: meshes with holes, of which the surface counts.
-MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& diagnostics);
+/// an error as linked_machine() has them. Notes: meshes with holes, of which the surface counts;
+/// meshes of more than `most_triangles`, which are left out.
+inline constexpr std::size_t kMostLinkTriangles = 2'000'000;
+MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& diagnostics,
+                               std::size_t most_triangles = kMostLinkTriangles);
 
 /// Of a machine that is built in: guessed.
 MachineBodiesPointer bodies_of(const MachineModel& model);

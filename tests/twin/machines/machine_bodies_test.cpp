@@ -77,6 +77,15 @@ TEST(MachineBodies, MeshesAreReadAndPlaced) {
   EXPECT_NEAR(solid.box_mm().min.x, 1, 1e-4);
   EXPECT_NEAR(solid.box_mm().max.x, 51.8, 1e-4);
 
+  // Too many triangles: drawn, but left out here.
+  const MachineBodiesPointer less = bodies_of(machine, diagnostics, 11);
+  ASSERT_TRUE(less);
+  EXPECT_EQ(less->bodies[2].solids.size(), 1U);
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(diagnostics[0].severity, Severity::kNote);
+  EXPECT_NE(diagnostics[0].message.find("has 12 triangles"), std::string::npos);
+  diagnostics.clear();
+
   machine.links[3].stl_path = folder / "gone.stl";
   EXPECT_FALSE(bodies_of(machine, diagnostics));
   ASSERT_EQ(diagnostics.size(), 1U);
