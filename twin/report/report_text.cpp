@@ -137,8 +137,10 @@ void add_clearances(std::string& out, const Report& report) {
   }
   const char* head = tr("clearance ");
   for (const CollisionPair* row : nearest) {
-    const std::string what =
-        row->first.empty() ? trf("{} of tool {}", name_of(row->part), row->tool) : row->first;
+    const std::string what = row->first.empty()
+                                 ? trf("{} of tool {}", name_of(row->part), row->tool)
+                             : row->first == "workpiece" ? std::string(tr("the workpiece"))
+                                                         : row->first;
     if (row->contacts > 0) {
       out += trf("{}{}: touched by {}, line {}\n", head, row->other, what, row->source.line);
     } else {
