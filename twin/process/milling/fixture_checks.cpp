@@ -241,8 +241,9 @@ void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std
   log_.deepen(*pair.event, pair.depth_mm);
 }
 
-void FixtureChecks::forget() {
-  for (Pair& pair : pairs_) pair.event.reset();
+void FixtureChecks::begin_reporting() {
+  unmount();
+  pairs_.clear();
 }
 
 void FixtureChecks::finish() {

@@ -34,8 +34,8 @@ class FixtureChecks {
   }
   bool checks_spindle() const;
   void check(const CheckedMove& move);
-  /// What goes on is forgotten: the next trouble is a new event.
-  void forget();
+  /// What has been found is forgotten, and how near anything came.
+  void begin_reporting();
   /// The program is over: what came near without touching is told.
   void finish();
   /// Rows of all tools so far, in the order of their first use.

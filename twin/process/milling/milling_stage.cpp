@@ -68,7 +68,7 @@ void MillingStage::begin_reporting() {
   lengths_.forget();
   films_.forget();
   parts_.begin_reporting();
-  fixtures_.unmount();
+  fixtures_.begin_reporting();
   machine_.forget();
   program_.forget_events();
   speed_unsaid_.reset();
