@@ -17,7 +17,7 @@ namespace kerf::turning {
 class ConvexRegion {
  public:
   /// Of corners that go round counter-clockwise; where rounding has made them hollow they are
-  /// bridged. empty() where less than a triangle is left.
+  /// bridged. Of any others it is the convex hull. empty() where less than a triangle is left.
   void assign(std::vector<Point>& corners);
 
   bool empty() const { return corners_.size() < 3; }
@@ -52,6 +52,9 @@ class ConvexRegion {
   /// Whether the inner point lies to the right of the line, on which a corner lies: then the larger
   /// region's corner lies to the left.
   bool is_right_of_inside(const Point& a, const Point& b) const;
+  void bridge(const std::vector<Point>& corners);
+  bool runs_once_round();
+  void hull(const std::vector<Point>& there_and_back, std::size_t n);
 
   std::vector<Point> corners_;  // from the one of lowest z, of these the lowest
   std::size_t rightmost_ = 0;   // the one of highest z, of these the highest

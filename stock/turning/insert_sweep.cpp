@@ -19,10 +19,11 @@ double turn_of(const Vec2& from, const Vec2& to) {
   return angle > 0 ? angle : angle + 2 * kPi;
 }
 
-/// Sign of d x e.
-int side_of(const Point& d, const Point& e) {
-  const std::int64_t cross = static_cast<std::int64_t>(d.X * e.Y - d.Y * e.X);
-  return cross > 0 ? 1 : cross < 0 ? -1 : 0;
+std::int64_t cross(const Point& a, const Point& b) {
+  return static_cast<std::int64_t>(a.X * b.Y - a.Y * b.X);
+}
+std::int64_t dot(const Point& a, const Point& b) {
+  return static_cast<std::int64_t>(a.X * b.X + a.Y * b.Y);
 }
 
 }  // namespace
@@ -99,7 +100,6 @@ void GridPart::touch(const Vec2& normal, std::vector<Point>& corners) const {
 void GridPart::sweep(const Point& from, const Point& to, Scratch& scratch, ConvexRegion& swept,
                      Lead& lead) const {
   std::vector<Point>&touched = scratch.touched, &corners = scratch.swept;
-  std::vector<int>& leads = scratch.leads;
   const std::size_t n = corners_.size();
   const Point way{to.X - from.X, to.Y - from.Y};
   const double length = std::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
@@ -116,38 +116,35 @@ void GridPart::sweep(const Point& from, const Point& to, Scratch& scratch, Conve
   touched.assign(corners_.begin(), corners_.end());
   touch({-ahead.y, ahead.x}, touched);
   touch({ahead.y, -ahead.x}, touched);
-  // 1: the edge from this corner leads, -1: it trails.
-  leads.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point &p = touched[i], &q = touched[i + 1 == n ? 0 : i + 1];
-    leads[i] = side_of(way, {q.X - p.X, q.Y - p.Y});
+  // The corners farthest to either side, of these the one that is ahead: between them leads, what
+  // comes after the left one trails. Where rounding has made a small arc hollow, it may do so.
+  const auto is_beyond = [&](int side, const Point& p, const Point& q) {
+    const std::int64_t across = side * cross(way, {p.X - q.X, p.Y - q.Y});
+    return across != 0 ? across > 0 : dot(way, {p.X - q.X, p.Y - q.Y}) > 0;
+  };
+  std::size_t right = 0, left = 0;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (is_beyond(-1, touched[i], touched[right])) right = i;
+    if (is_beyond(1, touched[i], touched[left])) left = i;
   }
-  std::size_t first = 0;  // of the edges that lead
-  while (first < n && !(leads[first] > 0 && leads[first == 0 ? n - 1 : first - 1] <= 0)) ++first;
-  if (first == n) first = 0;
-  // Leading edges end where the tool does, the others where it begins.
-  std::size_t i = first;
   const auto next = [n](std::size_t k) { return k + 1 == n ? 0 : k + 1; };
-  const auto across = [&](const Point& p) {
-    return ahead.x * static_cast<double>(p.Y + from.Y) -
-           ahead.y * static_cast<double>(p.X + from.X);
-  };
-  const auto along = [&](const Point& p) {
-    return ahead.x * static_cast<double>(p.X + from.X) +
-           ahead.y * static_cast<double>(p.Y + from.Y);
-  };
-  const auto add_lead = [&](const Point& p) {
+  const auto add_lead = [&](const Point& p, InsertSide side) {
     corners.push_back({p.X + to.X, p.Y + to.Y});
-    lead.across.push_back(across(p));
-    lead.along.push_back(along(p));
+    const auto z = static_cast<double>(p.X + from.X), r = static_cast<double>(p.Y + from.Y);
+    const double across = ahead.x * r - ahead.y * z;
+    if (!lead.across.empty()) {
+      if (across <= lead.across.back()) return;
+      lead.sides.push_back(side);
+    }
+    lead.across.push_back(across);
+    lead.along.push_back(ahead.x * z + ahead.y * r);
   };
-  add_lead(touched[i]);
-  for (; leads[i] > 0; i = next(i)) {
-    add_lead(touched[next(i)]);
-    lead.sides.push_back(sides_[next(i)]);
-  }
-  for (; i != first; i = next(i)) corners.push_back({touched[i].X + from.X, touched[i].Y + from.Y});
-  corners.push_back({touched[first].X + from.X, touched[first].Y + from.Y});
+  // Leading edges end where the tool does, the others where it begins.
+  for (std::size_t i = right; i != left; i = next(i)) add_lead(touched[i], sides_[i]);
+  add_lead(touched[left], sides_[left]);
+  for (std::size_t i = left; i != right; i = next(i))
+    corners.push_back({touched[i].X + from.X, touched[i].Y + from.Y});
+  corners.push_back({touched[right].X + from.X, touched[right].Y + from.Y});
   swept.assign(corners);
 }
 

@@ -45,7 +45,6 @@ class GridPart {
   /// Kept between sweeps for its memory.
   struct Scratch {
     std::vector<Point> touched, swept;
-    std::vector<int> leads;
   };
 
   /// What it sweeps while the controlled point goes straight from one place to the other. `lead` is

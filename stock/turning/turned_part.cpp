@@ -145,16 +145,25 @@ turning::Engagement TurnedPart::each_swept(const TurningTool& tool, const TurnMo
   return whole;
 }
 
+/// Whether what is hardly there leaves less when it is cut: corners are rounded either way.
+bool TurnedPart::thins() const {
+  std::vector<Contour> rest = contours_;
+  scratch_.cut.apply(rest);
+  Wide after = 0;
+  for (const Contour& contour : rest) after += contour.moment6();
+  return after < moment6();
+}
+
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
   const turning::Engagement engagement =
-      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement&) {
+      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
+        if (!met.any && !thins()) return;
         touch_bands(scratch_.cut.changed());
         scratch_.cut.apply(contours_);
       });
-  // Corners are rounded either way: what is cut may become larger by some of their steps.
   report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()), 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;

@@ -54,7 +54,9 @@ class TurningTool {
 /// What one move did.
 struct TurnCut {
   std::uint64_t id = 0;
-  double removed_mm3 = 0;  ///< by the insert, without what came free
+  /// By the insert, without what came free. Corners are rounded either way, so where next to
+  /// nothing is cut the part may become larger by some steps of them: that is 0.
+  double removed_mm3 = 0;
   /// The depth of cut: how wide the material before the tool was at once (on the average of 10 um
   /// of its way), measured across its way. So it is radial for turning along the axis, axial for
   /// facing, and a groove's width for plunging. Of an outline of several parts that of the one that
@@ -153,6 +155,7 @@ class TurnedPart {
   template <class Each>
   turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
   turning::Wide moment6() const;
+  bool thins() const;
   void drop_free_pieces(std::uint64_t id);
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;

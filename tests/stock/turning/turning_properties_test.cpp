@@ -156,6 +156,49 @@ TEST(TurningProperties, copies_are_cut_apart_and_share_the_rest) {
   }
 }
 
+/// Contours cross neither themselves nor each other, sides add up to at least the depth, and what
+/// is gone was removed or fell: also with noses of some grid steps, and in ways of hundreds of
+/// moves.
+TEST(TurningProperties, contours_stay_simple) {
+  for (const double r : {0.0, 0.0005, 0.01, 0.4}) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> unit(-1, 1);
+      TurnedPart part = *TurnedPart::create(tube_profile(-30, 0, 40, 1));
+      const TurningTool tool(*iso_insert({"CDEKMPSTVW"[seed], 9.525, r, 2, radians(93)}));
+      Vec2 at(2, 22);
+      double gone = 0;
+      for (unsigned i = 0; i < 120; ++i) {
+        TurnMove move = line(at, at + Vec2(3 * unit(random) - 0.05, 2 * unit(random)), i);
+        move.to_mm = glm::clamp(move.to_mm, Vec2(-28, 4), Vec2(3, 22));
+        if (i % 3 == 0) move.to_mm.x = at.x;
+        if (i % 7 == 3)
+          move = arc(at, at + 2.0 * Vec2(unit(random), unit(random)), 0.3 * unit(random), i);
+        at = move.to_mm;
+        const TurnCut cut = part.cut(tool, move);
+        gone += cut.removed_mm3;
+        ASSERT_GE(cut.removed_mm3, 0);
+        double sides = 0;
+        for (const double side : cut.side_mm) sides += side;
+        ASSERT_LE(cut.depth_mm, sides + 0.02) << "r " << r << " seed " << seed << " move " << i;
+      }
+      for (const TurnedPiece& piece : part.freed()) gone += piece.volume_mm3;
+      // But for moves that cut next to nothing.
+      EXPECT_NEAR(part.blank_mm3() - gone, part.remaining_mm3(), rounding_mm3(part));
+      turning::Rings rings, simple;
+      std::int64_t area2 = 0, simple2 = 0;
+      for (const turning::Contour& contour : part.contours()) {
+        rings.push_back(contour.ring());
+        area2 += contour.area2();
+      }
+      ClipperLib::SimplifyPolygons(rings, simple, ClipperLib::pftNonZero);
+      for (const turning::Ring& ring : simple) simple2 += plane::twice_area(ring);
+      EXPECT_EQ(area2, simple2) << "r " << r << " seed " << seed;
+      EXPECT_EQ(part.library_calls(), 0u);
+    }
+  }
+}
+
 TEST(TurningProperties, bands_tell_where_something_changed) {
   TurnedPart part = *TurnedPart::create(bar_profile(-64, 0, 40));  // bands of 1 mm
   const TurnedPart before = part;
