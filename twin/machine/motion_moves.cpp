@@ -34,17 +34,17 @@ MotionMoves MotionMoves::of(const StockModel& stock,
 }
 
 bool MotionMoves::append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
-                         std::vector<CutMove>& out) const {
-  return append_reaching(motion, reach_mm(cutter), id, out);
+                         std::vector<CutMove>& out, std::vector<double>* ends) const {
+  return append_reaching(motion, reach_mm(cutter), id, out, ends);
 }
 
 bool MotionMoves::append_reaching(const Motion& motion, double reach_mm, std::uint64_t id,
-                                  std::vector<CutMove>& out) const {
+                                  std::vector<CutMove>& out, std::vector<double>* ends) const {
   if (is_upright(motion)) {
     out.push_back(cut_move_from(motion, id));
     return true;
   }
-  return path_->moves_of(motion, reach_mm, id, out);
+  return path_->moves_of(motion, reach_mm, id, out, ends);
 }
 
 double MotionMoves::reach_mm(const Cutter& cutter) {

@@ -52,13 +52,13 @@ class MotionMoves {
   const OrderedMoves* ordered() const { return ordered_.get(); }
   /// Appends the moves of a motion that moves the tip, all with this id. Not where the motions
   /// before count: ordered(). False, and nothing is appended: there are too many
-  /// (ToolPath::moves_of()).
+  /// (ToolPath::moves_of()). `ends`, if given: as there, and nothing for an upright motion.
   bool append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
-              std::vector<CutMove>& out) const;
+              std::vector<CutMove>& out, std::vector<double>* ends = nullptr) const;
 
   /// The same, divided so that all that is within `reach_mm` of the tip is within the tolerance.
   bool append_reaching(const Motion& motion, double reach_mm, std::uint64_t id,
-                       std::vector<CutMove>& out) const;
+                       std::vector<CutMove>& out, std::vector<double>* ends = nullptr) const;
 
   /// Of a machine over this model: as the machine moves, while nothing turns if the model does not
   /// take tilted tools (null: every motion is upright). The machine can have that frame.

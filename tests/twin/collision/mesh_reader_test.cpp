@@ -15,7 +15,7 @@
 
 #include "tests/base/temporary_folder.h"
 #include "tests/base/zip_writer.h"
-#include "tests/twin/scene/machines/mesh_support.h"
+#include "tests/twin/machines/mesh_support.h"
 #include "twin/collision/solid.h"
 
 namespace kerf {

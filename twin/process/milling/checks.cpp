@@ -107,7 +107,7 @@ Finding Checks::finding_at(FindingId id, const CheckedMove& move, const Vec3& pl
   finding.severity = severity_of(id, grounds);
   finding.text = std::move(text) + doubt_of(id, grounds);
   finding.source = move.motion.source;
-  finding.time_s = move.step.start_s + fraction * move.step.duration_s;
+  finding.time_s = move.step.time_at(fraction);
   finding.position_mm = place;
   finding.tool = move.tool;
   return finding;
@@ -136,8 +136,7 @@ std::optional<Checks::Touch> Checks::first_touch(const CheckedMove& move) const 
   const double within = move.moves.size() == 1
                             ? fraction_of(move.motion, met->contact.tip_mm, move.step.length_mm)
                             : 0;
-  return Touch{met->contact,
-               (static_cast<double>(met->move) + within) / static_cast<double>(move.moves.size())};
+  return Touch{met->contact, move.share_of(met->move, within)};
 }
 
 bool Checks::check_traverse(const CheckedMove& move) {

@@ -196,10 +196,8 @@ void FixtureChecks::note_least(Pair& pair, const CheckedMove& move, std::size_t 
   pair.row.source = move.motion.source;
   if (gap.mm >= pair.near_mm) return;
   Finding& near = pair.nearest;
-  const auto count = static_cast<double>(move.moves.size());
   near.source = move.motion.source;
-  near.time_s =
-      move.step.start_s + (static_cast<double>(which) + gap.t) / count * move.step.duration_s;
+  near.time_s = move.time_s(which, gap.t);
   near.position_mm = way.tool_way.pose(gap.t).origin_mm;
   near.tool = tool_;
 }
@@ -208,7 +206,6 @@ void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std
                          const Way& way, double t) {
   const std::string& name = pair.row.other;
   if (!pair.event) {
-    const auto count = static_cast<double>(move.moves.size());
     const Grounds grounds{false, guessed_};
     Finding finding;
     finding.id = FindingId::kFixtureContact;
@@ -217,8 +214,7 @@ void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std
         contact_text(name_of(part.body.part), pair.width_mm, pair.from_z_mm, part.body.part, name) +
         doubt_of(finding.id, grounds);
     finding.source = move.motion.source;
-    finding.time_s =
-        move.step.start_s + (static_cast<double>(which) + t) / count * move.step.duration_s;
+    finding.time_s = move.time_s(which, t);
     finding.position_mm = way.tool_way.pose(t).origin_mm;
     finding.tool = tool_;
     finding.bodies = {to_string(part.body.part), name};

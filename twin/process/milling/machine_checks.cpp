@@ -393,7 +393,7 @@ Finding MachineChecks::finding_of(const WorkingPair& pair, double t) const {
   Finding finding;
   finding.id = pair.id;
   finding.source = motion_->source;
-  finding.time_s = step_->start_s + t * step_->duration_s;
+  finding.time_s = step_->time_at(t);
   finding.position_mm =
       moves_are_known_ ? runs_->path().pose_at(*motion_, t).origin_mm : point_at(*motion_, t);
   const CollisionPair& row = pair.row;

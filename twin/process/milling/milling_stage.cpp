@@ -174,7 +174,7 @@ void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
     return;
   }
   if (!divide(m, step)) return;
-  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
+  const CheckedMove move = checked(m, step);
   check_parts(m, move);
   if (!comes_near(m)) {
     check_length(m, step, false);
@@ -201,7 +201,7 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!site_.watched) program_.feeds(m, step, mounted_->number);
   site_.feeds.note(m, step);
   if (!divide(m, step)) return;
-  const CheckedMove move{m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed};
+  const CheckedMove move = checked(m, step);
   if (!reached_stock_) note_reach(m);
   if (!site_.watched) note_contact(move);
   check_parts(m, move);
@@ -226,18 +226,22 @@ void MillingStage::check_parts(const Motion& m, const CheckedMove& cut) {
   }
   // What turns is divided so that its flutes are where they should be; what is far above them needs
   // shorter pieces for that.
-  std::span<const CutMove> moves = divided_;
+  CheckedMove move = cut;
   const double reach_mm = upright ? 0 : parts_.reach_mm();
   if (reach_mm > MotionMoves::reach_mm(cut.cutter)) {
     finer_.clear();
-    if (site_.moves.append_reaching(m, reach_mm, 0, finer_)) moves = finer_;
+    finer_ends_.clear();
+    if (site_.moves.append_reaching(m, reach_mm, 0, finer_, &finer_ends_)) {
+      move.moves = finer_;
+      move.ends = finer_ends_;
+    }
   }
-  if (!parts_.may_matter(moves)) {
+  if (!parts_.may_matter(move.moves)) {
     parts_.pass(m);
     return;
   }
   complete();
-  parts_.check({cut.motion, cut.step, cut.cutter, moves, cut.tool, cut.tool_guessed});
+  parts_.check(move);
 }
 
 /// Of all motions, whatever they are cut with.
@@ -279,9 +283,14 @@ ProbeAnswer MillingStage::answer(const ProbeQuestion& question) {
 /// What it is cut as. False: it turns so far that it cannot be.
 bool MillingStage::divide(const Motion& m, const TimedStep& step) {
   divided_.clear();
-  const bool done = site_.moves.append(m, *mounted_->cutter, 0, divided_);
+  ends_.clear();
+  const bool done = site_.moves.append(m, *mounted_->cutter, 0, divided_, &ends_);
   if (!done) report_endless_turn(m, step);
   return done;
+}
+
+CheckedMove MillingStage::checked(const Motion& m, const TimedStep& step) const {
+  return {m, step, *mounted_->cutter, divided_, mounted_->number, mounted_->guessed, ends_};
 }
 
 bool MillingStage::comes_near(const Motion& m) const {

@@ -96,6 +96,7 @@ class MillingStage final : public Process {
   void announce(const ResolvedTool& tool, const Motion& motion);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool divide(const Motion& motion, const TimedStep& step);
+  CheckedMove checked(const Motion& motion, const TimedStep& step) const;
   bool comes_near(const Motion& motion) const;
   void note_reach(const Motion& motion);
   void report_endless_turn(const Motion& motion, const TimedStep& step);
@@ -119,6 +120,7 @@ class MillingStage final : public Process {
   ToolResolver& resolver_;
   FindingLog& log_;
   std::vector<CutMove> divided_;     ///< the present motion
+  std::vector<double> ends_;         ///< CheckedMove::ends of it
   std::span<const PathPiece> path_;  ///< of it
   Checks checks_;
   ProgramChecks program_;
@@ -138,6 +140,7 @@ class MillingStage final : public Process {
   MachineChecks machine_;
   std::vector<ToolSection> spindle_;
   std::vector<CutMove> finer_;  ///< the present motion, for what is far above the tip
+  std::vector<double> finer_ends_;
   bool cut_by_shank_ = false;
   std::optional<Cutter> shank_;  ///< the tool in the spindle, where its shank cuts as well
   std::set<int> shank_told_;     ///< tools whose shank should cut, and does not

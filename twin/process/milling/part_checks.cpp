@@ -237,7 +237,7 @@ void PartChecks::meet(std::size_t index, const CheckedMove& move, const PartCont
     finding.text =
         text_of(part.id, part.width_mm, part.body.from_z_mm) + doubt_of(part.id, grounds);
     finding.source = move.motion.source;
-    finding.time_s = move.step.start_s + fraction * move.step.duration_s;
+    finding.time_s = move.step.time_at(fraction);
     finding.position_mm = contact.tip_mm;
     finding.tool = move.tool;
     CollisionPair& row = table_[part.row];
@@ -264,10 +264,8 @@ void PartChecks::measure(const Part& part, const CheckedMove& move, std::size_t 
   row.least_clearance_mm = gap->mm;
   row.source = move.motion.source;
   Finding& near = nearest_[part.row];
-  const double fraction =
-      (static_cast<double>(which) + gap->t) / static_cast<double>(move.moves.size());
   near.source = move.motion.source;
-  near.time_s = move.step.start_s + fraction * move.step.duration_s;
+  near.time_s = move.time_s(which, gap->t);
   near.position_mm = gap->tip_mm;
   near.tool = move.tool;
   near.text = doubt_of(FindingId::kHolderContact, {blank_guessed_, move.tool_guessed});
@@ -290,7 +288,6 @@ void PartChecks::finish() {
 }
 
 void PartChecks::check(const CheckedMove& move) {
-  const auto count = static_cast<double>(move.moves.size());
   bool touched[4] = {};
   const auto kind_of = [](FindingId id) {
     return id == FindingId::kHolderContact    ? 0
@@ -319,7 +316,7 @@ void PartChecks::check(const CheckedMove& move) {
         continue;
       }
       contact->depth_mm += known;
-      met.push_back({k, *contact, (static_cast<double>(i) + contact->t) / count});
+      met.push_back({k, *contact, move.share_of(i, contact->t)});
     }
   }
   // What comes first on the move begins the event.
