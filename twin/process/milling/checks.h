@@ -22,6 +22,9 @@ namespace kerf {
 /// single precision: 0.01 mm is above all that happens to a rapid that only retraces a cut surface,
 /// and below anything that marks a part.
 inline constexpr double kContactTolerance_mm = 0.01;
+/// Where a contact begins, a body counts as so much thinner: what a program writes down is rounded,
+/// and what runs along another body does not touch it.
+inline constexpr double kContactRounding_mm = 1e-4;
 
 /// What a finding about a contact rests on.
 struct Grounds {

@@ -15,8 +15,6 @@ namespace {
 constexpr double kGrain_mm = 0.005;
 /// Nearer than this may be a contact.
 constexpr double kContactGap_mm = 1e-3;
-/// Of places that a program writes down: what runs along a fixture does not touch it.
-constexpr double kRounding_mm = 1e-4;
 /// How far beyond the least distance it is looked, so that moves that follow need no look.
 constexpr double kAhead_mm = 2;
 
@@ -112,7 +110,7 @@ void FixtureChecks::mount(const Cutter& cutter, int tool, bool guessed, double n
   for (ToolBody& body : tool_bodies(cutter, wishes_.spindle, nose_mm)) {
     Mounted part;
     part.thin = thinner(*body.solid, kContactTolerance_mm);
-    part.bare = thinner(*body.solid, kRounding_mm);
+    part.bare = thinner(*body.solid, kContactRounding_mm);
     for (const Convex& piece : body.solid->pieces())
       part.reach_mm = std::max(part.reach_mm, reach_of(piece));
     for (std::size_t i = 0; i < count; ++i) part.pairs.push_back(pair_of(tool, body, i));

@@ -356,15 +356,18 @@ void MachineChecks::look_near(WorkingPair& pair, const LinkWay& way) {
     if (least->mm < counts) note_least(pair, *least);
     if (least->mm > kTouchGap_mm) return;
   }
-  if (const auto t = touch(pair, way)) meet(pair, way, *t);
+  // What grazes has gone a long way before it is as deep as a contact must be.
+  if (const auto t = touch(pair, way, kContactTolerance_mm))
+    meet(pair, way, pair.event ? *t : touch(pair, way, kContactRounding_mm).value_or(*t));
 }
 
-/// Deeper than what counts as none.
-std::optional<double> MachineChecks::touch(const WorkingPair& pair, const LinkWay& way) {
+/// Deeper than so much.
+std::optional<double> MachineChecks::touch(const WorkingPair& pair, const LinkWay& way,
+                                           double thinner_mm) {
   std::optional<double> first;
   for (const SolidPointer& moving : pairs_.bodies()[pair.moving].solids) {
     for (const SolidPointer& still : pairs_.bodies()[pair.still].solids) {
-      const auto t = first_touch(*moving, way, *still, kContactTolerance_mm);
+      const auto t = first_touch(*moving, way, *still, thinner_mm);
       if (t && (!first || *t < *first)) first = t;
     }
   }
@@ -374,14 +377,17 @@ std::optional<double> MachineChecks::touch(const WorkingPair& pair, const LinkWa
 /// The blank's box is touched: is there anything of the workpiece?
 void MachineChecks::look_at_workpiece(WorkingPair& pair, const LinkWay& way) {
   const std::vector<SolidPointer>& solids = pairs_.bodies()[pair.moving].solids;
-  if (!touch(pair, way)) return;
-  std::optional<double> first;
-  for (const SolidPointer& moving : solids) {
-    const auto t = surface_.first_touch(*moving, way, kContactTolerance_mm);
-    if (t && (!first || *t < *first)) first = t;
-  }
-  if (first) {
-    meet(pair, way, *first);
+  if (!touch(pair, way, kContactTolerance_mm)) return;
+  const auto first_by = [&](double thinner_mm) {
+    std::optional<double> first;
+    for (const SolidPointer& moving : solids) {
+      const auto t = surface_.first_touch(*moving, way, thinner_mm);
+      if (t && (!first || *t < *first)) first = t;
+    }
+    return first;
+  };
+  if (const auto first = first_by(kContactTolerance_mm)) {
+    meet(pair, way, pair.event ? *first : first_by(kContactRounding_mm).value_or(*first));
     return;
   }
   pair.spare_mm = WorkpieceSurface::kFarthest_mm;

@@ -68,7 +68,7 @@ class MachineChecks {
   void look_near(WorkingPair& pair, const LinkWay& way);
   void look_at_workpiece(WorkingPair& pair, const LinkWay& way);
   double gap(const WorkingPair& pair, const Pose& pose, double cutoff_mm);
-  std::optional<double> touch(const WorkingPair& pair, const LinkWay& way);
+  std::optional<double> touch(const WorkingPair& pair, const LinkWay& way, double thinner_mm);
   void note_least(WorkingPair& pair, const LeastGap& gap);
   void meet(WorkingPair& pair, const LinkWay& way, double t);
   void deepen(WorkingPair& pair, const LinkWay& way);
