@@ -58,6 +58,14 @@ struct LiveViewOptions {
   std::function<void(const std::string&)> on_open;
 };
 
+/// Of a machine, for Moment::link_poses: where it stands while the tool is there. Empty: it cannot
+/// stand so.
+std::vector<glm::mat4> machine_poses_at(const MachineModel& machine, const ToolState& place,
+                                        const WorkpieceFrame& work, double tool_length_mm);
+/// The workpiece lies on its link where a machine of machine.links was told that it does: else what
+/// stands on links is elsewhere.
+bool lies_as_built(const MachineModel& machine, const WorkpieceFrame& work);
+
 /// Takes what LiveSession shows and passes all of it on to another observer. The session's thread
 /// pays for a snapshot of the workpiece (microseconds) sixty times a second; patches are made in a
 /// thread of the view's.
