@@ -7,7 +7,7 @@
 
 #include "stock/cutter/shape_spec.h"
 #include "tests/twin/playback/tracks.h"
-#include "twin/machines/linked_machine.h"
+#include "tests/twin/scene/machine_with_arm.h"
 #include "twin/machines/machine_bodies.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/finding_view.h"
@@ -89,40 +89,15 @@ TEST(FindingView, ASpindleIsShownInPart) {
   EXPECT_NEAR(finding_view(shot, watch).frame_mm.max.z, -2 + 45, 1e-6) << "not where it is free";
 }
 
-LinkedMachine machine_with_arm() {
-  const auto link = [](std::string name, std::string parent, JointKind joint, std::uint8_t input,
-                       Vec3 direction, Box box) {
-    LinkSpec spec;
-    spec.chain = {std::move(name), std::move(parent), joint, input, false, direction};
-    spec.bodies.emplace_back().bounds_mm = box;
-    return spec;
-  };
-  LinkedMachine machine;
-  machine.workpiece_on = "table";
-  machine.tool_on = "head";
-  machine.links = {
-      link("frame", "", JointKind::kFixed, 0, {0, 0, 1}, {{-80, 150, -400}, {80, 250, 300}}),
-      link("table", "frame", JointKind::kPrismatic, 0, {-1, 0, 0},
-           {{-200, -80, -229}, {200, 80, -200}}),
-      link("head", "frame", JointKind::kPrismatic, 2, {0, 0, 1}, {{60, -20, -80}, {90, 20, 20}})};
-  return machine;
-}
-
-/// The work zero is at -150 of the machine, so the table's top at -50 of the work.
-std::shared_ptr<const MachineModel> drawn_with_arm() {
-  Diagnostics diagnostics;
-  auto model = linked_machine(machine_with_arm(), shift({0, 0, -150}), diagnostics);
-  return std::make_shared<const MachineModel>(std::move(*model));
-}
-
-/// A vise on the table, X80..120 of its frame and its top at Z10 of the work; the head's arm
+/// The work zero is at -150 of the machine, so the table's top at -50 of the work. A vise on it,
+/// X80..120 of its frame and its top at Z10 of the work; the head's arm
 /// reaches from X60 to X90, to 80 below the nose and so 30 below a tip of 50.
 CollisionWishes with_vise_on_table() {
   const FixtureSpec vise[] = {parse_fixture("vise=box:80,-20,-200:120,20,-140:on=table").value()};
   Diagnostics diagnostics;
   CollisionWishes wishes;
   wishes.fixtures = load_fixtures(vise, diagnostics);
-  wishes.machine = bodies_of(machine_with_arm(), diagnostics);
+  wishes.machine = bodies_of(test::machine_with_arm(), diagnostics);
   return wishes;
 }
 
@@ -140,7 +115,7 @@ FindingShot shot_at_vise(const MachineModel& machine) {
 }
 
 TEST(FindingView, OfAMachineShowsTheTwoBodiesWhereTheyTouch) {
-  const auto machine = drawn_with_arm();
+  const auto machine = test::drawn_with_arm({0, 0, -150});
   const CollisionWishes wishes = with_vise_on_table();
   BodyWatch watch(wishes);
   watch.set_machine(std::make_shared<const SceneMachine>(scene_machine(*machine)));
@@ -167,7 +142,7 @@ TEST(FindingView, OfAMachineShowsTheTwoBodiesWhereTheyTouch) {
 }
 
 TEST(FindingView, OfALinkInTheWorkpieceShowsWhere) {
-  const auto machine = drawn_with_arm();
+  const auto machine = test::drawn_with_arm({0, 0, -150});
   const CollisionWishes wishes = with_vise_on_table();
   BodyWatch watch(wishes);
   watch.set_machine(std::make_shared<const SceneMachine>(scene_machine(*machine)));
@@ -226,7 +201,7 @@ TEST(FindingPicture, BothBodiesAreRed) {
 
 TEST(FindingPicture, BothBodiesOfAMachineAreRed) {
   unsetenv("DISPLAY");
-  const auto machine = drawn_with_arm();
+  const auto machine = test::drawn_with_arm({0, 0, -150});
   Result<FindingPictures> pictures =
       FindingPictures::create(with_vise_on_table(), machine, {640, 480});
   ASSERT_TRUE(pictures) << pictures.error();
