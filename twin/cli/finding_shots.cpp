@@ -212,7 +212,9 @@ void FindingShots::on_finding(const Finding& finding, const std::vector<std::str
     if (tool.cutter) shot.cutter = std::make_shared<const Cutter>(*tool.cutter);
   }
   if (machine_ && place_.known && lies_as_built(*machine_, work_)) {
-    shot.link_poses = machine_poses_at(*machine_, place_, work_,
+    ToolState there = place_;  // the way to it is that of a sample at most
+    there.tip_mm = there.tool_pose.origin_mm = *finding.position_mm;
+    shot.link_poses = machine_poses_at(*machine_, there, work_,
                                        checked_length_mm(shot.nose_z_mm, shot.cutter.get()));
   }
   shots_.push_back(std::move(shot));
