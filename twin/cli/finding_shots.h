@@ -13,6 +13,7 @@
 #include "twin/job/tools.h"
 #include "twin/live/live_session.h"
 #include "twin/machines/machine_choice.h"
+#include "twin/machines/machine_model.h"
 #include "twin/program/program_front.h"
 #include "twin/report/report.h"
 #include "twin/scene/finding_picture.h"

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "base/geometry.h"
 #include "base/triangle_mesh.h"
 #include "twin/collision/solid.h"
 #include "twin/job/fixtures.h"
+#include "twin/machine/kinematics/pose.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
 

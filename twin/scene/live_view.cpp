@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include <variant>
 
 #include "base/translate.h"
+#include "twin/machine/kinematics/work_frame.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/moment_values.h"
 #include "twin/scene/program_text.h"

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "twin/live/live_session.h"
+#include "twin/live/tool_state.h"
 #include "twin/machines/machine_model.h"
 #include "twin/playback/program_track.h"
 #include "twin/scene/body_watch.h"

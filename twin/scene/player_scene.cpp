@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/cutter/shape_spec.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/moment_values.h"

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
 #include <string>
