@@ -248,6 +248,9 @@ struct MachineLink {
   std::uint32_t color = 0xffa0a0a0;
 };
 
+/// In the place of a pose: nobody knows where that body is, and it is not drawn.
+inline constexpr glm::mat4 kNotDrawn{0.0f};
+
 /// The machine around the workpiece. Where its links are: Moment::link_poses.
 struct SceneMachine {
   std::string name;  ///< "knee mill"
@@ -320,7 +323,7 @@ struct Moment {
   std::uint64_t past_vertices = 0;  ///< Path vertices that the tool has left behind.
   std::optional<ToolPose> tool_pose;
   std::vector<glm::mat4> link_poses;     ///< Of SceneMachine::links, from link to workpiece frame.
-  std::vector<glm::mat4> fixture_poses;  ///< Of SceneUpdate::fixtures, as link_poses.
+  std::vector<glm::mat4> fixture_poses;  ///< Of SceneUpdate::fixtures, so too; or kNotDrawn.
   std::vector<SceneContact> contacts;    ///< Of this moment: both bodies are red.
   std::optional<SceneClearance> clearance;  ///< None: there are no fixtures, or no tool is known.
   int tool = 0;

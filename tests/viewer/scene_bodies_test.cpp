@@ -58,6 +58,14 @@ TEST_F(BodiesTest, AFixtureIsWhereItsPoseIsUntilItIsHidden) {
   renderer.apply(lost);
   EXPECT_EQ(color_at(&renderer, {20, 20, 20}, everything_),
             color_at(&renderer, {20, 20, 20}, without(SceneObject::kFixtures)));
+  Moment nowhere;
+  nowhere.fixture_poses = {kNotDrawn};
+  renderer.apply(moment({20, 20, 12}));
+  EXPECT_EQ(color_at(&renderer, {20, 20, 20}, everything_), with);
+  lost.moment = std::make_shared<const Moment>(std::move(nowhere));
+  renderer.apply(lost);
+  EXPECT_EQ(color_at(&renderer, {20, 20, 20}, everything_),
+            color_at(&renderer, {20, 20, 20}, without(SceneObject::kFixtures)));
 }
 
 TEST_F(BodiesTest, WhatTouchesIsRedAndNothingElse) {

@@ -16,7 +16,10 @@
 #include "twin/cli/console.h"
 #include "twin/playback/load_program.h"
 #include "twin/report/shown_lengths.h"
+#include "twin/scene/drawn_machine.h"
+#include "twin/scene/live_view.h"
 #include "twin/scene/player_scene.h"
+#include "twin/scene/tool_shape.h"
 
 namespace kerf {
 namespace {
@@ -44,16 +47,26 @@ FindingShot shot_of(const Finding& finding, const std::vector<std::string>& file
   return shot;
 }
 
+/// From the tip to the head, as collisions of the machine are looked for: the offset, or the shape.
+double checked_length_mm(double offset_mm, const Cutter* cutter) {
+  if (offset_mm != 0 || !cutter) return offset_mm;
+  return drawn_height_mm(*tool_shape_of(*cutter));
+}
+
 /// Makes the renderer when there is something to be drawn.
 class Album {
  public:
-  Album(const std::string& folder, CollisionWishes wishes, Diagnostics& diagnostics)
-      : folder_(folder), wishes_(std::move(wishes)), diagnostics_(diagnostics) {}
+  Album(const std::string& folder, CollisionWishes wishes,
+        std::shared_ptr<const MachineModel> machine, Diagnostics& diagnostics)
+      : folder_(folder),
+        wishes_(std::move(wishes)),
+        machine_(std::move(machine)),
+        diagnostics_(diagnostics) {}
 
   /// `number`: its place in the list, from 1 on. False: no more can be drawn either.
   bool add(const FindingShot& shot, std::size_t number) {
     if (!pictures_) {
-      Result<FindingPictures> made = FindingPictures::create(wishes_);
+      Result<FindingPictures> made = FindingPictures::create(wishes_, machine_);
       if (!made) return refuse(made.error());
       pictures_ = std::make_unique<FindingPictures>(std::move(*made));
     }
@@ -73,6 +86,7 @@ class Album {
 
   const std::string& folder_;
   CollisionWishes wishes_;
+  std::shared_ptr<const MachineModel> machine_;
   Diagnostics& diagnostics_;
   std::unique_ptr<FindingPictures> pictures_;
 };
@@ -80,11 +94,14 @@ class Album {
 /// Goes to the findings of a program that is played once more.
 class SecondPass {
  public:
-  SecondPass(std::unique_ptr<LoadedProgram> loaded, std::stop_token stop)
-      : path_(viewed_program(*loaded, {}).moves),
+  SecondPass(std::unique_ptr<LoadedProgram> loaded, std::shared_ptr<const MachineModel> machine,
+             std::stop_token stop)
+      : shown_(viewed_program(*loaded, {})),
         resolver_(loaded->player.tools, nullptr),
         player_(std::move(loaded->player), options()),
-        stop_(std::move(stop)) {}
+        stop_(std::move(stop)) {
+    shown_.machine = std::move(machine);
+  }
 
   /// False: stopped.
   bool take(FindingShot& shot) {
@@ -93,13 +110,17 @@ class SecondPass {
       if (stop_.stop_requested()) return false;
     const std::shared_ptr<const PlayerState> state = player_.state();
     shot.stock = state->stock;
-    shot.tool = tool_pose_at(path_.path(), player_.track(), *state);
+    shot.tool = tool_pose_at(shown_.moves.path(), player_.track(), *state);
     shot.nose_z_mm = state->motion.tool_offset_mm.z;
     shot.cutter = state->cutter;
     // Of a tool that has cut nothing yet the player has no shape.
     if (!shot.cutter) {
       const ResolvedTool& tool = resolver_.mount(state->motion.tool, state->motion.source.line);
       if (tool.cutter) shot.cutter = std::make_shared<const Cutter>(*tool.cutter);
+    }
+    if (shown_.machine) {
+      shot.link_poses = machine_poses_at(shown_, player_.track(), *state,
+                                         checked_length_mm(shot.nose_z_mm, shot.cutter.get()));
     }
     return true;
   }
@@ -112,7 +133,7 @@ class SecondPass {
     return options;
   }
 
-  MotionMoves path_;
+  ViewedProgram shown_;
   ToolResolver resolver_;
   Player player_;
   std::stop_token stop_;
@@ -131,6 +152,7 @@ void make_finding_folder(const std::string& folder, Diagnostics& diagnostics) {
 }
 
 void write_finding_pictures(const std::string& folder, const SessionOptions& options,
+                            const MachineChoice& machine, const std::string& ini,
                             const Report& report, const std::stop_token& stop,
                             const std::function<void(double)>& on_picture,
                             Diagnostics& diagnostics) {
@@ -149,8 +171,10 @@ void write_finding_pictures(const std::string& folder, const SessionOptions& opt
   if (!loaded) {
     return tell_trouble(diagnostics, tr("--finding-png: the program cannot be read a second time"));
   }
-  SecondPass pass(std::move(loaded), stop);
-  Album album(folder, options.collisions, diagnostics);
+  const std::shared_ptr<const MachineModel> around =
+      machine_around(*loaded, machine, ini, diagnostics);
+  SecondPass pass(std::move(loaded), around, stop);
+  Album album(folder, options.collisions, around, diagnostics);
   std::vector<std::size_t> order(shots.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {},
@@ -163,11 +187,16 @@ void write_finding_pictures(const std::string& folder, const SessionOptions& opt
   }
 }
 
-FindingShots::FindingShots(const LiveSession& session, LiveObserver& next)
-    : session_(session), next_(next), resolver_(session.tool_sources(), nullptr) {}
+FindingShots::FindingShots(const LiveSession& session, std::shared_ptr<const MachineModel> machine,
+                           LiveObserver& next)
+    : session_(session),
+      next_(next),
+      resolver_(session.tool_sources(), nullptr),
+      machine_(std::move(machine)) {}
 
 void FindingShots::on_status(const LiveStatus& status) {
   place_ = status.place;
+  work_ = status.work;
   next_.on_status(status);
 }
 
@@ -182,12 +211,18 @@ void FindingShots::on_finding(const Finding& finding, const std::vector<std::str
     const ResolvedTool& tool = resolver_.mount(*finding.tool, 0);
     if (tool.cutter) shot.cutter = std::make_shared<const Cutter>(*tool.cutter);
   }
+  if (machine_ && place_.known && lies_as_built(*machine_, work_)) {
+    ToolState there = place_;  // the way to it is that of a sample at most
+    there.tip_mm = there.tool_pose.origin_mm = *finding.position_mm;
+    shot.link_poses = machine_poses_at(*machine_, there, work_,
+                                       checked_length_mm(shot.nose_z_mm, shot.cutter.get()));
+  }
   shots_.push_back(std::move(shot));
 }
 
 void FindingShots::write(const std::string& folder, const CollisionWishes& wishes,
                          Diagnostics& diagnostics) {
-  Album album(folder, wishes, diagnostics);
+  Album album(folder, wishes, machine_, diagnostics);
   for (std::size_t i = 0; i < shots_.size(); ++i)
     if (!album.add(shots_[i], i + 1)) return;
 }

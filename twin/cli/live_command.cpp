@@ -183,7 +183,12 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<FindingShots> shots;
-  if (!request.finding_png.empty()) observer = &shots.emplace(*session, *observer);
+  if (!request.finding_png.empty()) {
+    const Box blank_mm = session->stock()->bounds_mm();
+    observer = &shots.emplace(*session, machine_beside(request, blank_mm, diagnostics), *observer);
+    print_diagnostics(diagnostics, request.quiet);
+    diagnostics.clear();
+  }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
   if (window) {

@@ -59,6 +59,14 @@ std::vector<std::string> faults_of(const Diagnostics& diagnostics) {
 
 }  // namespace
 
+std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request, const Box& blank_mm,
+                                                   Diagnostics& diagnostics) {
+  WorkRoom room;
+  room.frame = request.options.cutting.frame.work;
+  room.blank_mm = blank_mm;
+  return drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
+}
+
 LiveWindow::LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments)
     : mailbox_(mailbox),
       commands_(commands),
@@ -89,11 +97,8 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
   options.blank_outline = box_outline(options.blank_mm);
   options.stock = session.stock()->snapshot();
   options.tools = session.tool_sources();
-  WorkRoom room;
-  room.frame = request.options.cutting.frame.work;
-  room.blank_mm = options.blank_mm;
   Diagnostics diagnostics;
-  options.machine = drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
+  options.machine = machine_beside(request, options.blank_mm, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
   options.collisions = request.options.cutting.checks.collisions;
   options.log = request.options.log();

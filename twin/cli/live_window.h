@@ -18,6 +18,10 @@
 
 namespace kerf {
 
+/// The machine that is watched, around the blank; see drawn_machine().
+std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request, const Box& blank_mm,
+                                                   Diagnostics& diagnostics);
+
 /// A session is one round. Another one follows when files of a log were changed, or when another
 /// log is opened. Declared before the sessions, so that it ends after them.
 class LiveWindow {

@@ -193,8 +193,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);
       write_finding_pictures(
-          request.finding_png, request.session, session->report(), stop.get_token(),
-          [&](double done) { share = done; }, diagnostics);
+          request.finding_png, request.session, request.machine, request.ini, session->report(),
+          stop.get_token(), [&](double done) { share = done; }, diagnostics);
     }
     deadline->set_last_words({}, kWritingPatience);
     print_results(request, session->report());

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -15,8 +14,6 @@
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
 #include "twin/report/guess_row.h"
-#include "twin/scene/drawn_machine.h"
-#include "twin/scene/tool_shape.h"
 
 namespace kerf {
 namespace {
@@ -130,24 +127,8 @@ ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
     print_diagnostics(comparison_doubts(request, *loaded.player.blank), request.run.quiet);
   }
   const RunRequest& run = request.run;
-  const bool wanted = !run.ini.empty() || run.machine.is_chosen();
-  if (!wanted || !loaded.player.blank) return shown;
-  double longest_mm = 0;
-  for (const ProgramTool& tool : loaded.tools) {
-    const auto cutter = parse_tool_argument("0=" + tool.shape);
-    if (cutter) {
-      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(cutter->cutter)));
-    }
-  }
-  if (const TurretPointer turret = loaded.player.process->turret()) {
-    for (const auto& [number, station] : turret->stations) {
-      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(station.punch)));
-    }
-  }
   Diagnostics diagnostics;
-  WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
-  room.turret = loaded.player.process->turret();
-  shown.machine = drawn_machine(run.machine, run.ini, room, diagnostics);
+  shown.machine = machine_around(loaded, run.machine, run.ini, diagnostics);
   print_diagnostics(diagnostics, request.run.quiet);
   return shown;
 }

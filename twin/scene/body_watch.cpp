@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "twin/machine/kinematics/kinematic_chain.h"
+#include "twin/machines/machine_bodies.h"
 #include "twin/scene/contact_places.h"
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/tool_shape.h"
@@ -108,7 +110,31 @@ BodyWatch::BodyWatch(CollisionWishes wishes)
     : wishes_(std::move(wishes)), scene_(std::make_shared<const SceneMachine>()) {
   if (!fixtures()) return;
   scene_ = std::make_shared<const SceneMachine>(scene_fixtures(*fixtures()));
-  poses_ = fixture_poses(*fixtures());
+  if (wishes_.machine) link_groups_ = rigid_groups(wishes_.machine->chain);
+  set_link_poses({});
+}
+
+void BodyWatch::set_machine(std::shared_ptr<const SceneMachine> machine) {
+  machine_ = std::move(machine);
+  set_link_poses({});
+}
+
+void BodyWatch::set_link_poses(std::span<const glm::mat4> link_poses) {
+  if (!fixtures()) return;
+  static const SceneMachine kNone;
+  places_ = fixture_places(*fixtures(), machine_ ? *machine_ : kNone, link_poses);
+  std::vector<glm::mat4> poses = fixture_poses(places_);
+  if (poses == poses_) return;
+  poses_ = std::move(poses);
+  measured_.reset();
+}
+
+/// As the spindle does: they never come nearer to each other.
+bool BodyWatch::goes_with_tool(const Fixture& fixture) const {
+  if (fixture.on.empty() || link_groups_.empty()) return false;
+  const KinematicChain& chain = wishes_.machine->chain;
+  const std::optional<std::size_t> link = chain.find(fixture.on);
+  return link && link_groups_[*link] == link_groups_[chain.tool_link()];
 }
 
 std::shared_ptr<const ToolShape> BodyWatch::mount(const std::shared_ptr<const Cutter>& cutter,
@@ -159,10 +185,16 @@ void BodyWatch::measure(const ToolPose& tool) {
   SceneClearance nearest;
   nearest.mm = kReach_mm;
   nearest.is_beyond = true;
+  bool is_known = true;
   const Pose pose = pose_of(tool);
   for (std::size_t i = 0; i < fixtures()->size(); ++i) {
     const Fixture& fixture = (*fixtures())[i];
-    const Pose fixture_from_tool = fixture.fixture_from_workpiece * pose;
+    if (goes_with_tool(fixture)) continue;
+    if (!places_[i]) {
+      is_known = false;
+      continue;
+    }
+    const Pose fixture_from_tool = places_[i]->inverse() * pose;
     for (const ToolBody& body : bodies_) {
       const double mm = distance_mm(body, fixture_from_tool, *fixture.solid, kReach_mm);
       if (mm <= 0 && touches(body, fixture_from_tool, *fixture.solid)) {
@@ -175,7 +207,8 @@ void BodyWatch::measure(const ToolPose& tool) {
       nearest = {mm, false, name_of(body.part), fixture.name};
     }
   }
-  clearance_ = std::move(nearest);
+  // What is nowhere may be nearer.
+  if (is_known) clearance_ = std::move(nearest);
 }
 
 void BodyWatch::add_told(const ToolPose& tool, double time_s, double speed, const StockModel* stock,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,7 +49,8 @@ class BodyWatch {
   /// For SceneUpdate::fixtures; never null, since what was shown before may have had some.
   std::shared_ptr<const SceneMachine> scene() const { return scene_; }
   /// The machine that is drawn, whose links findings may name; null: none.
-  void set_machine(std::shared_ptr<const SceneMachine> machine) { machine_ = std::move(machine); }
+  /// Fixtures on links that it does not have, and before set_link_poses(), are nowhere.
+  void set_machine(std::shared_ptr<const SceneMachine> machine);
   const std::shared_ptr<const SceneMachine>& drawn_machine() const { return machine_; }
   DrawnBodies drawn() const { return {fixtures(), machine_.get()}; }
 
@@ -63,9 +65,15 @@ class BodyWatch {
   /// One more, of a machine: it happened at `time_s`. Those whose time is over are forgotten.
   void add_finding(const Finding& finding, double time_s);
 
+  /// Of the machine at this moment, as Moment::link_poses; empty: nobody knows where it stands.
+  /// Fixtures on its links go with them.
+  void set_link_poses(std::span<const glm::mat4> link_poses);
+  /// Of a fixture, to the workpiece frame; none: it is on a link of which that is not known.
+  const std::optional<Pose>& place_of(std::size_t fixture) const { return places_[fixture]; }
   /// For Moment::fixture_poses.
   const std::vector<glm::mat4>& poses() const { return poses_; }
-  /// Clearance and contacts. Fixtures are red while the tool is in them, and like
+  /// Clearance and contacts. There is no clearance while a fixture is nowhere, and one that the
+  /// tool's own link carries is not looked at. Fixtures are red while the tool is in them, and like
   /// the workpiece from the time of a finding on for kRed_s at `speed` program seconds a second; 0:
   /// it stands still, and the finding is of this very time. `stock`: as it is then; may be null.
   /// About 5 us for a fixture of a few boxes.
@@ -79,13 +87,16 @@ class BodyWatch {
     std::optional<ToolPose> seen_from;  ///< `contact.point_mm` has been looked for there
   };
   void measure(const ToolPose& tool);
+  bool goes_with_tool(const Fixture& fixture) const;
   void add_told(const ToolPose& tool, double time_s, double speed, const StockModel* stock,
                 std::vector<SceneContact>& contacts);
 
   CollisionWishes wishes_;
   std::shared_ptr<const SceneMachine> scene_;
   std::shared_ptr<const SceneMachine> machine_;
-  std::vector<glm::mat4> poses_;
+  std::vector<std::size_t> link_groups_;     ///< rigid_groups() of the machine that is described
+  std::vector<std::optional<Pose>> places_;  ///< of fixtures
+  std::vector<glm::mat4> poses_;             ///< the same
   std::shared_ptr<const Cutter> cutter_;
   double nose_z_mm_ = 0;
   bool is_mounted_ = false;

@@ -50,22 +50,22 @@ struct Room {
 
 }  // namespace
 
-std::optional<Vec3> place_between(const ToolBody& body, const Pose& tool, const Fixture& fixture) {
-  Box box = box_around(tool, body.solid->box_mm());
-  const Box other = box_around(fixture.workpiece_from_fixture, fixture.solid->box_mm());
+std::optional<Vec3> place_between(const Solid& a, const Pose& a_pose, const Solid& b,
+                                  const Pose& b_pose) {
+  Box box = box_around(a_pose, a.box_mm());
+  const Box other = box_around(b_pose, b.box_mm());
   for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] = std::max(box.min[axis] - kAround_mm, other.min[axis] - kAround_mm);
     box.max[axis] = std::min(box.max[axis] + kAround_mm, other.max[axis] + kAround_mm);
     if (box.min[axis] > box.max[axis]) return std::nullopt;
   }
-  const Pose tool_from_workpiece = tool.inverse();
+  const Pose a_from_workpiece = a_pose.inverse(), b_from_workpiece = b_pose.inverse();
   const auto room_of = [&](const Box& part) {
     const std::array<Vec3, 2> corners{part.min, part.max};
     const Convex convex = convex_of(corners);
     constexpr double kFar = std::numeric_limits<double>::infinity();
-    const double gap =
-        std::max(gap_mm(*body.solid, tool_from_workpiece, convex, kFar),
-                 gap_mm(*fixture.solid, fixture.fixture_from_workpiece, convex, kFar));
+    const double gap = std::max(gap_mm(a, a_from_workpiece, convex, kFar),
+                                gap_mm(b, b_from_workpiece, convex, kFar));
     return Room{gap < kThere_mm ? 0.0 : gap, part};
   };
   std::priority_queue<Room> open;
@@ -115,6 +115,29 @@ std::optional<Vec3> place_on_workpiece(const ToolBody& body, const Pose& tool,
       const Vec3 corner(vertex.position_mm);
       if (box_gap_mm({corner, corner}, room) > 0) continue;
       look_at(corner);
+    }
+  }
+  return best;
+}
+
+std::optional<Vec3> place_on_workpiece(const Solid& body, const Pose& pose,
+                                       const StockModel& stock) {
+  double best_mm = 1.5 * stock.cell_mm();
+  Box room = box_around(pose, body.box_mm());
+  room = {room.min - Vec3(best_mm), room.max + Vec3(best_mm)};
+  const Pose body_from_workpiece = pose.inverse();
+  std::optional<Vec3> best;
+  for (std::uint32_t tile = 0; tile < stock.tile_count(); ++tile) {
+    if (box_gap_mm(stock.tile_box(tile), room) > 0) continue;
+    const MeshPatch patch = stock.patch(tile, 0);
+    for (const MeshVertex& vertex : patch.vertices) {
+      const Vec3 corner(vertex.position_mm);
+      if (box_gap_mm({corner, corner}, room) > 0) continue;
+      const std::array<Vec3, 2> point{corner, corner};
+      const double mm = gap_mm(body, body_from_workpiece, convex_of(point), best_mm);
+      if (mm >= best_mm) continue;
+      best_mm = mm;
+      best = corner;
     }
   }
   return best;

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "twin/machines/machine_bodies.h"
 #include "twin/scene/body_watch.h"
 #include "twin/scene/contact_places.h"
+#include "twin/scene/drawn_machine.h"
 #include "twin/scene/finding_view.h"
 #include "twin/scene/patch_feeder.h"
 #include "twin/scene/tool_shape.h"
@@ -60,6 +62,14 @@ Picture smaller(const Picture& large) {
     }
   }
   return small;
+}
+
+/// Links that do not touch are there to be seen through.
+SceneMachine glass_machine(const MachineModel& model) {
+  constexpr std::uint32_t kColor = 0x00ffffff, kGlass = 0x48000000;
+  SceneMachine scene = scene_machine(model);
+  for (MachineLink& link : scene.links) link.color = (link.color & kColor) | kGlass;
+  return scene;
 }
 
 void add_text(const std::string& text, glm::vec2 at_px, glm::vec2 anchor, float height_px,
@@ -138,16 +148,20 @@ std::string finding_picture_name(std::size_t number, const Finding& finding) {
 class FindingPictures::Impl {
  public:
   Impl(GlContext context, SceneRenderer scout, SceneRenderer renderer, CollisionWishes wishes,
-       glm::ivec2 size_px)
+       const MachineModel* machine, glm::ivec2 size_px)
       : context_(std::move(context)),
         scout_(std::move(scout)),
         renderer_(std::move(renderer)),
+        links_(wishes.machine),
         watch_(std::move(wishes)),
         size_px_(size_px) {
+    if (machine && !links_) links_ = bodies_of(*machine);
+    if (machine) watch_.set_machine(std::make_shared<const SceneMachine>(glass_machine(*machine)));
     options_.upload_bytes_per_frame = std::numeric_limits<std::size_t>::max();
     options_.is_local = false;
     SceneUpdate update;
     update.fixtures = watch_.scene();
+    update.machine = watch_.drawn_machine();
     scout_.apply(update);
     renderer_.apply(update);
   }
@@ -167,6 +181,7 @@ class FindingPictures::Impl {
   GlContext context_;  // before what lives in it
   SceneRenderer scout_;
   SceneRenderer renderer_;
+  MachineBodiesPointer links_;  ///< null: not known
   BodyWatch watch_;
   glm::ivec2 size_px_;
   DrawOptions options_;
@@ -184,6 +199,7 @@ SceneUpdate FindingPictures::Impl::scene_of(const FindingShot& shot, const Findi
   auto moment = std::make_shared<Moment>();
   moment->tool_pose = shot.tool;
   moment->fixture_poses = watch_.poses();
+  if (view.contact && !view.contact->links.empty()) moment->link_poses = shot.link_poses;
   if (view.contact) moment->contacts.push_back(*view.contact);
   update.moment = std::move(moment);
   return update;
@@ -276,7 +292,7 @@ void FindingPictures::Impl::add_caption(const FindingShot& shot,
 }
 
 Result<Picture> FindingPictures::Impl::draw(const FindingShot& shot) {
-  const FindingView view = finding_view(shot, watch_);
+  const FindingView view = finding_view(shot, watch_, links_.get());
   const SceneUpdate scene = scene_of(shot, view);
   const auto feed = [&](SceneRenderer& renderer, PatchFeeder& feeder, const ViewDetail& detail) {
     renderer.apply(scene);
@@ -316,7 +332,9 @@ Result<Picture> FindingPictures::Impl::draw(const FindingShot& shot) {
   return picture;
 }
 
-Result<FindingPictures> FindingPictures::create(CollisionWishes wishes, glm::ivec2 size_px) {
+Result<FindingPictures> FindingPictures::create(CollisionWishes wishes,
+                                                std::shared_ptr<const MachineModel> machine,
+                                                glm::ivec2 size_px) {
   Result<GlContext> context = GlContext::create_offscreen();
   if (!context) return Error{context.error()};
   Result<SceneRenderer> scout = SceneRenderer::create();
@@ -324,7 +342,8 @@ Result<FindingPictures> FindingPictures::create(CollisionWishes wishes, glm::ive
   Result<SceneRenderer> renderer = SceneRenderer::create();
   if (!renderer) return Error{renderer.error()};
   return FindingPictures(std::make_unique<Impl>(std::move(context.value()), std::move(*scout),
-                                                std::move(*renderer), std::move(wishes), size_px));
+                                                std::move(*renderer), std::move(wishes),
+                                                machine.get(), size_px));
 }
 
 FindingPictures::FindingPictures(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

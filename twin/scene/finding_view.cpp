@@ -4,7 +4,11 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <utility>
 
+#include "twin/collision/solid_sweep.h"
 #include "twin/scene/contact_places.h"
 
 namespace kerf {
@@ -12,6 +16,10 @@ namespace {
 
 /// Shown of what lies about the place: of the tool's length, and at least.
 constexpr double kAboutShare = 0.7, kLeastAbout_mm = 15;
+/// Of what a machine carries, about the place: of the smaller of the two, from end to end.
+constexpr double kMachineAboutShare = 0.7;
+/// Of that: where a link has its name. Boxes of links are large, and empty in the middle.
+constexpr double kNamedShare = 0.4;
 /// Of a spindle that touches: the rest of it is a column through the picture.
 constexpr double kSpindleShown_mm = 60;
 
@@ -57,55 +65,148 @@ Box box_of_tool(const std::vector<ToolBody>& bodies, const Pose& pose, bool with
   return box;
 }
 
+/// Whatever touches, but the workpiece.
+struct StandingBody {
+  std::string name;
+  std::vector<SolidPointer> solids;
+  Pose pose;
+
+  Box box_mm() const {
+    Box box;
+    for (const SolidPointer& solid : solids) box.extend(box_around(pose, solid->box_mm()));
+    return box;
+  }
+};
+
+/// Those whose place is known: a part of the tool, then links, then a fixture.
+std::vector<StandingBody> touching_bodies(const FindingShot& shot, const SceneContact& contact,
+                                          const BodyWatch& watch, const MachineBodies* links) {
+  std::vector<StandingBody> bodies;
+  if (const ToolBody* const part = contact.piece ? watch.body_of(*contact.piece) : nullptr)
+    bodies.push_back({name_of(part->part), {part->solid}, pose_of(shot.tool)});
+  for (const std::size_t link : contact.links) {
+    const std::string& name = watch.drawn_machine()->links[link].name;
+    if (!links || link >= shot.link_poses.size()) continue;
+    const auto body = std::ranges::find(links->bodies, name, &LinkBody::name);
+    if (body == links->bodies.end()) continue;
+    const glm::dmat4 m(shot.link_poses[link]);
+    bodies.push_back({name, body->solids, Pose{glm::dmat3(m), Vec3(m[3])}});
+  }
+  if (contact.fixture && watch.place_of(*contact.fixture)) {
+    const Fixture& fixture = (*watch.fixtures())[*contact.fixture];
+    bodies.push_back({fixture.name, {fixture.solid}, *watch.place_of(*contact.fixture)});
+  }
+  return bodies;
+}
+
+/// Between those of their solids that are nearest to each other.
+std::optional<Vec3> place_between(const StandingBody& a, const StandingBody& b) {
+  const Pose b_from_a = b.pose.inverse() * a.pose;
+  double least_mm = std::numeric_limits<double>::infinity();
+  std::pair<const Solid*, const Solid*> nearest{};
+  for (const SolidPointer& one : a.solids) {
+    for (const SolidPointer& other : b.solids) {
+      const double mm = gap_at(*one, b_from_a, *other, least_mm);
+      if (nearest.first && mm >= least_mm) continue;
+      least_mm = mm;
+      nearest = {one.get(), other.get()};
+    }
+  }
+  if (!nearest.first) return std::nullopt;
+  return place_between(*nearest.first, a.pose, *nearest.second, b.pose);
+}
+
+std::optional<Vec3> place_of_contact(const FindingShot& shot, const SceneContact& contact,
+                                     const BodyWatch& watch,
+                                     const std::vector<StandingBody>& bodies) {
+  if (bodies.size() > 1) return place_between(bodies[0], bodies[1]);
+  if (!contact.has_workpiece || !shot.stock) return std::nullopt;
+  const ToolBody* const part = contact.piece ? watch.body_of(*contact.piece) : nullptr;
+  if (part && part->part == ToolPart::kCutter) return std::nullopt;
+  if (part) return place_on_workpiece(*part, bodies[0].pose, *shot.stock);
+  std::optional<Vec3> place;
+  for (const SolidPointer& solid : bodies[0].solids)
+    if (!place) place = place_on_workpiece(*solid, bodies[0].pose, *shot.stock);
+  return place;
+}
+
+/// So far about the place bodies are shown: the tool counts, and the smaller of what touches.
+double shown_about_mm(const Box& tool, const std::vector<StandingBody>& bodies, bool of_machine) {
+  const auto longest = [](const Vec3& size) { return std::max({size.x, size.y, size.z}); };
+  double about = std::max(kLeastAbout_mm, kAboutShare * longest(tool.size()));
+  if (!of_machine) return about;
+  double smaller = std::numeric_limits<double>::infinity();
+  for (const StandingBody& body : bodies)
+    smaller = std::min(smaller, longest(body.box_mm().size()));
+  return std::isfinite(smaller) ? std::max(about, kMachineAboutShare * smaller) : about;
+}
+
+/// A part of the tool that touches, as pictures show it.
+void show_part(const ToolBody& part, const Pose& pose, FindingView& view) {
+  view.tool_radius_mm = 0.5 * part.width_mm;
+  const Box own = part.solid->box_mm();
+  const double half_mm = std::min(0.5 * own.size().z, 0.5 * kSpindleShown_mm);
+  view.tool_mm = pose.point({0, 0, own.min.z + half_mm});
+}
+
+/// A link or a fixture in its place, of which the box is shown.
+void show_standing(const Box& shown, FindingView& view) {
+  view.tool_mm = middle(shown);
+  view.tool_radius_mm = 0.5 * std::min(shown.size().x, shown.size().y);
+  view.axis = {0, 0, 1};
+}
+
 }  // namespace
 
-FindingView finding_view(const FindingShot& shot, BodyWatch& watch) {
+FindingView finding_view(const FindingShot& shot, BodyWatch& watch, const MachineBodies* links) {
   FindingView view;
   view.tool_shape = watch.mount(shot.cutter, shot.nose_z_mm);
+  watch.set_link_poses(shot.link_poses);
   const Pose pose = pose_of(shot.tool);
   view.contact = contact_of(shot.finding, watch.drawn());
   view.place_mm = view.tool_mm = view.axis_mm = shot.tool.tip_mm;
   view.axis = glm::normalize(shot.tool.axis);
   const auto piece = view.contact ? view.contact->piece : std::nullopt;
-  const ToolBody* const body = piece ? watch.body_of(*piece) : nullptr;
-  const bool is_spindle = body && body->part == ToolPart::kSpindle;
-  view.frame_mm = box_of_tool(watch.bodies(), pose, is_spindle);
+  const ToolBody* const part = piece ? watch.body_of(*piece) : nullptr;
+  view.frame_mm = box_of_tool(watch.bodies(), pose, part && part->part == ToolPart::kSpindle);
   view.frame_mm.extend(shot.tool.tip_mm);
-  if (body) {
-    view.tool_name = name_of(body->part);
-    view.tool_radius_mm = 0.5 * body->width_mm;
-    const Box own = body->solid->box_mm();
-    const double half_mm = std::min(0.5 * own.size().z, 0.5 * kSpindleShown_mm);
-    view.tool_mm = pose.point({0, 0, own.min.z + half_mm});
-    const bool is_cutter = body->part == ToolPart::kCutter;
-    std::optional<Vec3> place;
-    if (view.contact->fixture) {
-      place = place_between(*body, pose, (*watch.fixtures())[*view.contact->fixture]);
-    } else if (view.contact->has_workpiece && !is_cutter) {
-      place = place_on_workpiece(*body, pose, *shot.stock);
-    }
+  std::vector<StandingBody> bodies;
+  if (view.contact) bodies = touching_bodies(shot, *view.contact, watch, links);
+  if (part) show_part(*part, pose, view);
+  std::optional<Vec3> place;
+  if (!bodies.empty()) {
+    place = place_of_contact(shot, *view.contact, watch, bodies);
+    view.tool_name = bodies[0].name;
     // Deep in the material there is no surface; of a cutter the tip is where it works.
-    view.place_mm = place ? *place : is_cutter ? shot.tool.tip_mm : view.tool_mm;
+    const bool at_tip = !part || part->part == ToolPart::kCutter;
+    view.place_mm = place ? *place : at_tip ? shot.tool.tip_mm : view.tool_mm;
     // Between two red bodies a red mark would say nothing.
     if (view.contact->has_workpiece) view.contact->point_mm = place;
-    view.axis_mm =
-        shot.tool.tip_mm + glm::dot(view.place_mm - shot.tool.tip_mm, view.axis) * view.axis;
   }
-  const Vec3 size = view.frame_mm.size();
-  const Vec3 about(std::max(kLeastAbout_mm, kAboutShare * std::max({size.x, size.y, size.z})));
+  const bool of_machine = view.contact && !view.contact->links.empty();
+  const Vec3 about(shown_about_mm(view.frame_mm, bodies, of_machine));
   const Box near{view.place_mm - about, view.place_mm + about};
   view.frame_mm.extend(common(near, shot.stock->bounds_mm()));
-  if (view.contact && view.contact->fixture) {
-    const Fixture& fixture = (*watch.fixtures())[*view.contact->fixture];
-    const Box whole = box_around(fixture.workpiece_from_fixture, fixture.solid->box_mm());
-    const Box shown = common(near, whole);
-    view.other_name = fixture.name;
-    view.other_mm = middle(shown.empty() ? whole : shown);
-    view.frame_mm.extend(shown);
+  for (std::size_t i = part ? 1 : 0; i < bodies.size(); ++i) {
+    const Box whole = bodies[i].box_mm();
+    const Box shown = common(near, whole).empty() ? whole : common(near, whole);
+    view.frame_mm.extend(common(near, whole));
+    if (i == 0) {
+      const Vec3 by_place = kNamedShare * about;
+      const Box named = common({view.place_mm - by_place, view.place_mm + by_place}, whole);
+      show_standing(named.empty() ? shown : named, view);
+    } else {
+      view.other_name = bodies[i].name;
+      view.other_mm = middle(shown);
+    }
+  }
+  if (!bodies.empty()) {
+    const Vec3 from = part ? shot.tool.tip_mm : view.tool_mm;
+    view.axis_mm = from + glm::dot(view.place_mm - from, view.axis) * view.axis;
   }
   const Vec3 frame = view.frame_mm.size();
   const Vec3 close(std::max(kLeastClose_mm, kCloseShare * view.tool_radius_mm));
-  if (body && kCloserBy * close.x < 0.5 * std::max({frame.x, frame.y, frame.z}))
+  if (!bodies.empty() && kCloserBy * close.x < 0.5 * std::max({frame.x, frame.y, frame.z}))
     view.close_mm = {view.place_mm - close, view.place_mm + close};
   return view;
 }

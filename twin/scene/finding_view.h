@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "twin/machines/machine_bodies.h"
 #include "twin/scene/body_watch.h"
 #include "twin/scene/finding_picture.h"
 #include "viewer/scene.h"
@@ -19,17 +20,21 @@ struct FindingView {
   Vec3 place_mm{0};                             ///< where they touch; of others the tip
   Vec3 axis_mm{0};                              ///< the nearest point of the tool's axis
   Vec3 axis{0, 0, 1};                           ///< of the tool
-  Vec3 tool_mm{0};                              ///< the middle of the part of the tool
-  double tool_radius_mm = 0;                    ///< of that part
+  /// The middle of the part of the tool; where no part of it touches, a place on the first of the
+  /// links and fixtures that do, which then is "the tool" below and in what follows.
+  Vec3 tool_mm{0};
+  double tool_radius_mm = 0;  ///< of that part
   std::string tool_name;
-  std::optional<Vec3> other_mm;  ///< a place on the fixture; none: it is the workpiece
+  std::optional<Vec3> other_mm;  ///< a place on the fixture or link; none: it is the workpiece
   std::string other_name;
   Box frame_mm;  ///< that the picture shows
   Box close_mm;  ///< that is shown once more, larger; empty: there is nothing more to be seen
 };
 
-/// `watch`: it is given the shot's tool. Costs what place_between() and place_on_workpiece() do.
-FindingView finding_view(const FindingShot& shot, BodyWatch& watch);
+/// `watch`: it is given the shot's tool and poses of links. `links`: shapes of those of the machine
+/// that it draws; null: they are not known. Costs what place_between() and place_on_workpiece() do.
+FindingView finding_view(const FindingShot& shot, BodyWatch& watch,
+                         const MachineBodies* links = nullptr);
 
 /// Of the eye: about +Z from +X, and above the plane.
 struct ViewAngles {

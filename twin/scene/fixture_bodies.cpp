@@ -1,5 +1,6 @@
 #include "twin/scene/fixture_bodies.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,11 @@ constexpr int kAround = 72;  // facets of what is round
 constexpr int kUpward = 6;   // of the rounded edge of a disc
 /// Bluish, and two thirds opaque.
 constexpr std::uint32_t kFixtureColor = 0xa8b08a5a;
+
+Pose pose_of_link(const glm::mat4& matrix) {
+  const glm::dmat4 m(matrix);
+  return {glm::dmat3(m), Vec3(m[3])};
+}
 
 struct PointHash {
   std::size_t operator()(const glm::vec3& p) const {
@@ -148,18 +154,41 @@ SceneMachine scene_fixtures(const std::vector<Fixture>& fixtures) {
   return scene;
 }
 
+std::vector<std::optional<Pose>> fixture_places(const std::vector<Fixture>& fixtures,
+                                                const SceneMachine& machine,
+                                                std::span<const glm::mat4> link_poses) {
+  std::vector<std::optional<Pose>> places;
+  for (const Fixture& fixture : fixtures) {
+    if (fixture.on.empty()) {
+      places.emplace_back(fixture.workpiece_from_fixture);
+      continue;
+    }
+    const auto link = std::ranges::find(machine.links, fixture.on, &MachineLink::name);
+    const auto number = static_cast<std::size_t>(link - machine.links.begin());
+    if (link == machine.links.end() || number >= link_poses.size()) {
+      places.emplace_back();
+    } else {
+      places.emplace_back(pose_of_link(link_poses[number]) * fixture.workpiece_from_fixture);
+    }
+  }
+  return places;
+}
+
 std::vector<PictureBody> picture_bodies(const std::vector<Fixture>& fixtures) {
   const SceneMachine scene = scene_fixtures(fixtures);
-  const std::vector<glm::mat4> poses = fixture_poses(fixtures);
   std::vector<PictureBody> bodies;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    bodies.push_back({scene.links[i].mesh, poses[i], scene.links[i].color});
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    if (!fixtures[i].on.empty()) continue;
+    bodies.push_back(
+        {scene.links[i].mesh, to_mat4(fixtures[i].workpiece_from_fixture), scene.links[i].color});
+  }
   return bodies;
 }
 
-std::vector<glm::mat4> fixture_poses(const std::vector<Fixture>& fixtures) {
+std::vector<glm::mat4> fixture_poses(const std::vector<std::optional<Pose>>& places) {
   std::vector<glm::mat4> poses;
-  for (const Fixture& fixture : fixtures) poses.push_back(to_mat4(fixture.workpiece_from_fixture));
+  for (const std::optional<Pose>& place : places)
+    poses.push_back(place ? to_mat4(*place) : kNotDrawn);
   return poses;
 }
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/triangle_mesh.h"
 #include "twin/collision/solid.h"
 #include "twin/job/fixtures.h"
+#include "twin/machine/kinematics/pose.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
 
@@ -19,10 +22,16 @@ TriangleMesh drawn_mesh(const Solid& solid);
 /// A link each, in the fixture's own frame; seen through.
 SceneMachine scene_fixtures(const std::vector<Fixture>& fixtures);
 
-/// For pictures of a part.
+/// From each to the workpiece frame. `link_poses`: of the links of `machine`, as
+/// Moment::link_poses; what stands on a link that has none is nowhere.
+std::vector<std::optional<Pose>> fixture_places(const std::vector<Fixture>& fixtures,
+                                                const SceneMachine& machine,
+                                                std::span<const glm::mat4> link_poses);
+
+/// For pictures of a part, in which there is no machine: without what stands on its links.
 std::vector<PictureBody> picture_bodies(const std::vector<Fixture>& fixtures);
 
 /// For Moment::fixture_poses.
-std::vector<glm::mat4> fixture_poses(const std::vector<Fixture>& fixtures);
+std::vector<glm::mat4> fixture_poses(const std::vector<std::optional<Pose>>& places);
 
 }  // namespace kerf

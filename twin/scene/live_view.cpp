@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include <variant>
 
 #include "base/translate.h"
+#include "twin/machine/kinematics/work_frame.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/moment_values.h"
 #include "twin/scene/program_text.h"
@@ -63,6 +65,24 @@ std::string notice_of(const LiveStatus& status) {
 }
 
 }  // namespace
+
+std::vector<glm::mat4> machine_poses_at(const MachineModel& machine, const ToolState& place,
+                                        const WorkpieceFrame& work, double tool_length_mm) {
+  if (!place.turns) return drawn_poses(machine, place.tip_mm, place.abc_deg, tool_length_mm);
+  std::array<double, 3> machine_abc_deg = place.abc_deg;
+  for (std::size_t i = 0; i < 3; ++i) machine_abc_deg[i] += work.offset_abc_deg[i];
+  return drawn_poses(machine, place.tool_pose, machine_abc_deg, tool_length_mm);
+}
+
+bool lies_as_built(const MachineModel& machine, const WorkpieceFrame& work) {
+  constexpr double kSame_mm = 0.005, kSameTurn = 1e-6;
+  const Pose& built = machine.link_from_workpiece;
+  const Pose now = link_from_workpiece_of(machine.chain, machine_from_workpiece(work));
+  double turned = 0;
+  for (int i = 0; i < 3; ++i)
+    turned = std::max(turned, glm::length(built.rotation[i] - now.rotation[i]));
+  return glm::length(built.origin_mm - now.origin_mm) < kSame_mm && turned < kSameTurn;
+}
 
 LiveView::LiveView(LiveViewOptions options, LiveObserver& next, SceneMailbox& mailbox,
                    CommandQueue& commands)
@@ -390,6 +410,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->speed = options_.speed;
   moment->source_name = options_.source_name;
   moment->work_offset = options_.work_offset;
+  if (!status_ || !status_->place.known) bodies_.set_link_poses({});
   moment->fixture_poses = bodies_.poses();
   if (!status_) {
     if (!options_.log) moment->source = SourceFreshness::kStale;
@@ -423,15 +444,14 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   }
   if (!place.known) return moment;
   moment->tool_pose = ToolPose{place.tip_mm, place.spindle};
-  bodies_.look(*moment->tool_pose, watched_s(), 1, stock_.get(), moment.get());
   if (options_.machine) {
-    std::array<double, 3> machine_abc_deg = place.abc_deg;
-    for (std::size_t i = 0; i < 3; ++i) machine_abc_deg[i] += shown_work_.offset_abc_deg[i];
-    moment->link_poses =
-        place.turns
-            ? drawn_poses(*options_.machine, place.tool_pose, machine_abc_deg, tool_length_mm_)
-            : drawn_poses(*options_.machine, place.tip_mm, place.abc_deg, tool_length_mm_);
+    moment->link_poses = machine_poses_at(*options_.machine, place, shown_work_, tool_length_mm_);
+    bodies_.set_link_poses(lies_as_built(*options_.machine, shown_work_)
+                               ? std::span<const glm::mat4>(moment->link_poses)
+                               : std::span<const glm::mat4>());
+    moment->fixture_poses = bodies_.poses();
   }
+  bodies_.look(*moment->tool_pose, watched_s(), 1, stock_.get(), moment.get());
   has_rotary_ = has_rotary_ || place.abc_deg != std::array<double, 3>{};
   has_slides_ = has_slides_ || place.uvw_mm != Vec3(0);
   const SlidePlace slides{place.uvw_mm + shown_work_.offset_uvw_mm, place.uvw_mm};

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "twin/live/live_session.h"
+#include "twin/live/tool_state.h"
 #include "twin/machines/machine_model.h"
 #include "twin/playback/program_track.h"
 #include "twin/scene/body_watch.h"
@@ -57,6 +59,14 @@ struct LiveViewOptions {
   /// Another file was asked for; empty: nothing is opened.
   std::function<void(const std::string&)> on_open;
 };
+
+/// Of a machine, for Moment::link_poses: where it stands while the tool is there. Empty: it cannot
+/// stand so.
+std::vector<glm::mat4> machine_poses_at(const MachineModel& machine, const ToolState& place,
+                                        const WorkpieceFrame& work, double tool_length_mm);
+/// The workpiece lies on its link where a machine of machine.links was told that it does: else what
+/// stands on links is elsewhere.
+bool lies_as_built(const MachineModel& machine, const WorkpieceFrame& work);
 
 /// Takes what LiveSession shows and passes all of it on to another observer. The session's thread
 /// pays for a snapshot of the workpiece (microseconds) sixty times a second; patches are made in a

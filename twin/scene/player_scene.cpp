@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/cutter/shape_spec.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/moment_values.h"
@@ -46,6 +47,46 @@ ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const Pla
   if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
   const Pose pose = path->pose_at(state.motion, fraction_of(track, state));
   return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
+}
+
+std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,
+                                                   const MachineChoice& choice,
+                                                   const std::string& ini,
+                                                   Diagnostics& diagnostics) {
+  const bool wanted = !ini.empty() || choice.is_chosen();
+  if (!wanted || !loaded.player.blank) return nullptr;
+  double longest_mm = 0;
+  for (const ProgramTool& tool : loaded.tools) {
+    if (const auto named = parse_tool_argument("0=" + tool.shape))
+      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(named->cutter)));
+  }
+  const TurretPointer turret = loaded.player.process->turret();
+  if (turret) {
+    for (const auto& [number, station] : turret->stations)
+      longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(station.punch)));
+  }
+  WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
+  room.turret = turret;
+  return drawn_machine(choice, ini, room, diagnostics);
+}
+
+std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const ProgramTrack& track,
+                                        const PlayerState& state, double tool_length_mm) {
+  const MachineModel& machine = *shown.machine;
+  const ToolPath* const path = shown.moves.path();
+  if (path == nullptr) {
+    if (!shown.punch) return drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm);
+    std::vector<glm::mat4> poses = drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm,
+                                               shown.punch->joints(track, state));
+    shown.punch->place_punch(machine, track, state, poses);
+    return poses;
+  }
+  const double fraction = fraction_of(track, state);
+  const Pose pose = path->pose_at(state.motion, fraction);
+  if (!shown.moves.tilts())
+    return drawn_poses(machine, pose.origin_mm, state.abc_deg, tool_length_mm);
+  const AxisValues axes = path->axes_at(state.motion, fraction);
+  return drawn_poses(machine, pose, {axes[3], axes[4], axes[5]}, tool_length_mm);
 }
 
 ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
@@ -231,28 +272,6 @@ double PlayerScene::removed_mm3(const PlayerState& state) {
   return removed_mm3_;
 }
 
-std::vector<glm::mat4> PlayerScene::machine_poses(const PlayerState& state) const {
-  const ToolPath* const path = shown_.moves.path();
-  if (path == nullptr) {
-    if (!shown_.punch) {
-      return drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_);
-    }
-    std::vector<glm::mat4> poses =
-        drawn_poses(*shown_.machine, state.tip_mm, state.abc_deg, tool_length_mm_,
-                    shown_.punch->joints(*track_, state));
-    shown_.punch->place_punch(*shown_.machine, *track_, state, poses);
-    return poses;
-  }
-  const AxisValues axes = path->axes_at(state.motion, fraction_of(*track_, state));
-  if (!shown_.moves.tilts()) {
-    return drawn_poses(*shown_.machine,
-                       path->pose_at(state.motion, fraction_of(*track_, state)).origin_mm,
-                       state.abc_deg, tool_length_mm_);
-  }
-  return drawn_poses(*shown_.machine, path->pose_at(state.motion, fraction_of(*track_, state)),
-                     {axes[3], axes[4], axes[5]}, tool_length_mm_);
-}
-
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
   if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
   return tool_pose_at(shown_.moves.path(), *track_, state);
@@ -279,7 +298,8 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   moment->coolant = coolant_text(motion.mist, motion.flood);
   moment->work_offset = shown_.work_offset;
   if (shown_.machine) {
-    moment->link_poses = machine_poses(state);
+    moment->link_poses = machine_poses_at(shown_, *track_, state, tool_length_mm_);
+    bodies_.set_link_poses(moment->link_poses);
   }
   has_rotary_ = has_rotary_ || state.abc_deg != std::array<double, 3>{};
   has_slides_ = has_slides_ || state.uvw_mm != Vec3(0);

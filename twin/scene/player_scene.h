@@ -3,11 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
+#include "twin/machines/machine_choice.h"
 #include "twin/machines/machine_model.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/load_program.h"
@@ -48,6 +51,16 @@ struct ViewedProgram {
 /// Where the tool is in the workpiece. `path`: null: nothing turns.
 ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state);
 
+/// The machine around it; see drawn_machine(). Null without a workpiece.
+std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,
+                                                   const MachineChoice& choice,
+                                                   const std::string& ini,
+                                                   Diagnostics& diagnostics);
+
+/// Of its machine, for Moment::link_poses. Empty: it cannot stand so.
+std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const ProgramTrack& track,
+                                        const PlayerState& state, double tool_length_mm);
+
 /// With `title` in the title bar.
 ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title);
 
@@ -87,7 +100,6 @@ class PlayerScene {
 
  private:
   bool draws_mesh() const { return draw_modes_.drawn() == DrawMode::kMesh; }
-  std::vector<glm::mat4> machine_poses(const PlayerState& state) const;
   ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
   bool is_removed_due(const PlayerState& state) const;

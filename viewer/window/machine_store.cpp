@@ -38,8 +38,8 @@ void MachineStore::set_machine(std::shared_ptr<const SceneMachine> machine) {
 void MachineStore::set_poses(std::span<const glm::mat4> link_poses) {
   poses_.assign(link_poses.begin(), link_poses.end());
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    const std::optional<glm::mat4> pose =
-        i < poses_.size() ? std::optional(poses_[i]) : std::nullopt;
+    const bool is_known = i < poses_.size() && poses_[i] != kNotDrawn;
+    const std::optional<glm::mat4> pose = is_known ? std::optional(poses_[i]) : std::nullopt;
     if (pose == links_[i].pose) continue;
     links_[i].pose = pose;
     links_[i].has_changed = true;

@@ -31,7 +31,7 @@ class MachineStore {
   static constexpr float kClearest = 0.15f;
 
   void set_machine(std::shared_ptr<const SceneMachine> machine);
-  /// One a link; links beyond have none.
+  /// One a link; links beyond have none, nor have those that are kNotDrawn.
   void set_poses(std::span<const glm::mat4> link_poses);
   /// One a link; links beyond have none. Those that are marked do not fade.
   void set_marks(std::vector<BodyMark> marks);

@@ -8,6 +8,8 @@
 
 #include "stock/cutter/shape_spec.h"
 #include "tests/twin/playback/tracks.h"
+#include "twin/machine/kinematics/pose.h"
+#include "twin/machines/machine_bodies.h"
 #include "twin/scene/contact_places.h"
 
 namespace kerf {
@@ -184,19 +186,110 @@ TEST(BodyWatch, TheSpindleIsDrawnWhereItsNoseIs) {
   EXPECT_FLOAT_EQ(high->spindle[3].height_mm, 235);
 }
 
+std::shared_ptr<const SceneMachine> machine_of(const std::vector<std::string>& links) {
+  auto machine = std::make_shared<SceneMachine>();
+  for (const std::string& name : links) machine->links.push_back({name, nullptr});
+  return machine;
+}
+
+std::vector<glm::mat4> two_links(const Vec3& table_mm) {
+  return {glm::mat4(1.0f), to_mat4(shift(table_mm))};
+}
+
+TEST(BodyWatch, AFixtureOnALinkGoesWithIt) {
+  BodyWatch watch(wishes_of({"vise=box:0,0,0:30,30,40:at=20,-15,-50:on=table"}));
+  watch.mount(cutter_of("flat:10"), 0);
+  // Nobody knows where it is: it is nowhere, and what may be nearer is not known.
+  EXPECT_EQ(watch.poses(), std::vector<glm::mat4>{kNotDrawn});
+  EXPECT_FALSE(look(watch, at({0, 0, -20})).clearance);
+  watch.set_machine(machine_of({"frame", "table"}));
+  EXPECT_EQ(watch.poses(), std::vector<glm::mat4>{kNotDrawn}) << "it does not stand yet";
+  // Its side is 20 mm from the table's origin, the tool 5 mm wide on that side.
+  watch.set_link_poses(two_links({0, 0, 0}));
+  ASSERT_TRUE(look(watch, at({0, 0, -20})).clearance);
+  EXPECT_NEAR(look(watch, at({0, 0, -20})).clearance->mm, 15, 0.01);
+  watch.set_link_poses(two_links({-12, 0, 0}));
+  EXPECT_NEAR(look(watch, at({0, 0, -20})).clearance->mm, 3, 0.01) << "the tool has not moved";
+  EXPECT_NEAR(watch.poses()[0][3].x, 8, 1e-4);
+  EXPECT_TRUE(look(watch, at({0, 0, -20})).contacts.empty());
+  watch.set_link_poses(two_links({-16, 0, 0}));
+  ASSERT_EQ(look(watch, at({0, 0, -20})).contacts.size(), 1u);
+  EXPECT_EQ(look(watch, at({0, 0, -20})).contacts[0].fixture, 0u);
+  // It cannot stand so, or has no such link: not where it was last.
+  watch.set_link_poses({});
+  EXPECT_EQ(watch.poses(), std::vector<glm::mat4>{kNotDrawn});
+  EXPECT_TRUE(look(watch, at({0, 0, -20})).contacts.empty());
+  watch.set_machine(machine_of({"frame", "bed"}));
+  watch.set_link_poses(two_links({-16, 0, 0}));
+  EXPECT_EQ(watch.poses(), std::vector<glm::mat4>{kNotDrawn});
+}
+
+TEST(BodyWatch, OthersAreWhereTheyWereWhateverTheMachineDoes) {
+  BodyWatch watch(wishes_of({"clamp=box:20,-15,-50:50,15,-10", "vise=box:0,0,0:1,1,1:on=table"}));
+  watch.set_machine(machine_of({"frame", "table"}));
+  watch.set_link_poses(two_links({7, 8, 9}));
+  EXPECT_EQ(watch.poses()[0], glm::mat4(1.0f));
+  EXPECT_NEAR(watch.poses()[1][3].z, 9, 1e-6);
+}
+
+/// A head that slides up and down, and carries the tool.
+MachineBodiesPointer bodies_with_head() {
+  auto machine = std::make_shared<MachineBodies>();
+  ChainLink frame, head, nozzle;
+  frame.name = "frame";
+  head.name = "head";
+  head.parent = "frame";
+  head.joint = JointKind::kPrismatic;
+  head.input = 2;
+  nozzle.name = "nozzle";
+  nozzle.parent = "head";
+  machine->chain = KinematicChain::create({frame, head, nozzle}, "frame", "head").value();
+  return machine;
+}
+
+TEST(BodyWatch, WhatTheToolsLinkCarriesIsNotNear) {
+  for (const std::string on : {"head", "nozzle", "frame"}) {
+    CollisionWishes wishes = wishes_of({"pipe=box:-2,-2,0:2,2,40:on=" + on});
+    wishes.machine = bodies_with_head();
+    BodyWatch watch(wishes);
+    watch.mount(cutter_of("flat:10"), 0);
+    watch.set_machine(machine_of({"frame", "head", "nozzle"}));
+    watch.set_link_poses(std::vector<glm::mat4>(3, glm::mat4(1.0f)));
+    const Moment moment = look(watch, at({0, 0, 0}));
+    EXPECT_EQ(moment.contacts.size(), on == "frame" ? 1u : 0u) << on;
+    ASSERT_TRUE(moment.clearance) << on;
+    EXPECT_EQ(moment.clearance->is_beyond, on != "frame") << on;
+  }
+}
+
+TEST(ContactPlaces, OnTheWorkpieceOfAnyBody) {
+  const std::unique_ptr<ZMap> stock = test::block_40(0.2);  // top at 0
+  const CollisionWishes wishes = wishes_of({"arm=box:10,10,0:14,14,50"});
+  const Solid& arm = *(*wishes.fixtures)[0].solid;
+  const auto place = place_on_workpiece(arm, shift({0, 0, -0.05}), *stock);
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->z, 0, 0.01);
+  EXPECT_GT(place->x, 9.7);
+  EXPECT_LT(place->x, 14.3);
+  EXPECT_FALSE(place_on_workpiece(arm, shift({0, 0, 1}), *stock)) << "farther than a cell";
+}
+
 TEST(ContactPlaces, BetweenAToolAndAFixture) {
   const CollisionWishes wishes = wishes_of({"clamp=box:100.2,15,-20:110,25,3"});
+  const Fixture& clamp = (*wishes.fixtures)[0];
   const auto bodies = tool_bodies(*cutter_of("flat:6"), {}, 0);
   Pose tool;
   tool.origin_mm = {97.201, 20, -2};
-  const auto place = place_between(bodies[0], tool, (*wishes.fixtures)[0]);
+  const auto place =
+      place_between(*bodies[0].solid, tool, *clamp.solid, clamp.workpiece_from_fixture);
   ASSERT_TRUE(place);
   EXPECT_NEAR(place->x, 100.2, 0.2);
   EXPECT_NEAR(place->y, 20, 0.6) << "a cylinder meets a plane along a line";
   EXPECT_GT(place->z, -2.2);
   EXPECT_LT(place->z, 3.2);
   tool.origin_mm = {0, 0, 0};
-  EXPECT_FALSE(place_between(bodies[0], tool, (*wishes.fixtures)[0])) << "far apart";
+  EXPECT_FALSE(place_between(*bodies[0].solid, tool, *clamp.solid, clamp.workpiece_from_fixture))
+      << "far apart";
 }
 
 TEST(ContactPlaces, OnTheWorkpiece) {

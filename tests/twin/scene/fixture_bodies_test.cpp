@@ -71,13 +71,20 @@ TEST(FixtureBodies, StandWhereTheFixturesDo) {
   ASSERT_EQ(scene.links.size(), 2u);
   EXPECT_EQ(scene.links[1].name, "post");
   EXPECT_LT(scene.links[0].color >> 24, 0xffu) << "the part is to be seen through it";
-  const std::vector<glm::mat4> poses = fixture_poses(fixtures);
+  const std::vector<glm::mat4> poses = fixture_poses(fixture_places(fixtures, {}, {}));
   ASSERT_EQ(poses.size(), 2u);
   const glm::vec4 far_end = poses[0] * glm::vec4(10, 0, 0, 1);
   EXPECT_NEAR(far_end.x, 100, 1e-4);
   EXPECT_NEAR(far_end.y, 60, 1e-4);
   EXPECT_NEAR(far_end.z, -20, 1e-4);
   EXPECT_EQ(picture_bodies(fixtures)[0].pose, poses[0]);
+}
+
+TEST(FixtureBodies, OnALinkAreNotInThePictureOfAPart) {
+  const auto fixtures = fixtures_of({"vise=box:0,0,0:1,1,1:on=table", "post=cylinder:0,0,0:9:8"});
+  const std::vector<PictureBody> bodies = picture_bodies(fixtures);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_EQ(bodies[0].mesh->triangles.size(), drawn_mesh(*fixtures[1].solid).triangles.size());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/twin/playback/tracks.h"
+#include "tests/twin/scene/machine_with_arm.h"
 
 namespace kerf {
 namespace {
@@ -125,6 +126,29 @@ TEST_F(LiveViewTest, ShowsFixturesAndHowNearTheToolIs) {
   ASSERT_TRUE(moment([](const Moment& m) {
     return !m.contacts.empty() && m.contacts[0].fixture == std::size_t{0};
   })) << "it is in the post now";
+}
+
+TEST_F(LiveViewTest, AFixtureOnALinkGoesWithIt) {
+  const FixtureSpec post[] = {parse_fixture("post=box:0,0,0:1,1,1:at=100,0,0:on=frame").value()};
+  Diagnostics diagnostics;
+  LiveViewOptions with_post = options();
+  with_post.collisions.fixtures = load_fixtures(post, diagnostics);
+  with_post.machine = test::drawn_with_arm({0, 0, 0});
+  open(std::move(with_post));
+  ASSERT_TRUE(until([&] { return known_.fixtures && known_.moment; }));
+  EXPECT_EQ(known_.moment->fixture_poses, std::vector<glm::mat4>{kNotDrawn})
+      << "before the first position";
+  frame(at({33, 10, 30}));
+  EXPECT_TRUE(moment([](const Moment& m) {
+    return std::abs(static_cast<double>(m.fixture_poses[0][3].x) - 133) < 1e-4;
+  })) << "the table has gone to -33";
+  // The workpiece lies elsewhere in the machine than this one was built for.
+  LiveStatus moved = at({34, 10, 30});
+  moved.work.g5x_mm = {5, 0, 0};
+  frame(moved);
+  EXPECT_TRUE(moment([](const Moment& m) {
+    return m.fixture_poses == std::vector<glm::mat4>{kNotDrawn} && !m.clearance;
+  }));
 }
 
 TEST_F(LiveViewTest, ShowsTheWorkpieceToolAndPlace) {

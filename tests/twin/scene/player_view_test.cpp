@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tests/twin/playback/tracks.h"
+#include "tests/twin/scene/machine_with_arm.h"
 
 namespace kerf {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 class PlayerViewTest : public testing::Test {
  protected:
   void open(const MotionList& program, std::vector<std::string> files = {"/nc/part.ngc"},
-            const CollisionWishes& collisions = {}) {
+            const CollisionWishes& collisions = {},
+            std::shared_ptr<const MachineModel> machine = nullptr) {
     PlayerProgram played;
     played.track = test::track_of(program.list());
     played.blank = test::block_40(0.2);
@@ -22,6 +24,7 @@ class PlayerViewTest : public testing::Test {
     played.checks.collisions = collisions;
     ViewedProgram shown;
     shown.collisions = collisions;
+    shown.machine = std::move(machine);
     shown.title = "part.ngc";
     shown.files = std::move(files);
     shown.work_offset = "G54";
@@ -105,6 +108,24 @@ TEST_F(PlayerViewTest, GoesToALineAndShowsWhatIsCutThere) {
   EXPECT_TRUE(until([&] { return known_.moment->removed_mm3 > 100; })) << "the first slot";
   ASSERT_TRUE(until([&] { return static_cast<bool>(known_.tool_shape); }));
   EXPECT_NEAR(known_.tool_shape->cutter.back().radius_mm, 2, 1e-5);
+}
+
+TEST_F(PlayerViewTest, AFixtureOnALinkGoesWithIt) {
+  const FixtureSpec post[] = {parse_fixture("post=box:0,0,0:1,1,1:at=100,0,0:on=frame").value()};
+  Diagnostics diagnostics;
+  CollisionWishes collisions;
+  collisions.fixtures = load_fixtures(post, diagnostics);
+  open(two_slots(), {"/nc/part.ngc"}, collisions, test::drawn_with_arm({0, 0, 0}));
+  // The table takes the workpiece away under the tool: the frame goes by the other way.
+  commands_.push(SeekLineCommand{"/nc/part.ngc", 3});
+  ASSERT_TRUE(at_line(3));
+  ASSERT_EQ(known_.moment->tool_pose->tip_mm.x, -5);
+  ASSERT_EQ(known_.moment->fixture_poses.size(), 1u);
+  EXPECT_NEAR(known_.moment->fixture_poses[0][3].x, 95, 1e-4);
+  commands_.push(SeekLineCommand{"/nc/part.ngc", 8});
+  ASSERT_TRUE(at_line(8));
+  ASSERT_EQ(known_.moment->tool_pose->tip_mm.x, 45);
+  EXPECT_NEAR(known_.moment->fixture_poses[0][3].x, 145, 1e-4);
 }
 
 TEST_F(PlayerViewTest, AChosenCollisionIsJumpedToAndItsBodiesAreMarked) {
