@@ -57,10 +57,6 @@ struct MotionTiming {
   /// The greatest speed of the planned motion: less than both where the motion is too short to
   /// reach them.
   double peak_mm_per_min = 0;
-  /// Its speed where it begins, and where it ends; of the duration, how long it then stands.
-  double entry_mm_per_min = 0;
-  double exit_mm_per_min = 0;
-  double standing_s = 0;
 };
 
 /// A piece of the planned path: a straight line, or an arc about arc.center_mm from from_mm by

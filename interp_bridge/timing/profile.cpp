@@ -8,7 +8,6 @@ namespace kerf {
 SpeedProfile speed_profile(double length, double accel, double start_speed, double target,
                            double final_speed) {
   SpeedProfile profile;
-  profile.start_speed = start_speed;
   const double square0 = start_speed * start_speed;
   const double gain = 2.0 * accel * length;
   double last = std::min(final_speed, target);
@@ -71,7 +70,6 @@ SpeedProfile surprised_profile(double length, double accel_alone, double accel, 
   SpeedProfile profile =
       speed_profile(length - then.way_mm, accel, then.speed, target, final_speed);
   profile.duration_s += seconds;
-  profile.start_speed = start_speed;
   profile.peak_speed = std::max(profile.peak_speed, alone.peak_speed);
   return profile;
 }

@@ -5,10 +5,8 @@ namespace kerf {
 
 struct SpeedProfile {
   double duration_s = 0;
-  double start_speed = 0;
   double end_speed = 0;  ///< reached at the end; above `final_speed` if it could not slow down
   double peak_speed = 0;
-  double standing_s = 0;  ///< of the duration, at its end
 };
 
 /// Trapezoid (or triangle, or part of one): starts at start_speed, runs at `target` where it can,

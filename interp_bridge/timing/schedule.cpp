@@ -55,19 +55,15 @@ void Schedule::drop_pieces(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) close_piece();
 }
 
-void Schedule::add_time(std::uint64_t motion, const Stretch& stretch) {
+void Schedule::add_time(std::uint64_t motion, double seconds, double speed) {
   Pending& pending = pending_[motion];
-  MotionTiming& timing = pending.timing;
   if (!pending.started) {
     pending.started = true;
-    timing.start_s = clock_s_;
-    timing.entry_mm_per_min = stretch.from_speed * 60.0;
+    pending.timing.start_s = clock_s_;
   }
-  timing.duration_s += stretch.seconds;
-  timing.peak_mm_per_min = std::max(timing.peak_mm_per_min, stretch.peak_speed * 60.0);
-  timing.exit_mm_per_min = stretch.to_speed * 60.0;
-  timing.standing_s += stretch.standing_s;
-  clock_s_ += stretch.seconds;
+  pending.timing.duration_s += seconds;
+  pending.timing.peak_mm_per_min = std::max(pending.timing.peak_mm_per_min, speed * 60.0);
+  clock_s_ += seconds;
 }
 
 void Schedule::close_piece() {
@@ -102,8 +98,7 @@ void Schedule::run(const Segment& segment, const SpeedProfile& profile, const Ov
   if (!corner_mm_.empty()) send_chords(corner_mm_.size() / 2, corner_mm_.size() - 1);
   corner_mm_.clear();
   if (with_path_) round_corner(segment, overlap);
-  run_pieces(segment, {seconds, profile.start_speed, profile.peak_speed, profile.end_speed,
-                       profile.standing_s});
+  run_pieces(segment, seconds, profile.peak_speed);
   if (!corner_mm_.empty()) send_chords(0, corner_mm_.size() / 2);
   corner_behind_mm_ = corner_ahead_mm_;
   corner_ahead_mm_ = 0;
@@ -144,7 +139,7 @@ void Schedule::send_chords(std::size_t from, std::size_t to) {
 }
 
 /// Shares the time among the pieces by length; the last one stays open for the blend after it.
-void Schedule::run_pieces(const Segment& segment, const Stretch& all) {
+void Schedule::run_pieces(const Segment& segment, double seconds, double speed) {
   double whole = 0;
   for (std::uint32_t i = 0; i < segment.piece_count; ++i) {
     whole += pieces_[segment.first_piece + i].length_mm;
@@ -154,14 +149,11 @@ void Schedule::run_pieces(const Segment& segment, const Stretch& all) {
     if (i > 0) close_piece();
     const Piece piece = pieces_.front();
     const double share = whole > 0 ? piece.length_mm / whole : 1.0;
-    const bool last = i + 1 == segment.piece_count;
-    // Where one ends and the next begins it is as fast as it gets.
-    add_time(piece.motion,
-             {all.seconds * share, i == 0 ? all.from_speed : all.peak_speed, all.peak_speed,
-              last ? all.to_speed : all.peak_speed, last ? all.standing_s : 0});
+    add_time(piece.motion, seconds * share, speed);
     if (with_path_ && segment.shape == SegmentShape::kArc) {
       send_arc(segment, corner_behind_mm_, corner_before_mm_);
     } else if (with_path_) {
+      const bool last = i + 1 == segment.piece_count;
       const double length =
           segment.shape == SegmentShape::kBlend ? segment.lead_mm : segment.length_mm;
       const double end = last ? length : (done + share) * length;
@@ -178,14 +170,14 @@ void Schedule::run_blend(const Segment& segment, double seconds, double speed) {
   const double after = seconds * 0.5 * arc_mm / segment.length_mm;
   if (segment.piece_count > 0) {
     settle();
-    run_pieces(segment, {seconds - after, speed, speed, speed, 0});
+    run_pieces(segment, seconds - after, speed);
   } else if (held_) {
-    add_time(pieces_.front().motion, {seconds - after, speed, speed, speed, 0});
+    add_time(pieces_.front().motion, seconds - after, speed);
   }
   if (with_path_) send_blend_half(segment, true);
   settle();
   if (pieces_.empty()) return;
-  add_time(pieces_.front().motion, {after, speed, speed, speed, 0});
+  add_time(pieces_.front().motion, after, speed);
   if (with_path_) send_blend_half(segment, false);
 }
 

@@ -54,16 +54,10 @@ class Schedule {
     double length_mm = 0;
   };
 
-  /// Of a part of the way that one motion has. Speeds are mm/s.
-  struct Stretch {
-    double seconds = 0;
-    double from_speed = 0, peak_speed = 0, to_speed = 0;
-    double standing_s = 0;
-  };
-  void add_time(std::uint64_t motion, const Stretch& stretch);
+  void add_time(std::uint64_t motion, double seconds, double speed);
   void close_piece();
   void report_ready();
-  void run_pieces(const Segment& segment, const Stretch& all);
+  void run_pieces(const Segment& segment, double seconds, double speed);
   void run_blend(const Segment& segment, double seconds, double speed);
   void send_line(const Segment& segment, double from_mm, double to_mm);
   void send_arc(const Segment& segment, double from_mm, double to_mm);

@@ -1,7 +1,6 @@
 #include "twin/machine/timeline.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "twin/motion/motion_geometry.h"
 #include "twin/motion/motion_nearest.h"
@@ -10,8 +9,6 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kFirstRing = 1024;
-/// Rounding of times that have to fit into a duration.
-constexpr double kSameTime = 1e-6;
 
 bool is_feeding(const Motion& m) { return is_feed(m) || m.kind == MotionKind::kProbe; }
 
@@ -110,33 +107,6 @@ void Timeline::timed(const MotionTiming& timing) {
   }
 }
 
-double TimedStep::time_at(double share) const {
-  const double moving_s = duration_s - standing_s;
-  const double in_proportion = start_s + share * moving_s;
-  if (length_mm <= 0 || peak_mm_per_min <= 0 || share <= 0 || share >= 1) return in_proportion;
-  // Speeds and acceleration in shares of the way.
-  const double per_way = 1 / (60 * length_mm);
-  const double entry = entry_mm_per_min * per_way, peak = peak_mm_per_min * per_way;
-  const double leave = exit_mm_per_min * per_way;
-  const double change = 2 * peak - entry - leave;
-  const double squares = (2 * peak * peak - entry * entry - leave * leave) / 2;
-  const double late = peak * moving_s - 1;
-  if (late <= 0 || peak * change - squares <= 0) return in_proportion;
-  const double per_acceleration = late / (peak * change - squares);
-  const double gaining_s = (peak - entry) * per_acceleration;
-  const double losing_s = (peak - leave) * per_acceleration;
-  if (gaining_s < 0 || losing_s < 0 || gaining_s + losing_s > moving_s * (1 + kSameTime))
-    return in_proportion;
-  const auto after = [&](double speed, double way) {
-    return (std::sqrt(speed * speed + 2 * way / per_acceleration) - speed) * per_acceleration;
-  };
-  const double gained = (entry + peak) / 2 * gaining_s;
-  if (share <= gained) return start_s + after(entry, share);
-  if (share >= 1 - (leave + peak) / 2 * losing_s)
-    return start_s + moving_s - after(leave, 1 - share);
-  return start_s + gaining_s + (share - gained) / peak;
-}
-
 void Timeline::emit(const MotionTiming& timing) {
   const Waiting& waiting = waiting_[first_];
   const Motion& motion = waiting.motion;
@@ -147,9 +117,6 @@ void Timeline::emit(const MotionTiming& timing) {
   step.programmed_mm_per_min = timing.programmed_mm_per_min;
   step.allowed_mm_per_min = timing.allowed_mm_per_min;
   step.peak_mm_per_min = timing.peak_mm_per_min;
-  step.entry_mm_per_min = timing.entry_mm_per_min;
-  step.exit_mm_per_min = timing.exit_mm_per_min;
-  step.standing_s = timing.standing_s;
   const bool moves = motion.kind == MotionKind::kTraverse || is_feeding(motion);
   // Without a known start there is no true length: the real one is not in the program.
   if (moves && motion.start_known) step.length_mm = fed_length_mm(motion);

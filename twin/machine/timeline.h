@@ -55,14 +55,9 @@ struct TimedStep {
   double programmed_mm_per_min = 0;  ///< of a feed move; 0: no feed rate in force
   double allowed_mm_per_min = 0;     ///< by the axes, along this motion
   double peak_mm_per_min = 0;        ///< the greatest speed that is reached; 0: not known
-  double entry_mm_per_min = 0;       ///< where it begins
-  double exit_mm_per_min = 0;        ///< where it ends
-  double standing_s = 0;             ///< of the duration, at its end
 
-  /// When this share of its way is done: it gains speed to the peak, keeps it, and loses it with
-  /// the same acceleration. In proportion where its speeds are not known, or are none of its
-  /// length.
-  double time_at(double share) const;
+  /// When this share of the way is done, as players have it: in proportion.
+  double time_at(double share) const { return start_s + share * duration_s; }
 };
 
 /// Receives the motions with their times.

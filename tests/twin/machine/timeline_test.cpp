@@ -72,65 +72,6 @@ TEST(Timeline, LongMovesTakeTheirLengthByTheirSpeedAndALittleForTheAcceleration)
   EXPECT_EQ(timed.totals.traverse_moves, 1U);
 }
 
-TEST(Timeline, WhenAShareOfTheWayIsDoneFollowsFromTheSpeeds) {
-  // 100 mm at 50 mm/s with 500 mm/s2, from rest to rest: 2.5 mm and 0.1 s to gain it, and to lose
-  // it.
-  TimedStep step;
-  step.start_s = 5;
-  step.duration_s = 2.1 + 0.002;
-  step.standing_s = 0.002;
-  step.length_mm = 100;
-  step.peak_mm_per_min = 3000;
-  EXPECT_NEAR(step.time_at(0.0125), 5 + std::sqrt(2 * 1.25 / 500), kTight);
-  EXPECT_NEAR(step.time_at(0.1), 5 + 0.1 + 7.5 / 50, kTight);
-  EXPECT_NEAR(step.time_at(0.99), 5 + 2.1 - std::sqrt(2 * 1.0 / 500), kTight);
-  EXPECT_NEAR(step.time_at(1), 7.1, kTight);
-  // From 20 mm/s, and on at 50 mm/s: 0.06 s over 2.1 mm.
-  step.entry_mm_per_min = 1200;
-  step.exit_mm_per_min = 3000;
-  step.duration_s = 0.06 + 97.9 / 50 + step.standing_s;
-  EXPECT_NEAR(step.time_at(0.01), 5 + (std::sqrt(20.0 * 20 + 2 * 500) - 20) / 500, kTight);
-  EXPECT_NEAR(step.time_at(0.5), 5 + 0.06 + 47.9 / 50, kTight);
-  // At one speed, and where none is known, in proportion.
-  step.entry_mm_per_min = 3000;
-  step.duration_s = 2;
-  step.standing_s = 0;
-  EXPECT_NEAR(step.time_at(0.3), 5.6, kTight);
-  step.peak_mm_per_min = step.entry_mm_per_min = step.exit_mm_per_min = 0;
-  EXPECT_NEAR(step.time_at(0.3), 5.6, kTight);
-}
-
-TEST(Timeline, SpeedsAtTheEndsOfMotionsJoin) {
-  MotionList program;
-  program.at({0, 0, 0}).feed_rate(1200);
-  program.traverse({100, 0, 0}).feed({130, 0, 0}).feed({160, 0, 0}).traverse({0, 0, 0});
-  const Timed timed(program);
-  const std::vector<TimedStep>& steps = timed.recorder.steps;
-  ASSERT_EQ(steps.size(), 4U);
-  // Traverses begin and end at rest; feeds in one line do not stop between.
-  for (const std::size_t i : {0U, 3U}) {
-    EXPECT_EQ(steps[i].entry_mm_per_min, 0);
-    EXPECT_EQ(steps[i].exit_mm_per_min, 0);
-  }
-  EXPECT_EQ(steps[1].entry_mm_per_min, 0);
-  EXPECT_NEAR(steps[1].exit_mm_per_min, 1200, 1e-6);
-  EXPECT_NEAR(steps[2].entry_mm_per_min, 1200, 1e-6);
-  EXPECT_EQ(steps[2].exit_mm_per_min, 0);
-  for (const TimedStep& step : steps) {
-    double before = step.start_s;
-    for (int i = 1; i < 100; ++i) {
-      const double now = step.time_at(i / 100.0);
-      ASSERT_GT(now, before);
-      // The first hundredth from rest takes longer than one in the middle.
-      if (i == 1 && step.entry_mm_per_min == 0) {
-        EXPECT_GT(now - before, 1.5 * (step.time_at(0.51) - step.time_at(0.5)));
-      }
-      before = now;
-    }
-    EXPECT_LT(before, step.start_s + step.duration_s);
-  }
-}
-
 TEST(Timeline, DwellsTakeWhatTheySay) {
   EXPECT_NEAR(totals_of(MotionList().dwell(1.5)).duration_s, 1.5, 0.01);
 }
