@@ -24,7 +24,7 @@ std::optional<TriangleMesh> shape_of(const LinkSpec& link, Diagnostics& diagnost
     const Result<TriangleMesh> stl = read_stl(link.stl_path, link.mm_per_unit);
     if (!stl) {
       report(diagnostics,
-             trf("the link '{}' of the machine cannot be drawn: {}", link.chain.name, stl.error()));
+             trf("the link '{}' of the machine cannot be read: {}", link.chain.name, stl.error()));
       return std::nullopt;
     }
     shape.add(*stl, shift(link.mesh_offset_mm));

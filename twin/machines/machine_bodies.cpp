@@ -21,7 +21,7 @@ bool add_stl(const LinkSpec& link, std::size_t most_triangles, LinkBody& body,
   Result<TriangleMesh> mesh = read_stl(link.stl_path, link.mm_per_unit);
   if (!mesh) {
     tell(diagnostics, Severity::kError,
-         trf("the link '{}' of the machine cannot be drawn: {}", link.chain.name, mesh.error()));
+         trf("the link '{}' of the machine cannot be read: {}", link.chain.name, mesh.error()));
     return false;
   }
   if (mesh->triangles.size() > most_triangles) {

@@ -215,14 +215,17 @@ TEST_F(ViewFiles, LinksThatCannotBeReadAreAllNamedAndNothingIsBegun) {
                                            "    - {name: head, stl: none.stl}\n"
                                            "  workpiece_on: table\n"
                                            "  tool_on: head\n");
-  EXPECT_EQ(picture({program_, "-c", config}, 4).width_px, 0);
+  EXPECT_EQ(picture({program_, "-c", config}, 2).width_px, 0);
   EXPECT_NE(last_.err.find("broken.stl:2: 'whatever' found where 'normal' is due"),
             std::string::npos)
       << last_.err;
   EXPECT_NE(last_.err.find("none.stl: No such file or directory"), std::string::npos) << last_.err;
-  // Who draws no machine does not ask for them.
+  // A dry run holds them against each other; who does not want that does not ask for them.
   const KerfResult run = run_kerf(call_of({"run", program_, "-c", config, "--quiet"}, kWork));
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  const KerfResult unasked = run_kerf(
+      call_of({"run", program_, "-c", config, "--set", "machine.collisions=no", "--quiet"}, kWork));
+  EXPECT_EQ(unasked.exit_code, 0) << unasked.err;
 }
 
 TEST_F(ViewFiles, ALogWantsAWindowOrReplay) {

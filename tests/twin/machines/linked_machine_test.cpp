@@ -59,10 +59,10 @@ TEST(LinkedMachine, MissingAndBrokenFilesAreAllNamed) {
   EXPECT_FALSE(linked_machine(description, {}, diagnostics));
   ASSERT_EQ(diagnostics.size(), 2U);
   EXPECT_EQ(diagnostics[0].message,
-            "the link 'table' of the machine cannot be drawn: cannot read /nonexistent/table.stl: "
+            "the link 'table' of the machine cannot be read: cannot read /nonexistent/table.stl: "
             "No such file or directory");
   EXPECT_EQ(diagnostics[1].message,
-            "the link 'head' of the machine cannot be drawn: cannot read /dev/null: it is not a "
+            "the link 'head' of the machine cannot be read: cannot read /dev/null: it is not a "
             "regular file");
 }
 
