@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <vector>
 
 #include "stock/octree/blank_contact.h"
@@ -18,7 +17,6 @@
 namespace kerf::octree {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Where part and flutes come to a point within so much of their way, the flutes were first: there
 /// they meet.
 constexpr double kAtOnce_mm = 0.001;
