@@ -8,6 +8,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "tests/stock/insert_points.h"
+
 namespace kerf {
 namespace {
 
@@ -15,24 +17,7 @@ double radians(double degrees) { return degrees * kPi / 180; }
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 /// Points of an outline, arcs in small steps.
-std::vector<Vec2> points_of(const InsertPart& part) {
-  std::vector<Vec2> points;
-  Vec2 at = part.back().end_mm;
-  for (const InsertEdge& edge : part) {
-    if (edge.center_mm) {
-      const Vec2 a = at - *edge.center_mm, b = edge.end_mm - *edge.center_mm;
-      double sweep = std::atan2(cross(a, b), glm::dot(a, b));
-      if (sweep <= 0) sweep += 2 * kPi;
-      for (int i = 1; i < 400; ++i) {
-        const double turn = sweep * i / 400, c = std::cos(turn), s = std::sin(turn);
-        points.push_back(*edge.center_mm + Vec2(c * a.x - s * a.y, s * a.x + c * a.y));
-      }
-    }
-    points.push_back(edge.end_mm);
-    at = edge.end_mm;
-  }
-  return points;
-}
+std::vector<Vec2> points_of(const InsertPart& part) { return insert_points(part, 400); }
 
 struct Extent {
   Vec2 low{1e300}, high{-1e300};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/stock/insert_points.h"
 #include "tests/stock/turning/turning_oracle.h"
 
 namespace kerf {
@@ -42,24 +43,7 @@ double area_of(const std::vector<Vec2>& ring) {
   return sum;
 }
 
-std::vector<Vec2> points_of(const InsertPart& part) {
-  std::vector<Vec2> points;
-  Vec2 from = part.back().end_mm;
-  for (const InsertEdge& edge : part) {
-    if (edge.center_mm) {
-      const Vec2 a = from - *edge.center_mm, b = edge.end_mm - *edge.center_mm;
-      double sweep = std::atan2(cross(a, b), glm::dot(a, b));
-      if (sweep <= 0) sweep += 2 * kPi;
-      for (int k = 1; k < 300; ++k) {
-        const double c = std::cos(sweep * k / 300), d = std::sin(sweep * k / 300);
-        points.push_back(*edge.center_mm + Vec2(c * a.x - d * a.y, d * a.x + c * a.y));
-      }
-    }
-    points.push_back(edge.end_mm);
-    from = edge.end_mm;
-  }
-  return points;
-}
+std::vector<Vec2> points_of(const InsertPart& part) { return insert_points(part, 300); }
 
 void expect_convex(const ConvexRegion& region) {
   const std::vector<Point>& corners = region.corners();

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/stock/insert_points.h"
+
 namespace kerf {
 namespace {
 
@@ -146,24 +148,7 @@ std::optional<double> front_at(const std::vector<Vec2>& outline, const Vec2& way
 }
 
 /// The outline as a polygon.
-std::vector<Vec2> polygon_of(const InsertPart& part) {
-  std::vector<Vec2> points;
-  Vec2 from = part.back().end_mm;
-  for (const InsertEdge& edge : part) {
-    if (edge.center_mm) {
-      const Vec2 a = from - *edge.center_mm, b = edge.end_mm - *edge.center_mm;
-      double sweep = std::atan2(cross(a, b), glm::dot(a, b));
-      if (sweep <= 0) sweep += 2 * kPi;
-      for (int k = 1; k < 100; ++k) {
-        const double c = std::cos(sweep * k / 100), d = std::sin(sweep * k / 100);
-        points.push_back(*edge.center_mm + Vec2(c * a.x - d * a.y, d * a.x + c * a.y));
-      }
-    }
-    points.push_back(edge.end_mm);
-    from = edge.end_mm;
-  }
-  return points;
-}
+std::vector<Vec2> polygon_of(const InsertPart& part) { return insert_points(part, 100); }
 
 /// The most of the front, at places of a straight way, that is in the material there was before.
 double deepest_front(const InsertPart& part, const Vec2& from, const Vec2& to,
