@@ -21,18 +21,25 @@ std::optional<TriangleMesh> shape_of(const LinkSpec& link, Diagnostics& diagnost
   MeshBuilder shape;
   for (const BlankBody& body : link.bodies) shape.add(mesh_of(body), Pose{});
   if (!link.stl_path.empty()) {
-    const Result<TriangleMesh> stl = read_stl(link.stl_path, link.mm_per_unit);
-    if (!stl) {
-      report(diagnostics,
-             trf("the link '{}' of the machine cannot be read: {}", link.chain.name, stl.error()));
-      return std::nullopt;
-    }
-    shape.add(*stl, shift(link.mesh_offset_mm));
+    const std::optional<TriangleMesh> stl = stl_of(link, diagnostics);
+    if (!stl) return std::nullopt;
+    shape.add(*stl, Pose{});
   }
   return shape.take();
 }
 
 }  // namespace
+
+std::optional<TriangleMesh> stl_of(const LinkSpec& link, Diagnostics& diagnostics) {
+  Result<TriangleMesh> stl = read_stl(link.stl_path, link.mm_per_unit);
+  if (!stl) {
+    report(diagnostics,
+           trf("the link '{}' of the machine cannot be read: {}", link.chain.name, stl.error()));
+    return std::nullopt;
+  }
+  for (glm::vec3& corner : stl->positions_mm) corner += glm::vec3(link.mesh_offset_mm);
+  return std::move(stl.value());
+}
 
 TriangleMesh mesh_of(const BlankBody& body) {
   MeshBuilder mesh;

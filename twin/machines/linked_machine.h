@@ -32,6 +32,10 @@ struct LinkedMachine {
   std::vector<ChainLink> links_of_chain() const;
 };
 
+/// What is in the link's STL file, where it lies in the link's frame. Nothing, with an error that
+/// names link, file and reason, if it cannot be read.
+std::optional<TriangleMesh> stl_of(const LinkSpec& link, Diagnostics& diagnostics);
+
 /// Box, cylinder or tube as a closed mesh.
 TriangleMesh mesh_of(const BlankBody& body);
 

@@ -1,9 +1,9 @@
 #include "twin/machines/machine_bodies.h"
 
+#include <optional>
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/collision/stl_mesh.h"
 
 namespace kerf {
 namespace {
@@ -18,12 +18,8 @@ void tell(Diagnostics& diagnostics, Severity severity, std::string message) {
 /// False with an error.
 bool add_stl(const LinkSpec& link, std::size_t most_triangles, LinkBody& body,
              Diagnostics& diagnostics) {
-  Result<TriangleMesh> mesh = read_stl(link.stl_path, link.mm_per_unit);
-  if (!mesh) {
-    tell(diagnostics, Severity::kError,
-         trf("the link '{}' of the machine cannot be read: {}", link.chain.name, mesh.error()));
-    return false;
-  }
+  const std::optional<TriangleMesh> mesh = stl_of(link, diagnostics);
+  if (!mesh) return false;
   if (mesh->triangles.size() > most_triangles) {
     tell(diagnostics, Severity::kNote,
          trf("the link '{}': {} has {} triangles; for collisions {} are the most, and it is left "
@@ -31,7 +27,6 @@ bool add_stl(const LinkSpec& link, std::size_t most_triangles, LinkBody& body,
              link.chain.name, link.stl_path, mesh->triangles.size(), most_triangles));
     return true;
   }
-  for (glm::vec3& corner : mesh->positions_mm) corner += glm::vec3(link.mesh_offset_mm);
   body.solids.push_back(Solid::of_mesh(*mesh));
   if (!body.solids.back()->is_closed()) {
     tell(diagnostics, Severity::kNote,
