@@ -20,6 +20,7 @@
 namespace kerf {
 
 class Sheet;
+class TurningStock;
 
 /// Circular part of a CutMove: the tip turns about the axis through `center_mm` along `axis` (unit
 /// vector) by `sweep_rad` (right-hand rule), and moves along the axis linearly in angle. If start
@@ -41,6 +42,9 @@ struct CutMove {
   /// half a turn; not together with `arc`). Only models for tilted tools take any but (0, 0, 1).
   Vec3 axis_from{0, 0, 1};
   Vec3 axis_to{0, 0, 1};
+  /// The workpiece turns with the move: once a lead of the way along its axis, at angle 0 where the
+  /// move begins. 0: it turns so fast that any one move goes all round. Of models that turn.
+  double lead_mm = 0;
 
   bool is_vertical() const {
     constexpr Vec3 kUp{0, 0, 1};
@@ -183,6 +187,8 @@ class StockModel {
   virtual const StockModel& bare() const { return *this; }
   /// The sheet that this is, or stands before; null: it is another model.
   virtual const Sheet* sheet() const { return nullptr; }
+  /// The same of a workpiece that turns.
+  virtual const TurningStock* turned() const { return nullptr; }
 
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank

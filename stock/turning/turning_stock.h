@@ -38,6 +38,7 @@ class TurningStock final : public StockModel {
   std::size_t unique_bytes() const override;
   /// Error for a cutter without an outline whose profile has hollow arcs or that is too long.
   Done accepts(const Cutter& cutter) const override;
+  const TurningStock* turned() const override { return this; }
   std::string name() const override { return "turning"; }
   Box bounds_mm() const override;
   double cell_mm() const override;          ///< the step of the coordinates

@@ -35,6 +35,7 @@ struct ToolSources {
   std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
   std::vector<ToolTableRow> table;           ///< rows of the tool table
   std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
+  bool turning = false;                      ///< the workpiece turns, tools stand still
 
   /// Somebody has described tools by number: one that they do not have is not guessed.
   bool describes() const { return !arguments.empty() || !library.empty() || !table.empty(); }

@@ -59,6 +59,7 @@ class RecordingStock final : public StockModel {
   std::size_t unique_bytes() const override { return stock_->unique_bytes(); }
   const StockModel& bare() const override { return stock_->bare(); }
   const Sheet* sheet() const override { return stock_->sheet(); }
+  const TurningStock* turned() const override { return stock_->turned(); }
   std::string name() const override { return stock_->name(); }
   Box bounds_mm() const override { return stock_->bounds_mm(); }
   double cell_mm() const override { return stock_->cell_mm(); }
