@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/text_scan.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/punch_shape.h"
 #include "stock/sheet/sheet.h"
 
@@ -16,7 +16,7 @@ constexpr double kTolerance_mm = 0.1;
 constexpr std::size_t kMaxCorners = 2000;
 
 /// What has been read makes a sheet, or has a fault that is told.
-void try_outline(const kerf::Result<kerf::SheetOutline>& outline) {
+void try_outline(const kerf::Result<kerf::PlaneOutline>& outline) {
   if (!outline) {
     if (outline.error().empty()) std::abort();
     return;
