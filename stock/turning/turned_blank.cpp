@@ -188,22 +188,26 @@ Result<TurnedProfile> read_profile(const std::string& path) {
   Result<PlaneOutline> outline = read_outline_file(
       path, outline_format_of(path), kProfileTolerance_mm, OutlineClosing::kAlongAxis);
   if (!outline) return Error{outline.error()};
-  if (const std::string fault = reach_fault(outline->rings); !fault.empty())
-    return Error{fmt::format("{}: {}", path, fault)};
-  Rings rings = units_of(outline->rings);
+  return profile_of_outline(*outline, path);
+}
+
+Result<TurnedProfile> profile_of_outline(const PlaneOutline& outline, const std::string& name) {
+  if (const std::string fault = reach_fault(outline.rings); !fault.empty())
+    return Error{fmt::format("{}: {}", name, fault)};
+  Rings rings = units_of(outline.rings);
   const Rings upper = above_axis(rings);
   for (turning::Ring& ring : rings) {
     for (Point& p : ring) p.Y = -p.Y;
   }
   const Rings lower = above_axis(rings);
   if (upper.empty())
-    return Error{trf("{}: nothing lies above the axis, which is Y0 of the drawing", path)};
+    return Error{trf("{}: nothing lies above the axis, which is Y0 of the drawing", name)};
   if (!lower.empty()) {
-    if (const std::optional<Vec2> at = difference_of(upper, lower)) return halves_differ(path, *at);
+    if (const std::optional<Vec2> at = difference_of(upper, lower)) return halves_differ(name, *at);
   }
   TurnedProfile profile = profile_of(upper);
   if (const std::size_t pieces = piece_count(profile); pieces != 1)
-    return Error{trf("{}: the contours lie apart, in {} pieces; must be one", path, pieces)};
+    return Error{trf("{}: the contours lie apart, in {} pieces; must be one", name, pieces)};
   return profile;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "stock/blank.h"
+#include "stock/plane/outline.h"
 #include "stock/turning/turning_stock.h"
 
 namespace kerf {
@@ -20,6 +21,8 @@ inline constexpr double kProfileTolerance_mm = 9e-5;
 /// lower edge. Error: what read_outline_file() finds, halves that differ, nothing above the axis,
 /// more than one piece, farther out than TurnedPart holds.
 Result<TurnedProfile> read_profile(const std::string& path);
+/// The same of a drawing that has been read; `name` for messages.
+Result<TurnedProfile> profile_of_outline(const PlaneOutline& outline, const std::string& name);
 inline constexpr double kHalves_mm = 0.001;
 
 /// Bodies that turn about X0 Y0 along Z, united, or the profile of a drawing. Error: a box, a body

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "stock/turning/revolve.h"
+#include "stock/turning/turning_state.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -108,12 +109,42 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
     part.contours_.push_back(std::move(contour));
   }
   if (pieces != 1) return std::nullopt;
-  part.blank_moment6_ = part.moment6();
   part.chuck_ = chuck;
   part.flats_ = flats;
-  part.blank_missing_mm3_ = part.missing_mm3();
+  part.blank_mm3_ = part.remaining_mm3();
   part.versions_.fill(next_version());
   return part;
+}
+
+turning::SavedPart TurnedPart::saved() const {
+  return {chuck_, blank_, blank_mm3_, flats_, contours_};
+}
+
+TurnedPart TurnedPart::restored(turning::SavedPart saved) {
+  TurnedPart part;
+  part.contours_ = std::move(saved.contours);
+  part.blank_ = saved.blank;
+  part.blank_mm3_ = saved.blank_mm3;
+  part.chuck_ = saved.chuck;
+  part.flats_ = saved.flats;
+  part.versions_.fill(next_version());
+  return part;
+}
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
+  const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
+  turning::SavedPart turned = saved();
+  turned.blank.min_x = at - blank_.max_x;
+  turned.blank.max_x = at - blank_.min_x;
+  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  for (Contour& contour : turned.contours) {
+    Ring ring = contour.ring();
+    std::reverse(ring.begin(), ring.end());
+    for (Point& p : ring) p.X = at - p.X;
+    contour = contour_of(ring);
+  }
+  return restored(std::move(turned));
 }
 
 /// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
@@ -251,9 +282,6 @@ double TurnedPart::missing_mm3() const {
   return flats_ ? turning::missing_mm3(contours_, *flats_) : 0;
 }
 
-double TurnedPart::blank_mm3() const {
-  return turning::volume_mm3(blank_moment6_) - blank_missing_mm3_;
-}
 double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()) - missing_mm3(); }
 
 Box TurnedPart::bounds_mm() const {

@@ -27,6 +27,10 @@
 
 namespace kerf {
 
+namespace turning {
+struct SavedPart;
+}  // namespace turning
+
 /// Closed chains of (z, r), mm: even-odd, so holes may run either way.
 using TurnedProfile = std::vector<std::vector<Vec2>>;
 
@@ -105,6 +109,14 @@ class TurnedPart {
                                           ChuckSide chuck = ChuckSide::kLowZ,
                                           const std::optional<BarFlats>& flats = std::nullopt);
 
+  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  turning::SavedPart saved() const;
+  static TurnedPart restored(turning::SavedPart saved);
+
+  /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
+  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  std::optional<TurnedPart> turned_about(double at_z_mm) const;
+
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
   TurnCut cut(const TurningTool& tool, const TurnMove& move);
@@ -118,7 +130,7 @@ class TurnedPart {
 
   /// Of the blank; none of one that is round.
   const std::optional<BarFlats>& flats() const { return flats_; }
-  double blank_mm3() const;
+  double blank_mm3() const { return blank_mm3_; }
   double remaining_mm3() const;
   /// Of the blank. x and y from -r to r.
   Box bounds_mm() const;
@@ -174,10 +186,9 @@ class TurnedPart {
 
   std::vector<turning::Contour> contours_;
   turning::Rect blank_;
-  turning::Wide blank_moment6_ = 0;
+  double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;
   std::optional<BarFlats> flats_;
-  double blank_missing_mm3_ = 0;
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;
