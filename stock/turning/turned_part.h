@@ -73,6 +73,9 @@ struct TurnCut {
   double way_mm = 0;  ///< length of the way in material
   /// By InsertSide, width of the material, across the way, that edges of this side came to first.
   std::array<double, kInsertSides> side_mm{};
+  /// The width that front and back flank came to at once, the lesser of the two: one leads, and the
+  /// other one trails.
+  double flanks_mm = 0;
 };
 
 /// Where a move first meets material.

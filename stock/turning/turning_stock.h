@@ -28,6 +28,9 @@ class TurningStock final : public StockModel {
   void finish(std::vector<CutReport>& reports) override;
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
+  /// The same with the sides that touch, and when.
+  std::optional<TurnContact> first_turn_contact(const Cutter& cutter, const CutMove& move,
+                                                double tolerance_mm) const;
   /// With which sides they were made, and how long the tool was in material: of the moves of the
   /// last call of cut(), in order.
   std::span<const TurnCut> last_cuts() const { return last_cuts_; }
@@ -45,7 +48,8 @@ class TurningStock final : public StockModel {
   /// Points of patches lie within the round of the part: what a facet is short of it is added.
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
   /// Error for a cutter without an outline whose profile has hollow arcs or that is too long.
-  Done accepts(const Cutter& cutter) const override;
+  static Done can_cut(const Cutter& cutter);
+  Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }
   const TurningStock* turned() const override { return this; }
   std::string name() const override { return "turning"; }
   Box bounds_mm() const override;

@@ -17,6 +17,7 @@
 #include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
@@ -113,6 +114,25 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
   return as_model(Sheet::create(options));
 }
 
+Created create_turning(const Blank& blank, const StockSettings&) {
+  TurnedProfile profile;
+  for (const BlankBody& body : blank.bodies) {
+    const bool on_axis = body.kind != BlankBody::Kind::kBox && body.axis == 'z' &&
+                         body.center_mm.x == 0 && body.center_mm.y == 0;
+    if (!on_axis || blank.bodies.size() != 1) {
+      return Error{
+          trf("{}: only a cylinder or a tube along Z at X0 Y0 can be turned", describe(blank))};
+    }
+    const double low = body.bounds_mm.min.z, high = body.bounds_mm.max.z;
+    profile = body.kind == BlankBody::Kind::kTube
+                  ? tube_profile(low, high, body.diameter_mm, body.inner_diameter_mm)
+                  : bar_profile(low, high, body.diameter_mm);
+  }
+  std::optional<TurnedPart> part = TurnedPart::create(profile);
+  if (!part) return Error{trf("{}: cannot be turned", describe(blank))};
+  return std::unique_ptr<StockModel>(std::make_unique<TurningStock>(std::move(*part)));
+}
+
 Done sheet_can_cut(const Cutter& cutter) {
   if (2 * cutter.radius_mm() >= Sheet::kMinKerf_mm) return std::monostate{};
   return Error{trf("a kerf of {:g} mm is too narrow; must be at least {:g} mm",
@@ -140,6 +160,11 @@ constexpr std::array kModels{
         tr_noop("polygons: sheet metal under a torch, laser or jet (--stock sheet:..); kerfs, "
                 "piercing, parts that come free"),
         create_sheet, sheet_can_cut, false},
+    StockModelRow{
+        StockKind::kTurning, "turning",
+        tr_noop("an exact profile that turns about Z: lathes, with tools that stand still; bores, "
+                "grooves, undercuts, part-off"),
+        create_turning, TurningStock::can_cut, false},
 };
 
 /// Of a tool that has a shape; empty: the Z-map will do.
@@ -195,6 +220,7 @@ void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& f
 
 StockNeeds stock_needs(const ToolSources& tools) {
   StockNeeds needs;
+  needs.turning = tools.turning_sign;
   for (const ToolShapeArgument& tool : tools.arguments) {
     if (needs.undercut.empty()) needs.undercut = undercut_of(tool.tool, tool.cutter);
   }
@@ -248,6 +274,9 @@ std::string misfit(const StockSettings& settings, const Blank& blank) {
     return tr("--additive: nothing is added to a sheet; a box can be added to");
   }
   if (blank.sheet && settings.cell_mm > 0) return tr("--cell: a sheet has no cells; leave it out");
+  if (settings.kind == StockKind::kTurning && settings.cell_mm > 0) {
+    return tr("--cell: a workpiece that is turned has no cells; leave it out");
+  }
   if (!settings.kind || sheet_wanted == is_sheet(blank)) return {};
   if (sheet_wanted) {
     return trf(
@@ -275,6 +304,7 @@ std::string need_of_blank(const Blank& blank) {
 StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs) {
   const double finest = needs.finest_mm;
   if (settings.kind) return {*settings.kind, {}, finest};
+  if (!needs.turning.empty()) return {StockKind::kTurning, needs.turning, 0};
   if (settings.additive) return {StockKind::kOctree, tr("material is added"), finest};
   if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt, finest};
   if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank, finest};

@@ -95,6 +95,16 @@ std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   StockSettings fitting = settings;
+  if (choice.kind == StockKind::kTurning) {
+    auto turned = stock_model(choice.kind).create(blank, settings);
+    if (turned) return std::move(turned.value());
+    const std::string why =
+        choice.reason.empty() ? "" : trf(" (this is for a lathe: {})", choice.reason);
+    diagnostics.push_back(general_error(
+        fmt::format("{}: {}{}", origin, turned.error(), why),
+        tr("--stock cylinder:0,0,Z0:Z1:DIAMETER gives a bar, --as-mill mills it all the same")));
+    return nullptr;
+  }
   if (choice.kind != StockKind::kOctree) {
     if (fitting.cell_mm <= 0) fitting.cell_mm = suited_cell_mm(blank.bounds_mm(), choice.finest_mm);
     if (refuse_memory(blank, fitting.cell_mm, diagnostics)) return nullptr;
@@ -124,7 +134,8 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
   StockChoice fitting = choice;
   if (blank.sheet) {
     fitting = {StockKind::kSheet, settings.kind ? "" : tr("the blank is a sheet"), 0};
-  } else if (!settings.kind && choice.kind != StockKind::kOctree) {
+  } else if (!settings.kind && choice.kind != StockKind::kOctree &&
+             choice.kind != StockKind::kTurning) {
     const std::string need = need_of_blank(blank);
     if (!need.empty()) fitting = {StockKind::kOctree, need, 0};
   }
