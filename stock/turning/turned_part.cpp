@@ -25,9 +25,8 @@ using turning::Wide;
 
 /// What a lathe may hold.
 constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
-/// So far the controlled point is followed: farther away no tool reaches a blank.
-constexpr double kWayReach_mm = kMaxZ_mm + kMaxInsertReach_mm;
-static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+static_assert(TurnedPart::kWayReach_mm == kMaxZ_mm + kMaxInsertReach_mm);
+static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;

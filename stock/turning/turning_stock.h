@@ -10,6 +10,12 @@
 
 namespace kerf {
 
+/// What a lathe cuts with: Cutter::insert(), or of any other cutter its outline as it stands still
+/// along the axis. Null: it has none, as TurningStock::can_cut() says.
+std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter);
+/// What a move is in the plane of the axis: one move as a rule.
+std::vector<TurnMove> turning_moves(const CutMove& move);
+
 /// A workpiece on a lathe: it turns about the z axis of the workpiece frame. x of a move's tip is
 /// how far the controlled point is from the axis, negative beyond it; y plays no part, nor does the
 /// spindle's direction. Arcs about the y axis are cut as such, others as what they are in the plane

@@ -154,6 +154,8 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.max_mm_per_s2) printer.put("max_acceleration_mm_per_s2", *machine.max_mm_per_s2);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
+  if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);
+  if (machine.holding.tailstock) printer.text("tailstock", machine.holding.tailstock->text);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {

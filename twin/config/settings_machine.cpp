@@ -249,6 +249,30 @@ constexpr std::array kMachineSettings{
         .unit = "mm",
         .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
     Setting{
+        .key = "machine.chuck",
+        .option = "--chuck",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop("what holds a workpiece that turns, as --chuck has it: 160:80:120:30"),
+        .help = tr_noop(
+            "chuck of a workpiece that turns: D:L[:JAW_D:JAW_L][:bore=D][:at=Z], diameter and "
+            "length behind its face; what its jaws sweep, and how far they stand out from the "
+            "face; at=Z: the face (default: where the blank ends towards -z)"),
+        .value_name = "SPEC"},
+    Setting{
+        .key = "machine.tailstock",
+        .option = "--tailstock",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop("centre in the other end of it, as --tailstock has it: 40:60"),
+        .help = tr_noop(
+            "live centre in the other end of it: D[:ANGLE][:at=Z], diameter of the quill, angle "
+            "of the point (60), place of the point (default: the cone is a third as thick as the "
+            "blank's end)"),
+        .value_name = "SPEC"},
+    Setting{
         .key = "machine.collisions",
         .type = T::kYesNo,
         .fallback = "yes",

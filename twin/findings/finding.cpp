@@ -171,6 +171,10 @@ const char* to_string(FindingId id) {
       return "past-centre";
     case FindingId::kPipLeft:
       return "pip-left";
+    case FindingId::kChuckContact:
+      return "chuck-contact";
+    case FindingId::kJawContact:
+      return "jaw-contact";
   }
   return "";
 }

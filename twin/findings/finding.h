@@ -89,6 +89,8 @@ enum class FindingId : std::uint8_t {
   kWrongPlane,        ///< an arc of a lathe's program that does not lie in G18
   kPastCentre,        ///< a turning tool cuts beyond the axis
   kPipLeft,           ///< a face that has been turned has a pip in its middle
+  kChuckContact,      ///< of a turning tool anything touches the chuck
+  kJawContact,        ///< the same of its jaws
 };
 
 /// "rapid-contact", ...: the `id` of the report.

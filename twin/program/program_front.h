@@ -58,6 +58,7 @@ struct ProgramFront {
   StockChoice choice;          ///< of its model, by what is known of the tools
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
+  HoldingList held_by;  ///< of a workpiece that turns; null: nothing holds it
 
   bool blank_guessed = false;
   std::string guess_reason;  ///< of that

@@ -28,10 +28,17 @@ TurningStage::TurningStage(ProcessSite& site)
       resolver_(site.tools),
       log_(site.log),
       checks_(stock_, log_),
+      holding_(log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
+
+void TurningStage::check_by(const CheckOptions& options) {
+  checks_.set_options(options);
+  if (options.collisions.held_by) holding_.set_wishes(options.collisions);
+}
 
 void TurningStage::begin_reporting() {
   checks_.forget();
+  holding_.begin_reporting();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
@@ -48,6 +55,7 @@ void TurningStage::go_on_from(const Process& process) {
 void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
+    holding_.finish();
     report_nothing_cut();
   }
   for (ToolUse& use : uses_) {
@@ -61,6 +69,7 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
     spindle_tool_ = m.tool;
     mounted_ = nullptr;
     checks_.end_tool();
+    holding_.unmount();
   }
   if (!stands(m)) checks_.end_standing();
   report_mill_turn(m, step);
@@ -104,6 +113,7 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
   if (!mount_for(m) || !m.start_known || !divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
+  check_holding_on(move);
   if (!checks_.may_touch(move)) {
     checks_.clear_traverse();
     return;
@@ -125,10 +135,17 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   checks_.check_plane(m, step);
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
+  check_holding_on(move);
   if (!checks_.may_touch(move)) return;
   checks_.check_thread(m, step, site_.limits_known);
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
+}
+
+void TurningStage::check_holding_on(const TurnedMove& move) {
+  if (!holding_.active()) return;
+  if (!holding_.is_mounted()) holding_.mount(move.cutter, move.tool, move.tool_guessed);
+  holding_.check(move);
 }
 
 /// Once: a tool beside the plane of the axis, or a workpiece that is turned as an axis, is no

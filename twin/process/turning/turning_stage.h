@@ -13,6 +13,7 @@
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/process.h"
+#include "twin/process/turning/holding_checks.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
@@ -28,17 +29,19 @@ class TurningStage final : public Process {
   void finish(bool whole) override;
   void begin_reporting() override;
   void go_on_from(const Process& other) override;
-  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  void check_by(const CheckOptions& options) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
   const Cutter* cutter() const override {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
   }
   std::span<const FallenPiece> fallen() const override { return fallen_; }
+  std::vector<CollisionPair> collisions() const override { return holding_.table(); }
 
  private:
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
+  void check_holding_on(const TurnedMove& move);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
@@ -54,6 +57,7 @@ class TurningStage final : public Process {
   ToolResolver& resolver_;
   FindingLog& log_;
   TurningChecks checks_;
+  HoldingChecks holding_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
   std::vector<CutMove> pieces_;      ///< as the machine runs it
