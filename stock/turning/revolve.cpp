@@ -42,6 +42,37 @@ glm::vec3 place(const Vec2& zr, const Vec2& direction) {
           static_cast<float>(zr.x)};
 }
 
+/// Whole edges of a bar, and the middles of its flats, lie on directions.
+int segments_with(int segments, const std::optional<BarFlats>& flats) {
+  const int step = flats ? 2 * flats->count : 1;
+  return (segments + step - 1) / step * step;
+}
+
+/// How far the bar reaches along each direction; the first once more at the end.
+std::vector<double> reaches(int segments, const BarFlats& flats) {
+  std::vector<double> all;
+  for (int i = 0; i <= segments; ++i) all.push_back(flats.reach_mm(2 * kPi * i / segments));
+  return all;
+}
+
+/// Steps of radius no greater than twice the tolerance where the flats cut off a cone: of a step
+/// that ends beyond a flat a quarter is the most that the straight way to it is off.
+std::vector<Vec2> divided_at_flats(std::vector<Vec2> chain, const BarFlats& flats,
+                                   double tolerance_mm) {
+  constexpr double kMostParts = 256;
+  std::vector<Vec2> result;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    result.push_back(chain[i]);
+    if (i + 1 == chain.size()) break;
+    const Vec2 a = chain[i], way = chain[i + 1] - a;
+    const double low = std::min(a.y, chain[i + 1].y), high = std::max(a.y, chain[i + 1].y);
+    if (way.x == 0 || high <= flats.inner_radius_mm || low >= flats.outer_radius_mm()) continue;
+    const double parts = std::clamp(std::ceil((high - low) / (2 * tolerance_mm)), 1.0, kMostParts);
+    for (int k = 1; k < static_cast<int>(parts); ++k) result.push_back(a + k / parts * way);
+  }
+  return result;
+}
+
 /// The strip between two rings of corners, counter-clockwise seen from outside; a ring of one
 /// corner, on the axis, has step 0.
 template <class Triangle>
@@ -118,21 +149,27 @@ std::vector<Vec2> simplified(std::span<const Vec2> chain, double tolerance_mm) {
   return result;
 }
 
-TriangleMesh revolve(std::span<const Contour> contours, double tolerance_mm) {
+TriangleMesh revolve(std::span<const Contour> contours, double tolerance_mm,
+                     const std::optional<BarFlats>& flats) {
   Unit radius = 0;
   for (const Contour& contour : contours) radius = std::max(radius, contour.box().max_y);
   const double half = tolerance_mm > 0 ? tolerance_mm / 2 : 0;
-  const int segments = segments_for(to_mm(radius), half > 0 ? half : kFinest_mm / 2);
+  const double finest = half > 0 ? half : kFinest_mm / 2;
+  const int segments = segments_with(segments_for(to_mm(radius), finest), flats);
   const std::vector<Vec2> around = directions(segments);
+  const std::vector<double> reach = flats ? reaches(segments, *flats) : std::vector<double>();
   TriangleMesh mesh;
   for (const Contour& contour : contours) {
-    const std::vector<Vec2> chain = simplified(closed_chain(contour), half);
+    std::vector<Vec2> chain = simplified(closed_chain(contour), half);
+    if (flats) chain = divided_at_flats(std::move(chain), *flats, finest);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> rings;  // first vertex and step
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
       const bool on_axis = chain[i].y == 0;
       rings.emplace_back(static_cast<std::uint32_t>(mesh.positions_mm.size()), on_axis ? 0 : 1);
-      for (int k = 0; k < (on_axis ? 1 : segments); ++k)
-        mesh.positions_mm.push_back(place(chain[i], around[static_cast<std::size_t>(k)]));
+      for (std::size_t k = 0; k < (on_axis ? 1 : static_cast<std::size_t>(segments)); ++k) {
+        const double r = flats ? std::min(chain[i].y, reach[k]) : chain[i].y;
+        mesh.positions_mm.push_back(place({chain[i].x, r}, around[k]));
+      }
     }
     for (std::size_t i = 0; i < rings.size(); ++i) {
       const auto [from, from_step] = rings[i];
@@ -212,7 +249,10 @@ Vec2 outward(const Vec2& a, const Vec2& b) {
 
 class PatchBuilder {
  public:
-  explicit PatchBuilder(MeshPatch& patch) : patch_(patch), around_(directions(kPatchSegments)) {}
+  PatchBuilder(MeshPatch& patch, const std::optional<BarFlats>& flats)
+      : patch_(patch), flats_(flats), around_(directions(kPatchSegments)) {
+    if (flats) reach_ = reaches(kPatchSegments, *flats);
+  }
 
   void add_chain(std::span<const Vec2> chain) {
     const std::size_t edges = chain.size() - 1;
@@ -227,6 +267,10 @@ class PatchBuilder {
       const Vec2 begin = has_before ? joint(i, i > 0 ? i - 1 : edges - 1) : normal(i);
       const Vec2 end = has_after ? joint(i, i + 1 < edges ? i + 1 : 0) : normal(i);
       if (chain[i].y == 0 && chain[i + 1].y == 0) continue;  // the axis
+      if (flats_ && std::max(chain[i].y, chain[i + 1].y) > flats_->inner_radius_mm) {
+        add_strip_with_flats(chain[i], begin, chain[i + 1], end);
+        continue;
+      }
       const std::uint32_t from = ring(chain[i], begin), to = ring(chain[i + 1], end);
       add_strip(kPatchSegments, from, 1, to, 1, false,
                 [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangle(a, b, c); });
@@ -234,6 +278,30 @@ class PatchBuilder {
   }
 
  private:
+  /// Corners that a flat cuts off have the normal of what is there.
+  void add_strip_with_flats(const Vec2& from, const Vec2& begin, const Vec2& to, const Vec2& end) {
+    last_at_ = {-1, -1};
+    for (std::size_t k = 0; k < kPatchSegments; ++k) {
+      const auto corner = [&](const Vec2& at, std::size_t i) {
+        return place({at.x, std::min(at.y, reach_[i])}, around_[i]);
+      };
+      const std::array<glm::vec3, 4> corners{corner(from, k), corner(to, k), corner(from, k + 1),
+                                             corner(to, k + 1)};
+      glm::vec3 across = glm::cross(corners[3] - corners[0], corners[2] - corners[1]);
+      if (glm::length(across) == 0) continue;
+      across = glm::normalize(across);
+      const auto first = static_cast<std::uint32_t>(patch_.vertices.size());
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t direction = k + i / 2;
+        const Vec2 &at = i % 2 == 0 ? from : to, &normal = i % 2 == 0 ? begin : end;
+        const bool is_cut = at.y >= reach_[direction];
+        patch_.vertices.push_back(
+            {corners[i], pack_normal(is_cut ? across : place(normal, around_[direction]))});
+      }
+      triangle(first, first + 1, first + 2);
+      triangle(first + 2, first + 1, first + 3);
+    }
+  }
   /// The ring before where it is the same.
   std::uint32_t ring(const Vec2& at, const Vec2& normal) {
     if (at == last_at_ && normal == last_normal_) return last_ring_;
@@ -253,7 +321,9 @@ class PatchBuilder {
   }
 
   MeshPatch& patch_;
+  const std::optional<BarFlats>& flats_;
   std::vector<Vec2> around_;
+  std::vector<double> reach_;              // along them, with flats
   Vec2 last_at_{-1, -1}, last_normal_{0};  // r is never negative
   std::uint32_t last_ring_ = 0;
 };
@@ -261,14 +331,19 @@ class PatchBuilder {
 }  // namespace
 
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
-                       bool has_high_face, double tolerance_mm) {
+                       bool has_high_face, double tolerance_mm,
+                       const std::optional<BarFlats>& flats) {
+  static_assert(kPatchSegments % 12 == 0 && kPatchSegments % 8 == 0, "bars of six and four flats");
   MeshPatch patch;
-  PatchBuilder builder(patch);
+  PatchBuilder builder(patch, flats);
   BandChains chains(low_z, high_z, has_high_face);
   for (const Contour& contour : contours) {
     if (contour.box().max_x < low_z || contour.box().min_x > high_z) continue;
-    for (const std::vector<Vec2>& chain : chains.of(contour))
-      builder.add_chain(simplified(chain, tolerance_mm));
+    for (const std::vector<Vec2>& whole : chains.of(contour)) {
+      std::vector<Vec2> chain = simplified(whole, tolerance_mm);
+      if (flats) chain = divided_at_flats(std::move(chain), *flats, tolerance_mm);
+      builder.add_chain(chain);
+    }
   }
   patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
   return patch;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "stock/turning/revolve.h"
+#include "stock/turning/turning_state.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -23,10 +24,16 @@ using turning::Rect;
 using turning::Ring;
 using turning::Wide;
 
+<<<<<<< HEAD
 /// What a lathe may hold.
 constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
 static_assert(TurnedPart::kWayReach_mm == kMaxZ_mm + kMaxInsertReach_mm);
 static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+=======
+/// So far the controlled point is followed: farther away no tool reaches a blank.
+constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
+static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+>>>>>>> main
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
@@ -37,7 +44,8 @@ std::uint64_t next_version() {
 }
 
 bool is_allowed(const Vec2& p) {
-  return std::abs(p.x) <= kMaxZ_mm && p.y >= 0 && p.y <= kMaxRadius_mm;  // not true of NaN
+  return std::abs(p.x) <= kMaxTurnedZ_mm && p.y >= 0 &&
+         p.y <= kMaxTurnedRadius_mm;  // not true of NaN
 }
 
 bool lies_in(const Contour& hole, const Ring& ring) {
@@ -85,7 +93,8 @@ TurningTool TurningTool::inset(double width_mm) const {
   return tool;
 }
 
-std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck) {
+std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck,
+                                             const std::optional<BarFlats>& flats) {
   turning::Rings rings, united;
   for (const std::vector<Vec2>& chain : blank) {
     Ring& ring = rings.emplace_back();
@@ -107,10 +116,42 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
     part.contours_.push_back(std::move(contour));
   }
   if (pieces != 1) return std::nullopt;
-  part.blank_moment6_ = part.moment6();
   part.chuck_ = chuck;
+  part.flats_ = flats;
+  part.blank_mm3_ = part.remaining_mm3();
   part.versions_.fill(next_version());
   return part;
+}
+
+turning::SavedPart TurnedPart::saved() const {
+  return {chuck_, blank_, blank_mm3_, flats_, contours_};
+}
+
+TurnedPart TurnedPart::restored(turning::SavedPart saved) {
+  TurnedPart part;
+  part.contours_ = std::move(saved.contours);
+  part.blank_ = saved.blank;
+  part.blank_mm3_ = saved.blank_mm3;
+  part.chuck_ = saved.chuck;
+  part.flats_ = saved.flats;
+  part.versions_.fill(next_version());
+  return part;
+}
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
+  const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
+  turning::SavedPart turned = saved();
+  turned.blank.min_x = at - blank_.max_x;
+  turned.blank.max_x = at - blank_.min_x;
+  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  for (Contour& contour : turned.contours) {
+    Ring ring = contour.ring();
+    std::reverse(ring.begin(), ring.end());
+    for (Point& p : ring) p.X = at - p.X;
+    contour = contour_of(ring);
+  }
+  return restored(std::move(turned));
 }
 
 /// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
@@ -157,13 +198,15 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
+  const double missing_before = missing_mm3();
   const turning::Engagement engagement =
       each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
         if (!met.any && !thins()) return;
         touch_bands(scratch_.cut.changed());
         scratch_.cut.apply(contours_);
       });
-  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()), 0.0);
+  const double removed = turning::volume_mm3(before - moment6()) - (missing_before - missing_mm3());
+  report.removed_mm3 = std::max(removed, 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
@@ -219,10 +262,13 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
     const Rect& box = contours_[i].box();
     const Ring ring = contours_[i].ring();
     Wide moment6 = contours_[i].moment6();
+    double missing = flats_ ? turning::missing_mm3(contours_[i], *flats_) : 0;
     for (const Contour& hole : contours_) {
-      if (!hole.is_outer() && lies_in(hole, ring)) moment6 += hole.moment6();
+      if (hole.is_outer() || !lies_in(hole, ring)) continue;
+      moment6 += hole.moment6();
+      missing += flats_ ? turning::missing_mm3(hole, *flats_) : 0;
     }
-    freed_.push_back({id, turning::volume_mm3(moment6), turning::to_mm(box.min_x),
+    freed_.push_back({id, turning::volume_mm3(moment6) - missing, turning::to_mm(box.min_x),
                       turning::to_mm(box.max_x), turning::to_mm(box.min_y),
                       turning::to_mm(box.max_y)});
     touch_bands(box);
@@ -240,8 +286,11 @@ Wide TurnedPart::moment6() const {
   return sum;
 }
 
-double TurnedPart::blank_mm3() const { return turning::volume_mm3(blank_moment6_); }
-double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()); }
+double TurnedPart::missing_mm3() const {
+  return flats_ ? turning::missing_mm3(contours_, *flats_) : 0;
+}
+
+double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()) - missing_mm3(); }
 
 Box TurnedPart::bounds_mm() const {
   const double r = turning::to_mm(blank_.max_y);
@@ -281,6 +330,10 @@ std::string TurnedPart::digest() const {
   XXH3_128bits_reset(&state);
   const std::int64_t frame[4] = {blank_.min_x, blank_.min_y, blank_.max_x, blank_.max_y};
   XXH3_128bits_update(&state, frame, sizeof frame);
+  if (flats_) {
+    const std::int64_t flats[2] = {flats_->count, turning::to_units(flats_->inner_radius_mm)};
+    XXH3_128bits_update(&state, flats, sizeof flats);
+  }
   for (const Ring& ring : rings) {
     const std::uint64_t size = ring.size();
     XXH3_128bits_update(&state, &size, sizeof size);
@@ -310,13 +363,13 @@ turning::Unit TurnedPart::band_low(std::size_t band) const {
 double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
 
 TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
-  return turning::revolve(contours_, tolerance_mm);
+  return turning::revolve(contours_, tolerance_mm, flats());
 }
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
   MeshPatch patch = turning::revolve_band(contours_, band_low(band), band_low(band + 1),
-                                          band + 1 == kBands, tolerance_mm);
+                                          band + 1 == kBands, tolerance_mm, flats());
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];
   patch.level = level;

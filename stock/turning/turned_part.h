@@ -19,6 +19,7 @@
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 #include "stock/cutter/insert.h"
+#include "stock/turning/bar_flats.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
@@ -27,8 +28,15 @@
 
 namespace kerf {
 
+namespace turning {
+struct SavedPart;
+}  // namespace turning
+
 /// Closed chains of (z, r), mm: even-odd, so holes may run either way.
 using TurnedProfile = std::vector<std::vector<Vec2>>;
+
+/// What a lathe may hold.
+inline constexpr double kMaxTurnedZ_mm = 2000, kMaxTurnedRadius_mm = 1000;
 
 TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm);
 TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm);
@@ -97,7 +105,10 @@ struct TurnedPiece {
 /// move is cut when it is given: any division into calls gives the same bits. One thread. A copy
 /// shares what neither of the two changes, and may go to another thread.
 ///
-/// Not held: threads (a groove that winds is cut as a ring), a bar that is not round, runout.
+/// A bar of flats is the round one through its corners with a note of the flats: volumes and
+/// surfaces are those of the bar, a tool touches where the corners come by.
+///
+/// Not held: threads (a groove that winds is cut as a ring), runout.
 class TurnedPart {
  public:
   /// So far the controlled point is followed along either axis: farther away no tool reaches a
@@ -105,8 +116,18 @@ class TurnedPart {
   static constexpr double kWayReach_mm = 2000 + kMaxInsertReach_mm;
 
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
+  /// With flats the blank is that of their corners' circle.
   static std::optional<TurnedPart> create(const TurnedProfile& blank,
-                                          ChuckSide chuck = ChuckSide::kLowZ);
+                                          ChuckSide chuck = ChuckSide::kLowZ,
+                                          const std::optional<BarFlats>& flats = std::nullopt);
+
+  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  turning::SavedPart saved() const;
+  static TurnedPart restored(turning::SavedPart saved);
+
+  /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
+  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  std::optional<TurnedPart> turned_about(double at_z_mm) const;
 
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
@@ -119,7 +140,9 @@ class TurnedPart {
   /// What came off so far, in order.
   const std::vector<TurnedPiece>& freed() const { return freed_; }
 
-  double blank_mm3() const;
+  /// Of the blank; none of one that is round.
+  const std::optional<BarFlats>& flats() const { return flats_; }
+  double blank_mm3() const { return blank_mm3_; }
   double remaining_mm3() const;
   /// Of the blank. x and y from -r to r.
   Box bounds_mm() const;
@@ -169,13 +192,15 @@ class TurnedPart {
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
+  double missing_mm3() const;
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
   turning::Rect blank_;
-  turning::Wide blank_moment6_ = 0;
+  double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;
+  std::optional<BarFlats> flats_;
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;

@@ -8,6 +8,8 @@
 
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
+#include "stock/state_bytes.h"
+#include "stock/turning/turning_state.h"
 
 namespace kerf {
 namespace {
@@ -135,6 +137,18 @@ std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const C
   const std::optional<TurnContact> met = first_turn_contact(cutter, move, tolerance_mm);
   if (!met) return std::nullopt;
   return Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), met->depth_mm};
+}
+
+Done TurningStock::save(const std::string& path) const {
+  return turning::write_part(path, part_.saved());
+}
+
+Result<std::unique_ptr<TurningStock>> TurningStock::load(const std::string& path) {
+  const Result<std::string> bytes = read_state_bytes(path);
+  if (!bytes) return Error{bytes.error()};
+  Result<turning::SavedPart> saved = turning::parse_part(*bytes, path);
+  if (!saved) return Error{saved.error()};
+  return std::make_unique<TurningStock>(TurnedPart::restored(std::move(saved.value())));
 }
 
 std::unique_ptr<StockModel> TurningStock::snapshot() const {

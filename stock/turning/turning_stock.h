@@ -24,7 +24,7 @@ std::vector<TurnMove> turning_moves(const CutMove& move);
 /// Of a cutter with an outline (Cutter::insert()) that is cut; any other stands still along the
 /// axis with its tip towards -z, as a drill in the tailstock does.
 ///
-/// Nothing is held back: finish() has nothing to do. Not saved yet. One thread.
+/// Nothing is held back: finish() has nothing to do. One thread.
 class TurningStock final : public StockModel {
  public:
   explicit TurningStock(TurnedPart part);
@@ -42,6 +42,10 @@ class TurningStock final : public StockModel {
   std::span<const TurnCut> last_cuts() const { return last_cuts_; }
   /// With what has come off.
   const TurnedPart& part() const { return part_; }
+
+  Done save(const std::string& path) const override;
+  /// Error: cannot be read, no such file, damaged.
+  static Result<std::unique_ptr<TurningStock>> load(const std::string& path);
 
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;

@@ -14,7 +14,7 @@
 #include "base/translate.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/octree/octree.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
 #include "stock/turning/turning_stock.h"
@@ -106,9 +106,8 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
   if (sheet.file.empty()) {
     options.outline = rectangle_outline(sheet.low_mm, sheet.high_mm);
   } else {
-    const bool svg = to_lower(sheet.file).ends_with(".svg");
-    Result<SheetOutline> outline = read_outline_file(
-        sheet.file, svg ? OutlineFormat::kSvg : OutlineFormat::kDxf, options.arc_tolerance_mm);
+    Result<PlaneOutline> outline =
+        read_outline_file(sheet.file, outline_format_of(sheet.file), options.arc_tolerance_mm);
     if (!outline) return Error{outline.error()};
     options.outline = std::move(outline.value());
   }

@@ -1,10 +1,10 @@
-#include "stock/sheet/outline_curves.h"
+#include "stock/plane/outline_curves.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace kerf::sheet {
+namespace kerf::plane {
 namespace {
 
 constexpr double kMostChords = 100'000;
@@ -61,4 +61,4 @@ void append_bezier(const Vec2& control1, const Vec2& control2, const Vec2& to, d
   }
 }
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

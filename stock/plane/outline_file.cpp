@@ -1,4 +1,4 @@
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,10 @@
 #include <fstream>
 
 #include "base/atomic_file.h"
+#include "base/text_scan.h"
 #include "base/translate.h"
-#include "stock/sheet/outline_arcs.h"
-#include "stock/sheet/polygon.h"
+#include "stock/plane/outline_arcs.h"
+#include "stock/plane/polygon.h"
 
 namespace kerf {
 namespace {
@@ -38,7 +39,7 @@ Done write_text(const std::string& path, const fmt::memory_buffer& text) {
   return file->commit();
 }
 
-Box bounds_of(const SheetOutline& outline) {
+Box bounds_of(const PlaneOutline& outline) {
   Box box;
   for (const std::vector<Vec2>& ring : outline.rings) {
     for (const Vec2& p : ring) box.extend(Vec3(p, 0));
@@ -48,7 +49,7 @@ Box bounds_of(const SheetOutline& outline) {
 }
 
 /// A part of a path; `corner` is the picture's upper left one.
-void append_svg(const sheet::Curve& curve, const Vec2& corner, fmt::memory_buffer& text) {
+void append_svg(const plane::Curve& curve, const Vec2& corner, fmt::memory_buffer& text) {
   const auto out = std::back_inserter(text);
   const auto place = [&corner](const Vec2& p) { return Vec2(p.x - corner.x, corner.y - p.y); };
   // Arcs of at most half a turn; the flag of those that are counter-clockwise is 0 there.
@@ -64,7 +65,7 @@ void append_svg(const sheet::Curve& curve, const Vec2& corner, fmt::memory_buffe
     arc(radius, true, right);
   }
   for (std::size_t i = 0; i < curve.corners.size(); ++i) {
-    const sheet::CurveCorner& from = curve.corners[i];
+    const plane::CurveCorner& from = curve.corners[i];
     const Vec2& to = curve.corners[(i + 1) % curve.corners.size()].point_mm;
     const Vec2 at = place(from.point_mm);
     if (i == 0) fmt::format_to(out, "M{:.4f} {:.4f}\n", at.x, at.y);
@@ -79,12 +80,16 @@ void append_svg(const sheet::Curve& curve, const Vec2& corner, fmt::memory_buffe
 
 }  // namespace
 
-Result<SheetOutline> read_outline_file(const std::string& path, OutlineFormat format,
-                                       double tolerance_mm) {
+OutlineFormat outline_format_of(const std::string& path) {
+  return to_lower(path).ends_with(".svg") ? OutlineFormat::kSvg : OutlineFormat::kDxf;
+}
+
+Result<PlaneOutline> read_outline_file(const std::string& path, OutlineFormat format,
+                                       double tolerance_mm, OutlineClosing closing) {
   const Result<std::string> text = read_text(path);
   if (!text) return Error{text.error()};
-  Result<SheetOutline> outline = format == OutlineFormat::kDxf
-                                     ? parse_dxf_outline(*text, path, tolerance_mm)
+  Result<PlaneOutline> outline = format == OutlineFormat::kDxf
+                                     ? parse_dxf_outline(*text, path, tolerance_mm, closing)
                                      : parse_svg_outline(*text, path, tolerance_mm);
   if (!outline) return outline;
   const Done done = check_outline(*outline);
@@ -92,19 +97,19 @@ Result<SheetOutline> read_outline_file(const std::string& path, OutlineFormat fo
   return outline;
 }
 
-Done write_outline_dxf(const SheetOutline& outline, double arc_tolerance_mm,
+Done write_outline_dxf(const PlaneOutline& outline, double arc_tolerance_mm,
                        const std::string& path) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "0\nSECTION\n2\nENTITIES\n");
-  for (const sheet::Curve& curve : sheet::curves_of(outline, arc_tolerance_mm)) {
+  for (const plane::Curve& curve : plane::curves_of(outline, arc_tolerance_mm)) {
     if (curve.circle) {
       fmt::format_to(out, "0\nCIRCLE\n8\n0\n10\n{:.4f}\n20\n{:.4f}\n30\n0\n40\n{:.4f}\n",
                      curve.circle->center_mm.x, curve.circle->center_mm.y, curve.circle->radius_mm);
       continue;
     }
     fmt::format_to(out, "0\nPOLYLINE\n8\n0\n66\n1\n70\n1\n10\n0\n20\n0\n30\n0\n");
-    for (const sheet::CurveCorner& corner : curve.corners) {
+    for (const plane::CurveCorner& corner : curve.corners) {
       fmt::format_to(out, "0\nVERTEX\n8\n0\n10\n{:.4f}\n20\n{:.4f}\n30\n0\n", corner.point_mm.x,
                      corner.point_mm.y);
       if (corner.bulge != 0) fmt::format_to(out, "42\n{:.9f}\n", corner.bulge);
@@ -115,7 +120,7 @@ Done write_outline_dxf(const SheetOutline& outline, double arc_tolerance_mm,
   return write_text(path, text);
 }
 
-Done write_outline_svg(const SheetOutline& outline, double arc_tolerance_mm,
+Done write_outline_svg(const PlaneOutline& outline, double arc_tolerance_mm,
                        const std::string& path) {
   const Box box = bounds_of(outline);
   const Vec3 size = box.size();
@@ -129,7 +134,7 @@ Done write_outline_svg(const SheetOutline& outline, double arc_tolerance_mm,
                  "stroke-width=\"0.1\" d=\"",
                  std::max(size.x, 1e-4), std::max(size.y, 1e-4));
   const Vec2 corner(box.min.x, box.max.y);
-  for (const sheet::Curve& curve : sheet::curves_of(outline, arc_tolerance_mm))
+  for (const plane::Curve& curve : plane::curves_of(outline, arc_tolerance_mm))
     append_svg(curve, corner, text);
   fmt::format_to(out, "\"/>\n</svg>\n");
   return write_text(path, text);

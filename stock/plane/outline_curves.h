@@ -1,11 +1,11 @@
-// stock/sheet/outline_curves.h - curves of drawings as chains of points.
+// stock/plane/outline_curves.h - curves of drawings as chains of points.
 #pragma once
 
 #include <vector>
 
 #include "base/geometry.h"
 
-namespace kerf::sheet {
+namespace kerf::plane {
 
 /// Points of an arc about `center` from angle `from_rad` on, by `sweep_rad` (counter-clockwise if
 /// positive), without the first one. Chords are off by `tolerance_mm` at most, and so far out
@@ -23,4 +23,4 @@ void append_bulge(const Vec2& to, double bulge, double tolerance_mm, std::vector
 void append_bezier(const Vec2& control1, const Vec2& control2, const Vec2& to, double tolerance_mm,
                    std::vector<Vec2>& points);
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

@@ -1,24 +1,23 @@
-#include "stock/sheet/outline_arcs.h"
+#include "stock/plane/outline_arcs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "stock/sheet/outline_curves.h"
-#include "stock/sheet/polygon.h"
+#include "stock/plane/outline_curves.h"
+#include "stock/plane/polygon.h"
 
-namespace kerf::sheet {
+namespace kerf::plane {
 namespace {
 
-constexpr double kUnit_mm = 1 / kUnitsPerMm;
-/// How far rounding moves a corner: 0.7 units each way, and that of the circle through others.
-constexpr double kOnCircle_mm = 1.5 * kUnit_mm;
+/// How far rounding moves a corner, in units: 0.7 each way, and that of the circle through others.
+constexpr double kOnCircle = 1.5;
 /// Corners of the shortest chain that counts: two more than any circle passes through.
 constexpr long kLeastCorners = 5;
 /// Those of the coarsest circle.
 constexpr long kLeastCircle = 8;
-/// How far such a chain must bend: rounding is a tenth of it.
-constexpr double kLeastBend_mm = 10 * kUnit_mm;
+/// How far such a chain must bend, in units: rounding is a tenth of it.
+constexpr double kLeastBend = 10;
 /// Flatter ones are lines in any drawing.
 constexpr double kMaxRadius_mm = 1e5;
 /// Corners off the circle, between others that are on it, that go with it: the bump of a lead-in.
@@ -91,12 +90,14 @@ struct Run {
 
 class ArcFinder {
  public:
-  ArcFinder(const std::vector<Vec2>& ring, double tolerance_mm)
+  ArcFinder(const std::vector<Vec2>& ring, double tolerance_mm, double unit_mm)
       : ring_(ring),
         n_(static_cast<long>(ring.size())),
         tolerance_(tolerance_mm),
         // Two thirds of a chord's sagitta are the tolerance outward: CirclePolygon.
-        sagitta_(1.5 * tolerance_mm + kUnit_mm),
+        sagitta_(1.5 * tolerance_mm + unit_mm),
+        on_circle_(kOnCircle * unit_mm),
+        least_bend_(kLeastBend * unit_mm),
         used_(ring.size(), 0) {}
 
   Curve find() {
@@ -121,11 +122,11 @@ class ArcFinder {
   const Vec2& at(long i) const { return ring_[index(i)]; }
 
   bool is_on(const Run& run, const Vec2& p) const {
-    return std::abs(run.distance(p) - run.corners.radius_mm) <= kOnCircle_mm;
+    return std::abs(run.distance(p) - run.corners.radius_mm) <= on_circle_;
   }
   /// As far off the arc as what cuts it may be.
   bool is_near(const Run& run, const Vec2& p) const {
-    return std::abs(run.distance(p) - run.radius_mm()) <= tolerance_ + kOnCircle_mm;
+    return std::abs(run.distance(p) - run.radius_mm()) <= tolerance_ + on_circle_;
   }
   /// The way between two corners is not longer than a chord of the circle.
   bool is_short(const Run& run, const Vec2& from, const Vec2& to) const {
@@ -146,7 +147,7 @@ class ArcFinder {
       const Vec2 chord = at(run.last) - at(start);
       const Vec2 middle = at(start + count / 2) - at(start);
       // Without a bend the circle may be any, and longer chains have to tell.
-      const bool bends = std::abs(cross(chord, middle)) > kLeastBend_mm * glm::length(chord);
+      const bool bends = std::abs(cross(chord, middle)) > least_bend_ * glm::length(chord);
       if (fit.solve(run.corners)) {
         run.sense = cross(at(start + 1) - at(start), at(run.last) - at(start)) > 0 ? 1 : -1;
         const bool fits = is_chain(run);
@@ -232,12 +233,12 @@ class ArcFinder {
 
   /// A corner beside the run that is on the way from its last corner to where the next would be.
   bool is_end(const Run& run, long i, const Vec2& inner) const {
-    const double slack = kOnCircle_mm / run.corners.radius_mm;
+    const double slack = on_circle_ / run.corners.radius_mm;
     const double step = i < run.first ? run.step_rad(at(i), inner) : run.step_rad(inner, at(i));
-    const double low = run.corners.radius_mm * std::cos(run.max_step_rad / 2) - kOnCircle_mm;
+    const double low = run.corners.radius_mm * std::cos(run.max_step_rad / 2) - on_circle_;
     const double distance = run.distance(at(i));
     return step > 0 && step <= run.max_step_rad + slack && distance >= low &&
-           distance <= run.corners.radius_mm + kOnCircle_mm;
+           distance <= run.corners.radius_mm + on_circle_;
   }
 
   struct Edge {
@@ -282,7 +283,7 @@ class ArcFinder {
   /// Where two edges meet, near the corner p that they share. `after`: where the second one ends.
   Vec2 meeting(const Vec2& p, const Edge& a, const Edge& b, const Vec2& after) const {
     const auto is_at = [&](const Edge& edge) {
-      return !edge.run || std::abs(edge.run->distance(p) - edge.run->radius_mm()) <= kOnCircle_mm;
+      return !edge.run || std::abs(edge.run->distance(p) - edge.run->radius_mm()) <= on_circle_;
     };
     if (is_at(a) && is_at(b)) return p;
     Vec2 best = p;
@@ -346,7 +347,7 @@ class ArcFinder {
 
   const std::vector<Vec2>& ring_;
   long n_;
-  double tolerance_, sagitta_;
+  double tolerance_, sagitta_, on_circle_, least_bend_;
   std::vector<char> used_;
 };
 
@@ -362,18 +363,18 @@ double CurveCorner::radius_mm(const Vec2& to_mm) const {
   return glm::length(to_mm - point_mm) * (1 + bulge * bulge) / (4 * std::abs(bulge));
 }
 
-std::vector<Curve> curves_of(const SheetOutline& outline, double arc_tolerance_mm) {
+std::vector<Curve> curves_of(const PlaneOutline& outline, double arc_tolerance_mm, double unit_mm) {
   std::vector<Curve> curves;
   for (const std::vector<Vec2>& ring : outline.rings)
-    curves.push_back(ArcFinder(ring, arc_tolerance_mm).find());
-  if (check_outline(chords_of(curves, arc_tolerance_mm))) return curves;
+    curves.push_back(ArcFinder(ring, arc_tolerance_mm, unit_mm).find());
+  if (check_outline(chords_of(curves, arc_tolerance_mm), unit_mm)) return curves;
   curves.clear();
   for (const std::vector<Vec2>& ring : outline.rings) curves.push_back(straight(ring));
   return curves;
 }
 
-SheetOutline chords_of(const std::vector<Curve>& curves, double tolerance_mm) {
-  SheetOutline outline;
+PlaneOutline chords_of(const std::vector<Curve>& curves, double tolerance_mm) {
+  PlaneOutline outline;
   for (const Curve& curve : curves) {
     std::vector<Vec2>& ring = outline.rings.emplace_back();
     if (curve.circle) {
@@ -390,4 +391,4 @@ SheetOutline chords_of(const std::vector<Curve>& curves, double tolerance_mm) {
   return outline;
 }
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

@@ -1,4 +1,4 @@
-// stock/sheet/svg_path.h - the path language of SVG.
+// stock/plane/svg_path.h - the path language of SVG.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 #include "base/geometry.h"
 #include "base/result.h"
 
-namespace kerf::sheet {
+namespace kerf::plane {
 
 /// Numbers between blanks and commas; a sign begins a new one ("1-2" is two), as SVG has it.
 Result<std::vector<double>> parse_numbers(std::string_view text);
@@ -17,4 +17,4 @@ Result<std::vector<double>> parse_numbers(std::string_view text);
 /// which character.
 Result<std::vector<std::vector<Vec2>>> parse_svg_path(std::string_view text, double tolerance);
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

@@ -1,12 +1,12 @@
-// stock/sheet/outline_arcs.h - outlines of chords as lines and true arcs, for drawings.
+// stock/plane/outline_arcs.h - outlines of chords as lines and true arcs, for drawings.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "stock/sheet/outline.h"
+#include "stock/plane/outline.h"
 
-namespace kerf::sheet {
+namespace kerf::plane {
 
 /// A corner of a contour, and the edge that begins there: straight, or an arc of at most half a
 /// turn. `bulge` is the tangent of a quarter of the arc's angle, positive counter-clockwise, as DXF
@@ -38,15 +38,17 @@ struct Curve {
 /// than those of arcs cut with `arc_tolerance_mm` do, and a bend that is more than rounding.
 ///
 /// Polygons of arcs have the area of the arc (CirclePolygon), which gives its radius: that of a
-/// full circle is good to 0.1 um. What else there is on the way of an arc and is within the
+/// full circle is good to the unit. What else there is on the way of an arc and is within the
 /// tolerance - a lead-in that ends on it leaves a bump of some um - goes with it. Corners where an
 /// arc ends are where it meets what follows. Nothing is off by more than twice the tolerance.
 ///
 /// Chords and arcs alike: an outline that check_outline() would refuse once its arcs are chords
-/// again comes back without arcs. O(corners), and what check_outline() takes.
-std::vector<Curve> curves_of(const SheetOutline& outline, double arc_tolerance_mm);
+/// again comes back without arcs. `unit_mm` is the step that corners were rounded to. O(corners),
+/// and what check_outline() takes.
+std::vector<Curve> curves_of(const PlaneOutline& outline, double arc_tolerance_mm,
+                             double unit_mm = kOutlineUnit_mm);
 
 /// Curves as chords within `tolerance_mm`.
-SheetOutline chords_of(const std::vector<Curve>& curves, double tolerance_mm);
+PlaneOutline chords_of(const std::vector<Curve>& curves, double tolerance_mm);
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

@@ -10,9 +10,9 @@
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/scan.h"
-#include "stock/sheet/outline_curves.h"
-#include "stock/sheet/outline_file.h"
-#include "stock/sheet/svg_path.h"
+#include "stock/plane/outline_curves.h"
+#include "stock/plane/outline_file.h"
+#include "stock/plane/svg_path.h"
 
 namespace kerf {
 namespace {
@@ -36,7 +36,7 @@ class SvgReader {
   SvgReader(std::string_view text, std::string name, double tolerance_mm)
       : text_(text), name_(std::move(name)), tolerance_(tolerance_mm) {}
 
-  Result<SheetOutline> read() {
+  Result<PlaneOutline> read() {
     while (error_.empty() && next_tag()) {
     }
     if (error_.empty() && !seen_svg_) fail(tr("no <svg> element; is this an SVG file?"));
@@ -186,7 +186,7 @@ class SvgReader {
         fail(tr("width and height are lengths, but there is no viewBox to scale by"));
       return;
     }
-    Result<std::vector<double>> numbers = sheet::parse_numbers(box->second);
+    Result<std::vector<double>> numbers = plane::parse_numbers(box->second);
     if (!numbers) return fail("viewBox: " + numbers.error());
     const std::vector<double>& view = *numbers;
     if (view.size() != 4 || !(view[2] > 0) || !(view[3] > 0))
@@ -202,7 +202,7 @@ class SvgReader {
     const auto data = attributes.find("d");
     if (data == attributes.end()) return;
     Result<std::vector<std::vector<Vec2>>> rings =
-        sheet::parse_svg_path(data->second, tolerance_ / scale_);
+        plane::parse_svg_path(data->second, tolerance_ / scale_);
     if (!rings) return fail("path: " + rings.error());
     for (std::vector<Vec2>& ring : *rings) add(std::move(ring));
   }
@@ -210,7 +210,7 @@ class SvgReader {
   void take_polygon(const Attributes& attributes) {
     const auto data = attributes.find("points");
     if (data == attributes.end()) return fail(tr("the attribute points is missing"));
-    const Result<std::vector<double>> numbers = sheet::parse_numbers(data->second);
+    const Result<std::vector<double>> numbers = plane::parse_numbers(data->second);
     if (!numbers) return fail("points: " + numbers.error());
     if (numbers->size() % 2 != 0) return fail(tr("points: an odd number of coordinates"));
     std::vector<Vec2> ring;
@@ -239,7 +239,7 @@ class SvgReader {
     if (!error_.empty() || rx == 0 || ry == 0) return;
     std::vector<Vec2> ring;
     // The longer axis first: the number of chords is that of its circle.
-    sheet::append_arc(center, std::max(rx, ry), 0, 2 * kPi, tolerance_ / scale_, ring,
+    plane::append_arc(center, std::max(rx, ry), 0, 2 * kPi, tolerance_ / scale_, ring,
                       std::min(rx, ry) / std::max(rx, ry), rx < ry ? kPi / 2 : 0);
     add(std::move(ring));
   }
@@ -260,12 +260,12 @@ class SvgReader {
   bool seen_svg_ = false;
   double scale_ = 1, lower_edge_ = 0;
   std::string error_;
-  SheetOutline outline_;
+  PlaneOutline outline_;
 };
 
 }  // namespace
 
-Result<SheetOutline> parse_svg_outline(std::string_view text, const std::string& name,
+Result<PlaneOutline> parse_svg_outline(std::string_view text, const std::string& name,
                                        double tolerance_mm) {
   return SvgReader(text, name, tolerance_mm).read();
 }

@@ -1,4 +1,4 @@
-#include "stock/sheet/svg_path.h"
+#include "stock/plane/svg_path.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
-#include "stock/sheet/outline_curves.h"
+#include "stock/plane/outline_curves.h"
 
-namespace kerf::sheet {
+namespace kerf::plane {
 namespace {
 
 constexpr double kMaxUser = 1e6;
@@ -255,4 +255,4 @@ Result<std::vector<std::vector<Vec2>>> parse_svg_path(std::string_view text, dou
   return PathReader(text, tolerance).read();
 }
 
-}  // namespace kerf::sheet
+}  // namespace kerf::plane

@@ -9,8 +9,8 @@
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/scan.h"
-#include "stock/sheet/outline_curves.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_curves.h"
+#include "stock/plane/outline_file.h"
 
 namespace kerf {
 namespace {
@@ -34,10 +34,13 @@ struct Piece {
 
 class DxfReader {
  public:
-  DxfReader(std::string_view text, std::string name, double tolerance_mm)
-      : text_(text), name_(std::move(name)), tolerance_(tolerance_mm) {}
+  DxfReader(std::string_view text, std::string name, double tolerance_mm, OutlineClosing closing)
+      : text_(text),
+        name_(std::move(name)),
+        tolerance_(tolerance_mm),
+        has_axis_(closing == OutlineClosing::kAlongAxis) {}
 
-  Result<SheetOutline> read() {
+  Result<PlaneOutline> read() {
     std::vector<Group> entity;
     std::string_view section;
     bool names_section = false, names_units = false;
@@ -167,7 +170,7 @@ class DxfReader {
     while (sweep <= 0) sweep += 2 * kPi;
     std::vector<Vec2> points;
     if (!circle) points.push_back(center + radius * Vec2(std::cos(from), std::sin(from)));
-    sheet::append_arc(center, radius, from, sweep, tolerance_, points);
+    plane::append_arc(center, radius, from, sweep, tolerance_, points);
     if (circle) return add_ring(std::move(points), entity[0].line);
     pieces_.push_back({std::move(points), entity[0].line});
   }
@@ -195,7 +198,7 @@ class DxfReader {
     std::vector<Vec2> points{corners[0]};
     const std::size_t edges = corners.size() - (closed_ ? 0 : 1);
     for (std::size_t i = 0; i < edges; ++i)
-      sheet::append_bulge(corners[(i + 1) % corners.size()], bulges_[i], tolerance_, points);
+      plane::append_bulge(corners[(i + 1) % corners.size()], bulges_[i], tolerance_, points);
     if (!closed_) return pieces_.push_back({std::move(points), polyline_.line});
     points.pop_back();
     add_ring(std::move(points), polyline_.line);
@@ -235,7 +238,13 @@ class DxfReader {
     return std::hypot(a.x - b.x, a.y - b.y) <= kJoin_mm;
   }
 
+  bool is_on_axis(const Vec2& p) const { return has_axis_ && std::abs(p.y) <= kJoin_mm; }
+
   void join_pieces() {
+    std::erase_if(pieces_, [this](const Piece& piece) {
+      return std::all_of(piece.points.begin(), piece.points.end(),
+                         [this](const Vec2& p) { return is_on_axis(p); });
+    });
     std::multimap<Cell, std::size_t> ends;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       ends.emplace(cell_of(pieces_[i].points.front()), i);
@@ -246,8 +255,16 @@ class DxfReader {
       if (used[first]) continue;
       used[first] = 1;
       std::vector<Vec2> ring = pieces_[first].points;
-      while (ring.size() < 3 || !near(ring.front(), ring.back())) {
+      bool closes = true, turned = false;
+      while (closes && (ring.size() < 3 || !near(ring.front(), ring.back()))) {
         const std::size_t next = piece_at(ring.back(), ends, used);
+        if (next == pieces_.size() && is_on_axis(ring.back())) {
+          // Here it ends; so it must on the other side.
+          closes = !turned;
+          turned = true;
+          std::reverse(ring.begin(), ring.end());
+          continue;
+        }
         if (next == pieces_.size()) {
           return fail(pieces_[first].line,
                       trf("the contour that begins here is open: nothing goes on at "
@@ -259,7 +276,11 @@ class DxfReader {
         if (!near(points.front(), ring.back())) std::reverse(points.begin(), points.end());
         ring.insert(ring.end(), points.begin() + 1, points.end());
       }
-      ring.pop_back();
+      if (closes) {
+        ring.pop_back();
+      } else {
+        ring.front().y = ring.back().y = 0;
+      }
       add_ring(std::move(ring), pieces_[first].line);
     }
   }
@@ -267,6 +288,7 @@ class DxfReader {
   std::string_view text_;
   std::string name_;
   double tolerance_;
+  bool has_axis_;
   std::size_t at_ = 0;
   int line_ = 0;
   double scale_ = 1;
@@ -276,14 +298,14 @@ class DxfReader {
   std::vector<double> bulges_;
   std::vector<Piece> pieces_;
   std::size_t count_ = 0;
-  SheetOutline outline_;
+  PlaneOutline outline_;
 };
 
 }  // namespace
 
-Result<SheetOutline> parse_dxf_outline(std::string_view text, const std::string& name,
-                                       double tolerance_mm) {
-  return DxfReader(text, name, tolerance_mm).read();
+Result<PlaneOutline> parse_dxf_outline(std::string_view text, const std::string& name,
+                                       double tolerance_mm, OutlineClosing closing) {
+  return DxfReader(text, name, tolerance_mm, closing).read();
 }
 
 }  // namespace kerf
