@@ -24,16 +24,7 @@ using turning::Rect;
 using turning::Ring;
 using turning::Wide;
 
-<<<<<<< HEAD
-/// What a lathe may hold.
-constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
-static_assert(TurnedPart::kWayReach_mm == kMaxZ_mm + kMaxInsertReach_mm);
 static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
-=======
-/// So far the controlled point is followed: farther away no tool reaches a blank.
-constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
-static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
->>>>>>> main
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;

@@ -113,7 +113,7 @@ class TurnedPart {
  public:
   /// So far the controlled point is followed along either axis: farther away no tool reaches a
   /// blank.
-  static constexpr double kWayReach_mm = 2000 + kMaxInsertReach_mm;
+  static constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
 
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
   /// With flats the blank is that of their corners' circle.
