@@ -175,6 +175,12 @@ const char* to_string(FindingId id) {
       return "chuck-contact";
     case FindingId::kJawContact:
       return "jaw-contact";
+    case FindingId::kBarContact:
+      return "bar-contact";
+    case FindingId::kOverDepth:
+      return "over-depth";
+    case FindingId::kUncompensated:
+      return "uncompensated";
   }
   return "";
 }

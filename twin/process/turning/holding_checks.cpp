@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <utility>
 
 #include "base/translate.h"
@@ -12,6 +10,7 @@
 #include "stock/turning/turning_stock.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/contact_grounds.h"
+#include "twin/process/turning/tool_outlines.h"
 
 namespace kerf {
 namespace {
@@ -63,28 +62,6 @@ std::string hold_near_text(ToolPart part, HoldingBody::Kind kind, double mm) {
                 : trf("the tool comes as near as {:.2f} mm to the tailstock", mm);
 }
 
-bool cuts(InsertSide side) {
-  return side == InsertSide::kNose || side == InsertSide::kFront || side == InsertSide::kBack;
-}
-
-/// Of (z, x), arcs as whole circles.
-void outline_box(const InsertOutline& outline, Vec2& low, Vec2& high) {
-  low = Vec2(std::numeric_limits<double>::infinity());
-  high = -low;
-  const auto extend = [&](const Vec2& a, const Vec2& b) {
-    low = glm::min(low, a);
-    high = glm::max(high, b);
-  };
-  for (const InsertPart& part : outline.parts) {
-    for (const InsertEdge& edge : part) {
-      extend(edge.end_mm, edge.end_mm);
-      if (!edge.center_mm) continue;
-      const double r = glm::distance(edge.end_mm, *edge.center_mm);
-      extend(*edge.center_mm - r, *edge.center_mm + r);
-    }
-  }
-}
-
 /// No part of the tool is nearer to the body than that on the whole motion.
 double boxes_apart_mm(const Box& way, const Vec2& low, const Vec2& high, const Box& body) {
   // Of |x|, whichever side of the axis.
@@ -96,18 +73,6 @@ double boxes_apart_mm(const Box& way, const Vec2& low, const Vec2& high, const B
 }
 
 }  // namespace
-
-ToolOutlines outlines_of(const Cutter& cutter) {
-  ToolOutlines outlines;
-  const std::shared_ptr<const InsertOutline> whole = turning_outline(cutter);
-  if (!whole) return outlines;
-  for (const InsertPart& part : whole->parts) {
-    const bool edged =
-        std::ranges::any_of(part, [](const InsertEdge& edge) { return cuts(edge.side); });
-    (edged ? outlines.cutter : outlines.holder).parts.push_back(part);
-  }
-  return outlines;
-}
 
 void HoldingChecks::set_wishes(const CollisionWishes& wishes) {
   bodies_ = *wishes.held_by;

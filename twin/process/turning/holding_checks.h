@@ -74,11 +74,4 @@ class HoldingChecks {
   bool guessed_ = false;
 };
 
-/// Of an outline: what cuts with all that is one piece with it, and what holds that. Either may be
-/// without parts.
-struct ToolOutlines {
-  InsertOutline cutter, holder;
-};
-ToolOutlines outlines_of(const Cutter& cutter);
-
 }  // namespace kerf
