@@ -17,6 +17,7 @@
 #include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
+#include "stock/turning/turned_blank.h"
 #include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
@@ -115,22 +116,7 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
 }
 
 Created create_turning(const Blank& blank, const StockSettings&) {
-  TurnedProfile profile;
-  for (const BlankBody& body : blank.bodies) {
-    const bool on_axis = body.kind != BlankBody::Kind::kBox && body.axis == 'z' &&
-                         body.center_mm.x == 0 && body.center_mm.y == 0;
-    if (!on_axis || blank.bodies.size() != 1) {
-      return Error{
-          trf("{}: only a cylinder or a tube along Z at X0 Y0 can be turned", describe(blank))};
-    }
-    const double low = body.bounds_mm.min.z, high = body.bounds_mm.max.z;
-    profile = body.kind == BlankBody::Kind::kTube
-                  ? tube_profile(low, high, body.diameter_mm, body.inner_diameter_mm)
-                  : bar_profile(low, high, body.diameter_mm);
-  }
-  std::optional<TurnedPart> part = TurnedPart::create(profile);
-  if (!part) return Error{trf("{}: cannot be turned", describe(blank))};
-  return std::unique_ptr<StockModel>(std::make_unique<TurningStock>(std::move(*part)));
+  return as_model(turning_stock_of(blank));
 }
 
 Done sheet_can_cut(const Cutter& cutter) {
