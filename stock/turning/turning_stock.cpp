@@ -81,7 +81,12 @@ TurningStock::TurningStock(TurnedPart part) : part_(std::move(part)) {}
 
 const TurningTool& TurningStock::tool_of(const Cutter& cutter) const {
   // Of a cutter without one the outline is made each time: calls take many moves.
-  if (!ready_.tool || cutter.insert() == nullptr || cutter.insert() != ready_.outline) {
+  const auto is_of = [&](const Ready& ready) {
+    return ready.tool && cutter.insert() != nullptr && cutter.insert() == ready.outline;
+  };
+  if (!is_of(ready_)) {
+    std::swap(ready_, ready_before_);
+    if (is_of(ready_)) return *ready_.tool;
     ready_ = {};
     ready_.outline = turning_outline(cutter);
     ready_.tool.emplace(*ready_.outline);

@@ -75,7 +75,8 @@ class TurningStock final : public StockModel {
   MeshPatch patch(std::uint32_t tile, int level) const override;
 
  private:
-  /// A tool as the part takes it, kept while the same cutter cuts on.
+  /// A tool as the part takes it, kept while the same cutter cuts on, or two take turns: a tool and
+  /// its insert alone.
   struct Ready {
     std::shared_ptr<const InsertOutline> outline;
     std::optional<TurningTool> tool;
@@ -87,7 +88,7 @@ class TurningStock final : public StockModel {
   TurnedPart part_;
   std::vector<TurnCut> last_cuts_;
   std::vector<std::uint64_t> seen_versions_;  // by take_dirty_tiles()
-  mutable Ready ready_;
+  mutable Ready ready_, ready_before_;
 };
 
 }  // namespace kerf

@@ -254,6 +254,7 @@ WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
   read_choices(reader, work);
   work.stock.cell_mm = reader.length_mm("--cell");
   work.below_mm = reader.length_mm("--below");
+  work.spindle_max_rpm = reader.number("--spindle-max");
   work.margin_mm = reader.length_mm("--margin");
   if (work.blank && reader.choose("--margin").from == ValueFrom::kCommandLine) {
     reader.fault("--margin",

@@ -156,6 +156,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
   if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);
   if (machine.holding.tailstock) printer.text("tailstock", machine.holding.tailstock->text);
+  if (machine.spindle_max_rpm) printer.put("spindle_max_rpm", *machine.spindle_max_rpm);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {

@@ -110,6 +110,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   read_ignored(machine, out.ignore);
   read_spindle(machine, out);
   read_holding(machine, out.holding);
+  machine.number("spindle_max_rpm", out.spindle_max_rpm);
   read_kinematics(machine, out);
 }
 

@@ -51,8 +51,9 @@ struct ConfigMachine {
   MachineChoice drawn;                   ///< `model` and `links`
   /// `spindle`: sections from its nose upward, the first begins at 0; empty: it is not described.
   std::vector<ToolSection> spindle;
-  std::string spindle_spec;       ///< the text that `spindle` was read from
-  WorkHolding holding;            ///< `chuck` and `tailstock`
+  std::string spindle_spec;  ///< the text that `spindle` was read from
+  WorkHolding holding;       ///< `chuck` and `tailstock`
+  std::optional<double> spindle_max_rpm;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.

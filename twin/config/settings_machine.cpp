@@ -272,6 +272,19 @@ constexpr std::array kMachineSettings{
             "of the point (60), place of the point (default: the cone is a third as thick as the "
             "blank's end)"),
         .value_name = "SPEC"},
+    Setting{.key = "machine.spindle_max_rpm",
+            .option = "--spindle-max",
+            .commands = kCutting,
+            .type = T::kNumber,
+            .unit = "rpm",
+            .least = 0,
+            .most = 1e6,
+            .least_excluded = true,
+            .purpose = tr_noop("what the spindle of a lathe does at most (over-speed); else the "
+                               "INI's [SPINDLE_0]MAX_FORWARD_VELOCITY"),
+            .help = tr_noop("what the spindle of a lathe does at most (default: the INI's "
+                            "[SPINDLE_0]MAX_FORWARD_VELOCITY)"),
+            .value_name = "RPM"},
     Setting{
         .key = "machine.collisions",
         .type = T::kYesNo,

@@ -41,6 +41,7 @@ struct CheckOptions {
   /// starts a spindle: a pen, a knife. What stands in that skin is no fault.
   bool is_drawn = false;
   CollisionWishes collisions{};
+  double spindle_max_rpm = 0;  ///< of a spindle that turns the workpiece; 0: not known
 };
 
 /// Where the blank of a run comes from, and so what it means that nothing of it is cut.

@@ -102,6 +102,7 @@ bool can_be_punched(const std::optional<Blank>& blank, Diagnostics& diagnostics,
 CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front) {
   CheckOptions checks{front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
   checks.collisions.held_by = front.held_by;
+  checks.spindle_max_rpm = options.spindle_max_rpm;
   return checks;
 }
 

@@ -32,10 +32,11 @@ struct SessionOptions {
   std::vector<ToolLibrary> libraries;    ///< of --tools
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
-  BeamOptions beam;      ///< for a sheet
-  TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
-  double margin_mm = 5;  ///< around a guessed blank
-  double below_mm = 0;   ///< CheckOptions::below_mm
+  BeamOptions beam;            ///< for a sheet
+  TurretPointer turret;        ///< for a sheet: it is punched; null: it is cut by the beam
+  double margin_mm = 5;        ///< around a guessed blank
+  double below_mm = 0;         ///< CheckOptions::below_mm
+  double spindle_max_rpm = 0;  ///< CheckOptions::spindle_max_rpm
   CollisionWishes collisions{};
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
