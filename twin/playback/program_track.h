@@ -156,7 +156,7 @@ class ProgramTrackBuilder final : public StepSink {
 
  private:
   /// The bits of what motions share.
-  using ModeKey = std::array<std::uint64_t, 35>;
+  using ModeKey = std::array<std::uint64_t, 38>;
   static ModeKey key_of(const Motion& motion);
   std::uint64_t mode_of(const Motion& motion);
   void sort_lines();
