@@ -33,10 +33,11 @@ struct SessionOptions {
   std::vector<ToolLibrary> libraries;    ///< of --tools
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
-  BeamOptions beam;      ///< for a sheet
-  TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
-  double margin_mm = 5;  ///< around a guessed blank
-  double below_mm = 0;   ///< CheckOptions::below_mm
+  BeamOptions beam;            ///< for a sheet
+  TurretPointer turret;        ///< for a sheet: it is punched; null: it is cut by the beam
+  double margin_mm = 5;        ///< around a guessed blank
+  double below_mm = 0;         ///< CheckOptions::below_mm
+  double spindle_max_rpm = 0;  ///< CheckOptions::spindle_max_rpm
   CollisionWishes collisions{};
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
@@ -59,6 +60,7 @@ struct ProgramFront {
   StockChoice choice;          ///< of its model, by what is known of the tools
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
+  HoldingList held_by;  ///< of a workpiece that turns; null: nothing holds it
 
   bool blank_guessed = false;
   std::string guess_reason;  ///< of that

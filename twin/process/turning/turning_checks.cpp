@@ -86,7 +86,7 @@ Finding TurningChecks::finding_of(FindingId id, const TurnedMove& move, double s
 std::optional<TurningChecks::Touch> TurningChecks::first_touch(const TurnedMove& move) const {
   std::optional<Touch> first;
   for (std::size_t i = 0; i < move.moves.size(); ++i) {
-    const auto met = stock_.first_turn_contact(move.cutter, move.moves[i], kContactTolerance_mm);
+    const auto met = stock_.first_turn_contact(move.edges, move.moves[i], kContactTolerance_mm);
     if (!met) continue;
     if (!first) {
       first =
