@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
@@ -52,6 +53,7 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
+  if (kind == StockKind::kTurning) return with_milling(TurningStock::load(path), settings);
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));
