@@ -56,7 +56,7 @@ std::unique_ptr<MillTurn::Milled> MillTurn::begun() const {
   assert(box);  // create() has tried it
   auto milled = std::make_unique<Milled>();
   milled->tree = std::move(box.value());
-  milled->tree->keep_cut_ids(keeps_ids_);
+  milled->tree->keep_cut_ids(keeps_cut_ids());
   follow_profile(*milled);
   milled->beside_mm3 = turned_.remaining_mm3() - milled->tree->remaining_mm3();
   return milled;
@@ -129,7 +129,6 @@ std::optional<WayContact> MillTurn::first_contact_of(const Cutter& cutter,
 std::unique_ptr<StockModel> MillTurn::snapshot() const {
   auto copy = std::unique_ptr<MillTurn>(new MillTurn(TurningStock(turned_.part()), options_));
   copy->options_.threads = 1;
-  copy->keeps_ids_ = keeps_ids_;
   if (!milled_) return copy;
   copy->milled_ = copy_of(*milled_);
   // Whoever looks at the copy may do so on several threads.
@@ -146,13 +145,14 @@ std::size_t MillTurn::unique_bytes() const {
 }
 
 void MillTurn::keep_cut_ids(bool keep) {
-  keeps_ids_ = keep;
+  turned_.keep_cut_ids(keep);
   shown_.reset();
   if (milled_) milled_->tree->keep_cut_ids(keep);
 }
 
 std::optional<std::uint32_t> MillTurn::cut_id_at(const Vec3& point_mm) const {
-  return milled_ ? tree().cut_id_at(point_mm) : std::nullopt;
+  const auto milled = milled_ ? tree().cut_id_at(point_mm) : std::nullopt;
+  return milled ? milled : turned_.cut_id_at(point_mm);
 }
 
 Done MillTurn::save(const std::string& path) const {

@@ -61,9 +61,9 @@ class MillTurn final : public StockModel, public WaySearcher {
 
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
-  /// Of what is milled.
+  /// Once it is milled patches name the moves of driven tools alone; cut_id_at() all of them.
   void keep_cut_ids(bool keep) override;
-  bool keeps_cut_ids() const override { return keeps_ids_; }
+  bool keeps_cut_ids() const override { return turned_.keeps_cut_ids(); }
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
   /// TurningStock's file, or once it is milled an octree's, whose profile nobody knows any more.
   Done save(const std::string& path) const override;
@@ -107,7 +107,6 @@ class MillTurn final : public StockModel, public WaySearcher {
 
   TurningStock turned_;
   MillTurnOptions options_;
-  bool keeps_ids_ = false;
   std::unique_ptr<Milled> milled_;         ///< null: not milled so far
   mutable std::unique_ptr<Milled> shown_;  ///< for who looks, while the profile is ahead of milled_
   std::unique_ptr<StockModel> seen_;       ///< the octree as take_dirty_tiles() saw it last

@@ -31,7 +31,8 @@ inline constexpr double kFinest_mm = 0.002;
 
 /// What of the surface lies in low_z .. high_z. Chains end on these, at points that are the same
 /// for both neighbours, and whatever the tolerance; a face on `low_z` belongs to it, one on
-/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments.
+/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments. Of marked
+/// contours MeshPatch::cut_by are the marks.
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
                        bool has_high_face, double tolerance_mm,
                        const std::optional<BarFlats>& flats = std::nullopt);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "stock/turning/revolve.h"
-#include "stock/turning/turning_state.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -30,11 +29,6 @@ static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
-
-std::uint64_t next_version() {
-  static std::atomic<std::uint64_t> last{0};
-  return last.fetch_add(1, std::memory_order_relaxed) + 1;
-}
 
 bool is_allowed(const Vec2& p) {
   return std::abs(p.x) <= kMaxTurnedZ_mm && p.y >= 0 &&
@@ -56,6 +50,35 @@ Contour contour_of(const Ring& ring) {
 }
 
 Point mirrored(const Point& p) { return {p.X, -p.Y}; }
+
+/// The piece that the chuck holds; none where there is but one.
+std::optional<std::size_t> piece_held(const std::vector<Contour>& contours, ChuckSide chuck) {
+  std::size_t outer = 0, held = 0;
+  const auto before = [&](const Contour& a, const Contour& b) {
+    const turning::Unit reach =
+        chuck == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
+    if (reach != 0) return reach > 0;
+    const turning::Unit wider = a.box().max_y - b.box().max_y;
+    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
+  };
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    if (!contours[i].is_outer()) continue;
+    if (outer++ == 0 || before(contours[i], contours[held])) held = i;
+  }
+  if (outer < 2) return std::nullopt;
+  return held;
+}
+
+/// With the holes in it.
+void keep_piece(std::vector<Contour>& contours, std::size_t piece) {
+  const Ring ring = contours[piece].ring();
+  std::vector<Contour> kept;
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    if (i == piece || (!contours[i].is_outer() && lies_in(contours[i], ring)))
+      kept.push_back(std::move(contours[i]));
+  }
+  contours = std::move(kept);
+}
 
 }  // namespace
 
@@ -112,39 +135,8 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
   part.chuck_ = chuck;
   part.flats_ = flats;
   part.blank_mm3_ = part.remaining_mm3();
-  part.versions_.fill(next_version());
+  part.touch_all();
   return part;
-}
-
-turning::SavedPart TurnedPart::saved() const {
-  return {chuck_, blank_, blank_mm3_, flats_, contours_};
-}
-
-TurnedPart TurnedPart::restored(turning::SavedPart saved) {
-  TurnedPart part;
-  part.contours_ = std::move(saved.contours);
-  part.blank_ = saved.blank;
-  part.blank_mm3_ = saved.blank_mm3;
-  part.chuck_ = saved.chuck;
-  part.flats_ = saved.flats;
-  part.versions_.fill(next_version());
-  return part;
-}
-
-std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
-  if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
-  const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
-  turning::SavedPart turned = saved();
-  turned.blank.min_x = at - blank_.max_x;
-  turned.blank.max_x = at - blank_.min_x;
-  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
-  for (Contour& contour : turned.contours) {
-    Ring ring = contour.ring();
-    std::reverse(ring.begin(), ring.end());
-    for (Point& p : ring) p.X = at - p.X;
-    contour = contour_of(ring);
-  }
-  return restored(std::move(turned));
 }
 
 /// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
@@ -197,6 +189,7 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
         if (!met.any && !thins()) return;
         touch_bands(scratch_.cut.changed());
         scratch_.cut.apply(contours_);
+        if (marked_) cut_marked(move.id);
       });
   const double removed = turning::volume_mm3(before - moment6()) - (missing_before - missing_mm3());
   report.removed_mm3 = std::max(removed, 0.0);
@@ -225,6 +218,13 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
   return contact;
 }
 
+std::uint64_t TurnedPart::next_version() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+void TurnedPart::touch_all() { versions_.fill(next_version()); }
+
 void TurnedPart::touch_bands(const Rect& box) {
   const std::uint64_t version = next_version();
   // A border belongs to both of its bands.
@@ -235,23 +235,10 @@ void TurnedPart::touch_bands(const Rect& box) {
 
 /// What the chuck does not hold falls, with the holes in it.
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
-  std::size_t outer = 0, held = 0;
-  const auto before = [&](const Contour& a, const Contour& b) {
-    const turning::Unit reach =
-        chuck_ == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
-    if (reach != 0) return reach > 0;
-    const turning::Unit wider = a.box().max_y - b.box().max_y;
-    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
-  };
+  const std::optional<std::size_t> held = piece_held(contours_, chuck_);
+  if (!held) return;
   for (std::size_t i = 0; i < contours_.size(); ++i) {
-    if (!contours_[i].is_outer()) continue;
-    if (outer++ == 0 || before(contours_[i], contours_[held])) held = i;
-  }
-  if (outer < 2) return;
-  std::vector<Contour> kept;
-  for (std::size_t i = 0; i < contours_.size(); ++i) {
-    if (i == held) kept.push_back(contours_[i]);
-    if (i == held || !contours_[i].is_outer()) continue;
+    if (i == *held || !contours_[i].is_outer()) continue;
     const Rect& box = contours_[i].box();
     const Ring ring = contours_[i].ring();
     Wide moment6 = contours_[i].moment6();
@@ -266,11 +253,10 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
                       turning::to_mm(box.max_y)});
     touch_bands(box);
   }
-  const Ring ring = contours_[held].ring();
-  for (Contour& contour : contours_) {
-    if (!contour.is_outer() && lies_in(contour, ring)) kept.push_back(std::move(contour));
-  }
-  contours_ = std::move(kept);
+  keep_piece(contours_, *held);
+  if (!marked_) return;
+  if (const std::optional<std::size_t> same = piece_held(*marked_, chuck_))
+    keep_piece(*marked_, *same);
 }
 
 Wide TurnedPart::moment6() const {
@@ -338,11 +324,17 @@ std::string TurnedPart::digest() const {
 
 std::size_t TurnedPart::unique_bytes() const {
   std::size_t bytes = 0;
-  for (const Contour& contour : contours_) {
+  const auto add = [&bytes](const Contour& contour) {
     bytes += contour.runs().capacity() * sizeof(turning::RunPointer);
     for (const turning::RunPointer& run : contour.runs()) {
-      if (run.use_count() == 1) bytes += sizeof *run + run->points.capacity() * sizeof(Point);
+      if (run.use_count() > 1) continue;
+      bytes += sizeof *run + run->points.capacity() * sizeof(Point) +
+               run->marks.capacity() * sizeof(std::uint32_t);
     }
+  };
+  for (const Contour& contour : contours_) add(contour);
+  if (marked_) {
+    for (const Contour& contour : *marked_) add(contour);
   }
   return bytes;
 }
@@ -361,8 +353,9 @@ TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
-  MeshPatch patch = turning::revolve_band(contours_, band_low(band), band_low(band + 1),
-                                          band + 1 == kBands, tolerance_mm, flats());
+  MeshPatch patch =
+      turning::revolve_band(marked_ ? *marked_ : contours_, band_low(band), band_low(band + 1),
+                            band + 1 == kBands, tolerance_mm, flats());
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];
   patch.level = level;

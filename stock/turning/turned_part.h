@@ -128,6 +128,17 @@ class TurnedPart {
   /// is deeper counts.
   std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
 
+  /// From now on remembers which move has made each edge of the contours; all of them count as not
+  /// cut. Costs as much again as cutting does, and nothing while off. A move is named by its id, of
+  /// which 0xffff'fffe and above count as 0xffff'fffe.
+  void keep_cut_ids(bool keep);
+  bool keeps_cut_ids() const { return marked_.has_value(); }
+  /// The move that made the surface at (z, r), mm: the nearest edge to it, if that is no farther
+  /// than `within_mm`; of several that are as near the first. Edges are kept apart where one move's
+  /// ends and another's begins, also within a cylinder; what a move cuts that lies less than 20 nm
+  /// below what was there keeps the id of that. O(corners).
+  std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double within_mm) const;
+
   /// What came off so far, in order.
   const std::vector<TurnedPiece>& freed() const { return freed_; }
 
@@ -169,7 +180,7 @@ class TurnedPart {
     Scratch(const Scratch&) {}
     Scratch& operator=(const Scratch&) { return *this; }
 
-    turning::ConvexCut cut;
+    turning::ConvexCut cut, marked_cut;
     turning::ConvexRegion swept;
     turning::GridPart::Lead lead;
     turning::GridPart::Scratch sweep;
@@ -183,11 +194,17 @@ class TurnedPart {
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
+  void cut_marked(std::uint64_t id);
   double missing_mm3() const;
+  static std::uint64_t next_version();
+  void touch_all();
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
+  /// The same by moves, where these are kept: cut for itself, so that contours_ are the same
+  /// whether they are or not. Corners may differ by some units.
+  std::optional<std::vector<turning::Contour>> marked_;
   turning::Rect blank_;
   double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;

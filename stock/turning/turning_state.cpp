@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string_view>
@@ -205,3 +206,40 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
 }
 
 }  // namespace kerf::turning
+
+namespace kerf {
+
+turning::SavedPart TurnedPart::saved() const {
+  return {chuck_, blank_, blank_mm3_, flats_, contours_};
+}
+
+TurnedPart TurnedPart::restored(turning::SavedPart saved) {
+  TurnedPart part;
+  part.contours_ = std::move(saved.contours);
+  part.blank_ = saved.blank;
+  part.blank_mm3_ = saved.blank_mm3;
+  part.chuck_ = saved.chuck;
+  part.flats_ = saved.flats;
+  part.touch_all();
+  return part;
+}
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
+  const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
+  turning::SavedPart turned = saved();
+  turned.blank.min_x = at - blank_.max_x;
+  turned.blank.max_x = at - blank_.min_x;
+  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  turning::ContourBuilder builder;
+  for (turning::Contour& contour : turned.contours) {
+    turning::Ring ring = contour.ring();
+    std::reverse(ring.begin(), ring.end());
+    for (turning::Point& p : ring) p.X = at - p.X;
+    for (const turning::Point& p : ring) builder.append(p);
+    contour = builder.close();
+  }
+  return restored(std::move(turned));
+}
+
+}  // namespace kerf

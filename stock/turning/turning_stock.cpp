@@ -9,6 +9,7 @@
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
 #include "stock/state_bytes.h"
+#include "stock/turning/revolve.h"
 #include "stock/turning/turning_state.h"
 
 namespace kerf {
@@ -138,6 +139,17 @@ std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const C
   const std::optional<TurnContact> met = first_turn_contact(cutter, move, tolerance_mm);
   if (!met) return std::nullopt;
   return Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), met->depth_mm};
+}
+
+std::optional<std::uint32_t> TurningStock::cut_id_at(const Vec3& point_mm) const {
+  /// As near as patches of level 0 are to the part, and their vertices to where they should be.
+  constexpr double kNear_mm = 0.01;
+  constexpr double kStep_rad = 2 * kPi / turning::kPatchSegments;
+  const double angle = std::atan2(point_mm.y, point_mm.x) / kStep_rad;
+  const double off_rad = (angle - std::floor(angle) - 0.5) * kStep_rad;
+  const double on_facet = std::hypot(point_mm.x, point_mm.y);
+  const double r = on_facet * std::cos(off_rad) / std::cos(kStep_rad / 2);
+  return part_.cut_id_at({point_mm.z, r}, kNear_mm);
 }
 
 Done TurningStock::save(const std::string& path) const {

@@ -43,6 +43,10 @@ class TurningStock final : public StockModel {
 
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
+  void keep_cut_ids(bool keep) override { part_.keep_cut_ids(keep); }
+  bool keeps_cut_ids() const override { return part_.keeps_cut_ids(); }
+  /// Points of patches lie within the round of the part: what a facet is short of it is added.
+  std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
   /// Error for a cutter without an outline whose profile has hollow arcs or that is too long.
   static Done can_cut(const Cutter& cutter);
   Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }

@@ -99,7 +99,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   program.lathe = options_.lathe;
   program.as_mill = options_.as_mill;
-  if (!note_turning(program, first, options_.stock.kind, tools, diagnostics)) {
+  if (!note_turning(program, first, options_.stock.kind, options_.blank, tools, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }

@@ -134,8 +134,8 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
     return std::nullopt;
   }
   front.tools.guesses = options.tool_guesses;
-  if (!note_turning(options.program, front.program.get(), options.stock.kind, front.tools,
-                    diagnostics)) {
+  if (!note_turning(options.program, front.program.get(), options.stock.kind, options.blank,
+                    front.tools, diagnostics)) {
     outcome = Outcome::kUsageError;
     return std::nullopt;
   }

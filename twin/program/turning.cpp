@@ -44,6 +44,13 @@ std::string sign_of_tools(const TurningWords& words, const std::vector<ToolTable
   return {};
 }
 
+std::string sign_of_blank(const Blank& blank) {
+  if (!blank.state_file.empty() && saved_kind(blank.state_file) == StockKind::kTurning) {
+    return trf("{}: a turned part", blank.state_file);
+  }
+  return need_to_turn(blank);
+}
+
 }  // namespace
 
 std::string turning_sign(const ProgramOptions& options, const Program* program,
@@ -62,10 +69,12 @@ std::string turning_sign(const ProgramOptions& options, const Program* program,
 }
 
 bool note_turning(const ProgramOptions& options, const Program* program,
-                  std::optional<StockKind> kind, ToolSources& tools, Diagnostics& diagnostics) {
+                  std::optional<StockKind> kind, const std::optional<Blank>& blank,
+                  ToolSources& tools, Diagnostics& diagnostics) {
   tools.turning = kind == StockKind::kTurning;
   if (tools.turning || options.as_mill) return true;
-  std::string sign = turning_sign(options, program, tools.table);
+  std::string sign = blank ? sign_of_blank(*blank) : std::string();
+  if (sign.empty()) sign = turning_sign(options, program, tools.table);
   if (sign.empty()) return true;
   if (kind) {
     Diagnostic refusal;
