@@ -104,7 +104,7 @@ void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const C
                                 std::vector<CutMove>& out) const {
   if (moves.ordered() != nullptr) {
     append_part(i, 1, moves, cutter, out);
-  } else if (moves.path() == nullptr) {
+  } else if (moves.path() == nullptr && moves.live_path(cutter) == nullptr) {
     out.push_back(cut_move(i));
   } else {
     moves.append(motion(i), cutter, i, out);
