@@ -23,9 +23,7 @@ using turning::Rect;
 using turning::Ring;
 using turning::Wide;
 
-/// So far the controlled point is followed: farther away no tool reaches a blank.
-constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
-static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
