@@ -154,7 +154,8 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
   setup.stock = blank.state_file.empty()
                     ? fill_stock(blank, fitting, settings, origin, diagnostics)
                     : load_stock(blank, fitting, settings, diagnostics, outcome);
-  if (!setup.stock && blank.sheet && !blank.sheet->file.empty()) outcome = Outcome::kFailed;
+  const bool is_drawn = (blank.sheet && !blank.sheet->file.empty()) || !blank.profile_file.empty();
+  if (!setup.stock && is_drawn) outcome = Outcome::kFailed;
   return setup;
 }
 
