@@ -11,6 +11,7 @@
 #include "twin/cli/option_reader.h"
 #include "twin/job/fixtures.h"
 #include "twin/report/report.h"
+#include "viewer/section.h"
 
 namespace kerf {
 
@@ -24,6 +25,7 @@ struct OutputPaths {
   /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
   std::string dxf;
   std::string svg;
+  SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
   std::array<std::pair<const char*, const std::string*>, 7> named() const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/translate.h"
@@ -53,12 +54,33 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
-  if (kind == StockKind::kTurning) return as_stock(TurningStock::load(path));
+  if (kind == StockKind::kTurning) return with_milling(TurningStock::load(path), settings);
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));
   }
   return as_stock(ZMap::load(path, settings.threads, settings.kernel));
+}
+
+/// As it lies now; null, with an error: only what turns is turned about, and not beyond a lathe.
+std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blank& blank,
+                                   Diagnostics& diagnostics) {
+  const SavedPlace& place = blank.saved_place;
+  if (place.is_as_saved()) return stock;
+  const TurningStock* const turned = stock->turned();
+  if (turned == nullptr) {
+    diagnostics.push_back(general_error(
+        trf("{}: flip= and at= are for parts that are turned; this one was saved as {}",
+            blank.state_file, stock->name())));
+    return nullptr;
+  }
+  std::optional<TurnedPart> part = place.is_turned_about
+                                       ? turned->part().turned_about(place.at_z_mm)
+                                       : turned->part().moved(place.at_z_mm);
+  if (part) return std::make_unique<TurningStock>(std::move(*part));
+  diagnostics.push_back(general_error(trf("{}: at Z{:g} it would lie beyond {} mm from Z0",
+                                          blank.state_file, place.at_z_mm, kMaxTurnedZ_mm)));
+  return nullptr;
 }
 
 std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& choice,
@@ -81,7 +103,7 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   auto loaded = load_saved(saved, blank.state_file, settings);
-  if (loaded) return std::move(loaded.value());
+  if (loaded) return placed(std::move(loaded.value()), blank, diagnostics);
   diagnostics.push_back(general_error(loaded.error()));
   outcome = Outcome::kFailed;
   return nullptr;

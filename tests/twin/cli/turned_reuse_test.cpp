@@ -72,6 +72,25 @@ TEST_F(TurnedReuse, a_saved_part_is_turned_on_as_if_it_had_never_been_saved) {
   EXPECT_EQ(stock_report()["remaining_mm3"], whole["remaining_mm3"]);
 }
 
+TEST_F(TurnedReuse, a_saved_part_is_turned_about) {
+  folder_.write("first.canon", passes({19}));
+  folder_.write("second.canon", passes({18}));
+  KerfResult result = cut("first.canon", "cylinder:0,0,-60:0:40", {"--state", "part.state"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const double removed = stock_report()["removed_mm3"].get<double>();
+  const double remaining = stock_report()["remaining_mm3"].get<double>();
+  // What was at Z-60 is the face at Z0: the other end, which is still as it was.
+  result = cut("first.canon", "state:part.state:flip=x:at=0,0,-60");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NEAR(stock_report()["removed_mm3"].get<double>(), removed, 0.01);
+  EXPECT_NEAR(stock_report()["remaining_mm3"].get<double>(), remaining - removed, 0.01);
+  result = cut("first.canon", "state:part.state:at=0,0,3000");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("part.state: at Z3000 it would lie beyond 2000 mm from Z0"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(TurnedReuse, a_drawn_part_is_a_blank_again) {
   folder_.write("first.canon", passes({19, 18}));
   folder_.write("second.canon", passes({18}));
