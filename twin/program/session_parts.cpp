@@ -11,6 +11,7 @@
 
 #include "base/translate.h"
 #include "base/units.h"
+#include "stock/cutter/turning_hints.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/turning/turning_stock.h"
@@ -181,7 +182,11 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
                          Diagnostics& diagnostics) {
   sources.arguments = arguments;
   add_library_tools(libraries, program, sources, diagnostics);
-  if (program) sources.hints = find_tool_hints(comments_with_units(*program, options.path));
+  if (program) {
+    const std::vector<CommentText> comments = comments_with_units(*program, options.path);
+    sources.hints = find_tool_hints(comments);
+    sources.turning_hints = find_turning_hints(comments);
+  }
   if (options.tool_table_path.empty()) return true;
   auto rows = read_tool_table(options.tool_table_path, diagnostics,
                               mm_of_unit(options.machine.inch_machine));
