@@ -20,9 +20,7 @@ std::string_view kind_of(std::string_view shape) { return shape.substr(0, shape.
 
 /// What the interpreter compensates by.
 KnownDiameter compensation_of(const Cutter& cutter, bool by_argument) {
-  if (cutter.insert() == nullptr) return {2 * cutter.radius_mm(), by_argument, 0};
-  const InsertTip& tip = cutter.insert_tip();
-  return {2 * tip.nose_radius_mm, by_argument, tip.orientation};
+  return {table_diameter_mm(cutter), by_argument, cutter.insert_tip().orientation};
 }
 
 /// Two descriptions that cannot be of one cutter. Corners and points are often left out.

@@ -212,7 +212,7 @@ TEST(TurningHints, CommentsAboutATool) {
   block.text = "DNMG 150608 finish";
   block.block_tool = 4;
   CommentText list, named, loose, tiny;
-  list.text = "T0101 - CNMG 432 OD rough";
+  list.text = "T01 - CNMG 432 OD rough";
   named.text = "TOOL 2: groove 3mm";
   loose.text = "insert: WNMG080408";
   loose.at_change = false;
@@ -229,6 +229,22 @@ TEST(TurningHints, CommentsAboutATool) {
   EXPECT_EQ(hints[3].shape, "iso:DNMG150608:R");
   EXPECT_EQ(hints[4].tool, -1);
   EXPECT_TRUE(hints[4].near);
+}
+
+TEST(TurningHints, TheTableSaysWhatTheyLeaveOut) {
+  Diagnostics diagnostics;
+  const std::map<int, TurningFacts> rows =
+      turning_facts(parse_tool_table("T1 P1 D0.8 I275 J355 Q3\nT4 P4 Q8\n", "t.tbl", diagnostics));
+  CommentText insert, thread, other;
+  insert.text = "T1 - CCMT 09T308";
+  thread.text = "T4: threading tool 60";
+  other.text = "T5 - CCMT 09T308";
+  const std::vector<CommentText> comments{insert, thread, other};
+  const std::vector<ToolHint> hints = find_turning_hints(comments, rows);
+  ASSERT_EQ(hints.size(), 3u);
+  EXPECT_EQ(hints[0].shape, "iso:CCMT09T308:R:orient=3");
+  EXPECT_EQ(hints[1].shape, "thread:60:orient=8");
+  EXPECT_EQ(hints[2].shape, "iso:CCMT09T308:R");
 }
 
 TEST(TurningHints, WordsAboutTheWorkAreNone) {
