@@ -578,11 +578,14 @@ std::string TrajectoryPlanner::time_model() const {
   // What stands before the first ": " is its short form, in every language.
   const std::string what = trf("LinuxCNC 2.9 trajectory planner, limits of {}",
                                tr(impl_->options.limits_origin.c_str()));
-  const std::string figures =
+  std::string figures =
       trf("{}, {}, servo period {:g} ms; tool change {} I/O periods of {:g} s and {:g} s, spindle "
           "start {:g} s, M0 and M1 no time",
           axes, cap, impl_->rates.cycle_s * 1000.0, kToolChangeLooks, impl_->limits.io_period_s,
           impl_->options.tool_change_s, impl_->options.spindle_start_s);
+  if (impl_->options.spindle.known()) {
+    figures += trf(", spindle {:g} rpm/s", impl_->options.spindle.accel_rpm_per_s);
+  }
   return fmt::format("{}: {}", what, figures);
 }
 

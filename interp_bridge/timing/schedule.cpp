@@ -11,6 +11,9 @@ namespace {
 /// Farthest that the chords of a corner may lie from the way of the tool.
 constexpr double kCornerChord_mm = 0.001;
 
+/// A way that is as even as this is given as even: most of dense code is.
+constexpr double kEven_s = 0.0002;
+
 /// Room for what the look-ahead usually holds; grows where many short moves are merged.
 constexpr std::size_t kFirstCapacity = 1024;
 
@@ -88,6 +91,7 @@ void Schedule::report_ready() {
       timing.way.in_time = static_cast<float>(std::clamp(in, 0.0, 1.0));
       const double out = pending.out_s / timing.duration_s;
       timing.way.out_time = static_cast<float>(std::clamp(out, 0.0, 1.0 - std::min(in, 1.0)));
+      if (timing.duration_s * timing.way.unevenness() < kEven_s) timing.way = {};
     } else {
       timing.way = {};
     }

@@ -100,6 +100,23 @@ struct Slowness {
 
 bool WayInTime::is_even() const { return *this == WayInTime{}; }
 
+double WayInTime::unevenness() const {
+  if (is_even()) return 0;
+  const double before = static_cast<double>(in_way);
+  const double left = 1 - before - static_cast<double>(out_way);
+  const bool slows = slow_from != slow_to;
+  const Middle middle(*this);
+  const double up = slows ? static_cast<double>(cap) : middle.up;
+  const double down = slows ? static_cast<double>(cap) / 2 : middle.down;
+  double most = std::max(std::abs(static_cast<double>(in_time - in_way)),
+                         std::abs(static_cast<double>(out_time - out_way)));
+  for (const double on : {up, down, 0.5, (up + 1) / 2}) {
+    const double at = before + left * on;
+    most = std::max(most, std::abs(time_of(at) - at));
+  }
+  return most;
+}
+
 void WayInTime::set_slowness(double first, double last, double mean) {
   if (first <= 0 || last <= 0 || std::abs(last - first) < 1e-6 * first) return;
   // Even at the slower or the faster end, so long that the mean is right.
@@ -157,6 +174,33 @@ double WayInTime::way_of(double time) const {
     share = middle.way_of(on * middle.whole_s());
   }
   return before + (1 - before - behind) * std::clamp(share, 0.0, 1.0);
+}
+
+WayInTime::Part WayInTime::between(double from_way, double to_way) const {
+  Part out;
+  out.from_time = from_way <= 0 ? 0 : time_of(from_way);
+  out.to_time = to_way >= 1 ? 1 : time_of(to_way);
+  const double length = to_way - from_way, time = out.to_time - out.from_time;
+  if (is_even() || length <= kNone || time <= kNone) return out;
+  const double before = static_cast<double>(in_way), behind = static_cast<double>(out_way);
+  const double left = std::max(1 - before - behind, kNone);
+  const double on = std::clamp((from_way - before) / left, 0.0, 1.0);
+  const double off = std::clamp((to_way - before) / left, on, 1.0);
+  if (off > on) out.way = part(on, off);
+  // Of the ends so much as lies in the part.
+  const auto share = [](double of, double whole, bool stands) {
+    return whole > kNone ? of / whole : (stands ? 1.0 : 0.0);
+  };
+  const double first = std::clamp(before - from_way, 0.0, length);
+  const double last = std::clamp(to_way - 1 + behind, 0.0, length - first);
+  const double first_s = static_cast<double>(in_time) * share(first, before, from_way <= 0);
+  const double last_s = static_cast<double>(out_time) * share(last, behind, to_way >= 1);
+  out.way.in_way = static_cast<float>(first / length);
+  out.way.in_time = static_cast<float>(std::min(first_s / time, 1.0));
+  out.way.out_way = static_cast<float>(last / length);
+  out.way.out_time =
+      static_cast<float>(std::min(last_s / time, 1.0 - std::min(first_s / time, 1.0)));
+  return out;
 }
 
 double WayInTime::speed_at(double way) const {

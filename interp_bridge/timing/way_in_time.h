@@ -30,7 +30,14 @@ struct WayInTime {
   /// Share of the way that is done at this share of the time. The inverse of time_of().
   double way_of(double time) const;
 
+  /// A part of the motion: its shares of the motion's time, and how its own way goes in that. What
+  /// the motion stands at an end belongs to the part at that end.
+  struct Part;
+  Part between(double from_way, double to_way) const;
+
   bool is_even() const;
+  /// About how far the way is from an even one, as a share of the time.
+  double unevenness() const;
   bool operator==(const WayInTime&) const = default;
 
   /// A middle that begins at a speed, gets to `cruise` and ends at another.
@@ -41,6 +48,11 @@ struct WayInTime {
   WayInTime part(double from_way, double to_way) const;
   /// Of a middle's way, the speed there over its greatest.
   double speed_at(double way) const;
+};
+
+struct WayInTime::Part {
+  double from_time = 0, to_time = 1;
+  WayInTime way;
 };
 
 }  // namespace kerf

@@ -178,6 +178,8 @@ class TurnedPart {
   /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
   /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
   MeshPatch patch(std::size_t band, int level) const;
+  /// The coarsest level that keeps within the tolerance; 0 where none does.
+  static int level_within(double tolerance_mm);
 
   /// How often a general polygon library was asked: for measurements.
   std::uint64_t library_calls() const { return scratch_.cut.library_calls(); }

@@ -117,6 +117,7 @@ ProgramRequest understand_program(std::string_view program, const ProgramSurroun
   } else {
     read_ini(ini, around, reader, request);
   }
+  request.timeline.planner.spindle.accel_rpm_per_s = reader.number("--spindle-accel");
   options.path = reader.text(program);
   options.as_mill = reader.is_yes("--as-mill");
   options.machine.unknown_places = true;

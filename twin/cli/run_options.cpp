@@ -108,6 +108,10 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
   if (request.draw && !request.view) {
     reader.fault("--draw", tr("is for the window; there is no --view"));
   }
+  request.outputs.section = understand_section(reader);
+  if (request.outputs.section != SectionKind::kNone && request.outputs.png.empty()) {
+    reader.fault("--section", tr("is for --png; the window has a key for it"));
+  }
   if (request.view && request.session.program.path == "-") {
     reader.fault("--view", tr("the program comes from standard input, which cannot be read again"));
   }

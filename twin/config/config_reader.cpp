@@ -106,6 +106,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
   machine.number("max_acceleration_mm_per_s2", out.max_mm_per_s2);
   read_drawn_machine(machine, out.drawn);
+  machine.number("spindle_accel", out.spindle_accel_rpm_per_s);
   machine.number("collisions", out.collisions);
   read_ignored(machine, out.ignore);
   read_spindle(machine, out);

@@ -248,6 +248,19 @@ constexpr std::array kMachineSettings{
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
+    Setting{.key = "machine.spindle_accel",
+            .option = "--spindle-accel",
+            .commands = kCutting | kCanon | kMachine,
+            .type = T::kNumber,
+            .unit = "rpm/s",
+            .least = 0,
+            .most = 1e6,
+            .fallback = "0",
+            .purpose = tr_noop("how fast the spindle gains speed: feeds wait until it is at speed, "
+                               "and under G96 it may be late; 0: at speed at once"),
+            .help = tr_noop("rpm that the spindle gains in a second: feeds wait until it is at "
+                            "speed, and under G96 it may be late (default {}: at speed at once)"),
+            .value_name = "RPM"},
     Setting{
         .key = "machine.chuck",
         .option = "--chuck",

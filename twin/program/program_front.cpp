@@ -158,6 +158,10 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
 
 void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves) {
   for (const Motion& m : motions) {
+    if (turning_) {
+      bar_.add(m.length.displaces ? as_programmed(m) : m);
+      continue;
+    }
     if (is_feed(m) && stands_still(m)) continue;
     if (is_feed(m) && m.tool != tool_) {
       tool_ = m.tool;

@@ -17,6 +17,7 @@
 #include "twin/job/blank_choice.h"
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
+#include "twin/job/turned_blank_guess.h"
 #include "twin/machine/beam_settings.h"
 #include "twin/machine/timeline.h"
 #include "twin/machine/turret.h"
@@ -92,15 +93,20 @@ bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, 
 class BlankSurvey {
  public:
   BlankSurvey(double margin_mm, ToolSources tools)
-      : guess_(margin_mm), resolver_(std::move(tools), nullptr) {}
+      : turning_(tools.turning),
+        guess_(margin_mm),
+        bar_(margin_mm),
+        resolver_(std::move(tools), nullptr) {}
 
   /// `moves`: how the machine moves.
   void add(std::span<const Motion> motions, const MotionMoves& moves);
-  Blank blank() const { return guess_.blank(); }
+  Blank blank() const { return turning_ ? bar_.blank() : guess_.blank(); }
   const BlankGuess& guess() const { return guess_; }
 
  private:
+  bool turning_;
   BlankGuess guess_;
+  TurnedBlankGuess bar_;
   ToolResolver resolver_;
   int tool_ = -1;
   double radius_mm_ = 0;  ///< of that tool

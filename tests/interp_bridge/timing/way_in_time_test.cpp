@@ -111,6 +111,47 @@ TEST(WayInTime, PartsGoAsTheWhole) {
   }
 }
 
+/// Divided anywhere, corners, rests and all.
+TEST(WayInTime, DividedItGoesAsBefore) {
+  WayInTime way;
+  way.set_ramps(10, 40, 2, 12, 5);
+  way.in_way = 0.1F;
+  way.in_time = 0.2F;
+  way.out_way = 0.05F;
+  way.out_time = 0.15F;
+  WayInTime stands = way;
+  stands.in_way = stands.out_way = 0;
+  for (const WayInTime& whole : {way, stands}) {
+    for (const double middle : {0.04, 0.1, 0.3, 0.5, 0.93, 0.97}) {
+      const WayInTime::Part first = whole.between(0, middle), last = whole.between(middle, 1);
+      EXPECT_EQ(first.from_time, 0);
+      EXPECT_NEAR(first.to_time, last.from_time, 1e-12);
+      EXPECT_EQ(last.to_time, 1);
+      for (int k = 1; k < 20; ++k) {
+        const double at = k / 20.0;
+        const WayInTime::Part& part = at < middle ? first : last;
+        const double share = at < middle ? at / middle : (at - middle) / (1 - middle);
+        const double time =
+            part.from_time + (part.to_time - part.from_time) * part.way.time_of(share);
+        EXPECT_NEAR(time, whole.time_of(at), 3e-6) << middle << " " << at;
+      }
+    }
+  }
+}
+
+TEST(WayInTime, Unevenness) {
+  EXPECT_EQ(WayInTime{}.unevenness(), 0);
+  // From and to a stand over the whole way: a quarter of the way takes 0.354 of the time.
+  WayInTime triangle;
+  triangle.set_ramps(10, 40, 0, 20, 0);
+  double most = 0;
+  for (int k = 1; k < 100; ++k) {
+    most = std::max(most, std::abs(triangle.time_of(k / 100.0) - k / 100.0));
+  }
+  EXPECT_GT(triangle.unevenness(), most / 2);
+  EXPECT_LE(triangle.unevenness(), most + 1e-9);
+}
+
 /// A thread waits for the index; behind its last move the planner rests.
 TEST(WayInTime, StandingAtTheEnds) {
   WayInTime way;

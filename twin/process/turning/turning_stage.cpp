@@ -52,7 +52,7 @@ void TurningStage::begin_reporting() {
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
   unmount();
-  mill_turn_told_ = false;
+  mill_turn_told_ = unmilled_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -81,15 +81,17 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
     unmount();
   }
   if (!stands(m)) checks_.end_standing();
-  report_mill_turn(m, step);
-  speeds_.check(m, step, checks_.options().spindle_max_rpm);
   if (is_traverse(m)) take_traverse(m, step);
   if (is_feed(m)) take_feed(m, step);
+  // The tool is known now: a driven one has a speed of its own.
+  if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
 /// found wrong.
 bool TurningStage::stands(const Motion& m) const {
+  // A driven tool has a spindle of its own (M3 $1), or on small machines the only one.
+  if (is_driven() && (m.torch.spindles_on & ~1U) != 0) return false;
   if (m.spindle == SpindleState::kStopped) return true;
   return m.spindle_rpm == 0 && (m.speed_said || !site_.watched);
 }
@@ -142,18 +144,20 @@ std::vector<CollisionPair> TurningStage::collisions() const {
 
 bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
   moves.clear();
-  return site_.moves.append(m, *mounted_->cutter, 0, moves, nullptr);
+  ends_.clear();
+  return site_.moves.append(m, *mounted_->cutter, 0, moves, &ends_);
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m, step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed};
+  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
+          ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
   // As in milling: the tool of such a move is not known for sure.
   if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) return;
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
-  if (!mount_for(m) || !m.start_known || !divide(m, moves_)) return;
+  if (!mount_for(m) || !m.start_known || report_unmilled(m, step) || !divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
   if (!checks_.may_touch(move)) {
@@ -174,37 +178,79 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
   if (m.kind != MotionKind::kThread) site_.feeds.note(m, step);
-  checks_.check_plane(m, step);
+  if (report_unmilled(m, step)) return;
+  if (!is_driven()) {
+    report_mill_turn(m, step);
+    checks_.check_plane(m, step);
+  }
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
   if (!checks_.may_touch(move)) return;
-  checks_.check_thread(m, step, site_.limits_known);
-  threads_.note(move);
+  if (!is_driven()) {
+    checks_.check_thread(m, step, site_.limits_known);
+    threads_.note(move);
+  }
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing.
+/// What a tool must not touch, and what of it must touch nothing. A driven one comes at any angle
+/// to a workpiece that stands: not looked at.
 void TurningStage::check_bodies(const TurnedMove& move) {
+  if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
 
-/// Once: a tool beside the plane of the axis, or a workpiece that is turned as an axis, is no
-/// turning.
+/// Once: a feed of a tool that is not driven beside the plane of the axis, or while the workpiece
+/// is turned as an axis, is no turning.
 void TurningStage::report_mill_turn(const Motion& m, const TimedStep& step) {
   constexpr double kOff_mm = 1e-6;
-  const bool beside = std::abs(m.to_mm.y - m.from_mm.y) > kOff_mm && m.kind != MotionKind::kArc;
+  const bool beside =
+      m.kind != MotionKind::kArc && std::max(std::abs(m.from_mm.y), std::abs(m.to_mm.y)) > kOff_mm;
   const bool turns = m.from_abc_deg != m.to_abc_deg;
-  if (mill_turn_told_ || !m.start_known || (!beside && !turns)) return;
+  if (mill_turn_told_ || (!beside && !turns)) return;
   mill_turn_told_ = true;
+  tell_not_modelled(
+      m, step,
+      beside ? tr("the tool cuts beside Y0: it is cut as if it were at Y0")
+             : tr("the workpiece is turned as an axis while it is cut: it is cut as if it turned "
+                  "all round"),
+      mounted_->cutter->insert()
+          ? tr("what is turned is right; --as-mill is for programs that only mill")
+          : tr("a driven tool says so in its shape: live=z (it lies along Z) or live=x; --as-mill "
+               "is for programs that only mill"));
+}
+
+/// A driven tool that kerf cannot follow on this machine: true, told once, and its moves do not
+/// cut.
+bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
+  if (!is_driven()) return false;
+  const bool main_turns = (m.torch.spindles_on & 1U) != 0 && (m.torch.spindles_on & ~1U) != 0;
+  if (site_.moves.mills() && !main_turns) return false;
+  if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
+  if (main_turns) {
+    tell_not_modelled(m, step,
+                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
+                         "not cut"),
+                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
+                         "driven tool itself"));
+  } else {
+    tell_not_modelled(m, step,
+                      tr("a driven tool on a machine whose kinematics are switched: how they hold "
+                         "the workpiece is not known, and it is not cut"),
+                      tr("machine.kinematics: links says how the machine moves"));
+  }
+  return true;
+}
+
+void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,
+                                     std::string hint) {
   Finding finding = finding_at(FindingId::kNotModelled, Severity::kError, m, step);
   finding.tool = m.tool;
-  finding.text = beside ? tr("the tool moves along Y: it is cut as if it were at Y0 all along")
-                        : tr("the workpiece is turned as an axis: what is milled or drilled so is "
-                             "cut as if it turned all round");
-  finding.hint = tr("what is turned is right; --as-mill is for programs that only mill");
+  finding.text = std::move(text);
+  finding.hint = std::move(hint);
   log_.add(std::move(finding));
 }
 
@@ -231,7 +277,7 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
   }
   note_fallen(m, step);
   touched_ = touched_ || whole.removed_mm3 > 0;
-  if (!is_feed(m)) return;
+  if (!is_feed(m) || is_driven()) return;
   const TurnedMove move = turned(m, step);
   checks_.check_sides(move, whole);
   checks_.check_centre(move, whole);
@@ -243,26 +289,17 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
   if (!divide(m, pieces_)) return;
   const std::uint64_t id =
       site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
-  double length_mm = 0;
-  for (CutMove& move : pieces_) {
-    move.id = id;
-    length_mm += glm::length(move.to_mm - move.from_mm);
-  }
+  for (CutMove& move : pieces_) move.id = id;
   reports_.clear();
   stock_.cut(*mounted_->cutter, pieces_, reports_);
   ToolUse& use = uses_[use_];
-  TurnCut piece;
-  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
-    piece.removed_mm3 += cut.removed_mm3;
-    piece.way_mm += cut.way_mm;
-    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
-    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
-    for (std::size_t side = 0; side < kInsertSides; ++side)
-      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
-  }
+  const TurnCut piece = sum_of_piece();
   const double way_mm = path_length_mm(m);
-  const double cut_s =
-      way_mm > 0 ? step.duration_s * std::min(1.0, piece.way_mm / way_mm) : step.duration_s;
+  // How far a driven tool is in material nobody measures: all of the move, if it cuts at all.
+  const double share = is_driven()  ? (piece.removed_mm3 > 0 ? 1 : 0)
+                       : way_mm > 0 ? std::min(1.0, piece.way_mm / way_mm)
+                                    : 1;
+  const double cut_s = step.duration_s * share;
   if (site_.labels) site_.labels->note(id, piece.removed_mm3, step.duration_s);
   use.removed_mm3 += piece.removed_mm3;
   if (is_feed(m)) {
@@ -275,6 +312,27 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
   whole.flanks_mm = std::max(whole.flanks_mm, piece.flanks_mm);
   for (std::size_t side = 0; side < kInsertSides; ++side)
     whole.side_mm[side] = std::max(whole.side_mm[side], piece.side_mm[side]);
+}
+
+/// Of what has just been cut.
+TurnCut TurningStage::sum_of_piece() const {
+  TurnCut piece;
+  if (is_driven()) {
+    for (const CutReport& report : reports_) {
+      piece.removed_mm3 += report.removed_mm3;
+      piece.depth_mm = std::max(piece.depth_mm, report.depth_mm);
+    }
+    return piece;
+  }
+  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
+    piece.removed_mm3 += cut.removed_mm3;
+    piece.way_mm += cut.way_mm;
+    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
+    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
+    for (std::size_t side = 0; side < kInsertSides; ++side)
+      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
+  }
+  return piece;
 }
 
 void TurningStage::note_fallen(const Motion& m, const TimedStep& step) {

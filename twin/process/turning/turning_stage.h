@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "interp_bridge/motion.h"
@@ -25,7 +26,9 @@
 namespace kerf {
 
 /// The workpiece turns, tools stand still: traverses, feeds, arcs and threads of a tool that is
-/// known are cut as they come. Probes, and moves of a tool of which nothing is known, do not cut.
+/// known are cut as they come. A driven tool (Cutter::live()) mills, the workpiece standing or
+/// being an axis: MotionMoves::live_path(). Probes, and moves of a tool of which nothing is known,
+/// do not cut.
 class TurningStage final : public Process {
  public:
   /// The workpiece is of the model turning.
@@ -50,13 +53,18 @@ class TurningStage final : public Process {
   void mount_checks();
   void unmount();
   void check_bodies(const TurnedMove& move);
+  bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
+  bool report_unmilled(const Motion& motion, const TimedStep& step);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
+  void tell_not_modelled(const Motion& motion, const TimedStep& step, std::string text,
+                         std::string hint);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
   bool divide(const Motion& motion, std::vector<CutMove>& moves);
   TurnedMove turned(const Motion& motion, const TimedStep& step) const;
   void cut(const Motion& motion, const TimedStep& step);
   void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
+  TurnCut sum_of_piece() const;
   void note_fallen(const Motion& motion, const TimedStep& step);
   void report_nothing_cut();
 
@@ -73,6 +81,7 @@ class TurningStage final : public Process {
   ThreadChecks threads_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
+  std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()
   std::vector<CutMove> pieces_;      ///< as the machine runs it
   std::vector<CutReport> reports_;
   std::vector<ToolUse> uses_;
@@ -86,6 +95,7 @@ class TurningStage final : public Process {
   std::uint64_t feed_moves_ = 0;
   bool undefined_ = false;
   bool mill_turn_told_ = false;
+  bool unmilled_told_ = false;
   bool touched_ = false;
 };
 
