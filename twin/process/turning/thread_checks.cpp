@@ -25,7 +25,7 @@ constexpr double kAsDeep_mm = 0.005;
 /// Of the lead: starts that lie less apart are one.
 constexpr double kSameStart = 0.04;
 /// Flanks that lean less from square to the axis are none of a thread.
-constexpr double kLeastLean = 0.2;
+constexpr double kLeastFlank = 0.2;
 
 /// Angle between the two flanks of a tool that points straight at the axis, or away from it.
 std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bore) {
@@ -42,7 +42,7 @@ std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bor
       if (edge.side == InsertSide::kBack) back = out;
     }
   }
-  if (!front || !back || std::abs(front->x) < kLeastLean || front->x * back->x >= 0) {
+  if (!front || !back || std::abs(front->x) < kLeastFlank || front->x * back->x >= 0) {
     return std::nullopt;
   }
   // Symmetric: its middle is square to the axis.

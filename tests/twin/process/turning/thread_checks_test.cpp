@@ -94,7 +94,7 @@ TEST(ThreadChecks, EachThreadIsOne) {
 TEST(ThreadChecks, WhatIsNoThreadOfAFormIsNotJudged) {
   EXPECT_EQ(threads_told("turn:0:2:85:5", rod20(), 1.5, {{9.9}}).size(), 0U);
   EXPECT_EQ(threads_told("groove:2", rod20(), 1.5, {{9.9}}).size(), 0U);
-  EXPECT_EQ(threads_told("thread:80:1.5", rod20(), 1.5, {{9.9}}).size(), 0U);
+  EXPECT_EQ(threads_told("thread:80", rod20(), 1.5, {{9.9}}).size(), 0U);
   // Beside the rod.
   EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 1.5, {{10.5}}).size(), 0U);
 }
