@@ -43,8 +43,8 @@ void LiveSession::conclude() {
     report_.sheet = sheet_report(*sheet, cutter.stage().process(), options_.beam.density_kg_per_m3);
   }
   if (shift_->stock().turned()) {
-    report_.turning = turning_report(shift_->stock(), cutter.stage().process(),
-                                     options_.beam.density_kg_per_m3);
+    report_.turning =
+        turning_report(shift_->stock(), cutter.stage().process(), options_.beam.density_kg_per_m3);
   }
   report_.timing.total_s = std::chrono::duration<double>(Clock::now() - start_).count();
   report_.peak_rss_mb = peak_rss_mb();

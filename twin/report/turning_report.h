@@ -24,8 +24,8 @@ struct TurningReport {
 TurningReport turning_report(const StockModel& stock, const Process& process,
                              double density_kg_per_m3);
 
-/// length_mm, diameter_mm, milled_cell_mm (if it was milled), density_kg_per_m3, pieces: volume_mm3, weight_kg, z_mm, diameter_mm,
-/// bore_mm, file, line, time_s, tool.
+/// length_mm, diameter_mm, milled_cell_mm (if it was milled), density_kg_per_m3, pieces:
+/// volume_mm3, weight_kg, z_mm, diameter_mm, bore_mm, file, line, time_s, tool.
 nlohmann::ordered_json turning_json(const TurningReport& report,
                                     const std::vector<std::string>& files);
 /// Lines for the page of text; the first kPiecesShown pieces.
