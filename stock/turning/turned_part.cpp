@@ -23,9 +23,7 @@ using turning::Rect;
 using turning::Ring;
 using turning::Wide;
 
-/// So far the controlled point is followed: farther away no tool reaches a blank.
-constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
-static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
@@ -349,6 +347,13 @@ double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm
 
 TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
   return turning::revolve(contours_, tolerance_mm, flats());
+}
+
+int TurnedPart::level_within(double tolerance_mm) {
+  int level = 0;
+  for (double next_mm = 4 * kPatchTolerance_mm; level < 4 && next_mm <= tolerance_mm; next_mm *= 4)
+    ++level;
+  return level;
 }
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {

@@ -42,6 +42,7 @@ Motion as_programmed(const Motion& motion) {
   out.tool_offset_mm += motion.length.applied_mm - motion.length.real_mm;
   out.tool_offset_uvw_mm += motion.length.uvw_off_mm;
   if (out.kind == MotionKind::kArc) out.arc.center_mm -= shift_mm;
+  out.surface.axis_x_mm -= shift_mm.x;
   return out;
 }
 

@@ -101,7 +101,7 @@ std::optional<TurningChecks::Touch> TurningChecks::first_touch(const TurnedMove&
   if (move.cutter.live()) return first_milled_touch(move);
   std::optional<Touch> first;
   for (std::size_t i = 0; i < move.moves.size(); ++i) {
-    const auto met = stock_.first_turn_contact(move.cutter, move.moves[i], kContactTolerance_mm);
+    const auto met = stock_.first_turn_contact(move.edges, move.moves[i], kContactTolerance_mm);
     if (!met) continue;
     if (!first) first = Touch{0, move.share_of(i, met->t)};
     first->depth_mm = std::max(first->depth_mm, met->depth_mm);

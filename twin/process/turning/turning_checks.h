@@ -21,6 +21,7 @@ struct TurnedMove {
   const Motion& motion;
   const TimedStep& step;
   const Cutter& cutter;
+  const Cutter& edges;             ///< the same without what holds the insert
   std::span<const CutMove> moves;  ///< it is cut as these
   int tool = 0;
   bool tool_guessed = false;

@@ -13,6 +13,7 @@
 #include "twin/process/contact_grounds.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/tool_tells.h"
+#include "twin/process/turning/tool_outlines.h"
 
 namespace kerf {
 namespace {
@@ -28,14 +29,26 @@ TurningStage::TurningStage(ProcessSite& site)
       resolver_(site.tools),
       log_(site.log),
       checks_(stock_, log_),
+      holding_(log_),
+      holders_(*stock_.turned(), log_),
+      depths_(log_),
+      noses_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
+
+void TurningStage::check_by(const CheckOptions& options) {
+  checks_.set_options(options);
+  if (options.collisions.held_by) holding_.set_wishes(options.collisions);
+}
 
 void TurningStage::begin_reporting() {
   checks_.forget();
+  holding_.begin_reporting();
+  holders_.begin_reporting();
+  noses_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
-  mounted_ = nullptr;
+  unmount();
   mill_turn_told_ = unmilled_told_ = false;
 }
 
@@ -48,6 +61,8 @@ void TurningStage::go_on_from(const Process& process) {
 void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
+    holding_.finish();
+    noses_.finish();
     report_nothing_cut();
   }
   for (ToolUse& use : uses_) {
@@ -59,8 +74,7 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
   path_ = path;
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     spindle_tool_ = m.tool;
-    mounted_ = nullptr;
-    checks_.end_tool();
+    unmount();
   }
   if (!stands(m)) checks_.end_standing();
   if (is_traverse(m)) take_traverse(m, step);
@@ -87,7 +101,36 @@ bool TurningStage::mount_for(const Motion& m) {
     uses_.push_back(use_of(*mounted_));
     tell_tool(*mounted_, m, log_);
   }
+  mount_checks();
   return mounted_->cutter.has_value();
+}
+
+void TurningStage::mount_checks() {
+  if (!mounted_->cutter) return;
+  const Cutter& cutter = *mounted_->cutter;
+  if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
+  holders_.mount(cutter, mounted_->number);
+  depths_.mount(cutter);
+  noses_.mount(cutter, mounted_->number);
+  edges_ = holders_.active()
+               ? Cutter::from_insert(cutter.spec(), outlines_of(cutter).cutter, cutter.insert_tip())
+               : cutter;
+}
+
+void TurningStage::unmount() {
+  mounted_ = nullptr;
+  edges_.reset();
+  checks_.end_tool();
+  holding_.unmount();
+  holders_.unmount();
+  depths_.unmount();
+  noses_.unmount();
+}
+
+std::vector<CollisionPair> TurningStage::collisions() const {
+  std::vector<CollisionPair> rows = holding_.table();
+  rows.insert(rows.end(), holders_.table().begin(), holders_.table().end());
+  return rows;
 }
 
 bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
@@ -97,7 +140,8 @@ bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m, step, *mounted_->cutter, moves_, mounted_->number, mounted_->guessed, ends_};
+  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
+          ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
@@ -106,6 +150,7 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
   if (!mount_for(m) || !m.start_known || report_unmilled(m, step) || !divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
+  check_bodies(move);
   if (!checks_.may_touch(move)) {
     checks_.clear_traverse();
     return;
@@ -131,10 +176,17 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
+  check_bodies(move);
   if (!checks_.may_touch(move)) return;
   if (!is_driven()) checks_.check_thread(m, step, site_.limits_known);
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
+}
+
+/// What a tool must not touch, and what of it must touch nothing.
+void TurningStage::check_bodies(const TurnedMove& move) {
+  if (holding_.active()) holding_.check(move);
+  if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
 
 /// Once: a feed of a tool that is not driven beside the plane of the axis, or while the workpiece
@@ -215,6 +267,8 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
   const TurnedMove move = turned(m, step);
   checks_.check_sides(move, whole);
   checks_.check_centre(move, whole);
+  depths_.check(move, whole, checks_.options().blank_guessed);
+  noses_.note(move, whole);
 }
 
 void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& whole) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/process.h"
+#include "twin/process/turning/edge_checks.h"
+#include "twin/process/turning/holder_checks.h"
+#include "twin/process/turning/holding_checks.h"
+#include "twin/process/turning/nose_checks.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
@@ -31,17 +36,21 @@ class TurningStage final : public Process {
   void finish(bool whole) override;
   void begin_reporting() override;
   void go_on_from(const Process& other) override;
-  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  void check_by(const CheckOptions& options) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
   const Cutter* cutter() const override {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
   }
   std::span<const FallenPiece> fallen() const override { return fallen_; }
+  std::vector<CollisionPair> collisions() const override;
 
  private:
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
+  void mount_checks();
+  void unmount();
+  void check_bodies(const TurnedMove& move);
   bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
   bool report_unmilled(const Motion& motion, const TimedStep& step);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
@@ -62,6 +71,10 @@ class TurningStage final : public Process {
   ToolResolver& resolver_;
   FindingLog& log_;
   TurningChecks checks_;
+  HoldingChecks holding_;
+  HolderChecks holders_;
+  EdgeChecks depths_;
+  NoseChecks noses_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
   std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()
@@ -71,6 +84,7 @@ class TurningStage final : public Process {
   std::vector<FallenPiece> fallen_;
   std::size_t fallen_before_ = 0;          ///< pieces that reports are not about
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
+  std::optional<Cutter> edges_;            ///< of it, without what holds the insert
   std::size_t use_ = 0;
   int spindle_tool_ = 0;
   std::uint64_t next_id_ = 0;
