@@ -183,8 +183,9 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing.
+/// What a tool must not touch, and what of it must touch nothing; of tools in the plane of the axis.
 void TurningStage::check_bodies(const TurnedMove& move) {
+  if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
