@@ -170,6 +170,7 @@ struct Motion {
   bool mist = false;
   PathMode path_mode = PathMode::kContinuous;
   bool feed_per_rev = false;  ///< G95: feed is mm per revolution
+  bool compensated = false;   ///< G41, G42: the tip runs beside the programmed contour
   /// False where the way is not known: in the first motion (rs274 starts at 0,0,0 and the real
   /// machine does not) and all steps before it, after a spline, whose points the listing does not
   /// hold, and where an axis is unknown (unknown_from, unknown_to). kerf must not cut along such a

@@ -234,6 +234,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.speed_said = speed_said_;
   motion.flood = flood_;
   motion.mist = mist_;
+  motion.compensated = compensation_;
   on_workpiece_ = false;
   held_axes_ = 0;
   motion.start_known = position_known_ && unknown_ == 0;

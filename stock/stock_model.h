@@ -190,6 +190,10 @@ class StockModel {
   /// The same of a workpiece that turns.
   virtual const TurningStock* turned() const { return nullptr; }
 
+  /// Of one that turns and may be milled as well, by driven tools (Cutter::live()), whose moves it
+  /// takes in the frame of the workpiece: the cells of what is milled. 0: it is none.
+  virtual double milling_cell_mm() const { return 0; }
+
   virtual std::string name() const = 0;  ///< "zmap", ...
   virtual Box bounds_mm() const = 0;     ///< of the blank
   virtual double cell_mm() const = 0;

@@ -11,6 +11,7 @@
 //            tip (z = 0)
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -45,6 +46,9 @@ struct ToolSection {
   double to_z_mm = 0;
 };
 
+/// How the driven tool of a lathe lies: along this axis, its tip towards less of it.
+enum class LiveAxis : std::uint8_t { kX, kZ };
+
 /// Immutable after construction.
 class Cutter {
  public:
@@ -57,7 +61,7 @@ class Cutter {
 
   /// A turning tool, which does not turn: insert() is what it is. Its profile is a flat disc as
   /// wide as the outline reaches, for who asks no more than how far a tool reaches.
-  static Cutter from_insert(std::string spec, InsertOutline outline);
+  static Cutter from_insert(std::string spec, InsertOutline outline, InsertTip tip = {});
 
   /// Canonical SHAPE text, e.g. "bull:10:2:flute=22".
   const std::string& spec() const { return spec_; }
@@ -103,6 +107,10 @@ class Cutter {
   void set_neck(std::vector<ToolSection> neck) { neck_ = std::move(neck); }
   std::optional<int> teeth() const { return teeth_; }
   void set_teeth(int teeth) { teeth_ = teeth; }
+  /// Of a lathe's tool that is driven itself, so that it mills: how it lies. None: a tool that
+  /// stands still there (and any tool of a mill).
+  std::optional<LiveAxis> live() const { return live_; }
+  void set_live(std::optional<LiveAxis> live) { live_ = live; }
   /// Of a punch: its outline about the axis at angle 0, closed chains of points, even-odd, mm, as
   /// it goes straight through (Sheet::cut() says how moves place it). Null: a cutter that turns.
   const Footprint* footprint() const { return footprint_.get(); }
@@ -112,6 +120,7 @@ class Cutter {
   /// Of a turning tool: its outline in the plane of the lathe's axis. Null: a cutter that turns.
   /// Copies of the cutter share it.
   const std::shared_ptr<const InsertOutline>& insert() const { return insert_; }
+  const InsertTip& insert_tip() const { return insert_tip_; }
   std::span<const ToolSection> holder() const { return holder_; }
   void set_holder(std::vector<ToolSection> holder) { holder_ = std::move(holder); }
   void set_spec(std::string spec) { spec_ = std::move(spec); }
@@ -128,8 +137,10 @@ class Cutter {
   std::vector<ToolSection> neck_;
   std::vector<ToolSection> holder_;
   std::optional<int> teeth_;
+  std::optional<LiveAxis> live_;
   std::shared_ptr<const Footprint> footprint_;
   std::shared_ptr<const InsertOutline> insert_;
+  InsertTip insert_tip_;
 };
 
 }  // namespace kerf

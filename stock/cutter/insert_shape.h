@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "stock/cutter/cutter.h"
 #include "stock/cutter/insert.h"
@@ -24,6 +25,8 @@
 namespace kerf {
 
 inline constexpr int kOrientations = 9;
+/// (dz, dx) of an orientation, 1 .. kOrientations.
+Vec2 nose_direction(int orientation);
 
 /// A row of LinuxCNC's tool table: a nose, and flanks that leave it along two angles.
 struct NoseInsert {
@@ -64,6 +67,12 @@ std::span<const IsoShape> iso_shapes();
 /// cutting edge without what is behind the point (CNMG 12 04 08: 12.9 mm, of a circle of 12.7 mm).
 /// None: there is no such insert in the series.
 std::optional<double> iso_circle_mm(char shape, int size);
+/// All of a shape's, rising.
+struct IsoSize {
+  int size = 0;
+  double circle_mm = 0;
+};
+std::vector<IsoSize> iso_sizes(char shape);
 
 /// Groove, part-off: a blade with a straight front edge. Across it the controlled point is at the
 /// front's corner by orientation (1, 4: at the end of +z; 2, 3: at that of -z), or in its middle
@@ -75,7 +84,7 @@ struct GrooveInsert {
   double length_mm = 15;  ///< of the blade
   int orientation = 2;
   bool axial = false;
-  double relief_rad = 0;  ///< each side runs back from the front's corner by this angle
+  double relief_rad = 0;  ///< each side runs back from above the front's corner by this angle
 };
 /// None: sizes that do not fit, an orientation that does not say where the blade is.
 std::optional<InsertOutline> groove_insert(const GrooveInsert& insert);

@@ -15,8 +15,10 @@
 #include "base/units.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/scan.h"
+#include "stock/cutter/shape_fields.h"
 #include "stock/cutter/shape_limits.h"
 #include "stock/cutter/tool_parts.h"
+#include "stock/cutter/turning_shape.h"
 
 namespace kerf {
 namespace {
@@ -75,11 +77,11 @@ constexpr std::array<Form, 11> kForms = {{
     {"profile", "profile:FILE", 1, 0, {tr_noop("file name FILE")}},
 }};
 
-constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
-                                                          "taper",    "drill", "lollipop", "tslot",
-                                                          "dovetail", "kerf",  "profile"};
-constexpr std::array<std::string_view, 5> kOptionNames = {"flute", "shank", "holder", "stickout",
-                                                          "teeth"};
+constexpr std::array<std::string_view, 18> kShapeNames = {
+    "flat", "ball",    "bull", "vee", "taper",  "drill", "lollipop",   "tslot",  "dovetail",
+    "kerf", "profile", "turn", "iso", "groove", "part",  "facegroove", "thread", "bore"};
+constexpr std::array<std::string_view, 6> kOptionNames = {"flute",    "shank", "holder",
+                                                          "stickout", "teeth", "live"};
 
 constexpr const char* kHelp = tr_noop(
     "flat:D               end mill\n"
@@ -95,7 +97,8 @@ constexpr const char* kHelp = tr_noop(
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N");
+    "each of these may add  :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N\n"
+    "                     :live=x|z  of a lathe's driven tool: along which axis it lies");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -123,6 +126,7 @@ struct Options {
   std::vector<ToolPart> holder;
   std::optional<double> stickout_mm;
   std::optional<int> teeth;
+  std::optional<LiveAxis> live;
 };
 
 /// What a form makes before the options are added.
@@ -143,6 +147,17 @@ Done parse_teeth(std::string_view value, Options& options) {
                      shown(value), kMaxTeeth)};
   }
   options.teeth = teeth;
+  return std::monostate{};
+}
+
+Done parse_live(std::string_view value, Options& options) {
+  if (value != "x" && value != "X" && value != "z" && value != "Z") {
+    return Error{
+        trf("live: '{}' is not allowed; x and z are: the axis of a lathe along which the "
+            "driven tool lies",
+            shown(value))};
+  }
+  options.live = value == "x" || value == "X" ? LiveAxis::kX : LiveAxis::kZ;
   return std::monostate{};
 }
 
@@ -174,6 +189,10 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
     if (options.teeth) return Error{tr("teeth= is given twice")};
     return parse_teeth(value, options);
   }
+  if (name == "live") {
+    if (options.live) return Error{tr("live= is given twice")};
+    return parse_live(value, options);
+  }
   if (name == "stickout") {
     if (options.stickout_mm) return Error{tr("stickout= is given twice")};
     const Result<double> stickout =
@@ -184,7 +203,7 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
   }
   return Error{
       trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=NAME|DxL[+DxL..], "
-          "stickout=L, teeth=N",
+          "stickout=L, teeth=N, live=x|z",
           shown(name), did_you_mean(name, kOptionNames))};
 }
 
@@ -195,6 +214,7 @@ std::string options_text(const Options& options) {
   if (!options.holder.empty()) text += ":holder=" + parts_text(options.holder);
   if (options.stickout_mm) text += fmt::format(":stickout={}", number_text(*options.stickout_mm));
   if (options.teeth) text += fmt::format(":teeth={}", *options.teeth);
+  if (options.live) text += *options.live == LiveAxis::kX ? ":live=x" : ":live=z";
   return text;
 }
 
@@ -493,6 +513,7 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     cutter->set_shank_diameter_mm(*body.shank_mm);
   }
   if (options.teeth) cutter->set_teeth(*options.teeth);
+  cutter->set_live(options.live);
   std::vector<ToolSection> holder =
       sections_of(options.holder, options.stickout_mm.value_or(shank_top));
   cutter->set_holder(std::move(holder));
@@ -527,43 +548,18 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
   return cutter;
 }
 
-bool is_option(std::string_view text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return false;
-  return std::find(kOptionNames.begin(), kOptionNames.end(), to_lower(text.substr(0, equals))) !=
-         kOptionNames.end();
-}
-
-bool is_holder_file(std::string_view text) { return to_lower(text) == "holder=profile"; }
-
-/// Between colons; "holder=profile:FILE" is one, up to the next option.
-std::vector<std::string_view> fields_of(std::string_view text) {
-  std::vector<std::string_view> fields;
-  for (const std::string_view field : split(text, ':')) {
-    const bool goes_on =
-        !fields.empty() && is_holder_file(fields.back().substr(0, 14)) && !is_option(field);
-    if (goes_on) {
-      const char* const begin = fields.back().data();
-      fields.back() = {begin, static_cast<std::size_t>(field.data() + field.size() - begin)};
-    } else {
-      fields.push_back(field);
-    }
-  }
-  return fields;
-}
-
 /// Splits "name:values:options". A profile's file name may hold colons: only the known options end
 /// it.
 Result<Cutter> parse_known(const Form& form, std::string_view rest, LengthUnit unit) {
   std::vector<std::string_view> values =
-      rest.data() ? fields_of(rest) : std::vector<std::string_view>{};
+      rest.data() ? shape_fields(rest, kOptionNames) : std::vector<std::string_view>{};
   std::vector<std::string_view> option_texts;
   while (!values.empty()) {
     const std::string_view last = values.back();
     const std::size_t equals = last.find('=');
     if (equals == std::string_view::npos) break;
     // A file name may hold '=' too: there only what names an option is one.
-    if (form.name == "profile" && !is_option(last)) break;
+    if (form.name == "profile" && !is_shape_option(last, kOptionNames)) break;
     option_texts.push_back(last);
     values.pop_back();
   }
@@ -607,22 +603,31 @@ Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit) {
         tr("the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
            "lollipop, tslot, dovetail, kerf, profile)")};
   }
+  const std::string_view rest =
+      colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
+  if (is_turning_form(name)) {
+    Result<Cutter> cutter = parse_turning_shape(name, rest, unit);
+    if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
+    return cutter;
+  }
   for (const Form& form : kForms) {
     if (form.name != name) continue;
-    const std::string_view rest =
-        colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
     Result<Cutter> cutter = parse_known(form, rest, unit);
     if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
     return cutter;
   }
   return Error{
       trf("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
-          "lollipop, tslot, dovetail, kerf, profile",
+          "lollipop, tslot, dovetail, kerf, profile; to turn with: turn, iso, groove, part, "
+          "facegroove, thread, bore",
           shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 
 std::string shape_in(std::string_view spec, LengthUnit unit) {
   const std::size_t colon = spec.find(':');
+  if (unit != LengthUnit::kMm && colon != spec.npos && is_turning_form(spec.substr(0, colon))) {
+    return turning_shape_in(spec, unit);
+  }
   const auto form = std::find_if(kForms.begin(), kForms.end(), [&](const Form& known) {
     return known.name == spec.substr(0, colon);
   });
@@ -632,12 +637,12 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
   const bool is_file = form->name == "profile";
   std::string out(form->name);
   std::size_t index = 0;
-  for (const std::string_view field : fields_of(spec.substr(colon + 1))) {
+  for (const std::string_view field : shape_fields(spec.substr(colon + 1), kOptionNames)) {
     const std::size_t equals = field.find('=');
     out += ':';
-    if (is_holder_file(field.substr(0, 14))) {
+    if (is_holder_file(field)) {
       out += field;
-    } else if (is_option(field)) {
+    } else if (is_shape_option(field, kOptionNames)) {
       const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
       out +=
           fmt::format("{}={}", name, name == "teeth" ? std::string(value) : parts_in(value, unit));
@@ -667,7 +672,7 @@ Result<ToolShapeArgument> parse_tool_argument(std::string_view argument, LengthU
 }
 
 std::string shape_help(LengthUnit unit) {
-  return trf("{}   ({}, degrees)\n", tr(kHelp), name_of(unit));
+  return trf("{}\n{}\n   ({}, degrees)\n", tr(kHelp), turning_shape_help(), name_of(unit));
 }
 
 }  // namespace kerf

@@ -105,6 +105,8 @@ bool countable(const Box& box, double cell) {
 Done check(const OctreeOptions& options, const Box& box) {
   const double cell = options.cell_mm;
   if (box.empty() || options.blank.bodies.empty()) return Error{tr("the blank is empty")};
+  if (const std::string need = need_to_turn(options.blank); !need.empty())
+    return Error{trf("{} cannot hold it: {}", "octree", need)};
   if (!std::isfinite(cell) || cell <= 0)
     return Error{trf("cell size {} mm is not allowed; must be above 0", cell)};
   const Vec3 size = box.size();
@@ -316,6 +318,14 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
     }
     first = last;
   }
+}
+
+double Octree::keep_within(const RevolvedBody& body, const ZRange& range) {
+  assert(!impl_->additive);
+  impl_->bodies_of_blank.clear();
+  const std::int64_t gone = cut_to_revolved(impl_->tree, body, range, *impl_->pool);
+  impl_->removed += gone;
+  return impl_->mm3(gone);
 }
 
 std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove& move,

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 #include "stock/cutter/insert.h"
+#include "stock/turning/bar_flats.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
@@ -26,8 +28,15 @@
 
 namespace kerf {
 
+namespace turning {
+struct SavedPart;
+}  // namespace turning
+
 /// Closed chains of (z, r), mm: even-odd, so holes may run either way.
 using TurnedProfile = std::vector<std::vector<Vec2>>;
+
+/// What a lathe may hold.
+inline constexpr double kMaxTurnedZ_mm = 2000, kMaxTurnedRadius_mm = 1000;
 
 TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm);
 TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm);
@@ -44,6 +53,10 @@ class TurningTool {
   /// The same without a border of this width: what touches with it is that much inside the tool.
   /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
+  /// Its parts on the grid, or those of the tool as it is seen in a mirror, the axis.
+  std::span<const turning::GridPart> parts(bool mirrored) const {
+    return mirrored ? below_ : parts_;
+  }
 
  private:
   friend class TurnedPart;
@@ -65,6 +78,9 @@ struct TurnCut {
   double way_mm = 0;  ///< length of the way in material
   /// By InsertSide, width of the material, across the way, that edges of this side came to first.
   std::array<double, kInsertSides> side_mm{};
+  /// The width that front and back flank came to at once, the lesser of the two: one leads, and the
+  /// other one trails.
+  double flanks_mm = 0;
 };
 
 /// Where a move first meets material.
@@ -89,12 +105,29 @@ struct TurnedPiece {
 /// move is cut when it is given: any division into calls gives the same bits. One thread. A copy
 /// shares what neither of the two changes, and may go to another thread.
 ///
-/// Not held: threads (a groove that winds is cut as a ring), a bar that is not round, runout.
+/// A bar of flats is the round one through its corners with a note of the flats: volumes and
+/// surfaces are those of the bar, a tool touches where the corners come by.
+///
+/// Not held: threads (a groove that winds is cut as a ring), runout.
 class TurnedPart {
  public:
+  /// So far the controlled point is followed along either axis: farther away no tool reaches a
+  /// blank.
+  static constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
+
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
+  /// With flats the blank is that of their corners' circle.
   static std::optional<TurnedPart> create(const TurnedProfile& blank,
-                                          ChuckSide chuck = ChuckSide::kLowZ);
+                                          ChuckSide chuck = ChuckSide::kLowZ,
+                                          const std::optional<BarFlats>& flats = std::nullopt);
+
+  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  turning::SavedPart saved() const;
+  static TurnedPart restored(turning::SavedPart saved);
+
+  /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
+  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  std::optional<TurnedPart> turned_about(double at_z_mm) const;
 
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
@@ -104,10 +137,23 @@ class TurnedPart {
   /// is deeper counts.
   std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
 
+  /// From now on remembers which move has made each edge of the contours; all of them count as not
+  /// cut. Costs as much again as cutting does, and nothing while off. A move is named by its id, of
+  /// which 0xffff'fffe and above count as 0xffff'fffe.
+  void keep_cut_ids(bool keep);
+  bool keeps_cut_ids() const { return marked_.has_value(); }
+  /// The move that made the surface at (z, r), mm: the nearest edge to it, if that is no farther
+  /// than `within_mm`; of several that are as near the first. Edges are kept apart where one move's
+  /// ends and another's begins, also within a cylinder; what a move cuts that lies less than 20 nm
+  /// below what was there keeps the id of that. O(corners).
+  std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double within_mm) const;
+
   /// What came off so far, in order.
   const std::vector<TurnedPiece>& freed() const { return freed_; }
 
-  double blank_mm3() const;
+  /// Of the blank; none of one that is round.
+  const std::optional<BarFlats>& flats() const { return flats_; }
+  double blank_mm3() const { return blank_mm3_; }
   double remaining_mm3() const;
   /// Of the blank. x and y from -r to r.
   Box bounds_mm() const;
@@ -132,6 +178,8 @@ class TurnedPart {
   /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
   /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
   MeshPatch patch(std::size_t band, int level) const;
+  /// The coarsest level that keeps within the tolerance; 0 where none does.
+  static int level_within(double tolerance_mm);
 
   /// How often a general polygon library was asked: for measurements.
   std::uint64_t library_calls() const { return scratch_.cut.library_calls(); }
@@ -143,7 +191,7 @@ class TurnedPart {
     Scratch(const Scratch&) {}
     Scratch& operator=(const Scratch&) { return *this; }
 
-    turning::ConvexCut cut;
+    turning::ConvexCut cut, marked_cut;
     turning::ConvexRegion swept;
     turning::GridPart::Lead lead;
     turning::GridPart::Scratch sweep;
@@ -157,13 +205,21 @@ class TurnedPart {
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
+  void cut_marked(std::uint64_t id);
+  double missing_mm3() const;
+  static std::uint64_t next_version();
+  void touch_all();
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
+  /// The same by moves, where these are kept: cut for itself, so that contours_ are the same
+  /// whether they are or not. Corners may differ by some units.
+  std::optional<std::vector<turning::Contour>> marked_;
   turning::Rect blank_;
-  turning::Wide blank_moment6_ = 0;
+  double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;
+  std::optional<BarFlats> flats_;
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;

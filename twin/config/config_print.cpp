@@ -157,6 +157,9 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.spindle_accel_rpm_per_s) {
     printer.put("spindle_accel", *machine.spindle_accel_rpm_per_s);
   }
+  if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);
+  if (machine.holding.tailstock) printer.text("tailstock", machine.holding.tailstock->text);
+  if (machine.spindle_max_rpm) printer.put("spindle_max_rpm", *machine.spindle_max_rpm);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {

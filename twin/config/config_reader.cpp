@@ -71,6 +71,25 @@ void read_spindle(const GroupReader& machine, ConfigMachine& out) {
   }
 }
 
+void read_holding(const GroupReader& machine, WorkHolding& out) {
+  if (ConfigNode* const node = machine.find("chuck")) {
+    const Result<ChuckSpec> chuck = parse_chuck(node->scalar);
+    if (chuck) {
+      out.chuck = *chuck;
+    } else {
+      machine.faults().at_value(*node, chuck.error());
+    }
+  }
+  if (ConfigNode* const node = machine.find("tailstock")) {
+    const Result<TailstockSpec> tailstock = parse_tailstock(node->scalar);
+    if (tailstock) {
+      out.tailstock = *tailstock;
+    } else {
+      machine.faults().at_value(*node, tailstock.error());
+    }
+  }
+}
+
 void read_machine(const GroupReader& machine, ConfigMachine& out) {
   out.ini = machine.path("ini");
   out.tool_table = machine.path("tool_table");
@@ -91,6 +110,8 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("collisions", out.collisions);
   read_ignored(machine, out.ignore);
   read_spindle(machine, out);
+  read_holding(machine, out.holding);
+  machine.number("spindle_max_rpm", out.spindle_max_rpm);
   read_kinematics(machine, out);
 }
 
@@ -200,6 +221,10 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
   Result<Blank> blank = parse_blank(spec);
   if (blank && blank->sheet && !blank->sheet->file.empty()) {
     spec = resolved_spec(*node, "sheet:", stock.faults());
+    blank = parse_blank(spec);
+  }
+  if (blank && !blank->profile_file.empty()) {
+    spec = resolved_spec(*node, "profile:", stock.faults());
     blank = parse_blank(spec);
   }
   if (!blank) {

@@ -161,6 +161,26 @@ const char* to_string(FindingId id) {
       return "thin-film";
     case FindingId::kFeedLost:
       return "feed-lost";
+    case FindingId::kFlankContact:
+      return "flank-contact";
+    case FindingId::kThreadSpeed:
+      return "thread-speed";
+    case FindingId::kWrongPlane:
+      return "wrong-plane";
+    case FindingId::kPastCentre:
+      return "past-centre";
+    case FindingId::kPipLeft:
+      return "pip-left";
+    case FindingId::kChuckContact:
+      return "chuck-contact";
+    case FindingId::kJawContact:
+      return "jaw-contact";
+    case FindingId::kBarContact:
+      return "bar-contact";
+    case FindingId::kOverDepth:
+      return "over-depth";
+    case FindingId::kUncompensated:
+      return "uncompensated";
   }
   return "";
 }

@@ -13,10 +13,13 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/cutter/shape_spec.h"
+#include "stock/millturn/mill_turn.h"
 #include "stock/octree/octree.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
+#include "stock/turning/turned_blank.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
@@ -59,8 +62,7 @@ Created create_mmap(const Blank& blank, const StockSettings& settings) {
 }
 
 /// Least of the usual cells that gives the surface of the blank's box at most a million of them.
-double octree_cell_mm(const Blank& blank) {
-  const Box box = blank.bounds_mm();
+double octree_cell_mm(const Box& box) {
   const Vec3 size = box.size();
   const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
   double cell = 0.01;
@@ -89,7 +91,7 @@ std::size_t memory_allowed_bytes() {
 Created create_octree(const Blank& blank, const StockSettings& settings) {
   OctreeOptions options;
   options.blank = blank;
-  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank);
+  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank.bounds_mm());
   options.threads = settings.threads;
   options.additive = settings.additive;
   // The rest is for what is made of it: meshes, pictures, copies for a view.
@@ -105,13 +107,16 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
   if (sheet.file.empty()) {
     options.outline = rectangle_outline(sheet.low_mm, sheet.high_mm);
   } else {
-    const bool svg = to_lower(sheet.file).ends_with(".svg");
-    Result<SheetOutline> outline = read_outline_file(
-        sheet.file, svg ? OutlineFormat::kSvg : OutlineFormat::kDxf, options.arc_tolerance_mm);
+    Result<PlaneOutline> outline =
+        read_outline_file(sheet.file, outline_format_of(sheet.file), options.arc_tolerance_mm);
     if (!outline) return Error{outline.error()};
     options.outline = std::move(outline.value());
   }
   return as_model(Sheet::create(options));
+}
+
+Created create_turning(const Blank& blank, const StockSettings& settings) {
+  return with_milling(turning_stock_of(blank), settings);
 }
 
 Done sheet_can_cut(const Cutter& cutter) {
@@ -141,6 +146,11 @@ constexpr std::array kModels{
         tr_noop("polygons: sheet metal under a torch, laser or jet (--stock sheet:..); kerfs, "
                 "piercing, parts that come free"),
         create_sheet, sheet_can_cut, false},
+    StockModelRow{
+        StockKind::kTurning, "turning",
+        tr_noop("an exact profile that turns about Z: lathes, with tools that stand still; bores, "
+                "grooves, undercuts, part-off; an octree where driven tools mill it"),
+        create_turning, MillTurn::can_cut, false},
 };
 
 /// Of a tool that has a shape; empty: the Z-map will do.
@@ -156,6 +166,16 @@ std::span<const StockModelRow> stock_models() { return kModels; }
 const StockModelRow& stock_model(StockKind kind) {
   return *std::find_if(kModels.begin(), kModels.end(),
                        [kind](const StockModelRow& row) { return row.kind == kind; });
+}
+
+Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,
+                                                 const StockSettings& settings) {
+  if (!turned) return Error{turned.error()};
+  MillTurnOptions options;
+  options.cell_mm = octree_cell_mm(turned.value()->bounds_mm());
+  options.threads = settings.threads;
+  options.memory_limit_bytes = memory_allowed_bytes() / 3;
+  return as_model(MillTurn::create(std::move(*turned.value()), options));
 }
 
 const StockModelRow& row_of(const StockModel& stock) { return *find_stock_model(stock.name()); }
@@ -196,6 +216,7 @@ void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& f
 
 StockNeeds stock_needs(const ToolSources& tools) {
   StockNeeds needs;
+  needs.turning = tools.turning_sign;
   for (const ToolShapeArgument& tool : tools.arguments) {
     if (needs.undercut.empty()) needs.undercut = undercut_of(tool.tool, tool.cutter);
   }
@@ -249,6 +270,9 @@ std::string misfit(const StockSettings& settings, const Blank& blank) {
     return tr("--additive: nothing is added to a sheet; a box can be added to");
   }
   if (blank.sheet && settings.cell_mm > 0) return tr("--cell: a sheet has no cells; leave it out");
+  if (settings.kind == StockKind::kTurning && settings.cell_mm > 0) {
+    return tr("--cell: a workpiece that is turned has no cells; leave it out");
+  }
   if (!settings.kind || sheet_wanted == is_sheet(blank)) return {};
   if (sheet_wanted) {
     return trf(
@@ -276,6 +300,7 @@ std::string need_of_blank(const Blank& blank) {
 StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs) {
   const double finest = needs.finest_mm;
   if (settings.kind) return {*settings.kind, {}, finest};
+  if (!needs.turning.empty()) return {StockKind::kTurning, needs.turning, 0};
   if (settings.additive) return {StockKind::kOctree, tr("material is added"), finest};
   if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt, finest};
   if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank, finest};

@@ -104,7 +104,7 @@ void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const C
                                 std::vector<CutMove>& out) const {
   if (moves.ordered() != nullptr) {
     append_part(i, 1, moves, cutter, out);
-  } else if (moves.path() == nullptr) {
+  } else if (moves.path() == nullptr && moves.live_path(cutter) == nullptr) {
     out.push_back(cut_move(i));
   } else {
     moves.append(motion(i), cutter, i, out);
@@ -249,7 +249,7 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.start_known} << 27 | std::uint64_t{m.user_m} << 28 |
       std::uint64_t{m.rapid} << 36 | std::uint64_t{m.unknown_from} << 37 |
       std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43 |
-      std::uint64_t{m.speed_said} << 44;
+      std::uint64_t{m.speed_said} << 44 | std::uint64_t{m.compensated} << 45;
   const std::uint64_t stops =
       std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
       static_cast<std::uint64_t>(m.chain_end) << 16 |

@@ -1,0 +1,42 @@
+// stock/turning/turning_state.h - a turned part on disk: kerf-state/1 (stock/state_bytes.h).
+//
+//   model turning
+//   layout 1
+//   chuck side             0: the chuck holds low z, 1: high z
+//   blank z0 r0 z1 r1      units of 10 nm (grid.h), as all that follows but mm3 and mm
+//   blank_mm3 volume       of the uncut blank
+//   flats count radius_mm  of a bar; 0 0: it is round
+//   data
+// Then sections, each of four letters, its version, 32 bits, and the number of its bytes, 64 bits:
+//   PART 1   the number of contours, 32 bits, and of each the number of its corners, 32 bits, and
+//            these, z then r, 32 bits each, signed: the first contour round the material, the
+//            others round holes in it
+// What has come off is not kept, nor which moves have made the surface.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "stock/turning/turned_part.h"
+
+namespace kerf::turning {
+
+struct SavedPart {
+  ChuckSide chuck = ChuckSide::kLowZ;
+  Rect blank;
+  double blank_mm3 = 0;
+  std::optional<BarFlats> flats;
+  std::vector<Contour> contours;
+};
+
+Done write_part(const std::string& path, const SavedPart& saved);
+
+/// From a file's bytes; `name` is used in messages. What comes back can be cut and meshed whatever
+/// the bytes were: corners lie within the blank, there is one piece, holes lie within its box, and
+/// there is no more than the blank had. Errors say what is wrong; of a section that a later version
+/// has written, which. Allocates in proportion to the bytes.
+Result<SavedPart> parse_part(const std::string& bytes, const std::string& name);
+
+}  // namespace kerf::turning
