@@ -259,7 +259,7 @@ void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
   undefined_ = true;
   use.feed_mm += step.length_mm;
   if (!first) return;
-  use.origin = tr("nothing");
+  use.origin = mounted_->origin.empty() ? tr("nothing") : mounted_->origin;
   tell_undefined(*mounted_, m, step, log_);
 }
 
