@@ -25,9 +25,8 @@ using turning::Wide;
 
 /// What a lathe may hold.
 constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
-/// So far the controlled point is followed: farther away no tool reaches a blank.
-constexpr double kWayReach_mm = kMaxZ_mm + kMaxInsertReach_mm;
-static_assert(kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
+static_assert(TurnedPart::kWayReach_mm == kMaxZ_mm + kMaxInsertReach_mm);
+static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
@@ -84,6 +83,13 @@ TurningTool TurningTool::inset(double width_mm) const {
     tool.below_.push_back(below_[i].inset(width_mm));
   }
   return tool;
+}
+
+bool TurningTool::is_like(const TurningTool& other) const {
+  const auto same = [](const turning::GridPart& a, const turning::GridPart& b) {
+    return a.corners() == b.corners();
+  };
+  return std::equal(parts_.begin(), parts_.end(), other.parts_.begin(), other.parts_.end(), same);
 }
 
 std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck) {
@@ -154,17 +160,26 @@ bool TurnedPart::thins() const {
   return after < moment6();
 }
 
+turning::Engagement TurnedPart::cut_ring(const TurningTool& tool, const TurnMove& move) {
+  return each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
+    if (!met.any && !thins()) return;
+    touch_bands(scratch_.cut.changed());
+    scratch_.cut.apply(contours_);
+  });
+}
+
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
+  scratch_.changed = {};
+  if (std::abs(move.lead_mm) >= turning::kLeastLead_mm && !move.arc) return cut_thread(tool, move);
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
-  const turning::Engagement engagement =
-      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
-        if (!met.any && !thins()) return;
-        touch_bands(scratch_.cut.changed());
-        scratch_.cut.apply(contours_);
-      });
-  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()), 0.0);
+  const double wound_mm3 = threads_.volume_mm3();
+  end_winding();
+  const turning::Engagement engagement = cut_ring(tool, move);
+  threads_.refresh(scratch_.changed, contours_);
+  const double less_mm3 = wound_mm3 - threads_.volume_mm3();
+  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()) - less_mm3, 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
@@ -174,6 +189,13 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
 
 std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
                                                      const TurnMove& move) const {
+  if (std::abs(move.lead_mm) >= turning::kLeastLead_mm && !move.arc)
+    return thread_contact(tool, move);
+  if (winding_) {
+    TurnedPart turned = *this;
+    turned.end_winding();
+    return turned.first_contact(tool, move);
+  }
   TurnContact contact;
   contact.t = 2;  // not yet
   const turning::Engagement engagement =
@@ -190,6 +212,7 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
 }
 
 void TurnedPart::touch_bands(const Rect& box) {
+  scratch_.changed.extend(box);
   const std::uint64_t version = next_version();
   // A border belongs to both of its bands.
   for (std::size_t i = 0; i < kBands; ++i) {
@@ -199,7 +222,7 @@ void TurnedPart::touch_bands(const Rect& box) {
 
 /// What the chuck does not hold falls, with the holes in it.
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
-  std::size_t outer = 0, held = 0;
+  std::size_t outer = 0, held = 0, count = 0;
   const auto before = [&](const Contour& a, const Contour& b) {
     const turning::Unit reach =
         chuck_ == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
@@ -222,6 +245,7 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
     for (const Contour& hole : contours_) {
       if (!hole.is_outer() && lies_in(hole, ring)) moment6 += hole.moment6();
     }
+    ++count;
     freed_.push_back({id, turning::volume_mm3(moment6), turning::to_mm(box.min_x),
                       turning::to_mm(box.max_x), turning::to_mm(box.min_y),
                       turning::to_mm(box.max_y)});
@@ -232,6 +256,16 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
     if (!contour.is_outer() && lies_in(contour, ring)) kept.push_back(std::move(contour));
   }
   contours_ = std::move(kept);
+  // The grooves of what has fallen are no longer anybody's.
+  for (std::size_t i = freed_.size() - count; i < freed_.size() && !threads_.empty(); ++i) {
+    TurnedPiece& piece = freed_[i];
+    const double before_mm3 = threads_.volume_mm3();
+    Rect box;
+    box.extend(turning::to_units(Vec2(piece.low_z_mm, piece.low_r_mm)));
+    box.extend(turning::to_units(Vec2(piece.high_z_mm, piece.high_r_mm)));
+    threads_.refresh(box, contours_);
+    piece.volume_mm3 -= before_mm3 - threads_.volume_mm3();
+  }
 }
 
 Wide TurnedPart::moment6() const {
@@ -241,7 +275,9 @@ Wide TurnedPart::moment6() const {
 }
 
 double TurnedPart::blank_mm3() const { return turning::volume_mm3(blank_moment6_); }
-double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()); }
+double TurnedPart::remaining_mm3() const {
+  return turning::volume_mm3(moment6()) - threads_.volume_mm3();
+}
 
 Box TurnedPart::bounds_mm() const {
   const double r = turning::to_mm(blank_.max_y);
@@ -260,6 +296,7 @@ TurnedProfile TurnedPart::profile() const {
 std::size_t TurnedPart::corner_count() const {
   std::size_t count = 0;
   for (const Contour& contour : contours_) count += contour.corner_count();
+  for (const auto& pass : threads_.passes()) count += pass->corners().size();
   return count;
 }
 
@@ -286,12 +323,18 @@ std::string TurnedPart::digest() const {
     XXH3_128bits_update(&state, &size, sizeof size);
     XXH3_128bits_update(&state, ring.data(), ring.size() * sizeof(Point));
   }
+  for (const auto& pass : threads_.passes()) {
+    const double way[6] = {pass->from_mm().x, pass->from_mm().y, pass->to_mm().x,
+                           pass->to_mm().y,   pass->lead_mm(),   pass->from_turns()};
+    XXH3_128bits_update(&state, way, sizeof way);
+    XXH3_128bits_update(&state, pass->corners().data(), pass->corners().size() * sizeof(Vec2));
+  }
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 std::size_t TurnedPart::unique_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = threads_.unique_bytes();
   for (const Contour& contour : contours_) {
     bytes += contour.runs().capacity() * sizeof(turning::RunPointer);
     for (const turning::RunPointer& run : contour.runs()) {

@@ -10,7 +10,9 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,7 @@
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
 #include "stock/turning/insert_sweep.h"
+#include "stock/turning/thread_set.h"
 #include "stock/turning/turn_move.h"
 
 namespace kerf {
@@ -44,6 +47,8 @@ class TurningTool {
   /// The same without a border of this width: what touches with it is that much inside the tool.
   /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
+  /// Of the same outline.
+  bool is_like(const TurningTool& other) const;
 
  private:
   friend class TurnedPart;
@@ -89,7 +94,14 @@ struct TurnedPiece {
 /// move is cut when it is given: any division into calls gives the same bits. One thread. A copy
 /// shares what neither of the two changes, and may go to another thread.
 ///
-/// Not held: threads (a groove that winds is cut as a ring), a bar that is not round, runout.
+/// A move with a lead leaves a groove that winds. The region is then what is there at some angle,
+/// and the grooves are kept beside it (thread_set.h): volumes, sections and meshes are without
+/// them, contacts of moves that go all round are those of the region. What a groove is not there at
+/// all round is in the region: the crests of a thread are judged as rings. Where a move with a lead
+/// has ended in material, and does not go on, the tool leaves a ring, with the next move. A groove
+/// that cuts through a wall does not set it free.
+///
+/// Not held: a bar that is not round, runout.
 class TurnedPart {
  public:
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
@@ -109,10 +121,15 @@ class TurnedPart {
 
   double blank_mm3() const;
   double remaining_mm3() const;
+  /// Grooves that wind. Empty without moves that have a lead.
+  const turning::ThreadSet& threads() const { return threads_; }
+  /// Rings round the material at one angle of the workpiece, as profile() gives them.
+  TurnedProfile section(double angle_rad) const;
   /// Of the blank. x and y from -r to r.
   Box bounds_mm() const;
   /// Rings round the material, holes clockwise. Corners (z, r).
   TurnedProfile profile() const;
+  /// Of what is there at some angle.
   const std::vector<turning::Contour>& contours() const { return contours_; }
   std::size_t corner_count() const;
   /// Hash of the contours, 32 hex digits; whatever the runs that they are kept in.
@@ -122,6 +139,9 @@ class TurnedPart {
 
   /// Closed surface (revolve.h), about the z axis of the workpiece frame.
   TriangleMesh mesh(double tolerance_mm) const;
+
+  /// So far the controlled point is followed: farther away no tool reaches a blank.
+  static constexpr double kWayReach_mm = 2300;
 
   /// For views the part is divided along z into kBands of equal width.
   static constexpr std::size_t kBands = 64;
@@ -149,11 +169,35 @@ class TurnedPart {
     turning::GridPart::Scratch sweep;
     turning::EngagementGauge gauge;
     std::vector<turning::WayChord> chords;
+    turning::Rect changed;  // by the move that is cut
+    std::vector<turning::ProfileEdge> edges;
+  };
+  /// The last move, which had a lead: another one may go on from there. Else the tool stands there
+  /// until the part has turned.
+  struct Winding {
+    std::shared_ptr<const TurningTool> tool;
+    Vec2 at_mm{0};
+    double lead_mm = 0, turns = 0;  // there
+    // Where it began to go straight, and the directions, relative to the first, that keep to it.
+    Vec2 from_mm{0};
+    double from_turns = 0, heading_rad = 0, low_rad = 0, high_rad = 0;
+    std::vector<std::shared_ptr<const turning::ThreadPass>> passes;  // of that
   };
 
   TurnedPart() = default;
   template <class Each>
   turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
+  TurnCut cut_thread(const TurningTool& tool, const TurnMove& move);
+  std::optional<TurnContact> thread_contact(const TurningTool& tool, const TurnMove& move) const;
+  std::vector<std::shared_ptr<const turning::ThreadPass>> passes_of(
+      const TurningTool& tool, const Vec2& from_mm, const Vec2& to_mm, double lead_mm,
+      double from_turns, std::uint64_t id) const;
+  Winding winding_after(const TurningTool& tool, const TurnMove& move) const;
+  void measure_thread(const std::vector<std::shared_ptr<const turning::ThreadPass>>& fresh,
+                      double from_way_mm, TurnCut& report, TurnContact& first) const;
+  void clear_all_round(std::span<const std::shared_ptr<const turning::ThreadPass>> fresh);
+  turning::Engagement cut_ring(const TurningTool& tool, const TurnMove& move);
+  void end_winding();
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
@@ -161,6 +205,8 @@ class TurnedPart {
   turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
+  turning::ThreadSet threads_;
+  std::optional<Winding> winding_;
   turning::Rect blank_;
   turning::Wide blank_moment6_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;

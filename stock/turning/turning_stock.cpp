@@ -51,9 +51,13 @@ void append_chords(const CutMove& move, std::vector<TurnMove>& moves) {
 }
 
 /// What a move is in the plane: one move as a rule.
-std::vector<TurnMove> moves_of(const CutMove& move) {
+std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
   TurnMove turn{in_plane(move.from_mm), in_plane(move.to_mm), std::nullopt, move.id};
-  if (!move.arc) return {turn};
+  if (!move.arc) {
+    // On the axis it leaves the same whatever the lead.
+    if (cutter.insert() != nullptr) turn.lead_mm = move.lead_mm;
+    return {turn};
+  }
   const CutArc& arc = *move.arc;
   if (std::abs(arc.axis.y) == 1) {
     turn.arc = TurnArc{in_plane(arc.center_mm), arc.axis.y * arc.sweep_rad};
@@ -93,7 +97,7 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
-    for (const TurnMove& turn : moves_of(move)) extend(whole, part_.cut(tool, turn));
+    for (const TurnMove& turn : moves_of(cutter, move)) extend(whole, part_.cut(tool, turn));
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;
@@ -112,7 +116,7 @@ std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const C
     ready_.inset_mm = tolerance_mm;
   }
   std::optional<Contact> contact;
-  for (const TurnMove& turn : moves_of(move)) {
+  for (const TurnMove& turn : moves_of(cutter, move)) {
     const std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turn);
     if (!met) continue;
     if (!contact) contact = Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), 0};
