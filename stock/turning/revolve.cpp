@@ -20,12 +20,6 @@ double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
   return glm::distance(p, a + share * way);
 }
 
-int segments_for(double radius_mm, double tolerance_mm) {
-  if (!(radius_mm > tolerance_mm)) return kFewestSegments;
-  const double half = std::acos(1 - tolerance_mm / radius_mm);
-  return std::max(kFewestSegments, static_cast<int>(std::ceil(kPi / half)));
-}
-
 /// Directions round the axis, the first once more at the end.
 std::vector<Vec2> directions(int segments) {
   std::vector<Vec2> all;
@@ -88,6 +82,12 @@ void keep_corners(std::span<const Vec2> chain, double tolerance_mm, std::size_t 
 }
 
 }  // namespace
+
+int segments_for(double radius_mm, double tolerance_mm) {
+  if (!(radius_mm > tolerance_mm)) return kFewestSegments;
+  const double half = std::acos(1 - tolerance_mm / radius_mm);
+  return std::max(kFewestSegments, static_cast<int>(std::ceil(kPi / half)));
+}
 
 std::vector<Vec2> simplified(std::span<const Vec2> chain, double tolerance_mm) {
   if (!(tolerance_mm > 0) || chain.size() < 4) return {chain.begin(), chain.end()};
@@ -272,6 +272,11 @@ MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_
   }
   patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
   return patch;
+}
+
+std::vector<std::vector<Vec2>> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                           bool has_high_face) {
+  return BandChains(low_z, high_z, has_high_face).of(contour);
 }
 
 }  // namespace kerf::turning

@@ -19,6 +19,9 @@ namespace kerf::turning {
 /// to represent a digitized line or its caricature", 1973.
 std::vector<Vec2> simplified(std::span<const Vec2> chain_zr_mm, double tolerance_mm);
 
+/// How often a circle is divided so that its sides keep within this of it.
+int segments_for(double radius_mm, double tolerance_mm);
+
 /// A closed surface for each contour, within the tolerance of it: half of that is for the contour,
 /// half for the angle. With 0 no corner is left out, and the angle is divided as for kFinest_mm.
 /// Walls thinner than the tolerance may pass through each other.
@@ -31,5 +34,9 @@ inline constexpr double kFinest_mm = 0.002;
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
                        bool has_high_face, double tolerance_mm);
 inline constexpr int kPatchSegments = 120;
+/// The chains that this is made of: of one contour, in its direction, (z, r) in mm; a closed one
+/// where it never leaves.
+std::vector<std::vector<Vec2>> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                           bool has_high_face);
 
 }  // namespace kerf::turning

@@ -170,6 +170,7 @@ turning::Engagement TurnedPart::cut_ring(const TurningTool& tool, const TurnMove
 
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   scratch_.changed = {};
+  sections_.reset();
   if (std::abs(move.lead_mm) >= turning::kLeastLead_mm && !move.arc) return cut_thread(tool, move);
   TurnCut report;
   report.id = move.id;
@@ -353,13 +354,22 @@ turning::Unit TurnedPart::band_low(std::size_t band) const {
 double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
 
 TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
-  return turning::revolve(contours_, tolerance_mm);
+  if (threads_.empty()) return turning::revolve(contours_, tolerance_mm);
+  return turning::wind(contours_, threads_, tolerance_mm);
 }
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
-  MeshPatch patch = turning::revolve_band(contours_, band_low(band), band_low(band + 1),
-                                          band + 1 == kBands, tolerance_mm);
+  const turning::Unit low = band_low(band), high = band_low(band + 1);
+  const turning::Rect wound = threads_.box();
+  const bool is_wound = !threads_.empty() && wound.min_x <= high && wound.max_x >= low;
+  if (is_wound && sections_ == nullptr) {
+    sections_ = std::make_shared<const turning::WoundSections>(
+        turning::wound_sections(contours_, threads_, turning::kPatchSegments));
+  }
+  MeshPatch patch =
+      is_wound ? turning::wind_band(*sections_, contours_, low, high, band + 1 == kBands, tolerance_mm)
+               : turning::revolve_band(contours_, low, high, band + 1 == kBands, tolerance_mm);
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];
   patch.level = level;

@@ -26,6 +26,7 @@
 #include "stock/turning/insert_sweep.h"
 #include "stock/turning/thread_set.h"
 #include "stock/turning/turn_move.h"
+#include "stock/turning/wound_surface.h"
 
 namespace kerf {
 
@@ -137,7 +138,8 @@ class TurnedPart {
   /// Memory for runs that no copy has.
   std::size_t unique_bytes() const;
 
-  /// Closed surface (revolve.h), about the z axis of the workpiece frame.
+  /// Closed surface (revolve.h), about the z axis of the workpiece frame. With threads as
+  /// wound_surface.h has it.
   TriangleMesh mesh(double tolerance_mm) const;
 
   /// So far the controlled point is followed: farther away no tool reaches a blank.
@@ -213,6 +215,7 @@ class TurnedPart {
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;
+  mutable std::shared_ptr<const turning::WoundSections> sections_;  // for patches, until it is cut
 };
 
 }  // namespace kerf
