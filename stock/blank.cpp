@@ -20,12 +20,13 @@ constexpr std::size_t kMaxBodies = 1000;
 /// What cuts straight through is no thicker, by far.
 constexpr double kMaxThickness_mm = 1000;
 
-constexpr std::array<std::string_view, 6> kKinds = {"box",   "cylinder", "tube",
-                                                    "state", "stl",      "sheet"};
+constexpr std::array<std::string_view, 9> kKinds = {
+    "box", "cylinder", "tube", "hex", "square", "state", "stl", "sheet", "profile"};
 constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
-    "state:FILE, "
-    "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS");
+    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, profile:FILE.dxf, "
+    "profile:FILE.svg, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, "
+    "sheet:FILE.svg:THICKNESS");
 
 /// `form`: x,y,z or x,y.
 Result<Vec3> parse_point(std::string_view name, std::string_view text, LengthUnit unit,
@@ -76,6 +77,36 @@ std::optional<int> axis_index(std::string_view text) {
   const std::string lower = to_lower(trim(text));
   if (lower.size() != 1 || lower[0] < 'x' || lower[0] > 'z') return std::nullopt;
   return lower[0] - 'x';
+}
+
+/// A bar of flats along z, from the centre of its lower end.
+Result<BlankBody> parse_bar(const std::vector<std::string_view>& fields, int flats,
+                            LengthUnit unit) {
+  if (fields.size() != 4) {
+    return Error{flats == 6 ? tr("the form is hex:x,y,z0:z1:ACROSS_FLATS")
+                            : tr("the form is square:x,y,z0:z1:ACROSS_FLATS")};
+  }
+  const Result<Vec3> center = parse_point(tr("centre"), fields[1], unit);
+  if (!center) return Error{center.error()};
+  const Result<double> end = parse_length(trf("end {}", 'Z'), trim(fields[2]), -kMaxCoordinate_mm,
+                                          kMaxCoordinate_mm, unit);
+  if (!end) return Error{end.error()};
+  const std::string fault = order_fault('Z', center->z, *end, unit);
+  if (!fault.empty()) return Error{fault};
+  const Result<double> across =
+      parse_length(tr("across flats"), trim(fields[3]), kMinSize_mm, kMaxCoordinate_mm, unit);
+  if (!across) return Error{across.error()};
+  BlankBody body;
+  body.kind = BlankBody::Kind::kBar;
+  body.center_mm = *center;
+  body.diameter_mm = *across;
+  body.flats = flats;
+  const double half = *across / 2;
+  // A flat towards +X: of six, corners towards +Y and -Y.
+  const double high = flats == 6 ? half / std::cos(kPi / 6) : half;
+  body.bounds_mm = Box{*center - Vec3(half, high, 0), *center + Vec3(half, high, 0)};
+  body.bounds_mm.max.z = *end;
+  return body;
 }
 
 /// cylinder and tube: the point is the centre of the lower end, then the other end along the axis.
@@ -134,12 +165,15 @@ Result<BlankBody> parse_body(std::string_view text, LengthUnit unit) {
   if (kind == "box") return parse_box(fields, unit);
   if (kind == "cylinder") return parse_round(fields, false, unit);
   if (kind == "tube") return parse_round(fields, true, unit);
+  if (kind == "hex" || kind == "square") return parse_bar(fields, kind == "hex" ? 6 : 4, unit);
   if (kind == "stl") {
     return Error{trf("{}: is not supported by this version; forms: {}", kind, tr(kForms))};
   }
   if (kind == "state")
     return Error{tr("state:FILE stands alone; it cannot be added to other bodies")};
   if (kind == "sheet") return Error{tr("a sheet stands alone; it cannot be added to other bodies")};
+  if (kind == "profile")
+    return Error{tr("profile:FILE stands alone; it cannot be added to other bodies")};
   if (kind.empty()) return Error{trf("no stock is given; forms: {}", tr(kForms))};
   return Error{
       trf("unknown stock '{}'{} Forms: {}", shown(kind), did_you_mean(kind, kKinds), tr(kForms))};
@@ -168,6 +202,14 @@ constexpr const char* kSheetForms = tr_noop(
 bool is_drawing(std::string_view file) {
   const std::string lower = to_lower(file);
   return lower.size() > 4 && (lower.ends_with(".dxf") || lower.ends_with(".svg"));
+}
+
+/// `text`: behind "profile:".
+Result<std::string> parse_profile(std::string_view text) {
+  const std::string_view file = trim(text);
+  if (is_drawing(file)) return std::string(file);
+  return Error{
+      trf("'{}' is not a drawing; the form is profile:FILE.dxf or profile:FILE.svg", shown(file))};
 }
 
 /// `text`: behind "sheet:". A file name may hold any character, '+' and ':' too.
@@ -222,6 +264,12 @@ std::string describe(const BlankBody& body) {
     if (other != axis) center += fmt::format("{}{} ", "XYZ"[other], rounded(body.center_mm[other]));
   }
   const std::string length = rounded(high[axis] - low[axis]);
+  if (body.kind == BlankBody::Kind::kBar) {
+    const std::string across = rounded(body.diameter_mm);
+    return body.flats == 6
+               ? trf("hexagonal bar {} x {} mm along Z, {}{}", across, length, center, range(2))
+               : trf("square bar {} x {} mm along Z, {}{}", across, length, center, range(2));
+  }
   if (body.kind == BlankBody::Kind::kTube) {
     return trf("tube diameter {} / {} x {} mm along {}, {}{}", rounded(body.diameter_mm),
                rounded(body.inner_diameter_mm), length, "XYZ"[axis], center, range(axis));
@@ -254,6 +302,15 @@ Box Blank::bounds_mm() const {
   return bounds;
 }
 
+std::string need_to_turn(const Blank& blank) {
+  if (!blank.profile_file.empty()) return tr("the blank is a profile that turns");
+  for (const BlankBody& body : blank.bodies) {
+    if (body.kind != BlankBody::Kind::kBar) continue;
+    return body.flats == 6 ? tr("the blank is a hexagonal bar") : tr("the blank is a square bar");
+  }
+  return {};
+}
+
 Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
   spec = trim(spec);
   Blank blank;
@@ -269,6 +326,12 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
     Result<BlankSheet> sheet = parse_sheet(spec.substr(colon + 1), unit);
     if (!sheet) return Error{fmt::format("{}: {}", shown(spec), sheet.error())};
     blank.sheet = std::move(sheet.value());
+    return blank;
+  }
+  if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "profile") {
+    Result<std::string> file = parse_profile(spec.substr(colon + 1));
+    if (!file) return Error{fmt::format("{}: {}", shown(spec), file.error())};
+    blank.profile_file = std::move(file.value());
     return blank;
   }
   const std::vector<std::string_view> texts = split_bodies(spec);
@@ -288,6 +351,7 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
 std::string describe(const Blank& blank) {
   if (!blank.state_file.empty()) return trf("workpiece saved in {}", shown(blank.state_file));
   if (blank.sheet) return describe(*blank.sheet);
+  if (!blank.profile_file.empty()) return trf("profile from {}", shown(blank.profile_file));
   std::string text;
   for (const BlankBody& body : blank.bodies) {
     if (!text.empty()) text += " + ";

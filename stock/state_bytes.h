@@ -8,7 +8,7 @@
 //   xxh3-128 of all bytes before, 16 bytes, big endian
 //
 // What the lines and bytes are: stock/zmap/state_file.h, stock/octree/octree_state.h,
-// stock/sheet/sheet_state.h.
+// stock/sheet/sheet_state.h, stock/turning/turning_state.h.
 #pragma once
 
 #include <cstddef>

@@ -153,13 +153,14 @@ Result<Cutter> Cutter::from_profile(std::string spec, std::vector<ProfilePiece> 
   return cutter;
 }
 
-Cutter Cutter::from_insert(std::string spec, InsertOutline outline) {
+Cutter Cutter::from_insert(std::string spec, InsertOutline outline, InsertTip tip) {
   ProfilePiece flat;
   flat.r1 = outline_reach_mm(outline);
   Cutter cutter;
   cutter.spec_ = std::move(spec);
   cutter.pieces_ = {flat};
   cutter.insert_ = std::make_shared<const InsertOutline>(std::move(outline));
+  cutter.insert_tip_ = tip;
   return cutter;
 }
 

@@ -57,7 +57,7 @@ class Cutter {
 
   /// A turning tool, which does not turn: insert() is what it is. Its profile is a flat disc as
   /// wide as the outline reaches, for who asks no more than how far a tool reaches.
-  static Cutter from_insert(std::string spec, InsertOutline outline);
+  static Cutter from_insert(std::string spec, InsertOutline outline, InsertTip tip = {});
 
   /// Canonical SHAPE text, e.g. "bull:10:2:flute=22".
   const std::string& spec() const { return spec_; }
@@ -112,6 +112,7 @@ class Cutter {
   /// Of a turning tool: its outline in the plane of the lathe's axis. Null: a cutter that turns.
   /// Copies of the cutter share it.
   const std::shared_ptr<const InsertOutline>& insert() const { return insert_; }
+  const InsertTip& insert_tip() const { return insert_tip_; }
   std::span<const ToolSection> holder() const { return holder_; }
   void set_holder(std::vector<ToolSection> holder) { holder_ = std::move(holder); }
   void set_spec(std::string spec) { spec_ = std::move(spec); }
@@ -130,6 +131,7 @@ class Cutter {
   std::optional<int> teeth_;
   std::shared_ptr<const Footprint> footprint_;
   std::shared_ptr<const InsertOutline> insert_;
+  InsertTip insert_tip_;
 };
 
 }  // namespace kerf

@@ -20,12 +20,13 @@ namespace kerf {
 
 /// What an edge of an outline is, so that who cuts can be told from who rubs.
 enum class InsertSide : std::uint8_t {
-  kNose,   ///< cuts: the nose's arc, the front edge of a groove insert, the point of a drill
-  kFront,  ///< the flank along LinuxCNC's front angle, or towards -z
-  kBack,   ///< the flank along its back angle, or towards +z
-  kBody,   ///< cuts nothing: the rest of the insert, a shank
+  kNose,    ///< cuts: the nose's arc, the front edge of a groove insert, the point of a drill
+  kFront,   ///< the flank along LinuxCNC's front angle, or towards -z
+  kBack,    ///< the flank along its back angle, or towards +z
+  kBody,    ///< cuts nothing: the rest of the insert, the shank of a drill
+  kHolder,  ///< nor does this: the bar that holds the insert
 };
-inline constexpr std::size_t kInsertSides = 4;
+inline constexpr std::size_t kInsertSides = 5;
 
 /// From the end of the edge before it to `end_mm`: straight, or an arc about `center_mm`,
 /// counter-clockwise by less than a full turn.
@@ -42,6 +43,13 @@ using InsertPart = std::vector<InsertEdge>;
 /// The tool is where one of the parts is; they may overlap. A hollow outline is more than one part.
 struct InsertOutline {
   std::vector<InsertPart> parts;
+};
+
+/// What LinuxCNC's tool table says of such a tool, and compensates by.
+struct InsertTip {
+  int orientation = 0;  ///< 1 .. 9 (insert_shape.h)
+  double nose_radius_mm = 0;
+  std::optional<double> front_deg, back_deg;  ///< of the flanks at the nose, where it has them
 };
 
 /// No outline reaches farther from the controlled point.

@@ -23,10 +23,9 @@ bool is_size(double mm) { return mm >= 0 && mm <= kMaxInsertReach_mm; }
 constexpr std::array<std::array<int, 2>, kOrientations> kNoseDirections{
     {{-1, 1}, {1, 1}, {1, -1}, {-1, -1}, {-1, 0}, {0, 1}, {1, 0}, {0, -1}, {0, 0}}};
 
-std::optional<Vec2> nose_direction(int orientation) {
+std::optional<Vec2> known_direction(int orientation) {
   if (orientation < 1 || orientation > kOrientations) return std::nullopt;
-  const std::array<int, 2>& d = kNoseDirections[static_cast<std::size_t>(orientation - 1)];
-  return Vec2(d[0], d[1]);
+  return nose_direction(orientation);
 }
 
 std::optional<InsertOutline> within_reach(InsertOutline outline) {
@@ -103,8 +102,13 @@ std::optional<InsertOutline> about_nose(std::span<const Corner> corners, const V
 
 }  // namespace
 
+Vec2 nose_direction(int orientation) {
+  const std::array<int, 2>& d = kNoseDirections[static_cast<std::size_t>(orientation - 1)];
+  return Vec2(d[0], d[1]);
+}
+
 std::optional<InsertOutline> nose_insert(const NoseInsert& insert) {
-  const std::optional<Vec2> direction = nose_direction(insert.orientation);
+  const std::optional<Vec2> direction = known_direction(insert.orientation);
   const double r = insert.radius_mm, length = insert.edge_mm;
   const bool are_angles = std::isfinite(insert.front_rad) && std::isfinite(insert.back_rad);
   if (!direction || !is_size(r) || !are_angles) return std::nullopt;
@@ -191,7 +195,7 @@ std::optional<double> iso_circle_mm(char shape, int size) {
 
 std::optional<InsertOutline> iso_insert(const IsoInsert& insert) {
   const IsoShape* const shape = shape_of(insert.shape);
-  const std::optional<Vec2> direction = nose_direction(insert.orientation);
+  const std::optional<Vec2> direction = known_direction(insert.orientation);
   if (shape == nullptr || !direction || !is_size(insert.circle_mm) || !is_size(insert.radius_mm) ||
       insert.circle_mm < kMinEdge_mm || !(std::abs(insert.front_rad) <= 2 * kPi)) {
     return std::nullopt;
@@ -221,7 +225,7 @@ std::optional<InsertOutline> iso_insert(const IsoInsert& insert) {
 }
 
 std::optional<InsertOutline> groove_insert(const GrooveInsert& insert) {
-  const std::optional<Vec2> direction = nose_direction(insert.orientation);
+  const std::optional<Vec2> direction = known_direction(insert.orientation);
   const double w = insert.width_mm, r = insert.corner_mm, length = insert.length_mm;
   if (!direction || !is_size(w) || !is_size(r) || !is_size(length) || w < kMinEdge_mm ||
       length < kMinEdge_mm || r > w / 2 ||
@@ -231,14 +235,17 @@ std::optional<InsertOutline> groove_insert(const GrooveInsert& insert) {
   // Worked out for a blade that points to -x; the others are that one turned and mirrored.
   const double deep = insert.axial ? direction->x : direction->y;
   const double across = insert.axial ? direction->y : direction->x;
-  const double narrower = length * std::tan(insert.relief_rad);
-  if (deep == 0 || 2 * narrower >= w) return std::nullopt;
+  // The sides begin to run back above the rounded corners, which make the width.
+  const bool has_land = r > 0 && insert.relief_rad > 0;
+  const double narrower = (length - r) * std::tan(insert.relief_rad);
+  if (deep == 0 || 2 * narrower >= w || r > length) return std::nullopt;
   const double from = across > 0 ? 0 : across < 0 ? -w : -w / 2;
-  const std::array<Corner, 4> corners{
-      Corner{{from, 0}, r, InsertSide::kNose, InsertSide::kNose},
-      Corner{{from + w, 0}, r, InsertSide::kNose, InsertSide::kBack},
-      Corner{{from + w - narrower, length}, 0, InsertSide::kBody, InsertSide::kBody},
-      Corner{{from + narrower, length}, 0, InsertSide::kBody, InsertSide::kFront}};
+  std::vector<Corner> corners{Corner{{from, 0}, r, InsertSide::kNose, InsertSide::kNose},
+                              Corner{{from + w, 0}, r, InsertSide::kNose, InsertSide::kBack}};
+  if (has_land) corners.push_back({{from + w, r}, 0, InsertSide::kBack, InsertSide::kBack});
+  corners.push_back({{from + w - narrower, length}, 0, InsertSide::kBody, InsertSide::kBody});
+  corners.push_back({{from + narrower, length}, 0, InsertSide::kBody, InsertSide::kFront});
+  if (has_land) corners.push_back({{from, r}, 0, InsertSide::kFront, InsertSide::kFront});
   std::vector<Vec2> centers;
   std::optional<InsertPart> part = rounded(corners, centers);
   if (!part) return std::nullopt;
@@ -257,7 +264,7 @@ std::optional<InsertOutline> groove_insert(const GrooveInsert& insert) {
 }
 
 std::optional<InsertOutline> thread_insert(const ThreadInsert& insert) {
-  const std::optional<Vec2> direction = nose_direction(insert.orientation);
+  const std::optional<Vec2> direction = known_direction(insert.orientation);
   if (!direction || direction->x != 0 || direction->y == 0 || !is_size(insert.flat_mm) ||
       !is_size(insert.depth_mm) || insert.depth_mm < kMinEdge_mm ||
       !(insert.angle_rad > kMinTurn_rad && insert.angle_rad < kPi - kMinTurn_rad)) {

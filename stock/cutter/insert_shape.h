@@ -24,6 +24,8 @@
 namespace kerf {
 
 inline constexpr int kOrientations = 9;
+/// (dz, dx) of an orientation, 1 .. kOrientations.
+Vec2 nose_direction(int orientation);
 
 /// A row of LinuxCNC's tool table: a nose, and flanks that leave it along two angles.
 struct NoseInsert {
@@ -75,7 +77,7 @@ struct GrooveInsert {
   double length_mm = 15;  ///< of the blade
   int orientation = 2;
   bool axial = false;
-  double relief_rad = 0;  ///< each side runs back from the front's corner by this angle
+  double relief_rad = 0;  ///< each side runs back from above the front's corner by this angle
 };
 /// None: sizes that do not fit, an orientation that does not say where the blade is.
 std::optional<InsertOutline> groove_insert(const GrooveInsert& insert);

@@ -15,8 +15,10 @@
 #include "base/units.h"
 #include "stock/cutter/profile_file.h"
 #include "stock/cutter/scan.h"
+#include "stock/cutter/shape_fields.h"
 #include "stock/cutter/shape_limits.h"
 #include "stock/cutter/tool_parts.h"
+#include "stock/cutter/turning_shape.h"
 
 namespace kerf {
 namespace {
@@ -75,9 +77,9 @@ constexpr std::array<Form, 11> kForms = {{
     {"profile", "profile:FILE", 1, 0, {tr_noop("file name FILE")}},
 }};
 
-constexpr std::array<std::string_view, 11> kShapeNames = {"flat",     "ball",  "bull",     "vee",
-                                                          "taper",    "drill", "lollipop", "tslot",
-                                                          "dovetail", "kerf",  "profile"};
+constexpr std::array<std::string_view, 18> kShapeNames = {
+    "flat", "ball",    "bull", "vee", "taper",  "drill", "lollipop",   "tslot",  "dovetail",
+    "kerf", "profile", "turn", "iso", "groove", "part",  "facegroove", "thread", "bore"};
 constexpr std::array<std::string_view, 5> kOptionNames = {"flute", "shank", "holder", "stickout",
                                                           "teeth"};
 
@@ -95,7 +97,7 @@ constexpr const char* kHelp = tr_noop(
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each may add         :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N");
+    "each of these may add  :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -527,43 +529,18 @@ Result<Cutter> make_profile(std::string_view file_name, const Options& options) 
   return cutter;
 }
 
-bool is_option(std::string_view text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return false;
-  return std::find(kOptionNames.begin(), kOptionNames.end(), to_lower(text.substr(0, equals))) !=
-         kOptionNames.end();
-}
-
-bool is_holder_file(std::string_view text) { return to_lower(text) == "holder=profile"; }
-
-/// Between colons; "holder=profile:FILE" is one, up to the next option.
-std::vector<std::string_view> fields_of(std::string_view text) {
-  std::vector<std::string_view> fields;
-  for (const std::string_view field : split(text, ':')) {
-    const bool goes_on =
-        !fields.empty() && is_holder_file(fields.back().substr(0, 14)) && !is_option(field);
-    if (goes_on) {
-      const char* const begin = fields.back().data();
-      fields.back() = {begin, static_cast<std::size_t>(field.data() + field.size() - begin)};
-    } else {
-      fields.push_back(field);
-    }
-  }
-  return fields;
-}
-
 /// Splits "name:values:options". A profile's file name may hold colons: only the known options end
 /// it.
 Result<Cutter> parse_known(const Form& form, std::string_view rest, LengthUnit unit) {
   std::vector<std::string_view> values =
-      rest.data() ? fields_of(rest) : std::vector<std::string_view>{};
+      rest.data() ? shape_fields(rest, kOptionNames) : std::vector<std::string_view>{};
   std::vector<std::string_view> option_texts;
   while (!values.empty()) {
     const std::string_view last = values.back();
     const std::size_t equals = last.find('=');
     if (equals == std::string_view::npos) break;
     // A file name may hold '=' too: there only what names an option is one.
-    if (form.name == "profile" && !is_option(last)) break;
+    if (form.name == "profile" && !is_shape_option(last, kOptionNames)) break;
     option_texts.push_back(last);
     values.pop_back();
   }
@@ -607,22 +584,31 @@ Result<Cutter> parse_shape(std::string_view spec, LengthUnit unit) {
         tr("the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
            "lollipop, tslot, dovetail, kerf, profile)")};
   }
+  const std::string_view rest =
+      colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
+  if (is_turning_form(name)) {
+    Result<Cutter> cutter = parse_turning_shape(name, rest, unit);
+    if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
+    return cutter;
+  }
   for (const Form& form : kForms) {
     if (form.name != name) continue;
-    const std::string_view rest =
-        colon == std::string_view::npos ? std::string_view{} : spec.substr(colon + 1);
     Result<Cutter> cutter = parse_known(form, rest, unit);
     if (!cutter) return Error{fmt::format("{}: {}", shown(spec), cutter.error())};
     return cutter;
   }
   return Error{
       trf("{}: unknown shape '{}'{} Shapes: flat, ball, bull, vee, taper, drill, "
-          "lollipop, tslot, dovetail, kerf, profile",
+          "lollipop, tslot, dovetail, kerf, profile; to turn with: turn, iso, groove, part, "
+          "facegroove, thread, bore",
           shown(spec), shown(name), did_you_mean(name, kShapeNames))};
 }
 
 std::string shape_in(std::string_view spec, LengthUnit unit) {
   const std::size_t colon = spec.find(':');
+  if (unit != LengthUnit::kMm && colon != spec.npos && is_turning_form(spec.substr(0, colon))) {
+    return turning_shape_in(spec, unit);
+  }
   const auto form = std::find_if(kForms.begin(), kForms.end(), [&](const Form& known) {
     return known.name == spec.substr(0, colon);
   });
@@ -632,12 +618,12 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
   const bool is_file = form->name == "profile";
   std::string out(form->name);
   std::size_t index = 0;
-  for (const std::string_view field : fields_of(spec.substr(colon + 1))) {
+  for (const std::string_view field : shape_fields(spec.substr(colon + 1), kOptionNames)) {
     const std::size_t equals = field.find('=');
     out += ':';
-    if (is_holder_file(field.substr(0, 14))) {
+    if (is_holder_file(field)) {
       out += field;
-    } else if (is_option(field)) {
+    } else if (is_shape_option(field, kOptionNames)) {
       const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
       out +=
           fmt::format("{}={}", name, name == "teeth" ? std::string(value) : parts_in(value, unit));
@@ -667,7 +653,7 @@ Result<ToolShapeArgument> parse_tool_argument(std::string_view argument, LengthU
 }
 
 std::string shape_help(LengthUnit unit) {
-  return trf("{}   ({}, degrees)\n", tr(kHelp), name_of(unit));
+  return trf("{}\n{}\n   ({}, degrees)\n", tr(kHelp), turning_shape_help(), name_of(unit));
 }
 
 }  // namespace kerf

@@ -105,6 +105,8 @@ bool countable(const Box& box, double cell) {
 Done check(const OctreeOptions& options, const Box& box) {
   const double cell = options.cell_mm;
   if (box.empty() || options.blank.bodies.empty()) return Error{tr("the blank is empty")};
+  if (const std::string need = need_to_turn(options.blank); !need.empty())
+    return Error{trf("{} cannot hold it: {}", "octree", need)};
   if (!std::isfinite(cell) || cell <= 0)
     return Error{trf("cell size {} mm is not allowed; must be above 0", cell)};
   const Vec3 size = box.size();

@@ -8,7 +8,7 @@ namespace {
 /// Fine enough that few corners of a drawn edge are near any one place.
 constexpr int kTilesEachWay = 32;
 
-sheet::Rings outer_rings(const SheetOutline& outline) {
+sheet::Rings outer_rings(const PlaneOutline& outline) {
   sheet::Rings rings = sheet::to_rings(outline.rings);
   std::erase_if(rings, [](const sheet::Ring& ring) { return sheet::twice_area(ring) <= 0; });
   return rings;
@@ -22,10 +22,10 @@ std::int64_t twice_area_of(const sheet::Rings& rings) {
 
 }  // namespace
 
-BlankArea::BlankArea(const SheetOutline& outline)
+BlankArea::BlankArea(const PlaneOutline& outline)
     : grid_(outer_rings(outline), kTilesEachWay, kTilesEachWay) {}
 
-double BlankArea::share_of(const SheetOutline& shape) const {
+double BlankArea::share_of(const PlaneOutline& shape) const {
   const sheet::Rings rings = sheet::to_rings(shape.rings);
   const std::int64_t area2 = twice_area_of(rings);
   if (area2 <= 0) return 0;

@@ -1,7 +1,7 @@
 // stock/sheet/blank_area.h - how much of a punch comes down on the sheet, and how much beside it.
 #pragma once
 
-#include "stock/sheet/outline.h"
+#include "stock/plane/outline.h"
 #include "stock/sheet/sheet_grid.h"
 
 namespace kerf {
@@ -17,12 +17,12 @@ namespace kerf {
 class BlankArea {
  public:
   /// `outline`: as Sheet::outline() has it.
-  explicit BlankArea(const SheetOutline& outline);
+  explicit BlankArea(const PlaneOutline& outline);
 
   /// What part of the shape's area lies within: 0 .. 1. `shape`: outer rings counter-clockwise,
   /// holes clockwise (footprint_at()); 0 if it has no area. O(corners of the shape) well inside;
   /// near the edge those of the edge nearby as well, n log n.
-  double share_of(const SheetOutline& shape) const;
+  double share_of(const PlaneOutline& shape) const;
 
  private:
   sheet::SheetGrid grid_;

@@ -36,7 +36,7 @@ double area_of(const sheet::Rings& rings) {
 
 }  // namespace
 
-Result<Cutter> punch_cutter(std::string spec, const SheetOutline& shape) {
+Result<Cutter> punch_cutter(std::string spec, const PlaneOutline& shape) {
   if (const Done fit = check_outline(shape); !fit) return Error{fit.error()};
   // Outlines counter-clockwise, holes clockwise: turned and moved, they need no more looking at.
   ClipperLib::Clipper clipper;
@@ -78,10 +78,10 @@ CutMove punch_stroke(const Vec3& place_mm, double turn_rad, std::uint64_t id) {
 
 double turn_of(const CutMove& stroke) { return stroke.arc ? stroke.arc->sweep_rad : 0.0; }
 
-SheetOutline footprint_at(const Cutter& punch, const CutMove& stroke) {
+PlaneOutline footprint_at(const Cutter& punch, const CutMove& stroke) {
   const Vec2 place(stroke.to_mm);
   const double turn = turn_of(stroke);
-  SheetOutline shape;
+  PlaneOutline shape;
   if (!(std::abs(place.x) + std::abs(place.y) + std::abs(turn) < kFarthest_mm)) return shape;
   const Vec2 along = direction_of(turn);
   for (const std::vector<Vec2>& chain : *punch.footprint()) {
@@ -94,7 +94,7 @@ SheetOutline footprint_at(const Cutter& punch, const CutMove& stroke) {
   return shape;
 }
 
-double overlap_mm2(const SheetOutline& a, const SheetOutline& b) {
+double overlap_mm2(const PlaneOutline& a, const PlaneOutline& b) {
   ClipperLib::Clipper clipper;
   clipper.AddPaths(sheet::to_rings(a.rings), ClipperLib::ptSubject, true);
   clipper.AddPaths(sheet::to_rings(b.rings), ClipperLib::ptClip, true);
@@ -104,7 +104,7 @@ double overlap_mm2(const SheetOutline& a, const SheetOutline& b) {
   return area_of(common);
 }
 
-double area_mm2(const SheetOutline& shape) {
+double area_mm2(const PlaneOutline& shape) {
   ClipperLib::Clipper clipper;
   clipper.AddPaths(sheet::to_rings(shape.rings), ClipperLib::ptSubject, true);
   sheet::Rings rings;

@@ -13,15 +13,15 @@
 #include <string>
 
 #include "base/result.h"
+#include "stock/plane/outline.h"
 #include "stock/sheet/kerf_contour.h"
-#include "stock/sheet/outline.h"
 #include "stock/stock_model.h"
 
 namespace kerf {
 
 /// A punch of this shape (parse_punch_shape()); `spec` names it and tells it from others. Error:
 /// from check_outline().
-Result<Cutter> punch_cutter(std::string spec, const SheetOutline& shape);
+Result<Cutter> punch_cutter(std::string spec, const PlaneOutline& shape);
 
 /// One stroke. `turn_rad` is counter-clockwise, seen from above.
 CutMove punch_stroke(const Vec3& place_mm, double turn_rad, std::uint64_t id);
@@ -29,11 +29,11 @@ CutMove punch_stroke(const Vec3& place_mm, double turn_rad, std::uint64_t id);
 double turn_of(const CutMove& stroke);
 
 /// Corners of the punch in the sheet where it comes down.
-SheetOutline footprint_at(const Cutter& punch, const CutMove& stroke);
+PlaneOutline footprint_at(const Cutter& punch, const CutMove& stroke);
 /// What two shapes of footprint_at() - or a shape and a rectangle - have in common. O(n log n).
-double overlap_mm2(const SheetOutline& a, const SheetOutline& b);
+double overlap_mm2(const PlaneOutline& a, const PlaneOutline& b);
 /// Even-odd.
-double area_mm2(const SheetOutline& shape);
+double area_mm2(const PlaneOutline& shape);
 
 namespace sheet {
 

@@ -8,8 +8,8 @@
 #include "base/suggest.h"
 #include "base/translate.h"
 #include "stock/cutter/scan.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/kerf_contour.h"
-#include "stock/sheet/outline_file.h"
 
 namespace kerf {
 namespace {
@@ -32,7 +32,7 @@ Done check_count(const Fields& fields, std::size_t count, std::string_view form)
                    fields.size() == 2 ? "value" : "values", to_lower(trim(fields[0])), form)};
 }
 
-SheetOutline rectangle(double a, double b) {
+PlaneOutline rectangle(double a, double b) {
   return rectangle_outline({-a / 2, -b / 2}, {a / 2, b / 2});
 }
 
@@ -51,13 +51,13 @@ void append_half_circle(const Vec2& center, double r, double from_rad, double to
   }
 }
 
-Result<SheetOutline> parse_round(const Fields& fields, double tolerance_mm) {
+Result<PlaneOutline> parse_round(const Fields& fields, double tolerance_mm) {
   const Done count = check_count(fields, 2, "round:D");
   if (!count) return Error{count.error()};
   const Result<double> d = size_of("diameter D", fields[1]);
   if (!d) return Error{d.error()};
   const auto polygon = sheet::CirclePolygon::within(*d / 2, tolerance_mm);
-  SheetOutline shape;
+  PlaneOutline shape;
   std::vector<Vec2>& ring = shape.rings.emplace_back();
   for (int i = 0; i < polygon.count; ++i) {
     ring.push_back(polygon.corner_mm * direction(2 * kPi * i / polygon.count));
@@ -65,7 +65,7 @@ Result<SheetOutline> parse_round(const Fields& fields, double tolerance_mm) {
   return shape;
 }
 
-Result<SheetOutline> parse_square(const Fields& fields) {
+Result<PlaneOutline> parse_square(const Fields& fields) {
   const Done count = check_count(fields, 2, "square:A");
   if (!count) return Error{count.error()};
   const Result<double> a = size_of("edge A", fields[1]);
@@ -73,7 +73,7 @@ Result<SheetOutline> parse_square(const Fields& fields) {
   return rectangle(*a, *a);
 }
 
-Result<SheetOutline> parse_two_edges(const Fields& fields, bool round, double tolerance_mm) {
+Result<PlaneOutline> parse_two_edges(const Fields& fields, bool round, double tolerance_mm) {
   const Done count = check_count(fields, 3, round ? "obround:A:B" : "rectangle:A:B");
   if (!count) return Error{count.error()};
   const Result<double> a = size_of("length A", fields[1]);
@@ -84,7 +84,7 @@ Result<SheetOutline> parse_two_edges(const Fields& fields, bool round, double to
   const double radius = std::min(*a, *b) / 2, reach = std::max(*a, *b) / 2 - radius;
   const double turned = *a < *b ? kPi / 2 : 0;
   const Vec2 end = reach * Vec2(*a < *b ? 0 : 1, *a < *b ? 1 : 0);
-  SheetOutline shape;
+  PlaneOutline shape;
   std::vector<Vec2>& ring = shape.rings.emplace_back();
   for (const double side : {0.0, kPi}) {
     const Vec2 center = side == 0 ? end : -end;
@@ -94,7 +94,7 @@ Result<SheetOutline> parse_two_edges(const Fields& fields, bool round, double to
   return shape;
 }
 
-Result<SheetOutline> parse_polygon(const Fields& fields) {
+Result<PlaneOutline> parse_polygon(const Fields& fields) {
   const Done count = check_count(fields, 3, "polygon:N:D");
   if (!count) return Error{count.error()};
   const Result<double> n =
@@ -105,7 +105,7 @@ Result<SheetOutline> parse_polygon(const Fields& fields) {
   }
   const Result<double> d = size_of("diameter D", fields[2]);
   if (!d) return Error{d.error()};
-  SheetOutline shape;
+  PlaneOutline shape;
   std::vector<Vec2>& ring = shape.rings.emplace_back();
   for (int i = 0; i < static_cast<int>(*n); ++i) {
     const double angle = 2 * kPi * i / *n;
@@ -114,7 +114,7 @@ Result<SheetOutline> parse_polygon(const Fields& fields) {
   return shape;
 }
 
-Result<SheetOutline> parse_fields(std::string_view spec, double tolerance_mm) {
+Result<PlaneOutline> parse_fields(std::string_view spec, double tolerance_mm) {
   const Fields fields = split(spec, ':');
   const std::string kind = to_lower(trim(fields[0]));
   if (kind == "round") return parse_round(fields, tolerance_mm);
@@ -136,10 +136,10 @@ Result<SheetOutline> parse_fields(std::string_view spec, double tolerance_mm) {
 
 }  // namespace
 
-Result<SheetOutline> parse_punch_shape(std::string_view spec, double tolerance_mm) {
+Result<PlaneOutline> parse_punch_shape(std::string_view spec, double tolerance_mm) {
   spec = trim(spec);
   if (spec.empty()) return Error{trf("no shape is given; forms:\n{}", punch_shape_help())};
-  Result<SheetOutline> shape = parse_fields(spec, tolerance_mm);
+  Result<PlaneOutline> shape = parse_fields(spec, tolerance_mm);
   if (!shape) return Error{fmt::format("{}: {}", shown(spec), shape.error())};
   return shape;
 }

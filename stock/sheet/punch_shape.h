@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
-#include "stock/sheet/outline.h"
+#include "stock/plane/outline.h"
 
 namespace kerf {
 
@@ -18,7 +18,7 @@ namespace kerf {
 ///     dxf:FILE, svg:FILE  outline_dxf.h, outline_svg.h; their origin is the axis
 /// Sizes from 0.1 to 1000 mm. Arcs are off by `tolerance_mm` at most, and keep their area. Error:
 /// the part that is wrong, what was found and what is allowed.
-Result<SheetOutline> parse_punch_shape(std::string_view spec, double tolerance_mm);
+Result<PlaneOutline> parse_punch_shape(std::string_view spec, double tolerance_mm);
 
 /// The forms for --help and messages, one a line.
 std::string_view punch_shape_help();

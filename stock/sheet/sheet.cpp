@@ -62,8 +62,8 @@ sheet::Rings oriented(sheet::Rings rings) {
   return united;
 }
 
-SheetOutline to_outline(const sheet::Rings& rings) {
-  SheetOutline outline;
+PlaneOutline to_outline(const sheet::Rings& rings) {
+  PlaneOutline outline;
   for (const sheet::Ring& ring : rings) {
     std::vector<Vec2>& points = outline.rings.emplace_back();
     for (const sheet::Point& p : ring) points.push_back(sheet::to_mm(p));
@@ -186,7 +186,7 @@ void Sheet::strike(const Cutter& punch, std::span<const CutMove> strokes,
 
 void Sheet::finish(std::vector<CutReport>&) {}
 
-CutReport Sheet::punch(const SheetOutline& shape, const Vec2& position_mm, double angle_rad,
+CutReport Sheet::punch(const PlaneOutline& shape, const Vec2& position_mm, double angle_rad,
                        std::uint64_t id) {
   const double sum = std::abs(position_mm.x) + std::abs(position_mm.y) + std::abs(angle_rad);
   if (!(sum < kMaxPunchCoordinate_mm)) return {id, 0, 0};
@@ -265,7 +265,7 @@ std::vector<SheetPiece> Sheet::pieces() const {
 std::size_t Sheet::piece_numbers() const { return impl_->labels.records().size(); }
 std::size_t Sheet::blank_piece_numbers() const { return impl_->labels.blank_pieces(); }
 
-SheetOutline Sheet::outline_of(std::uint32_t piece) const {
+PlaneOutline Sheet::outline_of(std::uint32_t piece) const {
   const std::vector<sheet::PieceRecord>& records = impl_->labels.records();
   for (std::uint32_t i = 0; i < records.size(); ++i) {
     if (records[i].number == piece) return to_outline(sheet::outline_of(impl_->grid, i));
@@ -273,7 +273,7 @@ SheetOutline Sheet::outline_of(std::uint32_t piece) const {
   return {};
 }
 
-SheetOutline Sheet::outline() const {
+PlaneOutline Sheet::outline() const {
   return to_outline(sheet::outline_of(impl_->grid, sheet::kNoPiece));
 }
 

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "stock/sheet/outline.h"
+#include "stock/plane/outline.h"
 #include "stock/sheet/piece_origin.h"
 #include "stock/stock_model.h"
 
 namespace kerf {
 
 struct SheetOptions {
-  SheetOutline outline;             ///< workpiece frame; check_outline() says what is allowed
+  PlaneOutline outline;             ///< workpiece frame; check_outline() says what is allowed
   double bottom_mm = 0;             ///< z of the lower face
   double top_mm = 1;                ///< of the upper one
   double arc_tolerance_mm = 0.005;  ///< how far the polygon of an arc may be off: 0.0001 .. 1
@@ -67,7 +67,7 @@ class Sheet final : public StockModel {
   void finish(std::vector<CutReport>& reports) override;
   /// One stroke: `shape` (even-odd rings, mm, about the punch's axis) turned by `angle_rad`, then
   /// moved to `position_mm`.
-  CutReport punch(const SheetOutline& shape, const Vec2& position_mm, double angle_rad,
+  CutReport punch(const PlaneOutline& shape, const Vec2& position_mm, double angle_rad,
                   std::uint64_t id);
   /// The first place of the tip at which there is material within radius_mm() - `tolerance_mm` of
   /// it. depth_mm is the thickness.
@@ -89,9 +89,9 @@ class Sheet final : public StockModel {
   /// sheet or by the one that was saved.
   std::size_t blank_piece_numbers() const;
   /// Rings round one piece, holes clockwise, across tiles. Empty for a number that is none.
-  SheetOutline outline_of(std::uint32_t piece) const;
+  PlaneOutline outline_of(std::uint32_t piece) const;
   /// Of all of them.
-  SheetOutline outline() const;
+  PlaneOutline outline() const;
 
   /// Saves and loads the sheet (stock/sheet/sheet_state.h); it is cut on, its pieces and their
   /// numbers are, as if it had never been saved. `origins`: by number, what freed those that are

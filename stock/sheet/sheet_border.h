@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "stock/sheet/outline.h"
+#include "stock/plane/outline.h"
 #include "stock/sheet/sheet_grid.h"
 
 namespace kerf::sheet {

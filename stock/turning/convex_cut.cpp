@@ -1,6 +1,7 @@
 #include "stock/turning/convex_cut.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace kerf::turning {
@@ -44,13 +45,67 @@ bool holds_top(std::span<const Contour> region, const ConvexRegion& tool) {
 
 struct PointSink {
   std::vector<Point>& points;
-  void append(const Point& p) { points.push_back(p); }
+  void append(const Run& run, std::size_t i) { points.push_back(run.points[i]); }
   void append(const RunPointer& run) {
     points.insert(points.end(), run->points.begin(), run->points.end());
   }
 };
 
 }  // namespace
+
+/// Of what is left: corners of the region, of its contours whole runs, and of the tool, from where
+/// the region goes in to where it comes out.
+class ConvexCut::PlainSink {
+ public:
+  explicit PlainSink(ConvexCut& cut) : builder_(cut.builder_) {}
+  void append(const Run& run, std::size_t i) { builder_.append(run.points[i]); }
+  void append(const RunPointer& run) { builder_.append(run); }
+  void leave_tool(const Crossing& at, const Contour&) { builder_.append(at.at); }
+  void enter_tool(const Point& p) { builder_.append(p); }
+  void follow_tool(const Point& p) { builder_.append(p); }
+  void close(const Point&) {}
+  void append_ring(std::span<const Point> ring) {
+    for (const Point& p : ring) builder_.append(p);
+  }
+
+ private:
+  ContourBuilder& builder_;
+};
+
+class ConvexCut::MarkedSink {
+ public:
+  MarkedSink(ConvexCut& cut, std::uint32_t mark) : cut_(cut), mark_(mark) {}
+  void append(const Run& run, std::size_t i) { cut_.builder_.append(run.points[i], run.marks[i]); }
+  void append(const RunPointer& run) { cut_.builder_.append(run); }
+  void leave_tool(const Crossing& at, const Contour& contour) {
+    if (on_tool_) follow_tool(at.at);
+    on_tool_ = false;
+    cut_.builder_.append(at.at, contour.runs()[at.run]->marks[at.index]);
+  }
+  void enter_tool(const Point& p) {
+    last_ = p;
+    on_tool_ = true;
+  }
+  void follow_tool(const Point& p) {
+    cut_.append_marked(last_, p, mark_);
+    last_ = p;
+  }
+  /// Behind the last edge of a contour, which ends where it began.
+  void close(const Point& begin) {
+    if (on_tool_) follow_tool(begin);
+    on_tool_ = false;
+  }
+  void append_ring(std::span<const Point> ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      cut_.append_marked(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1], mark_);
+  }
+
+ private:
+  ConvexCut& cut_;
+  std::uint32_t mark_;
+  Point last_;
+  bool on_tool_ = false;
+};
 
 std::span<const Point> ConvexCut::removed(std::size_t i) const {
   const std::size_t begin = i == 0 ? 0 : removed_ends_[i - 1];
@@ -209,7 +264,7 @@ void ConvexCut::follow(const Contour& contour, const Crossing& from, const Cross
   const std::vector<RunPointer>& runs = contour.runs();
   std::size_t run = from.run, index = from.index + 1u;
   const auto append = [&](const RunPointer& part, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sink.append(part->points[i]);
+    for (std::size_t i = begin; i < end; ++i) sink.append(*part, i);
   };
   const bool stays = to.run == from.run && to.index > from.index;
   if (!stays) {
@@ -247,27 +302,30 @@ void ConvexCut::trace_removed(std::span<const Contour> region, const ConvexRegio
   }
 }
 
-void ConvexCut::trace_rest(std::span<const Contour> region, std::vector<Contour>& fresh) {
+template <class Sink>
+void ConvexCut::trace_rest(std::span<const Contour> region, Sink& sink,
+                           std::vector<Contour>& fresh) {
   const auto n = static_cast<std::uint32_t>(tool_.size());
   for (Crossing& crossing : crossings_) crossing.done = false;
   for (Crossing& start : crossings_) {
     if (start.enters || start.done) continue;
     for (Crossing* at = &start; !at->done;) {
       at->done = true;
-      builder_.append(at->at);
+      sink.leave_tool(*at, region[at->contour]);
       const auto number = static_cast<std::uint32_t>(at - crossings_.data());
       const std::uint32_t enters = next_on_region(number);
       const Crossing& in = crossings_[enters];
-      follow(region[at->contour], *at, in, builder_);
-      builder_.append(in.at);
+      follow(region[at->contour], *at, in, sink);
+      sink.enter_tool(in.at);
       at = &crossings_[previous_on_tool(enters)];
       if (in.edge == at->edge && at->rank < in.rank) continue;
       std::uint32_t corner = in.edge;
       do {
-        builder_.append(tool_[corner]);
+        sink.follow_tool(tool_[corner]);
         corner = corner == 0 ? n - 1 : corner - 1;
       } while (corner != at->edge);
     }
+    sink.close(start.at);
     fresh.push_back(builder_.close());
   }
 }
@@ -292,18 +350,100 @@ void ConvexCut::look_by_library(std::span<const Contour> region, const ConvexReg
   }
 }
 
-void ConvexCut::apply(std::vector<Contour>& region) {
+/// Edges of the region that the tool's new ones may be: those that it takes away, and of a region
+/// that the library has cut all.
+void ConvexCut::gather_edges(std::span<const Contour> region) {
+  edges_before_.clear();
+  struct EdgeSink {
+    std::vector<MarkedEdge>& edges;
+    void append(const Run& run, std::size_t i) {
+      edges.back().to = run.points[i];
+      edges.push_back({run.points[i], run.points[i], run.marks[i]});
+    }
+    void append(const RunPointer& run) {
+      for (std::size_t i = 0; i < run->points.size(); ++i) append(*run, i);
+    }
+  };
+  EdgeSink sink{edges_before_};
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    if (!by_library_ && swallowed_[i] == 0) continue;
+    const Contour& contour = region[i];
+    edges_before_.push_back({});
+    const std::size_t first = edges_before_.size();
+    for (const RunPointer& run : contour.runs()) sink.append(run);
+    edges_before_.back().to = edges_before_[first].from;
+    edges_before_[first - 1].to = edges_before_[first - 1].from;  // none
+  }
+  if (by_library_) return;
+  for (std::uint32_t i = 0; i < crossings_.size(); ++i) {
+    const Crossing& in = crossings_[i];
+    if (!in.enters) continue;
+    const Contour& contour = region[in.contour];
+    const Crossing& out = crossings_[next_on_region(i)];
+    edges_before_.push_back({in.at, in.at, contour.runs()[in.run]->marks[in.index]});
+    follow(contour, in, out, sink);
+    edges_before_.back().to = out.at;
+  }
+}
+
+/// An edge, without its end, in pieces where some of it was there before.
+void ConvexCut::append_marked(const Point& from, const Point& to, std::uint32_t mark) {
+  const auto vector = [](const Point& a, const Point& b) {
+    return Vec2(static_cast<double>(b.X - a.X), static_cast<double>(b.Y - a.Y));
+  };
+  if (from == to) return;
+  const Vec2 way = vector(from, to);
+  const double length = std::hypot(way.x, way.y);
+  kept_.clear();
+  for (const MarkedEdge& edge : edges_before_) {
+    constexpr auto kNear = static_cast<Unit>(kSame);
+    Rect near = box_of(edge.from, edge.to);
+    near = {near.min_x - kNear, near.min_y - kNear, near.max_x + kNear, near.max_y + kNear};
+    if (!near.meets(box_of(from, to))) continue;
+    const Vec2 p = vector(from, edge.from), other = vector(edge.from, edge.to);
+    const double other_length = std::hypot(other.x, other.y);
+    const double begin = (p.x * way.x + p.y * way.y) / length;
+    const double end = begin + (other.x * way.x + other.y * way.y) / length;
+    KeptPiece piece{std::max(begin, 0.0), std::min(end, length), edge.mark};
+    if (piece.high - piece.low <= 2 * kSame) continue;
+    const auto off = [&](double along) {
+      const Vec2 q = along / length * way - p;
+      return std::abs(other.x * q.y - other.y * q.x) / other_length;
+    };
+    if (off(piece.low) <= kSame && off(piece.high) <= kSame) kept_.push_back(piece);
+  }
+  std::sort(kept_.begin(), kept_.end(),
+            [](const KeptPiece& a, const KeptPiece& b) { return a.low < b.low; });
+  const auto place = [&](double along) {
+    return Point{between(from.X, to.X, along / length), between(from.Y, to.Y, along / length)};
+  };
+  double done = 0;
+  const auto append = [&](double until, std::uint32_t with) {
+    if (until - done <= 2 * kSame) return;
+    builder_.append(place(done), with);
+    done = until;
+  };
+  for (const KeptPiece& piece : kept_) {
+    append(piece.low, mark);
+    append(piece.high, piece.mark);
+  }
+  if (done == 0 || length - done > 2 * kSame) builder_.append(place(done), mark);
+}
+
+template <class Sink>
+void ConvexCut::apply_by(std::vector<Contour>& region, Sink& sink) {
   std::vector<Contour> fresh;
   if (by_library_) {
     region.clear();
     for (const Ring& ring : rest_) {
-      for (const Point& p : ring) builder_.append(p);
+      sink.append_ring(ring);
       fresh.push_back(builder_.close());
     }
   } else {
-    trace_rest(region, fresh);
+    trace_rest(region, sink, fresh);
     if (drowned_) {
-      for (std::size_t i = tool_.size(); i-- > 0;) builder_.append(tool_[i]);
+      std::reverse(tool_.begin(), tool_.end());
+      sink.append_ring(tool_);
       fresh.push_back(builder_.close());
     }
     std::size_t kept = 0;
@@ -318,6 +458,17 @@ void ConvexCut::apply(std::vector<Contour>& region) {
     if (contour.runs().empty() || (contour.is_outer() && contour.is_thinner(kFilm))) continue;
     region.push_back(std::move(contour));
   }
+}
+
+void ConvexCut::apply(std::vector<Contour>& region) {
+  PlainSink sink(*this);
+  apply_by(region, sink);
+}
+
+void ConvexCut::apply(std::vector<Contour>& region, std::uint32_t mark) {
+  gather_edges(region);
+  MarkedSink sink(*this, mark);
+  apply_by(region, sink);
 }
 
 }  // namespace kerf::turning

@@ -39,14 +39,25 @@ class ConvexCut {
   /// Takes it out of the region that was looked at. Shreds thinner than kFilm on the average go
   /// with it.
   void apply(std::vector<Contour>& region);
+  /// The same of a marked region: edges that the tool has left have this mark, but where they are
+  /// edges that were there before (nearer than kSame all along): these keep theirs.
+  void apply(std::vector<Contour>& region, std::uint32_t mark);
 
   /// How often the library was asked so far: for measurements.
   std::uint64_t library_calls() const { return library_calls_; }
 
   /// 0.1 um, how exactly outlines are kept: what is thinner is no shape.
   static constexpr double kFilm = 10;
+  /// Rounding of corners moves an edge by less, 20 nm.
+  static constexpr double kSame = 2;
 
  private:
+  struct MarkedEdge {
+    Point from, to;
+    std::uint32_t mark = 0;
+  };
+  class PlainSink;
+  class MarkedSink;
   struct Crossing {
     Point at;
     std::uint32_t contour = 0, run = 0, index = 0;  ///< the edge of S that begins there
@@ -64,7 +75,12 @@ class ConvexCut {
   bool removes_area() const;
   bool swallow(std::span<const Contour> region, const ConvexRegion& tool);
   void trace_removed(std::span<const Contour> region, const ConvexRegion& tool);
-  void trace_rest(std::span<const Contour> region, std::vector<Contour>& fresh);
+  template <class Sink>
+  void trace_rest(std::span<const Contour> region, Sink& sink, std::vector<Contour>& fresh);
+  template <class Sink>
+  void apply_by(std::vector<Contour>& region, Sink& sink);
+  void gather_edges(std::span<const Contour> region);
+  void append_marked(const Point& from, const Point& to, std::uint32_t mark);
   void look_by_library(std::span<const Contour> region, const ConvexRegion& tool);
   void add_removed(std::span<const Point> ring);
   template <class Sink>
@@ -87,6 +103,14 @@ class ConvexCut {
   bool by_library_ = false;  // rest_ is what is left
   Rings rest_;
   ContourBuilder builder_;
+  // Of marked regions: edges that a tool's may be, of those of one tool's edge pieces of its
+  // length.
+  struct KeptPiece {
+    double low = 0, high = 0;
+    std::uint32_t mark = 0;
+  };
+  std::vector<MarkedEdge> edges_before_;
+  std::vector<KeptPiece> kept_;
   std::uint64_t library_calls_ = 0;
 };
 

@@ -36,6 +36,9 @@ void Engagement::extend(const Engagement& other) {
   const bool was_any = any;
   const double was_first = first;
   join(other);
+  const auto of = [&](InsertSide side) { return other.side_mm[static_cast<std::size_t>(side)]; };
+  const double both_mm = std::min(of(InsertSide::kFront), of(InsertSide::kBack));
+  flanks_mm = std::max(flanks_mm, both_mm);
   way_mm = before_mm + other.way_mm;
   if (was_any) first = was_first;
 }

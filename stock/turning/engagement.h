@@ -23,6 +23,9 @@ struct Engagement {
   double way_mm = 0;     ///< how long the front was in material
   double first = 0;      ///< share of the way after which it first was
   std::array<double, kInsertSides> side_mm{};  ///< width of material that edges of that side met
+  /// Of ways one after the other: the width that front and back flank met at once, the lesser of
+  /// the two.
+  double flanks_mm = 0;
 
   /// With another part of the tool on the same way: all is the greatest, `first` the least.
   void join(const Engagement& other);

@@ -1,9 +1,11 @@
 // stock/turning/grid.h - the half plane in which turned parts are kept: z to the right, r up.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <span>
 
 #include "base/geometry.h"
@@ -31,6 +33,14 @@ inline Unit to_units(double mm) { return std::llround(mm * kUnitsPerMm); }
 inline Point to_units(const Vec2& zx_mm) { return {to_units(zx_mm.x), to_units(zx_mm.y)}; }
 inline double to_mm(Unit units) { return static_cast<double>(units) / kUnitsPerMm; }
 inline Vec2 to_mm(const Point& p) { return {to_mm(p.X), to_mm(p.Y)}; }
+
+/// Of a place from an edge, or its end that is nearer.
+inline double distance_to_edge_mm(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 way = b - a;
+  const double squared = glm::dot(way, way);
+  const double share = squared > 0 ? std::clamp(glm::dot(p - a, way) / squared, 0.0, 1.0) : 0;
+  return glm::distance(p, a + share * way);
+}
 
 /// Twice the area under an edge, seen from the origin, and six times its moment about the axis.
 inline std::int64_t area2_of(const Point& p, const Point& q) {

@@ -3,11 +3,14 @@
 // The point (z, r) of a contour at the angle a is (r cos a, r sin a, z) of the workpiece frame.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "stock/turning/bar_flats.h"
 #include "stock/turning/contour.h"
 
 namespace kerf::turning {
@@ -22,21 +25,35 @@ std::vector<Vec2> simplified(std::span<const Vec2> chain_zr_mm, double tolerance
 /// How often a circle is divided so that its sides keep within this of it.
 int segments_for(double radius_mm, double tolerance_mm);
 
+/// That or more: whole edges of a bar, and the middles of its flats, lie on directions.
+int segments_with(int segments, const std::optional<BarFlats>& flats);
+
 /// A closed surface for each contour, within the tolerance of it: half of that is for the contour,
 /// half for the angle. With 0 no corner is left out, and the angle is divided as for kFinest_mm.
-/// Walls thinner than the tolerance may pass through each other.
-TriangleMesh revolve(std::span<const Contour> contours, double tolerance_mm);
+/// Walls thinner than the tolerance may pass through each other. What lies beyond flats is not
+/// there: where a surface that rises meets a flat, it is off by at most half the tolerance more.
+TriangleMesh revolve(std::span<const Contour> contours, double tolerance_mm,
+                     const std::optional<BarFlats>& flats = std::nullopt);
 inline constexpr double kFinest_mm = 0.002;
 
 /// What of the surface lies in low_z .. high_z. Chains end on these, at points that are the same
 /// for both neighbours, and whatever the tolerance; a face on `low_z` belongs to it, one on
-/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments.
+/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments. Of marked
+/// contours MeshPatch::cut_by are the marks.
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
-                       bool has_high_face, double tolerance_mm);
+                       bool has_high_face, double tolerance_mm,
+                       const std::optional<BarFlats>& flats = std::nullopt);
 inline constexpr int kPatchSegments = 120;
-/// The chains that this is made of: of one contour, in its direction, (z, r) in mm; a closed one
-/// where it never leaves.
-std::vector<std::vector<Vec2>> band_chains(const Contour& contour, Unit low_z, Unit high_z,
-                                           bool has_high_face);
+
+/// A part of a contour within a band, and the mark of each edge; closed where it never leaves.
+struct BandChain {
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> marks;
+};
+/// The chains that revolve_band() is made of, in the contour's direction.
+std::vector<BandChain> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                   bool has_high_face);
+/// Simplified between corners where another mark begins.
+BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm);
 
 }  // namespace kerf::turning

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/mesh_patch.h"
+
 namespace kerf::turning {
 namespace {
 
@@ -80,7 +82,7 @@ std::optional<ThreadPass> ThreadPass::create(const GridPart& part, const Vec2& f
                                              const Vec2& to_mm, double lead_mm, double from_turns,
                                              double low_r_mm, double high_r_mm, std::uint64_t id) {
   ThreadPass pass;
-  pass.length_mm_ = glm::distance(from_mm, to_mm);
+  pass.set_way(from_mm, to_mm);
   if (!(pass.length_mm_ > 0)) return std::nullopt;
   ConvexChain chain;
   for (const Point& p : part.corners()) chain.push_back(turning::to_mm(p));
@@ -89,18 +91,78 @@ std::optional<ThreadPass> ThreadPass::create(const GridPart& part, const Vec2& f
   pass.corners_ = between_heights(chain, pass.low_r_mm_ - std::max(from_mm.y, to_mm.y),
                                   pass.high_r_mm_ - std::min(from_mm.y, to_mm.y));
   if (pass.corners_.empty()) return std::nullopt;
-  pass.from_ = from_mm;
-  pass.to_ = to_mm;
-  pass.direction_ = (to_mm - from_mm) / pass.length_mm_;
   pass.lead_mm_ = lead_mm;
   pass.from_turns_ = from_turns - std::floor(from_turns);
   pass.id_ = id;
-  pass.low_ = pass.high_ = pass.corners_[0];
-  for (const Vec2& p : pass.corners_) {
-    pass.low_ = glm::min(pass.low_, p);
-    pass.high_ = glm::max(pass.high_, p);
-  }
+  pass.find_extent();
   return pass;
+}
+
+void ThreadPass::set_way(const Vec2& from_mm, const Vec2& to_mm) {
+  from_ = from_mm;
+  to_ = to_mm;
+  length_mm_ = glm::distance(from_mm, to_mm);
+  if (length_mm_ > 0) direction_ = (to_mm - from_mm) / length_mm_;
+}
+
+void ThreadPass::find_extent() {
+  low_ = high_ = corners_[0];
+  for (const Vec2& p : corners_) {
+    low_ = glm::min(low_, p);
+    high_ = glm::max(high_, p);
+  }
+}
+
+std::optional<ThreadPass> ThreadPass::restored(ConvexChain corners, const Vec2& from_mm,
+                                               const Vec2& to_mm, double lead_mm, double from_turns,
+                                               double low_r_mm, double high_r_mm,
+                                               std::uint64_t id) {
+  const auto is_place = [](const Vec2& p) {
+    return std::abs(p.x) <= kMaxCoordinate_mm && std::abs(p.y) <= kMaxCoordinate_mm;
+  };
+  const bool is_sound = is_place(from_mm) && is_place(to_mm) && std::isfinite(lead_mm) &&
+                        std::abs(lead_mm) >= kLeastLead_mm && from_turns >= 0 && from_turns < 1 &&
+                        is_place({low_r_mm, high_r_mm}) && corners.size() >= 3;
+  if (!is_sound) return std::nullopt;
+  const std::size_t n = corners.size();
+  double around = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
+    if (!(glm::length(a) <= 2 * kMaxInsertReach_mm)) return std::nullopt;
+    const double turn = std::atan2(cross_of(b - a, c - b), glm::dot(b - a, c - b));
+    // Where outlines are clipped, corners may come to lie on a line, but for rounding.
+    if (!(turn > -1e-6 && glm::distance(a, b) > 0)) return std::nullopt;
+    around += turn;
+  }
+  if (!(around < 3 * kPi) || !(area2(corners) > 0)) return std::nullopt;
+  ThreadPass pass;
+  pass.set_way(from_mm, to_mm);
+  if (!(pass.length_mm_ > 0)) return std::nullopt;
+  pass.corners_ = std::move(corners);
+  pass.lead_mm_ = lead_mm;
+  pass.from_turns_ = from_turns;
+  pass.low_r_mm_ = low_r_mm;
+  pass.high_r_mm_ = high_r_mm;
+  pass.id_ = id;
+  pass.find_extent();
+  return pass;
+}
+
+/// Half a turn about an axis across z: what was at an angle is at its opposite, and the hand stays.
+ThreadPass ThreadPass::turned_about(double at_z_mm) const {
+  ThreadPass pass = *this;
+  pass.set_way({at_z_mm - from_.x, from_.y}, {at_z_mm - to_.x, to_.y});
+  std::reverse(pass.corners_.begin(), pass.corners_.end());
+  for (Vec2& p : pass.corners_) p.x = -p.x;
+  pass.lead_mm_ = -lead_mm_;
+  pass.from_turns_ = -from_turns_ - std::floor(-from_turns_);
+  pass.find_extent();
+  return pass;
+}
+
+std::uint32_t ThreadPass::mark() const {
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(id_, MeshPatch::kNotCut - std::uint64_t{1}));
 }
 
 ThreadPass::Turns ThreadPass::turns_seen(double low_turns, double high_turns, double low_way_mm,

@@ -38,6 +38,13 @@ class ThreadPass {
                                           const Vec2& to_mm, double lead_mm, double from_turns,
                                           double low_r_mm, double high_r_mm, std::uint64_t id);
 
+  /// The same of all that it is made of, from a file: none of numbers that no move leaves.
+  static std::optional<ThreadPass> restored(ConvexChain corners, const Vec2& from_mm,
+                                            const Vec2& to_mm, double lead_mm, double from_turns,
+                                            double low_r_mm, double high_r_mm, std::uint64_t id);
+  /// As it lies when the part is held the other way round: z becomes `at_z_mm` - z.
+  ThreadPass turned_about(double at_z_mm) const;
+
   const ConvexChain& corners() const { return corners_; }  ///< about the controlled point
   const Vec2& from_mm() const { return from_; }
   const Vec2& to_mm() const { return to_; }
@@ -46,6 +53,8 @@ class ThreadPass {
   double low_r_mm() const { return low_r_mm_; }
   double high_r_mm() const { return high_r_mm_; }
   std::uint64_t id() const { return id_; }
+  /// The id as edges are marked with it (TurnedPart::keep_cut_ids).
+  std::uint32_t mark() const;
 
   double length_mm() const { return length_mm_; }
   const Vec2& direction() const { return direction_; }
@@ -80,6 +89,9 @@ class ThreadPass {
   bool covers(const ThreadPass& other) const;
 
  private:
+  void set_way(const Vec2& from_mm, const Vec2& to_mm);
+  void find_extent();
+
   ConvexChain corners_;
   Vec2 from_{0}, to_{0}, direction_{0}, low_{0}, high_{0};
   double lead_mm_ = 0, from_turns_ = 0, length_mm_ = 0, low_r_mm_ = 0, high_r_mm_ = 0;

@@ -42,8 +42,7 @@ void ThreadSet::measure(std::size_t i, std::size_t first, std::span<const Contou
   auto cells = std::make_shared<Cells>(ThreadIntegral::cell_count(pass), 0.0);
   if (cells_[i] != nullptr) std::copy_n(cells_[i]->begin(), first, cells->begin());
   for (std::size_t k = first; k < cells->size(); ++k) {
-    (*cells)[k] =
-        scratch_.integral.cell_mm3(pass, k, std::span(passes_).first(i), scratch_.edges);
+    (*cells)[k] = scratch_.integral.cell_mm3(pass, k, std::span(passes_).first(i), scratch_.edges);
   }
   volumes_mm3_[i] = std::accumulate(cells->begin(), cells->end(), 0.0);
   cells_[i] = std::move(cells);
@@ -131,6 +130,7 @@ void ThreadSet::carve(double turns, double low_z_mm, double high_z_mm, ConvexCut
                       std::vector<Contour>& region) const {
   ConvexRegion outline;
   std::vector<Point> corners;
+  const bool is_marked = !region.empty() && !region[0].runs()[0]->marks.empty();
   for (const auto& pass : passes_) {
     if (pass->swept_high_mm().x < low_z_mm || pass->swept_low_mm().x > high_z_mm) continue;
     // The part of the way on which the outline is between the two.
@@ -147,7 +147,12 @@ void ThreadSet::carve(double turns, double low_z_mm, double high_z_mm, ConvexCut
       corners.clear();
       for (const Vec2& p : pass->corners()) corners.push_back(to_units(p + at));
       outline.assign(corners);
-      if (!outline.empty() && cut.look(region, outline)) cut.apply(region);
+      if (outline.empty() || !cut.look(region, outline)) continue;
+      if (is_marked) {
+        cut.apply(region, pass->mark());
+      } else {
+        cut.apply(region);
+      }
     }
   }
 }

@@ -31,7 +31,7 @@ class ThreadSet {
                std::span<const Contour> region);
 
   /// Takes out of the region what is cut at one angle, in turns, between two places along z at
-  /// least.
+  /// least. Of one that is marked the new edges have the passes' ids.
   void carve(double turns, double low_z_mm, double high_z_mm, ConvexCut& cut,
              std::vector<Contour>& region) const;
   /// Round all that any of them sweeps.

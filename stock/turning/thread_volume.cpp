@@ -76,8 +76,8 @@ double common_moment_mm3(std::span<const ProfileEdge> region, const Vec2& by,
       const double low = std::max(e.low_z + by.x, f.low_z),
                    high = std::min(e.high_z + by.x, f.high_z);
       if (!(low < high)) continue;
-      own += e.sign * lesser_square(high - low, at(e, low - by.x) + by.y,
-                                    at(e, high - by.x) + by.y, at(f, low), at(f, high));
+      own += e.sign * lesser_square(high - low, at(e, low - by.x) + by.y, at(e, high - by.x) + by.y,
+                                    at(f, low), at(f, high));
     }
     sum += f.sign * own;
   }
@@ -112,7 +112,8 @@ void ThreadIntegral::add_beside(const ThreadPass& pass, const ThreadPass& other,
   for (int i = 0; i < 2; ++i) {
     const double low = beside.offset[i] + std::min(0.0, moved[i]),
                  high = beside.offset[i] + std::max(0.0, moved[i]);
-    if (low + other.low_mm()[i] >= pass.high_mm()[i] || high + other.high_mm()[i] <= pass.low_mm()[i])
+    if (low + other.low_mm()[i] >= pass.high_mm()[i] ||
+        high + other.high_mm()[i] <= pass.low_mm()[i])
       return;
   }
   beside_.push_back(beside);
@@ -130,7 +131,8 @@ void ThreadIntegral::find_beside(const ThreadPass& pass, const Range& ways,
     back.low_way = std::max(ways.low, lead);
     back.high_way = ways.high;
     const Vec2 apart = glm::abs(back.offset);
-    if (apart.x < pass.high_mm().x - pass.low_mm().x && apart.y < pass.high_mm().y - pass.low_mm().y)
+    if (apart.x < pass.high_mm().x - pass.low_mm().x &&
+        apart.y < pass.high_mm().y - pass.low_mm().y)
       beside_.push_back(back);
   }
   for (const auto& other : before) {
@@ -143,11 +145,12 @@ void ThreadIntegral::find_beside(const ThreadPass& pass, const Range& ways,
     // Only that part of its way along which it is near.
     const Vec2 middle = 0.5 * (low + high);
     const double along = glm::dot(middle - other->from_mm(), other->direction());
-    const double near = 0.5 * glm::length(high - low) +
-                        glm::length(glm::max(glm::abs(other->low_mm()), glm::abs(other->high_mm())));
+    const double near =
+        0.5 * glm::length(high - low) +
+        glm::length(glm::max(glm::abs(other->low_mm()), glm::abs(other->high_mm())));
     const double first = pass.turns_at(ways.low), last = pass.turns_at(ways.high);
-    const ThreadPass::Turns turns = other->turns_seen(
-        std::min(first, last), std::max(first, last), along - near, along + near);
+    const ThreadPass::Turns turns =
+        other->turns_seen(std::min(first, last), std::max(first, last), along - near, along + near);
     for (std::int64_t n = turns.first; n <= turns.last; ++n)
       add_beside(pass, *other, static_cast<double>(n), ways);
   }
@@ -210,16 +213,17 @@ double ThreadIntegral::integrate(const ThreadPass& pass, const Range& ways, doub
   const double centre = 0.5 * (ways.low + ways.high);
   std::array<Piece, kDeepest + 2> stack;
   std::size_t count = 0;
-  stack[count++] = {ways.low, ways.high, moment(pass, ways.low), moment(pass, centre),
-                    moment(pass, ways.high), 0};
+  stack[count++] = {
+      ways.low, ways.high, moment(pass, ways.low), moment(pass, centre), moment(pass, ways.high),
+      0};
   double sum = 0;
   while (count > 0) {
     const Piece p = stack[--count];
     const double middle = 0.5 * (p.low + p.high);
-    const Piece left{p.low, middle, p.first, moment(pass, 0.5 * (p.low + middle)), p.middle,
-                     p.depth + 1};
-    const Piece right{middle, p.high, p.middle, moment(pass, 0.5 * (middle + p.high)), p.last,
-                      p.depth + 1};
+    const Piece left{p.low,    middle,     p.first, moment(pass, 0.5 * (p.low + middle)),
+                     p.middle, p.depth + 1};
+    const Piece right{middle, p.high,     p.middle, moment(pass, 0.5 * (middle + p.high)),
+                      p.last, p.depth + 1};
     const double whole = simpson(p), halves = simpson(left) + simpson(right);
     if (std::abs(halves - whole) <= tolerance || p.depth == kDeepest) {
       sum += halves + (halves - whole) / 15;
@@ -294,8 +298,7 @@ double ThreadIntegral::cell_mm3(const ThreadPass& pass, std::size_t cell,
 
 ThreadIntegral::Place ThreadIntegral::look(
     const ThreadPass& pass, double way_mm,
-    std::span<const std::shared_ptr<const ThreadPass>> before,
-    std::span<const ProfileEdge> edges) {
+    std::span<const std::shared_ptr<const ThreadPass>> before, std::span<const ProfileEdge> edges) {
   const Vec2 by = pass.at(way_mm);
   near_.clear();
   for (const ProfileEdge& e : edges) {

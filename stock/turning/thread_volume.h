@@ -30,8 +30,9 @@ double common_moment_mm3(std::span<const ProfileEdge> region, const Vec2& by,
 /// Integrates, over the way of a pass, the moment of what it cuts at each place and what `before`
 /// and its own turns before have left there.
 ///
-/// The way is divided into cells of cell_mm(), the last one shorter. Between places where corners come to corners the
-/// moment is smooth nearly everywhere: an adaptive Simpson rule that is exact for cubics.
+/// The way is divided into cells of cell_mm(), the last one shorter. Between places where corners
+/// come to corners the moment is smooth nearly everywhere: an adaptive Simpson rule that is exact
+/// for cubics.
 class ThreadIntegral {
  public:
   static double cell_mm(const ThreadPass& pass);

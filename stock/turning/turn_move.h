@@ -28,6 +28,8 @@ struct TurnMove {
   /// M3 has it, so that a way toward -z leaves a right-hand one. It is at angle 0 where the move
   /// begins, or goes on from one that ended there.
   double lead_mm = 0;
+  /// It has a lead that is one (kLeastLead_mm).
+  bool winds() const;
 };
 
 namespace turning {

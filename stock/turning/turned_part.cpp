@@ -23,21 +23,14 @@ using turning::Rect;
 using turning::Ring;
 using turning::Wide;
 
-/// What a lathe may hold.
-constexpr double kMaxZ_mm = 2000, kMaxRadius_mm = 1000;
-static_assert(TurnedPart::kWayReach_mm == kMaxZ_mm + kMaxInsertReach_mm);
 static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
 /// Of level 0: what no view shows.
 constexpr double kPatchTolerance_mm = 0.002;
 
-std::uint64_t next_version() {
-  static std::atomic<std::uint64_t> last{0};
-  return last.fetch_add(1, std::memory_order_relaxed) + 1;
-}
-
 bool is_allowed(const Vec2& p) {
-  return std::abs(p.x) <= kMaxZ_mm && p.y >= 0 && p.y <= kMaxRadius_mm;  // not true of NaN
+  return std::abs(p.x) <= kMaxTurnedZ_mm && p.y >= 0 &&
+         p.y <= kMaxTurnedRadius_mm;  // not true of NaN
 }
 
 bool lies_in(const Contour& hole, const Ring& ring) {
@@ -55,6 +48,35 @@ Contour contour_of(const Ring& ring) {
 }
 
 Point mirrored(const Point& p) { return {p.X, -p.Y}; }
+
+/// The piece that the chuck holds; none where there is but one.
+std::optional<std::size_t> piece_held(const std::vector<Contour>& contours, ChuckSide chuck) {
+  std::size_t outer = 0, held = 0;
+  const auto before = [&](const Contour& a, const Contour& b) {
+    const turning::Unit reach =
+        chuck == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
+    if (reach != 0) return reach > 0;
+    const turning::Unit wider = a.box().max_y - b.box().max_y;
+    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
+  };
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    if (!contours[i].is_outer()) continue;
+    if (outer++ == 0 || before(contours[i], contours[held])) held = i;
+  }
+  if (outer < 2) return std::nullopt;
+  return held;
+}
+
+/// With the holes in it.
+void keep_piece(std::vector<Contour>& contours, std::size_t piece) {
+  const Ring ring = contours[piece].ring();
+  std::vector<Contour> kept;
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    if (i == piece || (!contours[i].is_outer() && lies_in(contours[i], ring)))
+      kept.push_back(std::move(contours[i]));
+  }
+  contours = std::move(kept);
+}
 
 }  // namespace
 
@@ -92,7 +114,8 @@ bool TurningTool::is_like(const TurningTool& other) const {
   return std::equal(parts_.begin(), parts_.end(), other.parts_.begin(), other.parts_.end(), same);
 }
 
-std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck) {
+std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck,
+                                             const std::optional<BarFlats>& flats) {
   turning::Rings rings, united;
   for (const std::vector<Vec2>& chain : blank) {
     Ring& ring = rings.emplace_back();
@@ -114,9 +137,10 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
     part.contours_.push_back(std::move(contour));
   }
   if (pieces != 1) return std::nullopt;
-  part.blank_moment6_ = part.moment6();
   part.chuck_ = chuck;
-  part.versions_.fill(next_version());
+  part.flats_ = flats;
+  part.blank_mm3_ = part.remaining_mm3();
+  part.touch_all();
   return part;
 }
 
@@ -165,33 +189,35 @@ turning::Engagement TurnedPart::cut_ring(const TurningTool& tool, const TurnMove
     if (!met.any && !thins()) return;
     touch_bands(scratch_.cut.changed());
     scratch_.cut.apply(contours_);
+    if (marked_) cut_marked(move.id);
   });
 }
 
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   scratch_.changed = {};
   sections_.reset();
-  if (std::abs(move.lead_mm) >= turning::kLeastLead_mm && !move.arc) return cut_thread(tool, move);
+  if (move.winds()) return cut_thread(tool, move);
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
-  const double wound_mm3 = threads_.volume_mm3();
+  const double missing_before = missing_mm3(), wound_before = threads_.volume_mm3();
   end_winding();
   const turning::Engagement engagement = cut_ring(tool, move);
   threads_.refresh(scratch_.changed, contours_);
-  const double less_mm3 = wound_mm3 - threads_.volume_mm3();
-  report.removed_mm3 = std::max(turning::volume_mm3(before - moment6()) - less_mm3, 0.0);
+  const double removed = turning::volume_mm3(before - moment6()) -
+                         (missing_before - missing_mm3()) - (wound_before - threads_.volume_mm3());
+  report.removed_mm3 = std::max(removed, 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
+  report.flanks_mm = engagement.flanks_mm;
   drop_free_pieces(move.id);
   return report;
 }
 
 std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
                                                      const TurnMove& move) const {
-  if (std::abs(move.lead_mm) >= turning::kLeastLead_mm && !move.arc)
-    return thread_contact(tool, move);
+  if (move.winds()) return thread_contact(tool, move);
   if (winding_) {
     TurnedPart turned = *this;
     turned.end_winding();
@@ -212,6 +238,13 @@ std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
   return contact;
 }
 
+std::uint64_t TurnedPart::next_version() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+void TurnedPart::touch_all() { versions_.fill(next_version()); }
+
 void TurnedPart::touch_bands(const Rect& box) {
   scratch_.changed.extend(box);
   const std::uint64_t version = next_version();
@@ -223,50 +256,30 @@ void TurnedPart::touch_bands(const Rect& box) {
 
 /// What the chuck does not hold falls, with the holes in it.
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
-  std::size_t outer = 0, held = 0, count = 0;
-  const auto before = [&](const Contour& a, const Contour& b) {
-    const turning::Unit reach =
-        chuck_ == ChuckSide::kLowZ ? b.box().min_x - a.box().min_x : a.box().max_x - b.box().max_x;
-    if (reach != 0) return reach > 0;
-    const turning::Unit wider = a.box().max_y - b.box().max_y;
-    return wider != 0 ? wider > 0 : a.moment6() > b.moment6();
-  };
+  const std::optional<std::size_t> held = piece_held(contours_, chuck_);
+  if (!held) return;
+  const std::size_t first = freed_.size();
   for (std::size_t i = 0; i < contours_.size(); ++i) {
-    if (!contours_[i].is_outer()) continue;
-    if (outer++ == 0 || before(contours_[i], contours_[held])) held = i;
-  }
-  if (outer < 2) return;
-  std::vector<Contour> kept;
-  for (std::size_t i = 0; i < contours_.size(); ++i) {
-    if (i == held) kept.push_back(contours_[i]);
-    if (i == held || !contours_[i].is_outer()) continue;
+    if (i == *held || !contours_[i].is_outer()) continue;
     const Rect& box = contours_[i].box();
     const Ring ring = contours_[i].ring();
     Wide moment6 = contours_[i].moment6();
+    double missing = flats_ ? turning::missing_mm3(contours_[i], *flats_) : 0;
     for (const Contour& hole : contours_) {
-      if (!hole.is_outer() && lies_in(hole, ring)) moment6 += hole.moment6();
+      if (hole.is_outer() || !lies_in(hole, ring)) continue;
+      moment6 += hole.moment6();
+      missing += flats_ ? turning::missing_mm3(hole, *flats_) : 0;
     }
-    ++count;
-    freed_.push_back({id, turning::volume_mm3(moment6), turning::to_mm(box.min_x),
+    freed_.push_back({id, turning::volume_mm3(moment6) - missing, turning::to_mm(box.min_x),
                       turning::to_mm(box.max_x), turning::to_mm(box.min_y),
                       turning::to_mm(box.max_y)});
     touch_bands(box);
   }
-  const Ring ring = contours_[held].ring();
-  for (Contour& contour : contours_) {
-    if (!contour.is_outer() && lies_in(contour, ring)) kept.push_back(std::move(contour));
-  }
-  contours_ = std::move(kept);
-  // The grooves of what has fallen are no longer anybody's.
-  for (std::size_t i = freed_.size() - count; i < freed_.size() && !threads_.empty(); ++i) {
-    TurnedPiece& piece = freed_[i];
-    const double before_mm3 = threads_.volume_mm3();
-    Rect box;
-    box.extend(turning::to_units(Vec2(piece.low_z_mm, piece.low_r_mm)));
-    box.extend(turning::to_units(Vec2(piece.high_z_mm, piece.high_r_mm)));
-    threads_.refresh(box, contours_);
-    piece.volume_mm3 -= before_mm3 - threads_.volume_mm3();
-  }
+  keep_piece(contours_, *held);
+  drop_threads_of_pieces(first);
+  if (!marked_) return;
+  if (const std::optional<std::size_t> same = piece_held(*marked_, chuck_))
+    keep_piece(*marked_, *same);
 }
 
 Wide TurnedPart::moment6() const {
@@ -275,9 +288,12 @@ Wide TurnedPart::moment6() const {
   return sum;
 }
 
-double TurnedPart::blank_mm3() const { return turning::volume_mm3(blank_moment6_); }
+double TurnedPart::missing_mm3() const {
+  return flats_ ? turning::missing_mm3(contours_, *flats_) : 0;
+}
+
 double TurnedPart::remaining_mm3() const {
-  return turning::volume_mm3(moment6()) - threads_.volume_mm3();
+  return turning::volume_mm3(moment6()) - missing_mm3() - threads_.volume_mm3();
 }
 
 Box TurnedPart::bounds_mm() const {
@@ -319,6 +335,10 @@ std::string TurnedPart::digest() const {
   XXH3_128bits_reset(&state);
   const std::int64_t frame[4] = {blank_.min_x, blank_.min_y, blank_.max_x, blank_.max_y};
   XXH3_128bits_update(&state, frame, sizeof frame);
+  if (flats_) {
+    const std::int64_t flats[2] = {flats_->count, turning::to_units(flats_->inner_radius_mm)};
+    XXH3_128bits_update(&state, flats, sizeof flats);
+  }
   for (const Ring& ring : rings) {
     const std::uint64_t size = ring.size();
     XXH3_128bits_update(&state, &size, sizeof size);
@@ -336,11 +356,17 @@ std::string TurnedPart::digest() const {
 
 std::size_t TurnedPart::unique_bytes() const {
   std::size_t bytes = threads_.unique_bytes();
-  for (const Contour& contour : contours_) {
+  const auto add = [&bytes](const Contour& contour) {
     bytes += contour.runs().capacity() * sizeof(turning::RunPointer);
     for (const turning::RunPointer& run : contour.runs()) {
-      if (run.use_count() == 1) bytes += sizeof *run + run->points.capacity() * sizeof(Point);
+      if (run.use_count() > 1) continue;
+      bytes += sizeof *run + run->points.capacity() * sizeof(Point) +
+               run->marks.capacity() * sizeof(std::uint32_t);
     }
+  };
+  for (const Contour& contour : contours_) add(contour);
+  if (marked_) {
+    for (const Contour& contour : *marked_) add(contour);
   }
   return bytes;
 }
@@ -354,22 +380,23 @@ turning::Unit TurnedPart::band_low(std::size_t band) const {
 double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
 
 TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
-  if (threads_.empty()) return turning::revolve(contours_, tolerance_mm);
-  return turning::wind(contours_, threads_, tolerance_mm);
+  if (!threads_.empty()) return turning::wind(contours_, threads_, tolerance_mm, flats());
+  return turning::revolve(contours_, tolerance_mm, flats());
 }
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
   const turning::Unit low = band_low(band), high = band_low(band + 1);
-  const turning::Rect wound = threads_.box();
+  const bool is_last = band + 1 == kBands;
+  const Rect wound = threads_.box();
   const bool is_wound = !threads_.empty() && wound.min_x <= high && wound.max_x >= low;
   if (is_wound && sections_ == nullptr) {
     sections_ = std::make_shared<const turning::WoundSections>(
-        turning::wound_sections(contours_, threads_, turning::kPatchSegments));
+        turning::wound_sections(shown(), threads_, turning::kPatchSegments, flats_));
   }
   MeshPatch patch =
-      is_wound ? turning::wind_band(*sections_, contours_, low, high, band + 1 == kBands, tolerance_mm)
-               : turning::revolve_band(contours_, low, high, band + 1 == kBands, tolerance_mm);
+      is_wound ? turning::wind_band(*sections_, shown(), low, high, is_last, tolerance_mm, flats())
+               : turning::revolve_band(shown(), low, high, is_last, tolerance_mm, flats());
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];
   patch.level = level;

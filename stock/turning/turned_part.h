@@ -20,6 +20,7 @@
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 #include "stock/cutter/insert.h"
+#include "stock/turning/bar_flats.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
@@ -30,8 +31,15 @@
 
 namespace kerf {
 
+namespace turning {
+struct SavedPart;
+}  // namespace turning
+
 /// Closed chains of (z, r), mm: even-odd, so holes may run either way.
 using TurnedProfile = std::vector<std::vector<Vec2>>;
+
+/// What a lathe may hold.
+inline constexpr double kMaxTurnedZ_mm = 2000, kMaxTurnedRadius_mm = 1000;
 
 TurnedProfile bar_profile(double low_z_mm, double high_z_mm, double diameter_mm);
 TurnedProfile tube_profile(double low_z_mm, double high_z_mm, double diameter_mm, double bore_mm);
@@ -71,6 +79,9 @@ struct TurnCut {
   double way_mm = 0;  ///< length of the way in material
   /// By InsertSide, width of the material, across the way, that edges of this side came to first.
   std::array<double, kInsertSides> side_mm{};
+  /// The width that front and back flank came to at once, the lesser of the two: one leads, and the
+  /// other one trails.
+  double flanks_mm = 0;
 };
 
 /// Where a move first meets material.
@@ -95,19 +106,33 @@ struct TurnedPiece {
 /// move is cut when it is given: any division into calls gives the same bits. One thread. A copy
 /// shares what neither of the two changes, and may go to another thread.
 ///
+/// A bar of flats is the round one through its corners with a note of the flats: volumes and
+/// surfaces are those of the bar, a tool touches where the corners come by.
+///
 /// A move with a lead leaves a groove that winds. The region is then what is there at some angle,
 /// and the grooves are kept beside it (thread_set.h): volumes, sections and meshes are without
 /// them, contacts of moves that go all round are those of the region. What a groove is not there at
 /// all round is in the region: the crests of a thread are judged as rings. Where a move with a lead
 /// has ended in material, and does not go on, the tool leaves a ring, with the next move. A groove
-/// that cuts through a wall does not set it free.
+/// that cuts through a wall does not set it free, and one beyond the flats of a bar counts as if
+/// the bar were round there.
 ///
-/// Not held: a bar that is not round, runout.
+/// Not held: runout.
 class TurnedPart {
  public:
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
+  /// With flats the blank is that of their corners' circle.
   static std::optional<TurnedPart> create(const TurnedProfile& blank,
-                                          ChuckSide chuck = ChuckSide::kLowZ);
+                                          ChuckSide chuck = ChuckSide::kLowZ,
+                                          const std::optional<BarFlats>& flats = std::nullopt);
+
+  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  turning::SavedPart saved() const;
+  static TurnedPart restored(turning::SavedPart saved);
+
+  /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
+  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  std::optional<TurnedPart> turned_about(double at_z_mm) const;
 
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
@@ -117,10 +142,26 @@ class TurnedPart {
   /// is deeper counts.
   std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
 
+  /// From now on remembers which move has made each edge of the contours; all of them count as not
+  /// cut. Costs as much again as cutting does, and nothing while off. A move is named by its id, of
+  /// which 0xffff'fffe and above count as 0xffff'fffe.
+  void keep_cut_ids(bool keep);
+  bool keeps_cut_ids() const { return marked_.has_value(); }
+  /// The move that made the surface at (z, r), mm: the nearest edge to it, if that is no farther
+  /// than `within_mm`; of several that are as near the first. Edges are kept apart where one move's
+  /// ends and another's begins, also within a cylinder; what a move cuts that lies less than 20 nm
+  /// below what was there keeps the id of that. O(corners).
+  std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double within_mm) const;
+  /// The same on the section at this angle: with threads these differ.
+  std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double angle_rad,
+                                         double within_mm) const;
+
   /// What came off so far, in order.
   const std::vector<TurnedPiece>& freed() const { return freed_; }
 
-  double blank_mm3() const;
+  /// Of the blank; none of one that is round.
+  const std::optional<BarFlats>& flats() const { return flats_; }
+  double blank_mm3() const { return blank_mm3_; }
   double remaining_mm3() const;
   /// Grooves that wind. Empty without moves that have a lead.
   const turning::ThreadSet& threads() const { return threads_; }
@@ -143,7 +184,7 @@ class TurnedPart {
   TriangleMesh mesh(double tolerance_mm) const;
 
   /// So far the controlled point is followed: farther away no tool reaches a blank.
-  static constexpr double kWayReach_mm = 2300;
+  static constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
 
   /// For views the part is divided along z into kBands of equal width.
   static constexpr std::size_t kBands = 64;
@@ -165,7 +206,7 @@ class TurnedPart {
     Scratch(const Scratch&) {}
     Scratch& operator=(const Scratch&) { return *this; }
 
-    turning::ConvexCut cut;
+    turning::ConvexCut cut, marked_cut;
     turning::ConvexRegion swept;
     turning::GridPart::Lead lead;
     turning::GridPart::Scratch sweep;
@@ -180,6 +221,7 @@ class TurnedPart {
     std::shared_ptr<const TurningTool> tool;
     Vec2 at_mm{0};
     double lead_mm = 0, turns = 0;  // there
+    std::uint64_t id = 0;
     // Where it began to go straight, and the directions, relative to the first, that keep to it.
     Vec2 from_mm{0};
     double from_turns = 0, heading_rad = 0, low_rad = 0, high_rad = 0;
@@ -189,29 +231,40 @@ class TurnedPart {
   TurnedPart() = default;
   template <class Each>
   turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
+  turning::Engagement cut_ring(const TurningTool& tool, const TurnMove& move);
   TurnCut cut_thread(const TurningTool& tool, const TurnMove& move);
   std::optional<TurnContact> thread_contact(const TurningTool& tool, const TurnMove& move) const;
   std::vector<std::shared_ptr<const turning::ThreadPass>> passes_of(
       const TurningTool& tool, const Vec2& from_mm, const Vec2& to_mm, double lead_mm,
       double from_turns, std::uint64_t id) const;
+  bool goes_on(const TurnMove& move) const;
   Winding winding_after(const TurningTool& tool, const TurnMove& move) const;
   void measure_thread(const std::vector<std::shared_ptr<const turning::ThreadPass>>& fresh,
                       double from_way_mm, TurnCut& report, TurnContact& first) const;
   void clear_all_round(std::span<const std::shared_ptr<const turning::ThreadPass>> fresh);
-  turning::Engagement cut_ring(const TurningTool& tool, const TurnMove& move);
   void end_winding();
+  void drop_threads_of_pieces(std::size_t first_piece);
+  const std::vector<turning::Contour>& shown() const { return marked_ ? *marked_ : contours_; }
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
+  void cut_marked(std::uint64_t id);
+  double missing_mm3() const;
+  static std::uint64_t next_version();
+  void touch_all();
   void touch_bands(const turning::Rect& box);
   turning::Unit band_low(std::size_t band) const;
 
   std::vector<turning::Contour> contours_;
+  /// The same by moves, where these are kept: cut for itself, so that contours_ are the same
+  /// whether they are or not. Corners may differ by some units.
+  std::optional<std::vector<turning::Contour>> marked_;
   turning::ThreadSet threads_;
   std::optional<Winding> winding_;
   turning::Rect blank_;
-  turning::Wide blank_moment6_ = 0;
+  double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;
+  std::optional<BarFlats> flats_;
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;

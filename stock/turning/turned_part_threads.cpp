@@ -63,8 +63,8 @@ double angle_between(double heading_rad, const Vec2& way) {
 }  // namespace
 
 std::vector<PassPointer> TurnedPart::passes_of(const TurningTool& tool, const Vec2& from_mm,
-                                               const Vec2& to_mm, double lead_mm,
-                                               double from_turns, std::uint64_t id) const {
+                                               const Vec2& to_mm, double lead_mm, double from_turns,
+                                               std::uint64_t id) const {
   std::vector<PassPointer> passes;
   for (const bool is_below : {false, true}) {
     const std::vector<turning::GridPart>& parts = is_below ? tool.below_ : tool.parts_;
@@ -97,18 +97,25 @@ std::vector<PassPointer> TurnedPart::passes_of(const TurningTool& tool, const Ve
   return passes;
 }
 
+/// From where a move with a lead has ended, in phase: LinuxCNC's spindle stays in step as long as
+/// moves with a lead follow each other.
+bool TurnedPart::goes_on(const TurnMove& move) const {
+  return winding_ && winding_->at_mm == move.from_mm &&
+         (winding_->lead_mm < 0) == (move.lead_mm < 0);
+}
+
 /// Where the move leaves the part, and what it is a part of. `passes` is that of the move before.
 TurnedPart::Winding TurnedPart::winding_after(const TurningTool& tool, const TurnMove& move) const {
   const Vec2 way = move.to_mm - move.from_mm;
   const double length = glm::length(way);
-  const bool goes_on = winding_ && winding_->at_mm == move.from_mm &&
-                       (winding_->lead_mm < 0) == (move.lead_mm < 0);
+  const bool is_next = goes_on(move);
   Winding after;
-  if (goes_on) after = *winding_;
-  const bool is_same_tool = goes_on && winding_->tool->is_like(tool);
+  if (is_next) after = *winding_;
+  const bool is_same_tool = is_next && winding_->tool->is_like(tool);
+  after.id = move.id;
   after.at_mm = move.to_mm;
   if (!is_same_tool) after.tool = std::make_shared<const TurningTool>(tool);
-  const double turns = goes_on ? winding_->turns : 0;
+  const double turns = is_next ? winding_->turns : 0;
   after.turns = turns - length / move.lead_mm;
   const Vec2 whole = move.to_mm - after.from_mm;
   const double angle = angle_between(after.heading_rad, whole);
@@ -137,13 +144,11 @@ TurnCut TurnedPart::cut_thread(const TurningTool& tool, const TurnMove& move) {
   turning::append_way(move, kWayReach_mm, chords);
   const bool is_near = chords.size() == 1 && chords[0].from.t == 0 && chords[0].to.t == 1;
   const turning::Wide before = moment6();
-  const double wound_mm3 = threads_.volume_mm3();
+  const double missing_before = missing_mm3(), wound_before = threads_.volume_mm3();
   if (!is_finite(move.from_mm) || !is_finite(move.to_mm)) return report;
   Winding after = winding_after(tool, move);
   const std::vector<PassPointer> replaced = std::move(after.passes);
-  const bool goes_on = winding_ && winding_->at_mm == move.from_mm &&
-                       (winding_->lead_mm < 0) == (move.lead_mm < 0);
-  if (!goes_on) end_winding();
+  if (!goes_on(move)) end_winding();
   Vec2 from_mm = after.from_mm, to_mm = move.to_mm;
   double from_turns = after.from_turns;
   if (!is_near && !chords.empty()) {
@@ -162,8 +167,9 @@ TurnCut TurnedPart::cut_thread(const TurningTool& tool, const TurnMove& move) {
   threads_.refresh(scratch_.changed, contours_);
   threads_.add(after.passes, replaced, contours_);
   winding_ = std::move(after);
-  report.removed_mm3 = std::max(
-      turning::volume_mm3(before - moment6()) - (wound_mm3 - threads_.volume_mm3()), 0.0);
+  const double removed = turning::volume_mm3(before - moment6()) -
+                         (missing_before - missing_mm3()) - (wound_before - threads_.volume_mm3());
+  report.removed_mm3 = std::max(removed, 0.0);
   drop_free_pieces(move.id);
   return report;
 }
@@ -208,8 +214,7 @@ void TurnedPart::clear_all_round(std::span<const PassPointer> fresh) {
     std::vector<double> places{0};  // of the same outline on the same line, within a lead
     for (const PassPointer& other : threads_.passes()) {
       const Vec2 apart = other->from_mm() - pass->from_mm();
-      const double across =
-          apart.x * pass->direction().y - apart.y * pass->direction().x;
+      const double across = apart.x * pass->direction().y - apart.y * pass->direction().x;
       if (glm::distance(other->step_mm(), pass->step_mm()) > 1e-6 * lead ||
           std::abs(across) > turning::kThreadFilm_mm || other->corners() != pass->corners() ||
           other->length_mm() + lead < pass->length_mm())
@@ -226,6 +231,7 @@ void TurnedPart::clear_all_round(std::span<const PassPointer> fresh) {
     if (scratch_.swept.empty() || !scratch_.cut.look(contours_, scratch_.swept)) continue;
     touch_bands(scratch_.cut.changed());
     scratch_.cut.apply(contours_);
+    if (marked_) cut_marked(pass->id());
   }
 }
 
@@ -233,9 +239,23 @@ void TurnedPart::clear_all_round(std::span<const PassPointer> fresh) {
 void TurnedPart::end_winding() {
   if (!winding_) return;
   const std::shared_ptr<const TurningTool> tool = winding_->tool;
-  const Vec2 at = winding_->at_mm;
+  const TurnMove stop{winding_->at_mm, winding_->at_mm, std::nullopt, winding_->id};
   winding_.reset();
-  cut_ring(*tool, {at, at, std::nullopt, 0});
+  cut_ring(*tool, stop);
+}
+
+/// The grooves of what has fallen are no longer anybody's.
+void TurnedPart::drop_threads_of_pieces(std::size_t first_piece) {
+  if (threads_.empty()) return;
+  for (std::size_t i = first_piece; i < freed_.size(); ++i) {
+    TurnedPiece& piece = freed_[i];
+    const double before_mm3 = threads_.volume_mm3();
+    turning::Rect box;
+    box.extend(turning::to_units(Vec2(piece.low_z_mm, piece.low_r_mm)));
+    box.extend(turning::to_units(Vec2(piece.high_z_mm, piece.high_r_mm)));
+    threads_.refresh(box, contours_);
+    piece.volume_mm3 -= before_mm3 - threads_.volume_mm3();
+  }
 }
 
 std::optional<TurnContact> TurnedPart::thread_contact(const TurningTool& tool,
@@ -244,9 +264,7 @@ std::optional<TurnContact> TurnedPart::thread_contact(const TurningTool& tool,
   TurnContact contact;
   contact.t = 2;  // not yet
   TurnCut met;
-  const bool goes_on = winding_ && winding_->at_mm == move.from_mm &&
-                       (winding_->lead_mm < 0) == (move.lead_mm < 0);
-  const double turns = goes_on ? winding_->turns : 0;
+  const double turns = goes_on(move) ? winding_->turns : 0;
   measure_thread(passes_of(tool, move.from_mm, move.to_mm, move.lead_mm, turns, move.id), 0, met,
                  contact);
   if (contact.t > 1) return std::nullopt;
@@ -256,9 +274,9 @@ std::optional<TurnContact> TurnedPart::thread_contact(const TurningTool& tool,
 
 TurnedProfile TurnedPart::section(double angle_rad) const {
   std::vector<Contour> region = contours_;
-  const turning::Unit low = blank_.min_x, high = blank_.max_x;
-  threads_.carve(angle_rad / (2 * kPi), turning::to_mm(low), turning::to_mm(high), scratch_.cut,
-                 region);
+  threads_.carve(angle_rad / (2 * kPi), turning::to_mm(blank_.min_x), turning::to_mm(blank_.max_x),
+                 scratch_.cut, region);
+  if (flats_) turning::cut_flat(*flats_, angle_rad, scratch_.cut, region);
   TurnedProfile profile;
   for (const Contour& contour : region) {
     std::vector<Vec2>& chain = profile.emplace_back();

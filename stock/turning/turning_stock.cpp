@@ -8,6 +8,9 @@
 
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
+#include "stock/state_bytes.h"
+#include "stock/turning/revolve.h"
+#include "stock/turning/turning_state.h"
 
 namespace kerf {
 namespace {
@@ -72,6 +75,7 @@ void extend(TurnCut& whole, const TurnCut& part) {
   whole.removed_mm3 += part.removed_mm3;
   whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
   whole.way_mm += part.way_mm;
+  whole.flanks_mm = std::max(whole.flanks_mm, part.flanks_mm);
   for (std::size_t i = 0; i < kInsertSides; ++i)
     whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
 }
@@ -108,21 +112,60 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
 
 void TurningStock::finish(std::vector<CutReport>&) {}
 
-std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const CutMove& move,
-                                                   double tolerance_mm) const {
+std::optional<TurnContact> TurningStock::first_turn_contact(const Cutter& cutter,
+                                                            const CutMove& move,
+                                                            double tolerance_mm) const {
   const TurningTool& tool = tool_of(cutter);
   if (ready_.inset_mm != tolerance_mm) {
     ready_.inset = tool.inset(tolerance_mm);
     ready_.inset_mm = tolerance_mm;
   }
-  std::optional<Contact> contact;
-  for (const TurnMove& turn : moves_of(cutter, move)) {
-    const std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turn);
+  std::optional<TurnContact> first;
+  const std::vector<TurnMove> turns = moves_of(cutter, move);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turns[i]);
     if (!met) continue;
-    if (!contact) contact = Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), 0};
-    contact->depth_mm = std::max(contact->depth_mm, met->depth_mm + tolerance_mm);
+    met->depth_mm += tolerance_mm;
+    if (!first) {
+      first = met;
+      first->t = (static_cast<double>(i) + met->t) / static_cast<double>(turns.size());
+      continue;
+    }
+    first->depth_mm = std::max(first->depth_mm, met->depth_mm);
+    for (std::size_t side = 0; side < kInsertSides; ++side)
+      first->side_mm[side] = std::max(first->side_mm[side], met->side_mm[side]);
   }
-  return contact;
+  return first;
+}
+
+std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const CutMove& move,
+                                                   double tolerance_mm) const {
+  const std::optional<TurnContact> met = first_turn_contact(cutter, move, tolerance_mm);
+  if (!met) return std::nullopt;
+  return Contact{Vec3(met->at_mm.y, move.from_mm.y, met->at_mm.x), met->depth_mm};
+}
+
+std::optional<std::uint32_t> TurningStock::cut_id_at(const Vec3& point_mm) const {
+  /// As near as patches of level 0 are to the part, and their vertices to where they should be.
+  constexpr double kNear_mm = 0.01;
+  constexpr double kStep_rad = 2 * kPi / turning::kPatchSegments;
+  const double angle = std::atan2(point_mm.y, point_mm.x) / kStep_rad;
+  const double off_rad = (angle - std::floor(angle) - 0.5) * kStep_rad;
+  const double on_facet = std::hypot(point_mm.x, point_mm.y);
+  const double r = on_facet * std::cos(off_rad) / std::cos(kStep_rad / 2);
+  return part_.cut_id_at({point_mm.z, r}, std::atan2(point_mm.y, point_mm.x), kNear_mm);
+}
+
+Done TurningStock::save(const std::string& path) const {
+  return turning::write_part(path, part_.saved());
+}
+
+Result<std::unique_ptr<TurningStock>> TurningStock::load(const std::string& path) {
+  const Result<std::string> bytes = read_state_bytes(path);
+  if (!bytes) return Error{bytes.error()};
+  Result<turning::SavedPart> saved = turning::parse_part(*bytes, path);
+  if (!saved) return Error{saved.error()};
+  return std::make_unique<TurningStock>(TurnedPart::restored(std::move(saved.value())));
 }
 
 std::unique_ptr<StockModel> TurningStock::snapshot() const {
@@ -132,7 +175,7 @@ std::unique_ptr<StockModel> TurningStock::snapshot() const {
 
 std::size_t TurningStock::unique_bytes() const { return part_.unique_bytes(); }
 
-Done TurningStock::accepts(const Cutter& cutter) const {
+Done TurningStock::can_cut(const Cutter& cutter) {
   if (outline_of(cutter) != nullptr) return std::monostate{};
   return Error{
       trf("{}: cannot be cut with on a lathe; a tool that stands still has no hollow arcs "

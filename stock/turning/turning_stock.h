@@ -18,7 +18,7 @@ namespace kerf {
 /// Of a cutter with an outline (Cutter::insert()) that is cut; any other stands still along the
 /// axis with its tip towards -z, as a drill in the tailstock does.
 ///
-/// Nothing is held back: finish() has nothing to do. Not saved yet. One thread.
+/// Nothing is held back: finish() has nothing to do. One thread.
 class TurningStock final : public StockModel {
  public:
   explicit TurningStock(TurnedPart part);
@@ -28,16 +28,28 @@ class TurningStock final : public StockModel {
   void finish(std::vector<CutReport>& reports) override;
   std::optional<Contact> first_contact(const Cutter& cutter, const CutMove& move,
                                        double tolerance_mm) const override;
+  /// The same with the sides that touch, and when.
+  std::optional<TurnContact> first_turn_contact(const Cutter& cutter, const CutMove& move,
+                                                double tolerance_mm) const;
   /// With which sides they were made, and how long the tool was in material: of the moves of the
   /// last call of cut(), in order.
   std::span<const TurnCut> last_cuts() const { return last_cuts_; }
   /// With what has come off.
   const TurnedPart& part() const { return part_; }
 
+  Done save(const std::string& path) const override;
+  /// Error: cannot be read, no such file, damaged.
+  static Result<std::unique_ptr<TurningStock>> load(const std::string& path);
+
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
+  void keep_cut_ids(bool keep) override { part_.keep_cut_ids(keep); }
+  bool keeps_cut_ids() const override { return part_.keeps_cut_ids(); }
+  /// Points of patches lie within the round of the part: what a facet is short of it is added.
+  std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
   /// Error for a cutter without an outline whose profile has hollow arcs or that is too long.
-  Done accepts(const Cutter& cutter) const override;
+  static Done can_cut(const Cutter& cutter);
+  Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }
   const TurningStock* turned() const override { return this; }
   std::string name() const override { return "turning"; }
   Box bounds_mm() const override;

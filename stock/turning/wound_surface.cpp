@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "stock/turning/around.h"
 #include "stock/turning/revolve.h"
 
 namespace kerf::turning {
@@ -12,8 +13,7 @@ namespace {
 
 /// Edges that turn by more are seen as such.
 constexpr double kEdgeCosine = 0.866;
-/// A turn is divided at least so often that a groove moves along by no more than this share of the
-/// tolerance times 100: it keeps features in step.
+/// A turn is divided at least so often: so that a groove moves along by little in a step.
 constexpr int kFewestSections = 72;
 
 Vec2 direction_at(int i, int segments) {
@@ -21,27 +21,26 @@ Vec2 direction_at(int i, int segments) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-glm::vec3 in_space(const Vec2& zr, const Vec2& direction) {
-  return {static_cast<float>(zr.y * direction.x), static_cast<float>(zr.y * direction.y),
-          static_cast<float>(zr.x)};
-}
-
-std::vector<Vec2> closed_chain_of(const Contour& contour) {
-  std::vector<Vec2> chain;
-  for (const Point& p : contour.ring()) chain.push_back(to_mm(p));
-  chain.push_back(chain.front());
+BandChain closed_chain_of(const Contour& contour) {
+  BandChain chain;
+  for (const Point& p : contour.ring()) chain.points.push_back(to_mm(p));
+  chain.marks.resize(chain.points.size());
+  chain.points.push_back(chain.points.front());
   return chain;
 }
 
 /// A closed one, at the corner of lowest z, of these the lowest.
-void begin_at_lowest(std::vector<Vec2>& chain) {
-  if (chain.front() != chain.back()) return;
-  chain.pop_back();
-  const auto first = [](const Vec2& a, const Vec2& b) {
-    return a.x != b.x ? a.x < b.x : a.y < b.y;
-  };
-  std::rotate(chain.begin(), std::min_element(chain.begin(), chain.end(), first), chain.end());
-  chain.push_back(chain.front());
+void begin_at_lowest(BandChain& chain) {
+  std::vector<Vec2>& points = chain.points;
+  if (points.front() != points.back()) return;
+  points.pop_back();
+  const auto first = std::min_element(
+      points.begin(), points.end(),
+      [](const Vec2& a, const Vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::rotate(chain.marks.begin(), chain.marks.begin() + (first - points.begin()),
+              chain.marks.end());
+  std::rotate(points.begin(), first, points.end());
+  points.push_back(points.front());
 }
 
 double squared(const Vec2& v) { return glm::dot(v, v); }
@@ -54,7 +53,8 @@ void zip(std::size_t first_count, std::size_t second_count, Place&& place, Step&
   while (i + 1 < first_count || j + 1 < second_count) {
     bool along_first = j + 1 == second_count;
     if (!along_first && i + 1 < first_count) {
-      along_first = squared(place(0, i + 1) - place(1, j)) <= squared(place(1, j + 1) - place(0, i));
+      along_first =
+          squared(place(0, i + 1) - place(1, j)) <= squared(place(1, j + 1) - place(0, i));
     }
     step(i, j, along_first);
     ++(along_first ? i : j);
@@ -71,9 +71,8 @@ void put_in_order(std::vector<Contour>& contours) {
 }
 
 bool have_as_many_rings(const WoundSections& sections) {
-  return std::all_of(sections.begin(), sections.end(), [&](const std::vector<Contour>& s) {
-    return s.size() == sections[0].size();
-  });
+  return std::all_of(sections.begin(), sections.end(),
+                     [&](const std::vector<Contour>& s) { return s.size() == sections[0].size(); });
 }
 
 /// One vertex a corner and angle; those on the axis are one for all angles.
@@ -86,9 +85,9 @@ class WoundMesh {
     std::vector<std::vector<Vec2>> chains;
     std::vector<std::vector<std::uint32_t>> corners;
     for (int k = 0; k < segments_; ++k) {
-      std::vector<Vec2> chain = closed_chain_of(sections[static_cast<std::size_t>(k)][contour]);
+      BandChain chain = closed_chain_of(sections[static_cast<std::size_t>(k)][contour]);
       begin_at_lowest(chain);
-      chains.push_back(simplified(chain, tolerance_mm));
+      chains.push_back(simplified(chain.points, tolerance_mm));
       std::vector<std::uint32_t>& row = corners.emplace_back();
       for (std::size_t i = 0; i + 1 < chains.back().size(); ++i)
         row.push_back(vertex(chains.back()[i], k));
@@ -98,7 +97,7 @@ class WoundMesh {
       const std::size_t next = k + 1 == chains.size() ? 0 : k + 1;
       zip(
           chains[k].size(), chains[next].size(),
-          [&](int second, std::size_t i) { return second != 0 ? chains[next][i] : chains[k][i]; },
+          [&](int side, std::size_t i) { return side != 0 ? chains[next][i] : chains[k][i]; },
           [&](std::size_t i, std::size_t j, bool along_first) {
             const std::uint32_t a = corners[k][i], b = corners[next][j],
                                 c = along_first ? corners[k][i + 1] : corners[next][j + 1];
@@ -114,7 +113,7 @@ class WoundMesh {
       const auto [at, is_new] = on_axis_.try_emplace(p.x, next);
       if (!is_new) return at->second;
     }
-    mesh_.positions_mm.push_back(in_space(p, direction_at(k, segments_)));
+    mesh_.positions_mm.push_back(place(p, direction_at(k, segments_)));
     return next;
   }
 
@@ -134,10 +133,12 @@ void append(const TriangleMesh& other, TriangleMesh& mesh) {
 /// A chain with its normals: corners at which it turns are there twice.
 struct ShownChain {
   std::vector<Vec2> at, normal;
+  std::vector<std::uint32_t> marks;
 };
 
-ShownChain shown(const std::vector<Vec2>& chain) {
+ShownChain shown(const BandChain& marked) {
   ShownChain made;
+  const std::vector<Vec2>& chain = marked.points;
   const std::size_t edges = chain.size() - 1;
   const bool closed = chain.front() == chain.back();
   const auto normal = [&](std::size_t i) {
@@ -148,15 +149,18 @@ ShownChain shown(const std::vector<Vec2>& chain) {
     const Vec2 own = normal(edge), beside = normal(other);
     return glm::dot(own, beside) < kEdgeCosine ? own : glm::normalize(own + beside);
   };
-  const auto add = [&](const Vec2& at, const Vec2& n) {
-    if (!made.at.empty() && made.at.back() == at && made.normal.back() == n) return;
+  const auto add = [&](const Vec2& at, const Vec2& n, std::uint32_t mark) {
+    if (!made.at.empty() && made.at.back() == at && made.normal.back() == n &&
+        made.marks.back() == mark)
+      return;
     made.at.push_back(at);
     made.normal.push_back(n);
+    made.marks.push_back(mark);
   };
   for (std::size_t i = 0; i < edges; ++i) {
     const bool has_before = i > 0 || closed, has_after = i + 1 < edges || closed;
-    add(chain[i], has_before ? joint(i, i > 0 ? i - 1 : edges - 1) : normal(i));
-    add(chain[i + 1], has_after ? joint(i, i + 1 < edges ? i + 1 : 0) : normal(i));
+    add(chain[i], has_before ? joint(i, i > 0 ? i - 1 : edges - 1) : normal(i), marked.marks[i]);
+    add(chain[i + 1], has_after ? joint(i, i + 1 < edges ? i + 1 : 0) : normal(i), marked.marks[i]);
   }
   return made;
 }
@@ -169,8 +173,28 @@ double highest(const std::vector<Vec2>& chain) {
 
 }  // namespace
 
+void cut_flat(const BarFlats& flats, double angle_rad, ConvexCut& cut,
+              std::vector<Contour>& region) {
+  Rect box;
+  for (const Contour& contour : region) box.extend(contour.box());
+  const Unit reach = to_units(flats.reach_mm(angle_rad)), beyond = to_units(1);
+  if (region.empty() || box.max_y <= reach) return;
+  std::vector<Point> corners{{box.min_x - beyond, reach},
+                             {box.max_x + beyond, reach},
+                             {box.max_x + beyond, box.max_y + beyond},
+                             {box.min_x - beyond, box.max_y + beyond}};
+  ConvexRegion above;
+  above.assign(corners);
+  if (!cut.look(region, above)) return;
+  if (region[0].runs()[0]->marks.empty()) {
+    cut.apply(region);
+  } else {
+    cut.apply(region, MeshPatch::kNotCut);
+  }
+}
+
 WoundSections wound_sections(std::span<const Contour> region, const ThreadSet& threads,
-                             int segments) {
+                             int segments, const std::optional<BarFlats>& flats) {
   WoundSections sections;
   ConvexCut cut;
   const Rect box = threads.box();
@@ -178,25 +202,28 @@ WoundSections wound_sections(std::span<const Contour> region, const ThreadSet& t
     std::vector<Contour>& section = sections.emplace_back(region.begin(), region.end());
     threads.carve(static_cast<double>(k) / segments, to_mm(box.min_x), to_mm(box.max_x), cut,
                   section);
+    if (flats) cut_flat(*flats, 2 * kPi * k / segments, cut, section);
     put_in_order(section);
   }
   return sections;
 }
 
-TriangleMesh wind(std::span<const Contour> region, const ThreadSet& threads, double tolerance_mm) {
+TriangleMesh wind(std::span<const Contour> region, const ThreadSet& threads, double tolerance_mm,
+                  const std::optional<BarFlats>& flats) {
   std::vector<Contour> plain, wound;
   Unit radius = 0;
   for (const Contour& contour : region) {
     (contour.box().meets(threads.box()) ? wound : plain).push_back(contour);
     radius = std::max(radius, contour.box().max_y);
   }
-  TriangleMesh mesh = revolve(plain, tolerance_mm);
+  TriangleMesh mesh = revolve(plain, tolerance_mm, flats);
   const double half = tolerance_mm > 0 ? tolerance_mm / 2 : 0;
-  const int segments =
-      std::max(segments_for(to_mm(radius), half > 0 ? half : kFinest_mm / 2), kFewestSections);
-  const WoundSections sections = wound_sections(wound, threads, segments);
+  const int segments = segments_with(
+      std::max(segments_for(to_mm(radius), half > 0 ? half : kFinest_mm / 2), kFewestSections),
+      flats);
+  const WoundSections sections = wound_sections(wound, threads, segments, flats);
   if (!have_as_many_rings(sections)) {
-    append(revolve(wound, tolerance_mm), mesh);
+    append(revolve(wound, tolerance_mm, flats), mesh);
     return mesh;
   }
   WoundMesh builder(mesh, segments);
@@ -205,16 +232,17 @@ TriangleMesh wind(std::span<const Contour> region, const ThreadSet& threads, dou
 }
 
 MeshPatch wind_band(const WoundSections& sections, std::span<const Contour> region, Unit low_z,
-                    Unit high_z, bool has_high_face, double tolerance_mm) {
+                    Unit high_z, bool has_high_face, double tolerance_mm,
+                    const std::optional<BarFlats>& flats) {
   const std::size_t segments = sections.size();
   std::vector<std::vector<ShownChain>> shown_at;
   for (const std::vector<Contour>& section : sections) {
     std::vector<ShownChain>& all = shown_at.emplace_back();
     for (const Contour& contour : section) {
       if (contour.box().max_x < low_z || contour.box().min_x > high_z) continue;
-      for (std::vector<Vec2>& chain : band_chains(contour, low_z, high_z, has_high_face)) {
+      for (BandChain& chain : band_chains(contour, low_z, high_z, has_high_face)) {
         begin_at_lowest(chain);
-        all.push_back(shown(simplified(chain, tolerance_mm)));
+        all.push_back(shown(simplified_by_marks(chain, tolerance_mm)));
       }
     }
     // Contours begin anywhere; from the axis outward.
@@ -222,9 +250,10 @@ MeshPatch wind_band(const WoundSections& sections, std::span<const Contour> regi
       return highest(a.at) < highest(b.at);
     });
     if (all.size() != shown_at[0].size())
-      return revolve_band(region, low_z, high_z, has_high_face, tolerance_mm);
+      return revolve_band(region, low_z, high_z, has_high_face, tolerance_mm, flats);
   }
   MeshPatch patch;
+  const bool is_marked = !region.empty() && !region[0].runs()[0]->marks.empty();
   for (std::size_t c = 0; c < shown_at[0].size(); ++c) {
     std::vector<std::uint32_t> first;  // of each angle, and once more of the first
     for (std::size_t k = 0; k <= segments; ++k) {
@@ -233,14 +262,15 @@ MeshPatch wind_band(const WoundSections& sections, std::span<const Contour> regi
       first.push_back(static_cast<std::uint32_t>(patch.vertices.size()));
       for (std::size_t i = 0; i < chain.at.size(); ++i) {
         patch.vertices.push_back(
-            {in_space(chain.at[i], direction), pack_normal(in_space(chain.normal[i], direction))});
+            {place(chain.at[i], direction), pack_normal(place(chain.normal[i], direction))});
+        if (is_marked) patch.cut_by.push_back(chain.marks[i]);
       }
     }
     for (std::size_t k = 0; k < segments; ++k) {
       const ShownChain &chain = shown_at[k][c], &next = shown_at[k + 1 == segments ? 0 : k + 1][c];
       zip(
           chain.at.size(), next.at.size(),
-          [&](int second, std::size_t i) { return second != 0 ? next.at[i] : chain.at[i]; },
+          [&](int side, std::size_t i) { return side != 0 ? next.at[i] : chain.at[i]; },
           [&](std::size_t i, std::size_t j, bool along_first) {
             const auto a = static_cast<std::uint32_t>(first[k] + i),
                        b = static_cast<std::uint32_t>(first[k + 1] + j),

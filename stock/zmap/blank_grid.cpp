@@ -97,6 +97,8 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
         "cell size {} mm exceeds the blank, which is {} x {} mm; 0.05 to 0.2 mm suits most parts",
         cell, size.x, size.y)};
   }
+  if (const std::string need = need_to_turn(blank); !need.empty())
+    return Error{trf("{} cannot hold it: {}", model, need)};
   for (const BlankBody& body : blank.bodies) {
     if (body.kind != BlankBody::Kind::kBox && body.axis != 'z')
       return Error{trf("{} cannot hold a cylinder along {}; its axis must be z", model, body.axis)};

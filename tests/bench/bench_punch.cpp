@@ -45,7 +45,7 @@ TurretPointer turret() {
   auto out = std::make_shared<Turret>();
   int number = 0;
   for (const char* const shape : {"round:10", "square:12", "obround:24:8", "rectangle:30:5"}) {
-    Result<SheetOutline> outline = parse_punch_shape(shape, 0.005);
+    Result<PlaneOutline> outline = parse_punch_shape(shape, 0.005);
     if (!outline) fail(outline.error());
     Result<Cutter> punch = punch_cutter(fmt::format("punch:{}", shape), *outline);
     if (!punch) fail(punch.error());

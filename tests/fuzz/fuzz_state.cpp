@@ -9,6 +9,7 @@
 
 #include "stock/octree/octree_state.h"
 #include "stock/sheet/sheet_state.h"
+#include "stock/turning/turning_state.h"
 #include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/state_file.h"
 
@@ -20,6 +21,7 @@ void parse(const std::string& bytes) {
   (void)kerf::parse_columns(bytes, "fuzz");
   (void)kerf::octree::parse_tree(bytes, "fuzz");
   (void)kerf::sheet::parse_sheet(bytes, "fuzz");
+  (void)kerf::turning::parse_part(bytes, "fuzz");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ const std::array kFolderRules{
     FolderRule{"base/", {"base/"}},
     FolderRule{"surface/", {"base/", "surface/"}},
     FolderRule{"stock/cutter/", {"base/", "stock/cutter/", "stock/blank.h"}},
-    FolderRule{"stock/plane/", {"base/", "stock/plane/"}},
+    FolderRule{"stock/plane/", {"base/", "stock/plane/", "stock/cutter/scan.h"}},
     FolderRule{"stock/", {"base/", "surface/", "stock/"}},
     FolderRule{"interp_bridge/", {"base/", "interp_bridge/"}},
     FolderRule{"machine_io/", {"base/", "machine_io/"}},

@@ -76,7 +76,9 @@ TEST(Blank, Described) {
 
 constexpr const char* kForms =
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
-    "state:FILE, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS";
+    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, profile:FILE.dxf, "
+    "profile:FILE.svg, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, "
+    "sheet:FILE.svg:THICKNESS";
 
 TEST(Blank, UnknownAndUnsupportedKinds) {
   EXPECT_EQ(error_of(""), std::string("no stock is given; forms: ") + kForms);
@@ -87,6 +89,47 @@ TEST(Blank, UnknownAndUnsupportedKinds) {
   EXPECT_EQ(error_of("box:0,0,0:1,1,1+state:x"),
             "state:x: state:FILE stands alone; it cannot be added to other bodies");
   EXPECT_EQ(error_of("state:"), "state:: the file name is missing; the form is state:FILE");
+}
+
+TEST(Blank, BarsOfFlats) {
+  const Result<Blank> hex = parse_blank("hex:0,0,-40:0:27");
+  ASSERT_TRUE(hex) << hex.error();
+  EXPECT_EQ(hex->bodies[0].kind, BlankBody::Kind::kBar);
+  EXPECT_EQ(hex->bodies[0].flats, 6);
+  EXPECT_EQ(hex->bodies[0].diameter_mm, 27);
+  EXPECT_NEAR(hex->bounds_mm().max.y, 13.5 / std::cos(kPi / 6), 1e-12);
+  EXPECT_EQ(hex->bounds_mm().max.x, 13.5);
+  EXPECT_EQ(hex->bounds_mm().min.z, -40);
+  EXPECT_EQ(described("hex:0,0,-40:0:27"), "hexagonal bar 27 x 40 mm along Z, X0 Y0 Z-40..0");
+  EXPECT_EQ(described("square:1,0,-40:0:27"), "square bar 27 x 40 mm along Z, X1 Y0 Z-40..0");
+  EXPECT_EQ(parse_blank("square:1,0,-40:0:20")->bounds_mm(), (Box{{-9, -10, -40}, {11, 10, 0}}));
+  EXPECT_EQ(need_to_turn(*hex), "the blank is a hexagonal bar");
+  EXPECT_EQ(need_to_turn(*parse_blank("cylinder:0,0,-5:0:9+square:0,0,0:9:8")),
+            "the blank is a square bar");
+  EXPECT_EQ(need_to_turn(*parse_blank("cylinder:0,0,-5:0:9")), "");
+  EXPECT_EQ(error_of("hex:0,0,-40:0"), "hex:0,0,-40:0: the form is hex:x,y,z0:z1:ACROSS_FLATS");
+  EXPECT_EQ(error_of("square:0,0,-40:0:5:z"),
+            "square:0,0,-40:0:5:z: the form is square:x,y,z0:z1:ACROSS_FLATS");
+  EXPECT_EQ(error_of("hex:0,0,-40:0:0"),
+            "hex:0,0,-40:0:0: across flats: 0 is not allowed; must be from 0.001 to 100000 (mm)");
+  EXPECT_EQ(
+      error_of("hex:0,0,4:0:3"),
+      "hex:0,0,4:0:3: Z runs from 4 to 0; the second must be at least 0.001 mm above the first");
+  EXPECT_EQ(parse_blank("hex:0,0,-1:0:1", LengthUnit::kInch)->bodies[0].diameter_mm, 25.4);
+}
+
+TEST(Blank, Profile) {
+  const Result<Blank> drawn = parse_blank("Profile: a+b:c.DXF");
+  ASSERT_TRUE(drawn) << drawn.error();
+  EXPECT_EQ(drawn->profile_file, "a+b:c.DXF");
+  EXPECT_TRUE(drawn->bounds_mm().empty());
+  EXPECT_EQ(describe(*drawn), "profile from a+b:c.DXF");
+  EXPECT_EQ(need_to_turn(*drawn), "the blank is a profile that turns");
+  EXPECT_EQ(error_of("profile:part.step"),
+            "profile:part.step: 'part.step' is not a drawing; the form is profile:FILE.dxf or "
+            "profile:FILE.svg");
+  EXPECT_EQ(error_of("cylinder:0,0,-5:0:9+profile:a.dxf"),
+            "profile:a.dxf: profile:FILE stands alone; it cannot be added to other bodies");
 }
 
 TEST(Blank, Sheet) {

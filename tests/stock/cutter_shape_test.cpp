@@ -164,10 +164,12 @@ TEST(Shape, KerfIsItsWidth) {
 TEST(Shape, UnknownNames) {
   EXPECT_EQ(error_of("flatt:3"),
             "flatt:3: unknown shape 'flatt'; did you mean 'flat'? Shapes: flat, ball, bull, vee, "
-            "taper, drill, lollipop, tslot, dovetail, kerf, profile");
+            "taper, drill, lollipop, tslot, dovetail, kerf, profile; to turn with: turn, iso, "
+            "groove, part, facegroove, thread, bore");
   EXPECT_EQ(error_of("endmill:3"),
             "endmill:3: unknown shape 'endmill'. Shapes: flat, ball, bull, vee, taper, drill, "
-            "lollipop, tslot, dovetail, kerf, profile");
+            "lollipop, tslot, dovetail, kerf, profile; to turn with: turn, iso, groove, part, "
+            "facegroove, thread, bore");
   EXPECT_EQ(error_of("  "),
             "the shape is empty; write for example flat:6 (flat, ball, bull, vee, taper, drill, "
             "lollipop, tslot, dovetail, kerf, profile)");

@@ -85,8 +85,13 @@ void check_outline_wishes(const std::optional<Blank>& blank, const OutputPaths& 
 void check_sheet_options(const std::optional<Blank>& blank, const Arguments& written,
                          Diagnostics& diagnostics) {
   if (!blank || is_sheet(*blank)) return;
+  const bool is_round =
+      std::none_of(blank->bodies.begin(), blank->bodies.end(),
+                   [](const BlankBody& body) { return body.kind == BlankBody::Kind::kBox; });
   for (const char* const option : {"--beam", "--kerf", "--pierce", "--slats", "--density"}) {
     if (!written.options.has(option)) continue;
+    // What is parted off on a lathe has a weight as well.
+    if (is_round && std::string_view(option) == "--density") continue;
     diagnostics.push_back(general_error(
         fmt::format("{}: {}", option, tr("is for sheets, and the blank is none; leave it out")),
         tr("--stock sheet:x0,y0:x1,y1:THICKNESS is one")));

@@ -18,6 +18,28 @@ Vec3 axis_of(char letter) {
   return letter == 'x' ? Vec3{1, 0, 0} : letter == 'y' ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
 }
 
+/// A prism, its faces outward.
+TriangleMesh mesh_of_bar(const BlankBody& bar) {
+  const auto n = static_cast<std::uint32_t>(bar.flats);
+  const double reach = bar.diameter_mm / 2 / std::cos(kPi / n);
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * kPi * (i + 0.5) / n;
+    for (const double z : {bar.bounds_mm.min.z, bar.bounds_mm.max.z})
+      mesh.positions_mm.emplace_back(bar.center_mm.x + reach * std::cos(angle),
+                                     bar.center_mm.y + reach * std::sin(angle), z);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t here = 2 * i, next = 2 * ((i + 1) % n);
+    mesh.triangles.push_back({here, next, next + 1});
+    mesh.triangles.push_back({here, next + 1, here + 1});
+    if (i < 2) continue;
+    mesh.triangles.push_back({0, here, here - 2});
+    mesh.triangles.push_back({1, here - 1, here + 1});
+  }
+  return mesh;
+}
+
 /// Its faces, outward. Facets lie as far outside of the round as inside.
 TriangleMesh mesh_of_tube(const BlankBody& tube) {
   const int along = tube.axis == 'x' ? 0 : tube.axis == 'y' ? 1 : 2;
@@ -112,6 +134,9 @@ SolidPointer Solid::of_bodies(std::span<const BlankBody> bodies) {
         break;
       case BlankBody::Kind::kTube:
         solid->add_mesh(mesh_of_tube(body));
+        break;
+      case BlankBody::Kind::kBar:
+        solid->add_mesh(mesh_of_bar(body));
         break;
       case BlankBody::Kind::kCylinder: {
         const Vec3 axis = axis_of(body.axis);

@@ -201,6 +201,10 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
     spec = resolved_spec(*node, "sheet:", stock.faults());
     blank = parse_blank(spec);
   }
+  if (blank && !blank->profile_file.empty()) {
+    spec = resolved_spec(*node, "profile:", stock.faults());
+    blank = parse_blank(spec);
+  }
   if (!blank) {
     stock.faults().at_value(*node, blank.error());
     return;

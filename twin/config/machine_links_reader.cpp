@@ -69,7 +69,10 @@ LinkSpec read_link(const GroupReader& group) {
   read_vector(group, "origin", link.chain.origin_mm);
   if (ConfigNode* const mesh = group.find("mesh")) {
     const Result<Blank> shape = parse_blank(mesh->scalar);
-    if (shape && !shape->bodies.empty()) {
+    if (shape && !need_to_turn(*shape).empty()) {
+      group.faults().at_value(*mesh, tr("bars and profiles are no shapes of a machine; a box is"),
+                              tr("a file is named by stl: FILE"));
+    } else if (shape && !shape->bodies.empty()) {
       link.bodies = shape->bodies;
       link.bodies_spec = mesh->scalar;
     } else {

@@ -29,11 +29,12 @@ constexpr std::array kWorkpieceSettings{
             .option = "--model",
             .commands = kCutting,
             .type = T::kWord,
-            .words = "auto|zmap|mmap|octree|sheet",
+            .words = "auto|zmap|mmap|octree|sheet|turning",
             .fallback = "auto",
             .purpose = tr_noop("how the workpiece is modelled; auto: what tools and motions need"),
-            .help = tr_noop("workpiece model: zmap | mmap | octree | sheet | auto (default {}: "
-                            "what blank, tools and motions need)"),
+            .help = tr_noop(
+                "workpiece model: zmap | mmap | octree | sheet | turning | auto (default {}: "
+                "what blank, tools and motions need)"),
             .value_name = "NAME",
             .refusal = tr_noop("'{}' is no model; allowed: {}")},
     Setting{.option = "--additive",

@@ -195,7 +195,7 @@ class TurretReader {
     }
     std::string spec = resolved_spec(*shape, "dxf:", faults_);
     if (spec == trim(shape->scalar)) spec = resolved_spec(*shape, "svg:", faults_);
-    const Result<SheetOutline> outline = parse_punch_shape(spec, kPunchTolerance_mm);
+    const Result<PlaneOutline> outline = parse_punch_shape(spec, kPunchTolerance_mm);
     if (!outline) {
       faults_.at_value(*shape, outline.error());
       return;

@@ -161,6 +161,16 @@ const char* to_string(FindingId id) {
       return "thin-film";
     case FindingId::kFeedLost:
       return "feed-lost";
+    case FindingId::kFlankContact:
+      return "flank-contact";
+    case FindingId::kThreadSpeed:
+      return "thread-speed";
+    case FindingId::kWrongPlane:
+      return "wrong-plane";
+    case FindingId::kPastCentre:
+      return "past-centre";
+    case FindingId::kPipLeft:
+      return "pip-left";
   }
   return "";
 }

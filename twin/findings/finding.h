@@ -84,6 +84,11 @@ enum class FindingId : std::uint8_t {
   kMachineCollision,  ///< what a machine carries touches what else it carries
   kNearMiss,          ///< two bodies come near each other, and do not touch
   kFeedLost,          ///< LinuxCNC does not run a feed that M61 comes right after
+  kFlankContact,      ///< of a turning tool what does not cut touches the workpiece
+  kThreadSpeed,       ///< a thread asks for more than the axes can do
+  kWrongPlane,        ///< an arc of a lathe's program that does not lie in G18
+  kPastCentre,        ///< a turning tool cuts beyond the axis
+  kPipLeft,           ///< a face that has been turned has a pip in its middle
 };
 
 /// "rapid-contact", ...: the `id` of the report.

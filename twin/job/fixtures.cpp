@@ -192,6 +192,8 @@ Done parse_shape_fields(const std::vector<std::string_view>& fields, LengthUnit 
         static_cast<std::size_t>(fields.back().data() + fields.back().size() - begin);
     Result<Blank> bodies = parse_blank({begin, length}, unit);
     if (!bodies) return Error{bodies.error()};
+    if (const std::string need = need_to_turn(*bodies); !need.empty())
+      return Error{trf("{}; fixtures are boxes, cylinders and tubes", need)};
     if (bodies->bodies.empty())
       return Error{trf("'{}' is no fixture; forms: {}", shown(fields[0]), tr(kForms))};
     out.bodies = std::move(bodies->bodies);

@@ -14,9 +14,11 @@
 #include "base/translate.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/octree/octree.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "stock/state_bytes.h"
+#include "stock/turning/turned_blank.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
@@ -105,13 +107,16 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
   if (sheet.file.empty()) {
     options.outline = rectangle_outline(sheet.low_mm, sheet.high_mm);
   } else {
-    const bool svg = to_lower(sheet.file).ends_with(".svg");
-    Result<SheetOutline> outline = read_outline_file(
-        sheet.file, svg ? OutlineFormat::kSvg : OutlineFormat::kDxf, options.arc_tolerance_mm);
+    Result<PlaneOutline> outline =
+        read_outline_file(sheet.file, outline_format_of(sheet.file), options.arc_tolerance_mm);
     if (!outline) return Error{outline.error()};
     options.outline = std::move(outline.value());
   }
   return as_model(Sheet::create(options));
+}
+
+Created create_turning(const Blank& blank, const StockSettings&) {
+  return as_model(turning_stock_of(blank));
 }
 
 Done sheet_can_cut(const Cutter& cutter) {
@@ -141,6 +146,11 @@ constexpr std::array kModels{
         tr_noop("polygons: sheet metal under a torch, laser or jet (--stock sheet:..); kerfs, "
                 "piercing, parts that come free"),
         create_sheet, sheet_can_cut, false},
+    StockModelRow{
+        StockKind::kTurning, "turning",
+        tr_noop("an exact profile that turns about Z: lathes, with tools that stand still; bores, "
+                "grooves, undercuts, part-off"),
+        create_turning, TurningStock::can_cut, false},
 };
 
 /// Of a tool that has a shape; empty: the Z-map will do.
@@ -196,6 +206,7 @@ void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& f
 
 StockNeeds stock_needs(const ToolSources& tools) {
   StockNeeds needs;
+  needs.turning = tools.turning_sign;
   for (const ToolShapeArgument& tool : tools.arguments) {
     if (needs.undercut.empty()) needs.undercut = undercut_of(tool.tool, tool.cutter);
   }
@@ -249,6 +260,9 @@ std::string misfit(const StockSettings& settings, const Blank& blank) {
     return tr("--additive: nothing is added to a sheet; a box can be added to");
   }
   if (blank.sheet && settings.cell_mm > 0) return tr("--cell: a sheet has no cells; leave it out");
+  if (settings.kind == StockKind::kTurning && settings.cell_mm > 0) {
+    return tr("--cell: a workpiece that is turned has no cells; leave it out");
+  }
   if (!settings.kind || sheet_wanted == is_sheet(blank)) return {};
   if (sheet_wanted) {
     return trf(
@@ -276,6 +290,7 @@ std::string need_of_blank(const Blank& blank) {
 StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs) {
   const double finest = needs.finest_mm;
   if (settings.kind) return {*settings.kind, {}, finest};
+  if (!needs.turning.empty()) return {StockKind::kTurning, needs.turning, 0};
   if (settings.additive) return {StockKind::kOctree, tr("material is added"), finest};
   if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt, finest};
   if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank, finest};

@@ -16,7 +16,7 @@
 
 namespace kerf {
 
-enum class StockKind { kZmap, kMmap, kOctree, kSheet };
+enum class StockKind { kZmap, kMmap, kOctree, kSheet, kTurning };
 
 /// How a workpiece is modelled.
 struct StockSettings {
@@ -38,8 +38,8 @@ struct StockModelRow {
   bool takes_tilted_tools;
 };
 
-/// In the order of what they hold: each holds what those before it do. The sheet stands apart, at
-/// the end: it is for sheets alone, and sheets are for it alone.
+/// In the order of what they hold: each holds what those before it do. Two stand apart, at the end:
+/// the sheet is for sheets alone, and sheets are for it alone; turning is for what turns.
 std::span<const StockModelRow> stock_models();
 const StockModelRow& stock_model(StockKind kind);
 /// Which of them this is, whoever wraps it.
@@ -53,6 +53,7 @@ std::string stock_model_names();
 
 /// Why a model that holds less does not do; empty: it does.
 struct StockNeeds {
+  std::string turning;   ///< what says that the workpiece turns, and tools stand still
   std::string undercut;  ///< "tool 3 (tslot:20:4:8) cuts undercuts"
   std::string tilt;      ///< "line 12 turns the tool or the workpiece: A30"
   std::string blank;     ///< "the blank has a cylinder along x"

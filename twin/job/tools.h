@@ -36,6 +36,7 @@ struct ToolSources {
   std::vector<ToolTableRow> table;           ///< rows of the tool table
   std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
   bool turning = false;                      ///< the workpiece turns, tools stand still
+  std::string turning_sign;                  ///< what says so; empty: --model turning
 
   /// Somebody has described tools by number: one that they do not have is not guessed.
   bool describes() const { return !arguments.empty() || !library.empty() || !table.empty(); }

@@ -99,7 +99,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   program.lathe = options_.lathe;
   program.as_mill = options_.as_mill;
-  if (refuse_turning(program, first, tools.table, diagnostics)) {
+  if (!note_turning(program, first, options_.stock.kind, options_.blank, tools, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }
@@ -153,6 +153,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
 void LiveSession::prepare_process(Diagnostics& diagnostics) {
   ProcessWish wish;
   wish.is_sheet = stock_->sheet() != nullptr;
+  wish.is_turned = stock_->turned() != nullptr;
   wish.beam = options_.beam;
   wish.turret = options_.turret;
   const Program* const program = programs_.first();

@@ -28,6 +28,7 @@
 #include "twin/process/collision_table.h"
 #include "twin/process/cut_labels.h"
 #include "twin/process/cut_progress.h"
+#include "twin/process/fallen_piece.h"
 #include "twin/process/feed_check.h"
 #include "twin/process/sheet_checks.h"
 
@@ -116,6 +117,8 @@ class Process {
   virtual ProbeAnswer answer(const ProbeQuestion& /*question*/) { return {}; }
   /// Pieces that have come free, by number; those that were cut up afterwards are in it still.
   virtual std::span<const FreedPiece> freed() const { return {}; }
+  /// The same of a workpiece that turns, in the order in which they came off.
+  virtual std::span<const FallenPiece> fallen() const { return {}; }
   /// Null: it has no section of the report.
   virtual std::shared_ptr<const ProcessSums> sums() const { return nullptr; }
   /// Null: it cuts along ways.
@@ -175,8 +178,9 @@ using ProcessPointer = std::shared_ptr<const ProcessPlan>;
 
 /// What a process is chosen by.
 struct ProcessWish {
-  bool is_sheet = false;  ///< the workpiece
-  bool guessed = false;   ///< the workpiece is a guess
+  bool is_sheet = false;   ///< the workpiece
+  bool is_turned = false;  ///< the workpiece: it turns, tools stand still
+  bool guessed = false;    ///< the workpiece is a guess
   BeamOptions beam;
   TurretPointer turret;
   bool is_qtplasmac = false;

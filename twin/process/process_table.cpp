@@ -5,11 +5,13 @@
 #include "twin/process/milling/milling_plan.h"
 #include "twin/process/punch/punch_plan.h"
 #include "twin/process/torch/torch_plan.h"
+#include "twin/process/turning/turning_plan.h"
 
 namespace kerf {
 namespace {
 
 constexpr std::array kProcesses{
+    ProcessRow{"turning", choose_turning},
     ProcessRow{"punch", choose_punch},
     ProcessRow{"torch", choose_torch},
     ProcessRow{"milling", choose_milling},

@@ -113,7 +113,7 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
 
 bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, ProgramFront& front,
                         Diagnostics& diagnostics, Outcome& outcome) {
-  if (tilt.empty() || options.stock.kind || front.is_sheet() ||
+  if (tilt.empty() || options.stock.kind || front.is_sheet() || front.is_turned() ||
       stock_model(front.choice.kind).takes_tilted_tools) {
     return true;
   }
@@ -134,7 +134,8 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
     return std::nullopt;
   }
   front.tools.guesses = options.tool_guesses;
-  if (refuse_turning(options.program, front.program.get(), front.tools.table, diagnostics)) {
+  if (!note_turning(options.program, front.program.get(), options.stock.kind, options.blank,
+                    front.tools, diagnostics)) {
     outcome = Outcome::kUsageError;
     return std::nullopt;
   }
@@ -169,6 +170,7 @@ void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves)
 ProcessPointer process_of(const SessionOptions& options, const ProgramFront& front) {
   ProcessWish wish;
   wish.is_sheet = front.is_sheet();
+  wish.is_turned = front.is_turned();
   wish.guessed = front.blank_guessed;
   wish.beam = options.beam;
   wish.turret = options.turret;

@@ -63,6 +63,7 @@ struct ProgramFront {
   std::string guess_reason;  ///< of that
   bool is_drawn = false;     ///< ProgramSurvey::is_drawn(), of a blank that was guessed
 
+  bool is_turned() const { return choice.kind == StockKind::kTurning; }
   bool is_sheet() const { return blank && choice.kind == StockKind::kSheet; }
 };
 

@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
@@ -52,6 +53,7 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
+  if (kind == StockKind::kTurning) return as_stock(TurningStock::load(path));
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));
@@ -95,6 +97,16 @@ std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   StockSettings fitting = settings;
+  if (choice.kind == StockKind::kTurning) {
+    auto turned = stock_model(choice.kind).create(blank, settings);
+    if (turned) return std::move(turned.value());
+    const std::string why =
+        choice.reason.empty() ? "" : trf(" (this is for a lathe: {})", choice.reason);
+    diagnostics.push_back(general_error(
+        fmt::format("{}: {}{}", origin, turned.error(), why),
+        tr("--stock cylinder:0,0,Z0:Z1:DIAMETER gives a bar, --as-mill mills it all the same")));
+    return nullptr;
+  }
   if (choice.kind != StockKind::kOctree) {
     if (fitting.cell_mm <= 0) fitting.cell_mm = suited_cell_mm(blank.bounds_mm(), choice.finest_mm);
     if (refuse_memory(blank, fitting.cell_mm, diagnostics)) return nullptr;
@@ -124,7 +136,8 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
   StockChoice fitting = choice;
   if (blank.sheet) {
     fitting = {StockKind::kSheet, settings.kind ? "" : tr("the blank is a sheet"), 0};
-  } else if (!settings.kind && choice.kind != StockKind::kOctree) {
+  } else if (!settings.kind && choice.kind != StockKind::kOctree &&
+             choice.kind != StockKind::kTurning) {
     const std::string need = need_of_blank(blank);
     if (!need.empty()) fitting = {StockKind::kOctree, need, 0};
   }

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/translate.h"
-#include "twin/findings/finding.h"
 
 namespace kerf {
 namespace {
@@ -43,6 +44,13 @@ std::string sign_of_tools(const TurningWords& words, const std::vector<ToolTable
   return {};
 }
 
+std::string sign_of_blank(const Blank& blank) {
+  if (!blank.state_file.empty() && saved_kind(blank.state_file) == StockKind::kTurning) {
+    return trf("{}: a turned part", blank.state_file);
+  }
+  return need_to_turn(blank);
+}
+
 }  // namespace
 
 std::string turning_sign(const ProgramOptions& options, const Program* program,
@@ -60,16 +68,25 @@ std::string turning_sign(const ProgramOptions& options, const Program* program,
   return sign.empty() ? sign_of_tools(words, table) : sign;
 }
 
-bool refuse_turning(const ProgramOptions& options, const Program* program,
-                    const std::vector<ToolTableRow>& table, Diagnostics& diagnostics) {
-  if (options.as_mill) return false;
-  const std::string sign = turning_sign(options, program, table);
-  if (sign.empty()) return false;
-  Diagnostic refusal;
-  refusal.message = trf("{}: this is for a lathe, and kerf has no model for turning ({})",
-                        to_string(FindingId::kNotModelled), sign);
-  refusal.hint = tr("--as-mill mills it all the same, with tools that turn about Z");
-  diagnostics.push_back(std::move(refusal));
+bool note_turning(const ProgramOptions& options, const Program* program,
+                  std::optional<StockKind> kind, const std::optional<Blank>& blank,
+                  ToolSources& tools, Diagnostics& diagnostics) {
+  tools.turning = kind == StockKind::kTurning;
+  if (tools.turning || options.as_mill) return true;
+  std::string sign = blank ? sign_of_blank(*blank) : std::string();
+  if (sign.empty()) sign = turning_sign(options, program, tools.table);
+  if (sign.empty()) return true;
+  if (kind) {
+    Diagnostic refusal;
+    refusal.message = trf("--model {}: this is for a lathe ({})", stock_model(*kind).name, sign);
+    refusal.hint =
+        tr("--model turning turns it; --as-mill mills it all the same, with tools that "
+           "turn about Z");
+    diagnostics.push_back(std::move(refusal));
+    return false;
+  }
+  tools.turning = true;
+  tools.turning_sign = std::move(sign);
   return true;
 }
 

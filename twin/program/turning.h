@@ -1,11 +1,14 @@
-// twin/program/turning.h - programs and machines for turning, which no model of kerf is for.
+// twin/program/turning.h - whether a program is for a lathe.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "interp_bridge/program.h"
+#include "twin/job/stock_choice.h"
+#include "twin/job/tools.h"
 
 namespace kerf {
 
@@ -17,9 +20,12 @@ namespace kerf {
 std::string turning_sign(const ProgramOptions& options, const Program* program,
                          const std::vector<ToolTableRow>& table);
 
-/// True, with an error, if there is a sign and options.as_mill does not say that it is to be milled
-/// all the same.
-bool refuse_turning(const ProgramOptions& options, const Program* program,
-                    const std::vector<ToolTableRow>& table, Diagnostics& diagnostics);
+/// Notes in `tools` that the workpiece turns, if there is a sign and options.as_mill does not say
+/// that it is to be milled all the same, or if the model turning is asked for, or the blank is one
+/// that only turns (a hexagonal bar, a turned part that was saved). False, with an error: another
+/// model is asked for, and there is a sign.
+bool note_turning(const ProgramOptions& options, const Program* program,
+                  std::optional<StockKind> kind, const std::optional<Blank>& blank,
+                  ToolSources& tools, Diagnostics& diagnostics);
 
 }  // namespace kerf

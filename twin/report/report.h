@@ -15,6 +15,7 @@
 #include "twin/report/line_window.h"
 #include "twin/report/live_report.h"
 #include "twin/report/sheet_report.h"
+#include "twin/report/turning_report.h"
 
 namespace kerf {
 
@@ -49,8 +50,9 @@ struct Report {
   LineRange lines;  ///< what was asked for; motion, tools and findings are of these lines alone
   MotionTotals motion;
   std::string time_model;
-  std::optional<StockReport> stock;  ///< absent if the run ended before there was one
-  std::optional<SheetReport> sheet;  ///< of a workpiece that is one
+  std::optional<StockReport> stock;      ///< absent if the run ended before there was one
+  std::optional<SheetReport> sheet;      ///< of a workpiece that is one
+  std::optional<TurningReport> turning;  ///< of one that turns
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>
       collisions;                  ///< what was held against each other, and how near it came
@@ -68,7 +70,7 @@ struct Report {
 /// program.from_line, program.until_line (where asked for), tools[].origin, guessed (what, option,
 /// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
 /// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
-/// sheet (SheetReport; for a workpiece that is one).
+/// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same).
 std::string json_text(const Report& report);
 
 struct SummaryOptions {

@@ -186,6 +186,7 @@ std::string json_text(const Report& report) {
   out["motion"] = motion_json(report);
   out["stock"] = stock_json(report);
   if (report.sheet) out["sheet"] = sheet_json(*report.sheet, report.program.files);
+  if (report.turning) out["turning"] = turning_json(*report.turning, report.program.files);
   out["tools"] = tools_json(report);
   out["collisions"] = collisions_json(report);
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);

@@ -90,6 +90,8 @@ void add_stock(std::string& out, const StockReport& s) {
   out += trf("stock     {} ({})\n", s.description, s.origin);
   if (s.model == "sheet") {
     out += trf("          {}, {} corners of polygons\n", s.model, s.cells);
+  } else if (s.model == "turning") {
+    out += trf("          {}, {} corners of its profile\n", s.model, s.cells);
   } else {
     out += trf("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,
                static_cast<double>(s.cells) / 1e6);
@@ -163,7 +165,7 @@ std::string unknown_of(const Report& report, bool ToolUse::*is_known) {
 
 /// What nobody looked for: one line a run, whatever the number of tools.
 void add_unchecked(std::string& out, const Report& report) {
-  if (!report.stock || report.stock->model == "sheet") return;
+  if (!report.stock || report.sheet || report.turning) return;
   const std::string holders = unknown_of(report, &ToolUse::holder_checked);
   const std::string shanks = unknown_of(report, &ToolUse::shank_checked);
   if (holders.empty() && shanks.empty()) return;
@@ -296,6 +298,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   add_runs(out, live.runs);
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
+  if (report.turning) out += turning_text(*report.turning);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);
@@ -331,6 +334,7 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
              short_model(report.time_model));
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
+  if (report.turning) out += turning_text(*report.turning);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);

@@ -9,7 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/translate.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
 #include "twin/findings/finding_json.h"
 
@@ -47,12 +47,12 @@ bool box_holds(const SheetPiece& outer, const SheetPiece& inner) {
 std::vector<int> depths_of(const Sheet& sheet, const std::vector<SheetPiece>& pieces) {
   std::vector<int> depths(pieces.size(), 0);
   for (std::size_t outer = 0; outer < pieces.size(); ++outer) {
-    SheetOutline outline;
+    PlaneOutline outline;
     for (std::size_t inner = 0; inner < pieces.size(); ++inner) {
       if (!box_holds(pieces[outer], pieces[inner])) continue;
       if (outline.rings.empty()) outline = sheet.outline_of(pieces[outer].number);
       // A corner of the inner one: in the rings that turn left it is round by, holes left aside.
-      const SheetOutline within = sheet.outline_of(pieces[inner].number);
+      const PlaneOutline within = sheet.outline_of(pieces[inner].number);
       if (within.rings.empty()) continue;
       const Vec2 corner = within.rings[0][0];
       for (const std::vector<Vec2>& ring : outline.rings) {
@@ -206,13 +206,13 @@ std::string part_path(const std::string& path, std::uint32_t part) {
 
 void write_outlines(const Sheet& sheet, const SheetReport& report, const std::string& dxf_path,
                     const std::string& svg_path, std::vector<std::string>& errors) {
-  SheetOutline rest;
+  PlaneOutline rest;
   for (const SheetPiece& piece : sheet.pieces()) {
     if (!piece.is_main()) continue;
-    SheetOutline outline = sheet.outline_of(piece.number);
+    PlaneOutline outline = sheet.outline_of(piece.number);
     std::move(outline.rings.begin(), outline.rings.end(), std::back_inserter(rest.rings));
   }
-  using Writer = Done (*)(const SheetOutline&, double, const std::string&);
+  using Writer = Done (*)(const PlaneOutline&, double, const std::string&);
   const double tolerance_mm = sheet.arc_tolerance_mm();
   const auto write = [&](Writer writer, const std::string& path) {
     if (path.empty()) return;

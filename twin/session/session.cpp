@@ -85,7 +85,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
 /// ones.
 bool Session::is_tilted() const {
   return !tilt_.found().empty() && !options_.stock.kind && !front_.is_sheet() &&
-         !stock()->takes_tilted_tools();
+         !front_.is_turned() && !stock()->takes_tilted_tools();
 }
 
 Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
@@ -247,6 +247,9 @@ void Session::complete_report(const CutStage& stage) {
   report_.stock = stock_report(*stock(), front_.stock.facts);
   if (const Sheet* const sheet = stock()->sheet()) {
     report_.sheet = sheet_report(*sheet, stage.process(), options_.beam.density_kg_per_m3);
+  }
+  if (const TurningStock* const turned = stock()->turned()) {
+    report_.turning = turning_report(*turned, stage.process(), options_.beam.density_kg_per_m3);
   }
 }
 

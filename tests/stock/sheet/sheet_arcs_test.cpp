@@ -2,8 +2,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "stock/sheet/outline_arcs.h"
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_arcs.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/punch_shape.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/stock/sheet/sheet_samples.h"
@@ -60,7 +60,7 @@ struct Drawing {
   }
 };
 
-Drawing drawn(const SheetOutline& outline) {
+Drawing drawn(const PlaneOutline& outline) {
   const TemporaryFolder folder;
   const std::string path = folder / "arcs.dxf";
   EXPECT_TRUE(write_outline_dxf(outline, kTolerance_mm, path));
@@ -92,7 +92,7 @@ Drawing drawn(const SheetOutline& outline) {
   return drawing;
 }
 
-SheetOutline main_outline(const Sheet& sheet) { return sheet.outline_of(0); }
+PlaneOutline main_outline(const Sheet& sheet) { return sheet.outline_of(0); }
 
 TEST(SheetArcs, a_hole_that_is_a_full_circle_is_a_circle_of_its_exact_diameter) {
   for (const int tiles : {1, 4, 13}) {
@@ -162,7 +162,7 @@ TEST(SheetArcs, polygons_and_rectangles_stay_what_they_are) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 5);
   sheet->punch(*parse_punch_shape("polygon:12:15", kTolerance_mm), {20, 20}, 0.3, 1);
   sheet->punch(*parse_punch_shape("square:9", kTolerance_mm), {45, 20}, 0.1, 2);
-  const SheetOutline outline = main_outline(*sheet);
+  const PlaneOutline outline = main_outline(*sheet);
   const Drawing drawing = drawn(outline);
   EXPECT_TRUE(drawing.circles.empty());
   EXPECT_TRUE(drawing.radii().empty());
@@ -205,7 +205,7 @@ TEST(SheetArcs, a_circle_of_short_chords_is_a_circle) {
 TEST(SheetArcs, a_circle_that_is_read_cut_and_written_again_keeps_its_radius) {
   const TemporaryFolder folder;
   const std::string path = folder / "again.dxf";
-  SheetOutline outline = rectangle_outline({0, 0}, {60, 40});
+  PlaneOutline outline = rectangle_outline({0, 0}, {60, 40});
   std::ofstream(path) << "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\n30.5\n20\n20.25\n40\n15.1\n"
                          "0\nENDSEC\n0\nEOF\n";
   for (int i = 0; i < 3; ++i) {
@@ -220,7 +220,7 @@ TEST(SheetArcs, a_circle_that_is_read_cut_and_written_again_keeps_its_radius) {
   }
 }
 
-double distance_to(const Vec2& p, const SheetOutline& outline) {
+double distance_to(const Vec2& p, const PlaneOutline& outline) {
   double best = 1e9;
   for (const std::vector<Vec2>& ring : outline.rings) {
     for (std::size_t i = 0; i < ring.size(); ++i)
@@ -237,9 +237,9 @@ TEST(SheetArcs, curves_of_any_cuts_are_where_the_chords_are) {
     const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 1 + 3 * round);
     test::cut(*sheet, 0.4 + 0.2 * round, test::random_moves(random, 12));
     for (const SheetPiece& piece : sheet->pieces()) {
-      const SheetOutline outline = sheet->outline_of(piece.number);
-      const std::vector<sheet::Curve> curves = sheet::curves_of(outline, kTolerance_mm);
-      const SheetOutline again = sheet::chords_of(curves, 0.0002);
+      const PlaneOutline outline = sheet->outline_of(piece.number);
+      const std::vector<plane::Curve> curves = plane::curves_of(outline, kTolerance_mm);
+      const PlaneOutline again = plane::chords_of(curves, 0.0002);
       double length = 0;
       for (const std::vector<Vec2>& ring : outline.rings) {
         for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -253,8 +253,8 @@ TEST(SheetArcs, curves_of_any_cuts_are_where_the_chords_are) {
       }
       EXPECT_NEAR(test::area_of(again), test::area_of(outline), kTolerance_mm * length / 2);
       EXPECT_TRUE(check_outline(again));
-      for (const sheet::Curve& curve : curves) {
-        for (const sheet::CurveCorner& corner : curve.corners) arcs += corner.bulge != 0 ? 1 : 0;
+      for (const plane::Curve& curve : curves) {
+        for (const plane::CurveCorner& corner : curve.corners) arcs += corner.bulge != 0 ? 1 : 0;
       }
     }
   }

@@ -133,7 +133,7 @@ TEST(SheetConnectivity, outlines_have_the_area_of_their_pieces) {
     test::cut(*sheet, 0.6, test::random_moves(random, 40));
     double area = 0;
     for (const SheetPiece& piece : sheet->pieces()) {
-      const SheetOutline outline = sheet->outline_of(piece.number);
+      const PlaneOutline outline = sheet->outline_of(piece.number);
       ASSERT_FALSE(outline.rings.empty());
       EXPECT_NEAR(test::area_of(outline), piece.area_mm2, 1e-5 * piece.area_mm2 + 1e-3);
       area += piece.area_mm2;

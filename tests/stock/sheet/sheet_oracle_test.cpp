@@ -30,7 +30,7 @@ TEST(SheetOracle, points_are_material_where_no_move_came_near) {
 }
 
 /// Whether p is in an odd number of rings.
-bool is_within(const SheetOutline& outline, const Vec2& p) {
+bool is_within(const PlaneOutline& outline, const Vec2& p) {
   bool inside = false;
   for (const std::vector<Vec2>& ring : outline.rings) {
     for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
@@ -50,7 +50,7 @@ TEST(SheetOracle, piece_at_is_the_piece_whose_outline_holds_the_point) {
     for (int round = 0; round < 4; ++round) {
       const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), tiles);
       test::cut(*sheet, 0.4, test::random_moves(random, 40));
-      std::vector<std::pair<std::uint32_t, SheetOutline>> outlines;
+      std::vector<std::pair<std::uint32_t, PlaneOutline>> outlines;
       for (const SheetPiece& piece : sheet->pieces())
         outlines.emplace_back(piece.number, sheet->outline_of(piece.number));
       pieces += outlines.size();
@@ -73,7 +73,7 @@ TEST(SheetOracle, contour_is_within_tolerance_of_the_exact_offset) {
     const std::vector<CutMove> moves = test::random_moves(random, 1);
     const auto sheet = test::make_sheet(rectangle_outline({-40, -40}, {120, 120}), 3);
     test::cut(*sheet, 2.4, moves);
-    const SheetOutline outline = sheet->outline();
+    const PlaneOutline outline = sheet->outline();
     double worst = 0;
     for (const std::vector<Vec2>& ring : outline.rings) {
       for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(SheetOracle, first_contact) {
     const Cutter cutter = test::torch(1.2);
     const std::optional<Contact> contact = sheet->first_contact(cutter, move, 0.1);
     // The same question, asked of the outline at many places on the way.
-    const SheetOutline outline = sheet->outline();
+    const PlaneOutline outline = sheet->outline();
     const auto clearance = [&](const Vec2& p) {
       if (sheet->has_material(p)) return 0.0;
       double least = 1e300;

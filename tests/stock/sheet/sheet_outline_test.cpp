@@ -1,5 +1,5 @@
 // Outlines from and to drawings, and punch shapes.
-#include "stock/sheet/outline_file.h"
+#include "stock/plane/outline_file.h"
 #include "stock/sheet/punch_shape.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/stock/sheet/sheet_samples.h"
@@ -21,12 +21,12 @@ std::string dxf(const std::string& entities, const std::string& header = "") {
   return lines;
 }
 
-double even_odd_area(const SheetOutline& outline) {
+double even_odd_area(const PlaneOutline& outline) {
   return test::make_sheet(outline, 1)->remaining_mm2();
 }
 
 double dxf_area(const std::string& text) {
-  const Result<SheetOutline> outline = parse_dxf_outline(text, "d.dxf", kTolerance_mm);
+  const Result<PlaneOutline> outline = parse_dxf_outline(text, "d.dxf", kTolerance_mm);
   EXPECT_TRUE(outline) << (outline ? "" : outline.error());
   return outline ? even_odd_area(*outline) : 0;
 }
@@ -34,18 +34,18 @@ double dxf_area(const std::string& text) {
 double svg_area(const std::string& body, const std::string& attributes = "") {
   const std::string text =
       "<?xml version=\"1.0\"?>\n<svg " + attributes + ">\n" + body + "\n</svg>\n";
-  const Result<SheetOutline> outline = parse_svg_outline(text, "d.svg", kTolerance_mm);
+  const Result<PlaneOutline> outline = parse_svg_outline(text, "d.svg", kTolerance_mm);
   EXPECT_TRUE(outline) << (outline ? "" : outline.error());
   return outline ? even_odd_area(*outline) : 0;
 }
 
 std::string svg_fault(const std::string& text) {
-  const Result<SheetOutline> outline = parse_svg_outline(text, "d.svg", kTolerance_mm);
+  const Result<PlaneOutline> outline = parse_svg_outline(text, "d.svg", kTolerance_mm);
   return outline ? "" : outline.error();
 }
 
 std::string dxf_fault(const std::string& text) {
-  const Result<SheetOutline> outline = parse_dxf_outline(text, "d.dxf", kTolerance_mm);
+  const Result<PlaneOutline> outline = parse_dxf_outline(text, "d.dxf", kTolerance_mm);
   return outline ? "" : outline.error();
 }
 
@@ -54,13 +54,13 @@ const char* const kSlot =
     "0 LINE 10 0 20 10 11 40 21 10  0 ARC 10 0 20 5 40 5 50 90 51 270 "
     "0 CIRCLE 10 20 20 5 40 2";
 
-TEST(SheetOutline, dxf_lines_arcs_and_circles) {
+TEST(PlaneOutline, dxf_lines_arcs_and_circles) {
   EXPECT_NEAR(dxf_area(dxf(kSlot)), 400 + kPi * 25 - kPi * 4, 0.05);
   EXPECT_NEAR(dxf_area(dxf(kSlot, "9 $INSUNITS 70 1")), 645.16 * (400 + kPi * 25 - kPi * 4), 2);
   EXPECT_NEAR(dxf_area(dxf(kSlot, "9 $INSUNITS 70 4")), 400 + kPi * 21, 0.05);
 }
 
-TEST(SheetOutline, dxf_polylines) {
+TEST(PlaneOutline, dxf_polylines) {
   // Half circles by bulges of 1.
   const double area = 400 + kPi * 25;
   EXPECT_NEAR(dxf_area(dxf("0 LWPOLYLINE 90 4 70 1 10 0 20 0 10 40 20 0 42 1 10 40 20 10 "
@@ -76,7 +76,7 @@ TEST(SheetOutline, dxf_polylines) {
               50, 1e-3);
 }
 
-TEST(SheetOutline, dxf_faults) {
+TEST(PlaneOutline, dxf_faults) {
   EXPECT_EQ(dxf_fault("hello"), "d.dxf:1: 'hello' is not a group code; is this an ASCII DXF file?");
   EXPECT_EQ(dxf_fault(dxf("")), "d.dxf: no closed contour in the section ENTITIES");
   EXPECT_EQ(dxf_fault(dxf("0 LINE 10 0 20 0 11 40 21 0")),
@@ -91,7 +91,7 @@ TEST(SheetOutline, dxf_faults) {
             "d.dxf:8: $INSUNITS is 2; must be 4 (mm), 1 (inch) or 0 (taken as mm)");
 }
 
-TEST(SheetOutline, svg_shapes) {
+TEST(PlaneOutline, svg_shapes) {
   EXPECT_NEAR(svg_area("<rect x='1' y=\"2\" width='30' height='20'/>"), 600, 1e-6);
   EXPECT_NEAR(svg_area("<circle cx='5' cy='5' r='10'/>"), kPi * 100, 0.1);
   EXPECT_NEAR(svg_area("<ellipse rx='5' ry='10'/>"), kPi * 50, 0.1);
@@ -104,7 +104,7 @@ TEST(SheetOutline, svg_shapes) {
       20 * 2.54 * 2.54, 1e-3);
 }
 
-TEST(SheetOutline, svg_paths) {
+TEST(PlaneOutline, svg_paths) {
   EXPECT_NEAR(svg_area("<path d='M0 0H10V10h-10z'/>"), 100, 1e-6);
   EXPECT_NEAR(svg_area("<path d='m5,5 10 0 0 10 -10 0zm2-2l1,0 0,1z'/>"), 100.5, 1e-6);
   EXPECT_NEAR(svg_area("<path d='M0,0 A10 10 0 0 1 20 0 A10 10 0 1 1 0 0 Z'/>"), kPi * 100, 0.1);
@@ -117,8 +117,8 @@ TEST(SheetOutline, svg_paths) {
   EXPECT_NEAR(svg_area("<path d='M0 0H10V10H0ZM2 2H4V4H2Z'/>"), 96, 1e-6);
 }
 
-TEST(SheetOutline, svg_places_its_lower_edge_at_zero) {
-  const Result<SheetOutline> outline = parse_svg_outline(
+TEST(PlaneOutline, svg_places_its_lower_edge_at_zero) {
+  const Result<PlaneOutline> outline = parse_svg_outline(
       "<svg viewBox='0 0 50 40'><rect x='10' y='35' width='5' height='5'/></svg>", "d", 0.01);
   ASSERT_TRUE(outline);
   const Box box = test::make_sheet(*outline)->bounds_mm();
@@ -126,7 +126,7 @@ TEST(SheetOutline, svg_places_its_lower_edge_at_zero) {
   EXPECT_EQ(box.max, Vec3(15, 5, 2));
 }
 
-TEST(SheetOutline, svg_faults) {
+TEST(PlaneOutline, svg_faults) {
   EXPECT_EQ(svg_fault("<html></html>"), "d.svg:1: no <svg> element; is this an SVG file?");
   EXPECT_EQ(svg_fault("<svg>\n<path d='M0 0L5 5 5 0'/></svg>"),
             "d.svg:2: path: an open part, from 0.0000,0.0000 to 5.0000,0.0000; must end with Z");
@@ -139,7 +139,7 @@ TEST(SheetOutline, svg_faults) {
             "d.svg:1: use is not read; allowed are path, rect, circle, ellipse and polygon");
 }
 
-TEST(SheetOutline, cut_off_anywhere_gives_an_error_or_an_outline) {
+TEST(PlaneOutline, cut_off_anywhere_gives_an_error_or_an_outline) {
   const std::string drawing = dxf(kSlot, "9 $INSUNITS 70 4");
   const std::string picture =
       "<svg viewBox='0 0 9 9'><path d='M0,0 A10 10 0 0 1 20 0 C1e1 2-3 4 5Q1 2 3 4z'/></svg>";
@@ -151,18 +151,18 @@ TEST(SheetOutline, cut_off_anywhere_gives_an_error_or_an_outline) {
   EXPECT_GT(faults, 200);
 }
 
-TEST(SheetOutline, written_and_read_again) {
+TEST(PlaneOutline, written_and_read_again) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 5);
   test::cut(*sheet, 1, {test::line({5, 5}, {55, 30}), test::arc({30, 20}, 12, 0, 2 * kPi)});
   const TemporaryFolder temporary;
   const std::string folder = temporary.path() + "/";
   for (const SheetPiece& piece : sheet->pieces()) {
-    const SheetOutline outline = sheet->outline_of(piece.number);
+    const PlaneOutline outline = sheet->outline_of(piece.number);
     ASSERT_TRUE(write_outline_dxf(outline, 0.005, folder + "piece.dxf"));
     ASSERT_TRUE(write_outline_svg(outline, 0.005, folder + "piece.svg"));
     for (const auto format : {OutlineFormat::kDxf, OutlineFormat::kSvg}) {
       const bool dxf_format = format == OutlineFormat::kDxf;
-      const Result<SheetOutline> again =
+      const Result<PlaneOutline> again =
           read_outline_file(folder + (dxf_format ? "piece.dxf" : "piece.svg"), format, 0.001);
       ASSERT_TRUE(again) << again.error();
       EXPECT_NEAR(even_odd_area(*again), piece.area_mm2, 5e-3 + 1e-6 * piece.area_mm2);
@@ -174,7 +174,7 @@ TEST(SheetOutline, written_and_read_again) {
 
 TEST(PunchShape, areas) {
   const auto area = [](const std::string& spec) {
-    const Result<SheetOutline> shape = parse_punch_shape(spec, kTolerance_mm);
+    const Result<PlaneOutline> shape = parse_punch_shape(spec, kTolerance_mm);
     EXPECT_TRUE(shape) << (shape ? "" : shape.error());
     return shape ? std::abs(test::area_of(*shape)) : 0;
   };

@@ -130,7 +130,7 @@ TEST(SheetPunch, SlugsAndPartsComeFreeByTheStrokeThatPartsThem) {
 
 /// A punch with a hole in it (from a drawing) leaves what lies within.
 TEST(SheetPunch, FootprintsMayHaveHoles) {
-  SheetOutline frame = rectangle_outline({-10, -10}, {10, 10});
+  PlaneOutline frame = rectangle_outline({-10, -10}, {10, 10});
   frame.rings.push_back({{-8, -8}, {8, -8}, {8, 8}, {-8, 8}});
   const Cutter cutter = std::move(*punch_cutter("punch:frame", frame));
   EXPECT_NEAR(cutter.radius_mm(), std::hypot(10, 10), 1e-9);
@@ -158,7 +158,7 @@ TEST(SheetPunch, NumbersBeyondAllBoundsTakeNothing) {
 
 TEST(SheetPunch, OverlapIsThatOfTheShapes) {
   const Cutter disc = punch("round:10");
-  const SheetOutline a = footprint_at(disc, punch_stroke({0, 0, 0}, 0, 0));
+  const PlaneOutline a = footprint_at(disc, punch_stroke({0, 0, 0}, 0, 0));
   EXPECT_NEAR(overlap_mm2(a, footprint_at(disc, punch_stroke({4, 3, 0}, 1, 0))), lens(5, 5),
               kArcs_mm2);
   EXPECT_EQ(overlap_mm2(a, footprint_at(disc, punch_stroke({10.01, 0, 0}, 0, 0))), 0);
@@ -226,7 +226,7 @@ TEST(BlankArea, SharesOfStrokesAtTheEdgeByClosedForms) {
 
 TEST(BlankArea, HolesAreNoEdgesAndIslandsAreSheet) {
   // An L, a hole in it, a plate in the hole and one apart.
-  SheetOutline outline;
+  PlaneOutline outline;
   outline.rings = {{{0, 0}, {90, 0}, {90, 40}, {40, 40}, {40, 90}, {0, 90}},
                    {{5, 5}, {35, 5}, {35, 35}, {5, 35}},
                    {{10, 10}, {20, 10}, {20, 20}, {10, 20}},

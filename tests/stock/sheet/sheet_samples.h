@@ -16,7 +16,7 @@ namespace kerf::test {
 
 inline Cutter torch(double kerf_mm) { return *parse_shape("flat:" + std::to_string(kerf_mm)); }
 
-inline std::unique_ptr<Sheet> make_sheet(const SheetOutline& outline, int tiles_each_way = 0) {
+inline std::unique_ptr<Sheet> make_sheet(const PlaneOutline& outline, int tiles_each_way = 0) {
   SheetOptions options;
   options.outline = outline;
   options.top_mm = 2;
@@ -72,7 +72,7 @@ inline double distance_to_way(const CutMove& move, const Vec2& p) {
   return distance(from + foot * way);
 }
 
-inline double area_of(const SheetOutline& outline) {
+inline double area_of(const PlaneOutline& outline) {
   double twice = 0;
   for (const std::vector<Vec2>& ring : outline.rings) {
     for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -7,7 +7,7 @@ namespace {
 using test::arc;
 using test::line;
 
-std::string fault_of(const SheetOutline& outline) {
+std::string fault_of(const PlaneOutline& outline) {
   SheetOptions options;
   options.outline = outline;
   const Result<std::unique_ptr<Sheet>> sheet = Sheet::create(options);
@@ -16,7 +16,7 @@ std::string fault_of(const SheetOutline& outline) {
 
 TEST(Sheet, outlines_of_any_shape) {
   // An L with a hole, and an island in the hole.
-  const SheetOutline outline{{{{0, 0}, {50, 0}, {50, 20}, {20, 20}, {20, 50}, {0, 50}},
+  const PlaneOutline outline{{{{0, 0}, {50, 0}, {50, 20}, {20, 20}, {20, 50}, {0, 50}},
                               {{5, 5}, {15, 5}, {15, 15}, {5, 15}},
                               {{8, 8}, {12, 8}, {12, 12}, {8, 12}}},
                              {}};
@@ -172,7 +172,7 @@ TEST(Sheet, dirty_tiles) {
 
 TEST(Sheet, punch) {
   const auto sheet = test::make_sheet(rectangle_outline({0, 0}, {60, 40}), 4);
-  const SheetOutline square = rectangle_outline({-5, -5}, {5, 5});
+  const PlaneOutline square = rectangle_outline({-5, -5}, {5, 5});
   EXPECT_NEAR(sheet->punch(square, {30, 20}, kPi / 4, 1).removed_mm3, 200, 0.01);
   EXPECT_FALSE(sheet->has_material({36, 20}));
   EXPECT_TRUE(sheet->has_material({34.9, 24.9}));
@@ -180,7 +180,7 @@ TEST(Sheet, punch) {
   EXPECT_NEAR(sheet->punch(square, {0, 10}, 0, 2).removed_mm3, 100, 1e-6);
   EXPECT_EQ(sheet->punch(square, {-20, 10}, 0, 3).removed_mm3, 0);
   // A ring leaves its slug.
-  const SheetOutline ring{
+  const PlaneOutline ring{
       {{{-4, -4}, {4, -4}, {4, 4}, {-4, 4}}, {{-2, -2}, {2, -2}, {2, 2}, {-2, 2}}}, {}};
   EXPECT_NEAR(sheet->punch(ring, {50, 10}, 0, 4).removed_mm3, 2 * (64 - 16), 1e-6);
   const std::vector<SheetPiece> pieces = sheet->pieces();

@@ -51,8 +51,9 @@ double sampled_mm3(const TurnedProfile& region, const InsertOutline& tool,
       const Vec2 way = m.to_mm - m.from_mm;
       const double length = glm::length(way);
       const bool goes_on = i > 0 && moves[i - 1].to_mm == m.from_mm;
-      start = goes_on ? start - glm::distance(moves[i - 1].from_mm, m.from_mm) / moves[i - 1].lead_mm
-                      : 0;
+      start = goes_on
+                  ? start - glm::distance(moves[i - 1].from_mm, m.from_mm) / moves[i - 1].lead_mm
+                  : 0;
       for (int n = -100; n <= 100; ++n) {
         const double s = m.lead_mm * (start - turns + n);
         if (s >= 0 && s <= length) places.push_back(m.from_mm + s / length * way);
@@ -124,8 +125,7 @@ TEST(ThreadCuts, a_bore_has_its_thread) {
   const TurnCut cut = part.cut(tool, thread({4, 5.4}, {-24, 5.4}, 1.5));
   // Seen from the tip inward.
   const double t = std::tan(radians(30)), h = 0.4, r = 5.4;
-  const double moment =
-      0.1 * (r * h - h * h / 2) + 2 * t * (r * h * h / 2 - h * h * h / 3);
+  const double moment = 0.1 * (r * h - h * h / 2) + 2 * t * (r * h * h / 2 - h * h * h / 3);
   EXPECT_NEAR(cut.removed_mm3 / (2 * kPi / 1.5 * 20 * moment), 1, 1e-6);
 }
 
@@ -356,8 +356,15 @@ TEST(ThreadCuts, random_passes_remove_what_a_sampler_finds) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
-    TurnedPart part = *TurnedPart::create({{{-6, 0}, {0, 0}, {0, 4.6}, {-0.4, 5}, {-2.5, 5},
-                                            {-2.7, 4.5}, {-3, 4.5}, {-3.2, 5.1}, {-6, 5.1}}});
+    TurnedPart part = *TurnedPart::create({{{-6, 0},
+                                            {0, 0},
+                                            {0, 4.6},
+                                            {-0.4, 5},
+                                            {-2.5, 5},
+                                            {-2.7, 4.5},
+                                            {-3, 4.5},
+                                            {-3.2, 5.1},
+                                            {-6, 5.1}}});
     const TurnedProfile blank = part.profile();
     const double all = part.remaining_mm3();
     const InsertOutline outline = vee(1.2, 0.1 * unit(random), 40 + 40 * unit(random));

@@ -152,7 +152,7 @@ TEST_F(BadInput, UnknownShapeAndToolZero) {
       run({"part.canon", "--tool", "1=flet:6", "--tool", "0=flat:6"}), 2,
       "kerf: error: --tool: tool 1: flet:6: unknown shape 'flet'; did you mean 'flat'? Shapes: "
       "flat, ball, bull, vee, taper, drill, lollipop, tslot, dovetail, kerf, "
-      "profile\n"
+      "profile; to turn with: turn, iso, groove, part, facegroove, thread, bore\n"
       "kerf: error: --tool: '0=flat:6': tool 0 is the empty spindle; numbers begin at 1\n"
       "   hint: --tool 1=SHAPE, if it is the only --tool, is what is in the spindle of a program "
       "that changes no tool\n");

@@ -81,17 +81,6 @@ double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
 
 }  // namespace
 
-Severity severity_of(FindingId id, const Grounds& grounds) {
-  return doubt_of(id, grounds).empty() ? Severity::kError : Severity::kWarning;
-}
-
-std::string doubt_of(FindingId id, const Grounds& grounds) {
-  const bool tool = grounds.tool_guessed && id != FindingId::kBelowStock;
-  if (grounds.blank_guessed && tool) return tr(" (of a guessed blank, with a guessed tool)");
-  if (grounds.blank_guessed) return tr(" (of a guessed blank)");
-  return tool ? tr(" (with a guessed tool)") : "";
-}
-
 bool Checks::may_touch(const Motion& m, double radius_mm) const {
   const Box way = bounds_of(m);
   return way.min.z < bounds_mm_.max.z && way.min.x - radius_mm < bounds_mm_.max.x &&

@@ -1,23 +1,10 @@
 #include "twin/process/milling/milling_plan.h"
 
 #include "twin/process/milling/milling_stage.h"
-#include "twin/process/milling/mounted_tools.h"
+#include "twin/process/mounted_tools.h"
 
 namespace kerf {
 namespace {
-
-class MillingTools final : public MotionTools {
- public:
-  MillingTools(const ToolSources& sources, ToolResolver::CutterCheck can_cut)
-      : mounted_(sources, can_cut) {}
-
-  Tool of(const Motion& motion, std::span<const TorchMaterial> /*materials*/) override {
-    return {mounted_.at(motion)};
-  }
-
- private:
-  MountedTools mounted_;
-};
 
 class MillingPlan final : public ProcessPlan {
  public:
@@ -26,7 +13,7 @@ class MillingPlan final : public ProcessPlan {
   }
   std::unique_ptr<MotionTools> tools(const ToolSources& sources,
                                      ToolResolver::CutterCheck can_cut) const override {
-    return std::make_unique<MillingTools>(sources, can_cut);
+    return std::make_unique<MountedToolList>(sources, can_cut);
   }
 };
 

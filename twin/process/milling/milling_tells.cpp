@@ -11,6 +11,7 @@
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/milling/milling_stage.h"
+#include "twin/process/tool_tells.h"
 
 namespace kerf {
 namespace {
@@ -25,48 +26,9 @@ void MillingStage::announce(const ResolvedTool& tool, const Motion& m) {
                                   [&](const ToolUse& use) { return use.number == tool.number; });
   use_ = static_cast<std::uint32_t>(known - uses_.begin());
   if (known != uses_.end()) return;
-  ToolUse use;
-  use.number = tool.number;
-  use.origin = tool.origin;
-  use.guessed = tool.guessed;
-  if (tool.cutter) {
-    use.shape = tool.cutter->spec();
-    use.teeth = tool.cutter->teeth();
-  }
-  uses_.push_back(use);
+  uses_.push_back(use_of(tool));
   deepest_.emplace_back();
-  if (!tool.cutter) return;
-  Finding finding;
-  finding.source = m.source;
-  finding.tool = tool.number;
-  if (tool.assumed) {
-    finding.id = FindingId::kToolAssumed;
-    finding.severity = Severity::kNote;
-    finding.text = trf(
-        "the program moves before any tool change; tool {} ({}, {}) is taken to be in the spindle",
-        tool.number, use.shape, use.origin);
-    log_.add(finding);
-  }
-  if (tool.guessed) {
-    finding.id = FindingId::kToolGuessed;
-    finding.severity = Severity::kWarning;
-    finding.text =
-        tool.from_moves
-            ? trf("nothing is known of {}; by its moves it is taken for {}, and that is a "
-                  "guess: {} (--tool {}=SHAPE says better)",
-                  tool.number == 0 ? std::string(tr("the tool in the spindle"))
-                                   : trf("tool {}", tool.number),
-                  use.shape, tool.guess, std::max(1, tool.number))
-        : tool.guess.empty()
-            ? trf("only the diameter of tool {} is known ({}); a flat cutter is assumed: {} "
-                  "(--tool "
-                  "{}=SHAPE says better)",
-                  tool.number, use.origin, use.shape, std::max(1, tool.number))
-            : trf("tool {} is taken for {} ({}), and that is a guess: {} (--tool {}=SHAPE "
-                  "says better)",
-                  tool.number, use.shape, use.origin, tool.guess, std::max(1, tool.number));
-    log_.add(finding);
-  }
+  tell_tool(tool, m, log_);
 }
 
 /// Of each such move: each is missing from the workpiece.
@@ -138,20 +100,7 @@ void MillingStage::report_undefined(const Motion& m, const TimedStep& step) {
   use.feed_mm += step.length_mm;
   if (!first) return;
   use.origin = tr("nothing");
-  Finding finding = finding_at(FindingId::kToolUndefined, Severity::kError, m, step);
-  finding.tool = mounted_->number;
-  if (!mounted_->trouble.empty()) {
-    finding.text = trf("tool {}: {}; its moves do not cut", m.tool, mounted_->trouble);
-  } else if (m.tool == 0) {
-    finding.text =
-        tr("feed moves with no tool in the spindle do not cut (one --tool N=SHAPE names the tool "
-           "that is in it at the start)");
-  } else {
-    finding.text =
-        trf("nothing is known of tool {}; its moves do not cut (--tool {}=SHAPE describes it)",
-            m.tool, m.tool);
-  }
-  log_.add(std::move(finding));
+  tell_undefined(*mounted_, m, step, log_);
 }
 
 }  // namespace kerf

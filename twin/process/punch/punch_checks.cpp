@@ -30,7 +30,7 @@ struct Extent {
   Vec2 min{1e300}, max{-1e300};
 };
 
-Extent extent_of(const SheetOutline& shape) {
+Extent extent_of(const PlaneOutline& shape) {
   Extent extent;
   for (const std::vector<Vec2>& ring : shape.rings) {
     for (const Vec2& p : ring) {
@@ -46,7 +46,7 @@ bool meet(const Extent& a, const Vec2& min, const Vec2& max) {
 }
 
 /// How far the shape reaches along a direction.
-double reach_along(const SheetOutline& shape, const Vec2& direction) {
+double reach_along(const PlaneOutline& shape, const Vec2& direction) {
   double low = 1e300, high = -1e300;
   for (const std::vector<Vec2>& ring : shape.rings) {
     for (const Vec2& p : ring) {
@@ -152,7 +152,7 @@ void PunchChecks::no_station(const Motion& m, const TimedStep& step, const Vec3&
 }
 
 void PunchChecks::check_edge(const Motion& m, const TimedStep& step, const CutMove& stroke,
-                             const SheetOutline& shape) {
+                             const PlaneOutline& shape) {
   const double share = blank_.share_of(shape);
   if (share < kLeastShare) {
     off_sheet_ = true;
@@ -168,7 +168,7 @@ void PunchChecks::check_edge(const Motion& m, const TimedStep& step, const CutMo
 }
 
 void PunchChecks::check_clamps(const Motion& m, const TimedStep& step, const CutMove& stroke,
-                               const SheetOutline& shape) {
+                               const PlaneOutline& shape) {
   const Extent extent = extent_of(shape);
   for (std::size_t i = 0; i < turret_->clamps.size(); ++i) {
     const SheetClamp& clamp = turret_->clamps[i];
@@ -185,7 +185,7 @@ void PunchChecks::check_clamps(const Motion& m, const TimedStep& step, const Cut
 void PunchChecks::strikes(const Motion& m, const TimedStep& step, const Cutter& punch,
                           std::span<const CutMove> strokes) {
   for (const CutMove& stroke : strokes) {
-    const SheetOutline shape = footprint_at(punch, stroke);
+    const PlaneOutline shape = footprint_at(punch, stroke);
     if (!turret_->clamps.empty()) check_clamps(m, step, stroke, shape);
     check_edge(m, step, stroke, shape);
     if (freed_.empty()) continue;

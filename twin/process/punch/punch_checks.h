@@ -67,9 +67,9 @@ class PunchChecks {
             const Vec3& place_mm, std::string text);
   void check_grip(const Motion& motion, const TimedStep& step);
   void check_clamps(const Motion& motion, const TimedStep& step, const CutMove& stroke,
-                    const SheetOutline& shape);
+                    const PlaneOutline& shape);
   void check_edge(const Motion& motion, const TimedStep& step, const CutMove& stroke,
-                  const SheetOutline& shape);
+                  const PlaneOutline& shape);
   void check_webs(const Motion& motion, const TimedStep& step, const Cutter& punch,
                   std::span<const CutMove> strokes);
   bool web_between(const Cutter& punch, const CutMove& a, const CutMove& b) const;

@@ -1,0 +1,223 @@
+// Bands of surfaces of revolution, for views.
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "stock/turning/around.h"
+#include "stock/turning/revolve.h"
+
+namespace kerf::turning {
+namespace {
+
+/// Surfaces look round where they turn by less.
+constexpr double kCreaseCosine = 0.866;
+
+BandChain divided_at_flats(const BandChain& chain, const BarFlats& flats, double tolerance_mm) {
+  BandChain result{{chain.points[0]}, {}};
+  for (std::size_t i = 0; i < chain.marks.size(); ++i) {
+    const Vec2 &a = chain.points[i], &b = chain.points[i + 1];
+    const int parts = parts_at_flats(a, b, flats, tolerance_mm);
+    for (int k = 1; k <= parts; ++k) {
+      result.points.push_back(k == parts ? b : a + static_cast<double>(k) / parts * (b - a));
+      result.marks.push_back(chain.marks[i]);
+    }
+  }
+  return result;
+}
+
+/// Chains of a contour between two lines across the axis, in its direction; a closed one where it
+/// never leaves.
+class BandChains {
+ public:
+  BandChains(Unit low, Unit high, bool has_high_face)
+      : low_(low), high_(high), has_high_face_(has_high_face) {}
+
+  std::vector<BandChain> of(const Contour& contour) {
+    chains_.clear();
+    open_ = false;
+    each_edge(contour,
+              [this](const Point& a, const Point& b, std::uint32_t mark) { add_edge(a, b, mark); });
+    // The contour's beginning may be within the band: then the last chain goes on as the first.
+    if (open_ && chains_.size() > 1 &&
+        chains_.back().points.back() == chains_.front().points.front()) {
+      BandChain &last = chains_.back(), &first = chains_.front();
+      last.points.insert(last.points.end(), first.points.begin() + 1, first.points.end());
+      last.marks.insert(last.marks.end(), first.marks.begin(), first.marks.end());
+      std::swap(first, last);
+      chains_.pop_back();
+    }
+    return std::move(chains_);
+  }
+
+ private:
+  void add_edge(const Point& a, const Point& b, std::uint32_t mark) {
+    bool inside = false;
+    if (a.X == b.X) {
+      inside = a.X >= low_ && (a.X < high_ || (a.X == high_ && has_high_face_));
+      if (inside) return add(to_mm(a), to_mm(b), mark, true);
+    } else if (std::max(a.X, b.X) > low_ && std::min(a.X, b.X) < high_) {
+      const bool leaves = b.X < low_ || b.X > high_;
+      return add(clipped(a, b), clipped(b, a), mark, !leaves);
+    }
+    open_ = false;
+  }
+  /// `a`, or where the edge enters the band on the way from it. The same for either direction.
+  Vec2 clipped(const Point& a, const Point& b) const {
+    if (a.X >= low_ && a.X <= high_) return to_mm(a);
+    const Unit border = a.X < low_ ? low_ : high_;
+    const Point &left = a.X < b.X ? a : b, &right = a.X < b.X ? b : a;
+    const double share =
+        static_cast<double>(border - left.X) / static_cast<double>(right.X - left.X);
+    return {to_mm(border), to_mm(left.Y) + share * (to_mm(right.Y) - to_mm(left.Y))};
+  }
+  void add(const Vec2& from, const Vec2& to, std::uint32_t mark, bool stays) {
+    if (!open_) chains_.push_back({{from}, {}});
+    chains_.back().points.push_back(to);
+    chains_.back().marks.push_back(mark);
+    open_ = stays;
+  }
+
+  Unit low_, high_;
+  bool has_high_face_;
+  std::vector<BandChain> chains_;
+  bool open_ = false;
+};
+
+/// Out of the material, which lies to the left of the edge: along z and r.
+Vec2 outward(const Vec2& a, const Vec2& b) {
+  const Vec2 way = glm::normalize(b - a);
+  return {way.y, -way.x};
+}
+
+class PatchBuilder {
+  static constexpr Vec2 kNowhere{-1, -1};  // r is never negative
+
+ public:
+  PatchBuilder(MeshPatch& patch, const std::optional<BarFlats>& flats, bool marked)
+      : patch_(patch), flats_(flats), is_marked_(marked), around_(directions(kPatchSegments)) {
+    if (flats) reach_ = reaches(kPatchSegments, *flats);
+  }
+
+  void add_chain(const BandChain& marked) {
+    const std::vector<Vec2>& chain = marked.points;
+    const std::size_t edges = marked.marks.size();
+    const bool closed = chain.front() == chain.back();
+    const auto normal = [&](std::size_t i) { return outward(chain[i], chain[i + 1]); };
+    const auto joint = [&](std::size_t edge, std::size_t other) {
+      const Vec2 own = normal(edge), beside = normal(other);
+      return glm::dot(own, beside) < kCreaseCosine ? own : glm::normalize(own + beside);
+    };
+    for (std::size_t i = 0; i < edges; ++i) {
+      const bool has_before = i > 0 || closed, has_after = i + 1 < edges || closed;
+      const Vec2 begin = has_before ? joint(i, i > 0 ? i - 1 : edges - 1) : normal(i);
+      const Vec2 end = has_after ? joint(i, i + 1 < edges ? i + 1 : 0) : normal(i);
+      if (chain[i].y == 0 && chain[i + 1].y == 0) continue;  // the axis
+      if (marked.marks[i] != mark_) last_at_ = kNowhere;
+      mark_ = marked.marks[i];
+      if (flats_ && std::max(chain[i].y, chain[i + 1].y) > flats_->inner_radius_mm) {
+        add_strip_with_flats(chain[i], begin, chain[i + 1], end);
+        continue;
+      }
+      const std::uint32_t from = ring(chain[i], begin), to = ring(chain[i + 1], end);
+      add_strip(kPatchSegments, from, 1, to, 1, false,
+                [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangle(a, b, c); });
+    }
+  }
+
+ private:
+  /// Corners that a flat cuts off have the normal of what is there.
+  void add_strip_with_flats(const Vec2& from, const Vec2& begin, const Vec2& to, const Vec2& end) {
+    last_at_ = kNowhere;
+    for (std::size_t k = 0; k < kPatchSegments; ++k) {
+      const auto corner = [&](const Vec2& at, std::size_t i) {
+        return place({at.x, std::min(at.y, reach_[i])}, around_[i]);
+      };
+      const std::array<glm::vec3, 4> corners{corner(from, k), corner(to, k), corner(from, k + 1),
+                                             corner(to, k + 1)};
+      glm::vec3 across = glm::cross(corners[3] - corners[0], corners[2] - corners[1]);
+      if (glm::length(across) == 0) continue;
+      across = glm::normalize(across);
+      const auto first = static_cast<std::uint32_t>(patch_.vertices.size());
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t direction = k + i / 2;
+        const Vec2 &at = i % 2 == 0 ? from : to, &normal = i % 2 == 0 ? begin : end;
+        const bool is_cut = at.y >= reach_[direction];
+        add_vertex(corners[i], is_cut ? across : place(normal, around_[direction]));
+      }
+      triangle(first, first + 1, first + 2);
+      triangle(first + 2, first + 1, first + 3);
+    }
+  }
+  /// The ring before where it is the same.
+  std::uint32_t ring(const Vec2& at, const Vec2& normal) {
+    if (at == last_at_ && normal == last_normal_) return last_ring_;
+    last_at_ = at;
+    last_normal_ = normal;
+    last_ring_ = static_cast<std::uint32_t>(patch_.vertices.size());
+    for (const Vec2& direction : around_)
+      add_vertex(place(at, direction), place(normal, direction));
+    return last_ring_;
+  }
+  void add_vertex(const glm::vec3& at, const glm::vec3& normal) {
+    patch_.vertices.push_back({at, pack_normal(normal)});
+    if (is_marked_) patch_.cut_by.push_back(mark_);
+  }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const glm::vec3 &p = patch_.vertices[a].position_mm, &q = patch_.vertices[b].position_mm,
+                    &r = patch_.vertices[c].position_mm;
+    if (p == q || q == r || r == p) return;  // at the axis
+    patch_.indices.insert(patch_.indices.end(), {a, b, c});
+  }
+
+  MeshPatch& patch_;
+  const std::optional<BarFlats>& flats_;
+  bool is_marked_;
+  std::vector<Vec2> around_;
+  std::vector<double> reach_;  // along them, with flats
+  Vec2 last_at_ = kNowhere, last_normal_{0};
+  std::uint32_t last_ring_ = 0, mark_ = MeshPatch::kNotCut;
+};
+
+}  // namespace
+
+BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm) {
+  BandChain result;
+  for (std::size_t begin = 0; begin < chain.marks.size();) {
+    std::size_t end = begin + 1;
+    while (end < chain.marks.size() && chain.marks[end] == chain.marks[begin]) ++end;
+    const std::vector<Vec2> part =
+        simplified(std::span(chain.points).subspan(begin, end - begin + 1), tolerance_mm);
+    if (result.points.empty()) result.points.push_back(part.front());
+    result.points.insert(result.points.end(), part.begin() + 1, part.end());
+    result.marks.resize(result.points.size() - 1, chain.marks[begin]);
+    begin = end;
+  }
+  return result;
+}
+
+std::vector<BandChain> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                   bool has_high_face) {
+  return BandChains(low_z, high_z, has_high_face).of(contour);
+}
+
+MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
+                       bool has_high_face, double tolerance_mm,
+                       const std::optional<BarFlats>& flats) {
+  static_assert(kPatchSegments % 12 == 0 && kPatchSegments % 8 == 0, "bars of six and four flats");
+  MeshPatch patch;
+  const bool is_marked = !contours.empty() && !contours[0].runs()[0]->marks.empty();
+  PatchBuilder builder(patch, flats, is_marked);
+  BandChains chains(low_z, high_z, has_high_face);
+  for (const Contour& contour : contours) {
+    if (contour.box().max_x < low_z || contour.box().min_x > high_z) continue;
+    for (const BandChain& whole : chains.of(contour)) {
+      const BandChain chain = simplified_by_marks(whole, tolerance_mm);
+      builder.add_chain(flats ? divided_at_flats(chain, *flats, tolerance_mm) : chain);
+    }
+  }
+  patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
+  return patch;
+}
+
+}  // namespace kerf::turning

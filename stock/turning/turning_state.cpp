@@ -1,0 +1,307 @@
+#include "stock/turning/turning_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "stock/state_bytes.h"
+
+namespace kerf::turning {
+namespace {
+
+constexpr std::int64_t kLayoutOfParts = 1;
+constexpr std::string_view kPartTag = "PART";
+constexpr std::uint32_t kPartVersion = 1;
+constexpr std::string_view kThreadTag = "THRD";
+constexpr std::uint32_t kThreadVersion = 1;
+/// From z r, to z r, lead, turns, low and high r.
+constexpr std::size_t kThreadNumbers = 8;
+constexpr std::size_t kThreadBytes =
+    sizeof(std::uint64_t) + kThreadNumbers * sizeof(double) + sizeof(std::uint32_t);
+/// Volumes are sums of doubles.
+constexpr double kVolumeSlack = 1e-9;
+
+struct PartHead {
+  std::int64_t layout = 0, chuck = 0;
+  std::int64_t blank[4] = {};
+  double blank_mm3 = 0;
+  double flats[2] = {};
+
+  bool is_known() const { return layout == kLayoutOfParts; }
+  Rect rect() const { return {blank[0], blank[1], blank[2], blank[3]}; }
+};
+
+bool is_sane(const PartHead& h) {
+  const Unit most_z = to_units(kMaxTurnedZ_mm), most_r = to_units(kMaxTurnedRadius_mm);
+  const Rect r = h.rect();
+  if (r.min_x < -most_z || r.max_x > most_z || r.min_y < 0 || r.max_y > most_r) return false;
+  if (r.min_x >= r.max_x || r.min_y >= r.max_y) return false;
+  const double most_mm3 = kPi * to_mm(r.max_x - r.min_x) *
+                          (to_mm(r.max_y) * to_mm(r.max_y) - to_mm(r.min_y) * to_mm(r.min_y));
+  if (!(h.blank_mm3 > 0) || h.blank_mm3 > most_mm3 * (1 + kVolumeSlack)) return false;
+  const bool is_round = h.flats[0] == 0 && h.flats[1] == 0;
+  const bool is_bar =
+      (h.flats[0] == 4 || h.flats[0] == 6) && h.flats[1] > 0 && h.flats[1] <= kMaxTurnedRadius_mm;
+  return (h.chuck == 0 || h.chuck == 1) && (is_round || is_bar);
+}
+
+bool read_part_head(StateHead& reader, PartHead& h) {
+  if (!reader.numbers("layout", &h.layout, 1)) return false;
+  if (!h.is_known()) return h.layout > 0;  // what follows is not known either
+  return reader.numbers("chuck", &h.chuck, 1) && reader.numbers("blank", h.blank, 4) &&
+         reader.numbers("blank_mm3", &h.blank_mm3, 1) && reader.numbers("flats", h.flats, 2) &&
+         reader.line("data") && is_sane(h);
+}
+
+/// Takes numbers off the front of bytes.
+class PartBytes {
+ public:
+  explicit PartBytes(std::string_view bytes) : bytes_(bytes) {}
+  bool is_at_end() const { return bytes_.empty(); }
+
+  bool take(void* out, std::size_t bytes) {
+    if (bytes_.size() < bytes) return false;
+    std::memcpy(out, bytes_.data(), bytes);
+    bytes_.remove_prefix(bytes);
+    return true;
+  }
+  std::optional<std::string_view> take(std::uint64_t bytes) {
+    if (bytes_.size() < bytes) return std::nullopt;
+    const std::string_view taken = bytes_.substr(0, bytes);
+    bytes_.remove_prefix(bytes);
+    return taken;
+  }
+  /// How many that take so much each may follow; false if there are fewer than it says.
+  bool take_count(std::uint32_t& count, std::size_t bytes_each) {
+    return take(&count, sizeof count) && count <= bytes_.size() / bytes_each;
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+bool read_contour(PartBytes& bytes, const Rect& blank, ContourBuilder& builder, Contour& contour) {
+  std::uint32_t count = 0;
+  if (!bytes.take_count(count, 2 * sizeof(std::int32_t)) || count < 3) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::int32_t zr[2];
+    if (!bytes.take(zr, sizeof zr)) return false;
+    const Point p{zr[0], zr[1]};
+    if (!blank.holds(p)) return false;
+    builder.append(p);
+  }
+  contour = builder.close();
+  return contour.corner_count() == count && contour.area2() != 0;
+}
+
+bool read_contours(std::string_view section, const Rect& blank, std::vector<Contour>& contours) {
+  PartBytes bytes(section);
+  std::uint32_t count = 0;
+  if (!bytes.take_count(count, sizeof count)) return false;
+  ContourBuilder builder;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Contour contour;
+    if (!read_contour(bytes, blank, builder, contour)) return false;
+    if (contour.is_outer() != (i == 0)) return false;
+    contours.push_back(std::move(contour));
+    const Rect &outer = contours[0].box(), &box = contours.back().box();
+    if (!outer.holds({box.min_x, box.min_y}) || !outer.holds({box.max_x, box.max_y})) return false;
+  }
+  return bytes.is_at_end();
+}
+
+void put_section(StateWriter& file, std::string_view tag, std::uint32_t version,
+                 const std::string& bytes) {
+  const std::uint64_t size = bytes.size();
+  file.put(tag.data(), tag.size());
+  file.put(&version, sizeof version);
+  file.put(&size, sizeof size);
+  file.put(bytes.data(), bytes.size());
+}
+
+template <class Number>
+void append_number(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+bool read_threads(std::string_view section,
+                  std::vector<std::shared_ptr<const ThreadPass>>& threads) {
+  PartBytes bytes(section);
+  std::uint32_t count = 0;
+  if (!bytes.take_count(count, kThreadBytes) || count == 0) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint64_t id = 0;
+    double n[kThreadNumbers];
+    std::uint32_t corner_count = 0;
+    if (!bytes.take(&id, sizeof id) || !bytes.take(n, sizeof n) ||
+        !bytes.take_count(corner_count, 2 * sizeof(double)))
+      return false;
+    ConvexChain corners;
+    for (std::uint32_t k = 0; k < corner_count; ++k) {
+      double zr[2];
+      if (!bytes.take(zr, sizeof zr)) return false;
+      corners.emplace_back(zr[0], zr[1]);
+    }
+    std::optional<ThreadPass> pass = ThreadPass::restored(std::move(corners), {n[0], n[1]},
+                                                          {n[2], n[3]}, n[4], n[5], n[6], n[7], id);
+    if (!pass) return false;
+    threads.push_back(std::make_shared<const ThreadPass>(std::move(*pass)));
+  }
+  return bytes.is_at_end();
+}
+
+std::string thread_bytes(const std::vector<std::shared_ptr<const ThreadPass>>& threads) {
+  std::string bytes;
+  append_number(bytes, static_cast<std::uint32_t>(threads.size()));
+  for (const auto& pass : threads) {
+    append_number(bytes, pass->id());
+    for (const double number :
+         {pass->from_mm().x, pass->from_mm().y, pass->to_mm().x, pass->to_mm().y, pass->lead_mm(),
+          pass->from_turns(), pass->low_r_mm(), pass->high_r_mm()})
+      append_number(bytes, number);
+    append_number(bytes, static_cast<std::uint32_t>(pass->corners().size()));
+    for (const Vec2& p : pass->corners()) {
+      append_number(bytes, p.x);
+      append_number(bytes, p.y);
+    }
+  }
+  return bytes;
+}
+
+std::string contour_bytes(const std::vector<Contour>& contours) {
+  std::string bytes;
+  append_number(bytes, static_cast<std::uint32_t>(contours.size()));
+  const auto append = [&bytes](const Contour& contour) {
+    const Ring ring = contour.ring();
+    append_number(bytes, static_cast<std::uint32_t>(ring.size()));
+    for (const Point& p : ring) {
+      append_number(bytes, static_cast<std::int32_t>(p.X));
+      append_number(bytes, static_cast<std::int32_t>(p.Y));
+    }
+  };
+  for (const bool outer : {true, false}) {
+    for (const Contour& contour : contours) {
+      if (contour.is_outer() == outer) append(contour);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Done write_part(const std::string& path, const SavedPart& saved) {
+  Result<StateWriter> file = StateWriter::create(path);
+  if (!file) return Error{file.error()};
+  const Rect& b = saved.blank;
+  const BarFlats flats = saved.flats.value_or(BarFlats{});
+  const std::string head = fmt::format(
+      "{}model turning\nlayout {}\nchuck {}\nblank {} {} {} {}\nblank_mm3 {}\nflats {} {}\n"
+      "data\n",
+      kStateMagic, kLayoutOfParts, saved.chuck == ChuckSide::kHighZ ? 1 : 0, b.min_x, b.min_y,
+      b.max_x, b.max_y, saved.blank_mm3, flats.count, flats.inner_radius_mm);
+  file->put(head.data(), head.size());
+  put_section(*file, kPartTag, kPartVersion, contour_bytes(saved.contours));
+  if (!saved.threads.empty())
+    put_section(*file, kThreadTag, kThreadVersion, thread_bytes(saved.threads));
+  return file->commit();
+}
+
+Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) {
+  PartHead head;
+  const Result<StateHead> reader = head_of_state(
+      bytes, name, "turning", [&head](StateHead& lines) { return read_part_head(lines, head); });
+  if (!reader) return Error{reader.error()};
+  if (!head.is_known()) {
+    return Error{trf("{}: a turned part of layout {}; layout {} can be read", name, head.layout,
+                     kLayoutOfParts)};
+  }
+  const Result<std::string_view> data = data_of_state(*reader, name);
+  if (!data) return Error{data.error()};
+  const std::string damaged = trf("{}: the contours are damaged", name);
+  SavedPart saved;
+  saved.chuck = head.chuck == 1 ? ChuckSide::kHighZ : ChuckSide::kLowZ;
+  saved.blank = head.rect();
+  saved.blank_mm3 = head.blank_mm3;
+  if (head.flats[0] != 0) saved.flats = BarFlats{static_cast<int>(head.flats[0]), head.flats[1]};
+  bool has_part = false;
+  for (PartBytes rest(*data); !rest.is_at_end();) {
+    char tag[4] = {};
+    std::uint32_t version = 0;
+    std::uint64_t size = 0;
+    if (!rest.take(tag, sizeof tag) || !rest.take(&version, sizeof version) ||
+        !rest.take(&size, sizeof size))
+      return Error{damaged};
+    const std::optional<std::string_view> section = rest.take(size);
+    if (!section) return Error{damaged};
+    if (std::string_view(tag, sizeof tag) == kThreadTag && version == kThreadVersion) {
+      if (!saved.threads.empty() || !read_threads(*section, saved.threads)) {
+        return Error{trf("{}: the threads are damaged", name)};
+      }
+      continue;
+    }
+    if (std::string_view(tag, sizeof tag) != kPartTag || version != kPartVersion) {
+      return Error{trf("{}: has a section '{}' of version {}, which this kerf cannot read", name,
+                       shown(std::string_view(tag, sizeof tag)), version)};
+    }
+    if (has_part || !read_contours(*section, saved.blank, saved.contours)) return Error{damaged};
+    has_part = true;
+  }
+  if (!has_part) return Error{damaged};
+  double volume_mm3 = 0;
+  for (const Contour& contour : saved.contours) {
+    volume_mm3 += turning::volume_mm3(contour.moment6());
+    if (saved.flats) volume_mm3 -= missing_mm3(contour, *saved.flats);
+  }
+  if (!(volume_mm3 >= 0) || volume_mm3 > saved.blank_mm3 * (1 + kVolumeSlack) + kVolumeSlack)
+    return Error{damaged};
+  return saved;
+}
+
+}  // namespace kerf::turning
+
+namespace kerf {
+
+turning::SavedPart TurnedPart::saved() const {
+  return {chuck_, blank_,    blank_mm3_,
+          flats_, contours_, {threads_.passes().begin(), threads_.passes().end()}};
+}
+
+TurnedPart TurnedPart::restored(turning::SavedPart saved) {
+  TurnedPart part;
+  part.contours_ = std::move(saved.contours);
+  part.blank_ = saved.blank;
+  part.blank_mm3_ = saved.blank_mm3;
+  part.chuck_ = saved.chuck;
+  part.flats_ = saved.flats;
+  part.threads_.restore(std::move(saved.threads), part.contours_);
+  part.touch_all();
+  return part;
+}
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
+  const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
+  turning::SavedPart turned = saved();
+  turned.blank.min_x = at - blank_.max_x;
+  turned.blank.max_x = at - blank_.min_x;
+  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  turning::ContourBuilder builder;
+  for (turning::Contour& contour : turned.contours) {
+    turning::Ring ring = contour.ring();
+    std::reverse(ring.begin(), ring.end());
+    for (turning::Point& p : ring) p.X = at - p.X;
+    for (const turning::Point& p : ring) builder.append(p);
+    contour = builder.close();
+  }
+  for (auto& pass : turned.threads)
+    pass = std::make_shared<const turning::ThreadPass>(pass->turned_about(at_z_mm));
+  return restored(std::move(turned));
+}
+
+}  // namespace kerf

@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stock/cutter/insert_shape.h"
+#include "stock/turning/turning_stock.h"
+#include "tests/twin/process/motions.h"
+#include "twin/job/stock_choice.h"
+#include "twin/process/cut_stage.h"
+#include "twin/process/process_table.h"
+
+namespace kerf {
+namespace {
+
+using Ids = std::vector<std::string>;
+
+constexpr double kDeg = kPi / 180;
+
+Cutter nose(double radius_mm, int orientation, double front_deg, double back_deg) {
+  NoseInsert insert;
+  insert.radius_mm = radius_mm;
+  insert.orientation = orientation;
+  insert.front_rad = front_deg * kDeg;
+  insert.back_rad = back_deg * kDeg;
+  insert.edge_mm = 12;
+  return Cutter::from_insert("nose", *nose_insert(insert));
+}
+
+Cutter blade(double width_mm) {
+  GrooveInsert insert;
+  insert.width_mm = width_mm;
+  insert.length_mm = 30;
+  return Cutter::from_insert("blade", *groove_insert(insert));
+}
+
+/// A bar 40 x 60 from Z-60 to Z0 under an 80 degree insert (1), whose flanks are 5 degrees off face
+/// and axis, and a blade of 3 mm (2).
+class LatheShop {
+ public:
+  explicit LatheShop(const MotionList& program, double nose_mm = 0)
+      : stock_(*TurnedPart::create(bar_profile(-60, 0, 40))),
+        resolver_(tools(nose_mm), stock_model(StockKind::kTurning).can_cut),
+        stage_(stock_, resolver_, log_, TimelineOptions{}, *choose_process(wish())) {
+    stage_.judge_blank(BlankKind::kGiven);
+    stage_.take(program.list());
+    stage_.finish();
+  }
+  Ids ids() const {
+    Ids out;
+    for (const Finding& finding : log_.kept()) out.emplace_back(to_string(finding.id));
+    return out;
+  }
+  const Finding& finding(std::size_t i) const { return log_.kept().at(i); }
+  const CutStage& stage() const { return stage_; }
+  const TurningStock& stock() const { return stock_; }
+  double removed_mm3() const { return stock_.blank_mm3() - stock_.remaining_mm3(); }
+
+ private:
+  static ToolSources tools(double nose_mm) {
+    ToolSources sources;
+    sources.turning = true;
+    sources.arguments.push_back({1, nose(nose_mm, 2, 85, 5)});
+    sources.arguments.push_back({2, blade(3)});
+    return sources;
+  }
+  static ProcessWish wish() {
+    ProcessWish wish;
+    wish.is_turned = true;
+    return wish;
+  }
+
+  TurningStock stock_;
+  FindingLog log_;
+  ToolResolver resolver_;
+  CutStage stage_;
+};
+
+MotionList start(int tool = 1) {
+  MotionList program;
+  program.at({30, 0, 5}).tool(tool).spindle(true);
+  return program;
+}
+
+TEST(TurningStage, ACylinderIsWhatItsDiameterSays) {
+  MotionList program = start();
+  program.traverse({15, 0, 2}).feed({15, 0, -30}).traverse({25, 0, -29}).traverse({30, 0, 5});
+  const LatheShop shop(program);
+  EXPECT_EQ(shop.ids(), Ids{});
+  // The shoulder slants by the 5 degrees that the front flank is off the face.
+  const double slant_mm3 = 2 * kPi * std::tan(5 * kDeg) * ((8000 - 3375) / 3.0 - 7.5 * 175);
+  EXPECT_NEAR(shop.removed_mm3(), kPi * 175 * 30 - slant_mm3, 1e-6 * kPi * 400 * 60);
+  ASSERT_EQ(shop.stage().tools().size(), 1U);
+  const ToolUse& use = shop.stage().tools()[0];
+  EXPECT_NEAR(use.max_depth_mm, 5, 0.01);
+  EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 1e-6);
+  EXPECT_NEAR(use.feed_mm, 32, 1e-9);
+}
+
+TEST(TurningStage, CuttingTimeIsThatInMaterial) {
+  MotionList program = start();
+  program.traverse({15, 0, 30}).feed_rate(600).feed({15, 0, -30});
+  const ToolUse use = LatheShop(program).stage().tools()[0];
+  EXPECT_NEAR(use.cut_s, 3, 0.06);  // 30 of 60 mm at 10 mm/s
+  EXPECT_NEAR(use.peak_mm3_per_s, kPi * (400 - 225) * 10, kPi * 175 * 10 * 0.02);
+}
+
+TEST(TurningStage, ATraverseThroughTheBarIsTold) {
+  MotionList program = start();
+  program.traverse({15, 0, 2}).traverse({15, 0, -30});
+  const LatheShop shop(program);
+  ASSERT_EQ(shop.ids(), Ids{"rapid-contact"});
+  const Finding& finding = shop.finding(0);
+  EXPECT_EQ(finding.source.line, 3U);
+  EXPECT_NEAR(finding.position_mm->z, -0.01, 0.002);
+  EXPECT_NEAR(*finding.depth_mm, 5, 0.02);
+}
+
+TEST(TurningStage, AStandingSpindleIsTold) {
+  MotionList program = start();
+  program.traverse({15, 0, 2}).spindle(false).feed({15, 0, -30});
+  EXPECT_EQ(LatheShop(program).ids(), Ids{"spindle-off-contact"});
+}
+
+TEST(TurningStage, TheTrailingFlankOfASteepContourIsTold) {
+  // The back flank runs 5 degrees off the axis: a contour that falls by 20 degrees is too steep.
+  MotionList steep = start();
+  steep.traverse({18, 0, 2}).feed({18, 0, -10}).feed({18 - 10 * std::tan(20 * kDeg), 0, -20});
+  EXPECT_EQ(LatheShop(steep).ids(), Ids{"flank-contact"});
+  MotionList sound = start();
+  sound.traverse({18, 0, 2}).feed({18, 0, -10}).feed({18 - 10 * std::tan(4 * kDeg), 0, -20});
+  EXPECT_EQ(LatheShop(sound).ids(), Ids{});
+  MotionList rising = start();
+  rising.traverse({15, 0, 2}).feed({15, 0, -10}).feed({18, 0, -20}).feed({22, 0, -20});
+  EXPECT_EQ(LatheShop(rising).ids(), Ids{});
+}
+
+TEST(TurningStage, FacesAndGroovesAreNoFlanks) {
+  MotionList program = start();
+  program.traverse({22, 0, -1}).feed({0, 0, -1}).traverse({0, 0, 2}).traverse({30, 0, 2}).tool(2);
+  program.traverse({30, 0, -20}).traverse({21, 0, -20}).feed({12, 0, -20}).feed({21, 0, -20});
+  EXPECT_EQ(LatheShop(program).ids(), Ids{});
+}
+
+TEST(TurningStage, WhatIsNoEdgeMustNotTouch) {
+  // Out of a groove towards +z the back of the insert goes first.
+  MotionList program = start();
+  program.traverse({30, 0, -20}).feed({15, 0, -20}).feed({15, 0, -10});
+  EXPECT_EQ(LatheShop(program).ids(), Ids{"flank-contact"});
+  EXPECT_EQ(LatheShop(program).finding(0).severity, Severity::kError);
+}
+
+TEST(TurningStage, ABladeThatGoesFarBeyondTheAxisIsTold) {
+  MotionList program = start(2);
+  program.traverse({21, 0, -20}).feed({-2, 0, -20});
+  EXPECT_EQ(LatheShop(program).ids(), Ids{"past-centre"});
+}
+
+TEST(TurningStage, APipIsToldOfANoseThatStopsAtTheAxis) {
+  MotionList short_of = start();
+  short_of.traverse({22, 0, -1}).feed({0, 0, -1}).traverse({0, 0, 2});
+  const LatheShop shop(short_of, 0.8);
+  ASSERT_EQ(shop.ids(), Ids{"pip-left"});
+  // The nose rises from the face by 0.02 at sqrt(0.8^2 - 0.78^2) from its middle, which stands 0.8
+  // from the axis.
+  EXPECT_NEAR(shop.finding(0).position_mm->x, 0.8 - std::sqrt(0.64 - 0.6084), 0.002);
+  MotionList beyond = start();
+  beyond.traverse({22, 0, -1}).feed({-0.8, 0, -1}).traverse({-0.8, 0, 2});
+  EXPECT_EQ(LatheShop(beyond, 0.8).ids(), Ids{});
+}
+
+TEST(TurningStage, WhatIsPartedOffFalls) {
+  MotionList program = start(2);
+  program.traverse({21, 0, -20}).feed({-0.1, 0, -20}).traverse({21, 0, -20});
+  const LatheShop shop(program);
+  EXPECT_EQ(shop.ids(), Ids{});
+  const auto pieces = shop.stage().process().fallen();
+  ASSERT_EQ(pieces.size(), 1U);
+  // The controlled point is the corner towards -z: the blade takes Z-20 to Z-17.
+  EXPECT_NEAR(pieces[0].piece.volume_mm3, kPi * 400 * 17, 0.1);
+  EXPECT_EQ(pieces[0].source.line, 3U);
+  EXPECT_EQ(pieces[0].tool, 2);
+}
+
+TEST(TurningStage, AnArcInAnotherPlaneIsToldOnce) {
+  MotionList program = start();
+  program.traverse({15, 0, 2}).feed({15, 0, -5});
+  program.arc({15, 10, -5}, {15, 5, -5}, {0, 0, 1}, kPi)
+      .arc({15, 0, -5}, {15, 5, -5}, {0, 0, 1}, kPi);
+  EXPECT_EQ(LatheShop(program).ids(), Ids{"wrong-plane"});
+}
+
+TEST(TurningStage, WhatIsMilledBesideTheAxisIsNotModelled) {
+  MotionList program = start();
+  program.traverse({15, 0, 2}).feed({15, 3, 2});
+  EXPECT_EQ(LatheShop(program).ids(), (Ids{"not-modelled", "nothing-cut"}));
+}
+
+TEST(TurningStage, NothingCutIsTold) {
+  MotionList program = start();
+  program.traverse({25, 0, 2}).feed({25, 0, -30});
+  EXPECT_EQ(LatheShop(program).ids(), Ids{"nothing-cut"});
+}
+
+}  // namespace
+}  // namespace kerf

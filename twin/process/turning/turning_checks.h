@@ -1,0 +1,101 @@
+// twin/process/turning/turning_checks.h - troubles of single moves of a turning tool, joined to
+// events: one finding from the first move that shows a trouble to the last one in a row.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "stock/turning/turning_stock.h"
+#include "twin/findings/finding.h"
+#include "twin/machine/timeline.h"
+#include "twin/process/check_options.h"
+
+namespace kerf {
+
+/// A motion with what the checks need to know of it.
+struct TurnedMove {
+  const Motion& motion;
+  const TimedStep& step;
+  const Cutter& cutter;
+  std::span<const CutMove> moves;  ///< it is cut as these
+  int tool = 0;
+  bool tool_guessed = false;
+};
+
+/// Watches the moves of one program against one workpiece that turns. The caller calls before it
+/// cuts the move, except where it says otherwise.
+class TurningChecks {
+ public:
+  /// The model is a TurningStock, or stands before one.
+  TurningChecks(const StockModel& stock, FindingLog& log) : stock_(*stock.turned()), log_(log) {}
+
+  void set_options(const CheckOptions& options) { options_ = options; }
+  const CheckOptions& options() const { return options_; }
+
+  /// Cheap: boxes only.
+  bool may_touch(const TurnedMove& move) const;
+  /// A move of the tool touches the workpiece.
+  bool touches(const TurnedMove& move) const { return first_touch(move).has_value(); }
+
+  /// rapid-contact. An event ends with the first traverse that touches nothing.
+  void check_traverse(const TurnedMove& move);
+  void clear_traverse() { rapid_.reset(); }
+  /// spindle-off-contact. An event lasts until the spindle turns or the tool changes.
+  void check_standing(const TurnedMove& move);
+  void end_standing() { standing_.reset(); }
+  /// flank-contact, of a feed move that has been cut. An event ends with the first one that cuts
+  /// with its edges alone.
+  void check_sides(const TurnedMove& move, const TurnCut& cut);
+  /// past-centre, of a feed move that has been cut. Once a tool change.
+  void check_centre(const TurnedMove& move, const TurnCut& cut);
+  /// wrong-plane: once.
+  void check_plane(const Motion& motion, const TimedStep& step);
+  /// thread-speed: once a line. `limits_known`: they are those of the user's machine.
+  void check_thread(const Motion& motion, const TimedStep& step, bool limits_known);
+  void end_tool();
+  /// The program is over: pip-left.
+  void finish();
+  /// What goes on is forgotten: the next trouble is a new event.
+  void forget();
+
+  /// What a flank may be in material beside the edge that leads: corners are rounded, tables give
+  /// angles in whole degrees.
+  static constexpr double kFlank_mm = 0.05;
+  /// A tool may go so much farther beyond the axis than its nose has to.
+  static constexpr double kBeyond_mm = 0.5;
+  /// A pip is what stands so much above its face, and is no thicker than that.
+  static constexpr double kPipHeight_mm = 0.02, kPipWidest_mm = 4;
+
+ private:
+  struct Touch {
+    TurnContact contact;
+    double share = 0;  ///< of the motion
+  };
+  /// Where a face was turned towards the axis.
+  struct Face {
+    double z_mm = 0;
+    double side = 1;  ///< material is on the other side of it: +1 is towards -z
+    SourceRef source;
+    double time_s = 0;
+    int tool = 0;
+  };
+  std::optional<Touch> first_touch(const TurnedMove& move) const;
+  Finding finding_of(FindingId id, const TurnedMove& move, double share, std::string text) const;
+  void note_face(const TurnedMove& move, const TurnCut& cut);
+  void tell_pip(const Face& face);
+
+  const TurningStock& stock_;
+  FindingLog& log_;
+  CheckOptions options_;
+  std::optional<FindingLog::Handle> rapid_, standing_, flank_;
+  bool centre_told_ = false;
+  bool plane_told_ = false;
+  SourceRef thread_told_;
+  std::vector<Face> faces_;  ///< the last of each place, few
+};
+
+}  // namespace kerf

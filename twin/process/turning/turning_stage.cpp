@@ -1,0 +1,242 @@
+#include "twin/process/turning/turning_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/machine/planned_pieces.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/contact_grounds.h"
+#include "twin/process/finding_at.h"
+#include "twin/process/tool_tells.h"
+
+namespace kerf {
+namespace {
+
+/// Motion::unknown_to: X, Y and Z.
+constexpr std::uint8_t kAllUnknown = 7;
+
+}  // namespace
+
+TurningStage::TurningStage(ProcessSite& site)
+    : site_(site),
+      stock_(site.stock),
+      resolver_(site.tools),
+      log_(site.log),
+      checks_(stock_, log_),
+      fallen_before_(stock_.turned()->part().freed().size()) {}
+
+void TurningStage::begin_reporting() {
+  checks_.forget();
+  uses_.clear();
+  fallen_.clear();
+  fallen_before_ = stock_.turned()->part().freed().size();
+  mounted_ = nullptr;
+  mill_turn_told_ = false;
+}
+
+void TurningStage::go_on_from(const Process& process) {
+  const auto& other = static_cast<const TurningStage&>(process);
+  fallen_ = other.fallen_;
+  fallen_before_ = other.fallen_before_;
+}
+
+void TurningStage::finish(bool whole) {
+  if (whole && !site_.progress.is_stopped()) {
+    checks_.finish();
+    report_nothing_cut();
+  }
+  for (ToolUse& use : uses_) {
+    if (use.peak_mm3_per_s == 0) close_window(use);
+  }
+}
+
+void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
+  path_ = path;
+  if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
+    spindle_tool_ = m.tool;
+    mounted_ = nullptr;
+    checks_.end_tool();
+  }
+  if (!stands(m)) checks_.end_standing();
+  report_mill_turn(m, step);
+  if (is_traverse(m)) take_traverse(m, step);
+  if (is_feed(m)) take_feed(m, step);
+}
+
+/// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
+/// found wrong.
+bool TurningStage::stands(const Motion& m) const {
+  if (m.spindle == SpindleState::kStopped) return true;
+  return m.spindle_rpm == 0 && (m.speed_said || !site_.watched);
+}
+
+bool TurningStage::mount_for(const Motion& m) {
+  if (mounted_) return mounted_->cutter.has_value();
+  mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
+  const auto known = std::find_if(uses_.begin(), uses_.end(), [&](const ToolUse& use) {
+    return use.number == mounted_->number;
+  });
+  use_ = static_cast<std::size_t>(known - uses_.begin());
+  if (known == uses_.end()) {
+    uses_.push_back(use_of(*mounted_));
+    tell_tool(*mounted_, m, log_);
+  }
+  return mounted_->cutter.has_value();
+}
+
+bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
+  moves.clear();
+  return site_.moves.append(m, *mounted_->cutter, 0, moves, nullptr);
+}
+
+TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
+  return {m, step, *mounted_->cutter, moves_, mounted_->number, mounted_->guessed};
+}
+
+void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
+  // As in milling: the tool of such a move is not known for sure.
+  if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) return;
+  if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
+  if (!mount_for(m) || !m.start_known || !divide(m, moves_)) return;
+  const TurnedMove move = turned(m, step);
+  if (!checks_.may_touch(move)) {
+    checks_.clear_traverse();
+    return;
+  }
+  checks_.check_traverse(move);
+  cut(m, step);
+}
+
+void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
+  if (stands_still(m)) return;
+  ++feed_moves_;
+  if (!mount_for(m)) {
+    report_undefined(m, step);
+    return;
+  }
+  uses_[use_].feed_mm += step.length_mm;
+  if (!m.start_known) return;
+  if (m.kind != MotionKind::kThread) site_.feeds.note(m, step);
+  checks_.check_plane(m, step);
+  if (!divide(m, moves_)) return;
+  const TurnedMove move = turned(m, step);
+  if (!checks_.may_touch(move)) return;
+  checks_.check_thread(m, step, site_.limits_known);
+  if (stands(m)) checks_.check_standing(move);
+  cut(m, step);
+}
+
+/// Once: a tool beside the plane of the axis, or a workpiece that is turned as an axis, is no
+/// turning.
+void TurningStage::report_mill_turn(const Motion& m, const TimedStep& step) {
+  constexpr double kOff_mm = 1e-6;
+  const bool beside = std::abs(m.to_mm.y - m.from_mm.y) > kOff_mm && m.kind != MotionKind::kArc;
+  const bool turns = m.from_abc_deg != m.to_abc_deg;
+  if (mill_turn_told_ || !m.start_known || (!beside && !turns)) return;
+  mill_turn_told_ = true;
+  Finding finding = finding_at(FindingId::kNotModelled, Severity::kError, m, step);
+  finding.tool = m.tool;
+  finding.text = beside ? tr("the tool moves along Y: it is cut as if it were at Y0 all along")
+                        : tr("the workpiece is turned as an axis: what is milled or drilled so is "
+                             "cut as if it turned all round");
+  finding.hint = tr("what is turned is right; --as-mill is for programs that only mill");
+  log_.add(std::move(finding));
+}
+
+void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
+  ToolUse& use = uses_[use_];
+  const bool first = use.origin.empty();
+  undefined_ = true;
+  use.feed_mm += step.length_mm;
+  if (!first) return;
+  use.origin = tr("nothing");
+  tell_undefined(*mounted_, m, step, log_);
+}
+
+/// The programmed move, or what the machine makes of it. A thread keeps its turns.
+void TurningStage::cut(const Motion& m, const TimedStep& step) {
+  if (site_.progress.stop_now()) return;
+  TurnCut whole;
+  if (m.kind == MotionKind::kThread) {
+    cut_piece(m, step, whole);
+  } else {
+    for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
+      cut_piece(piece, part, whole);
+    });
+  }
+  note_fallen(m, step);
+  touched_ = touched_ || whole.removed_mm3 > 0;
+  if (!is_feed(m)) return;
+  const TurnedMove move = turned(m, step);
+  checks_.check_sides(move, whole);
+  checks_.check_centre(move, whole);
+}
+
+void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& whole) {
+  if (!divide(m, pieces_)) return;
+  const std::uint64_t id =
+      site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
+  double length_mm = 0;
+  for (CutMove& move : pieces_) {
+    move.id = id;
+    length_mm += glm::length(move.to_mm - move.from_mm);
+  }
+  reports_.clear();
+  stock_.cut(*mounted_->cutter, pieces_, reports_);
+  ToolUse& use = uses_[use_];
+  TurnCut piece;
+  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
+    piece.removed_mm3 += cut.removed_mm3;
+    piece.way_mm += cut.way_mm;
+    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
+    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
+    for (std::size_t side = 0; side < kInsertSides; ++side)
+      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
+  }
+  const double way_mm = path_length_mm(m);
+  const double cut_s =
+      way_mm > 0 ? step.duration_s * std::min(1.0, piece.way_mm / way_mm) : step.duration_s;
+  if (site_.labels) site_.labels->note(id, piece.removed_mm3, step.duration_s);
+  use.removed_mm3 += piece.removed_mm3;
+  if (is_feed(m)) {
+    use.max_depth_mm = std::max(use.max_depth_mm, piece.depth_mm);
+    add_cutting(use, cut_s, piece.removed_mm3);
+  }
+  whole.removed_mm3 += piece.removed_mm3;
+  whole.way_mm += piece.way_mm;
+  whole.depth_mm = std::max(whole.depth_mm, piece.depth_mm);
+  whole.flanks_mm = std::max(whole.flanks_mm, piece.flanks_mm);
+  for (std::size_t side = 0; side < kInsertSides; ++side)
+    whole.side_mm[side] = std::max(whole.side_mm[side], piece.side_mm[side]);
+}
+
+void TurningStage::note_fallen(const Motion& m, const TimedStep& step) {
+  const std::vector<TurnedPiece>& freed = stock_.turned()->part().freed();
+  while (fallen_before_ + fallen_.size() < freed.size()) {
+    fallen_.push_back(
+        {freed[fallen_before_ + fallen_.size()], m.source, step.start_s + step.duration_s, m.tool});
+  }
+}
+
+/// A whole program over a blank that is known to be one.
+void TurningStage::report_nothing_cut() {
+  // A guessed blank lies where the program works: missing it says nothing of the program.
+  const bool judged = site_.blank == BlankKind::kGiven || site_.blank == BlankKind::kSaved;
+  if (!judged || touched_ || undefined_) return;
+  Finding finding;
+  finding.id = FindingId::kNothingCut;
+  finding.severity =
+      site_.blank == BlankKind::kGiven && feed_moves_ > 0 ? Severity::kError : Severity::kWarning;
+  finding.text = feed_moves_ == 0
+                     ? std::string(tr("nothing is cut: the program has no feed move"))
+                     : std::string(tr("nothing is cut: no feed move touches the workpiece; is the "
+                                      "blank given in the coordinates that the program writes?"));
+  log_.add(std::move(finding));
+}
+
+}  // namespace kerf

@@ -1,0 +1,74 @@
+// twin/process/turning/turning_stage.h - motions of turning tools: mounts tools, checks and cuts,
+// adds up what each tool did.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "stock/stock_model.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tool_use.h"
+#include "twin/job/tools.h"
+#include "twin/machine/timeline.h"
+#include "twin/process/process.h"
+#include "twin/process/turning/turning_checks.h"
+
+namespace kerf {
+
+/// The workpiece turns, tools stand still: traverses, feeds, arcs and threads of a tool that is
+/// known are cut as they come. Probes, and moves of a tool of which nothing is known, do not cut.
+class TurningStage final : public Process {
+ public:
+  /// The workpiece is of the model turning.
+  explicit TurningStage(ProcessSite& site);
+
+  void take(const Motion& motion, const TimedStep& step, std::span<const PathPiece> path) override;
+  void finish(bool whole) override;
+  void begin_reporting() override;
+  void go_on_from(const Process& other) override;
+  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  const std::vector<ToolUse>& tools() const override { return uses_; }
+  const Cutter* cutter() const override {
+    return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
+  }
+  std::span<const FallenPiece> fallen() const override { return fallen_; }
+
+ private:
+  void take_traverse(const Motion& motion, const TimedStep& step);
+  void take_feed(const Motion& motion, const TimedStep& step);
+  bool mount_for(const Motion& motion);
+  void report_mill_turn(const Motion& motion, const TimedStep& step);
+  void report_undefined(const Motion& motion, const TimedStep& step);
+  bool stands(const Motion& motion) const;
+  bool divide(const Motion& motion, std::vector<CutMove>& moves);
+  TurnedMove turned(const Motion& motion, const TimedStep& step) const;
+  void cut(const Motion& motion, const TimedStep& step);
+  void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
+  void note_fallen(const Motion& motion, const TimedStep& step);
+  void report_nothing_cut();
+
+  ProcessSite& site_;
+  StockModel& stock_;
+  ToolResolver& resolver_;
+  FindingLog& log_;
+  TurningChecks checks_;
+  std::span<const PathPiece> path_;  ///< of the present motion
+  std::vector<CutMove> moves_;       ///< it, as programmed
+  std::vector<CutMove> pieces_;      ///< as the machine runs it
+  std::vector<CutReport> reports_;
+  std::vector<ToolUse> uses_;
+  std::vector<FallenPiece> fallen_;
+  std::size_t fallen_before_ = 0;          ///< pieces that reports are not about
+  const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
+  std::size_t use_ = 0;
+  int spindle_tool_ = 0;
+  std::uint64_t next_id_ = 0;
+  std::uint64_t feed_moves_ = 0;
+  bool undefined_ = false;
+  bool mill_turn_told_ = false;
+  bool touched_ = false;
+};
+
+}  // namespace kerf
