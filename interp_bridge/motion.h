@@ -2,7 +2,9 @@
 // the workpiece frame.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "base/geometry.h"
@@ -44,6 +46,25 @@ struct ArcGeometry {
 };
 
 enum class SpindleState : std::uint8_t { kStopped, kClockwise, kCounterclockwise };
+
+/// Constant surface speed (G96): the spindle turns the faster the nearer the tip is to its axis.
+/// That is X0 of the program, axis_x_mm of the workpiece frame.
+struct SurfaceSpeed {
+  /// Nearer to the axis than this counts as this: without a cap the speed there has no bound.
+  static constexpr double kSmallestRadius_mm = 0.5;
+
+  double mm_per_min = 0;  ///< S; 0: none is in force (G97)
+  double max_rpm = 0;     ///< D; 1e30 without
+  double axis_x_mm = 0;
+
+  bool on() const { return mm_per_min > 0; }
+  /// What is commanded while the tip is at this X of the workpiece frame.
+  double rpm_at(double x_mm) const {
+    const double radius_mm = std::max(std::abs(x_mm - axis_x_mm), kSmallestRadius_mm);
+    return std::min(mm_per_min / (2 * kPi * radius_mm), max_rpm);
+  }
+  bool operator==(const SurfaceSpeed&) const = default;
+};
 
 /// What has come since the step before that ends the chain of feeds which G64 Q merges, if nothing
 /// more. A feed or a path mode that is another one ends it too.
@@ -149,6 +170,7 @@ struct Motion {
   bool mist = false;
   PathMode path_mode = PathMode::kContinuous;
   bool feed_per_rev = false;  ///< G95: feed is mm per revolution
+  bool compensated = false;   ///< G41, G42: the tip runs beside the programmed contour
   /// False where the way is not known: in the first motion (rs274 starts at 0,0,0 and the real
   /// machine does not) and all steps before it, after a spline, whose points the listing does not
   /// hold, and where an axis is unknown (unknown_from, unknown_to). kerf must not cut along such a
@@ -204,6 +226,7 @@ struct Motion {
   /// feed_per_rev (of a thread: its pitch), and degrees/min where only A, B or C move.
   double feed_mm_per_min = 0;
   double spindle_rpm = 0;  ///< programmed S; under G96, that at the end of the step
+  SurfaceSpeed surface;    ///< G96; spindle_rpm_at() has the speed along the step
   double duration_s = 0;   ///< kDwell only
   /// G64 P: how far a corner may be cut; 0 = as far as the speed wants. kContinuous only.
   float blend_tolerance_mm = 0;

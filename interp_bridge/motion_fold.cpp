@@ -18,10 +18,6 @@ constexpr double kPrintResolution = 1e-4;
 /// Ends closer than this are a full turn, as in LinuxCNC's own arc code (CIRCLE_FUZZ).
 constexpr double kFullTurnFuzz_rad = 1e-6;
 
-/// Without a cap on rpm (G96 without D) the speed at the axis would be infinite; a radius below
-/// this counts as this.
-constexpr double kSmallestTurningRadius_mm = 0.5;
-
 /// What a command does to the queue of moves in LinuxCNC 2.9: its task sends some only when all
 /// moves before them are done (emcTaskCheckPreconditions: WAITING_FOR_MOTION), and some more end
 /// the chain of feeds that may be merged (flush_segments of emccanon).
@@ -238,6 +234,7 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.speed_said = speed_said_;
   motion.flood = flood_;
   motion.mist = mist_;
+  motion.compensated = compensation_;
   on_workpiece_ = false;
   held_axes_ = 0;
   motion.start_known = position_known_ && unknown_ == 0;
@@ -250,12 +247,19 @@ Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion
   motion.to_uvw_mm = uvw_mm_;
   motion.spindle = spindles_[spindle_].state;
   motion.spindle_rpm = rpm_;
+  motion.surface = surface_speed();
   motion.tool_offset_mm = tool_offset_mm_;
   motion.tool_offset_uvw_mm = tool_offset_uvw_mm_;
   motion.path_mode = path_mode_;
   motion.blend_tolerance_mm = blend_tolerance_mm_;
   motion.merge_tolerance_mm = merge_tolerance_mm_;
   motion.torch = torch_;
+  // M6 has begun, and the machine goes to a place where tools are changed: the I/O task was told
+  // before. Else that is in the tool change's own time.
+  if (std::exchange(change_begun_, false) && kind <= MotionKind::kProbe) {
+    count_up(io_halts_);
+    halt();
+  }
   motion.halts = std::exchange(halts_, std::uint8_t{0});
   motion.io_halts = std::exchange(io_halts_, std::uint8_t{0});
   motion.chain_end = std::exchange(chain_end_, ChainEnd::kNone);
@@ -270,6 +274,7 @@ void MotionFold::halt() {
 }
 
 void MotionFold::note_waits(const CanonicalCommand& command) {
+  if (command.name == CanonicalName::kStartChange) change_begun_ = true;
   if (command.name == CanonicalName::kReloadTooldata) {
     const bool joined = halts_ == 0 && chain_end_ == ChainEnd::kNone;
     table_reloaded_ = table_reloaded_ || joined;
@@ -293,14 +298,17 @@ void MotionFold::note_waits(const CanonicalCommand& command) {
   }
 }
 
-void MotionFold::update_rpm() {
+/// G96 turns about X0 of the program.
+SurfaceSpeed MotionFold::surface_speed() const {
   const Spindle& spindle = spindles_[spindle_];
-  rpm_ = spindle.speed;
-  if (spindle.surface_max_rpm <= 0) return;
-  // G96 turns about X0 of the program.
-  const double x_mm = std::abs(program_from_work(position_mm_).x);
-  rpm_ *= spindle.surface_unit_mm / (2 * kPi * std::max(x_mm, kSmallestTurningRadius_mm));
-  rpm_ = std::min(rpm_, spindle.surface_max_rpm);
+  if (spindle.surface_max_rpm <= 0) return {};
+  return {spindle.speed * spindle.surface_unit_mm, spindle.surface_max_rpm,
+          work_from_program(Vec3{0}).x};
+}
+
+void MotionFold::update_rpm() {
+  const SurfaceSpeed surface = surface_speed();
+  rpm_ = surface.on() ? surface.rpm_at(position_mm_.x) : spindles_[spindle_].speed;
 }
 
 void MotionFold::move_to(Motion& motion, Vec3 to_mm, const std::array<double, 3>& to_abc_deg,

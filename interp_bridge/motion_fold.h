@@ -214,6 +214,7 @@ class MotionFold {
   void move_to(Motion& motion, Vec3 to_mm, const std::array<double, 3>& to_abc_deg,
                const Vec3& to_uvw_mm);
   void set_feed(Motion& motion) const;
+  SurfaceSpeed surface_speed() const;
   void update_rpm();
   FoldRemark fold_straight(MotionKind kind, const CanonicalCommand& command, SourceRef source,
                            std::vector<Motion>& out);
@@ -374,6 +375,7 @@ class MotionFold {
   bool has_program_end_ = false;
   /// Of the next step (Motion).
   std::uint8_t halts_ = 0;
+  bool change_begun_ = false;  ///< M6, before its tool change
   std::uint8_t io_halts_ = 0;
   ChainEnd chain_end_ = ChainEnd::kNone;
   ToolPrepare tool_prepare_ = ToolPrepare::kNone;

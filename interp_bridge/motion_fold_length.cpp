@@ -94,6 +94,8 @@ void MotionFold::place_tips(std::size_t first, std::vector<Motion>& out) const {
     motion.from_mm += state.tip_shift_mm;
     motion.to_mm += state.tip_shift_mm;
     if (motion.kind == MotionKind::kArc) motion.arc.center_mm += state.tip_shift_mm;
+    // The spindle follows the program's X.
+    motion.surface.axis_x_mm += state.tip_shift_mm.x;
     motion.tool_offset_mm -= error_mm;
     motion.from_uvw_mm += slid_mm;
     motion.to_uvw_mm += slid_mm;

@@ -103,6 +103,7 @@ struct SignalOptions {
 struct KnownDiameter {
   double mm = 0;
   bool by_argument = false;  ///< --tool; else a comment of the program
+  int orientation = 0;       ///< of a turning tool, as ToolTableRow has it
 };
 
 /// What comes of a probing move, G38.2 to G38.5.

@@ -260,6 +260,7 @@ std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, b
     missing.erase(shape);
     if (!row.has_diameter) {
       row.diameter_mm = diameter.mm;
+      if (row.orientation == 0) row.orientation = diameter.orientation;
       told.known.insert(row.tool);
       told.doubts[row.tool] = trf(
           "the tool table has no diameter for tool {}, and the machine would compensate by none; "
@@ -279,6 +280,7 @@ std::vector<ToolTableRow> with_known_diameters(std::vector<ToolTableRow> rows, b
     row.tool = tool;
     row.pocket = ++pocket;
     row.diameter_mm = diameter.mm;
+    row.orientation = diameter.orientation;
     row.has_diameter = true;
     row.added = true;
     told.known.insert(tool);

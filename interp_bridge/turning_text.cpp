@@ -48,7 +48,37 @@ bool has_q_word(std::string_view line) {
   return false;
 }
 
+/// Calls with each letter that begins a word and the place behind it, which it may move on.
+/// Nothing of lines that begin with `/` or `o`.
+template <class Each>
+void each_word(std::string_view line, Each&& each) {
+  std::size_t at = 0;
+  while (at < line.size() && is_line_blank(line[at])) ++at;
+  if (at == line.size() || line[at] == '/' || to_lower(line[at]) == 'o') return;
+  while (at < line.size()) {
+    const char c = to_lower(line[at]);
+    if (c == ';') return;
+    if (c == '(' || c == '<') {
+      at = skip_enclosed(line, at, c == '(' ? ')' : '>');
+      continue;
+    }
+    const bool in_word = at > 0 && is_letter(line[at - 1]);
+    ++at;
+    if (!in_word) each(c, at);
+  }
+}
+
 }  // namespace
+
+std::optional<bool> diameter_word(std::string_view line) {
+  std::optional<bool> said;
+  each_word(line, [&](char c, std::size_t& at) {
+    if (c != 'g') return;
+    const int tenths = read_tenths(line, at);
+    if (tenths == 70 || tenths == 80) said = tenths == 70;
+  });
+  return said;
+}
 
 void TurningScanner::add(std::string_view text) {
   while (!text.empty()) {
@@ -63,29 +93,17 @@ void TurningScanner::add(std::string_view text) {
 }
 
 void TurningScanner::add_line(std::string_view line) {
-  std::size_t at = 0;
-  while (at < line.size() && is_line_blank(line[at])) ++at;
-  if (at == line.size() || line[at] == '/' || to_lower(line[at]) == 'o') return;
-  while (at < line.size()) {
-    const char c = to_lower(line[at]);
-    if (c == ';') return;
-    if (c == '(' || c == '<') {
-      at = skip_enclosed(line, at, c == '(' ? ')' : '>');
-      continue;
-    }
-    const bool in_word = at > 0 && is_letter(line[at - 1]);
-    ++at;
-    if (in_word) continue;
+  each_word(line, [&](char c, std::size_t& at) {
     if (c == 'y') words_.moves_y = true;
-    if (c != 'g' && c != 't') continue;
+    if (c != 'g' && c != 't') return;
     const int tenths = read_tenths(line, at);
-    if (tenths < 0) continue;
+    if (tenths < 0) return;
     if (c == 'g') {
       note_code(tenths, has_q_word(line));
     } else if (tenths > 0 && words_.tools.size() < kMaxTools) {
       words_.tools.insert(tenths / 10);
     }
-  }
+  });
 }
 
 void TurningScanner::note_code(int tenths, bool has_q) {

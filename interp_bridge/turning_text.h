@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -23,6 +24,10 @@ struct TurningWords {
   /// Nothing but X and Z is written, in the plane of a lathe.
   bool only_xz() const { return plane_xz != 0 && !other_plane && !moves_y && whole; }
 };
+
+/// Whether the line has X as a diameter from there on (G7) or as a radius (G8); none: it says
+/// neither. Of lines that begin with `/` or `o` nothing.
+std::optional<bool> diameter_word(std::string_view line);
 
 /// Looks through text that comes in pieces of whole lines, as far as kMaxLines: a lathe's program
 /// says early what it is.

@@ -65,8 +65,12 @@ glm::vec2 unit_or(const glm::vec2& v, const glm::vec2& otherwise) {
 }  // namespace
 
 Annotations::Annotations(const Box& blank_mm, const Box& part_mm, const Vec3& direction,
-                         glm::ivec2 picture_px)
-    : blank_mm_(blank_mm), scene_mm_(part_mm), picture_px_(picture_px), direction_(direction) {
+                         glm::ivec2 picture_px, Standing standing)
+    : blank_mm_(blank_mm),
+      scene_mm_(part_mm),
+      picture_px_(picture_px),
+      direction_(direction),
+      standing_(standing) {
   scene_mm_.extend(blank_mm);
   unit_px_ = std::min(picture_px_.x / kReference_px.x, picture_px_.y / kReference_px.y);
   cap_height_px_ = std::max(kMinCapHeight_px, kCapHeight_px * unit_px_);
@@ -80,13 +84,29 @@ Annotations::Annotations(const Box& blank_mm, const Box& part_mm, const Vec3& di
         origin_is_near_ && scene_mm_.min[axis] - reach <= 0.0 && scene_mm_.max[axis] + reach >= 0.0;
   }
   if (blank_mm_.empty()) return;
+  const double offset_mm = kDimensionOffset * longest_mm;
+  const Vec3 right = glm::normalize(glm::cross(up_of(standing_), direction_));
+  dimensions_ = standing_ == Standing::kOnTable ? box_dimensions(right, offset_mm)
+                                                : turned_dimensions(offset_mm);
+}
+
+std::vector<Annotations::Dimension> Annotations::box_dimensions(const Vec3& right,
+                                                                double offset_mm) const {
   const Vec3& low = blank_mm_.min;
   const Vec3& high = blank_mm_.max;
-  const double offset_mm = kDimensionOffset * longest_mm;
-  const Vec3 right = glm::normalize(glm::cross(Vec3(0, 0, 1), direction_));
-  dimensions_ = {{'X', low, {high.x, low.y, low.z}, {0, -offset_mm, 0}},
-                 {'Y', {high.x, low.y, low.z}, {high.x, high.y, low.z}, {offset_mm, 0, 0}},
-                 {'Z', low, {low.x, low.y, high.z}, -offset_mm * right}};
+  return {{"X", Side::kBelow, low, {high.x, low.y, low.z}, {0, -offset_mm, 0}},
+          {"Y", Side::kRight, {high.x, low.y, low.z}, {high.x, high.y, low.z}, {offset_mm, 0, 0}},
+          {"Z", Side::kLeft, low, {low.x, low.y, high.z}, -offset_mm * right}};
+}
+
+/// In the plane of the axis that stands upright: length below, diameter beside the chuck's end.
+std::vector<Annotations::Dimension> Annotations::turned_dimensions(double offset_mm) const {
+  const Vec3 low_z(0, 0, blank_mm_.min.z), high_z(0, 0, blank_mm_.max.z);
+  const Vec3 up = up_of(standing_);
+  const double radius_mm = 0.5 * glm::dot(blank_mm_.size(), up);
+  const Vec3 across = radius_mm * up;
+  return {{"Z", Side::kBelow, low_z - across, high_z - across, -offset_mm * up},
+          {"\u00d8", Side::kLeft, low_z - across, low_z + across, {0, 0, -offset_mm}}};
 }
 
 std::vector<Vec3> Annotations::points_to_fit() const {
@@ -108,7 +128,7 @@ std::vector<Vec3> Annotations::points_to_fit() const {
 }
 
 std::string Annotations::label_of(const Dimension& dimension) {
-  return fmt::format("{} {} mm", dimension.axis,
+  return fmt::format("{} {} mm", dimension.name,
                      millimetres(glm::length(dimension.to_mm - dimension.from_mm)));
 }
 
@@ -117,9 +137,9 @@ Margins Annotations::margins() const {
                   kCaptionMargin_px * unit_px_ + 1.5f * cap_height_px_};
   for (const Dimension& d : dimensions_) {
     const float room_px = label_width_px(label_of(d), cap_height_px_) + 3.0f * cap_height_px_;
-    if (d.axis == 'X') margins.bottom_px += 2.2f * cap_height_px_;
-    if (d.axis == 'Y') margins.right_px = std::max(margins.right_px, room_px);
-    if (d.axis == 'Z') margins.left_px = std::max(margins.left_px, room_px);
+    if (d.side == Side::kBelow) margins.bottom_px += 2.2f * cap_height_px_;
+    if (d.side == Side::kRight) margins.right_px = std::max(margins.right_px, room_px);
+    if (d.side == Side::kLeft) margins.left_px = std::max(margins.left_px, room_px);
   }
   // However narrow the picture, most of it is for the part.
   margins.left_px = std::min(margins.left_px, 0.3f * picture_px_.x);
@@ -138,6 +158,12 @@ std::vector<Stroke> Annotations::layout(const Camera& camera, std::string_view c
 }
 
 void Annotations::add_outline(const Camera& camera, std::vector<Stroke>* strokes) const {
+  for (const LineSegment& line : outline_) {
+    strokes->push_back(stroke_between(camera.project(Vec3(line.from_mm)),
+                                      camera.project(Vec3(line.to_mm)), 1.5f * unit_px_, kOutline,
+                                      0.0f));
+  }
+  if (!outline_.empty()) return;
   const auto corner = [&](unsigned bits) {
     return camera.project({(bits & 1u) ? blank_mm_.max.x : blank_mm_.min.x,
                            (bits & 2u) ? blank_mm_.max.y : blank_mm_.min.y,

@@ -77,7 +77,7 @@ void BodyLayer::draw_bodies(std::span<const PictureBody> bodies, const Camera& c
   body_.use();
   bind_texture(0, part_depths);
   body_.set("part_depths", 0);
-  body_.set("up_view", glm::vec3(camera.view_from_world()[2]));
+  body_.set("up_view", camera.up_view());
   for (const PictureBody& body : bodies) {
     if (!body.mesh) continue;
     const ShadedMesh shaded = shade_mesh(*body.mesh, {});

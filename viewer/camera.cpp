@@ -32,11 +32,11 @@ struct AxisFit {
 }  // namespace
 
 Camera Camera::fit(std::span<const Vec3> points_mm, const Vec3& direction, double fov_deg,
-                   glm::ivec2 picture_px, const Margins& margins) {
+                   glm::ivec2 picture_px, const Margins& margins, const Vec3& up_mm) {
   assert(!points_mm.empty());
   const glm::dvec2 size_px(picture_px);
   const Vec3 back = glm::normalize(direction);
-  const Vec3 right = glm::normalize(glm::cross(Vec3(0, 0, 1), back));
+  const Vec3 right = glm::normalize(glm::cross(up_mm, back));
   const Vec3 up = glm::cross(back, right);
 
   const double tan_y = std::tan(0.5 * fov_deg * kPi / 180.0);
@@ -69,6 +69,7 @@ Camera Camera::fit(std::span<const Vec3> points_mm, const Vec3& direction, doubl
   }
   view[3] = glm::dvec4(-glm::dot(right, eye), -glm::dot(up, eye), -glm::dot(back, eye), 1.0);
   camera.view_from_world_ = view;
+  camera.up_view_ = glm::vec3(glm::dmat3(view) * up_mm);
   const double near_mm = eye_z - z_high - slack;
   const double far_mm = eye_z - z_low + slack;
   glm::dmat4 projection(0.0);

@@ -27,7 +27,9 @@ OrbitCamera::Axes OrbitCamera::axes() const {
   if (flat_ == FlatView::kZx) return {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
   const double cy = std::cos(yaw_rad_), sy = std::sin(yaw_rad_);
   const double cp = std::cos(pitch_rad_), sp = std::sin(pitch_rad_);
-  return {{-sy, cy, 0.0}, {-sp * cy, -sp * sy, cp}, {cp * cy, cp * sy, sp}};
+  return {in_workpiece({-sy, cy, 0.0}, standing_),
+          in_workpiece({-sp * cy, -sp * sy, cp}, standing_),
+          in_workpiece({cp * cy, cp * sy, sp}, standing_)};
 }
 
 double OrbitCamera::distance_mm() const {
@@ -164,7 +166,7 @@ Projection OrbitCamera::projection(const Box& content, glm::ivec2 size_px) const
     view[k][2] = a.back[k];
   }
   view[3] = glm::dvec4(-glm::dot(a.right, eye), -glm::dot(a.up, eye), -glm::dot(a.back, eye), 1.0);
-  return {glm::mat4(clip * view), glm::mat4(view), size_px};
+  return {glm::mat4(clip * view), glm::mat4(view), size_px, 1.0f, glm::vec3(up_of(standing_))};
 }
 
 std::optional<glm::vec2> picture_px(const Vec3& point_mm, const Projection& projection) {

@@ -1,12 +1,14 @@
 // viewer/orbit_camera.h - the eye of the window, moved by the mouse.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 
 #include "base/geometry.h"
+#include "viewer/standing.h"
 #include "viewer/view_detail.h"
 
 namespace kerf {
@@ -25,11 +27,13 @@ struct Projection {
   glm::mat4 clip_from_world{1.0f};
   glm::mat4 view_from_world{1.0f};
   glm::ivec2 size_px{1, 1};
-  float line_px = 1.0f;  ///< Width of the lines in the picture, 1 or more.
+  float line_px = 1.0f;            ///< Width of the lines in the picture, 1 or more.
+  glm::vec3 up{0.0f, 0.0f, 1.0f};  ///< In the workpiece frame: where the light comes from.
   bool operator==(const Projection&) const = default;
 };
 
-/// Looks at a target point from a direction given by two angles; +Z stays up. Perspective and
+/// Looks at a target point from a direction given by two angles; +Z, or what stands for it
+/// (set_standing()), stays up. Perspective and
 /// orthographic views show the same extent at the target. Pixels count from the upper left corner.
 class OrbitCamera {
  public:
@@ -43,7 +47,10 @@ class OrbitCamera {
   /// changes nothing.
   void fit(const Box& box, glm::ivec2 size_px);
   void look_from(StandardView view);
-  /// The eye is so far around +Z from +X, and so far above the XY plane. Not in a flat view.
+  /// All directions by name and angle are of this way up; those that were set go along.
+  void set_standing(Standing standing) { standing_ = standing; }
+  /// The eye is so far around +Z from +X, and so far above the XY plane, of the frame of views
+  /// (viewer/standing.h). Not in a flat view.
   void look_from(double yaw_rad, double pitch_rad);
 
   void set_perspective(bool is_perspective) { is_perspective_ = is_perspective; }
@@ -73,7 +80,13 @@ class OrbitCamera {
   double extent_mm_ = 100.0;      // height of the picture in the target plane
   bool is_perspective_ = true;
   FlatView flat_ = FlatView::kNone;
+  Standing standing_ = Standing::kOnTable;
 };
+
+/// Projection::up in view space.
+inline glm::vec3 up_view(const Projection& projection) {
+  return glm::mat3(projection.view_from_world) * projection.up;
+}
 
 /// Where a point is in the picture, pixels from its upper left corner; none behind the eye.
 std::optional<glm::vec2> picture_px(const Vec3& point_mm, const Projection& projection);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
 #include "base/translate.h"
@@ -31,6 +33,8 @@ constexpr float kSmallestEdgeStrength = 0.45f;
 /// A software renderer keeps the triangles that it was given until it draws them, some 200 bytes
 /// each; of more than these it waits for them.
 constexpr std::size_t kMostWaiting = 60'000;
+/// From line to line of a section's faces, in a picture of the reference height; and at least.
+constexpr float kHatch_px = 14, kLeastHatch_px = 7;
 /// Around the part, for the antialiased border and the edge detector.
 constexpr int kBorder_px = 4;
 
@@ -69,18 +73,32 @@ void set_scissor(const glm::ivec4& rectangle) {
 
 }  // namespace
 
-Result<PartRenderer> PartRenderer::create(glm::ivec2 picture_px) {
+PartRenderer::PartRenderer(Programs programs, const std::optional<Section>& section)
+    : programs_(std::move(programs)) {
+  if (!section) return;
+  for (const SectionPlane& plane : {section->plane, section->beside.value_or(section->plane)}) {
+    const std::optional<glm::dvec4> kept = kept_side(plane);
+    if (kept && (kept_.empty() || kept_.back() != *kept)) kept_.push_back(*kept);
+  }
+}
+
+Result<PartRenderer> PartRenderer::create(glm::ivec2 picture_px,
+                                          const std::optional<Section>& section) {
   Result<GlProgram> part = GlProgram::create(shaders::part_vert, shaders::part_frag);
   Result<GlProgram> resolve = GlProgram::create(shaders::screen_vert, shaders::resolve_frag);
   Result<GlProgram> background = GlProgram::create(shaders::screen_vert, shaders::background_frag);
   Result<GlProgram> occlusion = GlProgram::create(shaders::screen_vert, shaders::occlusion_frag);
   Result<GlProgram> edges = GlProgram::create(shaders::screen_vert, shaders::edges_frag);
   Result<GlProgram> composite = GlProgram::create(shaders::screen_vert, shaders::composite_frag);
-  for (const auto* program : {&part, &resolve, &background, &occlusion, &edges, &composite}) {
+  Result<GlProgram> face = GlProgram::create(shaders::screen_vert, shaders::part_face_frag);
+  for (const auto* program :
+       {&part, &resolve, &background, &occlusion, &edges, &composite, &face}) {
     if (!*program) return Error{program->error()};
   }
-  PartRenderer renderer(Programs{std::move(*part), std::move(*resolve), std::move(*background),
-                                 std::move(*occlusion), std::move(*edges), std::move(*composite)});
+  PartRenderer renderer(
+      Programs{std::move(*part), std::move(*resolve), std::move(*background), std::move(*occlusion),
+               std::move(*edges), std::move(*composite), std::move(*face)},
+      section);
   if (Done done = renderer.allocate(picture_px); !done) return Error{done.error()};
   return renderer;
 }
@@ -97,11 +115,17 @@ Done PartRenderer::allocate(glm::ivec2 picture_px) {
   }
   allocate_texture(sampled_normals_, GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV,
                    sampled_px, GL_NEAREST);
-  allocate_texture(sampled_depths_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                   sampled_px, GL_NEAREST);
+  const bool needs_stencil = !kept_.empty();
+  if (needs_stencil) {
+    allocate_texture(sampled_depths_, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                     sampled_px, GL_NEAREST);
+  } else {
+    allocate_texture(sampled_depths_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+                     sampled_px, GL_NEAREST);
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
   attach(GL_COLOR_ATTACHMENT0, sampled_normals_);
-  attach(GL_DEPTH_ATTACHMENT, sampled_depths_);
+  attach(needs_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, sampled_depths_);
   bool all_complete = complete();
 
   allocate_texture(normals_, GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, picture_px, GL_NEAREST);
@@ -171,13 +195,66 @@ void PartRenderer::draw_surface(const PartSurface& part, const Camera& camera) c
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  glEnable(GL_CULL_FACE);  // The surface is closed; half the work.
-  if (!part.bounds_mm.empty()) draw_pieces(part, camera);
+  if (!part.bounds_mm.empty() && !kept_.empty()) {
+    draw_cut_open(part, camera);
+  } else if (!part.bounds_mm.empty()) {
+    glEnable(GL_CULL_FACE);  // The surface is closed; half the work.
+    draw_pieces(part, camera, glm::vec4(0));
+    glDisable(GL_CULL_FACE);
+  }
   glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
 }
 
-void PartRenderer::draw_pieces(const PartSurface& part, const Camera& camera) const {
+/// As SceneRenderer does.
+void PartRenderer::draw_cut_open(const PartSurface& part, const Camera& camera) const {
+  glClearStencil(0);
+  glClear(GL_STENCIL_BUFFER_BIT);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFuncSeparate(GL_FRONT, GL_ALWAYS, 0, 0xff);
+  glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  for (const glm::dvec4& kept : kept_) draw_pieces(part, camera, glm::vec4(kept));
+  glDisable(GL_CLIP_DISTANCE0);
+  draw_faces(camera);
+  glDisable(GL_STENCIL_TEST);
+}
+
+void PartRenderer::draw_faces(const Camera& camera) const {
+  glStencilFunc(GL_EQUAL, 1, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glDepthFunc(GL_ALWAYS);
+  glBindVertexArray(no_vertices_.name());
+  const glm::dmat4 clip_from_view(camera.clip_from_view());
+  const glm::dvec2 half_px = 0.5 * kSamples * glm::dvec2(picture_px_);
+  programs_.face.use();
+  programs_.face.set("middle_px", glm::vec2(half_px));
+  for (const glm::dvec4& face : faces_in_view(camera)) {
+    // On the plane the window depth is affine in the picture.
+    const glm::dvec4 plane = glm::transpose(glm::inverse(clip_from_view)) * face;
+    programs_.face.set("normal_view", glm::vec3(face));
+    programs_.face.set("depth_plane", glm::vec3(-0.5 * plane.x / (plane.z * half_px.x),
+                                                -0.5 * plane.y / (plane.z * half_px.y),
+                                                0.5 - 0.5 * plane.w / plane.z));
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+  }
+  glDepthFunc(GL_LESS);
+}
+
+/// Those that face the eye, which is at the origin: normals towards it.
+std::vector<glm::dvec4> PartRenderer::faces_in_view(const Camera& camera) const {
+  std::vector<glm::dvec4> faces;
+  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(camera.view_from_world()));
+  for (const glm::dvec4& kept : kept_) {
+    const glm::dvec4 face = -(glm::transpose(world_from_view) * kept);
+    if (face.w > 0) faces.push_back(face);
+  }
+  return faces;
+}
+
+void PartRenderer::draw_pieces(const PartSurface& part, const Camera& camera,
+                               const glm::vec4& kept) const {
   GlVertexArray array;
   GlBuffer vertices;
   GlBuffer indices;
@@ -192,6 +269,7 @@ void PartRenderer::draw_pieces(const PartSurface& part, const Camera& camera) co
   programs_.part.use();
   programs_.part.set("clip_from_world", camera.clip_from_world());
   programs_.part.set("view_from_world", camera.view_from_world());
+  programs_.part.set("section", kept);
   std::size_t waiting = 0;  // triangles that may not have been drawn yet
   part.each_piece([&waiting](const SurfacePiece& piece) {
     if (piece.indices.empty()) return;
@@ -260,6 +338,18 @@ void PartRenderer::draw_background() const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+void PartRenderer::set_faces(const Camera& camera) const {
+  const std::vector<glm::dvec4> faces = faces_in_view(camera);
+  bind_texture(3, depths_);
+  programs_.composite.set("depths", 3);
+  programs_.composite.set("face_count", static_cast<int>(faces.size()));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    programs_.composite.set(i == 0 ? "faces[0]" : "faces[1]", glm::vec4(faces[i]));
+  programs_.composite.set("px_mm_at_1mm", camera.px_mm_at_1mm());
+  const float height = static_cast<float>(picture_px_.y) / kReferenceHeight_px;
+  programs_.composite.set("hatch_px", std::max(kLeastHatch_px, kHatch_px * height));
+}
+
 void PartRenderer::draw_composite(const Camera& camera) const {
   bind_texture(0, normals_);
   bind_texture(1, occluded_);
@@ -268,8 +358,9 @@ void PartRenderer::draw_composite(const Camera& camera) const {
   programs_.composite.set("normals", 0);
   programs_.composite.set("occlusion", 1);
   programs_.composite.set("edges", 2);
+  set_faces(camera);
   programs_.composite.set("unproject", camera.unproject());
-  programs_.composite.set("up_view", glm::vec3(camera.view_from_world()[2]));
+  programs_.composite.set("up_view", camera.up_view());
   const float relative_height = static_cast<float>(picture_px_.y) / kReferenceHeight_px;
   programs_.composite.set("dense_level",
                           std::max(0.0f, std::log2(kDensityReach_px * relative_height)));

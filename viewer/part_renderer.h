@@ -5,11 +5,14 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "base/mesh_patch.h"
 #include "viewer/camera.h"
 #include "viewer/gl_objects.h"
+#include "viewer/section.h"
 
 namespace kerf {
 
@@ -27,7 +30,8 @@ struct PartSurface {
 };
 
 /// For the sources of viewer/ only. Passes:
-///   1 normals and depth of the surface, at twice the size of the picture
+///   1 normals and depth of the surface, at twice the size of the picture; cut open, the faces of
+///     the section after it
 ///   2 resolve: the mean of 2 x 2 samples
 ///   3 background
 ///   4 ambient occlusion from the depth, at half the size
@@ -38,8 +42,10 @@ struct PartSurface {
 /// samples, and hardware without it is served too.
 class PartRenderer {
  public:
-  /// Error: the GL compiler's log, or a picture size that this OpenGL cannot do.
-  static Result<PartRenderer> create(glm::ivec2 picture_px);
+  /// Error: the GL compiler's log, or a picture size that this OpenGL cannot do. `section`: the
+  /// part is cut open; each piece is drawn once for each of its planes.
+  static Result<PartRenderer> create(glm::ivec2 picture_px,
+                                     const std::optional<Section>& section = std::nullopt);
 
   /// Fills framebuffer `target` (of picture size, colour only) with background and part.
   void draw(const PartSurface& part, const Camera& camera, GLuint target) const;
@@ -55,20 +61,27 @@ class PartRenderer {
     GlProgram occlusion;
     GlProgram edges;
     GlProgram composite;
+    GlProgram face;
   };
 
-  explicit PartRenderer(Programs programs) : programs_(std::move(programs)) {}
+  PartRenderer(Programs programs, const std::optional<Section>& section);
   Done allocate(glm::ivec2 picture_px);
-  void draw_pieces(const PartSurface& part, const Camera& camera) const;
+  void draw_pieces(const PartSurface& part, const Camera& camera, const glm::vec4& kept) const;
+  void draw_cut_open(const PartSurface& part, const Camera& camera) const;
+  void draw_faces(const Camera& camera) const;
+  std::vector<glm::dvec4> faces_in_view(const Camera& camera) const;
   void draw_surface(const PartSurface& part, const Camera& camera) const;
   void draw_resolved() const;
   void draw_occlusion(const Camera& camera) const;
   void draw_edges(const Camera& camera) const;
   void draw_background() const;
+  void set_faces(const Camera& camera) const;
   void draw_composite(const Camera& camera) const;
 
   Programs programs_;
   GlVertexArray no_vertices_;  // Core profile wants one bound even for gl_VertexID alone.
+
+  std::vector<glm::dvec4> kept_;  ///< of the section's planes, as kept_side() has them
 
   glm::ivec2 picture_px_{0};
   GlFramebuffer sampled_;

@@ -25,7 +25,7 @@ constexpr int kMaxSize_px = 8192;
 constexpr double kFieldOfView_deg = 24.0;
 /// Of what stands around the blank so much of the blank's greatest length is shown.
 constexpr double kBodyReach = 0.4;
-/// From front (-Y) right (+X) above, towards the eye.
+/// From front right above, towards the eye, in the frame of views.
 constexpr Vec3 kEyeDirection{0.60, -1.0, 0.86};
 
 /// What a pixel shows of that corner of the box which is nearest to the eye.
@@ -73,17 +73,20 @@ Result<Picture> draw_part(const PartPatches& part, const PictureOptions& options
   if (part.bounds_mm.empty() && options.blank_mm.empty()) {
     return Error{tr("nothing to draw: the part is empty and no blank is given")};
   }
-  const Annotations annotations(options.blank_mm, part.bounds_mm, kEyeDirection, size_px);
+  const Vec3 direction = in_workpiece(kEyeDirection, options.standing);
+  Annotations annotations(options.blank_mm, part.bounds_mm, direction, size_px, options.standing);
+  annotations.set_outline(options.blank_outline);
   std::vector<Vec3> points_mm = annotations.points_to_fit();
   add_bodies(options, points_mm);
-  const Camera camera =
-      Camera::fit(points_mm, kEyeDirection, kFieldOfView_deg, size_px, annotations.margins());
+  const Camera camera = Camera::fit(points_mm, direction, kFieldOfView_deg, size_px,
+                                    annotations.margins(), up_of(options.standing));
 
   static std::mutex one_context_at_a_time;  // see GlContext
   const std::lock_guard lock(one_context_at_a_time);
   Result<GlContext> context = GlContext::create_offscreen();
   if (!context) return Error{context.error()};
-  Result<PartRenderer> renderer = PartRenderer::create(size_px);
+  Result<PartRenderer> renderer = PartRenderer::create(
+      size_px, usual_section(options.section, part.bounds_mm, options.standing));
   if (!renderer) return Error{renderer.error()};
   Result<StrokeRenderer> strokes = StrokeRenderer::create();
   if (!strokes) return Error{strokes.error()};

@@ -13,6 +13,9 @@
 #include "base/mesh_patch.h"
 #include "base/result.h"
 #include "base/triangle_mesh.h"
+#include "viewer/scene.h"
+#include "viewer/section.h"
+#include "viewer/standing.h"
 
 namespace kerf {
 
@@ -26,7 +29,12 @@ struct PictureBody {
 struct PictureOptions {
   int width_px = 1600;  ///< 64 to 8192, both
   int height_px = 1200;
-  Box blank_mm;                       ///< drawn as a thin outline with its sizes written on it
+  Box blank_mm;  ///< drawn as a thin outline with its sizes written on it
+  /// Drawn instead of the edges of the box.
+  std::vector<LineSegment> blank_outline{};
+  /// In a lathe the sizes are diameter and length.
+  Standing standing = Standing::kOnTable;
+  SectionKind section = SectionKind::kNone;  ///< the part is cut open through the blank's middle
   std::vector<PictureBody> bodies{};  ///< seen through; those far away may lie outside the picture
   std::string caption;  ///< small text at the lower left ("3D_Chips.ngc  zmap 0.05 mm")
 };

@@ -21,6 +21,7 @@
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 #include "surface/height_grid.h"
+#include "viewer/standing.h"
 
 namespace kerf {
 
@@ -31,6 +32,19 @@ struct ProfilePoint {
   bool operator==(const ProfilePoint&) const = default;
 };
 
+/// A flat piece of a tool that does not turn, an insert or what holds it: a convex outline in the
+/// plane of the tool's axis and its x, counter-clockwise with z to the right and x up, as thick as
+/// from `low_y_mm` to `high_y_mm`.
+struct ToolPlate {
+  struct Corner {
+    glm::vec2 zx_mm{0.0f};
+    bool cuts = false;  ///< the edge that begins here
+  };
+  std::vector<Corner> corners;
+  float low_y_mm = 0.0f, high_y_mm = 0.0f;
+  bool is_holder = false;
+};
+
 /// Outlines from below to above. Corners between segments are drawn sharp, so arcs come as short
 /// segments of a few degrees. Open ends are closed with a disc. Any of the four may be empty.
 struct ToolShape {
@@ -38,6 +52,7 @@ struct ToolShape {
   std::vector<ProfilePoint> shank;
   std::vector<ProfilePoint> holder;
   std::vector<ProfilePoint> spindle;
+  std::vector<ToolPlate> plates;  ///< Beside them, or instead of all.
 };
 
 /// One of these four.
@@ -88,6 +103,9 @@ struct SceneFrame {
 
 /// What stays as long as the workpiece is clamped.
 struct SceneSetup {
+  Standing standing = Standing::kOnTable;
+  /// The workpiece turns about Z: distances from there are read as diameters.
+  bool turns = false;
   std::string title;  ///< Of the window: the program, the machine.
   Box bounds_mm;      ///< Room that "fit" shows: the blank, mostly. Parts outside are drawn too.
   std::vector<LineSegment> blank_outline;
@@ -173,7 +191,8 @@ enum class SourceFreshness {
 
 struct AxisReadout {
   char name = 'X';
-  bool is_rotary = false;  ///< degrees instead of mm
+  bool is_rotary = false;    ///< degrees instead of mm
+  bool is_diameter = false;  ///< the figures are diameters (G7)
   double machine = 0.0;
   double work = 0.0;
   std::optional<double> to_go;  ///< Of the present block; none where it is not known.
@@ -281,6 +300,7 @@ struct SceneClearance {
 /// What is known of a point of the surface that was asked for.
 struct PickedPoint {
   Vec3 point_mm{0.0};
+  bool is_known = true;     ///< False: nobody knows who cut there.
   std::optional<int> tool;  ///< That cut there last; none: not cut.
   std::string tool_name;
   int file = 0;  ///< Into ProgramText::files.

@@ -257,6 +257,7 @@ bool plan_with_arcs(const AxisRates& rates, BlendPlan& plan, const Segment& prev
 
 /// The segment after `amount` (mm of a line, radians of an arc) is cut from one of its ends.
 void trim(Segment& segment, double amount, bool at_end) {
+  const double before_mm = segment.length_mm;
   (at_end ? segment.trim_to : segment.trim_from) += amount;
   if (segment.shape == SegmentShape::kArc) {
     const double whole = std::abs(segment.arc.sweep_rad);
@@ -265,6 +266,8 @@ void trim(Segment& segment, double amount, bool at_end) {
   } else {
     segment.length_mm -= amount;
   }
+  const double left = before_mm > 0 ? segment.length_mm / before_mm : 1;
+  at_end ? keep_slowness(segment, 0, left) : keep_slowness(segment, 1 - left, 1);
 }
 
 Vec3 trimmed_end(const Segment& segment, double amount, bool at_end) {
@@ -298,7 +301,7 @@ bool make_blend(const AxisRates& rates, const BlendPlan& plan, const BlendPlace&
   blend.tangent_from = previous.tangent_to;
   blend.tangent_to = next.tangent_from;
   blend.request = plan.request;
-  blend.spindle_speed = next.spindle_speed;
+  blend.spindle_speed = next.slow_from > 0 ? 1 / next.slow_from : next.spindle_speed;
   blend.max_speed = plan.speed;
   blend.max_accel = plan.accel;
   blend.along_share = kAlongShare;

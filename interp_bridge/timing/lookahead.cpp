@@ -143,7 +143,8 @@ Lookahead::Run Lookahead::run_of_front(double horizon, double clock_s) {
           : speed_profile(segment.length_mm, segment.accel(), speed_, target, final_speed);
   if (next == nullptr || segment.end != SegmentEnd::kTangent) {
     run.profile.end_speed = 0;
-    run.profile.duration_s += stop_periods(segment.end, next == nullptr) * rates_.cycle_s;
+    run.profile.rest_s = stop_periods(segment.end, next == nullptr) * rates_.cycle_s;
+    run.profile.duration_s += run.profile.rest_s;
     if (next != nullptr && segment.end == SegmentEnd::kParabolic) {
       const double into = speed_into(segment, *next, target);
       if (into > 0) {

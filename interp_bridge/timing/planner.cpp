@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/translate.h"
 #include "interp_bridge/timing/lookahead.h"
@@ -16,10 +18,14 @@
 namespace kerf {
 namespace {
 
+bool is_move(MotionKind kind) { return kind <= MotionKind::kProbe; }
+
+bool per_revolution(const Motion& m) { return m.feed_per_rev || m.kind == MotionKind::kThread; }
+
 double programmed_per_minute(const Motion& m) {
   if (m.kind == MotionKind::kTraverse) return 0;
-  const bool per_revolution = m.feed_per_rev || m.kind == MotionKind::kThread;
-  return per_revolution ? m.feed_mm_per_min * m.spindle_rpm : m.feed_mm_per_min;
+  if (!per_revolution(m)) return m.feed_mm_per_min;
+  return m.feed_mm_per_min * peak_spindle_rpm(m).rpm;
 }
 
 SegmentEnd end_of(PathMode mode) {
@@ -60,22 +66,30 @@ constexpr double kSpindleTurnPeriods = 4;
 /// Servo periods from the spindle's index to the first that moves.
 constexpr double kIndexSeenPeriods = 1.5;
 
+constexpr std::size_t kFirstSpindleSteps = 64;
+
 }  // namespace
 
-struct TrajectoryPlanner::Impl {
-  Impl(const MachineLimits& machine, const PlannerOptions& wanted, MotionPlanSink& sink)
+struct TrajectoryPlanner::Impl final : MotionPlanSink {
+  Impl(const MachineLimits& machine, const PlannerOptions& wanted, MotionPlanSink& receiver)
       : limits(machine),
         options(wanted),
         rates(machine),
-        schedule(sink, wanted.with_path),
-        lookahead(rates, schedule) {}
+        sink(receiver),
+        schedule(*this, wanted.with_path),
+        lookahead(rates, schedule),
+        spindle(wanted.spindle),
+        spindle_steps(kFirstSpindleSteps) {}
+
+  void timed(const MotionTiming& timing) override;
+  void path(const PathPiece& piece) override { sink.path(piece); }
 
   void push(const Motion& m);
   void move(const Motion& m);
-  void straight(const Motion& m, const StraightRates& way, double speed);
+  void straight(const Motion& m, const StraightRates& way, double allowed);
   void thread(const Motion& m, const MotionTiming& timing, const StraightRates& way, double speed);
   void run_thread(const Motion* next);
-  void add_to_chain(const Vec3& from, const Vec3& to, double speed, const Motion& m);
+  void add_to_chain(const Vec3& from, const Vec3& to, const Motion& m);
   void flush_chain();
   void halt();
   void command_waits(const Motion& m);
@@ -88,19 +102,23 @@ struct TrajectoryPlanner::Impl {
   void take_tool_number(const Motion& m);
   std::uint64_t add_piece(double length_mm);
   double index_wait_s(const Motion& m);
+  void wait_for_spindle(const Motion& m);
+  SpindleFeed feed_speed(const Motion& m, double length_mm, double most_mm_per_s,
+                         std::uint64_t step);
   void change_tool(const Motion& m);
   void stand(const Motion& m, double seconds);
 
   MachineLimits limits;
   PlannerOptions options;
   AxisRates rates;
+  MotionPlanSink& sink;
   Schedule schedule;
   Lookahead lookahead;
   MergeChain chain;
   /// A straight feed that nothing is merged with. LinuxCNC holds it back too, until what comes next
   /// shows that it cannot be.
   std::optional<Segment> feed_waits;
-  bool chain_follows_spindle = false;  ///< G95
+  Motion chain_motion;  ///< its first
   bool chain_keeps_start = false;
   Motion last;  ///< where the machine stands and what is switched on
   bool begun = false;
@@ -114,13 +132,39 @@ struct TrajectoryPlanner::Impl {
     double length = 0;
     double speed = 0;
     double accel = 0;
-    bool retracts = false;
+    double fastest = 0;     ///< that the axes do
+    bool retracts = false;  ///< the way out of a rigid tap
+    bool goes_on = false;   ///< of a thread before it: it is in step with the spindle already
   };
   std::optional<Thread> thread_waits;
+  double turning_round_s(const Thread& thread) const;
   double io_phase_s = -1;  ///< a moment at which the I/O task looked; -1: none known
   double io_free_s = 0;    ///< it has done all it was told
   std::uint64_t stops = 0;
+  /// Where its acceleration is known: the spindle as it is at spindle_s of the clock, and the
+  /// motions that have not been timed yet.
+  SpindleSpeed spindle;
+  double spindle_s = 0;
+  struct SpindleStep {
+    Motion motion;
+    double end_rpm = -1;  ///< of a feed under G96; negative: to be followed
+  };
+  Ring<SpindleStep> spindle_steps;
+  std::uint64_t chain_step = 0;  ///< the last motion of the chain
+  bool awaits_speed = false;     ///< the next feed waits until the spindle is at speed
+  double feed_rpm = -1;          ///< at the end of the last feed under G96; negative: as commanded
 };
+
+void TrajectoryPlanner::Impl::timed(const MotionTiming& timing) {
+  if (options.spindle.known()) {
+    const auto& [m, end_rpm] = spindle_steps.front();
+    spindle.stand(commanded_rpm(m, 0), timing.start_s - spindle_s);
+    spindle.follow(m, timing.duration_s, timing.way, end_rpm);
+    spindle_s = timing.start_s + timing.duration_s;
+    spindle_steps.pop_front();
+  }
+  sink.timed(timing);
+}
 
 /// Ends the path here: the machine stands when everything queued is done.
 void TrajectoryPlanner::Impl::halt() {
@@ -142,9 +186,12 @@ void TrajectoryPlanner::Impl::flush_chain() {
   const Vec3 to = chain.last();
   const StraightRates way = straight_rates(rates, to - chain.start(), {});
   if (way.length > 0) {
-    Segment segment = make_line(chain.start(), to, way, chain.speed());
+    chain_motion.to_mm = to;
+    const double most = std::min(way.speed, rates.linear_cap);
+    const SpindleFeed feed = feed_speed(chain_motion, way.length, most, chain_step);
+    Segment segment = make_line(chain.start(), to, way, feed.mean);
     segment.end = SegmentEnd::kParabolic;
-    if (chain_follows_spindle) follow_spindle(segment, chain.speed());
+    if (chain_motion.feed_per_rev) follow_spindle(segment, feed);
     segment.keeps_start = chain_keeps_start;
     segment.tolerance_mm = chain.tolerance_mm();
     segment.first_piece = chain.first_piece();
@@ -209,7 +256,10 @@ std::uint32_t TrajectoryPlanner::Impl::held_pieces() const {
 
 void TrajectoryPlanner::Impl::change_tool(const Motion& m) {
   halt();
-  stand(m, io_wait_s(kToolChangeLooks) + options.tool_change_s + kReadOn_s);
+  // Where the machine goes to a place first, the I/O task has begun before (Motion::io_halts).
+  const bool goes_there = begun && is_move(last.kind) && last.source == m.source;
+  const int looks = goes_there ? kToolChangeLooks - 1 : kToolChangeLooks;
+  stand(m, io_wait_s(looks) + options.tool_change_s + kReadOn_s);
 }
 
 /// M61 has been sent to the I/O task; the program is read on when all is done.
@@ -223,8 +273,10 @@ void TrajectoryPlanner::Impl::take_tool_number(const Motion& m) {
 void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
   const bool ends = m.kind == MotionKind::kProgramEnd;
   const bool halts = !ends && m.halts > 0;
-  const bool spindle = m.spindle != last.spindle ||
-                       (m.spindle != SpindleState::kStopped && m.spindle_rpm != last.spindle_rpm);
+  const bool turns = m.spindle != SpindleState::kStopped;
+  const bool as_before = m.surface.on() ? m.surface == last.surface
+                                        : !last.surface.on() && m.spindle_rpm == last.spindle_rpm;
+  const bool switched = m.spindle != last.spindle || (turns && !as_before);
   // The tip of another tool is elsewhere, which is no command.
   const bool offset = m.kind != MotionKind::kToolChange &&
                       (m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
@@ -233,17 +285,55 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
   // Switching coolant off is two commands, one for each kind.
   if ((last.flood && !m.flood) || (last.mist && !m.mist)) coolant = 2;
   if (!ends) coolant = std::max<int>(coolant, m.io_halts);
-  if (spindle) index_s = -1;
-  if (!halts && !spindle && !offset && coolant == 0) return;
+  if (switched) {
+    index_s = -1;
+    awaits_speed = turns;
+  }
+  if (!halts && !switched && !offset && coolant == 0) return;
   halt();
   schedule.pause(halt_s());
-  if (spindle && m.spindle != SpindleState::kStopped) schedule.pause(options.spindle_start_s);
+  if (switched && turns) schedule.pause(options.spindle_start_s);
   if (coolant > 0) schedule.pause(io_wait_s(coolant) + halt_s());
 }
 
 /// From standstill, or from the I/O task's look, to the next move. The task sees it half of its
 /// period later.
 double TrajectoryPlanner::Impl::halt_s() const { return options.halt_s + limits.task_period_s / 2; }
+
+/// The machine stands until the spindle is at speed: before the first feed after it has been sent
+/// to another one, and under G96 before the first after each traverse.
+void TrajectoryPlanner::Impl::wait_for_spindle(const Motion& m) {
+  if (m.kind == MotionKind::kTraverse) {
+    if (m.surface.on()) awaits_speed = true;
+    return;
+  }
+  const bool threads = m.kind == MotionKind::kThread && last.kind != MotionKind::kThread;
+  if (!options.spindle.known() || m.spindle == SpindleState::kStopped) return;
+  if (!awaits_speed && !threads) return;
+  awaits_speed = false;
+  flush_chain();
+  lookahead.stop_last();
+  halt();
+  const double commanded = commanded_rpm(m, 0);
+  spindle.stand(commanded, schedule.clock_s() - spindle_s);
+  schedule.pause(spindle.wait_until_near(commanded));
+  spindle_s = schedule.clock_s();
+  feed_rpm = std::abs(spindle.rpm());
+}
+
+/// What the program makes of a motion's speed, mm/s. `step`: its place among spindle_steps.
+SpindleFeed TrajectoryPlanner::Impl::feed_speed(const Motion& m, double length_mm,
+                                                double most_mm_per_s, std::uint64_t step) {
+  if (!per_revolution(m)) {
+    feed_rpm = -1;
+    return {.mean = m.feed_mm_per_min / 60.0};
+  }
+  const SpindleFeed feed =
+      spindle_feed(m, m.feed_mm_per_min, length_mm, options.spindle, feed_rpm, most_mm_per_s);
+  feed_rpm = feed.end_rpm;
+  if (options.spindle.known() && m.surface.on()) spindle_steps[step].end_rpm = feed.end_rpm;
+  return feed;
+}
 
 void TrajectoryPlanner::Impl::push(const Motion& m) {
   run_thread(&m);
@@ -253,6 +343,7 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
   if (begun) command_waits(m);
   if (m.by_number && m.halts > 0) io_done_s(sent_s(), kToolNumberLooks);
   if (standing) prepare_tool(m);
+  if (options.spindle.known()) spindle_steps.push() = {m, -1};
   switch (m.kind) {
     case MotionKind::kDwell:
       halt();
@@ -298,33 +389,39 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
     schedule.open_motion(timing, 0);
     return;
   }
-  const double speed =
-      traverse ? std::numeric_limits<double>::infinity() : timing.programmed_mm_per_min / 60.0;
+  wait_for_spindle(m);
   const double cap = way.linear ? rates.linear_cap : rates.angular_cap;
   if (!arc) {
-    timing.allowed_mm_per_min = std::min(way.speed, cap) * 60.0;
+    const double allowed = std::min(way.speed, cap);
+    timing.allowed_mm_per_min = allowed * 60.0;
     if (m.kind == MotionKind::kThread) {
       flush_chain();
       lookahead.stop_last();
       halt();
-      thread(m, timing, way, speed);
+      thread(m, timing, way, timing.programmed_mm_per_min / 60.0);
       return;
     }
     schedule.open_motion(timing, 1);
-    straight(m, way, speed);
+    straight(m, way, allowed);
     return;
   }
-  Segment segment = make_arc(rates, m, speed);
-  if (m.feed_per_rev) follow_spindle(segment, speed);
+  const double programmed = timing.programmed_mm_per_min / 60.0;
+  Segment segment = make_arc(rates, m, programmed);
   timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
   Vec3 middle;
   if (!segment.extra && flat_arc(m, middle)) {
     schedule.open_motion(timing, 2);
-    add_to_chain(m.from_mm, middle, speed, m);
-    add_to_chain(middle, m.to_mm, speed, m);
+    add_to_chain(m.from_mm, middle, m);
+    add_to_chain(middle, m.to_mm, m);
     return;
   }
   flush_chain();
+  if (m.feed_per_rev) {
+    follow_spindle(segment,
+                   feed_speed(m, segment.length_mm, segment.max_speed, spindle_steps.end() - 1));
+  } else {
+    feed_rpm = -1;
+  }
   schedule.open_motion(timing, 1);
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
@@ -333,19 +430,23 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   lookahead.add(segment);
 }
 
-void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way, double speed) {
+void TrajectoryPlanner::Impl::straight(const Motion& m, const StraightRates& way, double allowed) {
   const bool mergeable = m.kind == MotionKind::kFeed && !way.extra &&
                          m.path_mode == PathMode::kContinuous && m.merge_tolerance_mm > 0;
   if (mergeable) {
-    add_to_chain(m.from_mm, m.to_mm, speed, m);
+    add_to_chain(m.from_mm, m.to_mm, m);
     return;
   }
   flush_chain();
   if (m.kind == MotionKind::kProbe) halt();
-  Segment segment = make_line(m.from_mm, m.to_mm, way, speed);
-  if (m.feed_per_rev && m.kind == MotionKind::kFeed) follow_spindle(segment, speed);
+  const bool traverse = m.kind == MotionKind::kTraverse;
+  SpindleFeed feed{.mean = std::numeric_limits<double>::infinity()};
+  if (!traverse) feed = feed_speed(m, way.length, allowed, spindle_steps.end() - 1);
+  if (traverse) feed_rpm = -1;
+  Segment segment = make_line(m.from_mm, m.to_mm, way, feed.mean);
+  if (m.feed_per_rev && m.kind == MotionKind::kFeed) follow_spindle(segment, feed);
   segment.keeps_start = m.chain_end == ChainEnd::kOutputs;
-  segment.traverse = m.kind == MotionKind::kTraverse;
+  segment.traverse = traverse;
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
@@ -374,14 +475,28 @@ double TrajectoryPlanner::Impl::index_wait_s(const Motion& m) {
 
 void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing,
                                      const StraightRates& way, double speed) {
-  const bool retracts = begun && last.kind == MotionKind::kThread && returns(last, m);
-  thread_waits = {m, timing, way.length, std::min(speed, way.speed), way.accel, retracts};
+  const bool behind = begun && last.kind == MotionKind::kThread;
+  const bool retracts = behind && returns(last, m);
+  thread_waits = {m,         timing,    way.length, std::min(speed, way.speed),
+                  way.accel, way.speed, retracts,   behind && m.halts == 0};
 }
 
 /// Follows the spindle from its index pulse on: half of v / a late, as it has to speed up, and
-/// where it stops as much later. A rigid tap does not stop: LinuxCNC turns the spindle round at the
+/// where it stops as much later. Threads right behind each other stay in step with the spindle, and
+/// do not stop. A rigid tap does not stop: LinuxCNC turns the spindle round at the
 /// bottom and again at the top, and the axis goes back with it. The spindle has then turned back as
 /// far as it had turned, but for what the axis was late.
+/// What a spindle takes that turns round no faster than it can: at the bottom it runs on and comes
+/// back to there, at the top it runs on until it stands, and the axis comes back by itself.
+double TrajectoryPlanner::Impl::turning_round_s(const Thread& t) const {
+  if (!options.spindle.known()) return 0;
+  const double stopping_s = t.motion.spindle_rpm / options.spindle.accel_rpm_per_s;
+  const double past_mm = t.speed * stopping_s / 2;
+  return 3 * stopping_s +
+         speed_profile(past_mm, t.accel / 2, 0, std::min(t.fastest, rates.linear_cap), 0)
+             .duration_s;
+}
+
 void TrajectoryPlanner::Impl::run_thread(const Motion* next) {
   if (!thread_waits) return;
   const Thread t = *thread_waits;
@@ -389,21 +504,28 @@ void TrajectoryPlanner::Impl::run_thread(const Motion* next) {
   const double late_s = t.speed / t.accel / 2;
   const double seen_s = kIndexSeenPeriods * rates.cycle_s;
   double seconds = t.length / t.speed;
+  MotionTiming timing = t.timing;
   if (t.retracts) {
-    seconds += 2 * kSpindleTurnPeriods * rates.cycle_s;
+    seconds += 2 * kSpindleTurnPeriods * rates.cycle_s + turning_round_s(t);
   } else {
-    const bool taps =
-        next != nullptr && next->kind == MotionKind::kThread && returns(t.motion, *next);
-    seconds += index_wait_s(t.motion) + seen_s + (taps ? late_s : 2 * late_s);
+    const bool stands = next == nullptr || next->kind != MotionKind::kThread ||
+                        (next->halts > 0 && !returns(t.motion, *next));
+    const double waits_s = t.goes_on ? 0 : index_wait_s(t.motion) + seen_s;
+    if (!t.goes_on) seconds += waits_s + late_s;
+    if (stands) seconds += late_s;
+    timing.way.set_ramps(t.length, t.accel, t.goes_on ? t.speed : 0, t.speed, stands ? 0 : t.speed);
+    timing.way.in_time = static_cast<float>(waits_s / seconds);
   }
-  schedule.alone(t.motion, t.timing, seconds, t.speed);
+  schedule.alone(t.motion, timing, seconds, t.speed);
   if (t.retracts) index_s = schedule.clock_s() - late_s - seen_s;
 }
 
-void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, double speed,
-                                           const Motion& m) {
+/// Merged is what has one feed: under G96 of one per revolution, whatever becomes of it.
+void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, const Motion& m) {
   const double tolerance = static_cast<double>(m.merge_tolerance_mm);
   const double blend = static_cast<double>(m.blend_tolerance_mm);
+  const bool steady = !m.surface.on() || !m.feed_per_rev;
+  const double speed = steady ? programmed_per_minute(m) / 60.0 : m.feed_mm_per_min;
   if (feed_waits) flush_chain();
   if (!chain.empty() &&
       !(chain.speed() == speed && chain.tolerance_mm() == blend && chain.links(to, tolerance))) {
@@ -412,10 +534,13 @@ void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, dou
   const std::uint64_t piece = add_piece(glm::length(to - from));
   if (chain.empty()) {
     chain.begin(from, speed, blend, piece);
-    chain_follows_spindle = m.feed_per_rev;
+    chain_motion = m;
+    chain_motion.kind = MotionKind::kFeed;
+    chain_motion.from_mm = from;
     chain_keeps_start = m.chain_end == ChainEnd::kOutputs;
   }
   chain.append(to);
+  chain_step = spindle_steps.end() - 1;
 }
 
 TrajectoryPlanner::TrajectoryPlanner(const MachineLimits& limits, const PlannerOptions& options,
@@ -453,11 +578,14 @@ std::string TrajectoryPlanner::time_model() const {
   // What stands before the first ": " is its short form, in every language.
   const std::string what = trf("LinuxCNC 2.9 trajectory planner, limits of {}",
                                tr(impl_->options.limits_origin.c_str()));
-  const std::string figures =
+  std::string figures =
       trf("{}, {}, servo period {:g} ms; tool change {} I/O periods of {:g} s and {:g} s, spindle "
           "start {:g} s, M0 and M1 no time",
           axes, cap, impl_->rates.cycle_s * 1000.0, kToolChangeLooks, impl_->limits.io_period_s,
           impl_->options.tool_change_s, impl_->options.spindle_start_s);
+  if (impl_->options.spindle.known()) {
+    figures += trf(", spindle {:g} rpm/s", impl_->options.spindle.accel_rpm_per_s);
+  }
   return fmt::format("{}: {}", what, figures);
 }
 

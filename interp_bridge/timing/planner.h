@@ -9,6 +9,8 @@
 #include "base/translate.h"
 #include "interp_bridge/machine_limits.h"
 #include "interp_bridge/motion.h"
+#include "interp_bridge/timing/spindle_speed.h"
+#include "interp_bridge/timing/way_in_time.h"
 
 namespace kerf {
 
@@ -22,6 +24,10 @@ struct PlannerOptions {
   double tool_change_s = 0;
   /// The spindle's way to its speed when it starts, turns round or changes its speed.
   double spindle_start_s = 0;
+  /// How fast it gets there, if that is known: feeds, arcs and threads then wait until LinuxCNC
+  /// calls the spindle at speed, after it has been started or sent to another speed, and under G96
+  /// after each traverse.
+  SpindleDrive spindle;
   /// Where the program makes the machine wait until it stands (Motion::halts, a dwell): from
   /// standstill to the next move, besides half of [TASK]CYCLE_TIME. Measured: 1 ms where the task
   /// keeps the command to itself (messages, work offsets), 2 to 3 ms where it is sent on, 3 ms for
@@ -48,7 +54,8 @@ struct MotionTiming {
   double start_s = 0;
   double duration_s = 0;
   /// Programmed feed: mm/min (degrees/min where only A, B, C move), G95 and threads as feed per
-  /// revolution times speed. 0 for traverses, and for feed moves with no feed in force.
+  /// revolution times speed, under G96 the greatest along the motion. 0 for traverses, and for feed
+  /// moves with no feed in force.
   double programmed_mm_per_min = 0;
   /// What the axes allow along this motion: their speeds, the speed cap of the machine, and on
   /// arcs the centripetal acceleration. 0 for steps that do not move. "Feed above what the machine
@@ -57,6 +64,8 @@ struct MotionTiming {
   /// The greatest speed of the planned motion: less than both where the motion is too short to
   /// reach them.
   double peak_mm_per_min = 0;
+  /// How the way goes in that time. Of what does not move even.
+  WayInTime way;
 };
 
 /// A piece of the planned path: a straight line, or an arc about arc.center_mm from from_mm by
@@ -86,7 +95,8 @@ class MotionPlanSink {
 /// before a stop under G64, stops between traverses and feeds and wherever the program makes the
 /// machine wait (Motion::halts). Under G95 corners are rounded as for the fastest feed, and run
 /// through at that of the spindle; from a feed per minute the machine brakes before one that
-/// follows the spindle. Dwells last exactly as long as written. M0, M1, M60 take no time: stops()
+/// follows the spindle. Under G96 a feed per revolution changes along a motion with the distance
+/// from the axis. Dwells last exactly as long as written. M0, M1, M60 take no time: stops()
 /// counts them.
 ///
 /// Results come late, as a motion's end speed depends on what follows: by the look-ahead, times up
@@ -95,8 +105,9 @@ class MotionPlanSink {
 /// in a queue, one entry per pushed motion, and takes the front entry at each timed(). After
 /// finish() none is missing.
 ///
-/// Of merged motions each gets the time of its share of the length. The time of a blend arc goes
-/// half to the motion before, half to the one after.
+/// Of merged motions each gets the time of its share of the way. The time of a blend arc goes half
+/// to the motion before, half to the one after; so does the time in which two motions pass a corner
+/// at once.
 ///
 /// Axis limits apply along the axes of the workpiece frame: exact unless that is rotated against
 /// the machine (G10 L2 R). A feed is that of X Y Z; where these stand that of U V W, and last that
@@ -114,8 +125,9 @@ class MotionPlanSink {
 /// the spindle's index: half a revolution on average, and where the spindle has turned on since the
 /// thread before, whole revolutions after that one's. A rigid tap's spindle turns round at once;
 /// that the tap overshoots meanwhile, by two servo periods at both ends, is in its time and not in
-/// the path. Nothing is known of moves without a start (Motion::start_known) or with no feed in
-/// force: they take no time.
+/// the path; so is what a spindle whose acceleration is known needs to turn round, and the way back
+/// from where it has come to meanwhile. Nothing is known of moves without a start
+/// (Motion::start_known) or with no feed in force: they take no time.
 ///
 /// Cost: under 1 us a motion, about 0.3 us on average on CAM paths. Memory does not grow with the
 /// program; nothing is allocated once the queues have reached their size.

@@ -8,6 +8,7 @@ namespace kerf {
 SpeedProfile speed_profile(double length, double accel, double start_speed, double target,
                            double final_speed) {
   SpeedProfile profile;
+  profile.start_speed = start_speed;
   const double square0 = start_speed * start_speed;
   const double gain = 2.0 * accel * length;
   double last = std::min(final_speed, target);
@@ -16,7 +17,7 @@ SpeedProfile speed_profile(double length, double accel, double start_speed, doub
     // Too fast to slow down in time: brakes all the way.
     last = std::sqrt(square0 - gain);
     profile.end_speed = last;
-    profile.peak_speed = start_speed;
+    profile.peak_speed = profile.cruise_speed = start_speed;
     profile.duration_s = 2.0 * length / (start_speed + last);
     return profile;
   }
@@ -27,6 +28,7 @@ SpeedProfile speed_profile(double length, double accel, double start_speed, doub
     const double leaving = (target * target - square1) / (2.0 * accel);
     if (braking + leaving <= length) {
       profile.peak_speed = start_speed;
+      profile.cruise_speed = target;
       profile.duration_s = (start_speed - target) / accel + (target - last) / accel +
                            (length - braking - leaving) / target;
       return profile;
@@ -35,7 +37,7 @@ SpeedProfile speed_profile(double length, double accel, double start_speed, doub
   }
   const double top = std::sqrt((gain + square0 + square1) / 2.0);
   const double peak = std::min(top, target);
-  profile.peak_speed = peak;
+  profile.peak_speed = profile.cruise_speed = peak;
   profile.duration_s = (2.0 * peak - start_speed - last) / accel;
   if (peak < top) {
     const double ramps = (2.0 * peak * peak - square0 - square1) / (2.0 * accel);
@@ -70,6 +72,7 @@ SpeedProfile surprised_profile(double length, double accel_alone, double accel, 
   SpeedProfile profile =
       speed_profile(length - then.way_mm, accel, then.speed, target, final_speed);
   profile.duration_s += seconds;
+  profile.start_speed = start_speed;
   profile.peak_speed = std::max(profile.peak_speed, alone.peak_speed);
   return profile;
 }

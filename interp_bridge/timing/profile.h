@@ -5,8 +5,11 @@ namespace kerf {
 
 struct SpeedProfile {
   double duration_s = 0;
+  double rest_s = 0;  ///< of that, standing at the end
+  double start_speed = 0;
   double end_speed = 0;  ///< reached at the end; above `final_speed` if it could not slow down
   double peak_speed = 0;
+  double cruise_speed = 0;  ///< between the ramps; below peak_speed where it begins by braking
 };
 
 /// Trapezoid (or triangle, or part of one): starts at start_speed, runs at `target` where it can,

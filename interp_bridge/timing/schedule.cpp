@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace kerf {
 namespace {
 
 /// Farthest that the chords of a corner may lie from the way of the tool.
 constexpr double kCornerChord_mm = 0.001;
+
+/// A way that is as even as this is given as even: most of dense code is.
+constexpr double kEven_s = 0.0002;
 
 /// Room for what the look-ahead usually holds; grows where many short moves are merged.
 constexpr std::size_t kFirstCapacity = 1024;
@@ -29,6 +33,8 @@ void Schedule::open_motion(const MotionTiming& timing, std::uint32_t pieces) {
   pending.timing.index = next_index_++;
   pending.pieces_left = pieces;
   pending.started = false;
+  pending.middles = 0;
+  pending.in_s = pending.out_s = 0;
   if (pieces == 0) report_ready();
 }
 
@@ -55,15 +61,16 @@ void Schedule::drop_pieces(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) close_piece();
 }
 
-void Schedule::add_time(std::uint64_t motion, double seconds, double speed) {
+Schedule::Pending& Schedule::add_time(std::uint64_t motion, double seconds, double speed) {
   Pending& pending = pending_[motion];
   if (!pending.started) {
     pending.started = true;
-    pending.timing.start_s = clock_s_;
+    pending.timing.start_s = clock_s_ + corner_s_;
   }
-  pending.timing.duration_s += seconds;
+  pending.timing.duration_s += seconds - std::exchange(corner_s_, 0);
   pending.timing.peak_mm_per_min = std::max(pending.timing.peak_mm_per_min, speed * 60.0);
   clock_s_ += seconds;
+  return pending;
 }
 
 void Schedule::close_piece() {
@@ -77,7 +84,17 @@ void Schedule::report_ready() {
   while (!pending_.empty() && pending_.front().pieces_left == 0) {
     Pending& pending = pending_.front();
     if (!pending.started) pending.timing.start_s = clock_s_;
-    const MotionTiming timing = pending.timing;
+    MotionTiming timing = pending.timing;
+    timing.duration_s = std::max(timing.duration_s, 0.0);
+    if (pending.middles == 1 && timing.duration_s > 0) {
+      const double in = pending.in_s / timing.duration_s;
+      timing.way.in_time = static_cast<float>(std::clamp(in, 0.0, 1.0));
+      const double out = pending.out_s / timing.duration_s;
+      timing.way.out_time = static_cast<float>(std::clamp(out, 0.0, 1.0 - std::min(in, 1.0)));
+      if (timing.duration_s * timing.way.unevenness() < kEven_s) timing.way = {};
+    } else {
+      timing.way = {};
+    }
     pending_.pop_front();
     sink_.timed(timing);
   }
@@ -91,14 +108,14 @@ void Schedule::run(const Segment& segment, const SpeedProfile& profile, const Ov
   const double seconds = std::max(profile.duration_s - overlap.seconds, 0.0);
   if (segment.shape == SegmentShape::kBlend) {
     corner_before_mm_ = segment.length_mm;
-    run_blend(segment, seconds, profile.peak_speed);
+    run_blend(segment, seconds, profile);
     return;
   }
   settle();
   if (!corner_mm_.empty()) send_chords(corner_mm_.size() / 2, corner_mm_.size() - 1);
   corner_mm_.clear();
   if (with_path_) round_corner(segment, overlap);
-  run_pieces(segment, seconds, profile.peak_speed);
+  run_pieces(segment, seconds, profile, overlap.seconds / 2);
   if (!corner_mm_.empty()) send_chords(0, corner_mm_.size() / 2);
   corner_behind_mm_ = corner_ahead_mm_;
   corner_ahead_mm_ = 0;
@@ -138,24 +155,78 @@ void Schedule::send_chords(std::size_t from, std::size_t to) {
   }
 }
 
-/// Shares the time among the pieces by length; the last one stays open for the blend after it.
-void Schedule::run_pieces(const Segment& segment, double seconds, double speed) {
+namespace {
+
+/// How the way of a segment goes, with what its corners have left of it.
+WayInTime middle_of(const Segment& segment, const SpeedProfile& profile) {
+  WayInTime middle;
+  if (segment.slow_from > 0) {
+    middle.set_slowness(segment.slow_from, segment.slow_to, 1 / segment.spindle_speed);
+  } else {
+    middle.set_ramps(segment.length_mm, segment.accel(), profile.start_speed, profile.cruise_speed,
+                     profile.end_speed);
+  }
+  return middle;
+}
+
+/// From where to where, in shares of its way, a segment is run by itself.
+struct AloneRange {
+  double from = 0, to = 1;
+  AloneRange(const WayInTime& middle, double moving_s, double before_s, double behind_s) {
+    if (before_s > 0 && moving_s > 0) from = middle.way_of(before_s / moving_s);
+    if (behind_s > 0 && moving_s > 0) to = middle.way_of(1 - behind_s / moving_s);
+    to = std::max(to, from);
+  }
+};
+
+}  // namespace
+
+/// Shares the time among the pieces by their way; the last one stays open for the blend after it.
+/// `corner_s`: half of the time in which the next segment is run too.
+void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedProfile& profile,
+                          double corner_s) {
+  const bool blend = segment.shape == SegmentShape::kBlend;
+  const WayInTime middle = blend ? WayInTime{} : middle_of(segment, profile);
+  const AloneRange alone(middle, profile.duration_s - profile.rest_s, corner_s_, corner_s);
+  const double moving_s = std::max(seconds - profile.rest_s, 0.0);
+  const double cut_from = blend ? 0 : segment.cut_from();
+  const double left = std::max(1 - cut_from - (blend ? 0 : segment.cut_to()), 1e-9);
   double whole = 0;
   for (std::uint32_t i = 0; i < segment.piece_count; ++i) {
     whole += pieces_[segment.first_piece + i].length_mm;
   }
   double done = 0;
+  double run = 0;
   for (std::uint32_t i = 0; i < segment.piece_count; ++i) {
     if (i > 0) close_piece();
+    const bool last = i + 1 == segment.piece_count;
     const Piece piece = pieces_.front();
     const double share = whole > 0 ? piece.length_mm / whole : 1.0;
-    add_time(piece.motion, seconds * share, speed);
+    const double ends = last ? 1.0 : done + share;
+    // Between its ends the piece is on so much of the segment's own way.
+    const double from = std::clamp((done - cut_from) / left, alone.from, alone.to);
+    const double to = last ? alone.to : std::clamp((ends - cut_from) / left, from, alone.to);
+    const double run_to = last ? 1.0 : middle.time_of(to);
+    const double piece_s = moving_s * (run_to - run) + (last ? seconds - moving_s : 0);
+    Pending& pending = add_time(piece.motion, piece_s, profile.peak_speed);
+    run = run_to;
+    pending.middles += blend ? 2 : 1;
+    WayInTime& way = pending.timing.way;
+    way = from > 0 || to < 1 ? middle.part(from, to) : middle;
+    if (ends > done) {
+      const double in = (cut_from + left * from - done) / (ends - done);
+      const double out = (ends - cut_from - left * to) / (ends - done);
+      way.in_way = static_cast<float>(std::clamp(in, 0.0, 1.0));
+      way.out_way = static_cast<float>(std::clamp(out, 0.0, 1.0));
+    }
+    if (last) {
+      pending.out_s += profile.rest_s;
+      pending.timing.duration_s += corner_s;
+    }
     if (with_path_ && segment.shape == SegmentShape::kArc) {
       send_arc(segment, corner_behind_mm_, corner_before_mm_);
     } else if (with_path_) {
-      const bool last = i + 1 == segment.piece_count;
-      const double length =
-          segment.shape == SegmentShape::kBlend ? segment.lead_mm : segment.length_mm;
+      const double length = blend ? segment.lead_mm : segment.length_mm;
       const double end = last ? length : (done + share) * length;
       send_line(segment, std::max(done * length, corner_behind_mm_),
                 std::min(end, corner_before_mm_));
@@ -163,21 +234,24 @@ void Schedule::run_pieces(const Segment& segment, double seconds, double speed) 
     done += share;
   }
   held_ = segment.piece_count > 0;
+  corner_s_ = corner_s;
 }
 
-void Schedule::run_blend(const Segment& segment, double seconds, double speed) {
+void Schedule::run_blend(const Segment& segment, double seconds, const SpeedProfile& profile) {
   const double arc_mm = segment.length_mm - segment.lead_mm;
   const double after = seconds * 0.5 * arc_mm / segment.length_mm;
   if (segment.piece_count > 0) {
     settle();
-    run_pieces(segment, seconds - after, speed);
+    run_pieces(segment, seconds - after, profile, 0);
   } else if (held_) {
-    add_time(pieces_.front().motion, seconds - after, speed);
+    Pending& pending = add_time(pieces_.front().motion, seconds - after, profile.peak_speed);
+    pending.out_s += seconds - after;
   }
   if (with_path_) send_blend_half(segment, true);
   settle();
   if (pieces_.empty()) return;
-  add_time(pieces_.front().motion, after, speed);
+  Pending& pending = add_time(pieces_.front().motion, after, profile.peak_speed);
+  pending.in_s += after;
   if (with_path_) send_blend_half(segment, false);
 }
 

@@ -48,17 +48,20 @@ class Schedule {
     MotionTiming timing;
     std::uint32_t pieces_left = 0;
     bool started = false;
+    int middles = 0;             ///< segments that were run for it; of one the way is known
+    double in_s = 0, out_s = 0;  ///< corners at its ends, and its rest at the end
   };
   struct Piece {
     std::uint64_t motion = 0;
     double length_mm = 0;
   };
 
-  void add_time(std::uint64_t motion, double seconds, double speed);
+  Pending& add_time(std::uint64_t motion, double seconds, double speed);
   void close_piece();
   void report_ready();
-  void run_pieces(const Segment& segment, double seconds, double speed);
-  void run_blend(const Segment& segment, double seconds, double speed);
+  void run_pieces(const Segment& segment, double seconds, const SpeedProfile& profile,
+                  double corner_s);
+  void run_blend(const Segment& segment, double seconds, const SpeedProfile& profile);
   void send_line(const Segment& segment, double from_mm, double to_mm);
   void send_arc(const Segment& segment, double from_mm, double to_mm);
   void send_chords(std::size_t from, std::size_t to);
@@ -69,6 +72,9 @@ class Schedule {
   bool with_path_;
   double clock_s_ = 0;
   std::uint64_t next_index_ = 0;
+  /// Half of the time in which the segment before and the next are run at once: it belongs to the
+  /// motion before.
+  double corner_s_ = 0;
   bool held_ = false;  ///< the oldest piece has been run, up to the blend that may follow
   /// The corner that two segments pass while both are run, as points; the second half of it, and so
   /// much of the second segment, belongs to that.

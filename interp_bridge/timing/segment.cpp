@@ -189,9 +189,24 @@ Vec3 Segment::point_at(double way_mm) const {
   return from + (trim_from + way_mm) * tangent_from;
 }
 
-void follow_spindle(Segment& segment, double speed) {
+void follow_spindle(Segment& segment, const SpindleFeed& feed) {
   segment.request = segment.max_speed;
-  segment.spindle_speed = speed;
+  segment.spindle_speed = feed.mean;
+  segment.slow_from = feed.slow_from;
+  segment.slow_to = feed.slow_to;
+}
+
+void keep_slowness(Segment& segment, double from, double to) {
+  if (segment.slow_from <= 0 || from >= to) return;
+  WayInTime law;
+  law.set_slowness(segment.slow_from, segment.slow_to, 1 / segment.spindle_speed);
+  const double time = law.time_of(to) - law.time_of(from);
+  if (time <= 0) return;
+  segment.spindle_speed *= (to - from) / time;
+  const double unit = segment.slow_from;
+  const WayInTime left = law.part(from, to);
+  segment.slow_from = unit * static_cast<double>(left.slow_from);
+  segment.slow_to = unit * static_cast<double>(left.slow_to);
 }
 
 void clamp_to_cycle(Segment& segment, double cycle_s) {

@@ -2,12 +2,15 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "base/geometry.h"
 #include "interp_bridge/machine_limits.h"
 #include "interp_bridge/motion.h"
+#include "interp_bridge/timing/spindle_speed.h"
 
 namespace kerf {
 
@@ -85,6 +88,8 @@ struct Segment {
   double radius_mm = 0;  ///< kArc, kBlend
   double trim_from = 0, trim_to = 0;
   double lead_mm = 0;  ///< kBlend: straight part before the arc, of a line that was swallowed
+  /// A feed per revolution under G96: how slow it is at both ends, s/mm; 0: that does not change.
+  double slow_from = 0, slow_to = 0;
   std::uint64_t first_piece = 0;
   std::uint32_t piece_count = 0;
 
@@ -105,10 +110,19 @@ struct Segment {
     if (spindle_speed < wanted) wanted = spindle_speed;
     return wanted < cap ? wanted : cap;
   }
+  /// Shares of the programmed way that its corners cut away, at the start and at the end.
+  double cut_from() const { return cut(trim_from); }
+  double cut_to() const { return cut(trim_to); }
   /// Point at angle (radians from the untrimmed start) of an arc.
   Vec3 arc_point(double angle) const;
   /// Point of a line or an arc so far from its trimmed start, 0 to length_mm.
   Vec3 point_at(double way_mm) const;
+
+ private:
+  double cut(double trim) const {
+    const double whole = shape == SegmentShape::kArc ? std::abs(arc.sweep_rad) : nominal_mm;
+    return whole > 0 ? std::min(trim / whole, 1.0) : 0.0;
+  }
 };
 
 /// How far a move takes A B C and U V W.
@@ -138,8 +152,11 @@ Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straigh
 bool has_radius(const Motion& motion);
 Segment make_arc(const AxisRates& rates, const Motion& motion, double speed);
 
-/// G95: the segment is run at what the spindle makes of the feed, mm/s.
-void follow_spindle(Segment& segment, double speed);
+/// G95: the segment is run at what the spindle makes of the feed.
+void follow_spindle(Segment& segment, const SpindleFeed& feed);
+
+/// Where that changes along the segment: only this part of it is left.
+void keep_slowness(Segment& segment, double from, double to);
 
 /// Caps speed so that the segment takes a servo period at least.
 void clamp_to_cycle(Segment& segment, double cycle_s);

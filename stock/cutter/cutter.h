@@ -11,6 +11,7 @@
 //            tip (z = 0)
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -44,6 +45,9 @@ struct ToolSection {
   double from_z_mm = 0;
   double to_z_mm = 0;
 };
+
+/// How the driven tool of a lathe lies: along this axis, its tip towards less of it.
+enum class LiveAxis : std::uint8_t { kX, kZ };
 
 /// Immutable after construction.
 class Cutter {
@@ -103,6 +107,10 @@ class Cutter {
   void set_neck(std::vector<ToolSection> neck) { neck_ = std::move(neck); }
   std::optional<int> teeth() const { return teeth_; }
   void set_teeth(int teeth) { teeth_ = teeth; }
+  /// Of a lathe's tool that is driven itself, so that it mills: how it lies. None: a tool that
+  /// stands still there (and any tool of a mill).
+  std::optional<LiveAxis> live() const { return live_; }
+  void set_live(std::optional<LiveAxis> live) { live_ = live; }
   /// Of a punch: its outline about the axis at angle 0, closed chains of points, even-odd, mm, as
   /// it goes straight through (Sheet::cut() says how moves place it). Null: a cutter that turns.
   const Footprint* footprint() const { return footprint_.get(); }
@@ -129,6 +137,7 @@ class Cutter {
   std::vector<ToolSection> neck_;
   std::vector<ToolSection> holder_;
   std::optional<int> teeth_;
+  std::optional<LiveAxis> live_;
   std::shared_ptr<const Footprint> footprint_;
   std::shared_ptr<const InsertOutline> insert_;
   InsertTip insert_tip_;

@@ -193,6 +193,16 @@ std::optional<double> iso_circle_mm(char shape, int size) {
   return std::nullopt;
 }
 
+std::vector<IsoSize> iso_sizes(char shape) {
+  std::vector<IsoSize> sizes;
+  for (int size = 1; size < 100; ++size) {
+    if (const std::optional<double> circle = iso_circle_mm(shape, size)) {
+      sizes.push_back({size, *circle});
+    }
+  }
+  return sizes;
+}
+
 std::optional<InsertOutline> iso_insert(const IsoInsert& insert) {
   const IsoShape* const shape = shape_of(insert.shape);
   const std::optional<Vec2> direction = known_direction(insert.orientation);

@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "stock/cutter/cutter.h"
 #include "stock/cutter/insert.h"
@@ -66,6 +67,12 @@ std::span<const IsoShape> iso_shapes();
 /// cutting edge without what is behind the point (CNMG 12 04 08: 12.9 mm, of a circle of 12.7 mm).
 /// None: there is no such insert in the series.
 std::optional<double> iso_circle_mm(char shape, int size);
+/// All of a shape's, rising.
+struct IsoSize {
+  int size = 0;
+  double circle_mm = 0;
+};
+std::vector<IsoSize> iso_sizes(char shape);
 
 /// Groove, part-off: a blade with a straight front edge. Across it the controlled point is at the
 /// front's corner by orientation (1, 4: at the end of +z; 2, 3: at that of -z), or in its middle

@@ -42,6 +42,14 @@ std::string iso_letters_text() {
   return text;
 }
 
+/// Sizes of a shape that there are, "06, 09, 12".
+std::string iso_sizes_text(char shape) {
+  std::string text;
+  for (const IsoSize& size : iso_sizes(shape))
+    text += fmt::format("{}{:02}", text.empty() ? "" : ", ", size.size);
+  return text;
+}
+
 Error not_a_code(std::string_view code) {
   return Error{
       trf("'{}' is no insert of ISO 1832; write for example CNMG120408 (shape, clearance, "
@@ -120,14 +128,6 @@ Result<IsoCode> read_ansi(IsoCode code, std::string_view digits, std::string_vie
 }
 
 }  // namespace
-
-std::string iso_sizes_text(char shape) {
-  std::string text;
-  for (int size = 1; size < 100; ++size) {
-    if (iso_circle_mm(shape, size)) text += fmt::format("{}{:02}", text.empty() ? "" : ", ", size);
-  }
-  return text;
-}
 
 Result<IsoCode> parse_iso_code(std::string_view text) {
   std::string packed;

@@ -30,7 +30,4 @@ struct IsoCode {
 /// with a figure. Error: which part is wrong, what was found, what is allowed.
 Result<IsoCode> parse_iso_code(std::string_view text);
 
-/// Sizes of a shape that there are, "06, 09, 12".
-std::string iso_sizes_text(char shape);
-
 }  // namespace kerf

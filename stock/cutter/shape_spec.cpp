@@ -80,8 +80,8 @@ constexpr std::array<Form, 11> kForms = {{
 constexpr std::array<std::string_view, 18> kShapeNames = {
     "flat", "ball",    "bull", "vee", "taper",  "drill", "lollipop",   "tslot",  "dovetail",
     "kerf", "profile", "turn", "iso", "groove", "part",  "facegroove", "thread", "bore"};
-constexpr std::array<std::string_view, 5> kOptionNames = {"flute", "shank", "holder", "stickout",
-                                                          "teeth"};
+constexpr std::array<std::string_view, 6> kOptionNames = {"flute",    "shank", "holder",
+                                                          "stickout", "teeth", "live"};
 
 constexpr const char* kHelp = tr_noop(
     "flat:D               end mill\n"
@@ -97,7 +97,8 @@ constexpr const char* kHelp = tr_noop(
     "bottom\n"
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
-    "each of these may add  :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N");
+    "each of these may add  :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N\n"
+    "                     :live=x|z  of a lathe's driven tool: along which axis it lies");
 
 ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
   ProfilePiece piece;
@@ -125,6 +126,7 @@ struct Options {
   std::vector<ToolPart> holder;
   std::optional<double> stickout_mm;
   std::optional<int> teeth;
+  std::optional<LiveAxis> live;
 };
 
 /// What a form makes before the options are added.
@@ -145,6 +147,17 @@ Done parse_teeth(std::string_view value, Options& options) {
                      shown(value), kMaxTeeth)};
   }
   options.teeth = teeth;
+  return std::monostate{};
+}
+
+Done parse_live(std::string_view value, Options& options) {
+  if (value != "x" && value != "X" && value != "z" && value != "Z") {
+    return Error{
+        trf("live: '{}' is not allowed; x and z are: the axis of a lathe along which the "
+            "driven tool lies",
+            shown(value))};
+  }
+  options.live = value == "x" || value == "X" ? LiveAxis::kX : LiveAxis::kZ;
   return std::monostate{};
 }
 
@@ -176,6 +189,10 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
     if (options.teeth) return Error{tr("teeth= is given twice")};
     return parse_teeth(value, options);
   }
+  if (name == "live") {
+    if (options.live) return Error{tr("live= is given twice")};
+    return parse_live(value, options);
+  }
   if (name == "stickout") {
     if (options.stickout_mm) return Error{tr("stickout= is given twice")};
     const Result<double> stickout =
@@ -186,7 +203,7 @@ Done parse_option(std::string_view name, std::string_view value, LengthUnit unit
   }
   return Error{
       trf("unknown option '{}'{} Options: flute=L, shank=D[xL], holder=NAME|DxL[+DxL..], "
-          "stickout=L, teeth=N",
+          "stickout=L, teeth=N, live=x|z",
           shown(name), did_you_mean(name, kOptionNames))};
 }
 
@@ -197,6 +214,7 @@ std::string options_text(const Options& options) {
   if (!options.holder.empty()) text += ":holder=" + parts_text(options.holder);
   if (options.stickout_mm) text += fmt::format(":stickout={}", number_text(*options.stickout_mm));
   if (options.teeth) text += fmt::format(":teeth={}", *options.teeth);
+  if (options.live) text += *options.live == LiveAxis::kX ? ":live=x" : ":live=z";
   return text;
 }
 
@@ -495,6 +513,7 @@ Result<Cutter> assemble(Body body, const Options& options, std::string spec) {
     cutter->set_shank_diameter_mm(*body.shank_mm);
   }
   if (options.teeth) cutter->set_teeth(*options.teeth);
+  cutter->set_live(options.live);
   std::vector<ToolSection> holder =
       sections_of(options.holder, options.stickout_mm.value_or(shank_top));
   cutter->set_holder(std::move(holder));

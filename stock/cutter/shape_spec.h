@@ -36,6 +36,8 @@ namespace kerf {
 ///                        flutes: the cautious reading
 ///     stickout=L         from the tip to the holder, instead of the shank's length
 ///     teeth=N            1 to 99
+///     live=x, live=z     on a lathe: it is driven itself, and mills while the workpiece stands or
+///                        is an axis; along X (its tip towards the axis) or along Z
 ///
 /// taper: the circle of radius R has its centre at radius D/2 - R and meets the cone tangentially;
 /// R = D/2 is a tapered ball nose. The cone ends at the flute length, or three tip diameters above

@@ -69,7 +69,8 @@ constexpr std::array kTurningForms{
 
 constexpr std::array<std::string_view, 5> kTurningOptions = {"orient", "edge", "holder", "bar",
                                                              "f"};
-constexpr std::array<std::string_view, 4> kMillOptions = {"flute", "shank", "stickout", "teeth"};
+constexpr std::array<std::string_view, 5> kMillOptions = {"flute", "shank", "stickout", "teeth",
+                                                          "live"};
 
 constexpr const char* kTurningHelp = tr_noop(
     "turn:R:ORIENT:FRONT:BACK[:EDGE]  turning tool: nose radius, LinuxCNC's orientation and "

@@ -38,7 +38,7 @@ namespace kerf {
 ///                         orient= says so
 ///     f=L                 ISO 5610's f of either: from the tip to the shank's far side (by
 ///                         default 1.25 W), or to the bar's axis (0.68 D)
-/// Not those of tools that turn: flute=, shank=, stickout=, teeth=.
+/// Not those of tools that turn: flute=, shank=, stickout=, teeth=, live=.
 bool is_turning_form(std::string_view name);
 /// What a SHAPE text begins with.
 bool is_turning_shape(std::string_view shape);

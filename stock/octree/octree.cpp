@@ -320,6 +320,14 @@ void Octree::cut(const Cutter& cutter, std::span<const CutMove> moves,
   }
 }
 
+double Octree::keep_within(const RevolvedBody& body, const ZRange& range) {
+  assert(!impl_->additive);
+  impl_->bodies_of_blank.clear();
+  const std::int64_t gone = cut_to_revolved(impl_->tree, body, range, *impl_->pool);
+  impl_->removed += gone;
+  return impl_->mm3(gone);
+}
+
 std::optional<Contact> Octree::first_contact(const Cutter& cutter, const CutMove& move,
                                              double tolerance_mm) const {
   const std::optional<WayContact> found =

@@ -12,6 +12,7 @@
 
 #include "stock/blank.h"
 #include "stock/octree/hermite_grid.h"
+#include "stock/octree/revolved_cut.h"
 #include "stock/solid_points.h"
 #include "stock/stock_model.h"
 #include "stock/way_contact.h"
@@ -70,6 +71,10 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   void cut(const Cutter& cutter, std::span<const CutMove> moves,
            std::vector<CutReport>& reports) override;
   void finish(std::vector<CutReport>&) override {}  ///< no move is held back
+  /// Takes away what lies beyond the body, as far as that is in the range (revolved_cut.h). From
+  /// then on contacts with the blank are those of nodes and crossings. Gives the volume, mm3. Not
+  /// of an additive model.
+  double keep_within(const octree::RevolvedBody& body, const octree::ZRange& range);
   /// To a cell / 4000 along the path. Where no tool has come within a few cells yet it is the exact
   /// tool against the exact blank less the tolerance, whatever the cells (BlankContact); elsewhere,
   /// and of a workpiece that was loaded, nodes and crossings count, and a corner of material may be

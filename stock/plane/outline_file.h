@@ -39,7 +39,8 @@ OutlineFormat outline_format_of(const std::string& path);
 /// SVG: path (M L H V C S Q T A Z, both cases), rect (square corners), circle, ellipse, polygon.
 /// One user unit is 1 mm, or what width="..mm|cm|in" and viewBox of the svg element say. y points
 /// down there: it is turned round, so that the picture's lower edge is y = 0 if there is a height,
-/// and y is negative otherwise. transform is an error, and so is a path that is not closed.
+/// and y is negative otherwise. A line of the class "axis" is read past. transform is an error, and
+/// so is a path that is not closed.
 Result<PlaneOutline> parse_dxf_outline(std::string_view text, const std::string& name,
                                        double tolerance_mm,
                                        OutlineClosing closing = OutlineClosing::kByThemselves);

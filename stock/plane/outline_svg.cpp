@@ -94,7 +94,9 @@ class SvgReader {
     } else if (contains(kNotDrawn, element)) {
       not_drawn_ += empty ? 0 : 1;
     } else if (not_drawn_ == 0) {
-      take(element, attributes);
+      const auto kind = attributes.find("class");
+      const bool is_axis = element == "line" && kind != attributes.end() && kind->second == "axis";
+      if (!is_axis) take(element, attributes);
     }
     return true;
   }

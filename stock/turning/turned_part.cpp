@@ -384,6 +384,13 @@ TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
   return turning::revolve(contours_, tolerance_mm, flats());
 }
 
+int TurnedPart::level_within(double tolerance_mm) {
+  int level = 0;
+  for (double next_mm = 4 * kPatchTolerance_mm; level < 4 && next_mm <= tolerance_mm; next_mm *= 4)
+    ++level;
+  return level;
+}
+
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
   const turning::Unit low = band_low(band), high = band_low(band + 1);

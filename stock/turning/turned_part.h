@@ -56,8 +56,15 @@ class TurningTool {
   /// The same without a border of this width: what touches with it is that much inside the tool.
   /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
+<<<<<<< HEAD
   /// Of the same outline.
   bool is_like(const TurningTool& other) const;
+=======
+  /// Its parts on the grid, or those of the tool as it is seen in a mirror, the axis.
+  std::span<const turning::GridPart> parts(bool mirrored) const {
+    return mirrored ? below_ : parts_;
+  }
+>>>>>>> main
 
  private:
   friend class TurnedPart;
@@ -120,6 +127,10 @@ struct TurnedPiece {
 /// Not held: runout.
 class TurnedPart {
  public:
+  /// So far the controlled point is followed along either axis: farther away no tool reaches a
+  /// blank.
+  static constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
+
   /// None: no area, below the axis, beyond 2 m, not a number, or more than one piece.
   /// With flats the blank is that of their corners' circle.
   static std::optional<TurnedPart> create(const TurnedProfile& blank,
@@ -195,6 +206,8 @@ class TurnedPart {
   /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
   /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
   MeshPatch patch(std::size_t band, int level) const;
+  /// The coarsest level that keeps within the tolerance; 0 where none does.
+  static int level_within(double tolerance_mm);
 
   /// How often a general polygon library was asked: for measurements.
   std::uint64_t library_calls() const { return scratch_.cut.library_calls(); }

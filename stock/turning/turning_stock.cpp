@@ -18,12 +18,6 @@ namespace {
 /// Of a tool that stands still along the axis: what its shank does beyond is not looked at.
 constexpr double kAxialLength_mm = 200;
 
-std::shared_ptr<const InsertOutline> outline_of(const Cutter& cutter) {
-  if (cutter.insert() != nullptr) return cutter.insert();
-  std::optional<InsertOutline> axial = axial_outline(cutter, kAxialLength_mm);
-  return axial ? std::make_shared<const InsertOutline>(std::move(*axial)) : nullptr;
-}
-
 Vec2 in_plane(const Vec3& p) { return {p.z, p.x}; }
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
@@ -53,8 +47,29 @@ void append_chords(const CutMove& move, std::vector<TurnMove>& moves) {
   moves.push_back({at, in_plane(move.to_mm), std::nullopt, move.id});
 }
 
+<<<<<<< HEAD
 /// What a move is in the plane: one move as a rule.
 std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
+=======
+void extend(TurnCut& whole, const TurnCut& part) {
+  whole.removed_mm3 += part.removed_mm3;
+  whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
+  whole.way_mm += part.way_mm;
+  whole.flanks_mm = std::max(whole.flanks_mm, part.flanks_mm);
+  for (std::size_t i = 0; i < kInsertSides; ++i)
+    whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
+}
+
+}  // namespace
+
+std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter) {
+  if (cutter.insert() != nullptr) return cutter.insert();
+  std::optional<InsertOutline> axial = axial_outline(cutter, kAxialLength_mm);
+  return axial ? std::make_shared<const InsertOutline>(std::move(*axial)) : nullptr;
+}
+
+std::vector<TurnMove> turning_moves(const CutMove& move) {
+>>>>>>> main
   TurnMove turn{in_plane(move.from_mm), in_plane(move.to_mm), std::nullopt, move.id};
   if (!move.arc) {
     // On the axis it leaves the same whatever the lead.
@@ -71,24 +86,18 @@ std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
   return moves;
 }
 
-void extend(TurnCut& whole, const TurnCut& part) {
-  whole.removed_mm3 += part.removed_mm3;
-  whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
-  whole.way_mm += part.way_mm;
-  whole.flanks_mm = std::max(whole.flanks_mm, part.flanks_mm);
-  for (std::size_t i = 0; i < kInsertSides; ++i)
-    whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
-}
-
-}  // namespace
-
 TurningStock::TurningStock(TurnedPart part) : part_(std::move(part)) {}
 
 const TurningTool& TurningStock::tool_of(const Cutter& cutter) const {
   // Of a cutter without one the outline is made each time: calls take many moves.
-  if (!ready_.tool || cutter.insert() == nullptr || cutter.insert() != ready_.outline) {
+  const auto is_of = [&](const Ready& ready) {
+    return ready.tool && cutter.insert() != nullptr && cutter.insert() == ready.outline;
+  };
+  if (!is_of(ready_)) {
+    std::swap(ready_, ready_before_);
+    if (is_of(ready_)) return *ready_.tool;
     ready_ = {};
-    ready_.outline = outline_of(cutter);
+    ready_.outline = turning_outline(cutter);
     ready_.tool.emplace(*ready_.outline);
   }
   return *ready_.tool;
@@ -101,7 +110,11 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
+<<<<<<< HEAD
     for (const TurnMove& turn : moves_of(cutter, move)) extend(whole, part_.cut(tool, turn));
+=======
+    for (const TurnMove& turn : turning_moves(move)) extend(whole, part_.cut(tool, turn));
+>>>>>>> main
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;
@@ -121,7 +134,11 @@ std::optional<TurnContact> TurningStock::first_turn_contact(const Cutter& cutter
     ready_.inset_mm = tolerance_mm;
   }
   std::optional<TurnContact> first;
+<<<<<<< HEAD
   const std::vector<TurnMove> turns = moves_of(cutter, move);
+=======
+  const std::vector<TurnMove> turns = turning_moves(move);
+>>>>>>> main
   for (std::size_t i = 0; i < turns.size(); ++i) {
     std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turns[i]);
     if (!met) continue;
@@ -176,7 +193,7 @@ std::unique_ptr<StockModel> TurningStock::snapshot() const {
 std::size_t TurningStock::unique_bytes() const { return part_.unique_bytes(); }
 
 Done TurningStock::can_cut(const Cutter& cutter) {
-  if (outline_of(cutter) != nullptr) return std::monostate{};
+  if (turning_outline(cutter) != nullptr) return std::monostate{};
   return Error{
       trf("{}: cannot be cut with on a lathe; a tool that stands still has no hollow arcs "
           "and is at most {} mm long",

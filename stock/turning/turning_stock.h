@@ -10,6 +10,12 @@
 
 namespace kerf {
 
+/// What a lathe cuts with: Cutter::insert(), or of any other cutter its outline as it stands still
+/// along the axis. Null: it has none, as TurningStock::can_cut() says.
+std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter);
+/// What a move is in the plane of the axis: one move as a rule.
+std::vector<TurnMove> turning_moves(const CutMove& move);
+
 /// A workpiece on a lathe: it turns about the z axis of the workpiece frame. x of a move's tip is
 /// how far the controlled point is from the axis, negative beyond it; y plays no part, nor does the
 /// spindle's direction. Arcs about the y axis are cut as such, others as what they are in the plane
@@ -69,7 +75,8 @@ class TurningStock final : public StockModel {
   MeshPatch patch(std::uint32_t tile, int level) const override;
 
  private:
-  /// A tool as the part takes it, kept while the same cutter cuts on.
+  /// A tool as the part takes it, kept while the same cutter cuts on, or two take turns: a tool and
+  /// its insert alone.
   struct Ready {
     std::shared_ptr<const InsertOutline> outline;
     std::optional<TurningTool> tool;
@@ -81,7 +88,7 @@ class TurningStock final : public StockModel {
   TurnedPart part_;
   std::vector<TurnCut> last_cuts_;
   std::vector<std::uint64_t> seen_versions_;  // by take_dirty_tiles()
-  mutable Ready ready_;
+  mutable Ready ready_, ready_before_;
 };
 
 }  // namespace kerf

@@ -116,7 +116,7 @@ void SceneRendererTest::draw(SceneRenderer* renderer, const Projection& projecti
 }
 
 std::size_t SceneRendererTest::layers_and_tool_bytes() {
-  const ToolMesh tool = revolve(*test_tool());
+  const ToolMesh tool = tool_mesh(*test_tool());
   const std::size_t layers = 2 * 8 * std::size_t{kSize_px.x} * std::size_t{kSize_px.y};
   return layers + tool.vertices.size() * sizeof(MeshVertex) + tool.indices.size() * 4;
 }

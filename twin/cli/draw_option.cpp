@@ -8,4 +8,10 @@ std::optional<DrawMode> understand_draw(OptionReader& reader) {
   return at < 0 ? std::nullopt : std::optional(kDrawModes[at]);
 }
 
+SectionKind understand_section(OptionReader& reader) {
+  SectionKind kind = SectionKind::kNone;
+  reader.word("--section", {SectionKind::kNone, SectionKind::kHalf, SectionKind::kQuarter}, kind);
+  return kind;
+}
+
 }  // namespace kerf

@@ -17,6 +17,7 @@
 #include "twin/playback/load_program.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/player_scene.h"
+#include "twin/scene/turned_look.h"
 
 namespace kerf {
 namespace {
@@ -94,7 +95,7 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
   options.title =
       program.empty() ? options.source_name : std::filesystem::path(program).filename().string();
   options.blank_mm = session.stock()->bounds_mm();
-  options.blank_outline = box_outline(options.blank_mm);
+  options.blank_outline = blank_outline_of(*session.stock());
   options.stock = session.stock()->snapshot();
   options.tools = session.tool_sources();
   Diagnostics diagnostics;

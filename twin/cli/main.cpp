@@ -86,6 +86,7 @@ constexpr const char* kToolsExample =
     "Examples:\n"
     "  kerf tools\n"
     "  kerf tools --holders\n"
+    "  kerf tools --inserts\n"
     "  kerf tools shop.json\n";
 
 constexpr const char* kSourceList = tr_noop(

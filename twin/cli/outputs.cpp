@@ -22,6 +22,7 @@
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
 #include "twin/scene/part_patches.h"
+#include "twin/scene/turned_look.h"
 #include "viewer/picture.h"
 #include "viewer/raycast/height_picture.h"
 
@@ -62,12 +63,19 @@ std::string file_name(const std::string& path) {
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const std::string& path, const StockModel& stock, const FixtureList& fixtures,
+Done write_picture(const OutputPaths& paths, const StockModel& stock, const FixtureList& fixtures,
                    const std::string& name, Diagnostics& diagnostics) {
+  const std::string& path = paths.png;
   PictureOptions options;
   options.blank_mm = stock.bounds_mm();
   options.caption = fmt::format("{}  {}", file_name(name), stock.name());
-  if (stock.sheet() == nullptr) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
+  const bool has_cells = stock.sheet() == nullptr && stock.turned() == nullptr;
+  if (has_cells) options.caption += fmt::format(" {:.3g} mm", stock.cell_mm());
+  if (const TurningStock* const turned = stock.turned()) {
+    options.standing = Standing::kInLathe;
+    options.blank_outline = turned_outline(*turned);
+  }
+  options.section = paths.section;
   if (fixtures) options.bodies = picture_bodies(*fixtures);
   Result<Picture> picture = draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
@@ -77,6 +85,8 @@ Done write_picture(const std::string& path, const StockModel& stock, const Fixtu
     return Error{
         trf("drawing {}: {} (without OpenGL only workpieces without undercuts)", path, reason)};
   }
+  if (options.section != SectionKind::kNone)
+    return Error{trf("drawing {}: {} (--section is drawn by OpenGL alone)", path, reason)};
   picture = draw_heights(heights, options, ray_threads());
   if (!picture) return Error{trf("drawing {}: {}", path, picture.error())};
   Diagnostic note;
@@ -165,7 +175,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
   const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
   if (stock && !paths.png.empty()) {
-    note_failure(write_picture(paths.png, *stock, fixtures, name, diagnostics), diagnostics);
+    note_failure(write_picture(paths, *stock, fixtures, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
   if (stock && wants_mesh) {

@@ -11,6 +11,7 @@
 #include "twin/cli/option_reader.h"
 #include "twin/job/fixtures.h"
 #include "twin/report/report.h"
+#include "viewer/section.h"
 
 namespace kerf {
 
@@ -23,6 +24,7 @@ struct OutputPaths {
   std::string state;
   std::string dxf;  ///< what is left of a sheet, and parts beside it (write_outlines)
   std::string svg;
+  SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
   std::array<std::pair<const char*, const std::string*>, 7> named() const;

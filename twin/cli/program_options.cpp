@@ -8,7 +8,9 @@
 #include <memory>
 #include <utility>
 
+#include "base/text_scan.h"
 #include "base/translate.h"
+#include "twin/config/setting_table.h"
 #include "twin/machine/kinematics/kinematics_setup.h"
 #include "twin/machine/machine_setup.h"
 
@@ -76,6 +78,10 @@ void read_ini(const std::string& path, const ProgramSurroundings& around, Option
   request.timeline = std::move(setup.timeline);
   request.joint_letters = std::move(setup.joint_letters);
   request.turning_joints = setup.turning_joints;
+  // What LinuxCNC takes for no limit (1e99) is none.
+  const double most_rpm = setting_of("--spindle-max", kRun).most;
+  if (setup.spindle_max_rpm > 0 && setup.spindle_max_rpm <= most_rpm)
+    reader.ini_says("--spindle-max", number_text(setup.spindle_max_rpm));
   if (!setup.tool_table_path.empty()) {
     reader.ini_says("--tool-table", std::move(setup.tool_table_path));
   }
@@ -111,6 +117,7 @@ ProgramRequest understand_program(std::string_view program, const ProgramSurroun
   } else {
     read_ini(ini, around, reader, request);
   }
+  request.timeline.planner.spindle.accel_rpm_per_s = reader.number("--spindle-accel");
   options.path = reader.text(program);
   options.as_mill = reader.is_yes("--as-mill");
   options.machine.unknown_places = true;

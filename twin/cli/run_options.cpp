@@ -68,6 +68,7 @@ RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
   session.stock = work.stock;
   session.margin_mm = work.margin_mm;
   session.below_mm = work.below_mm;
+  session.spindle_max_rpm = work.spindle_max_rpm;
   session.collisions = std::move(work.collisions);
   note_sheet(session);
   session.timeline.planner.with_path = work.planned_path;
@@ -106,6 +107,10 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
   request.draw = understand_draw(reader);
   if (request.draw && !request.view) {
     reader.fault("--draw", tr("is for the window; there is no --view"));
+  }
+  request.outputs.section = understand_section(reader);
+  if (request.outputs.section != SectionKind::kNone && request.outputs.png.empty()) {
+    reader.fault("--section", tr("is for --png; the window has a key for it"));
   }
   if (request.view && request.session.program.path == "-") {
     reader.fault("--view", tr("the program comes from standard input, which cannot be read again"));

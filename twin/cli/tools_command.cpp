@@ -3,16 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/exit_code.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "base/units.h"
 #include "stock/cutter/holder_library.h"
+#include "stock/cutter/insert_shape.h"
 #include "stock/cutter/scan.h"
 #include "stock/cutter/shape_spec.h"
+#include "stock/cutter/turning_flanks.h"
 #include "twin/cli/console.h"
 #include "twin/cli/option_reader.h"
 #include "twin/config/tool_library_reader.h"
@@ -54,6 +59,52 @@ Json holders_json() {
         {{"name", holder.name}, {"sections", Json::array({section})}, {"source", holder.source}});
   }
   return {{"holders", std::move(holders)}};
+}
+
+// ---- inserts ----
+
+/// "06 6.35, 09 9.525": size and inscribed circle.
+std::string sizes_of(char shape, LengthUnit unit) {
+  std::string text;
+  for (const IsoSize& size : iso_sizes(shape)) {
+    text += fmt::format("{}{:02} {}", text.empty() ? "" : ", ", size.size,
+                        length_number(size.circle_mm, unit));
+  }
+  return text;
+}
+
+void list_inserts(LengthUnit unit) {
+  for (const IsoShape& shape : iso_shapes()) {
+    const std::optional<double> angle = iso_angle_deg(shape.letter);
+    kerf::print(stdout, "{}  {:>3}  {:>2}  {}\n", shape.letter,
+                shape.corners == 0 ? "-" : number_text(shape.nose_rad / kRadPerDeg),
+                angle ? number_text(*angle) : "-", sizes_of(shape.letter, unit));
+  }
+  kerf::print(stdout, "{}",
+              trf("shape, corner (degrees), angle of the usual holder, size with its inscribed "
+                  "circle ({}); ISO 1832, holders by ISO 5608\n"
+                  "--tool N=iso:CNMG120408: shape C, size 12, corner radius 0.8 mm; or in inches "
+                  "as ANSI B212.4 has it, CNMG432; round ones also in mm: RCMT10T3M0\n",
+                  name_of(unit)));
+}
+
+Json inserts_json() {
+  Json inserts = Json::array();
+  for (const IsoShape& shape : iso_shapes()) {
+    const std::optional<double> angle = iso_angle_deg(shape.letter);
+    Json sizes = Json::array();
+    for (const IsoSize& size : iso_sizes(shape.letter)) {
+      sizes.push_back({{"size", fmt::format("{:02}", size.size)}, {"circle_mm", size.circle_mm}});
+    }
+    inserts.push_back(
+        {{"shape", std::string(1, shape.letter)},
+         {"corner_deg",
+          shape.corners == 0 ? Json(nullptr) : Json(std::round(shape.nose_rad / kRadPerDeg))},
+         {"holder_angle_deg", angle ? Json(*angle) : Json(nullptr)},
+         {"sizes", std::move(sizes)},
+         {"source", "ISO 1832, ISO 5608"}});
+  }
+  return {{"inserts", std::move(inserts)}};
 }
 
 // ---- libraries ----
@@ -101,12 +152,17 @@ Json library_json(const ToolLibrary& library) {
   return {{"path", library.path}, {"format", library.format}, {"tools", std::move(tools)}};
 }
 
-void check_combination(const std::string& file, bool holders, bool json, OptionReader& reader) {
+void check_combination(const std::string& file, bool holders, bool inserts, bool json,
+                       OptionReader& reader) {
   if (holders && !file.empty()) {
     reader.fault("--holders", tr("lists the holders that have a name; it takes no file"));
   }
-  if (json && !holders && file.empty()) {
-    reader.fault("--json", tr("is for --holders or a tool library"), "kerf tools FILE --json");
+  if (inserts && (holders || !file.empty())) {
+    reader.fault("--inserts", tr("lists indexable inserts; it takes no file and no --holders"));
+  }
+  if (json && !holders && !inserts && file.empty()) {
+    reader.fault("--json", tr("is for --holders, --inserts or a tool library"),
+                 "kerf tools FILE --json");
   }
 }
 
@@ -116,8 +172,9 @@ int tools_command(const Arguments& arguments) {
   Diagnostics diagnostics;
   OptionReader reader(diagnostics, {arguments.command, &arguments.options, nullptr, {}});
   const std::string file = reader.text("FILE");
-  const bool holders = reader.is_yes("--holders"), json = reader.is_yes("--json");
-  check_combination(file, holders, json, reader);
+  const bool holders = reader.is_yes("--holders"), inserts = reader.is_yes("--inserts");
+  const bool json = reader.is_yes("--json");
+  check_combination(file, holders, inserts, json, reader);
   std::vector<ToolLibrary> libraries;
   if (!has_error(diagnostics) && !file.empty()) {
     libraries = read_tool_libraries({file}, diagnostics);
@@ -127,6 +184,8 @@ int tools_command(const Arguments& arguments) {
   if (has_error(diagnostics)) return kExitUsage;
   if (holders) {
     json ? print_json(holders_json()) : list_holders(reader.unit());
+  } else if (inserts) {
+    json ? print_json(inserts_json()) : list_inserts(reader.unit());
   } else if (!libraries.empty()) {
     json ? print_json(library_json(libraries.front()))
          : list_library(libraries.front(), reader.unit());

@@ -57,6 +57,7 @@ int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
   WindowOptions options;
   options.is_local = request.local;
   options.draw_mode = request.window_mode;
+  options.section = request.frame.section;
   if (request.run.units != LengthUnit::kMm) options.units = request.run.units;
   const auto replay = [&](const Arguments& log, std::function<void()> on_start) {
     Arguments live = replay_arguments(log);
@@ -71,6 +72,19 @@ int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
   if (code) return *code;
   print_diagnostics({fault_of(code.error())}, false);
   return kExitFailure;
+}
+
+/// By mesh where the workpiece has neither heights nor moves that can be subtracted.
+FrameOptions frame_options(const ViewRequest& request, const ViewedProgram& shown) {
+  FrameOptions options = request.frame;
+  if (!shown.turns || options.draw_mode == DrawMode::kMesh) return options;
+  Diagnostic note;
+  note.severity = Severity::kNote;
+  note.message = trf("--draw {}: a workpiece that turns is drawn by mesh alone",
+                     options.draw_mode == DrawMode::kRaycast ? "raycast" : "csg");
+  print_diagnostics({note}, request.run.quiet);
+  options.draw_mode = DrawMode::kMesh;
+  return options;
 }
 
 /// To the line asked for, or (for a picture) to the end.
@@ -106,7 +120,8 @@ int into_files(const ViewRequest& request, ViewKind kind, const std::stop_source
   options.check_ahead = false;
   Player player(std::move(loaded->player), options);
   Done done = std::monostate{};
-  auto renderer = FrameRenderer::create(request.frame, *player.state(), track, std::move(shown));
+  auto renderer = FrameRenderer::create(frame_options(request, shown), *player.state(), track,
+                                        std::move(shown));
   if (!renderer) {
     print_diagnostics({fault_of(renderer.error())}, false);
     return kExitFailure;

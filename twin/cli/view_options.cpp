@@ -70,6 +70,13 @@ void read_pictures(OptionReader& reader, ViewRequest& request) {
       request.frame.view);
 }
 
+void read_section(OptionReader& reader, ViewRequest& request) {
+  request.frame.section = understand_section(reader);
+  if (request.frame.section != SectionKind::kNone && request.frame.draw_mode != DrawMode::kMesh) {
+    reader.fault("--section", trf("{} shows no section; --draw mesh does", reader.text("--draw")));
+  }
+}
+
 void read_comparison(OptionReader& reader, ViewRequest& request) {
   request.compare = reader.text("--compare");
   request.tolerance_mm = reader.length_mm("--tolerance", request.tolerance_mm);
@@ -122,6 +129,7 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
   }
   read_comparison(reader, request);
   read_mode(reader, request);
+  read_section(reader, request);
   const std::optional<Blank>& blank = request.run.session.blank;
   // The window says so itself, and draws by mesh.
   if (request.frame.draw_mode != DrawMode::kMesh && !request.wants_window() && blank &&

@@ -145,13 +145,14 @@ std::string nearest_of(const std::string& word, const std::vector<std::string>& 
 /// Fixtures stand on links that there are, and rules are about bodies that there are. The links of
 /// a machine that is built in are named where it is made.
 void check_names(const LiveConfig* config, const std::vector<FixtureSpec>& fixtures,
-                 Diagnostics& diagnostics) {
+                 const std::vector<std::string>& holding, Diagnostics& diagnostics) {
   std::vector<std::string> links, bodies;
   const bool has_links = config && config->machine.drawn.links;
   if (has_links)
     for (const LinkSpec& link : config->machine.drawn.links->links)
       links.push_back(link.chain.name);
   bodies = links;
+  bodies.insert(bodies.end(), holding.begin(), holding.end());
   for (const FixtureSpec& fixture : fixtures) {
     bodies.push_back(fixture.name);
     if (fixture.on.empty()) continue;
@@ -178,6 +179,28 @@ void check_names(const LiveConfig* config, const std::vector<FixtureSpec>& fixtu
   for (const PairClearance& one : config->clearances) check("clearances", one.pair);
 }
 
+/// What holds a workpiece that turns.
+void read_holding(OptionReader& reader, WorkHolding& holding) {
+  const ChosenValue said_chuck = reader.choose("--chuck");
+  if (said_chuck.is_said()) {
+    Result<ChuckSpec> chuck = parse_chuck(said_chuck.text, reader.unit_of(said_chuck));
+    if (chuck) {
+      holding.chuck = std::move(chuck.value());
+    } else {
+      reader.fault("--chuck", chuck.error());
+    }
+  }
+  const ChosenValue said_tailstock = reader.choose("--tailstock");
+  if (!said_tailstock.is_said()) return;
+  Result<TailstockSpec> tailstock =
+      parse_tailstock(said_tailstock.text, reader.unit_of(said_tailstock));
+  if (tailstock) {
+    holding.tailstock = std::move(tailstock.value());
+  } else {
+    reader.fault("--tailstock", tailstock.error());
+  }
+}
+
 /// Those of the command line, else those of the configuration. Meshes are read at once: what is
 /// wrong with one is said before anything runs.
 void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
@@ -195,7 +218,8 @@ void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& 
   }
   name_fixtures(specs);
   read_machine(config, reader, work);
-  check_names(config, specs, reader.diagnostics());
+  read_holding(reader, work.collisions.holding);
+  check_names(config, specs, names_of(work.collisions.holding), reader.diagnostics());
   work.collisions.fixtures = load_fixtures(specs, reader.diagnostics());
   work.collisions.clearance_mm = reader.length_mm("--clearance");
   work.collisions.cut_by_shank = reader.is_yes("--cut-by-shank");
@@ -230,6 +254,7 @@ WorkRequest understand_work(const LiveConfig* config, OptionReader& reader) {
   read_choices(reader, work);
   work.stock.cell_mm = reader.length_mm("--cell");
   work.below_mm = reader.length_mm("--below");
+  work.spindle_max_rpm = reader.number("--spindle-max");
   work.margin_mm = reader.length_mm("--margin");
   if (work.blank && reader.choose("--margin").from == ValueFrom::kCommandLine) {
     reader.fault("--margin",

@@ -21,8 +21,9 @@ struct WorkRequest {
   bool tools_named = false;  ///< on the command line
   std::optional<Blank> blank;
   StockSettings stock;
-  double margin_mm = 0;  ///< around a guessed blank
-  double below_mm = 0;   ///< the blank's floor
+  double margin_mm = 0;        ///< around a guessed blank
+  double below_mm = 0;         ///< the blank's floor
+  double spindle_max_rpm = 0;  ///< of a lathe; 0: not known
   CollisionWishes collisions{};
   bool planned_path = false;                  ///< what is cut
   ValueFrom path_from = ValueFrom::kNowhere;  ///< who says so

@@ -154,6 +154,12 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.max_mm_per_s2) printer.put("max_acceleration_mm_per_s2", *machine.max_mm_per_s2);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
+  if (machine.spindle_accel_rpm_per_s) {
+    printer.put("spindle_accel", *machine.spindle_accel_rpm_per_s);
+  }
+  if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);
+  if (machine.holding.tailstock) printer.text("tailstock", machine.holding.tailstock->text);
+  if (machine.spindle_max_rpm) printer.put("spindle_max_rpm", *machine.spindle_max_rpm);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {

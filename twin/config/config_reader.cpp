@@ -71,6 +71,25 @@ void read_spindle(const GroupReader& machine, ConfigMachine& out) {
   }
 }
 
+void read_holding(const GroupReader& machine, WorkHolding& out) {
+  if (ConfigNode* const node = machine.find("chuck")) {
+    const Result<ChuckSpec> chuck = parse_chuck(node->scalar);
+    if (chuck) {
+      out.chuck = *chuck;
+    } else {
+      machine.faults().at_value(*node, chuck.error());
+    }
+  }
+  if (ConfigNode* const node = machine.find("tailstock")) {
+    const Result<TailstockSpec> tailstock = parse_tailstock(node->scalar);
+    if (tailstock) {
+      out.tailstock = *tailstock;
+    } else {
+      machine.faults().at_value(*node, tailstock.error());
+    }
+  }
+}
+
 void read_machine(const GroupReader& machine, ConfigMachine& out) {
   out.ini = machine.path("ini");
   out.tool_table = machine.path("tool_table");
@@ -87,9 +106,12 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("max_speed_mm_per_min", out.max_mm_per_min);
   machine.number("max_acceleration_mm_per_s2", out.max_mm_per_s2);
   read_drawn_machine(machine, out.drawn);
+  machine.number("spindle_accel", out.spindle_accel_rpm_per_s);
   machine.number("collisions", out.collisions);
   read_ignored(machine, out.ignore);
   read_spindle(machine, out);
+  read_holding(machine, out.holding);
+  machine.number("spindle_max_rpm", out.spindle_max_rpm);
   read_kinematics(machine, out);
 }
 

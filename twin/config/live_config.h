@@ -22,6 +22,7 @@
 #include "twin/config/option_layers.h"
 #include "twin/job/fixtures.h"
 #include "twin/job/stock_choice.h"
+#include "twin/job/work_holding.h"
 #include "twin/live/live_cutter.h"
 #include "twin/live/live_frame.h"
 #include "twin/live/path_follower.h"
@@ -51,6 +52,9 @@ struct ConfigMachine {
   /// `spindle`: sections from its nose upward, the first begins at 0; empty: it is not described.
   std::vector<ToolSection> spindle;
   std::string spindle_spec;       ///< the text that `spindle` was read from
+  std::optional<double> spindle_accel_rpm_per_s;
+  WorkHolding holding;       ///< `chuck` and `tailstock`
+  std::optional<double> spindle_max_rpm;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.

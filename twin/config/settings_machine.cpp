@@ -248,6 +248,56 @@ constexpr std::array kMachineSettings{
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("the spindle from its nose upward, DxL[+DxL..]: held against fixtures")},
+    Setting{.key = "machine.spindle_accel",
+            .option = "--spindle-accel",
+            .commands = kCutting | kCanon | kMachine,
+            .type = T::kNumber,
+            .unit = "rpm/s",
+            .least = 0,
+            .most = 1e6,
+            .fallback = "0",
+            .purpose = tr_noop("how fast the spindle gains speed: feeds wait until it is at speed, "
+                               "and under G96 it may be late; 0: at speed at once"),
+            .help = tr_noop("rpm that the spindle gains in a second: feeds wait until it is at "
+                            "speed, and under G96 it may be late (default {}: at speed at once)"),
+            .value_name = "RPM"},
+    Setting{
+        .key = "machine.chuck",
+        .option = "--chuck",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop("what holds a workpiece that turns, as --chuck has it: 160:80:120:30"),
+        .help = tr_noop(
+            "chuck of a workpiece that turns: D:L[:JAW_D:JAW_L][:bore=D][:at=Z], diameter and "
+            "length behind its face; what its jaws sweep, and how far they stand out from the "
+            "face; at=Z: the face (default: where the blank ends towards -z)"),
+        .value_name = "SPEC"},
+    Setting{
+        .key = "machine.tailstock",
+        .option = "--tailstock",
+        .commands = kCutting,
+        .type = T::kText,
+        .unit = "mm",
+        .purpose = tr_noop("centre in the other end of it, as --tailstock has it: 40:60"),
+        .help = tr_noop(
+            "live centre in the other end of it: D[:ANGLE][:at=Z], diameter of the quill, angle "
+            "of the point (60), place of the point (default: the cone is a third as thick as the "
+            "blank's end)"),
+        .value_name = "SPEC"},
+    Setting{.key = "machine.spindle_max_rpm",
+            .option = "--spindle-max",
+            .commands = kCutting,
+            .type = T::kNumber,
+            .unit = "rpm",
+            .least = 0,
+            .most = 1e6,
+            .least_excluded = true,
+            .purpose = tr_noop("what the spindle of a lathe does at most (over-speed); else the "
+                               "INI's [SPINDLE_0]MAX_FORWARD_VELOCITY"),
+            .help = tr_noop("what the spindle of a lathe does at most (default: the INI's "
+                            "[SPINDLE_0]MAX_FORWARD_VELOCITY)"),
+            .value_name = "RPM"},
     Setting{
         .key = "machine.collisions",
         .type = T::kYesNo,

@@ -171,6 +171,16 @@ const char* to_string(FindingId id) {
       return "past-centre";
     case FindingId::kPipLeft:
       return "pip-left";
+    case FindingId::kChuckContact:
+      return "chuck-contact";
+    case FindingId::kJawContact:
+      return "jaw-contact";
+    case FindingId::kBarContact:
+      return "bar-contact";
+    case FindingId::kOverDepth:
+      return "over-depth";
+    case FindingId::kUncompensated:
+      return "uncompensated";
   }
   return "";
 }

@@ -89,6 +89,11 @@ enum class FindingId : std::uint8_t {
   kWrongPlane,        ///< an arc of a lathe's program that does not lie in G18
   kPastCentre,        ///< a turning tool cuts beyond the axis
   kPipLeft,           ///< a face that has been turned has a pip in its middle
+  kChuckContact,      ///< of a turning tool anything touches the chuck
+  kJawContact,        ///< the same of its jaws
+  kBarContact,        ///< the bar that holds an insert touches the workpiece
+  kOverDepth,         ///< a cut is deeper than an insert's edge is long
+  kUncompensated,     ///< a nose's contour is off the programmed one
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -48,7 +48,7 @@ SurveyWishes SurveyWishes::of(const SessionOptions& options, const ProgramFront&
       front.tools.arguments.begin(), front.tools.arguments.end(),
       [](const ToolShapeArgument& tool) { return !tool.cutter.spec().starts_with("kerf"); });
   wishes.sheet = options.program.path != "-" && !options.stock.additive && !options.stock.kind &&
-                 options.stock.cell_mm == 0 && !mills;
+                 options.stock.cell_mm == 0 && !mills && !front.tools.turning;
   wishes.tools = !front.tools.describes();
   return wishes;
 }
@@ -70,11 +70,35 @@ const ResolvedTool* OpenTools::feeding(const Motion& m) {
 }
 
 ProgramSurvey::ProgramSurvey(const SurveyWishes& wishes, const ToolSources& sources)
-    : wishes_(wishes), tools_(sources), blank_(wishes.margin_mm, sources) {}
+    : wishes_(wishes),
+      tools_(sources),
+      blank_(wishes.margin_mm, sources),
+      turning_(sources.turning) {}
+
+/// Traverses say from which side a tool leaves.
+void ProgramSurvey::add_turned(const Motion& m) {
+  const ResolvedTool* const tool = tools_.feeding(m);
+  if (tool) {
+    if (fed_tools_.size() < kMostTools) fed_tools_.insert(m.tool);
+    if (tool->cutter) {
+      if (tool->guessed) half_known_.try_emplace(tool->number, tool->guess);
+      return;
+    }
+    if (turned_tools_.size() < kMostTools || turned_tools_.contains(m.tool))
+      turned_tools_[m.tool].add(m);
+  } else if (is_traverse(m)) {
+    const auto known = turned_tools_.find(m.tool);
+    if (known != turned_tools_.end()) known->second.add(m);
+  }
+}
 
 void ProgramSurvey::add(std::span<const Motion> motions, const MotionMoves& moves) {
   if (wishes_.blank) blank_.add(motions, moves);
   for (const Motion& m : motions) {
+    if (turning_) {
+      add_turned(m);
+      continue;
+    }
     beam_.add(m);
     spindle_started_ = spindle_started_ || m.spindle != SpindleState::kStopped;
     const ResolvedTool* const tool = tools_.feeding(m);
@@ -119,6 +143,7 @@ std::optional<ProgramSurvey::SheetGuess> ProgramSurvey::sheet(
 }
 
 Blank ProgramSurvey::blank() const {
+  if (turning_) return blank_.blank();
   BlankGuess wide = blank_.guess();
   for (const ToolGuess& guess : tools(wide.blank().bounds_mm().max.z)) {
     if (guess.of_known_size) continue;
@@ -130,6 +155,11 @@ Blank ProgramSurvey::blank() const {
 
 std::vector<ToolGuess> ProgramSurvey::tools(double top_mm) const {
   std::vector<ToolGuess> out;
+  for (const auto& [number, trace] : turned_tools_) {
+    if (!may_guess(number)) continue;
+    ShapeGuess guess = trace.guess(top_mm);
+    out.push_back({number, std::move(guess.shape), std::move(guess.reason)});
+  }
   for (const auto& [number, trace] : open_tools_) {
     if (!may_guess(number)) continue;
     ShapeGuess guess = trace.guess(top_mm);
@@ -167,9 +197,13 @@ Diagnostics ProgramSurvey::missing() const {
     out.push_back(
         missing_error(tr("--no-guess: the blank is not known: no --stock, and no comment of "
                          "the program describes it"),
-                      tr("--stock box:x0,y0,z0:x1,y1,z1")));
+                      turning_ ? tr("--stock cylinder:0,0,Z0:Z1:DIAMETER")
+                               : tr("--stock box:x0,y0,z0:x1,y1,z1")));
   }
-  for (const auto& [number, trace] : open_tools_) {
+  std::set<int> open;
+  for (const auto& [number, trace] : open_tools_) open.insert(number);
+  for (const auto& [number, trace] : turned_tools_) open.insert(number);
+  for (const int number : open) {
     out.push_back(
         number == 0
             ? missing_error(

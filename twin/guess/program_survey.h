@@ -16,6 +16,7 @@
 #include "twin/findings/finding.h"
 #include "twin/guess/beam_guess.h"
 #include "twin/guess/tool_guess.h"
+#include "twin/guess/turned_tool_guess.h"
 #include "twin/job/tools.h"
 #include "twin/machine/motion_moves.h"
 #include "twin/program/program_front.h"
@@ -87,13 +88,16 @@ class ProgramSurvey {
   };
 
   bool may_guess(int tool) const { return wishes_.tools || tool == 0; }
+  void add_turned(const Motion& motion);
   void add_drills(double top_mm, std::vector<ToolGuess>& guesses) const;
 
   SurveyWishes wishes_;
   OpenTools tools_;
   BlankSurvey blank_;
   BeamWatch beam_;
+  bool turning_;
   std::map<int, ToolTrace> open_tools_;
+  std::map<int, TurnedTrace> turned_tools_;
   std::map<int, SizedTool> sized_tools_;
   std::map<int, std::string> half_known_;  ///< guessed of what is known: why, a sentence
   std::set<int> fed_tools_;

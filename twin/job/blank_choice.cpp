@@ -339,10 +339,15 @@ std::string stock_spec(const Blank& blank, LengthUnit unit) {
     return fmt::format("sheet:{},{}:{},{}:{}", number(s.low_mm.x), number(s.low_mm.y),
                        number(s.high_mm.x), number(s.high_mm.y), number(s.thickness_mm));
   }
-  const bool box = blank.state_file.empty() && !blank.sheet && blank.bodies.size() == 1 &&
-                   blank.bodies[0].kind == BlankBody::Kind::kBox;
-  if (!box) return {};
-  const Box& b = blank.bodies[0].bounds_mm;
+  if (!blank.state_file.empty() || blank.sheet || blank.bodies.size() != 1) return {};
+  const BlankBody& body = blank.bodies[0];
+  const Box& b = body.bounds_mm;
+  if (body.kind == BlankBody::Kind::kCylinder && body.axis == 'z') {
+    return fmt::format("cylinder:{},{},{}:{}:{}", number(body.center_mm.x),
+                       number(body.center_mm.y), number(b.min.z), number(b.max.z),
+                       number(body.diameter_mm));
+  }
+  if (body.kind != BlankBody::Kind::kBox) return {};
   return fmt::format("box:{},{},{}:{},{},{}", number(b.min.x), number(b.min.y), number(b.min.z),
                      number(b.max.x), number(b.max.y), number(b.max.z));
 }

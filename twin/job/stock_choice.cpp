@@ -13,6 +13,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/cutter/shape_spec.h"
+#include "stock/millturn/mill_turn.h"
 #include "stock/octree/octree.h"
 #include "stock/plane/outline_file.h"
 #include "stock/sheet/sheet.h"
@@ -61,8 +62,7 @@ Created create_mmap(const Blank& blank, const StockSettings& settings) {
 }
 
 /// Least of the usual cells that gives the surface of the blank's box at most a million of them.
-double octree_cell_mm(const Blank& blank) {
-  const Box box = blank.bounds_mm();
+double octree_cell_mm(const Box& box) {
   const Vec3 size = box.size();
   const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
   double cell = 0.01;
@@ -91,7 +91,7 @@ std::size_t memory_allowed_bytes() {
 Created create_octree(const Blank& blank, const StockSettings& settings) {
   OctreeOptions options;
   options.blank = blank;
-  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank);
+  options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank.bounds_mm());
   options.threads = settings.threads;
   options.additive = settings.additive;
   // The rest is for what is made of it: meshes, pictures, copies for a view.
@@ -115,8 +115,8 @@ Created create_sheet(const Blank& blank, const StockSettings&) {
   return as_model(Sheet::create(options));
 }
 
-Created create_turning(const Blank& blank, const StockSettings&) {
-  return as_model(turning_stock_of(blank));
+Created create_turning(const Blank& blank, const StockSettings& settings) {
+  return with_milling(turning_stock_of(blank), settings);
 }
 
 Done sheet_can_cut(const Cutter& cutter) {
@@ -149,8 +149,8 @@ constexpr std::array kModels{
     StockModelRow{
         StockKind::kTurning, "turning",
         tr_noop("an exact profile that turns about Z: lathes, with tools that stand still; bores, "
-                "grooves, undercuts, part-off"),
-        create_turning, TurningStock::can_cut, false},
+                "grooves, undercuts, part-off; an octree where driven tools mill it"),
+        create_turning, MillTurn::can_cut, false},
 };
 
 /// Of a tool that has a shape; empty: the Z-map will do.
@@ -166,6 +166,16 @@ std::span<const StockModelRow> stock_models() { return kModels; }
 const StockModelRow& stock_model(StockKind kind) {
   return *std::find_if(kModels.begin(), kModels.end(),
                        [kind](const StockModelRow& row) { return row.kind == kind; });
+}
+
+Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,
+                                                 const StockSettings& settings) {
+  if (!turned) return Error{turned.error()};
+  MillTurnOptions options;
+  options.cell_mm = octree_cell_mm(turned.value()->bounds_mm());
+  options.threads = settings.threads;
+  options.memory_limit_bytes = memory_allowed_bytes() / 3;
+  return as_model(MillTurn::create(std::move(*turned.value()), options));
 }
 
 const StockModelRow& row_of(const StockModel& stock) { return *find_stock_model(stock.name()); }

@@ -42,6 +42,10 @@ struct StockModelRow {
 /// the sheet is for sheets alone, and sheets are for it alone; turning is for what turns.
 std::span<const StockModelRow> stock_models();
 const StockModelRow& stock_model(StockKind kind);
+/// A workpiece that turns, as the model turning has it: driven tools may mill it. `settings`: its
+/// threads. Error: that of `turned`, or why it cannot be milled.
+Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,
+                                                 const StockSettings& settings);
 /// Which of them this is, whoever wraps it.
 const StockModelRow& row_of(const StockModel& stock);
 /// Of that name, or null.

@@ -8,6 +8,8 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "stock/cutter/turning_shape.h"
+#include "twin/job/turning_row.h"
 
 namespace kerf {
 namespace {
@@ -16,6 +18,13 @@ namespace {
 constexpr double kSameDiameter = 0.02;
 
 std::string_view kind_of(std::string_view shape) { return shape.substr(0, shape.find(':')); }
+
+/// What the interpreter compensates by.
+KnownDiameter compensation_of(const Cutter& cutter, bool by_argument) {
+  if (cutter.insert() == nullptr) return {2 * cutter.radius_mm(), by_argument, 0};
+  const InsertTip& tip = cutter.insert_tip();
+  return {2 * tip.nose_radius_mm, by_argument, tip.orientation};
+}
 
 /// Two descriptions that cannot be of one cutter. Corners and points are often left out.
 bool disagree(const ToolHint& a, const ToolHint& b) {
@@ -36,17 +45,18 @@ bool disagree(const ToolHint& a, const ToolHint& b) {
 std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
   std::map<int, KnownDiameter> known;
   for (const ToolShapeArgument& argument : sources.arguments) {
-    known[argument.tool] = {2 * argument.cutter.radius_mm(), true};
+    known[argument.tool] = compensation_of(argument.cutter, true);
   }
   for (const LibraryTool& tool : sources.library) {
-    if (tool.cutter) known.try_emplace(*tool.number, KnownDiameter{2 * tool.cutter->radius_mm()});
+    if (tool.cutter) known.try_emplace(*tool.number, compensation_of(*tool.cutter, false));
   }
   // Whole shapes before those of which only the diameter is known, as ToolResolver has it.
   for (const bool guessed : {false, true}) {
     for (const ToolHint& hint : sources.hints) {
       if (hint.tool <= 0 || hint.shape_guessed != guessed || known.count(hint.tool) != 0) continue;
+      if (is_turning_shape(hint.shape) && !sources.turning) continue;
       if (const Result<Cutter> cutter = parse_shape(hint.shape)) {
-        known[hint.tool] = {2 * cutter->radius_mm(), false};
+        known[hint.tool] = compensation_of(*cutter, false);
       }
     }
   }
@@ -107,6 +117,7 @@ bool ToolResolver::from_library(ResolvedTool& out) const {
 }
 
 bool ToolResolver::from_hint(ResolvedTool& out, const ToolHint& hint) const {
+  if (is_turning_shape(hint.shape) && !sources_.turning) return false;
   Result<Cutter> cutter = parse_shape(hint.shape);
   if (!cutter) {
     out.trouble = trf("the comment in line {} ({}) gives no usable shape: {}", hint.line,
@@ -123,14 +134,14 @@ bool ToolResolver::from_hint(ResolvedTool& out, const ToolHint& hint) const {
 /// Those that name the tool. Whole shapes win over those with a diameter only; else the first one
 /// counts.
 bool ToolResolver::from_comments(ResolvedTool& out) const {
-  for (const bool guessed : {false, true}) {
-    for (const ToolHint& hint : sources_.hints) {
-      if (hint.tool != out.number || hint.shape_guessed != guessed || !from_hint(out, hint)) {
-        continue;
-      }
-      note_disagreement(out, hint);
-      return true;
-    }
+  return from_comments(out, false) || from_comments(out, true);
+}
+
+bool ToolResolver::from_comments(ResolvedTool& out, bool guessed) const {
+  for (const ToolHint& hint : sources_.hints) {
+    if (hint.tool != out.number || hint.shape_guessed != guessed || !from_hint(out, hint)) continue;
+    note_disagreement(out, hint);
+    return true;
   }
   return false;
 }
@@ -154,6 +165,7 @@ bool ToolResolver::from_place(ResolvedTool& out, std::optional<std::size_t> fres
 bool ToolResolver::from_table(ResolvedTool& out) const {
   for (const ToolTableRow& row : sources_.table) {
     if (row.tool != out.number) continue;
+    if (sources_.turning) return from_turning_row(out, row);
     if (!(row.diameter_mm > 0)) {
       out.trouble = trf("the tool table (line {}) gives no diameter for it", row.line);
       return false;
@@ -175,6 +187,30 @@ bool ToolResolver::from_table(ResolvedTool& out) const {
     return true;
   }
   return false;
+}
+
+bool ToolResolver::from_turning_row(ResolvedTool& out, const ToolTableRow& row) const {
+  const auto take = [&](const ShapeText& text) {
+    Result<Cutter> cutter = parse_shape(text.shape);
+    if (!cutter) {
+      out.trouble = trf("line {} of the tool table: {}", row.line, cutter.error());
+      return false;
+    }
+    out.cutter = std::move(cutter.value());
+    out.guessed = text.guessed;
+    out.guess = text.guess;
+    return true;
+  };
+  if (const std::optional<ShapeText> remark = turning_remark_shape(row)) {
+    out.origin = trf("remark in line {} of the tool table", row.line);
+    return take(*remark);
+  }
+  const bool drills =
+      std::any_of(sources_.guesses.begin(), sources_.guesses.end(), [&](const ToolGuess& guess) {
+        return guess.tool == row.tool && guess.of_known_size && kind_of(guess.shape) == "drill";
+      });
+  out.origin = trf("line {} of the tool table", row.line);
+  return take(turning_row_shape(row, drills));
 }
 
 bool ResolvedTool::is_size_alone() const {
@@ -215,9 +251,11 @@ bool ToolResolver::from_guess(ResolvedTool& out) const {
 ResolvedTool ToolResolver::resolve(int tool, std::optional<std::size_t> fresh_hint) const {
   ResolvedTool out;
   out.number = tool;
-  if (from_argument(out) || from_library(out) || from_comments(out) ||
-      from_place(out, fresh_hint, false) || from_table(out) || from_place(out, fresh_hint, true) ||
-      from_guess(out)) {
+  // On a lathe a comment that has no more than a diameter says less than the table.
+  const bool told = from_argument(out) || from_library(out) ||
+                    (sources_.turning && (from_comments(out, false) || from_table(out)));
+  if (told || from_comments(out) || from_place(out, fresh_hint, false) || from_table(out) ||
+      from_place(out, fresh_hint, true) || from_guess(out)) {
     out.trouble.clear();
   }
   return out;
@@ -255,7 +293,14 @@ bool ToolResolver::from_only_tool(ResolvedTool& out) const {
 }
 
 void ToolResolver::refuse_unfit(ResolvedTool& tool) const {
-  if (!tool.cutter || can_cut_ == nullptr) return;
+  if (!tool.cutter) return;
+  if (tool.cutter->insert() != nullptr && !sources_.turning) {
+    tool.trouble =
+        trf("{} is a turning tool, which stands still; here the tools turn", tool.cutter->spec());
+    tool.cutter.reset();
+    return;
+  }
+  if (can_cut_ == nullptr) return;
   const Done fit = can_cut_(*tool.cutter);
   if (fit) return;
   tool.trouble = fit.error();

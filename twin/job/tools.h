@@ -35,14 +35,15 @@ struct ToolSources {
   std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
   std::vector<ToolTableRow> table;           ///< rows of the tool table
   std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
-  bool turning = false;                      ///< the workpiece turns, tools stand still
-  std::string turning_sign;                  ///< what says so; empty: --model turning
+  bool turning = false;  ///< the workpiece turns: rows of the table are lathe tools (turning_row.h)
+  std::string turning_sign;  ///< what says so; empty: --model turning
 
   /// Somebody has described tools by number: one that they do not have is not guessed.
   bool describes() const { return !arguments.empty() || !library.empty() || !table.empty(); }
 };
 
-/// The diameters of the tools that arguments and comments describe by number: of the widest place.
+/// The diameters of the tools that arguments and comments describe by number: of the widest place;
+/// of turning tools that of the nose, and its orientation.
 std::map<int, KnownDiameter> known_diameters(const ToolSources& sources);
 
 /// A tool of the program and where its shape comes from.
@@ -72,7 +73,9 @@ struct ResolvedTool {
 /// that cuts before any tool change has no tool number, and then the only tool that --tool
 /// describes (or, without
 /// --tool, the only one that comments describe) is taken.
-/// Cutters are refused where the stock model cannot hold what they leave.
+/// Where the workpiece turns, the tool table comes before comments that give a diameter alone.
+/// Cutters are refused where the stock model cannot hold what they leave, and turning tools where
+/// the workpiece does not turn.
 class ToolResolver {
  public:
   /// Whether a stock model can cut with it, or why not.
@@ -94,10 +97,12 @@ class ToolResolver {
   bool from_library(ResolvedTool& out) const;
   bool from_hint(ResolvedTool& out, const ToolHint& hint) const;
   bool from_comments(ResolvedTool& out) const;
+  bool from_comments(ResolvedTool& out, bool guessed) const;
   bool from_place(ResolvedTool& out, std::optional<std::size_t> fresh_hint, bool near) const;
   bool from_only_tool(ResolvedTool& out) const;
   void note_disagreement(ResolvedTool& out, const ToolHint& taken) const;
   bool from_table(ResolvedTool& out) const;
+  bool from_turning_row(ResolvedTool& out, const ToolTableRow& row) const;
   bool from_guess(ResolvedTool& out) const;
   void drill_where_it_drills(ResolvedTool& out, int tool) const;
   std::optional<std::size_t> take_nameless_hint(std::uint32_t line);

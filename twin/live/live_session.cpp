@@ -125,7 +125,9 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   if (!found.blank && !guess_blank(survey, diagnostics, outcome)) return false;
   options_.cutting.checks.blank_guessed = !found.blank;
   const FixtureList& fixtures = options_.cutting.checks.collisions.fixtures;
-  if (found.blank && fixtures && !check_fixtures_beside(*fixtures, *found.blank, diagnostics)) {
+  const bool turns = choice_.kind == StockKind::kTurning;
+  if (found.blank && fixtures && !turns &&
+      !check_fixtures_beside(*fixtures, *found.blank, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }
@@ -136,6 +138,11 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     stock_facts_ = std::move(setup.facts);
   }
   if (!stock_) return false;
+  CollisionWishes& wishes = options_.cutting.checks.collisions;
+  if (!hold_workpiece(wishes.holding, wishes.fixtures, *stock_, wishes.held_by, diagnostics)) {
+    outcome = Outcome::kUsageError;
+    return false;
+  }
   prepare_process(diagnostics);
   options_.cutting.wait_for_program = options_.log();
   options_.cutting.gap_s = options_.stale_after_s;

@@ -86,17 +86,17 @@ void PathFollower::append(const Motion& motion, const TimedStep& timed,
   if (path.empty() || turns) {
     const bool is_arc = motion.kind == MotionKind::kArc && motion.arc.sweep_rad != 0;
     if (motion.from_mm == motion.to_mm && !turns && !is_arc) return;
-    add(motion, timed.start_s, timed.duration_s);
+    add(motion, timed);
     return;
   }
-  for_each_piece(motion, timed, path, [this](const Motion& piece, const TimedStep& part) {
-    add(piece, part.start_s, part.duration_s);
-  });
+  for_each_piece(motion, timed, path,
+                 [this](const Motion& piece, const TimedStep& part) { add(piece, part); });
 }
 
-void PathFollower::add(const Motion& motion, double start_s, double duration_s) {
-  pieces_.push_back({motion, start_s, duration_s, moved_s_, appended_ - 1, turned_, slid_});
-  moved_s_ += duration_s;
+void PathFollower::add(const Motion& motion, const TimedStep& timed) {
+  pieces_.push_back({motion, timed.start_s, timed.duration_s, moved_s_, appended_ - 1, turned_,
+                     slid_, timed.way});
+  moved_s_ += timed.duration_s;
 }
 
 double PathFollower::program_s() const {
@@ -119,7 +119,7 @@ bool PathFollower::comes_to(int line) const {
 
 double PathFollower::left_s() const {
   if (pieces_.empty()) return 0;
-  return moved_s_ - pieces_.front().moved_s - (found_ ? t_ * pieces_.front().duration_s : 0);
+  return moved_s_ - pieces_.front().moved_s - (found_ ? pieces_.front().spent_s(t_) : 0);
 }
 
 PointOnWay PathFollower::nearest_of(const Piece& piece, const MatchQuery& place, double from_t,
@@ -138,9 +138,8 @@ PointOnWay PathFollower::nearest_of(const Piece& piece, const MatchQuery& place,
 PathFollower::Reach PathFollower::reach(const MatchQuery& place, double hidden_s) const {
   // How long the machine stands in a dwell or a tool change is not the path's business.
   const Piece& first = pieces_.front();
-  const double ahead_s = found_
-                             ? t_ * first.duration_s + unseen_s_ * options_.haste + options_.slack_s
-                             : kFirstSearch_s;
+  const double ahead_s =
+      found_ ? first.spent_s(t_) + unseen_s_ * options_.haste + options_.slack_s : kFirstSearch_s;
   const double latest_s = first.moved_s + ahead_s + hidden_s;
   const int tool = pieces_.front().motion.tool;
   const bool tool_agrees = place.tool >= 0 && place.tool == tool;
@@ -209,19 +208,20 @@ std::optional<PathFollower::Candidate> PathFollower::search_hidden(const MatchQu
 void PathFollower::note_hidden(double latest_s, const Candidate& at) {
   if (unseen_s_ <= kHidden_s || !found_) return;
   const Piece& piece = pieces_[at.piece];
-  hidden_s_ = std::max(0.0, latest_s - piece.moved_s - at.t * piece.duration_s);
+  hidden_s_ = std::max(0.0, latest_s - piece.moved_s - piece.spent_s(at.t));
   seen_s_ = 0;
 }
 
 void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   for (std::size_t i = 0; i < to.piece; ++i) {
     const Piece& piece = pieces_.front();
-    if (t_ < 1) drive({part_of(piece.motion, t_, 1), (1 - t_) * piece.duration_s, t_ > 0});
+    if (t_ < 1) drive({part_of(piece.motion, t_, 1), piece.duration_s - piece.spent_s(t_), t_ > 0});
     pieces_.pop_front();
     t_ = 0;
   }
   const Piece& piece = pieces_.front();
-  if (to.t > t_) drive({part_of(piece.motion, t_, to.t), (to.t - t_) * piece.duration_s, t_ > 0});
+  if (to.t > t_)
+    drive({part_of(piece.motion, t_, to.t), piece.spent_s(to.t) - piece.spent_s(t_), t_ > 0});
   t_ = to.t;
 }
 

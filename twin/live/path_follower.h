@@ -150,11 +150,16 @@ class PathFollower {
     std::uint64_t number = 0;      ///< of its motion
     std::array<bool, 3> turned{};  ///< the program has turned the axis by its end
     std::array<bool, 3> slid{};    ///< or moved U, V, W
-    double time_at(double t) const { return start_s + t * duration_s; }
-    /// Of its way, that has been gone when the machine has been in motion for so long; 0 to 1.
+    WayInTime way;
+    /// Of its time, until so much of its way is done.
+    double spent_s(double t) const { return way.time_of(t) * duration_s; }
+    double time_at(double t) const { return start_s + spent_s(t); }
+    /// Of its way, that can have been gone when the machine has been in motion for so long; 0 to 1.
+    /// A machine need not be as slow at the start as the plan, or wait as long.
     double share_at(double time_moved_s) const {
       if (time_moved_s - moved_s >= duration_s) return 1;
-      return std::max(0.0, (time_moved_s - moved_s) / duration_s);
+      const double time = std::max(0.0, (time_moved_s - moved_s) / duration_s);
+      return std::max(time, way.way_of(time));
     }
   };
   struct Candidate {
@@ -162,7 +167,7 @@ class PathFollower {
     double t = 0;
     double distance_mm = std::numeric_limits<double>::infinity();
   };
-  void add(const Motion& motion, double start_s, double duration_s);
+  void add(const Motion& motion, const TimedStep& timed);
   /// The part of the path in which a tip is looked for: from where the machine was last.
   struct Reach {
     std::size_t end = 0;  ///< one past the last piece

@@ -421,6 +421,7 @@ bool read_machine_setup(const std::string& path, MachineSetup& setup, Diagnostic
   read_planner(reader, unit_mm, setup.timeline.limits);
   setup.timeline.limits_known = true;
   setup.timeline.planner.limits_origin = path;
+  setup.spindle_max_rpm = reader.number("SPINDLE_0", "MAX_FORWARD_VELOCITY", 0.0).value_or(0);
   setup.tool_table_path =
       read_path(reader, "EMCIO", "TOOL_TABLE", interpreter.working_folder, Severity::kError);
   // A machine that has not run yet has none: all offsets are 0.

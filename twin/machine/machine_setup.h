@@ -19,6 +19,7 @@ struct MachineSetup {
   TimelineOptions timeline;     ///< limits, their origin, servo and I/O periods
   std::string kinematics;       ///< [KINS]KINEMATICS: "trivkins"
   std::string lathe;            ///< ProgramOptions::lathe, by [DISPLAY]LATHE
+  double spindle_max_rpm = 0;   ///< [SPINDLE_0]MAX_FORWARD_VELOCITY; 0: it says nothing
   std::string joint_letters;    ///< axis that each joint moves: "XYZ", "XYYZ"
   /// Bit n: joint n counts degrees. [JOINT_n]TYPE says so, else the machine's kinematics (of a
   /// robot joints turn that have the letters of X, Y and Z), else the letter.

@@ -24,6 +24,8 @@ MotionMoves MotionMoves::of(const StockModel& stock,
                             const WorkpieceFrame& frame) {
   MotionMoves moves;
   const bool tilts = stock.takes_tilted_tools();
+  if (stock.milling_cell_mm() > 0)
+    moves.live_ = LivePaths::create(machine, frame, stock.milling_cell_mm());
   if (!machine || !(tilts || machine->slides_uvw())) return moves;
   if (!tilts) machine = std::make_shared<const MachineKinematics>(machine->standing());
   const Result<bool> follows = moves.follow(std::move(machine), frame, stock.cell_mm());
@@ -35,6 +37,8 @@ MotionMoves MotionMoves::of(const StockModel& stock,
 
 bool MotionMoves::append(const Motion& motion, const Cutter& cutter, std::uint64_t id,
                          std::vector<CutMove>& out, std::vector<double>* ends) const {
+  if (const ToolPath* const live = live_path(cutter))
+    return live->moves_of(motion, reach_mm(cutter), id, out, ends);
   return append_reaching(motion, reach_mm(cutter), id, out, ends);
 }
 

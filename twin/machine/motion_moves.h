@@ -14,6 +14,7 @@
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
 #include "twin/machine/kinematics/tool_path.h"
+#include "twin/machine/live_paths.h"
 
 namespace kerf {
 
@@ -47,6 +48,13 @@ class MotionMoves {
   bool tilts() const { return tilts_; }
   /// The motion is one move of an upright tool: cut_move_from().
   bool is_upright(const Motion& motion) const { return !path_ || path_->is_upright(motion); }
+  /// A lathe that mills: driven tools (Cutter::live()) go in the workpiece as LivePaths say,
+  /// whatever path() is.
+  bool mills() const { return live_ != nullptr; }
+  /// Of such a tool; null: any other.
+  const ToolPath* live_path(const Cutter& cutter) const {
+    return live_ && cutter.live() ? &live_->path(*cutter.live()) : nullptr;
+  }
   /// From now on the moves are these. Null: those of a tool, which cuts on every motion that moves.
   void set_ordered(std::shared_ptr<const OrderedMoves> moves) { ordered_ = std::move(moves); }
   const OrderedMoves* ordered() const { return ordered_.get(); }
@@ -61,7 +69,8 @@ class MotionMoves {
                        std::vector<CutMove>& out, std::vector<double>* ends = nullptr) const;
 
   /// Of a machine over this model: as the machine moves, while nothing turns if the model does not
-  /// take tilted tools (null: every motion is upright). The machine can have that frame.
+  /// take tilted tools (null: every motion is upright), and its driven tools if it is a lathe's
+  /// that mills. The machine can have that frame.
   static MotionMoves of(const StockModel& stock, std::shared_ptr<const MachineKinematics> machine,
                         const WorkpieceFrame& frame);
 
@@ -75,6 +84,7 @@ class MotionMoves {
   std::optional<ToolPath> path_;
   bool tilts_ = false;
   std::shared_ptr<const OrderedMoves> ordered_;
+  std::shared_ptr<const LivePaths> live_;
 };
 
 }  // namespace kerf

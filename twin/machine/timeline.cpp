@@ -88,6 +88,7 @@ void Timeline::close(double start_s) {
   MotionTiming timing = open_timing_.value_or(MotionTiming{});
   timing.start_s = start_s;
   timing.duration_s = planner_.clock_s() - start_s;
+  timing.way = {};
   open_timing_.reset();
   emit(timing);
 }
@@ -117,6 +118,7 @@ void Timeline::emit(const MotionTiming& timing) {
   step.programmed_mm_per_min = timing.programmed_mm_per_min;
   step.allowed_mm_per_min = timing.allowed_mm_per_min;
   step.peak_mm_per_min = timing.peak_mm_per_min;
+  step.way = timing.way;
   const bool moves = motion.kind == MotionKind::kTraverse || is_feeding(motion);
   // Without a known start there is no true length: the real one is not in the program.
   if (moves && motion.start_known) step.length_mm = fed_length_mm(motion);

@@ -56,8 +56,13 @@ struct TimedStep {
   double allowed_mm_per_min = 0;     ///< by the axes, along this motion
   double peak_mm_per_min = 0;        ///< the greatest speed that is reached; 0: not known
 
-  /// When this share of the way is done, as players have it: in proportion.
-  double time_at(double share) const { return start_s + share * duration_s; }
+  WayInTime way;  ///< how its way goes in its time
+  /// When this share of the way is done.
+  double time_at(double share) const { return start_s + way.time_of(share) * duration_s; }
+  /// The share of the way that is done then.
+  double way_at(double time_s) const {
+    return duration_s > 0 ? way.way_of((time_s - start_s) / duration_s) : 1;
+  }
 };
 
 /// Receives the motions with their times.

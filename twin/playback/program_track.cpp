@@ -20,6 +20,9 @@ std::array<double, 3> read_angles(const std::array<PackedColumn, 3>& columns, st
   return {columns[0].real_at(i), columns[1].real_at(i), columns[2].real_at(i)};
 }
 
+/// The largest share of a way that is not all of it.
+constexpr double kNotDone = 1 - 0x1p-53;
+
 /// Equal bits: a program's -0 stays one.
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -94,6 +97,7 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
   if (mode.kind == MotionKind::kArc) {
     move.arc = CutArc{read(arc_center_mm_, i), mode.arc.axis, arc_sweep_rad_.real_at(i)};
   }
+  if (mode.kind == MotionKind::kThread) move.lead_mm = lead_mm_of(motion(i));
   return move;
 }
 
@@ -101,7 +105,7 @@ void ProgramTrack::append_moves(std::size_t i, const MotionMoves& moves, const C
                                 std::vector<CutMove>& out) const {
   if (moves.ordered() != nullptr) {
     append_part(i, 1, moves, cutter, out);
-  } else if (moves.path() == nullptr) {
+  } else if (moves.path() == nullptr && moves.live_path(cutter) == nullptr) {
     out.push_back(cut_move(i));
   } else {
     moves.append(motion(i), cutter, i, out);
@@ -126,6 +130,7 @@ TimedStep ProgramTrack::step(std::size_t i) const {
   step.duration_s = duration_s_.real_at(i);
   step.programmed_mm_per_min = programmed_.real_at(i);
   step.allowed_mm_per_min = allowed_.real_at(i);
+  step.way = way(i);
   const Motion m = motion(i);
   if (is_move(m) && m.start_known) step.length_mm = fed_length_mm(m);
   return step;
@@ -154,7 +159,9 @@ TrackPosition ProgramTrack::place_at(double time_s) const {
   if (duration <= 0 || time_s - start >= duration) {
     return {motion + 1, 0, std::min(time_s, duration_s())};
   }
-  return {motion, (time_s - start) / duration, time_s};
+  // All of its way may be done before its time is: it is on it until the next one begins.
+  const double done = way(motion).way_of((time_s - start) / duration);
+  return {motion, std::min(done, kNotDone), time_s};
 }
 
 std::size_t ProgramTrack::line_lower_bound(SourceRef line, std::size_t motion) const {
@@ -223,10 +230,11 @@ std::size_t ProgramTrack::bytes() const {
   }
   for (const PackedColumn* column :
        {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_, &duration_s_, &programmed_, &allowed_,
-        &line_, &selected_tool_, &selected_at_, &mode_}) {
+        &line_, &selected_tool_, &selected_at_, &mode_, &way_}) {
     sum += column->bytes() - sizeof *column;
   }
   sum += modes_.capacity() * sizeof(Motion) + jumps_.capacity() * sizeof(Jump);
+  sum += ways_.capacity() * sizeof(WayInTime);
   sum += block_start_.capacity() * sizeof(std::uint64_t);
   return sum + (lines_.capacity() + tool_changes_.capacity()) * sizeof(std::uint32_t);
 }
@@ -242,7 +250,7 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
       std::uint64_t{m.start_known} << 27 | std::uint64_t{m.user_m} << 28 |
       std::uint64_t{m.rapid} << 36 | std::uint64_t{m.unknown_from} << 37 |
       std::uint64_t{m.unknown_to} << 40 | std::uint64_t{m.to_machine_place} << 43 |
-      std::uint64_t{m.speed_said} << 44;
+      std::uint64_t{m.speed_said} << 44 | std::uint64_t{m.compensated} << 45;
   const std::uint64_t stops =
       std::uint64_t{m.halts} | std::uint64_t{m.io_halts} << 8 |
       static_cast<std::uint64_t>(m.chain_end) << 16 |
@@ -257,6 +265,9 @@ ProgramTrackBuilder::ModeKey ProgramTrackBuilder::key_of(const Motion& m) {
           tool << 32 | m.source.file,
           floats(m.blend_tolerance_mm, m.merge_tolerance_mm),
           bits(m.duration_s),
+          bits(m.surface.mm_per_min),
+          bits(m.surface.max_rpm),
+          bits(m.surface.axis_x_mm),
           bits(m.tool_offset_mm.x),
           bits(m.tool_offset_mm.y),
           bits(m.tool_offset_mm.z),
@@ -346,6 +357,10 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   t.programmed_.push_real(timed.programmed_mm_per_min);
   t.allowed_.push_real(timed.allowed_mm_per_min);
   t.mode_.push(mode_of(m));
+  if (t.ways_.empty()) t.ways_.emplace_back();
+  const bool even = timed.way.is_even();
+  if (!even) t.ways_.push_back(timed.way);
+  t.way_.push(even ? 0 : t.ways_.size() - 1);
   t.line_.push(m.source.line);
   t.selected_tool_.push(static_cast<std::uint32_t>(m.selected_tool));
   t.selected_at_.push(line_key(m.selected_at));
@@ -376,10 +391,11 @@ std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::
   }
   for (PackedColumn* column :
        {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_, &t.duration_s_, &t.programmed_,
-        &t.allowed_, &t.line_, &t.selected_tool_, &t.selected_at_, &t.mode_}) {
+        &t.allowed_, &t.line_, &t.selected_tool_, &t.selected_at_, &t.mode_, &t.way_}) {
     column->shrink();
   }
   t.modes_.shrink_to_fit();
+  t.ways_.shrink_to_fit();
   t.jumps_.shrink_to_fit();
   t.block_start_.shrink_to_fit();
   t.lines_.shrink_to_fit();

@@ -59,6 +59,7 @@ class ProgramTrack {
 
   double start_s(std::size_t i) const { return start_s_.real_at(i); }
   double end_s(std::size_t i) const { return start_s(i) + duration_s_.real_at(i); }
+  const WayInTime& way(std::size_t i) const { return ways_[static_cast<std::size_t>(way_.at(i))]; }
   /// Of the whole program.
   double duration_s() const { return empty() ? 0 : end_s(size() - 1); }
 
@@ -68,7 +69,7 @@ class ProgramTrack {
   const WorkpieceFrame& frame() const { return frame_; }
 
   /// The place at a time; before the first motion and after the last one the ends of the program.
-  /// Within a motion the tip is taken to move evenly. O(log n).
+  /// Within a motion the tip moves as the planner has it (WayInTime). O(log n).
   TrackPosition place_at(double time_s) const;
   /// Just before motion i; its start, or (i == size()) the end of the program.
   TrackPosition place_before(std::size_t i) const;
@@ -132,6 +133,8 @@ class ProgramTrack {
   PackedColumn selected_tool_{Of::kIntegers};
   PackedColumn selected_at_{Of::kIntegers};  ///< file and line
   PackedColumn mode_{Of::kIntegers};         ///< indexes modes_
+  PackedColumn way_{Of::kIntegers};          ///< indexes ways_
+  std::vector<WayInTime> ways_;              ///< [0] is even
   std::vector<Motion> modes_;                ///< all that motions share; what varies is zero
   std::vector<Jump> jumps_;                  ///< in order
   std::vector<std::uint64_t> block_start_;   ///< a bit a motion
@@ -156,7 +159,7 @@ class ProgramTrackBuilder final : public StepSink {
 
  private:
   /// The bits of what motions share.
-  using ModeKey = std::array<std::uint64_t, 35>;
+  using ModeKey = std::array<std::uint64_t, 38>;
   static ModeKey key_of(const Motion& motion);
   std::uint64_t mode_of(const Motion& motion);
   void sort_lines();

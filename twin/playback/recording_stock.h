@@ -60,6 +60,7 @@ class RecordingStock final : public StockModel {
   const StockModel& bare() const override { return stock_->bare(); }
   const Sheet* sheet() const override { return stock_->sheet(); }
   const TurningStock* turned() const override { return stock_->turned(); }
+  double milling_cell_mm() const override { return stock_->milling_cell_mm(); }
   std::string name() const override { return stock_->name(); }
   Box bounds_mm() const override { return stock_->bounds_mm(); }
   double cell_mm() const override { return stock_->cell_mm(); }

@@ -10,6 +10,7 @@
 #include "stock/cutter/cutter.h"
 #include "twin/collision/pair_rules.h"
 #include "twin/job/fixtures.h"
+#include "twin/job/work_holding.h"
 #include "twin/machines/machine_bodies.h"
 
 namespace kerf {
@@ -17,6 +18,8 @@ namespace kerf {
 /// What is held against each other, besides the tool and the workpiece.
 struct CollisionWishes {
   FixtureList fixtures;  ///< may be null: none
+  WorkHolding holding;   ///< of a workpiece that turns, as it is wished
+  HoldingList held_by;   ///< the same about the blank there is; may be null
   /// The machine's links; null: nobody has described them. Fixtures that stand on a link stand on
   /// one of these.
   MachineBodiesPointer machine;
@@ -38,6 +41,7 @@ struct CheckOptions {
   /// starts a spindle: a pen, a knife. What stands in that skin is no fault.
   bool is_drawn = false;
   CollisionWishes collisions{};
+  double spindle_max_rpm = 0;  ///< of a spindle that turns the workpiece; 0: not known
 };
 
 /// Where the blank of a run comes from, and so what it means that nothing of it is cut.

@@ -27,7 +27,12 @@ void CutStage::set_frame(const WorkpieceFrame& frame) {
   axis_limits_.set_frame(frame);
   site_.kinematics = kinematics_;
   site_.frame = frame;
-  if (!kinematics_) return;
+  if (!kinematics_) {
+    const bool may_mill = site_.stock.milling_cell_mm() > 0;
+    if (may_mill && !site_.moves.mills())
+      site_.moves = MotionMoves::of(site_.stock, nullptr, frame);
+    return;
+  }
   const ToolPath* const before = machine_moves_.path();
   const Result<bool> follows = machine_moves_.follow(kinematics_, frame, site_.stock.cell_mm());
   assert(follows);  // who made the machine has tried it
@@ -127,7 +132,8 @@ void CutStage::check_turns(const Motion& m, const TimedStep& step) {
     if (!rotary_faults_.empty()) report_rotary_faults(step);
   }
   if (!assumptions_told_ && !site_.moves.is_upright(m)) report_assumptions(m);
-  if (turn_reported_ || site_.stock.takes_tilted_tools()) return;
+  // On a lathe the process knows what C turns.
+  if (turn_reported_ || site_.stock.takes_tilted_tools() || site_.stock.turned()) return;
   if (m.from_abc_deg == m.to_abc_deg) return;
   // Of an axis that the machine has not, no model would turn anything.
   if (!rotary_check_ || rotary_check_->turns_something(m)) report_ignored_turn(m, step);

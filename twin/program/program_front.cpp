@@ -80,7 +80,7 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
   front.guess_reason = options.guess_reason;
   if (is_sheet(*front.blank)) front.choice = {StockKind::kSheet, {}, 0};
   const FixtureList& fixtures = options.collisions.fixtures;
-  if (fixtures && !front.blank_guessed &&
+  if (fixtures && !front.blank_guessed && !front.is_turned() &&
       !check_fixtures_beside(*fixtures, *front.blank, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
@@ -100,7 +100,10 @@ bool can_be_punched(const std::optional<Blank>& blank, Diagnostics& diagnostics,
 }
 
 CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front) {
-  return {front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
+  CheckOptions checks{front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
+  checks.collisions.held_by = front.held_by;
+  checks.spindle_max_rpm = options.spindle_max_rpm;
+  return checks;
 }
 
 bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics& diagnostics,
@@ -108,7 +111,14 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
   front.stock = {};  // the memory of the one before is free again
   front.stock = make_stock(*front.blank, front.choice, options.stock, front.blank_origin,
                            diagnostics, outcome);
-  return front.stock.stock != nullptr;
+  if (!front.stock.stock) return false;
+  const CollisionWishes& wishes = options.collisions;
+  if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, front.held_by,
+                     diagnostics)) {
+    return true;
+  }
+  outcome = Outcome::kUsageError;
+  return false;
 }
 
 bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, ProgramFront& front,
@@ -148,6 +158,10 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
 
 void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves) {
   for (const Motion& m : motions) {
+    if (turning_) {
+      bar_.add(m.length.displaces ? as_programmed(m) : m);
+      continue;
+    }
     if (is_feed(m) && stands_still(m)) continue;
     if (is_feed(m) && m.tool != tool_) {
       tool_ = m.tool;

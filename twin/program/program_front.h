@@ -17,6 +17,7 @@
 #include "twin/job/blank_choice.h"
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
+#include "twin/job/turned_blank_guess.h"
 #include "twin/machine/beam_settings.h"
 #include "twin/machine/timeline.h"
 #include "twin/machine/turret.h"
@@ -32,10 +33,11 @@ struct SessionOptions {
   std::vector<ToolLibrary> libraries;    ///< of --tools
   std::optional<Blank> blank;            ///< of --stock; absent: from comments, else guessed
   StockSettings stock;
-  BeamOptions beam;      ///< for a sheet
-  TurretPointer turret;  ///< for a sheet: it is punched; null: it is cut by the beam
-  double margin_mm = 5;  ///< around a guessed blank
-  double below_mm = 0;   ///< CheckOptions::below_mm
+  BeamOptions beam;            ///< for a sheet
+  TurretPointer turret;        ///< for a sheet: it is punched; null: it is cut by the beam
+  double margin_mm = 5;        ///< around a guessed blank
+  double below_mm = 0;         ///< CheckOptions::below_mm
+  double spindle_max_rpm = 0;  ///< CheckOptions::spindle_max_rpm
   CollisionWishes collisions{};
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
@@ -58,6 +60,7 @@ struct ProgramFront {
   StockChoice choice;          ///< of its model, by what is known of the tools
   std::optional<Blank> blank;  ///< what `stock` was made of
   std::string blank_origin;
+  HoldingList held_by;  ///< of a workpiece that turns; null: nothing holds it
 
   bool blank_guessed = false;
   std::string guess_reason;  ///< of that
@@ -90,15 +93,20 @@ bool make_room_for_tilt(const SessionOptions& options, const std::string& tilt, 
 class BlankSurvey {
  public:
   BlankSurvey(double margin_mm, ToolSources tools)
-      : guess_(margin_mm), resolver_(std::move(tools), nullptr) {}
+      : turning_(tools.turning),
+        guess_(margin_mm),
+        bar_(margin_mm),
+        resolver_(std::move(tools), nullptr) {}
 
   /// `moves`: how the machine moves.
   void add(std::span<const Motion> motions, const MotionMoves& moves);
-  Blank blank() const { return guess_.blank(); }
+  Blank blank() const { return turning_ ? bar_.blank() : guess_.blank(); }
   const BlankGuess& guess() const { return guess_; }
 
  private:
+  bool turning_;
   BlankGuess guess_;
+  TurnedBlankGuess bar_;
   ToolResolver resolver_;
   int tool_ = -1;
   double radius_mm_ = 0;  ///< of that tool

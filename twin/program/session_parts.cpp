@@ -53,7 +53,7 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
-  if (kind == StockKind::kTurning) return as_stock(TurningStock::load(path));
+  if (kind == StockKind::kTurning) return with_milling(TurningStock::load(path), settings);
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));

@@ -1,12 +1,16 @@
 #include "twin/scene/drawn_machine.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
 
 namespace kerf {
 namespace {
+
+/// What is so much longer along Z than it reaches across is held at its end.
+constexpr float kBarSlimness = 1.5f;
 
 bool is_same_turn(const glm::dmat3& a, const glm::dmat3& b) {
   constexpr double kSame = 1e-6;
@@ -61,7 +65,23 @@ double drawn_height_mm(const ToolShape& shape) {
   for (const auto* outline : {&shape.cutter, &shape.shank, &shape.holder}) {
     for (const ProfilePoint& point : *outline) top = std::max(top, point.height_mm);
   }
+  for (const ToolPlate& plate : shape.plates) {
+    for (const ToolPlate::Corner& corner : plate.corners) top = std::max(top, corner.zx_mm.y);
+  }
   return static_cast<double>(top);
+}
+
+Vec3 held_from_tip(const ToolShape& shape) {
+  glm::vec2 high(0.0f), low(0.0f);
+  for (const ToolPlate& plate : shape.plates) {
+    for (const ToolPlate::Corner& corner : plate.corners) {
+      high = glm::max(high, corner.zx_mm);
+      low = glm::min(low, corner.zx_mm);
+    }
+  }
+  if (shape.plates.empty()) return {0, 0, drawn_height_mm(shape)};
+  const bool is_bar = high.x > kBarSlimness * std::max(high.y, -low.y);
+  return is_bar ? Vec3(0, 0, static_cast<double>(high.x)) : Vec3(static_cast<double>(high.y), 0, 0);
 }
 
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,

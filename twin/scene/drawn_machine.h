@@ -33,8 +33,11 @@ std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
 /// What the viewer keeps of it.
 SceneMachine scene_machine(const MachineModel& model);
 
-/// From the tip to the highest point of the tool.
+/// From the tip to the highest point of the tool; of an insert, whose holder lies across, to the
+/// one farthest along X.
 double drawn_height_mm(const ToolShape& shape);
+/// Of a tool on a lathe: where the turret holds it, along X or Z.
+Vec3 held_from_tip(const ToolShape& shape);
 
 /// Poses of the links of a machine that stands so that the tool is seen from the workpiece as
 /// `tool_in_workpiece` (its origin the tip). The slides are solved for; A, B and C are those of the

@@ -18,6 +18,7 @@
 #include "twin/scene/finding_view.h"
 #include "twin/scene/patch_feeder.h"
 #include "twin/scene/tool_shape.h"
+#include "twin/scene/turned_look.h"
 #include "viewer/gl_context.h"
 #include "viewer/labels.h"
 #include "viewer/orbit_camera.h"
@@ -193,7 +194,7 @@ SceneUpdate FindingPictures::Impl::scene_of(const FindingShot& shot, const Findi
   SceneUpdate update;
   auto setup = std::make_shared<SceneSetup>();
   setup->bounds_mm = shot.stock->bounds_mm();
-  setup->blank_outline = box_outline(setup->bounds_mm);
+  setup->blank_outline = blank_outline_of(*shot.stock);
   update.setup = std::move(setup);
   update.tool_shape = view.tool_shape;
   auto moment = std::make_shared<Moment>();

@@ -17,7 +17,14 @@ class MeshDrawer final : public FrameDrawer {
         scene_(std::move(start.track), std::move(start.shown)),
         options_(start.options) {
     options_.draw.upload_bytes_per_frame = std::numeric_limits<std::size_t>::max();
-    renderer_.apply(scene_.start(start.state));
+    const SceneUpdate begin = scene_.start(start.state);
+    renderer_.apply(begin);
+    camera_.set_standing(begin.setup->standing);
+    if (const auto section =
+            usual_section(options_.section, begin.setup->bounds_mm, begin.setup->standing)) {
+      options_.draw.section = section->plane;
+      options_.draw.section_beside = section->beside;
+    }
     camera_.set_perspective(options_.perspective);
     camera_.look_from(options_.view);
     camera_.fit(renderer_.fit_box(), options_.size_px);

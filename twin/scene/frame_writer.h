@@ -12,6 +12,7 @@
 #include "twin/scene/player_scene.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
+#include "viewer/section.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
@@ -20,6 +21,7 @@ struct FrameOptions {
   glm::ivec2 size_px{1280, 720};
   StandardView view = StandardView::kIsometric;
   bool perspective = true;
+  SectionKind section = SectionKind::kNone;  ///< of kMesh
   /// All three look from the same place at the same workpiece. kMesh: the window's renderer, all
   /// that the window shows; on the CPU where there is no graphics card. kRaycast: without OpenGL,
   /// no machine, no colours, no section. kCsg: as that, with OpenGL; does not look at the

@@ -219,6 +219,7 @@ void LiveView::publish_start() {
   setup->title = options_.title;
   setup->bounds_mm = options_.blank_mm;
   setup->blank_outline = options_.blank_outline;
+  stand(*setup);
   setup->frames = scene_frames(shown_work_, options_.work_offset);
   update.setup = std::move(setup);
   update.machine = bodies_.drawn_machine();
@@ -298,12 +299,19 @@ bool LiveView::obey(const ViewerCommand& command) {
   return goes_on;
 }
 
+/// In which way up it is seen.
+void LiveView::stand(SceneSetup& setup) const {
+  setup.turns = options_.stock && options_.stock->turned();
+  if (setup.turns) setup.standing = options_.machine ? Standing::kOnLatheBed : Standing::kInLathe;
+}
+
 /// The time is that of the line's first motion in the program, if there is one.
 std::shared_ptr<const PickedPoint> LiveView::who_cut(const Vec3& point_mm) const {
   auto picked = std::make_shared<PickedPoint>();
   picked->point_mm = point_mm;
   const std::optional<std::uint32_t> id = stock_ ? stock_->cut_id_at(point_mm) : std::nullopt;
   const CutLabel* const label = id ? colors_.label(*id) : nullptr;
+  picked->is_known = stock_ && (stock_->keeps_cut_ids() || !stock_->turned());
   if (!label) return picked;
   picked->tool = label->tool;
   picked->tool_name = colors_.name_of(label->tool);
@@ -358,6 +366,7 @@ void LiveView::take_news(News& news) {
     setup->title = options_.title;
     setup->bounds_mm = options_.blank_mm;
     setup->blank_outline = options_.blank_outline;
+    stand(*setup);
     setup->frames = scene_frames(shown_work_, options_.work_offset);
     update_.setup = std::move(setup);
   }

@@ -126,6 +126,7 @@ class LiveView final : public LiveObserver {
   void note_tool(int tool, const Cutter* cutter, News& news);
   void note_labels(std::span<const CutLabel> labels, News& news);
   void note_uses(std::span<const CutLabel> labels, News& news);
+  void stand(SceneSetup& setup) const;
   std::shared_ptr<const PickedPoint> who_cut(const Vec3& point_mm) const;
 
   LiveViewOptions options_;

@@ -58,6 +58,13 @@ std::vector<AxisReadout> axis_readouts(const Vec3& machine_mm, const Vec3& work_
   return axes;
 }
 
+void show_diameter(AxisReadout& axis) {
+  axis.is_diameter = true;
+  axis.machine *= 2;
+  axis.work *= 2;
+  if (axis.to_go) *axis.to_go *= 2;
+}
+
 std::vector<SceneFrame> scene_frames(const WorkpieceFrame& frame, const std::string& work_offset) {
   SceneFrame work;
   work.name = work_offset;

@@ -30,6 +30,9 @@ std::vector<AxisReadout> axis_readouts(const Vec3& machine_mm, const Vec3& work_
                                        const std::array<double, 3>* rotary_deg,
                                        const SlidePlace* slides = nullptr);
 
+/// As the figures of a diameter, which X is where G7 holds.
+void show_diameter(AxisReadout& axis);
+
 /// Machine zero as it lies in the workpiece frame, and the work offset, which is its origin.
 std::vector<SceneFrame> scene_frames(const WorkpieceFrame& frame, const std::string& work_offset);
 

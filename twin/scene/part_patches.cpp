@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stock/turning/turning_stock.h"
+
 namespace kerf {
 namespace {
 
 /// Joined cells may be larger than a pixel by a quarter: then a workpiece that fills the picture is
 /// as fine at its near end as in its middle.
 constexpr double kCellsPerPixel = 1.6;
+/// Of a turned part: share of a pixel by which a contour may be off, and what stands for cells.
+constexpr double kUnseenPixels = 0.25;
+constexpr double kTurnedCell_mm = 0.1;
 
 }  // namespace
 
@@ -19,10 +24,18 @@ int patch_level(double pixel_mm, double cell_mm) {
   return std::min(level, StockModel::kPatchLevels - 1);
 }
 
+int patch_level(const StockModel& stock, double pixel_mm) {
+  return stock.turned() ? TurnedPart::level_within(kUnseenPixels * pixel_mm)
+                        : patch_level(pixel_mm, stock.cell_mm());
+}
+
+double patch_cell_mm(const StockModel& stock) {
+  return stock.turned() ? kTurnedCell_mm : stock.cell_mm();
+}
+
 PartPatches part_patches(const StockModel& stock) {
   return {stock.bounds_mm(), stock.tile_count(), [&stock](std::size_t tile, double pixel_mm) {
-            return stock.patch(static_cast<std::uint32_t>(tile),
-                               patch_level(pixel_mm, stock.cell_mm()));
+            return stock.patch(static_cast<std::uint32_t>(tile), patch_level(stock, pixel_mm));
           }};
 }
 

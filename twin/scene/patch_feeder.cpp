@@ -115,7 +115,7 @@ void PatchFeeder::choose_levels() {
 /// Goes by the point of the box that is nearest to the eye; what lies behind the eye is not seen.
 int PatchFeeder::level_for(const ViewDetail& detail, const Box& box) const {
   if (detail.largest_in(box) <= 0) return StockModel::kPatchLevels - 1;
-  return patch_level(detail.smallest_in(box), stock_->cell_mm());
+  return patch_level(*stock_, detail.smallest_in(box));
 }
 
 int PatchFeeder::wanted_level(std::size_t tile) const {
@@ -167,7 +167,7 @@ void PatchFeeder::calm_down(Clock::time_point now) {
 std::shared_ptr<const MeshPatch> PatchFeeder::make(std::size_t tile) {
   const int level = wanted_level(tile);
   auto patch = std::make_shared<MeshPatch>(stock_->patch(static_cast<std::uint32_t>(tile), level));
-  if (design_) add_deviation(*design_, {stock_->cell_mm(), tolerance_mm_}, patch.get());
+  if (design_) add_deviation(*design_, {patch_cell_mm(*stock_), tolerance_mm_}, patch.get());
   Shown& shown = shown_[tile];
   const auto triangles = static_cast<std::uint32_t>(patch->indices.size() / 3);
   triangles_ = triangles_ - shown.triangles + triangles;

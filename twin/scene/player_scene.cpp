@@ -65,9 +65,11 @@ std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,
     for (const auto& [number, station] : turret->stations)
       longest_mm = std::max(longest_mm, drawn_height_mm(*tool_shape_of(station.punch)));
   }
+  MachineChoice wished = choice;
+  if (loaded.player.blank->turned() && !choice.is_chosen()) wished.kind = MachineKind::kLathe;
   WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
   room.turret = turret;
-  return drawn_machine(choice, ini, room, diagnostics);
+  return drawn_machine(wished, ini, room, diagnostics);
 }
 
 std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const ProgramTrack& track,
@@ -75,6 +77,10 @@ std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const Progra
   const MachineModel& machine = *shown.machine;
   const ToolPath* const path = shown.moves.path();
   if (path == nullptr) {
+    if (shown.turns && state.cutter) {
+      const Vec3 held = held_from_tip(*tool_shape_of(*state.cutter));
+      return drawn_poses(machine, state.tip_mm + Vec3(0, 0, held.z), state.abc_deg, held.x);
+    }
     if (!shown.punch) return drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm);
     std::vector<glm::mat4> poses = drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm,
                                                shown.punch->joints(track, state));
@@ -94,7 +100,8 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   shown.title = std::move(title);
   shown.files = loaded.files;
   if (loaded.player.blank) {
-    shown.blank_outline = box_outline(loaded.player.blank->bounds_mm());
+    shown.blank_outline = blank_outline_of(*loaded.player.blank);
+    shown.turns = loaded.player.blank->turned() != nullptr;
     shown.blank = loaded.player.blank->snapshot();
   }
   shown.cuts = loaded.cuts;
@@ -134,6 +141,7 @@ PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgra
       bodies_(shown_.collisions),
       path_(track_, shown_.planned, shown_.moves) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
+  if (shown_.turns) diameters_ = DiameterMode(*track_, *read_program_text(shown_.files));
   if (shown_.machine)
     bodies_.set_machine(std::make_shared<const SceneMachine>(scene_machine(*shown_.machine)));
 }
@@ -145,6 +153,8 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   setup->title = shown_.title;
   setup->keeps_eye = shown_.keeps_eye;
   if (state.stock) setup->bounds_mm = state.stock->bounds_mm();
+  setup->turns = shown_.turns;
+  if (shown_.turns) setup->standing = shown_.machine ? Standing::kOnLatheBed : Standing::kInLathe;
   setup->blank_outline = shown_.blank_outline;
   if (shown_.design) setup->tolerance_mm = shown_.tolerance_mm;
   setup->frames = scene_frames(track_->frame(), shown_.work_offset);
@@ -190,26 +200,36 @@ void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
   auto picked = std::make_shared<PickedPoint>();
   picked->point_mm = point_mm;
   if (shown_.design) picked->deviation_mm = shown_.design->distance_mm(point_mm);
+  find_cut(point_mm, state, *picked);
+  waiting_.picked = std::move(picked);
+}
+
+void PlayerScene::find_cut(const Vec3& point_mm, const PlayerState& state,
+                           PickedPoint& picked) const {
   const double tolerance_mm = state.stock ? state.stock->cell_mm() : 0.0;
   std::optional<std::size_t> motion;
   if (shown_.walls) {
     if (const auto wall = shown_.walls->wall_at(point_mm, state.place)) {
       motion = wall->motion;
-      picked->tool_name = wall->cutter;
+      picked.tool_name = wall->cutter;
     }
+  } else if (shown_.turns) {
+    // CutQuery looks from above. The model itself may know; its numbers are those of motions.
+    picked.is_known = state.stock && state.stock->keeps_cut_ids();
+    if (picked.is_known) motion = state.stock->cut_id_at(point_mm);
+    if (motion >= track_->size()) motion.reset();
   } else if (shown_.cuts) {
     motion = shown_.cuts->last_cut_at(point_mm, tolerance_mm, state.place);
-    const Cutter* const cutter = motion ? shown_.cuts->cutter_at(*motion) : nullptr;
-    if (cutter) picked->tool_name = tool_name_of(*cutter);
   }
-  if (motion) {
-    const SourceRef source = track_->source(*motion);
-    picked->tool = track_->tool(*motion);
-    picked->file = static_cast<int>(source.file);
-    picked->line = static_cast<int>(source.line);
-    picked->time_s = track_->start_s(*motion);
-  }
-  waiting_.picked = std::move(picked);
+  if (!motion) return;
+  const Cutter* const cutter =
+      shown_.cuts && !shown_.walls ? shown_.cuts->cutter_at(*motion) : nullptr;
+  if (cutter) picked.tool_name = tool_name_of(*cutter);
+  const SourceRef source = track_->source(*motion);
+  picked.tool = track_->tool(*motion);
+  picked.file = static_cast<int>(source.file);
+  picked.line = static_cast<int>(source.line);
+  picked.time_s = track_->start_s(*motion);
 }
 
 bool PlayerScene::is_empty(const SceneUpdate& update) {
@@ -317,6 +337,8 @@ std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {
   for (std::size_t i = 0; i < 3; ++i) {
     moment->axes[i].to_go = motion.to_mm[static_cast<int>(i)] - state.tip_mm[static_cast<int>(i)];
   }
+  if (diameters_.holds_at(std::min(state.place.motion, track_->size() - 1)))
+    show_diameter(moment->axes[0]);
   for (const SourceRef& breakpoint : breakpoints_) {
     moment->breakpoints.push_back(
         {static_cast<int>(breakpoint.file), static_cast<int>(breakpoint.line)});

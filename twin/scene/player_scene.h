@@ -23,6 +23,7 @@
 #include "twin/scene/punch_pose.h"
 #include "twin/scene/sheet_query.h"
 #include "twin/scene/track_path.h"
+#include "twin/scene/turned_look.h"
 #include "viewer/scene.h"
 #include "viewer/viewer_command.h"
 
@@ -36,6 +37,7 @@ struct ViewedProgram {
   std::vector<LineSegment> blank_outline;
   std::shared_ptr<const StockModel> blank;  ///< a snapshot; null: there is none
   std::string work_offset;                  ///< "G54"; empty: not known
+  bool turns = false;                       ///< the workpiece is of the model turning
   bool planned = false;                     ///< the track is of the path that the machine runs
   MotionMoves moves;                        ///< where tool and tip are in the workpiece
   std::vector<NamedTool> tools;
@@ -57,7 +59,8 @@ std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,
                                                    const std::string& ini,
                                                    Diagnostics& diagnostics);
 
-/// Of its machine, for Moment::link_poses. Empty: it cannot stand so.
+/// Of its machine, for Moment::link_poses. Empty: it cannot stand so. A lathe's turret holds a
+/// drill, and whatever else is longer along Z than across it, at its end of greatest Z.
 std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const ProgramTrack& track,
                                         const PlayerState& state, double tool_length_mm);
 
@@ -100,6 +103,7 @@ class PlayerScene {
 
  private:
   bool draws_mesh() const { return draw_modes_.drawn() == DrawMode::kMesh; }
+  void find_cut(const Vec3& point_mm, const PlayerState& state, PickedPoint& picked) const;
   ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
   bool is_removed_due(const PlayerState& state) const;
@@ -111,6 +115,7 @@ class PlayerScene {
   DrawFeeder draw_modes_;
   BodyWatch bodies_;
   TrackPath path_;
+  DiameterMode diameters_;
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;
   bool has_rotary_ = false;

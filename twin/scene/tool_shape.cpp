@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <string_view>
 #include <vector>
 
@@ -34,12 +35,53 @@ void add_arc(const ProfilePiece& piece, std::vector<ProfilePoint>& outline) {
   outline.push_back(point(piece.r1, piece.z1));
 }
 
+/// Insert and holder: thickness, and how much lower the holder's face lies.
+constexpr double kInsert_mm = 5, kHolder_mm = 20, kBelowFace_mm = 0.2;
+
+glm::vec2 plate_point(const Vec2& zx) { return glm::vec2(zx); }
+
+ToolPlate plate_of(const InsertPart& part) {
+  ToolPlate plate;
+  const auto is_cutting = [](InsertSide side) { return side < InsertSide::kBody; };
+  bool has_edge = false;
+  Vec2 from = part.back().end_mm;
+  for (const InsertEdge& edge : part) {
+    const bool cuts = is_cutting(edge.side);
+    has_edge = has_edge || cuts;
+    int steps = 1;
+    if (edge.center_mm) {
+      const Vec2 a = from - *edge.center_mm, b = edge.end_mm - *edge.center_mm;
+      double turn = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+      if (turn <= 0) turn += 2 * kPi;
+      steps = std::max(1, static_cast<int>(std::ceil(turn / kArcStep_rad)));
+      for (int i = 0; i < steps; ++i) {
+        const double angle = turn * i / steps;
+        const double c = std::cos(angle), s = std::sin(angle);
+        plate.corners.push_back(
+            {plate_point(*edge.center_mm + Vec2(c * a.x - s * a.y, s * a.x + c * a.y)), cuts});
+      }
+    } else {
+      plate.corners.push_back({plate_point(from), cuts});
+    }
+    from = edge.end_mm;
+  }
+  plate.is_holder = !has_edge;
+  const double high_mm = has_edge ? 0 : -kBelowFace_mm;
+  plate.high_y_mm = static_cast<float>(high_mm);
+  plate.low_y_mm = static_cast<float>(high_mm - (has_edge ? kInsert_mm : kHolder_mm));
+  return plate;
+}
+
 }  // namespace
 
 std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
                                                std::span<const ToolSection> spindle,
                                                double nose_z_mm) {
   auto shape = std::make_shared<ToolShape>();
+  if (cutter.insert()) {
+    for (const InsertPart& part : cutter.insert()->parts) shape->plates.push_back(plate_of(part));
+    return shape;
+  }
   shape->cutter.push_back(point(0, 0));
   for (const ProfilePiece& piece : cutter.profile()) {
     if (piece.kind == ProfilePiece::Kind::kArc) {

@@ -13,6 +13,10 @@ namespace kerf {
 /// Outlines of cutter, shank, holder and spindle. Flutes of unknown length are drawn two diameters
 /// long, as most are, a shank of unknown length as long again; a holder stands where its sections
 /// say, and so does a spindle, whose nose is as in tool_bodies().
+///
+/// A turning tool is plates alone: its face lies in the plane Y 0 of the workpiece, towards the eye
+/// that sees Z to the right and X up, whichever way the spindle turns; how thick they are nobody
+/// says.
 std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
                                                std::span<const ToolSection> spindle = {},
                                                double nose_z_mm = 0);

@@ -5,11 +5,20 @@ uniform sampler2D normals;
 uniform sampler2D occlusion;
 uniform sampler2D edges;
 uniform vec4 unproject;  // as in occlusion.frag
-uniform vec3 up_view;    // +Z of the workpiece
+uniform vec3 up_view;    // what is up in the workpiece frame
 uniform float edge_strength;
 uniform float dense_level;  // of the edges' mipmap: a texel covers that many lines beside each other
+// Faces of a section, hatched: planes in view space, dot(face, (p, 1)) = 0, facing the eye.
+uniform int face_count;
+uniform vec4 faces[2];
+uniform sampler2D depths;
+uniform float px_mm_at_1mm;
+uniform float hatch_px;  // from line to line
 in vec2 uv;
 out vec4 color;
+
+const vec3 kHatched = vec3(0.91, 0.72, 0.50);
+const vec3 kHatch = vec3(0.66, 0.42, 0.22);
 
 // Share of the picture around that edges cover, from which on they are drawn paler, and are as pale
 // as they get. A corner of a part is below; where terraces or tracks lie as close as the lines are
@@ -56,6 +65,17 @@ float blurred(sampler2D image, vec2 at, float reach) {
                  texture(image, at + other).r + texture(image, at - other).r);
 }
 
+bool is_on_face(vec3 normal, vec2 tangent) {
+  float depth = texture(depths, uv).r;
+  float distance_mm = 1.0 / (unproject.z + unproject.w * depth);
+  vec4 at = vec4(-tangent * distance_mm, -distance_mm, 1.0);
+  for (int i = 0; i < face_count; ++i) {
+    bool is_near = abs(dot(faces[i], at)) < 0.5 * px_mm_at_1mm * distance_mm;
+    if (is_near && dot(normal, faces[i].xyz) > 0.99) return true;
+  }
+  return false;
+}
+
 void main() {
   vec4 g = texture(normals, uv);
   // Taps one texel from a corner average exactly the 4 x 4 texels of the occlusion pattern.
@@ -69,5 +89,9 @@ void main() {
   vec3 linear =
       lit(unit(g.xyz), unit(vec3(tangent, 1.0)), unit(vec3(kNearRoom * tangent, 1.0)), open);
   vec3 surface = sqrt(clamp(linear, 0.0, 1.0));  // about the sRGB curve
+  if (face_count > 0 && is_on_face(unit(g.xyz), tangent)) {
+    float across = abs(mod(gl_FragCoord.x + gl_FragCoord.y, hatch_px) - 0.5 * hatch_px);
+    surface = mix(kHatch, kHatched, smoothstep(0.07 * hatch_px, 0.19 * hatch_px, across));
+  }
   color = vec4(surface * (1.0 - edge_strength * edge), g.a);
 }

@@ -4,10 +4,11 @@
 
 namespace kerf::shaders {
 
-extern const char* const part_vert;     ///< Mesh to clip space.
-extern const char* const part_frag;     ///< Writes normal and coverage, no light.
-extern const char* const screen_vert;   ///< One triangle that covers the viewport.
-extern const char* const resolve_frag;  ///< 2 x 2 samples to one pixel.
+extern const char* const part_vert;       ///< Mesh to clip space.
+extern const char* const part_frag;       ///< Writes normal and coverage, no light.
+extern const char* const part_face_frag;  ///< The same of the face of a section.
+extern const char* const screen_vert;     ///< One triangle that covers the viewport.
+extern const char* const resolve_frag;    ///< 2 x 2 samples to one pixel.
 extern const char* const background_frag;
 extern const char* const occlusion_frag;  ///< Ambient occlusion from the depth.
 extern const char* const edges_frag;      ///< Sharp edges and silhouettes.

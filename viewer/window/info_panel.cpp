@@ -51,7 +51,8 @@ void draw_positions(const PanelContext& context) {
     const auto figure_of = [&](double value) { return fitting(context, axis, value); };
     ImGui::PushFont(context.fonts.readout);
     ImGui::TableNextColumn();
-    ImGui::TextColored(theme::kText, "%c", axis.name);
+    const char name[] = {axis.name, '\0'};
+    ImGui::TextColored(theme::kText, "%s", axis.is_diameter ? kDiameterSign : name);
     ImGui::TableNextColumn();
     figure(figure_of(axis.work), theme::kReadout);
     const float drop = context.fonts.readout->FontSize - context.fonts.mono->FontSize;

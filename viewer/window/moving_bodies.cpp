@@ -69,7 +69,7 @@ ScreenRect MovingBodies::take_changed(const Projection& projection, const Looks&
 
 void MovingBodies::draw(const ScreenRect& rect, const GlProgram& program, bool opaque_parts) const {
   program.use();
-  program.set("up_view", glm::vec3(projection_.view_from_world[2]));
+  program.set("up_view", up_view(projection_));
   const ObjectLook& machine = look(SceneObject::kMachine);
   if (machine.is_visible) {
     machine_.draw(projection_, program, machine.opacity, opaque_parts, rect);
@@ -90,7 +90,7 @@ void MovingBodies::draw(const ScreenRect& rect, const GlProgram& program, bool o
 
 void MovingBodies::draw_hidden_marks(const ScreenRect& rect, const GlProgram& program) const {
   program.use();
-  program.set("up_view", glm::vec3(projection_.view_from_world[2]));
+  program.set("up_view", up_view(projection_));
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   glEnable(GL_CULL_FACE);

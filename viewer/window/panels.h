@@ -214,8 +214,12 @@ ColorCommand color_command(const ViewSettings& settings, const PanelState& state
 /// was chosen, what it does not show. Empty if nothing.
 std::string draw_note(const PanelContext& context);
 
-/// The plane that hides part of the workpiece; none if it is off.
-std::optional<SectionPlane> section_plane(const SectionChoice& choice);
+/// The planes that hide part of the workpiece, in DrawOptions; none if it is off.
+void choose_section(const SectionChoice& choice, const Box& bounds_mm, bool turns,
+                    DrawOptions* drawing);
+
+/// Before the figure of a diameter.
+inline constexpr const char* kDiameterSign = "\u00d8";
 
 /// "1:02:03", "2:03.4"
 std::string clock_text(double seconds);

@@ -35,7 +35,9 @@ void draw_answer(const PanelContext& context, const PickedPoint& picked) {
   ImGui::TableNextColumn();
   ImGui::TextColored(theme::kDim, "%s", context.word(Text::kCutBy));
   ImGui::TableNextColumn();
-  if (!picked.tool) {
+  if (!picked.is_known) {
+    ImGui::TextUnformatted("-");
+  } else if (!picked.tool) {
     ImGui::TextUnformatted(context.word(Text::kNotCut));
   } else {
     ImGui::TextUnformatted(fmt::format("T{} {}", *picked.tool, picked.tool_name).c_str());
@@ -72,11 +74,13 @@ void draw_picked(const PanelContext& context) {
   }
   if (!begin_rows(context, "picked")) return;
   const Vec3& at = *inspection.asked_mm;
+  const bool turns = context.shown.setup->turns;
+  if (turns) row(kDiameterSign, context.measures.length(2 * glm::length(Vec2(at))));
   row("X", context.measures.position(at.x));
   row("Y", context.measures.position(at.y));
   row("Z", context.measures.position(at.z));
   const Box& bounds = context.bounds_mm;
-  if (!bounds.empty()) {
+  if (!bounds.empty() && !turns) {
     row(context.word(Text::kHeight), context.measures.length(at.z - bounds.min.z));
   }
   const PickedPoint* picked = context.shown.picked.get();
@@ -102,6 +106,15 @@ void draw_measured(const PanelContext& context) {
   }
   if (begin_rows(context, "measured")) {
     const Vec3 between = inspection.ends_mm[1] - inspection.ends_mm[0];
+    if (context.shown.setup->turns) {
+      const auto diameter = [&](std::size_t end) {
+        return 2 * glm::length(Vec2(inspection.ends_mm[end]));
+      };
+      const std::string label = std::string("d") + kDiameterSign;
+      row(kDiameterSign, context.measures.length(diameter(0)));
+      row(kDiameterSign, context.measures.length(diameter(1)));
+      row(label.c_str(), context.measures.length(diameter(1) - diameter(0)));
+    }
     row("dX", context.measures.length(between.x));
     row("dY", context.measures.length(between.y));
     row("dZ", context.measures.length(between.z));

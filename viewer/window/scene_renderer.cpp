@@ -99,7 +99,9 @@ class SceneRenderer::Impl {
   ScreenRect changed_rect(std::span<const Box> changed_mm) const;
   std::size_t draw_kept(const ScreenRect& rect);
   std::size_t draw_workpiece(const ScreenRect& rect);
-  void draw_section_face(const glm::dvec4& kept);
+  std::vector<glm::dvec4> kept_sides() const;
+  std::size_t draw_patches(const ScreenRect& rect, const std::optional<glm::dvec4>& section);
+  void draw_section_faces(std::span<const glm::dvec4> kept);
   void draw_lines(const ScreenRect& rect) const;
   void draw_shown(ScreenRect rect);
   void draw_moving_beside_glass(const ScreenRect& rect, bool is_behind) const;
@@ -349,33 +351,29 @@ std::size_t SceneRenderer::Impl::draw_kept(const ScreenRect& rect) {
   return triangles;
 }
 
-std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
-  if (!look(SceneObject::kWorkpiece).is_visible) return 0;
-  if (draw_mode_ != DrawMode::kMesh) {
-    draw_modes_.draw();
-    return 0;
+/// What lies on one of these is kept. None: there is no section.
+std::vector<glm::dvec4> SceneRenderer::Impl::kept_sides() const {
+  std::vector<glm::dvec4> sides;
+  for (const auto* plane : {&options_.section, &options_.section_beside}) {
+    const auto kept = *plane ? kept_side(**plane) : std::nullopt;
+    if (kept) sides.push_back(*kept);
   }
-  const std::optional<glm::dvec4> section = kept_side(options_.section);
+  return sides;
+}
+
+/// The part of it that a plane of the section keeps; all of it without.
+std::size_t SceneRenderer::Impl::draw_patches(const ScreenRect& rect,
+                                              const std::optional<glm::dvec4>& section) {
   const auto use = [&](ScenePrograms::Paint paint) -> const GlProgram& {
     const GlProgram& program = programs_.workpiece(paint, section.has_value());
     program.use();
     program.set("clip_from_model", projection_.clip_from_world);
     program.set("view_from_model", projection_.view_from_world);
-    program.set("up_view", glm::vec3(projection_.view_from_world[2]));
+    program.set("up_view", up_view(projection_));
     program.set("rgba", glm::vec4(SurfaceColors::kCut, 1.0f));
     if (section) program.set("section", glm::vec4(*section));
     return program;
   };
-  if (section) {
-    glEnable(GL_CLIP_DISTANCE0);
-    // Where the nearest triangle that is left shows its back, the plane goes through material.
-    glEnable(GL_STENCIL_TEST);
-    glStencilFuncSeparate(GL_FRONT, GL_ALWAYS, 0, 0xff);
-    glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-  }
-  // What is closed shows no backs. Cut open it does.
-  if (!section) glEnable(GL_CULL_FACE);
   const VertexData data = SurfaceColors::needs(shown_by_);
   colors_.bind(use(SurfaceColors::paint(shown_by_)), shown_by_, scale_);
   std::size_t triangles = patches_.draw(rect, data, true);
@@ -383,25 +381,53 @@ std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
     use(ScenePrograms::Paint::kOne);
     triangles += patches_.draw(rect, data, false);
   }
+  return triangles;
+}
+
+std::size_t SceneRenderer::Impl::draw_workpiece(const ScreenRect& rect) {
+  if (!look(SceneObject::kWorkpiece).is_visible) return 0;
+  if (draw_mode_ != DrawMode::kMesh) {
+    draw_modes_.draw();
+    return 0;
+  }
+  const std::vector<glm::dvec4> sides = kept_sides();
+  std::size_t triangles = 0;
+  if (sides.empty()) {
+    glEnable(GL_CULL_FACE);  // what is closed shows no backs; cut open it does
+    triangles = draw_patches(rect, std::nullopt);
+  } else {
+    glEnable(GL_CLIP_DISTANCE0);
+    // Where the nearest triangle that is left shows its back, the plane goes through material.
+    glEnable(GL_STENCIL_TEST);
+    glStencilFuncSeparate(GL_FRONT, GL_ALWAYS, 0, 0xff);
+    glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  }
+  for (const glm::dvec4& side : sides) triangles += draw_patches(rect, side);
   glDisable(GL_CULL_FACE);
   glDisable(GL_CLIP_DISTANCE0);
-  if (section) draw_section_face(*section);
+  draw_section_faces(sides);
   glDisable(GL_STENCIL_TEST);
   return triangles;
 }
 
-void SceneRenderer::Impl::draw_section_face(const glm::dvec4& kept) {
-  const std::optional<glm::dvec3> depths = section_depths(kept, projection_);
-  if (!depths) return;
+/// Where a ray comes into material out of what is taken away it does so through the nearer one of
+/// those planes that it goes through from there.
+void SceneRenderer::Impl::draw_section_faces(std::span<const glm::dvec4> kept) {
   glStencilFunc(GL_EQUAL, 1, 0xff);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   glDepthFunc(GL_ALWAYS);
   const GlProgram& program = programs_.section_face();
   program.use();
-  program.set("depth_plane", glm::vec3(*depths));
   program.set("middle_px", glm::vec2(0.5 * glm::dvec2(size_px_)));
   glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  for (const glm::dvec4& side : kept) {
+    const std::optional<glm::dvec3> depths = section_depths(side, projection_);
+    if (!depths) continue;
+    program.set("depth_plane", glm::vec3(*depths));
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+  }
   glDepthFunc(GL_LESS);
 }
 

@@ -12,6 +12,7 @@
 #include "viewer/orbit_camera.h"
 #include "viewer/picture.h"
 #include "viewer/scene.h"
+#include "viewer/section.h"
 #include "viewer/window/screen_rect.h"
 #include "viewer/window/units.h"
 
@@ -38,21 +39,14 @@ struct ObjectLook {
   bool operator==(const ObjectLook&) const = default;
 };
 
-/// Cuts the workpiece open: what lies on the side that `normal` points to, dot(normal, p) >
-/// offset_mm, is not drawn, and the cut is closed with a flat hatched face. Path, outlines, tool
-/// and machine stay whole.
-struct SectionPlane {
-  Vec3 normal{0.0, -1.0, 0.0};  ///< Need not be of unit length, but not 0: offset_mm is for it.
-  double offset_mm = 0.0;
-  bool operator==(const SectionPlane&) const = default;
-};
-
 struct DrawOptions {
   /// As far as its values have come, else by mesh. Only the mesh has colours, section and
   /// deviations.
   DrawMode draw_mode = DrawMode::kMesh;
   std::array<ObjectLook, kSceneObjectCount> looks{};
   std::optional<SectionPlane> section;
+  /// Beside `section`: what is taken away lies beyond both.
+  std::optional<SectionPlane> section_beside;
   /// Of the workpiece. kTool, kRemovalRate and kLineRange show the CutColors that came last, when
   /// their mode is this one, and patches with MeshPatch::cut_by; kDeviation those with
   /// deviation_mm. All else is drawn plainly: what is left of the blank darker, where patches tell.

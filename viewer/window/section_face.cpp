@@ -1,24 +1,14 @@
 #include "viewer/window/section_face.h"
 
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 namespace kerf {
 
-std::optional<glm::dvec4> kept_side(const std::optional<SectionPlane>& section) {
-  if (!section) return std::nullopt;
-  const double length = glm::length(section->normal);
-  if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(section->offset_mm)) {
-    return std::nullopt;
-  }
-  return glm::dvec4(-section->normal, section->offset_mm) / length;
-}
-
 std::optional<glm::dvec3> section_depths(const glm::dvec4& kept, const Projection& projection) {
   const glm::dvec4 plane =
       glm::transpose(glm::inverse(glm::dmat4(projection.clip_from_world))) * kept;
-  if (plane.z == 0.0) return std::nullopt;
+  // The eye is at (0, 0, -1, 0).
+  if (!(plane.z > 0.0)) return std::nullopt;
   // On the plane the depth is affine in the picture.
   const glm::dvec2 half_px = 0.5 * glm::dvec2(projection.size_px);
   return glm::dvec3(-0.5 * plane.x / (plane.z * half_px.x), -0.5 * plane.y / (plane.z * half_px.y),

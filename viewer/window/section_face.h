@@ -11,13 +11,9 @@
 
 namespace kerf {
 
-/// The plane in the frame of the workpiece, of unit normal: dot(plane, (p, 1)) >= 0 is kept. None
-/// where there is no direction.
-std::optional<glm::dvec4> kept_side(const std::optional<SectionPlane>& section);
-
 /// Of the plane, as kept_side() has it: window depth at a pixel is dot(result, (x, y, 1)), x and y
 /// counted from the middle of the picture, for the shader's 32-bit numbers. None where it is seen
-/// from its edge.
+/// from its edge, or from the side that is kept.
 std::optional<glm::dvec3> section_depths(const glm::dvec4& kept, const Projection& projection);
 
 }  // namespace kerf

@@ -16,9 +16,12 @@ namespace kerf {
 /// What the section plane is set to; whether it cuts is not remembered.
 struct SectionChoice {
   bool is_on = false;
+  bool is_quarter = false;  ///< only what lies beyond a second plane, too, is hidden
   int axis = 1;             ///< 0 X, 1 Y, 2 Z
-  bool is_flipped = false;  ///< false: what lies on the negative side of the plane is hidden
-  double offset_mm = 0.0;   ///< along the axis
+  /// False: what lies on the negative side of the plane is hidden; across Y of a workpiece that
+  /// turns, which is seen from there, on the positive one.
+  bool is_flipped = false;
+  double offset_mm = 0.0;  ///< along the axis
 };
 
 /// Of panels and background. kSystem: as the desktop asks for; dark where it does not say.

@@ -124,6 +124,7 @@ constexpr std::array kRows{
     Row{Text::kNoColorsYet, tr_noop("no colours yet")},
     Row{Text::kSection, tr_noop("Section")},
     Row{Text::kSectionFlip, tr_noop("Other side")},
+    Row{Text::kSectionQuarter, tr_noop("Quarter")},
     Row{Text::kPoint, tr_noop("Point")},
     Row{Text::kPickHint, tr_noop("Click on the workpiece.")},
     Row{Text::kHeight, tr_noop("Height")},

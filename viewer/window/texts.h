@@ -116,6 +116,7 @@ enum class Text {
   // section
   kSection,
   kSectionFlip,
+  kSectionQuarter,
   // point and measure
   kPoint,
   kPickHint,

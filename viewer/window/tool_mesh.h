@@ -1,4 +1,4 @@
-// viewer/window/tool_mesh.h - turns the outline of a tool around its axis.
+// viewer/window/tool_mesh.h - the outline of a tool turned around its axis, and its plates.
 #pragma once
 
 #include <array>
@@ -23,6 +23,9 @@ struct ToolMesh {
 };
 
 /// Normals are smooth around the axis and, along the outline, where it bends by little.
-ToolMesh revolve(const ToolShape& shape);
+///
+/// A plate is of the cutter, but for the middle of its face, which is of the shank: so its edges
+/// show. One that holds it is of the holder.
+ToolMesh tool_mesh(const ToolShape& shape);
 
 }  // namespace kerf

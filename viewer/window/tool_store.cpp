@@ -23,7 +23,7 @@ constexpr float kHolderOpacity = 0.6f, kSpindleOpacity = 0.35f;
 }  // namespace
 
 void ToolStore::set_shape(const ToolShape& shape) {
-  mesh_ = revolve(shape);
+  mesh_ = tool_mesh(shape);
   buffers_.load(mesh_.vertices.data(), mesh_.vertices.size() * sizeof(MeshVertex), mesh_.indices);
   has_changed_ = true;
 }
@@ -44,7 +44,8 @@ bool ToolStore::take_changed() { return std::exchange(has_changed_, false); }
 
 glm::mat4 ToolStore::world_from_tool() const {
   const Vec3 z = glm::normalize(pose_->axis);
-  // Any direction across the axis will do: the tool is round.
+  // Any direction across the axis will do where the tool is round. What is not stands upright: its
+  // x is that of the workpiece.
   const Vec3 across = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   const Vec3 y = glm::normalize(glm::cross(z, across));
   const Vec3 x = glm::cross(y, z);

@@ -149,6 +149,8 @@ void draw_section(const PanelContext& context) {
     section.is_on = true;
   }
   ImGui::Checkbox(context.word(Text::kSectionFlip), &section.is_flipped);
+  ImGui::SameLine();
+  ImGui::Checkbox(context.word(Text::kSectionQuarter), &section.is_quarter);
 }
 
 void draw_modes(const PanelContext& context) {
@@ -305,14 +307,27 @@ std::string draw_note(const PanelContext& context) {
                      context.word(Text::kDrawIsPlain));
 }
 
-std::optional<SectionPlane> section_plane(const SectionChoice& choice) {
-  if (!choice.is_on) return std::nullopt;
-  SectionPlane plane;
-  const double sign = choice.is_flipped ? 1.0 : -1.0;
-  plane.normal = Vec3(0.0);
-  plane.normal[choice.axis] = sign;
-  plane.offset_mm = sign * choice.offset_mm;
-  return plane;
+void choose_section(const SectionChoice& choice, const Box& bounds_mm, bool turns,
+                    DrawOptions* drawing) {
+  drawing->section.reset();
+  drawing->section_beside.reset();
+  if (!choice.is_on) return;
+  constexpr int kY = 1;
+  const auto plane_across = [&](int axis, double offset_mm, bool hides_positive) {
+    SectionPlane plane;
+    const double sign = hides_positive ? 1.0 : -1.0;
+    plane.normal = Vec3(0.0);
+    plane.normal[axis] = sign;
+    plane.offset_mm = sign * offset_mm;
+    return plane;
+  };
+  const bool is_seen_from_behind = turns && choice.axis == kY;
+  drawing->section =
+      plane_across(choice.axis, choice.offset_mm, choice.is_flipped != is_seen_from_behind);
+  if (!choice.is_quarter || bounds_mm.empty()) return;
+  const int beside = choice.axis == kY ? 0 : kY;
+  drawing->section_beside = plane_across(
+      beside, 0.5 * (bounds_mm.min[beside] + bounds_mm.max[beside]), beside == 0 || turns);
 }
 
 }  // namespace kerf

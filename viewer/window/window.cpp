@@ -42,6 +42,8 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
   settings_.drawing.draw_mode = options.draw_mode.value_or(remembered_mode_);
   remembered_units_ = settings_.units;
   settings_.units = options.units.value_or(remembered_units_);
+  settings_.section.is_on = options.section != SectionKind::kNone;
+  settings_.section.is_quarter = options.section == SectionKind::kQuarter;
   // Where nothing is remembered they would come every time.
   state_.shows_first_keys = !settings_.knows_keys && !options.settings_file.empty();
   state_.notice = first_line(settings_faults_);

@@ -29,8 +29,9 @@ struct WindowOptions {
   bool is_local = true;               ///< false: local drawing is off, whatever is remembered
   std::optional<DrawMode> draw_mode;  ///< Instead of the one that is remembered, which stays so.
   std::optional<LengthUnit> units;    ///< As `draw_mode`.
-  float scale = 0.0f;                 ///< Of letters and panels, 1 to 4; 0: that of the display.
-  std::string picture_folder;         ///< Where screenshots go; empty: the current folder.
+  SectionKind section = SectionKind::kNone;  ///< That the workpiece is first seen in.
+  float scale = 0.0f;          ///< Of letters and panels, 1 to 4; 0: that of the display.
+  std::string picture_folder;  ///< Where screenshots go; empty: the current folder.
 };
 
 /// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at

@@ -315,11 +315,23 @@ void Window::Impl::act_on_view(Action action) {
       break;
     }
     case Action::kSection:
-      settings_.section.is_on = !settings_.section.is_on;
+      next_section();
       break;
     default:
       break;
   }
+}
+
+/// On and off; of a part that turns half, quarter, off.
+void Window::Impl::next_section() {
+  SectionChoice& section = settings_.section;
+  if (!shown_.setup->turns) {
+    section.is_on = !section.is_on;
+    return;
+  }
+  const bool goes_on = !section.is_on || !section.is_quarter;
+  section.is_quarter = section.is_on && !section.is_quarter;
+  section.is_on = goes_on;
 }
 
 void Window::Impl::toggle_workpiece() {

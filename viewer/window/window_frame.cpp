@@ -172,6 +172,15 @@ void Window::Impl::take_setup(const std::shared_ptr<const SceneSetup>& setup) {
   }
   // A drawing in 2D was of what was shown before.
   if (!setup->keeps_eye && setup->title != title_) settings_.flat = FlatView::kNone;
+  if (setup->standing != standing_) {
+    standing_ = setup->standing;
+    camera_.set_standing(standing_);
+    // A turned part is looked at as on the lathe's own screen.
+    camera_.look_from(standing_ == Standing::kInLathe ? StandardView::kFront
+                                                      : StandardView::kIsometric);
+    settings_.section.offset_mm = 0.0;  // for a part that turns this is its axis
+    wants_fit_ = true;
+  }
   title_ = setup->title;
   const std::string& title = setup->title;
   glfwSetWindowTitle(window_, title.empty() ? "kerf" : fmt::format("kerf - {}", title).c_str());
@@ -307,7 +316,7 @@ Done Window::Impl::draw() {
     if (draws_panels) touched();  // marks over the picture go with the camera
   }
   tell_detail();
-  settings_.drawing.section = section_plane(settings_.section);
+  choose_section(settings_.section, renderer_->fit_box(), shown_.setup->turns, &settings_.drawing);
   Projection wanted = camera_.projection(renderer_->depth_box(), area_px_);
   wanted.line_px = display_scale_;
   DrawOptions drawing = settings_.drawing;

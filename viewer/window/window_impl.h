@@ -124,6 +124,7 @@ class Window::Impl {
   void set_breakpoint();
   void open_program(const std::string& path);
   void toggle_workpiece();
+  void next_section();
   void toggle(SceneObject object) { look(object).is_visible = !look(object).is_visible; }
   /// A key may come before the first frame.
   bool has_drawn() const { return last_frame_ != Clock::time_point{}; }
@@ -173,6 +174,7 @@ class Window::Impl {
   Clock::time_point last_frame_{};
   std::string shown_age_;
   std::string title_;  // of the setup
+  Standing standing_ = Standing::kOnTable;
   FrameCounter frame_counter_;
   bool is_hidden_ = false;         // minimized
   bool is_rested_ = false;         // since the last frame

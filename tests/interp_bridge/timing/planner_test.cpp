@@ -137,7 +137,14 @@ TEST(Planner, MergedFeedsShareTheTimeOfOneLine) {
   const Plan plan = plan_of(path.motions);
   EXPECT_NEAR(plan.clock_s, plan_of(Path().feed(3000).line(100, 0).motions).clock_s, 1e-6);
   ASSERT_EQ(plan.timings.size(), 100u);
-  for (const MotionTiming& t : plan.timings) EXPECT_NEAR(t.duration_s, 0.022, 1e-4);
+  // By the speeds along it: from a stand at half of the acceleration, evenly, and to a stand, in
+  // which the planner rests for a servo period.
+  double sum_s = 0;
+  for (const MotionTiming& t : plan.timings) sum_s += t.duration_s;
+  EXPECT_NEAR(sum_s, plan.clock_s, 1e-9);
+  EXPECT_NEAR(plan.timings[0].duration_s, std::sqrt(2 * 1.0 / 250), 1e-4);
+  EXPECT_NEAR(plan.timings[50].duration_s, 1.0 / 50, 1e-4);
+  EXPECT_NEAR(plan.timings[99].duration_s, std::sqrt(2 * 1.0 / 250) + 0.001, 1e-4);
 }
 
 TEST(Planner, ServoPeriodCapsTheSpeedOfDenseCode) {

@@ -101,7 +101,7 @@ bool MachinePlayer::advance(double seconds) {
     }
     if (!begun_) begin_step();
     if (into < step().duration_s) {
-      if (step().moves) move_to(into / step().duration_s);
+      if (step().moves) move_to(step().way.way_of(into / step().duration_s));
       return true;
     }
     end_step();

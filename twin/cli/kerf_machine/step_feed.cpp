@@ -83,6 +83,7 @@ void StepFeed::step(const Motion& motion, const TimedStep& timed, std::span<cons
   MachineStep& step = filling_.steps.emplace_back();
   step.start_s = timed.start_s;
   step.duration_s = timed.duration_s;
+  step.way = timed.way;
   step.kind = motion.kind;
   step.moves = is_move(motion);
   step.line = motion.source.line;

@@ -23,6 +23,7 @@ namespace kerf {
 struct MachineStep {
   double start_s = 0;
   double duration_s = 0;
+  WayInTime way;
   MotionKind kind = MotionKind::kDwell;
   bool moves = false;  ///< then it has a path; other steps have no place
   std::uint32_t line = 0;

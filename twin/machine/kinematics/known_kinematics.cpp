@@ -88,6 +88,14 @@ KinematicChain straight_chain(std::string_view letters, RotarySide side, const V
   return built(std::move(links), workpiece, tool);
 }
 
+KinematicChain lathe_chain() {
+  return built({rigid("base", "", Vec3(0.0)), slide("bridge", "", kY, kAlongY),
+                slide("carriage", "bridge", kX, kAlongX), slide("ram", "carriage", kZ, kAlongZ),
+                pivot("rotary_a", "base", kA, -kAlongZ, Vec3(0.0)),
+                pivot("rotary_c", "rotary_a", kC, -kAlongZ, Vec3(0.0))},
+               "rotary_c", "ram");
+}
+
 KinematicChain xyzab_tdr_chain(const Vec3& rotation_point_mm, double x_offset_mm,
                                double z_offset_mm) {
   const Vec3 offset(x_offset_mm, 0.0, z_offset_mm);

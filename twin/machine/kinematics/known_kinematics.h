@@ -36,6 +36,11 @@ enum class RotarySide : std::uint8_t {
 KinematicChain straight_chain(std::string_view letters, RotarySide side,
                               const Vec3& center_mm = Vec3(0.0));
 
+/// A lathe whose spindle is an axis: X, Y and Z carry the tool, C turns the workpiece about the
+/// line X0 Y0, left-handed as tables do; A does the same, where the spindle is called so. Links:
+/// base, bridge (Y), carriage (X), ram (Z), rotary_a, rotary_c (workpiece).
+KinematicChain lathe_chain();
+
 /// [KINS]KINEMATICS = xyzac-trt-kins: table X, Y; on it a cradle that tilts about X (A), in it a
 /// platter that turns about Z (C); head Z. Links: saddle, table, cradle, platter, workpiece, head.
 ///   `rotation_point_mm`  x/y/z-rot-point: the axis of the platter at A0, machine coordinates

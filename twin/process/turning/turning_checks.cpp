@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/way_contact.h"
 #include "twin/collision/tool_bodies.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/contact_grounds.h"
@@ -63,6 +64,19 @@ bool is_inside(const TurnedProfile& profile, const Vec2& p) {
 
 bool TurningChecks::may_touch(const TurnedMove& move) const {
   const Box blank = stock_.bounds_mm();
+  if (move.cutter.live()) {
+    // A tool that reaches through the blank, at whatever angle.
+    const double reach_mm = glm::length(blank.size()) + move.cutter.radius_mm();
+    Box way;
+    for (const CutMove& one : move.moves) {
+      way.extend(one.from_mm);
+      way.extend(one.to_mm);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (way.min[axis] - reach_mm > blank.max[axis] || way.max[axis] + reach_mm < blank.min[axis])
+        return false;
+    return true;
+  }
   const double reach_mm =
       move.cutter.insert() ? outline_reach_mm(*move.cutter.insert()) : move.cutter.radius_mm();
   // A tool that stands along the axis reaches towards +z from its tip.
@@ -84,17 +98,29 @@ Finding TurningChecks::finding_of(FindingId id, const TurnedMove& move, double s
 }
 
 std::optional<TurningChecks::Touch> TurningChecks::first_touch(const TurnedMove& move) const {
+  if (move.cutter.live()) return first_milled_touch(move);
   std::optional<Touch> first;
   for (std::size_t i = 0; i < move.moves.size(); ++i) {
-    const auto met = stock_.first_turn_contact(move.cutter, move.moves[i], kContactTolerance_mm);
+    const auto met = stock_.first_turn_contact(move.edges, move.moves[i], kContactTolerance_mm);
     if (!met) continue;
-    if (!first) {
-      first =
-          Touch{*met, (static_cast<double>(i) + met->t) / static_cast<double>(move.moves.size())};
-    }
-    first->contact.depth_mm = std::max(first->contact.depth_mm, met->depth_mm);
+    if (!first) first = Touch{0, move.share_of(i, met->t)};
+    first->depth_mm = std::max(first->depth_mm, met->depth_mm);
   }
   return first;
+}
+
+std::optional<TurningChecks::Touch> TurningChecks::first_milled_touch(
+    const TurnedMove& move) const {
+  const std::optional<WayContact> met =
+      first_contact_of(model_, move.cutter, move.moves, kContactTolerance_mm, {});
+  if (!met) return std::nullopt;
+  const CutMove& at = move.moves[met->move];
+  const double length_mm = glm::length(at.to_mm - at.from_mm);
+  const double within =
+      at.arc || length_mm <= 0
+          ? 0
+          : std::min(1.0, glm::length(met->contact.tip_mm - at.from_mm) / length_mm);
+  return Touch{met->contact.depth_mm, move.share_of(met->move, within)};
 }
 
 void TurningChecks::check_traverse(const TurnedMove& move) {
@@ -109,7 +135,7 @@ void TurningChecks::check_traverse(const TurnedMove& move) {
     finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
     rapid_ = log_.add(std::move(finding));
   }
-  log_.deepen(*rapid_, touch->contact.depth_mm);
+  log_.deepen(*rapid_, touch->depth_mm);
 }
 
 void TurningChecks::check_standing(const TurnedMove& move) {
@@ -119,7 +145,9 @@ void TurningChecks::check_standing(const TurnedMove& move) {
     const bool unsaid = move.motion.spindle != SpindleState::kStopped && !move.motion.speed_said;
     Finding finding = finding_of(
         FindingId::kSpindleOffContact, move, touch->share,
-        move.motion.spindle == SpindleState::kStopped
+        move.cutter.live()
+            ? tr("feed move of a driven tool touches the workpiece while no spindle turns")
+        : move.motion.spindle == SpindleState::kStopped
             ? tr("feed move touches the workpiece while the spindle stands")
         : unsaid
             ? tr("feed move touches the workpiece at 0 rpm: the spindle is told to turn, and no S "
@@ -130,7 +158,7 @@ void TurningChecks::check_standing(const TurnedMove& move) {
     finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
     standing_ = log_.add(std::move(finding));
   }
-  log_.deepen(*standing_, touch->contact.depth_mm);
+  log_.deepen(*standing_, touch->depth_mm);
 }
 
 /// What is no edge must not touch at all; of two edges one leads, and the other one, which trails,

@@ -21,9 +21,18 @@ struct TurnedMove {
   const Motion& motion;
   const TimedStep& step;
   const Cutter& cutter;
+  const Cutter& edges;             ///< the same without what holds the insert
   std::span<const CutMove> moves;  ///< it is cut as these
   int tool = 0;
   bool tool_guessed = false;
+  std::span<const double> ends{};  ///< share of the motion at each move's end; empty: evenly
+
+  /// Of the motion, `t` of that move being done.
+  double share_of(std::size_t which, double t) const {
+    if (ends.empty()) return (static_cast<double>(which) + t) / static_cast<double>(moves.size());
+    const double from = which == 0 ? 0 : ends[which - 1];
+    return from + t * (ends[which] - from);
+  }
 };
 
 /// Watches the moves of one program against one workpiece that turns. The caller calls before it
@@ -31,7 +40,8 @@ struct TurnedMove {
 class TurningChecks {
  public:
   /// The model is a TurningStock, or stands before one.
-  TurningChecks(const StockModel& stock, FindingLog& log) : stock_(*stock.turned()), log_(log) {}
+  TurningChecks(const StockModel& stock, FindingLog& log)
+      : model_(stock), stock_(*stock.turned()), log_(log) {}
 
   void set_options(const CheckOptions& options) { options_ = options; }
   const CheckOptions& options() const { return options_; }
@@ -72,7 +82,7 @@ class TurningChecks {
 
  private:
   struct Touch {
-    TurnContact contact;
+    double depth_mm = 0;
     double share = 0;  ///< of the motion
   };
   /// Where a face was turned towards the axis.
@@ -84,10 +94,12 @@ class TurningChecks {
     int tool = 0;
   };
   std::optional<Touch> first_touch(const TurnedMove& move) const;
+  std::optional<Touch> first_milled_touch(const TurnedMove& move) const;
   Finding finding_of(FindingId id, const TurnedMove& move, double share, std::string text) const;
   void note_face(const TurnedMove& move, const TurnCut& cut);
   void tell_pip(const Face& face);
 
+  const StockModel& model_;
   const TurningStock& stock_;
   FindingLog& log_;
   CheckOptions options_;

@@ -13,6 +13,7 @@
 #include "twin/process/contact_grounds.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/tool_tells.h"
+#include "twin/process/turning/tool_outlines.h"
 
 namespace kerf {
 namespace {
@@ -28,15 +29,27 @@ TurningStage::TurningStage(ProcessSite& site)
       resolver_(site.tools),
       log_(site.log),
       checks_(stock_, log_),
+      holding_(log_),
+      holders_(*stock_.turned(), log_),
+      depths_(log_),
+      noses_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
+
+void TurningStage::check_by(const CheckOptions& options) {
+  checks_.set_options(options);
+  if (options.collisions.held_by) holding_.set_wishes(options.collisions);
+}
 
 void TurningStage::begin_reporting() {
   checks_.forget();
+  holding_.begin_reporting();
+  holders_.begin_reporting();
+  noses_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
-  mounted_ = nullptr;
-  mill_turn_told_ = false;
+  unmount();
+  mill_turn_told_ = unmilled_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -48,6 +61,8 @@ void TurningStage::go_on_from(const Process& process) {
 void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
+    holding_.finish();
+    noses_.finish();
     report_nothing_cut();
   }
   for (ToolUse& use : uses_) {
@@ -59,11 +74,9 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
   path_ = path;
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     spindle_tool_ = m.tool;
-    mounted_ = nullptr;
-    checks_.end_tool();
+    unmount();
   }
   if (!stands(m)) checks_.end_standing();
-  report_mill_turn(m, step);
   if (is_traverse(m)) take_traverse(m, step);
   if (is_feed(m)) take_feed(m, step);
 }
@@ -71,6 +84,8 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
 /// found wrong.
 bool TurningStage::stands(const Motion& m) const {
+  // A driven tool has a spindle of its own (M3 $1), or on small machines the only one.
+  if (is_driven() && (m.torch.spindles_on & ~1U) != 0) return false;
   if (m.spindle == SpindleState::kStopped) return true;
   return m.spindle_rpm == 0 && (m.speed_said || !site_.watched);
 }
@@ -86,24 +101,56 @@ bool TurningStage::mount_for(const Motion& m) {
     uses_.push_back(use_of(*mounted_));
     tell_tool(*mounted_, m, log_);
   }
+  mount_checks();
   return mounted_->cutter.has_value();
+}
+
+void TurningStage::mount_checks() {
+  if (!mounted_->cutter) return;
+  const Cutter& cutter = *mounted_->cutter;
+  if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
+  holders_.mount(cutter, mounted_->number);
+  depths_.mount(cutter);
+  noses_.mount(cutter, mounted_->number);
+  edges_ = holders_.active()
+               ? Cutter::from_insert(cutter.spec(), outlines_of(cutter).cutter, cutter.insert_tip())
+               : cutter;
+}
+
+void TurningStage::unmount() {
+  mounted_ = nullptr;
+  edges_.reset();
+  checks_.end_tool();
+  holding_.unmount();
+  holders_.unmount();
+  depths_.unmount();
+  noses_.unmount();
+}
+
+std::vector<CollisionPair> TurningStage::collisions() const {
+  std::vector<CollisionPair> rows = holding_.table();
+  rows.insert(rows.end(), holders_.table().begin(), holders_.table().end());
+  return rows;
 }
 
 bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
   moves.clear();
-  return site_.moves.append(m, *mounted_->cutter, 0, moves, nullptr);
+  ends_.clear();
+  return site_.moves.append(m, *mounted_->cutter, 0, moves, &ends_);
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m, step, *mounted_->cutter, moves_, mounted_->number, mounted_->guessed};
+  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
+          ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
   // As in milling: the tool of such a move is not known for sure.
   if (!mounted_ && m.tool == 0 && !resolver_.has_arguments()) return;
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
-  if (!mount_for(m) || !m.start_known || !divide(m, moves_)) return;
+  if (!mount_for(m) || !m.start_known || report_unmilled(m, step) || !divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
+  check_bodies(move);
   if (!checks_.may_touch(move)) {
     checks_.clear_traverse();
     return;
@@ -122,29 +169,78 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
   if (m.kind != MotionKind::kThread) site_.feeds.note(m, step);
-  checks_.check_plane(m, step);
+  if (report_unmilled(m, step)) return;
+  if (!is_driven()) {
+    report_mill_turn(m, step);
+    checks_.check_plane(m, step);
+  }
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
-  if (!checks_.may_touch(move)) return;
-  checks_.check_thread(m, step, site_.limits_known);
+  check_bodies(move);
+  if (!checks_.may_touch(move)) {
+    // One that goes on from it does so with the turn.
+    if (m.kind == MotionKind::kThread) cut(m, step);
+    return;
+  }
+  if (!is_driven()) checks_.check_thread(m, step, site_.limits_known);
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// Once: a tool beside the plane of the axis, or a workpiece that is turned as an axis, is no
-/// turning.
+/// What a tool must not touch, and what of it must touch nothing.
+void TurningStage::check_bodies(const TurnedMove& move) {
+  if (holding_.active()) holding_.check(move);
+  if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
+}
+
+/// Once: a feed of a tool that is not driven beside the plane of the axis, or while the workpiece
+/// is turned as an axis, is no turning.
 void TurningStage::report_mill_turn(const Motion& m, const TimedStep& step) {
   constexpr double kOff_mm = 1e-6;
-  const bool beside = std::abs(m.to_mm.y - m.from_mm.y) > kOff_mm && m.kind != MotionKind::kArc;
+  const bool beside =
+      m.kind != MotionKind::kArc && std::max(std::abs(m.from_mm.y), std::abs(m.to_mm.y)) > kOff_mm;
   const bool turns = m.from_abc_deg != m.to_abc_deg;
-  if (mill_turn_told_ || !m.start_known || (!beside && !turns)) return;
+  if (mill_turn_told_ || (!beside && !turns)) return;
   mill_turn_told_ = true;
+  tell_not_modelled(
+      m, step,
+      beside ? tr("the tool cuts beside Y0: it is cut as if it were at Y0")
+             : tr("the workpiece is turned as an axis while it is cut: it is cut as if it turned "
+                  "all round"),
+      mounted_->cutter->insert()
+          ? tr("what is turned is right; --as-mill is for programs that only mill")
+          : tr("a driven tool says so in its shape: live=z (it lies along Z) or live=x; --as-mill "
+               "is for programs that only mill"));
+}
+
+/// A driven tool that kerf cannot follow on this machine: true, told once, and its moves do not
+/// cut.
+bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
+  if (!is_driven()) return false;
+  const bool main_turns = (m.torch.spindles_on & 1U) != 0 && (m.torch.spindles_on & ~1U) != 0;
+  if (site_.moves.mills() && !main_turns) return false;
+  if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
+  if (main_turns) {
+    tell_not_modelled(m, step,
+                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
+                         "not cut"),
+                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
+                         "driven tool itself"));
+  } else {
+    tell_not_modelled(m, step,
+                      tr("a driven tool on a machine whose kinematics are switched: how they hold "
+                         "the workpiece is not known, and it is not cut"),
+                      tr("machine.kinematics: links says how the machine moves"));
+  }
+  return true;
+}
+
+void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,
+                                     std::string hint) {
   Finding finding = finding_at(FindingId::kNotModelled, Severity::kError, m, step);
   finding.tool = m.tool;
-  finding.text = beside ? tr("the tool moves along Y: it is cut as if it were at Y0 all along")
-                        : tr("the workpiece is turned as an axis: what is milled or drilled so is "
-                             "cut as if it turned all round");
-  finding.hint = tr("what is turned is right; --as-mill is for programs that only mill");
+  finding.text = std::move(text);
+  finding.hint = std::move(hint);
   log_.add(std::move(finding));
 }
 
@@ -171,36 +267,29 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
   }
   note_fallen(m, step);
   touched_ = touched_ || whole.removed_mm3 > 0;
-  if (!is_feed(m)) return;
+  if (!is_feed(m) || is_driven()) return;
   const TurnedMove move = turned(m, step);
   checks_.check_sides(move, whole);
   checks_.check_centre(move, whole);
+  depths_.check(move, whole, checks_.options().blank_guessed);
+  noses_.note(move, whole);
 }
 
 void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& whole) {
   if (!divide(m, pieces_)) return;
   const std::uint64_t id =
       site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
-  double length_mm = 0;
-  for (CutMove& move : pieces_) {
-    move.id = id;
-    length_mm += glm::length(move.to_mm - move.from_mm);
-  }
+  for (CutMove& move : pieces_) move.id = id;
   reports_.clear();
   stock_.cut(*mounted_->cutter, pieces_, reports_);
   ToolUse& use = uses_[use_];
-  TurnCut piece;
-  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
-    piece.removed_mm3 += cut.removed_mm3;
-    piece.way_mm += cut.way_mm;
-    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
-    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
-    for (std::size_t side = 0; side < kInsertSides; ++side)
-      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
-  }
+  const TurnCut piece = sum_of_piece();
   const double way_mm = path_length_mm(m);
-  const double cut_s =
-      way_mm > 0 ? step.duration_s * std::min(1.0, piece.way_mm / way_mm) : step.duration_s;
+  // How far a driven tool is in material nobody measures: all of the move, if it cuts at all.
+  const double share = is_driven()  ? (piece.removed_mm3 > 0 ? 1 : 0)
+                       : way_mm > 0 ? std::min(1.0, piece.way_mm / way_mm)
+                                    : 1;
+  const double cut_s = step.duration_s * share;
   if (site_.labels) site_.labels->note(id, piece.removed_mm3, step.duration_s);
   use.removed_mm3 += piece.removed_mm3;
   if (is_feed(m)) {
@@ -213,6 +302,27 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
   whole.flanks_mm = std::max(whole.flanks_mm, piece.flanks_mm);
   for (std::size_t side = 0; side < kInsertSides; ++side)
     whole.side_mm[side] = std::max(whole.side_mm[side], piece.side_mm[side]);
+}
+
+/// Of what has just been cut.
+TurnCut TurningStage::sum_of_piece() const {
+  TurnCut piece;
+  if (is_driven()) {
+    for (const CutReport& report : reports_) {
+      piece.removed_mm3 += report.removed_mm3;
+      piece.depth_mm = std::max(piece.depth_mm, report.depth_mm);
+    }
+    return piece;
+  }
+  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
+    piece.removed_mm3 += cut.removed_mm3;
+    piece.way_mm += cut.way_mm;
+    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
+    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
+    for (std::size_t side = 0; side < kInsertSides; ++side)
+      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
+  }
+  return piece;
 }
 
 void TurningStage::note_fallen(const Motion& m, const TimedStep& step) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "interp_bridge/motion.h"
@@ -13,12 +15,18 @@
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/process.h"
+#include "twin/process/turning/edge_checks.h"
+#include "twin/process/turning/holder_checks.h"
+#include "twin/process/turning/holding_checks.h"
+#include "twin/process/turning/nose_checks.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
 
 /// The workpiece turns, tools stand still: traverses, feeds, arcs and threads of a tool that is
-/// known are cut as they come. Probes, and moves of a tool of which nothing is known, do not cut.
+/// known are cut as they come. A driven tool (Cutter::live()) mills, the workpiece standing or
+/// being an axis: MotionMoves::live_path(). Probes, and moves of a tool of which nothing is known,
+/// do not cut.
 class TurningStage final : public Process {
  public:
   /// The workpiece is of the model turning.
@@ -28,24 +36,33 @@ class TurningStage final : public Process {
   void finish(bool whole) override;
   void begin_reporting() override;
   void go_on_from(const Process& other) override;
-  void check_by(const CheckOptions& options) override { checks_.set_options(options); }
+  void check_by(const CheckOptions& options) override;
   const std::vector<ToolUse>& tools() const override { return uses_; }
   const Cutter* cutter() const override {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
   }
   std::span<const FallenPiece> fallen() const override { return fallen_; }
+  std::vector<CollisionPair> collisions() const override;
 
  private:
   void take_traverse(const Motion& motion, const TimedStep& step);
   void take_feed(const Motion& motion, const TimedStep& step);
   bool mount_for(const Motion& motion);
+  void mount_checks();
+  void unmount();
+  void check_bodies(const TurnedMove& move);
+  bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
+  bool report_unmilled(const Motion& motion, const TimedStep& step);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
+  void tell_not_modelled(const Motion& motion, const TimedStep& step, std::string text,
+                         std::string hint);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
   bool divide(const Motion& motion, std::vector<CutMove>& moves);
   TurnedMove turned(const Motion& motion, const TimedStep& step) const;
   void cut(const Motion& motion, const TimedStep& step);
   void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
+  TurnCut sum_of_piece() const;
   void note_fallen(const Motion& motion, const TimedStep& step);
   void report_nothing_cut();
 
@@ -54,20 +71,27 @@ class TurningStage final : public Process {
   ToolResolver& resolver_;
   FindingLog& log_;
   TurningChecks checks_;
+  HoldingChecks holding_;
+  HolderChecks holders_;
+  EdgeChecks depths_;
+  NoseChecks noses_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
+  std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()
   std::vector<CutMove> pieces_;      ///< as the machine runs it
   std::vector<CutReport> reports_;
   std::vector<ToolUse> uses_;
   std::vector<FallenPiece> fallen_;
   std::size_t fallen_before_ = 0;          ///< pieces that reports are not about
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
+  std::optional<Cutter> edges_;            ///< of it, without what holds the insert
   std::size_t use_ = 0;
   int spindle_tool_ = 0;
   std::uint64_t next_id_ = 0;
   std::uint64_t feed_moves_ = 0;
   bool undefined_ = false;
   bool mill_turn_told_ = false;
+  bool unmilled_told_ = false;
   bool touched_ = false;
 };
 

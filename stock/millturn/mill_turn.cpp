@@ -1,0 +1,221 @@
+#include "stock/millturn/mill_turn.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+namespace kerf {
+namespace {
+
+octree::RevolvedBody body_of(const TurnedPart& part) {
+  octree::RevolvedBody body;
+  body.chains_mm = part.profile();
+  if (part.flats()) {
+    body.flats = part.flats()->count;
+    body.inner_radius_mm = part.flats()->inner_radius_mm;
+  }
+  return body;
+}
+
+}  // namespace
+
+MillTurn::MillTurn(TurningStock turned, const MillTurnOptions& options)
+    : turned_(std::move(turned)), options_(options) {}
+MillTurn::~MillTurn() = default;
+
+Result<std::unique_ptr<MillTurn>> MillTurn::create(TurningStock turned,
+                                                   const MillTurnOptions& options) {
+  auto stock = std::unique_ptr<MillTurn>(new MillTurn(std::move(turned), options));
+  // So that nothing can be wrong with it once it is needed. A box costs next to nothing.
+  if (const auto tried = stock->box_tree(); !tried) return Error{tried.error()};
+  return stock;
+}
+
+Result<std::unique_ptr<Octree>> MillTurn::box_tree() const {
+  OctreeOptions options;
+  BlankBody box;
+  box.bounds_mm = turned_.bounds_mm();
+  options.blank.bodies.push_back(box);
+  options.cell_mm = options_.cell_mm;
+  options.threads = options_.threads;
+  options.memory_limit_bytes = options_.memory_limit_bytes;
+  return Octree::create(options);
+}
+
+std::vector<std::uint64_t> MillTurn::bands() const {
+  std::vector<std::uint64_t> versions(TurnedPart::kBands);
+  for (std::size_t band = 0; band < versions.size(); ++band)
+    versions[band] = turned_.part().band_version(band);
+  return versions;
+}
+
+/// The workpiece as it is turned, as an octree.
+std::unique_ptr<MillTurn::Milled> MillTurn::begun() const {
+  Result<std::unique_ptr<Octree>> box = box_tree();
+  assert(box);  // create() has tried it
+  auto milled = std::make_unique<Milled>();
+  milled->tree = std::move(box.value());
+  milled->tree->keep_cut_ids(keeps_cut_ids());
+  follow_profile(*milled);
+  milled->beside_mm3 = turned_.remaining_mm3() - milled->tree->remaining_mm3();
+  return milled;
+}
+
+std::unique_ptr<MillTurn::Milled> MillTurn::copy_of(const Milled& milled) const {
+  auto copy = std::make_unique<Milled>();
+  copy->tree.reset(static_cast<Octree*>(milled.tree->snapshot().release()));
+  copy->bands = milled.bands;
+  copy->beside_mm3 = milled.beside_mm3;
+  return copy;
+}
+
+void MillTurn::follow_profile(Milled& milled) const {
+  std::vector<std::uint64_t> now = bands();
+  if (now == milled.bands) return;
+  const TurnedPart& part = turned_.part();
+  octree::ZRange range{std::numeric_limits<double>::infinity(),
+                       -std::numeric_limits<double>::infinity()};
+  for (std::size_t band = 0; band < now.size(); ++band) {
+    if (band < milled.bands.size() && milled.bands[band] == now[band]) continue;
+    range.low_mm = std::min(range.low_mm, part.band_low_z_mm(band));
+    range.high_mm = std::max(range.high_mm, part.band_low_z_mm(band + 1));
+  }
+  milled.tree->keep_within(body_of(part), range);
+  milled.bands = std::move(now);
+}
+
+const MillTurn::Milled& MillTurn::shown() const {
+  std::vector<std::uint64_t> now = bands();
+  if (milled_ && milled_->bands == now) return *milled_;
+  if (!shown_ || shown_->bands != now) {
+    shown_ = milled_ ? copy_of(*milled_) : begun();
+    follow_profile(*shown_);
+  }
+  return *shown_;
+}
+
+void MillTurn::cut(const Cutter& cutter, std::span<const CutMove> moves,
+                   std::vector<CutReport>& reports) {
+  if (!cutter.live()) {
+    turned_.cut(cutter, moves, reports);
+    return;
+  }
+  if (moves.empty()) return;
+  if (milled_) {
+    follow_profile(*milled_);
+  } else {
+    shown();  // as it is now: it has become that
+    milled_ = std::move(shown_);
+  }
+  shown_.reset();
+  milled_->tree->cut(cutter, moves, reports);
+}
+
+std::optional<Contact> MillTurn::first_contact(const Cutter& cutter, const CutMove& move,
+                                               double tolerance_mm) const {
+  return cutter.live() ? tree().first_contact(cutter, move, tolerance_mm)
+                       : turned_.first_contact(cutter, move, tolerance_mm);
+}
+
+std::optional<WayContact> MillTurn::first_contact_of(const Cutter& cutter,
+                                                     std::span<const CutMove> moves,
+                                                     double tolerance_mm,
+                                                     const WayWatch& watch) const {
+  return cutter.live() ? tree().first_contact_of(cutter, moves, tolerance_mm, watch)
+                       : kerf::first_contact_of(turned_, cutter, moves, tolerance_mm, watch);
+}
+
+std::unique_ptr<StockModel> MillTurn::snapshot() const {
+  auto copy = std::unique_ptr<MillTurn>(new MillTurn(TurningStock(turned_.part()), options_));
+  copy->options_.threads = 1;
+  if (!milled_) return copy;
+  copy->milled_ = copy_of(*milled_);
+  // Whoever looks at the copy may do so on several threads.
+  const Milled& now = shown();
+  if (&now != milled_.get()) copy->shown_ = copy_of(now);
+  return copy;
+}
+
+std::size_t MillTurn::unique_bytes() const {
+  std::size_t bytes = turned_.unique_bytes();
+  for (const auto* part : {milled_.get(), shown_.get()})
+    if (part) bytes += part->tree->unique_bytes();
+  return bytes;
+}
+
+void MillTurn::keep_cut_ids(bool keep) {
+  turned_.keep_cut_ids(keep);
+  shown_.reset();
+  if (milled_) milled_->tree->keep_cut_ids(keep);
+}
+
+std::optional<std::uint32_t> MillTurn::cut_id_at(const Vec3& point_mm) const {
+  const auto milled = milled_ ? tree().cut_id_at(point_mm) : std::nullopt;
+  return milled ? milled : turned_.cut_id_at(point_mm);
+}
+
+Done MillTurn::save(const std::string& path) const {
+  return milled_ ? tree().save(path) : turned_.save(path);
+}
+
+Done MillTurn::can_cut(const Cutter& cutter) {
+  return cutter.live() ? Octree::can_cut(cutter) : TurningStock::can_cut(cutter);
+}
+
+double MillTurn::cell_mm() const { return milled_ ? milled_->tree->cell_mm() : turned_.cell_mm(); }
+
+std::size_t MillTurn::cell_count() const {
+  return milled_ ? milled_->tree->cell_count() : turned_.cell_count();
+}
+
+double MillTurn::remaining_mm3() const {
+  if (!milled_) return turned_.remaining_mm3();
+  const Milled& now = shown();
+  return now.tree->remaining_mm3() + now.beside_mm3;
+}
+
+std::string MillTurn::digest() const { return milled_ ? tree().digest() : turned_.digest(); }
+
+TriangleMesh MillTurn::mesh(double tolerance_mm) const {
+  return milled_ ? tree().mesh(tolerance_mm) : turned_.mesh(tolerance_mm);
+}
+
+std::size_t MillTurn::tile_count() const {
+  return milled_ ? milled_->tree->tile_count() : turned_.tile_count();
+}
+
+Box MillTurn::tile_box(std::uint32_t tile) const {
+  return milled_ ? milled_->tree->tile_box(tile) : turned_.tile_box(tile);
+}
+
+std::vector<std::uint32_t> MillTurn::take_dirty_tiles() {
+  if (!milled_) return turned_.take_dirty_tiles();
+  std::vector<std::uint32_t> dirty;
+  if (seen_) {
+    dirty = tree().differing_tiles(*seen_);
+  } else {
+    for (std::uint32_t tile = 0; tile < tile_count(); ++tile) dirty.push_back(tile);
+  }
+  seen_ = tree().snapshot();
+  return dirty;
+}
+
+std::vector<std::uint32_t> MillTurn::differing_tiles(const StockModel& other) const {
+  const auto* const same = dynamic_cast<const MillTurn*>(&other);
+  if (milled_ && same && same->milled_) return tree().differing_tiles(same->tree());
+  if (!milled_ && same && !same->milled_) return turned_.differing_tiles(same->turned_);
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t tile = 0; tile < tile_count(); ++tile) all.push_back(tile);
+  return all;
+}
+
+std::uint64_t MillTurn::patch_version(std::uint32_t tile) const {
+  return milled_ ? tree().patch_version(tile) : turned_.patch_version(tile);
+}
+
+MeshPatch MillTurn::patch(std::uint32_t tile, int level) const {
+  return milled_ ? tree().patch(tile, level) : turned_.patch(tile, level);
+}
+
+}  // namespace kerf

@@ -1,0 +1,77 @@
+#include "stock/turning/turned_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stock/plane/outline_drawing.h"
+#include "stock/turning/contour_arcs.h"
+
+namespace kerf {
+namespace {
+
+/// How far the centre line sticks out at either end, mm.
+constexpr double kOverhang_mm = 5;
+
+/// Arcs of more than half a turn are two.
+plane::Curve drawn_curve(const turning::CurvedContour& contour) {
+  plane::Curve curve;
+  if (contour.size() == 1 && contour[0].arc) {
+    curve.circle = plane::CurveCircle{contour[0].arc->center_mm, contour[0].arc->radius_mm};
+    return curve;
+  }
+  for (const turning::ContourPiece& piece : contour) {
+    if (!piece.arc) {
+      curve.corners.push_back({piece.from_mm, 0});
+      continue;
+    }
+    const turning::PieceArc& arc = *piece.arc;
+    const bool halves = std::abs(arc.sweep_rad) > kPi;
+    const double bulge = std::tan(arc.sweep_rad / (halves ? 8 : 4));
+    curve.corners.push_back({piece.from_mm, bulge});
+    if (!halves) continue;
+    const Vec2 arm = piece.from_mm - arc.center_mm;
+    const double angle = std::atan2(arm.y, arm.x) + arc.sweep_rad / 2;
+    curve.corners.push_back(
+        {arc.center_mm + arc.radius_mm * Vec2(std::cos(angle), std::sin(angle)), bulge});
+  }
+  return curve;
+}
+
+struct TurnedDrawing {
+  std::vector<plane::Curve> curves;
+  plane::DrawingStyle style;
+};
+
+TurnedDrawing drawing_of(const TurnedPart& part) {
+  TurnedDrawing drawing;
+  turning::Rect box;
+  for (const turning::Contour& contour : part.contours()) {
+    box.extend(contour.box());
+    drawing.curves.push_back(drawn_curve(turning::with_arcs(contour)));
+  }
+  if (box.empty()) box = {0, 0, 0, 0};
+  const double low = turning::to_mm(box.min_x), high = turning::to_mm(box.max_x);
+  plane::DrawingStyle& style = drawing.style;
+  style.digits = 5;
+  style.layer = "CONTOUR";
+  style.centre_line = {Vec2(low - kOverhang_mm, 0), Vec2(high + kOverhang_mm, 0)};
+  style.low_mm = {low - kOverhang_mm, 0};
+  style.high_mm = {high + kOverhang_mm, turning::to_mm(box.max_y)};
+  style.keeps_x = true;
+  return drawing;
+}
+
+}  // namespace
+
+Done write_turned_dxf(const TurnedPart& part, const std::string& path) {
+  const TurnedDrawing drawing = drawing_of(part);
+  return plane::write_curves_dxf(drawing.curves, drawing.style, path);
+}
+
+Done write_turned_svg(const TurnedPart& part, const std::string& path) {
+  const TurnedDrawing drawing = drawing_of(part);
+  return plane::write_curves_svg(drawing.curves, drawing.style, path);
+}
+
+}  // namespace kerf
