@@ -56,15 +56,12 @@ class TurningTool {
   /// The same without a border of this width: what touches with it is that much inside the tool.
   /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
-<<<<<<< HEAD
   /// Of the same outline.
   bool is_like(const TurningTool& other) const;
-=======
   /// Its parts on the grid, or those of the tool as it is seen in a mirror, the axis.
   std::span<const turning::GridPart> parts(bool mirrored) const {
     return mirrored ? below_ : parts_;
   }
->>>>>>> main
 
  private:
   friend class TurnedPart;
@@ -193,9 +190,6 @@ class TurnedPart {
   /// Closed surface (revolve.h), about the z axis of the workpiece frame. With threads as
   /// wound_surface.h has it.
   TriangleMesh mesh(double tolerance_mm) const;
-
-  /// So far the controlled point is followed: farther away no tool reaches a blank.
-  static constexpr double kWayReach_mm = kMaxTurnedZ_mm + kMaxInsertReach_mm;
 
   /// For views the part is divided along z into kBands of equal width.
   static constexpr std::size_t kBands = 64;

@@ -47,10 +47,6 @@ void append_chords(const CutMove& move, std::vector<TurnMove>& moves) {
   moves.push_back({at, in_plane(move.to_mm), std::nullopt, move.id});
 }
 
-<<<<<<< HEAD
-/// What a move is in the plane: one move as a rule.
-std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
-=======
 void extend(TurnCut& whole, const TurnCut& part) {
   whole.removed_mm3 += part.removed_mm3;
   whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
@@ -58,6 +54,15 @@ void extend(TurnCut& whole, const TurnCut& part) {
   whole.flanks_mm = std::max(whole.flanks_mm, part.flanks_mm);
   for (std::size_t i = 0; i < kInsertSides; ++i)
     whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
+}
+
+/// What a tool on the axis leaves is the same whatever the lead.
+std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
+  std::vector<TurnMove> moves = turning_moves(move);
+  if (cutter.insert() == nullptr) {
+    for (TurnMove& turn : moves) turn.lead_mm = 0;
+  }
+  return moves;
 }
 
 }  // namespace
@@ -69,11 +74,9 @@ std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter) {
 }
 
 std::vector<TurnMove> turning_moves(const CutMove& move) {
->>>>>>> main
   TurnMove turn{in_plane(move.from_mm), in_plane(move.to_mm), std::nullopt, move.id};
   if (!move.arc) {
-    // On the axis it leaves the same whatever the lead.
-    if (cutter.insert() != nullptr) turn.lead_mm = move.lead_mm;
+    turn.lead_mm = move.lead_mm;
     return {turn};
   }
   const CutArc& arc = *move.arc;
@@ -110,11 +113,7 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
-<<<<<<< HEAD
     for (const TurnMove& turn : moves_of(cutter, move)) extend(whole, part_.cut(tool, turn));
-=======
-    for (const TurnMove& turn : turning_moves(move)) extend(whole, part_.cut(tool, turn));
->>>>>>> main
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;
@@ -134,11 +133,7 @@ std::optional<TurnContact> TurningStock::first_turn_contact(const Cutter& cutter
     ready_.inset_mm = tolerance_mm;
   }
   std::optional<TurnContact> first;
-<<<<<<< HEAD
   const std::vector<TurnMove> turns = moves_of(cutter, move);
-=======
-  const std::vector<TurnMove> turns = turning_moves(move);
->>>>>>> main
   for (std::size_t i = 0; i < turns.size(); ++i) {
     std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turns[i]);
     if (!met) continue;

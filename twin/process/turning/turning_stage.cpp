@@ -140,8 +140,7 @@ bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
-          ends_};
+  return {m, step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed, ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
