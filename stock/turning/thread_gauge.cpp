@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <optional>
 
 namespace kerf {
@@ -13,8 +14,9 @@ using turning::ThreadIntegral;
 using turning::ThreadPass;
 using PassPointer = std::shared_ptr<const ThreadPass>;
 
-/// A groove is full with this share of its greatest section, and there at all with this area.
-constexpr double kFullShare = 0.999;
+/// A groove is full where its section is as large as at most places, but for this share of it, and
+/// there at all with this area.
+constexpr double kFullShare = 1e-3;
 constexpr double kThere_mm2 = 1e-6;
 /// Places are looked at so many times a turn, then found to this.
 constexpr int kPlacesPerTurn = 16;
@@ -73,23 +75,30 @@ class Groove {
         static_cast<std::size_t>(std::min(turns * kPlacesPerTurn, 1e9)), 16, kMostPlaces);
     for (std::size_t i = 0; i <= count_; ++i) {
       areas_.push_back(area(way(i)));
-      most_ = std::max(most_, areas_.back());
     }
+    std::vector<double> some;
+    std::copy_if(areas_.begin(), areas_.end(), std::back_inserter(some),
+                 [](double a) { return a >= kThere_mm2; });
+    if (some.empty()) return;
+    const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+    std::nth_element(some.begin(), middle, some.end());
+    usual_ = *middle;
   }
 
-  double most_mm2() const { return most_; }
-  /// The longest on which the section is at least this.
-  Stretch longest(double area_mm2) {
+  bool is_there() const { return usual_ > 0; }
+  /// The longest on which it is full.
+  Stretch full() {
+    const auto is_full = [&](double a) { return std::abs(a - usual_) <= kFullShare * usual_; };
     Stretch best;
     for (std::size_t i = 0; i <= count_;) {
-      if (areas_[i] < area_mm2) {
+      if (!is_full(areas_[i])) {
         ++i;
         continue;
       }
       std::size_t end = i;
-      while (end < count_ && areas_[end + 1] >= area_mm2) ++end;
-      const Stretch found{border(i, i > 0 ? i - 1 : i, area_mm2),
-                          border(end, std::min(end + 1, count_), area_mm2)};
+      while (end < count_ && is_full(areas_[end + 1])) ++end;
+      const Stretch found{border(i, i > 0 ? i - 1 : i, is_full),
+                          border(end, std::min(end + 1, count_), is_full)};
       if (found.length() > best.length()) best = found;
       i = end + 1;
     }
@@ -97,11 +106,12 @@ class Groove {
   }
   /// From the first place to the last one at which it is there.
   Stretch there() {
+    const auto is_there = [](double a) { return a >= kThere_mm2; };
     Stretch all;
     for (std::size_t i = 0; i <= count_; ++i) {
-      if (areas_[i] < kThere_mm2) continue;
-      if (all.high < all.low) all.low = border(i, i > 0 ? i - 1 : i, kThere_mm2);
-      all.high = border(i, std::min(i + 1, count_), kThere_mm2);
+      if (!is_there(areas_[i])) continue;
+      if (all.high < all.low) all.low = border(i, i > 0 ? i - 1 : i, is_there);
+      all.high = border(i, std::min(i + 1, count_), is_there);
     }
     return all;
   }
@@ -111,11 +121,12 @@ class Groove {
     return pass_.length_mm() * static_cast<double>(i) / static_cast<double>(count_);
   }
   double area(double at) { return integral_.look(pass_, at, {}, edges_).area_mm2; }
-  double border(std::size_t inside, std::size_t outside, double least) {
+  template <class Holds>
+  double border(std::size_t inside, std::size_t outside, Holds&& holds) {
     double in = way(inside), out = way(outside);
     while (std::abs(out - in) > kPlaceBound_mm) {
       const double middle = (in + out) / 2;
-      (area(middle) >= least ? in : out) = middle;
+      (holds(area(middle)) ? in : out) = middle;
     }
     return in;
   }
@@ -125,7 +136,7 @@ class Groove {
   std::vector<ProfileEdge> edges_;
   std::vector<double> areas_;
   std::size_t count_ = 0;
-  double most_ = 0;
+  double usual_ = 0;
 };
 
 /// A section, level, over one lead.
@@ -218,8 +229,8 @@ std::optional<MeasuredThread> measured(const TurnedPart& part, const ThreadPass&
   const double lead = std::abs(step.x);
   if (lead < 0.1 * std::abs(pass.lead_mm())) return std::nullopt;  // a scroll
   Groove groove(part, pass);
-  if (groove.most_mm2() < kThere_mm2) return std::nullopt;
-  const Stretch full = groove.longest(kFullShare * groove.most_mm2());
+  if (!groove.is_there()) return std::nullopt;
+  const Stretch full = groove.full();
   if (full.length() < 0.5 * std::abs(pass.lead_mm())) return std::nullopt;
   MeasuredThread thread;
   thread.is_internal = is_inner(pass);
@@ -238,7 +249,7 @@ std::optional<MeasuredThread> measured(const TurnedPart& part, const ThreadPass&
   for (const PassPointer& other : part.threads().passes()) {
     if (other.get() == &pass || !(are_linked(pass, *other) || are_linked(*other, pass))) continue;
     Groove beside(part, *other);
-    if (beside.most_mm2() < kThere_mm2) continue;
+    if (!beside.is_there()) continue;
     const Stretch z = tips(*other, beside.there());
     all.low = std::min(all.low, z.low);
     all.high = std::max(all.high, z.high);

@@ -2,9 +2,9 @@
 //
 //        pitch
 //      |<----->|                      Measured on the section at one angle, where the groove has
-//      ___    ___    ___ ___ major    its full form: where it takes as much of the section as
-//     /   |  /   |  /   |             anywhere. Of tapers the section is sheared until crests are
-//    /     |/     |/    |_ minor      level.
+//      ___    ___    ___ ___ major    its full form: where it takes as much of the section as at
+//     /   |  /   |  /   |             most places. Of tapers the section is sheared until crests
+//    /     |/     |/    |_ minor      are level.
 //
 #pragma once
 
