@@ -185,7 +185,11 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
-  if (!checks_.may_touch(move)) return;
+  if (!checks_.may_touch(move)) {
+    // One that goes on from it does so with the turn.
+    if (m.kind == MotionKind::kThread) cut(m, step);
+    return;
+  }
   if (!is_driven()) {
     checks_.check_thread(m, step, site_.limits_known);
     threads_.note(move);
