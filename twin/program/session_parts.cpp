@@ -12,12 +12,14 @@
 
 #include "base/translate.h"
 #include "base/units.h"
+#include "stock/cutter/turning_hints.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
+#include "twin/job/turning_row.h"
 #include "twin/program/library_tools.h"
 
 namespace kerf {
@@ -204,8 +206,13 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
                          Diagnostics& diagnostics) {
   sources.arguments = arguments;
   add_library_tools(libraries, program, sources, diagnostics);
-  if (program) sources.hints = find_tool_hints(comments_with_units(*program, options.path));
-  if (options.tool_table_path.empty()) return true;
+  std::vector<CommentText> comments;
+  if (program) comments = comments_with_units(*program, options.path);
+  sources.hints = find_tool_hints(comments);
+  if (options.tool_table_path.empty()) {
+    sources.turning_hints = find_turning_hints(comments);
+    return true;
+  }
   auto rows = read_tool_table(options.tool_table_path, diagnostics,
                               mm_of_unit(options.machine.inch_machine));
   if (!rows) {
@@ -213,6 +220,7 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
     return false;
   }
   sources.table = std::move(rows.value());
+  sources.turning_hints = find_turning_hints(comments, turning_facts(sources.table));
   compare_with_table(sources, diagnostics);
   return !has_error(diagnostics);
 }
