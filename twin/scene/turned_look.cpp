@@ -11,10 +11,10 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kMostCorners = 24;
-constexpr int kAround = 72;  // of a circle; a multiple of four
+constexpr int kAroundAxis = 72;  // of a circle; a multiple of four
 
 glm::vec3 on_circle(const Vec2& zr, int step) {
-  const double angle = 2 * kPi * step / kAround;
+  const double angle = 2 * kPi * step / kAroundAxis;
   return glm::vec3(Vec3(zr.y * std::cos(angle), zr.y * std::sin(angle), zr.x));
 }
 
@@ -23,12 +23,12 @@ void add_chain(const std::vector<Vec2>& chain, std::vector<LineSegment>& lines) 
     const Vec2& from = chain[i];
     const Vec2& to = chain[(i + 1) % chain.size()];
     if (from.y > 0) {
-      for (int k = 0; k < kAround; ++k)
+      for (int k = 0; k < kAroundAxis; ++k)
         lines.push_back({on_circle(from, k), on_circle(from, k + 1)});
     }
     // A face is seen by its circles.
     if (from.x == to.x || (from.y == 0 && to.y == 0)) continue;
-    for (int k = 0; k < kAround; k += kAround / 4)
+    for (int k = 0; k < kAroundAxis; k += kAroundAxis / 4)
       lines.push_back({on_circle(from, k), on_circle(to, k)});
   }
 }
