@@ -33,6 +33,8 @@ TurningStage::TurningStage(ProcessSite& site)
       holders_(*stock_.turned(), log_),
       depths_(log_),
       noses_(*stock_.turned(), log_),
+      speeds_(log_),
+      threads_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
@@ -45,6 +47,7 @@ void TurningStage::begin_reporting() {
   holding_.begin_reporting();
   holders_.begin_reporting();
   noses_.forget();
+  threads_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
@@ -62,6 +65,7 @@ void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
+    threads_.end();
     noses_.finish();
     report_nothing_cut();
   }
@@ -79,6 +83,8 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
   if (!stands(m)) checks_.end_standing();
   if (is_traverse(m)) take_traverse(m, step);
   if (is_feed(m)) take_feed(m, step);
+  // The tool is known now: a driven one has a speed of its own.
+  if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
@@ -112,6 +118,7 @@ void TurningStage::mount_checks() {
   holders_.mount(cutter, mounted_->number);
   depths_.mount(cutter);
   noses_.mount(cutter, mounted_->number);
+  threads_.mount(cutter);
   edges_ = holders_.active()
                ? Cutter::from_insert(cutter.spec(), outlines_of(cutter).cutter, cutter.insert_tip())
                : cutter;
@@ -125,6 +132,8 @@ void TurningStage::unmount() {
   holders_.unmount();
   depths_.unmount();
   noses_.unmount();
+  speeds_.end_tool();
+  threads_.end();
 }
 
 std::vector<CollisionPair> TurningStage::collisions() const {
@@ -177,13 +186,18 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   const TurnedMove move = turned(m, step);
   check_bodies(move);
   if (!checks_.may_touch(move)) return;
-  if (!is_driven()) checks_.check_thread(m, step, site_.limits_known);
+  if (!is_driven()) {
+    checks_.check_thread(m, step, site_.limits_known);
+    threads_.note(move);
+  }
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing.
+/// What a tool must not touch, and what of it must touch nothing. A driven one comes at any angle
+/// to a workpiece that stands: not looked at.
 void TurningStage::check_bodies(const TurnedMove& move) {
+  if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
