@@ -77,7 +77,7 @@ void list_inserts(LengthUnit unit) {
   for (const IsoShape& shape : iso_shapes()) {
     const std::optional<double> angle = iso_angle_deg(shape.letter);
     kerf::print(stdout, "{}  {:>3}  {:>2}  {}\n", shape.letter,
-                shape.corners == 0 ? "-" : number_text(shape.nose_rad / kRadPerDeg),
+                shape.corners == 0 ? "-" : number_text(std::round(shape.nose_rad / kRadPerDeg)),
                 angle ? number_text(*angle) : "-", sizes_of(shape.letter, unit));
   }
   kerf::print(stdout, "{}",
