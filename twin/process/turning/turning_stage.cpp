@@ -116,6 +116,7 @@ void TurningStage::mount_checks() {
   const Cutter& cutter = *mounted_->cutter;
   if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
   holders_.mount(cutter, mounted_->number);
+  uses_[use_].holder_checked = holders_.active();
   depths_.mount(cutter);
   noses_.mount(cutter, mounted_->number);
   threads_.mount(cutter);
