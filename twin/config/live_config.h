@@ -51,9 +51,9 @@ struct ConfigMachine {
   MachineChoice drawn;                   ///< `model` and `links`
   /// `spindle`: sections from its nose upward, the first begins at 0; empty: it is not described.
   std::vector<ToolSection> spindle;
-  std::string spindle_spec;       ///< the text that `spindle` was read from
+  std::string spindle_spec;  ///< the text that `spindle` was read from
   std::optional<double> spindle_accel_rpm_per_s;
-  WorkHolding holding;       ///< `chuck` and `tailstock`
+  WorkHolding holding;  ///< `chuck` and `tailstock`
   std::optional<double> spindle_max_rpm;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored

@@ -78,8 +78,8 @@ ShapeGuess TurnedTrace::guess(double top_mm) const {
     const int face = left ? 95 : 85, along = left ? (slim ? 130 : 175) : (slim ? 50 : 5);
     out.shape = up ? fmt::format("turn:0.4:{}:{}:{}", orientation, face, along)
                    : fmt::format("turn:0.4:{}:{}:{}", orientation, 360 - face, 360 - along);
-    out.reason = slim ? tr("the contour falls: an insert of 35 degrees")
-                      : tr("an insert of 80 degrees");
+    out.reason =
+        slim ? tr("the contour falls: an insert of 35 degrees") : tr("an insert of 80 degrees");
   }
   if (bores) out.reason += tr(", in a bore");
   return out;

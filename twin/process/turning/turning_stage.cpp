@@ -140,8 +140,7 @@ bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
-          ends_};
+  return {m, step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed, ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
@@ -183,7 +182,8 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing; of tools in the plane of the axis.
+/// What a tool must not touch, and what of it must touch nothing; of tools in the plane of the
+/// axis.
 void TurningStage::check_bodies(const TurnedMove& move) {
   if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
@@ -219,14 +219,13 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
   if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
   if (main_turns) {
     tell_not_modelled(m, step,
-                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
-                         "not cut"),
-                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
-                         "driven tool itself"));
+                      tr("a driven tool cuts while the main spindle turns as well (turn-milling): "
+                         "its moves are not cut"),
+                      tr("M5 $0 comes before milling; M3 $0 alone turns the driven tool itself"));
   } else {
     tell_not_modelled(m, step,
                       tr("a driven tool on a machine whose kinematics are switched: how they hold "
-                         "the workpiece is not known, and it is not cut"),
+                         "the workpiece is not known, and its moves are not cut"),
                       tr("machine.kinematics: links says how the machine moves"));
   }
   return true;
