@@ -236,14 +236,13 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
   if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
   if (main_turns) {
     tell_not_modelled(m, step,
-                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
-                         "not cut"),
-                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
-                         "driven tool itself"));
+                      tr("a driven tool cuts while the main spindle turns as well (turn-milling): "
+                         "its moves are not cut"),
+                      tr("M5 $0 comes before milling; M3 $0 alone turns the driven tool itself"));
   } else {
     tell_not_modelled(m, step,
                       tr("a driven tool on a machine whose kinematics are switched: how they hold "
-                         "the workpiece is not known, and it is not cut"),
+                         "the workpiece is not known, and its moves are not cut"),
                       tr("machine.kinematics: links says how the machine moves"));
   }
   return true;
