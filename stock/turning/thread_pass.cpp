@@ -160,6 +160,13 @@ ThreadPass ThreadPass::turned_about(double at_z_mm) const {
   return pass;
 }
 
+ThreadPass ThreadPass::moved(double at_z_mm) const {
+  ThreadPass pass = *this;
+  pass.set_way({at_z_mm + from_.x, from_.y}, {at_z_mm + to_.x, to_.y});
+  pass.find_extent();
+  return pass;
+}
+
 std::uint32_t ThreadPass::mark() const {
   return static_cast<std::uint32_t>(
       std::min<std::uint64_t>(id_, MeshPatch::kNotCut - std::uint64_t{1}));

@@ -44,6 +44,8 @@ class ThreadPass {
                                             double low_r_mm, double high_r_mm, std::uint64_t id);
   /// As it lies when the part is held the other way round: z becomes `at_z_mm` - z.
   ThreadPass turned_about(double at_z_mm) const;
+  /// z becomes `at_z_mm` + z.
+  ThreadPass moved(double at_z_mm) const;
 
   const ConvexChain& corners() const { return corners_; }  ///< about the controlled point
   const Vec2& from_mm() const { return from_; }

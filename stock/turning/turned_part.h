@@ -141,6 +141,8 @@ class TurnedPart {
   /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
   /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
   std::optional<TurnedPart> turned_about(double at_z_mm) const;
+  /// The same moved: z becomes `at_z_mm` + z.
+  std::optional<TurnedPart> moved(double at_z_mm) const;
 
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
@@ -257,6 +259,7 @@ class TurnedPart {
   void drop_free_pieces(std::uint64_t id);
   void cut_marked(std::uint64_t id);
   double missing_mm3() const;
+  std::optional<TurnedPart> placed(double at_z_mm, bool turned_about) const;
   static std::uint64_t next_version();
   void touch_all();
   void touch_bands(const turning::Rect& box);

@@ -284,24 +284,31 @@ TurnedPart TurnedPart::restored(turning::SavedPart saved) {
   return part;
 }
 
-std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+std::optional<TurnedPart> TurnedPart::placed(double at_z_mm, bool turned_about) const {
   if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
   const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
-  turning::SavedPart turned = saved();
-  turned.blank.min_x = at - blank_.max_x;
-  turned.blank.max_x = at - blank_.min_x;
-  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  turning::SavedPart lies = saved();
+  lies.blank.min_x = at + (turned_about ? -blank_.max_x : blank_.min_x);
+  lies.blank.max_x = at + (turned_about ? -blank_.min_x : blank_.max_x);
+  if (lies.blank.min_x < -most || lies.blank.max_x > most) return std::nullopt;
   turning::ContourBuilder builder;
-  for (turning::Contour& contour : turned.contours) {
+  for (turning::Contour& contour : lies.contours) {
     turning::Ring ring = contour.ring();
-    std::reverse(ring.begin(), ring.end());
-    for (turning::Point& p : ring) p.X = at - p.X;
-    for (const turning::Point& p : ring) builder.append(p);
+    if (turned_about) std::reverse(ring.begin(), ring.end());
+    for (const turning::Point& p : ring) builder.append({at + (turned_about ? -p.X : p.X), p.Y});
     contour = builder.close();
   }
-  for (auto& pass : turned.threads)
-    pass = std::make_shared<const turning::ThreadPass>(pass->turned_about(at_z_mm));
-  return restored(std::move(turned));
+  for (auto& pass : lies.threads) {
+    pass = std::make_shared<const turning::ThreadPass>(turned_about ? pass->turned_about(at_z_mm)
+                                                                    : pass->moved(at_z_mm));
+  }
+  return restored(std::move(lies));
 }
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  return placed(at_z_mm, true);
+}
+
+std::optional<TurnedPart> TurnedPart::moved(double at_z_mm) const { return placed(at_z_mm, false); }
 
 }  // namespace kerf

@@ -197,6 +197,11 @@ TEST_F(TurningState, turned_about_and_back_it_is_the_same) {
   b.cut(disc, line({20, 25}, {20, 15}));
   EXPECT_NEAR(a.remaining_mm3(), b.remaining_mm3(), 1e-9);
   EXPECT_FALSE(first.part().turned_about(2000.5));
+  const std::optional<TurnedPart> moved = first.part().moved(25.5);
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(moved->bounds_mm(), (Box{{-20, -20, -38.5}, {20, 20, 25.5}}));
+  EXPECT_EQ(moved->moved(-25.5)->digest(), first.digest());
+  EXPECT_FALSE(first.part().moved(-1936.5));
   EXPECT_FALSE(first.part().turned_about(std::nan("")));
 }
 

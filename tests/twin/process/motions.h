@@ -25,6 +25,11 @@ class MotionList {
     state_.torch.spindles_on = on ? 1 : 0;
     return *this;
   }
+  /// Bit n: M3 $n.
+  MotionList& spindles(std::uint8_t on) {
+    state_.torch.spindles_on = on;
+    return *this;
+  }
   MotionList& output(unsigned n, bool on) {
     const std::uint64_t bit = std::uint64_t{1} << n;
     state_.torch.outputs = on ? state_.torch.outputs | bit : state_.torch.outputs & ~bit;

@@ -151,8 +151,9 @@ TEST(TurningStage, WhatIsNoEdgeMustNotTouch) {
   // Out of a groove towards +z the back of the insert goes first.
   MotionList program = start();
   program.traverse({30, 0, -20}).feed({15, 0, -20}).feed({15, 0, -10});
-  EXPECT_EQ(LatheShop(program).ids(), Ids{"flank-contact"});
-  EXPECT_EQ(LatheShop(program).finding(0).severity, Severity::kError);
+  // Into it the whole flank along the axis cuts, and it ends there.
+  EXPECT_EQ(LatheShop(program).ids(), (Ids{"over-depth", "flank-contact"}));
+  EXPECT_EQ(LatheShop(program).finding(1).severity, Severity::kError);
 }
 
 TEST(TurningStage, ABladeThatGoesFarBeyondTheAxisIsTold) {
