@@ -60,6 +60,55 @@ TEST(ThreadGauge, an_outer_thread) {
   EXPECT_LT(t.high_z_mm + t.high_run_out_mm, half);
 }
 
+/// X, Z and the lead of each move of G76 P1.5 Z-20 I-2 J0.3 K0.92 H1 R1.5 Q29.5 E1.5 L3 from X7 Z5,
+/// in G8, as rs274 of LinuxCNC 2.9 lists them: to 0.1 um.
+constexpr double kListing[][3] = {
+    {7.0000, 5.0000, 0},       {7.6200, 4.8303, 0},     {5.6200, 4.8303, 1.75966},
+    {4.7000, 3.3303, 1.75966}, {4.7000, -18.1492, 1.5}, {5.6200, -19.6492, 1.75966},
+    {7.6200, -19.6492, 0},     {7.4438, 4.7306, 0},     {5.4438, 4.7306, 1.75966},
+    {4.5238, 3.2306, 1.75966}, {4.5238, -18.2489, 1.5}, {5.4438, -19.7489, 1.75966},
+    {7.4438, -19.7489, 0},     {7.2960, 4.6469, 0},     {5.2960, 4.6469, 1.75966},
+    {4.3760, 3.1469, 1.75966}, {4.3760, -18.3325, 1.5}, {5.2960, -19.8325, 1.75966},
+    {7.2960, -19.8325, 0},     {7.1640, 4.5723, 0},     {5.1640, 4.5723, 1.75966},
+    {4.2440, 3.0723, 1.75966}, {4.2440, -18.4072, 1.5}, {5.1640, -19.9072, 1.75966},
+    {7.1640, -19.9072, 0},     {7.0428, 4.5037, 0},     {5.0428, 4.5037, 1.75966},
+    {4.1228, 3.0037, 1.75966}, {4.1228, -18.4758, 1.5}, {5.0428, -19.9758, 1.75966},
+    {7.0428, -19.9758, 0},     {7.0000, 4.4795, 0},     {5.0000, 4.4795, 1.75966},
+    {4.0800, 2.9795, 1.75966}, {4.0800, -18.5000, 1.5}, {5.0000, -20.0000, 1.75966},
+    {7.0000, -20.0000, 0},     {7.0000, 4.4795, 0},     {5.0000, 4.4795, 1.75966},
+    {4.0800, 2.9795, 1.75966}, {4.0800, -18.5000, 1.5}, {5.0000, -20.0000, 1.75966},
+    {7.0000, -20.0000, 0},
+};
+
+TEST(ThreadGauge, a_listing_of_the_interpreter) {
+  TurnedPart part = *TurnedPart::create(bar_profile(-40, 0, 10));
+  const TurningTool tool(vee_insert(0.1875, 60)), inner = tool.inset(0.01);
+  Vec2 at(5, 20);
+  double removed = 0;
+  for (const auto& [x, z, lead] : kListing) {
+    const TurnMove move{at, {z, x}, std::nullopt, 0, lead};
+    if (lead == 0) {
+      EXPECT_FALSE(part.first_contact(inner, move)) << x << " " << z;
+    }
+    removed += part.cut(tool, move).removed_mm3;
+    at = move.to_mm;
+  }
+  // The main way, and the way out: passes before, and the entry in the air, are in these.
+  EXPECT_EQ(part.threads().passes().size(), 2u);
+  EXPECT_NEAR(removed, part.blank_mm3() - part.remaining_mm3(), 1e-6);
+  const std::vector<MeasuredThread> threads = measure_threads(part);
+  ASSERT_EQ(threads.size(), 1u);
+  const MeasuredThread& t = threads[0];
+  EXPECT_TRUE(t.is_right_hand);
+  EXPECT_EQ(t.starts, 1);
+  EXPECT_NEAR(t.lead_mm, 1.5, 1e-6);
+  EXPECT_NEAR(t.major_mm, 10, kBound_mm);
+  EXPECT_NEAR(t.minor_mm, 8.16, kBound_mm);
+  EXPECT_NEAR(t.angle_rad, radians(60), 1e-3);
+  EXPECT_NEAR(t.low_z_mm, -18.5, 0.02);
+  EXPECT_NEAR(t.low_run_out_mm, 1.5, 0.02);
+}
+
 TEST(ThreadGauge, a_left_hand_thread_and_one_the_other_way) {
   for (const double lead : {-2.0, 2.0}) {
     for (const bool outward : {false, true}) {
