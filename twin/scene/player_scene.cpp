@@ -43,7 +43,10 @@ std::string notice_of(const PlayerState& state) {
 
 }  // namespace
 
-ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state) {
+ToolPose tool_pose_at(const MotionMoves& moves, const ProgramTrack& track,
+                      const PlayerState& state) {
+  const ToolPath* const live = state.cutter ? moves.live_path(*state.cutter) : nullptr;
+  const ToolPath* const path = live ? live : moves.path();
   if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
   const Pose pose = path->pose_at(state.motion, fraction_of(track, state));
   return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
@@ -296,7 +299,7 @@ double PlayerScene::removed_mm3(const PlayerState& state) {
 
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
   if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
-  return tool_pose_at(shown_.moves.path(), *track_, state);
+  return tool_pose_at(shown_.moves, *track_, state);
 }
 
 std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {

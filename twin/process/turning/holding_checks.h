@@ -56,7 +56,7 @@ class HoldingChecks {
     TurningTool thin;  ///< less what a contact may be deep
     TurningTool bare;  ///< less what rounding may be: where a contact begins
     Vec2 low_mm{0}, high_mm{0};
-    std::vector<std::size_t> pairs;  ///< by body
+    std::vector<std::size_t> pairs{};  ///< by body
   };
   std::size_t pair_of(int tool, ToolPart part, std::size_t body);
   void check_pair(const Mounted& part, Pair& pair, const TurnedMove& move,
