@@ -82,7 +82,9 @@ std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const Progra
   if (path == nullptr) {
     if (shown.turns && state.cutter) {
       const Vec3 held = held_from_tip(*tool_shape_of(*state.cutter));
-      return drawn_poses(machine, state.tip_mm + Vec3(0, 0, held.z), state.abc_deg, held.x);
+      const double before_mm = held.z > 0 ? before_turret_mm(machine) : 0;
+      return drawn_poses(machine, state.tip_mm + Vec3(0, 0, held.z + before_mm), state.abc_deg,
+                         held.x);
     }
     if (!shown.punch) return drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm);
     std::vector<glm::mat4> poses = drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm,

@@ -33,6 +33,8 @@ TurningStage::TurningStage(ProcessSite& site)
       holders_(*stock_.turned(), log_),
       depths_(log_),
       noses_(*stock_.turned(), log_),
+      speeds_(log_),
+      threads_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
@@ -45,6 +47,7 @@ void TurningStage::begin_reporting() {
   holding_.begin_reporting();
   holders_.begin_reporting();
   noses_.forget();
+  threads_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
@@ -62,6 +65,7 @@ void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
+    threads_.end();
     noses_.finish();
     report_nothing_cut();
   }
@@ -79,6 +83,8 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
   if (!stands(m)) checks_.end_standing();
   if (is_traverse(m)) take_traverse(m, step);
   if (is_feed(m)) take_feed(m, step);
+  // The tool is known now: a driven one has a speed of its own.
+  if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
@@ -110,8 +116,10 @@ void TurningStage::mount_checks() {
   const Cutter& cutter = *mounted_->cutter;
   if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
   holders_.mount(cutter, mounted_->number);
+  uses_[use_].holder_checked = holders_.active();
   depths_.mount(cutter);
   noses_.mount(cutter, mounted_->number);
+  threads_.mount(cutter);
   edges_ = holders_.active()
                ? Cutter::from_insert(cutter.spec(), outlines_of(cutter).cutter, cutter.insert_tip())
                : cutter;
@@ -125,6 +133,8 @@ void TurningStage::unmount() {
   holders_.unmount();
   depths_.unmount();
   noses_.unmount();
+  speeds_.end_tool();
+  threads_.end();
 }
 
 std::vector<CollisionPair> TurningStage::collisions() const {
@@ -176,14 +186,21 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
-  if (!checks_.may_touch(move)) return;
-  if (!is_driven()) checks_.check_thread(m, step, site_.limits_known);
+  if (!checks_.may_touch(move)) {
+    // One that goes on from it does so with the turn.
+    if (m.kind == MotionKind::kThread) cut(m, step);
+    return;
+  }
+  if (!is_driven()) {
+    checks_.check_thread(m, step, site_.limits_known);
+    threads_.note(move);
+  }
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing; of tools in the plane of the
-/// axis.
+/// What a tool must not touch, and what of it must touch nothing. A driven one comes at any angle
+/// to a workpiece that stands: not looked at.
 void TurningStage::check_bodies(const TurnedMove& move) {
   if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
@@ -246,7 +263,7 @@ void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
   undefined_ = true;
   use.feed_mm += step.length_mm;
   if (!first) return;
-  use.origin = tr("nothing");
+  use.origin = mounted_->origin.empty() ? tr("nothing") : mounted_->origin;
   tell_undefined(*mounted_, m, step, log_);
 }
 

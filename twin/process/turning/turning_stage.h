@@ -19,6 +19,8 @@
 #include "twin/process/turning/holder_checks.h"
 #include "twin/process/turning/holding_checks.h"
 #include "twin/process/turning/nose_checks.h"
+#include "twin/process/turning/speed_checks.h"
+#include "twin/process/turning/thread_checks.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
@@ -75,6 +77,8 @@ class TurningStage final : public Process {
   HolderChecks holders_;
   EdgeChecks depths_;
   NoseChecks noses_;
+  SpeedChecks speeds_;
+  ThreadChecks threads_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
   std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()
