@@ -104,12 +104,15 @@ void MillTurn::cut(const Cutter& cutter, std::span<const CutMove> moves,
   if (moves.empty()) return;
   if (milled_) {
     follow_profile(*milled_);
-  } else {
-    shown();  // as it is now: it has become that
-    milled_ = std::move(shown_);
+    shown_.reset();
+    milled_->tree->cut(cutter, moves, reports);
+    return;
   }
-  shown_.reset();
-  milled_->tree->cut(cutter, moves, reports);
+  shown();  // as it is now: what is milled becomes that
+  const std::unique_ptr<StockModel> before = shown_->tree->snapshot();
+  shown_->tree->cut(cutter, moves, reports);
+  if (shown_->tree->differing_tiles(*before).empty()) return;  // they went through the air
+  milled_ = std::move(shown_);
 }
 
 std::optional<Contact> MillTurn::first_contact(const Cutter& cutter, const CutMove& move,

@@ -21,8 +21,8 @@ struct MillTurnOptions {
   std::size_t memory_limit_bytes = std::size_t{4} << 30;
 };
 
-/// Until a driven tool (Cutter::live()) comes it is a TurningStock and nothing else. With the first
-/// one it becomes an octree: the blank's box, less what lies beyond the profile, less what is
+/// Until a driven tool (Cutter::live()) cuts it is a TurningStock and nothing else. With the first
+/// cut it becomes an octree: the blank's box, less what lies beyond the profile, less what is
 /// milled. What is removed adds up in whatever order, so profile and milled ways are kept apart:
 ///
 ///     workpiece = what the profile sweeps  AND  what the driven tools have left of the blank
