@@ -549,7 +549,14 @@ TrajectoryPlanner::TrajectoryPlanner(const MachineLimits& limits, const PlannerO
 
 TrajectoryPlanner::~TrajectoryPlanner() = default;
 
-void TrajectoryPlanner::push(const Motion& motion) { impl_->push(motion); }
+void TrajectoryPlanner::push(const Motion& motion) {
+  const double most = impl_->options.spindle.max_rpm;
+  const double wanted = motion.surface.on() ? motion.surface.max_rpm : motion.spindle_rpm;
+  if (most <= 0 || wanted <= most) return impl_->push(motion);
+  Motion capped = motion;
+  cap_speed(capped, most);
+  impl_->push(capped);
+}
 
 void TrajectoryPlanner::hold(double seconds) {
   impl_->halt();

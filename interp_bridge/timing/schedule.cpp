@@ -12,7 +12,7 @@ namespace {
 constexpr double kCornerChord_mm = 0.001;
 
 /// A way that is as even as this is given as even: most of dense code is.
-constexpr double kEven_s = 0.0002;
+constexpr double kEven_s = 0.0005;
 
 /// Room for what the look-ahead usually holds; grows where many short moves are merged.
 constexpr std::size_t kFirstCapacity = 1024;

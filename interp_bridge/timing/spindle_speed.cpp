@@ -94,6 +94,11 @@ SpindlePeak peak_spindle_rpm(const Motion& m) {
   return peak;
 }
 
+void cap_speed(Motion& m, double max_rpm) {
+  m.spindle_rpm = std::min(m.spindle_rpm, max_rpm);
+  m.surface.max_rpm = std::min(m.surface.max_rpm, max_rpm);
+}
+
 void SpindleSpeed::step(double commanded, double seconds) {
   const double most = drive_.accel_rpm_per_s * seconds;
   rpm_ += std::clamp(commanded - rpm_, -most, most);

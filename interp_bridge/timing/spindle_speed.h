@@ -24,6 +24,7 @@ SpindlePeak peak_spindle_rpm(const Motion& motion);
 struct SpindleDrive {
   /// Speed gained or lost in a second; 0: not known, it is at speed at once.
   double accel_rpm_per_s = 0;
+  double max_rpm = 0;  ///< it turns no faster, whatever is commanded; 0: not known
 
   /// As LinuxCNC's sample configurations have it (hallib: near, lowpass): at speed within a tenth
   /// or 10 rpm, by a speed that is measured with this lag.
@@ -33,6 +34,9 @@ struct SpindleDrive {
 
   bool known() const { return accel_rpm_per_s > 0; }
 };
+
+/// The motion as a spindle runs it that has a greatest speed.
+void cap_speed(Motion& motion, double max_rpm);
 
 /// The speed of a spindle in time. Speeds are signed: negative turns counterclockwise.
 class SpindleSpeed {

@@ -102,18 +102,28 @@ bool WayInTime::is_even() const { return *this == WayInTime{}; }
 
 double WayInTime::unevenness() const {
   if (is_even()) return 0;
-  const double before = static_cast<double>(in_way);
+  const double before = static_cast<double>(in_way), before_s = static_cast<double>(in_time);
   const double left = 1 - before - static_cast<double>(out_way);
-  const bool slows = slow_from != slow_to;
-  const Middle middle(*this);
-  const double up = slows ? static_cast<double>(cap) : middle.up;
-  const double down = slows ? static_cast<double>(cap) / 2 : middle.down;
-  double most = std::max(std::abs(static_cast<double>(in_time - in_way)),
-                         std::abs(static_cast<double>(out_time - out_way)));
-  for (const double on : {up, down, 0.5, (up + 1) / 2}) {
-    const double at = before + left * on;
-    most = std::max(most, std::abs(time_of(at) - at));
+  const double left_s = 1 - before_s - static_cast<double>(out_time);
+  double most = std::max(std::abs(before_s - before), std::abs(left + before - left_s - before_s));
+  const auto look = [&](double way, double time) {
+    most = std::max(most, std::abs(before_s + left_s * time - before - left * way));
+  };
+  if (slow_from != slow_to) {
+    const Slowness slowness(*this);
+    const double whole_s = slowness.whole_s();
+    for (const double way : {slowness.cap, slowness.cap / 2, (1 + slowness.cap) / 2}) {
+      look(way, slowness.time_of(way) / whole_s);
+    }
+    return most;
   }
+  // At the ends of the ramps, and half of their time before and behind.
+  const Middle m(*this);
+  const double whole_s = m.whole_s();
+  look(m.up, m.up_s / whole_s);
+  look(m.down, (m.up_s + m.on_s) / whole_s);
+  look((3 * m.from + 1) / 8 * m.up_s, m.up_s / 2 / whole_s);
+  look(1 - (3 * m.to + 1) / 8 * m.down_s, 1 - m.down_s / 2 / whole_s);
   return most;
 }
 

@@ -151,6 +151,7 @@ void take_work(WorkRequest work, LiveOptions& options) {
   options.margin_mm = work.margin_mm;
   options.cutting.checks.below_mm = work.below_mm;
   options.cutting.checks.spindle_max_rpm = work.spindle_max_rpm;
+  options.cutting.timeline.planner.spindle.max_rpm = work.spindle_max_rpm;
   options.cutting.checks.collisions = std::move(work.collisions);
 }
 

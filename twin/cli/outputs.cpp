@@ -18,6 +18,8 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/sheet/sheet.h"
+#include "stock/turning/turned_drawing.h"
+#include "stock/turning/turning_stock.h"
 #include "twin/program/session_parts.h"
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
@@ -193,6 +195,16 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
                        : stock->save(paths.state),
                  diagnostics);
     done_with(paths.state);
+  }
+  const bool wants_outline = !paths.dxf.empty() || !paths.svg.empty();
+  if (const TurningStock* const turned = stock ? stock->turned() : nullptr) {
+    if (!paths.dxf.empty()) note_failure(write_turned_dxf(turned->part(), paths.dxf), diagnostics);
+    done_with(paths.dxf);
+    if (!paths.svg.empty()) note_failure(write_turned_svg(turned->part(), paths.svg), diagnostics);
+    done_with(paths.svg);
+  } else if (stock && !stock->sheet() && wants_outline) {
+    fault(diagnostics, fmt::format("{}: {}", paths.dxf.empty() ? "--svg" : "--dxf",
+                                   tr("only a sheet or a turned part has outlines to write")));
   }
   if (sheet) {
     std::vector<std::string> errors;

@@ -69,6 +69,7 @@ RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
   session.margin_mm = work.margin_mm;
   session.below_mm = work.below_mm;
   session.spindle_max_rpm = work.spindle_max_rpm;
+  session.timeline.planner.spindle.max_rpm = work.spindle_max_rpm;
   session.collisions = std::move(work.collisions);
   note_sheet(session);
   session.timeline.planner.with_path = work.planned_path;

@@ -97,6 +97,7 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
   if (mode.kind == MotionKind::kArc) {
     move.arc = CutArc{read(arc_center_mm_, i), mode.arc.axis, arc_sweep_rad_.real_at(i)};
   }
+  if (mode.kind == MotionKind::kThread) move.lead_mm = lead_mm_of(motion(i));
   return move;
 }
 
@@ -233,7 +234,7 @@ std::size_t ProgramTrack::bytes() const {
     sum += column->bytes() - sizeof *column;
   }
   sum += modes_.capacity() * sizeof(Motion) + jumps_.capacity() * sizeof(Jump);
-  sum += ways_.capacity() * sizeof(WayInTime);
+  sum += ways_.capacity() * sizeof(PackedWay);
   sum += block_start_.capacity() * sizeof(std::uint64_t);
   return sum + (lines_.capacity() + tool_changes_.capacity()) * sizeof(std::uint32_t);
 }
@@ -356,10 +357,9 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   t.programmed_.push_real(timed.programmed_mm_per_min);
   t.allowed_.push_real(timed.allowed_mm_per_min);
   t.mode_.push(mode_of(m));
-  if (t.ways_.empty()) t.ways_.emplace_back();
   const bool even = timed.way.is_even();
-  if (!even) t.ways_.push_back(timed.way);
-  t.way_.push(even ? 0 : t.ways_.size() - 1);
+  if (!even) t.ways_.emplace_back(timed.way);
+  t.way_.push(even ? 0 : t.ways_.size());
   t.line_.push(m.source.line);
   t.selected_tool_.push(static_cast<std::uint32_t>(m.selected_tool));
   t.selected_at_.push(line_key(m.selected_at));

@@ -17,6 +17,7 @@
 #include "twin/machine/motion_moves.h"
 #include "twin/machine/timeline.h"
 #include "twin/playback/packed_column.h"
+#include "twin/playback/packed_way.h"
 
 namespace kerf {
 
@@ -39,7 +40,7 @@ class ProgramTrack {
   bool empty() const { return size() == 0; }
 
   Motion motion(std::size_t i) const;
-  /// As the planner gave it.
+  /// As the planner gave it, but for the last digits of TimedStep::way.
   TimedStep step(std::size_t i) const;
   /// cut_move_from(motion(i), i), at a fifth of the cost.
   CutMove cut_move(std::size_t i) const;
@@ -59,7 +60,11 @@ class ProgramTrack {
 
   double start_s(std::size_t i) const { return start_s_.real_at(i); }
   double end_s(std::size_t i) const { return start_s(i) + duration_s_.real_at(i); }
-  const WayInTime& way(std::size_t i) const { return ways_[static_cast<std::size_t>(way_.at(i))]; }
+  /// How the way of motion i goes in its time.
+  WayInTime way(std::size_t i) const {
+    const std::uint64_t number = way_.at(i);
+    return number == 0 ? WayInTime{} : ways_[static_cast<std::size_t>(number) - 1].unpacked();
+  }
   /// Of the whole program.
   double duration_s() const { return empty() ? 0 : end_s(size() - 1); }
 
@@ -133,12 +138,12 @@ class ProgramTrack {
   PackedColumn selected_tool_{Of::kIntegers};
   PackedColumn selected_at_{Of::kIntegers};  ///< file and line
   PackedColumn mode_{Of::kIntegers};         ///< indexes modes_
-  PackedColumn way_{Of::kIntegers};          ///< indexes ways_
-  std::vector<WayInTime> ways_;              ///< [0] is even
-  std::vector<Motion> modes_;                ///< all that motions share; what varies is zero
-  std::vector<Jump> jumps_;                  ///< in order
-  std::vector<std::uint64_t> block_start_;   ///< a bit a motion
-  std::vector<std::uint32_t> lines_;         ///< first motions of blocks, by (file, line, motion)
+  PackedColumn way_{Of::kIntegers};          ///< 0: even; else ways_[way - 1]
+  std::vector<PackedWay> ways_;
+  std::vector<Motion> modes_;               ///< all that motions share; what varies is zero
+  std::vector<Jump> jumps_;                 ///< in order
+  std::vector<std::uint64_t> block_start_;  ///< a bit a motion
+  std::vector<std::uint32_t> lines_;        ///< first motions of blocks, by (file, line, motion)
   std::vector<std::uint32_t> tool_changes_;
   std::vector<std::string> files_;
   WorkpieceFrame frame_;

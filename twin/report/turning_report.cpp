@@ -20,13 +20,16 @@ double weight_kg(const TurnedPiece& piece, double density_kg_per_m3) {
 
 }  // namespace
 
-TurningReport turning_report(const TurningStock& stock, const Process& process,
+TurningReport turning_report(const StockModel& stock, const Process& process,
                              double density_kg_per_m3) {
   TurningReport report;
+  const TurningStock& turned = *stock.turned();
   report.density_kg_per_m3 = density_kg_per_m3;
+  // It has cells once a driven tool has cut.
+  if (stock.cell_mm() != turned.cell_mm()) report.milled_cell_mm = stock.cell_mm();
   report.pieces.assign(process.fallen().begin(), process.fallen().end());
   Box left;
-  for (const std::vector<Vec2>& ring : stock.part().profile()) {
+  for (const std::vector<Vec2>& ring : turned.part().profile()) {
     for (const Vec2& p : ring) left.extend(Vec3(p.x, p.y, 0));
   }
   if (left.empty()) return report;
@@ -39,6 +42,7 @@ Json turning_json(const TurningReport& report, const std::vector<std::string>& f
   Json out;
   out["length_mm"] = rounded(report.length_mm);
   out["diameter_mm"] = rounded(report.diameter_mm);
+  if (report.milled_cell_mm > 0) out["milled_cell_mm"] = rounded(report.milled_cell_mm);
   out["density_kg_per_m3"] = rounded(report.density_kg_per_m3);
   Json pieces = Json::array();
   for (const FallenPiece& fallen : report.pieces) {
@@ -62,6 +66,8 @@ Json turning_json(const TurningReport& report, const std::vector<std::string>& f
 std::string turning_text(const TurningReport& report) {
   std::string out = trf("part      {:.2f} mm long, diameter {:.2f} mm at most\n", report.length_mm,
                         report.diameter_mm);
+  if (report.milled_cell_mm > 0)
+    out += trf("          milled by driven tools, in cells of {:g} mm\n", report.milled_cell_mm);
   for (std::size_t i = 0; i < std::min(report.pieces.size(), kPiecesShown); ++i) {
     const FallenPiece& fallen = report.pieces[i];
     const TurnedPiece& piece = fallen.piece;

@@ -248,8 +248,8 @@ void Session::complete_report(const CutStage& stage) {
   if (const Sheet* const sheet = stock()->sheet()) {
     report_.sheet = sheet_report(*sheet, stage.process(), options_.beam.density_kg_per_m3);
   }
-  if (const TurningStock* const turned = stock()->turned()) {
-    report_.turning = turning_report(*turned, stage.process(), options_.beam.density_kg_per_m3);
+  if (stock()->turned()) {
+    report_.turning = turning_report(*stock(), stage.process(), options_.beam.density_kg_per_m3);
   }
 }
 

@@ -8,12 +8,15 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/interp_bridge/timing/run_support.h"
+#include "tests/interp_bridge/timing/place_support.h"
 
 namespace kerf {
 namespace {
 
 constexpr double kEach = 0.02;
+/// Share of a motion's time by which a place of it may be passed early or late, besides
+/// kSpindlePeriods.
+constexpr double kEachMotion = 0.015;
 constexpr double kInch_mm = 25.4;
 
 /// tests/live/lathe/lathe.ini and hallib/basic_sim.tcl.
@@ -78,6 +81,21 @@ TEST(LatheRuns, TimesOfARealLinuxCnc) {
     std::printf("%-16s %10.3f %10.3f %+7.2f %%\n", measured.program.c_str(), measured.seconds,
                 planned, 100 * (planned / measured.seconds - 1));
     EXPECT_NEAR(planned, measured.seconds, kEach * measured.seconds) << measured.program;
+  }
+}
+
+/// A place of a feed at a constant surface speed is passed late where the way is short of speed and
+/// soon where the cap holds; of a thread when the spindle has turned so far.
+TEST(LatheRuns, PlacesArePassedWhenARealLinuxCncPassedThem) {
+  std::printf("%-16s %8s %8s %10s %9s\n", "program", "places", "corners", "in motion", "evenly");
+  for (const auto& [name, samples] : recorded_places(LATHE_PLACES)) {
+    const std::vector<Motion> motions = motions_of(name);
+    const Passing passing =
+        compare(motions, plan_of(motions, lathe_limits(), lathe_spindle()), samples, 0.3);
+    std::printf("%-16s %8zu %8zu %10.2f %9.2f\n", name.c_str(), passing.compared,
+                passing.in_corners, 1000 * passing.in_motion_worst_s, 1000 * passing.even_worst_s);
+    EXPECT_GT(passing.compared, 200U) << name;
+    EXPECT_LT(passing.worst_share, kEachMotion) << name;
   }
 }
 

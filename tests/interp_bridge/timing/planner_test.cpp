@@ -223,6 +223,73 @@ TEST(Planner, ThreadsFollowTheSpindle) {
               1e-9);
 }
 
+TEST(Planner, ASpindleTurnsNoFasterThanItDoes) {
+  const auto seconds = [](double s_rpm, double max_rpm) {
+    Path path(PathMode::kExactStop);
+    path.state().feed_per_rev = true;
+    path.state().spindle = SpindleState::kClockwise;
+    path.state().spindle_rpm = s_rpm;
+    path.feed(0.1).line(10, 0);
+    PlannerOptions options;
+    options.spindle.max_rpm = max_rpm;
+    return plan_of(path.motions, MachineLimits::small_mill(), options).clock_s;
+  };
+  EXPECT_EQ(seconds(6000, 3000), seconds(3000, 0));
+  EXPECT_EQ(seconds(2000, 3000), seconds(2000, 0));
+  EXPECT_GT(seconds(2000, 0), seconds(3000, 0) * 1.4);
+}
+
+/// Under G96, with a spindle that has to be waited for after each traverse.
+TEST(Planner, FeedsWaitForTheSpindleUnderG96) {
+  const auto plan = [](double accel_rpm_per_s) {
+    Path path(PathMode::kExactStop);
+    path.state().feed_per_rev = true;
+    path.state().spindle = SpindleState::kClockwise;
+    path.state().surface = {100000, 3000, 0};
+    path.rapid(40, 0).feed(0.1).line(30, 0).rapid(8, 0).line(8, 0, -1);
+    PlannerOptions options;
+    options.spindle.accel_rpm_per_s = accel_rpm_per_s;
+    return plan_of(path.motions, MachineLimits::small_mill(), options);
+  };
+  const Plan ideal = plan(0), slow = plan(1000);
+  // On its way from X30 to X8 (0.42 s) it follows as fast as it can, and then goes on up to a tenth
+  // below what is commanded there, as late as it is measured.
+  const double k = 100000 / (2 * kPi);
+  double rpm = k / 30, now_s = 0;
+  constexpr double kStep_s = 1e-5;
+  for (double x = 30, speed = 0; now_s < 0.42 || rpm < k / 8 / 1.1; now_s += kStep_s) {
+    speed = std::clamp(std::min(500 * now_s, 500 * (0.42 - now_s)), 0.0, 100.0);
+    x = std::max(x - speed * kStep_s, 8.0);
+    rpm = std::min(k / x, rpm + 1000 * kStep_s);
+  }
+  const double waits_s =
+      slow.timings[3].start_s - (slow.timings[2].start_s + slow.timings[2].duration_s);
+  EXPECT_NEAR(waits_s, now_s - 0.42 + SpindleDrive::kMeasured_s, 0.003);
+  EXPECT_NEAR(ideal.timings[3].start_s, ideal.timings[2].start_s + ideal.timings[2].duration_s,
+              1e-9);
+  EXPECT_NEAR(ideal.timings[1].programmed_mm_per_min, 0.1 * 100000 / (2 * kPi * 30), 1e-6);
+}
+
+/// Threads right behind each other stay in step: one wait, and no stop between them.
+TEST(Planner, ThreadsInARowWaitOnce) {
+  const auto seconds = [](int parts) {
+    Path path;
+    path.state().spindle = SpindleState::kClockwise;
+    path.state().spindle_rpm = 600;
+    path.state().feed_per_rev = true;
+    path.feed(2);
+    for (int i = 1; i <= parts; ++i) {
+      Motion m = path.state();
+      m.kind = MotionKind::kThread;
+      m.from_mm = {0, 0, -30.0 * (i - 1) / parts};
+      m.to_mm = {0, 0, -30.0 * i / parts};
+      path.motions.push_back(m);
+    }
+    return plan_of(path.motions).clock_s;
+  };
+  EXPECT_NEAR(seconds(3), seconds(1), 1e-9);
+}
+
 TEST(Planner, BrakesToAStandstillBeforeAFeedThatFollowsTheSpindle) {
   Path path;
   path.state().spindle = SpindleState::kClockwise;

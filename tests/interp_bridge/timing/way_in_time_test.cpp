@@ -148,8 +148,7 @@ TEST(WayInTime, Unevenness) {
   for (int k = 1; k < 100; ++k) {
     most = std::max(most, std::abs(triangle.time_of(k / 100.0) - k / 100.0));
   }
-  EXPECT_GT(triangle.unevenness(), most / 2);
-  EXPECT_LE(triangle.unevenness(), most + 1e-9);
+  EXPECT_NEAR(triangle.unevenness(), most, 1e-3);
 }
 
 /// A thread waits for the index; behind its last move the planner rests.

@@ -57,8 +57,9 @@ std::vector<std::uint64_t> bits_of(const Motion& m) {
     add(m.to_abc_deg[i]);
   }
   for (const double value :
-       {m.arc.sweep_rad, m.feed_mm_per_min, m.spindle_rpm, m.duration_s,
-        static_cast<double>(m.blend_tolerance_mm), static_cast<double>(m.merge_tolerance_mm)}) {
+       {m.arc.sweep_rad, m.feed_mm_per_min, m.spindle_rpm, m.duration_s, m.surface.mm_per_min,
+        m.surface.max_rpm, m.surface.axis_x_mm, static_cast<double>(m.blend_tolerance_mm),
+        static_cast<double>(m.merge_tolerance_mm)}) {
     add(value);
   }
   return bits;
@@ -135,6 +136,8 @@ std::vector<Motion> wild_motions(std::size_t count) {
     m.tool_offset_mm = random() % 2 == 0 ? Vec3{0, 0, 12.5} : Vec3{-0.0, 0, 0};
     m.feed_mm_per_min = number();
     m.spindle_rpm = number();
+    m.surface = {random() % 2 == 0 ? 0 : 1.8e5, random() % 2 == 0 ? 1e30 : 2500,
+                 random() % 2 == 0 ? -0.0 : 12.5};
     m.duration_s = random() % 2 == 0 ? 0 : 0.25;
     m.blend_tolerance_mm = random() % 2 == 0 ? 0.F : 0.01F;
     m.merge_tolerance_mm = random() % 2 == 0 ? -0.F : 0.002F;
@@ -144,7 +147,7 @@ std::vector<Motion> wild_motions(std::size_t count) {
 }
 
 TEST(ProgramTrack, MotionsAndTimesComeOutBitForBit) {
-  ASSERT_EQ(sizeof(Motion), 496U) << "it has another field, which bits_of() must look at";
+  ASSERT_EQ(sizeof(Motion), 520U) << "it has another field, which bits_of() must look at";
   const std::vector<Motion> motions = wild_motions(5000);
   ProgramTrackBuilder builder;
   std::mt19937_64 random(8);
@@ -297,6 +300,56 @@ TEST(ProgramTrack, PlacesInTime) {
   EXPECT_EQ(track->place_at(1e9), (TrackPosition{14, 0, 20.5}));
   EXPECT_EQ(track->place_before(3), (TrackPosition{3, 0, 4.5}));
   EXPECT_EQ(track->place_before(14), (TrackPosition{14, 0, 20.5}));
+}
+
+/// Whoever asks when a place is passed, and where the tip is then, hears the same.
+TEST(ProgramTrack, PlacesAreWhereTheSpeedsAlongTheWayHaveThem) {
+  MotionList program;
+  program.feed({1, 0, 0})
+      .feed({60, 0, 0})
+      .feed({60, 5, 0})
+      .feed({58, 40, 0})
+      .tool(1)
+      .feed({4, 0, 0});
+  const auto track = test::track_of(program.list());
+  std::size_t uneven = 0;
+  for (std::size_t i = 0; i < track->size(); ++i) {
+    const TimedStep step = track->step(i);
+    if (step.duration_s <= 0 || step.length_mm <= 0) continue;
+    uneven += step.way.is_even() ? 0 : 1;
+    for (int k = 1; k < 20; ++k) {
+      const double share = k / 20.0;
+      const TrackPosition place = track->place_at(step.time_at(share));
+      EXPECT_EQ(place.motion, i);
+      EXPECT_NEAR(place.fraction, share, 1e-5) << i;
+      EXPECT_NEAR(step.way_at(place.time_s), share, 1e-5) << i;
+    }
+  }
+  EXPECT_GE(uneven, 4U);
+}
+
+TEST(PackedWay, TellsTheSamePlaces) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    WayInTime way;
+    if (i % 3 == 0) {
+      const double first = 0.1 + any(random), last = 0.1 + any(random);
+      way.set_slowness(first, last, first + (last - first) * any(random));
+    } else {
+      const double cruise = 1 + 50 * any(random), first = 1.9 * cruise * any(random);
+      way.set_ramps(5 + 300 * any(random), 500, first, cruise, cruise * any(random));
+    }
+    way.in_way = static_cast<float>(0.2 * any(random));
+    way.in_time = static_cast<float>(0.2 * any(random));
+    way.out_way = static_cast<float>(0.2 * any(random));
+    way.out_time = static_cast<float>(0.2 * any(random));
+    const WayInTime again = PackedWay(way).unpacked();
+    for (int k = 0; k <= 20; ++k) {
+      EXPECT_NEAR(again.way_of(k / 20.0), way.way_of(k / 20.0), 1e-4) << i << " " << k;
+    }
+  }
+  EXPECT_LE(sizeof(PackedWay), 20U);
 }
 
 TEST(ProgramTrack, ToolChanges) {

@@ -186,7 +186,11 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
-  if (!checks_.may_touch(move)) return;
+  if (!checks_.may_touch(move)) {
+    // One that goes on from it does so with the turn.
+    if (m.kind == MotionKind::kThread) cut(m, step);
+    return;
+  }
   if (!is_driven()) {
     checks_.check_thread(m, step, site_.limits_known);
     threads_.note(move);
@@ -232,14 +236,13 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
   if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
   if (main_turns) {
     tell_not_modelled(m, step,
-                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
-                         "not cut"),
-                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
-                         "driven tool itself"));
+                      tr("a driven tool cuts while the main spindle turns as well (turn-milling): "
+                         "its moves are not cut"),
+                      tr("M5 $0 comes before milling; M3 $0 alone turns the driven tool itself"));
   } else {
     tell_not_modelled(m, step,
                       tr("a driven tool on a machine whose kinematics are switched: how they hold "
-                         "the workpiece is not known, and it is not cut"),
+                         "the workpiece is not known, and its moves are not cut"),
                       tr("machine.kinematics: links says how the machine moves"));
   }
   return true;
@@ -260,7 +263,7 @@ void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
   undefined_ = true;
   use.feed_mm += step.length_mm;
   if (!first) return;
-  use.origin = tr("nothing");
+  use.origin = mounted_->origin.empty() ? tr("nothing") : mounted_->origin;
   tell_undefined(*mounted_, m, step, log_);
 }
 
