@@ -97,6 +97,7 @@ class TurningStage final : public Process {
   bool mill_turn_told_ = false;
   bool unmilled_told_ = false;
   bool touched_ = false;
+  bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };
 
 }  // namespace kerf
