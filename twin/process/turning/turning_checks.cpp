@@ -62,6 +62,17 @@ bool is_inside(const TurnedProfile& profile, const Vec2& p) {
 
 }  // namespace
 
+std::vector<TurnMove> rings_of(const TurnedMove& move) {
+  std::vector<TurnMove> turns;
+  for (const CutMove& cut : move.moves) {
+    for (TurnMove& turn : turning_moves(cut)) {
+      turn.lead_mm = 0;
+      turns.push_back(std::move(turn));
+    }
+  }
+  return turns;
+}
+
 bool TurningChecks::may_touch(const TurnedMove& move) const {
   const Box blank = stock_.bounds_mm();
   if (move.cutter.live()) {

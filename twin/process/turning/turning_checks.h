@@ -35,6 +35,9 @@ struct TurnedMove {
   }
 };
 
+/// Its moves in the plane of the axis; a thread's, too, go all round.
+std::vector<TurnMove> rings_of(const TurnedMove& move);
+
 /// Watches the moves of one program against one workpiece that turns. The caller calls before it
 /// cuts the move, except where it says otherwise.
 class TurningChecks {
