@@ -64,6 +64,17 @@ bool is_inside(const TurnedProfile& profile, const Vec2& p) {
 
 }  // namespace
 
+std::vector<TurnMove> rings_of(const TurnedMove& move) {
+  std::vector<TurnMove> turns;
+  for (const CutMove& cut : move.moves) {
+    for (TurnMove& turn : turning_moves(cut)) {
+      turn.lead_mm = 0;
+      turns.push_back(std::move(turn));
+    }
+  }
+  return turns;
+}
+
 bool TurningChecks::may_touch(const TurnedMove& move) const {
   const Box blank = stock_.bounds_mm();
   if (move.cutter.live()) {
@@ -105,7 +116,9 @@ std::optional<TurningChecks::Touch> TurningChecks::first_touch(const TurnedMove&
   for (std::size_t i = 0; i < move.moves.size(); ++i) {
     const auto met = stock_.first_turn_contact(move.edges, move.moves[i], kContactTolerance_mm);
     if (!met) continue;
-    if (!first) first = Touch{0, move.share_of(i, met->t)};
+    if (!first) first = Touch{0, move.share_of(i, met->t), true};
+    first->by_edges = first->by_edges && side_of(met->side_mm, InsertSide::kBody) <= 0 &&
+                      side_of(met->side_mm, InsertSide::kHolder) <= 0;
     first->depth_mm = std::max(first->depth_mm, met->depth_mm);
   }
   return first;
@@ -134,10 +147,8 @@ void TurningChecks::check_traverse(const TurnedMove& move, bool behind_feed) {
   if (!rapid_) {
     // From a shoulder straight out the edge takes what its own slant has left there: it marks the
     // part, and breaks nothing.
-    const bool drags = behind_feed && touch->share < kAtOnce &&
-                       touch->contact.depth_mm <= kSliver_mm &&
-                       side_of(touch->contact.side_mm, InsertSide::kBody) <= 0 &&
-                       side_of(touch->contact.side_mm, InsertSide::kHolder) <= 0;
+    const bool drags = behind_feed && touch->by_edges && touch->share < kAtOnce &&
+                       touch->depth_mm <= kSliver_mm;
     Finding finding =
         finding_of(FindingId::kRapidContact, move, touch->share,
                    drags ? tr("traverse drags along the shoulder that the feed before "

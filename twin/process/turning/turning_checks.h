@@ -35,6 +35,9 @@ struct TurnedMove {
   }
 };
 
+/// Its moves in the plane of the axis; a thread's, too, go all round.
+std::vector<TurnMove> rings_of(const TurnedMove& move);
+
 /// Watches the moves of one program against one workpiece that turns. The caller calls before it
 /// cuts the move, except where it says otherwise.
 class TurningChecks {
@@ -87,6 +90,7 @@ class TurningChecks {
   struct Touch {
     double depth_mm = 0;
     double share = 0;  ///< of the motion
+    bool by_edges = false;  ///< alone, of a tool that stands still
   };
   /// Where a face was turned towards the axis.
   struct Face {
