@@ -24,6 +24,8 @@ constexpr double kAngleSlack_deg = 0.4;
 constexpr double kAsDeep_mm = 0.005;
 /// Of the lead: starts that lie less apart are one.
 constexpr double kSameStart = 0.04;
+/// Threads are no more slanting to the axis, as a tangent.
+constexpr double kMostTaper = 0.3;
 /// Flanks that lean less from square to the axis are none of a thread.
 constexpr double kLeastFlank = 0.2;
 
@@ -84,7 +86,8 @@ void ThreadChecks::note(const TurnedMove& move) {
   const Motion& m = move.motion;
   if (!form_ || m.kind != MotionKind::kThread || m.feed_mm_per_min <= 0) return;
   const double low = std::min(m.from_mm.z, m.to_mm.z), high = std::max(m.from_mm.z, m.to_mm.z);
-  if (high - low <= 0) return;
+  // What slants more is the way in or out of a pass (G76 L).
+  if (high - low <= 0 || std::abs(m.to_mm.x - m.from_mm.x) > kMostTaper * (high - low)) return;
   const double lead = m.feed_mm_per_min;
   const double z = 0.5 * (low + high), x = std::abs(0.5 * (m.from_mm.x + m.to_mm.x));
   if (thread_ && (std::abs(thread_->lead_mm - lead) > 1e-6 * lead || low >= thread_->high_z_mm ||

@@ -16,8 +16,8 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kMostFaces = 64;
-/// Of a traverse: it touches from the first.
-constexpr double kAtOnce = 1e-3;
+/// Of a traverse: it touches from the first, as soon as that is a contact (kContactTolerance_mm).
+constexpr double kAtOnce_mm = 0.5;
 /// Faces are turned along X alone.
 constexpr double kAlong_mm = 1e-6;
 
@@ -147,7 +147,8 @@ void TurningChecks::check_traverse(const TurnedMove& move, bool behind_feed) {
   if (!rapid_) {
     // From a shoulder straight out the edge takes what its own slant has left there: it marks the
     // part, and breaks nothing.
-    const bool drags = behind_feed && touch->by_edges && touch->share < kAtOnce &&
+    const bool drags = behind_feed && touch->by_edges &&
+                       touch->share * move.step.length_mm < kAtOnce_mm &&
                        touch->depth_mm <= kSliver_mm;
     Finding finding =
         finding_of(FindingId::kRapidContact, move, touch->share,

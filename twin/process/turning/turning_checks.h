@@ -89,7 +89,7 @@ class TurningChecks {
  private:
   struct Touch {
     double depth_mm = 0;
-    double share = 0;  ///< of the motion
+    double share = 0;       ///< of the motion
     bool by_edges = false;  ///< alone, of a tool that stands still
   };
   /// Where a face was turned towards the axis.
