@@ -100,7 +100,7 @@ TEST(StockChoice, WhatALatheMayHold) {
   EXPECT_NEAR((*made)->blank_mm3(), 20 * 20 * std::sqrt(3.0) / 2 * 10, 1e-3);
   const auto refused = stock_model(StockKind::kZmap).create(*parse_blank("hex:0,0,-10:0:20"), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error(), "zmap cannot hold it: the blank is a hexagonal bar");
+  EXPECT_EQ(refused.error(), "a Z-map cannot hold it: the blank is a hexagonal bar");
 }
 
 TEST(StockChoice, ACutterThatNoModelHoldsIsRefused) {
