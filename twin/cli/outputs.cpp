@@ -62,7 +62,8 @@ void write_pieces(const StockModel& stock, const std::string& path, Diagnostics&
   std::uint32_t number = 0;
   for (const TurnedPiece& piece : turned->part().freed()) {
     ++number;
-    if (piece.part) note_failure(write(*piece.part, part_path(path, number)), diagnostics);
+    if (piece.part && piece.volume_mm3 >= kLeastPiece_mm3)
+      note_failure(write(*piece.part, part_path(path, number)), diagnostics);
   }
 }
 

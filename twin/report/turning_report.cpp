@@ -178,16 +178,24 @@ std::string turning_text(const TurningReport& report) {
                         report.diameter_mm);
   if (report.milled_cell_mm > 0)
     out += trf("          milled by driven tools, in cells of {:g} mm\n", report.milled_cell_mm);
-  if (report.pieces.empty()) out += text_of(report.facts);
+  const auto last = std::find_if(
+      report.pieces.rbegin(), report.pieces.rend(),
+      [](const FallenPiece& fallen) { return fallen.piece.volume_mm3 >= kLeastPiece_mm3; });
+  if (last == report.pieces.rend()) out += text_of(report.facts);
   for (std::size_t i = 0; i < std::min(report.pieces.size(), kPiecesShown); ++i) {
     const FallenPiece& fallen = report.pieces[i];
     const TurnedPiece& piece = fallen.piece;
+    if (piece.volume_mm3 < kLeastPiece_mm3) continue;
     out +=
         trf("piece     off in line {}: {:.2f} mm long, diameter {:.2f} mm, {:.2f} cm3, {:.3f} kg\n",
             fallen.source.line, piece.high_z_mm - piece.low_z_mm, 2 * piece.high_r_mm,
             piece.volume_mm3 / 1000, weight_kg(piece, report.density_kg_per_m3));
   }
-  if (!report.pieces.empty()) out += text_of(report.piece_facts.back());
+  if (last != report.pieces.rend()) {
+    out += text_of(
+        report
+            .piece_facts[static_cast<std::size_t>(std::distance(last, report.pieces.rend()) - 1)]);
+  }
   if (report.pieces.size() > kPiecesShown) {
     out += trf("          and {} more\n", report.pieces.size() - kPiecesShown);
   }

@@ -45,6 +45,8 @@ nlohmann::ordered_json turning_json(const TurningReport& report,
 /// Lines for the page of text; the first kPiecesShown pieces, and of the last of them (or of what
 /// is left, if there is none) the first kSurfacesShown surfaces, and its threads.
 std::string turning_text(const TurningReport& report);
-inline constexpr std::size_t kPiecesShown = 20, kSurfacesShown = 30;
+inline constexpr std::size_t kPiecesShown = 20, kSurfacesShown = 20;
+/// Smaller ones are slivers: neither shown nor written (JSON has them).
+inline constexpr double kLeastPiece_mm3 = 1;
 
 }  // namespace kerf
