@@ -204,6 +204,39 @@ bool is_drawing(std::string_view file) {
   return lower.size() > 4 && (lower.ends_with(".dxf") || lower.ends_with(".svg"));
 }
 
+/// `text`: behind "state:". What follows the file's name begins with flip= or at=; the name may
+/// hold any other character, '+' and ':' too.
+Done parse_state(std::string_view text, LengthUnit unit, Blank& blank) {
+  bool has_flip = false, has_at = false;
+  for (std::size_t colon = text.rfind(':'); colon != std::string_view::npos;
+       colon = text.rfind(':')) {
+    const std::string_view field = trim(text.substr(colon + 1));
+    const std::string lower = to_lower(field);
+    const bool is_flip = lower.starts_with("flip="), is_at = lower.starts_with("at=");
+    if (!is_flip && !is_at) break;
+    if (is_flip ? has_flip : has_at)
+      return Error{trf("'{}': {} is given twice", shown(field), is_flip ? "flip=" : "at=")};
+    if (is_flip && trim(std::string_view(lower).substr(5)) != "x")
+      return Error{trf("'{}' is not allowed; must be flip=x", shown(field))};
+    if (is_at) {
+      const Result<Vec3> at = parse_point("at", field.substr(3), unit);
+      if (!at) return Error{at.error()};
+      if (at->x != 0 || at->y != 0) {
+        return Error{
+            trf("'{}' is not allowed; a part that turns stays at X0 Y0: at=0,0,z", shown(field))};
+      }
+      blank.saved_place.at_z_mm = at->z;
+    }
+    blank.saved_place.is_turned_about |= is_flip;
+    (is_flip ? has_flip : has_at) = true;
+    text = text.substr(0, colon);
+  }
+  const std::string_view file = trim(text);
+  if (file.empty()) return Error{tr("state:: the file name is missing; the form is state:FILE")};
+  blank.state_file = std::string(file);
+  return std::monostate{};
+}
+
 /// `text`: behind "profile:".
 Result<std::string> parse_profile(std::string_view text) {
   const std::string_view file = trim(text);
@@ -316,10 +349,8 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
   Blank blank;
   const std::size_t colon = spec.find(':');
   if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "state") {
-    // A file name may hold any character, '+' and ':' too.
-    const std::string_view file = trim(spec.substr(colon + 1));
-    if (file.empty()) return Error{tr("state:: the file name is missing; the form is state:FILE")};
-    blank.state_file = std::string(file);
+    const Done done = parse_state(spec.substr(colon + 1), unit, blank);
+    if (!done) return Error{done.error()};
     return blank;
   }
   if (colon != std::string_view::npos && to_lower(trim(spec.substr(0, colon))) == "sheet") {
@@ -349,7 +380,13 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
 }
 
 std::string describe(const Blank& blank) {
-  if (!blank.state_file.empty()) return trf("workpiece saved in {}", shown(blank.state_file));
+  if (!blank.state_file.empty()) {
+    const std::string text = trf("workpiece saved in {}", shown(blank.state_file));
+    const SavedPlace& place = blank.saved_place;
+    const std::string z = rounded(place.at_z_mm);
+    if (place.is_turned_about) return text + trf(", turned about, Z0 at Z{}", z);
+    return place.is_as_saved() ? text : text + trf(", Z0 at Z{}", z);
+  }
   if (blank.sheet) return describe(*blank.sheet);
   if (!blank.profile_file.empty()) return trf("profile from {}", shown(blank.profile_file));
   std::string text;

@@ -32,12 +32,21 @@ struct BlankSheet {
   std::string file;  ///< the drawing, DXF or SVG by its name; empty: the rectangle
 };
 
+/// How a saved workpiece lies now: turned about by half a turn about X0 Z0 along X, then moved
+/// along Z. Of workpieces that turn.
+struct SavedPlace {
+  bool is_turned_about = false;
+  double at_z_mm = 0;
+  bool is_as_saved() const { return !is_turned_about && at_z_mm == 0; }
+};
+
 /// Several bodies add up (union). `state_file` set: the blank is a saved workpiece instead; `sheet`
 /// set: it is a sheet instead; `profile_file` set: what turns about the x axis of this drawing
 /// (turned_blank.h).
 struct Blank {
   std::vector<BlankBody> bodies;
   std::string state_file;
+  SavedPlace saved_place;
   std::optional<BlankSheet> sheet;
   std::string profile_file;
   /// Empty for a saved workpiece and for what is in a drawing, which nobody has read yet.
@@ -50,10 +59,10 @@ std::string need_to_turn(const Blank& blank);
 
 /// SPEC: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | tube:x,y,z0:z1:d:inner[:axis] |
 /// hex:x,y,z0:z1:ACROSS_FLATS | square:x,y,z0:z1:ACROSS_FLATS ; several of these joined by '+'; or
-/// state:FILE | sheet:x0,y0:x1,y1:THICKNESS | sheet:FILE.dxf:THICKNESS | sheet:FILE.svg:THICKNESS |
-/// profile:FILE.dxf | profile:FILE.svg. stl: is named as not supported by this version. Zero or
-/// negative sizes, reversed corners, non-numbers are errors that show what was found and what is
-/// allowed. Its numbers are in `unit`. Reads no file.
+/// state:FILE[:flip=x][:at=0,0,z] | sheet:x0,y0:x1,y1:THICKNESS | sheet:FILE.dxf:THICKNESS |
+/// sheet:FILE.svg:THICKNESS | profile:FILE.dxf | profile:FILE.svg. stl: is named as not supported
+/// by this version. Zero or negative sizes, reversed corners, non-numbers are errors that show what
+/// was found and what is allowed. Its numbers are in `unit`. Reads no file.
 Result<Blank> parse_blank(std::string_view spec, LengthUnit unit = LengthUnit::kMm);
 
 /// "box 100 x 60 x 20 mm, X0..100 Y0..60 Z-20..0": for messages.

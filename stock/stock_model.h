@@ -42,8 +42,10 @@ struct CutMove {
   /// half a turn; not together with `arc`). Only models for tilted tools take any but (0, 0, 1).
   Vec3 axis_from{0, 0, 1};
   Vec3 axis_to{0, 0, 1};
-  /// The workpiece turns with the move: once a lead of the way along its axis, at angle 0 where the
-  /// move begins. 0: it turns so fast that any one move goes all round. Of models that turn.
+  /// The workpiece turns with the move, which is straight: once a lead of its way, positive as M3
+  /// turns it (seen along +Z clockwise), so that a way toward -Z leaves a right-hand thread. It is
+  /// at angle 0 where the move begins, or goes on from a move with a lead that has ended there. 0:
+  /// it turns so fast that any one move goes all round. Of models that turn.
   double lead_mm = 0;
 
   bool is_vertical() const {

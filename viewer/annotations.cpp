@@ -99,14 +99,20 @@ std::vector<Annotations::Dimension> Annotations::box_dimensions(const Vec3& righ
           {"Z", Side::kLeft, low, {low.x, low.y, high.z}, -offset_mm * right}};
 }
 
-/// In the plane of the axis that stands upright: length below, diameter beside the chuck's end.
+/// On the side of the eye, where the part does not hide them: length below, diameter beside the
+/// chuck's end.
 std::vector<Annotations::Dimension> Annotations::turned_dimensions(double offset_mm) const {
   const Vec3 low_z(0, 0, blank_mm_.min.z), high_z(0, 0, blank_mm_.max.z);
   const Vec3 up = up_of(standing_);
   const double radius_mm = 0.5 * glm::dot(blank_mm_.size(), up);
   const Vec3 across = radius_mm * up;
-  return {{"Z", Side::kBelow, low_z - across, high_z - across, -offset_mm * up},
-          {"\u00d8", Side::kLeft, low_z - across, low_z + across, {0, 0, -offset_mm}}};
+  const Vec3 before = radius_mm * in_workpiece({0, -1, 0}, standing_);
+  return {{"Z", Side::kBelow, low_z - across + before, high_z - across + before, -offset_mm * up},
+          {"\u00d8",
+           Side::kLeft,
+           low_z - across + before,
+           low_z + across + before,
+           {0, 0, -offset_mm}}};
 }
 
 std::vector<Vec3> Annotations::points_to_fit() const {

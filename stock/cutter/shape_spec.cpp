@@ -644,8 +644,8 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
       out += field;
     } else if (is_shape_option(field, kOptionNames)) {
       const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
-      out +=
-          fmt::format("{}={}", name, name == "teeth" ? std::string(value) : parts_in(value, unit));
+      const bool is_length = name != "teeth" && name != "live";
+      out += fmt::format("{}={}", name, is_length ? parts_in(value, unit) : std::string(value));
     } else if (is_file || (index < form->parameters.size() &&
                            std::string_view(form->parameters[index]).find("angle") !=
                                std::string_view::npos)) {

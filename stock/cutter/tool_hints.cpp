@@ -1,114 +1,30 @@
 #include "stock/cutter/tool_hints.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/text_scan.h"
 #include "base/units.h"
 #include "stock/cutter/free_text.h"
+#include "stock/cutter/tool_number.h"
 
 namespace kerf {
 namespace {
 
-/// Interpreters refuse lines of half this length; what is longer is not a tool.
-constexpr std::size_t kLongestComment = 512;
 /// More tools than any magazine holds, and few enough to compare each with all.
 constexpr std::size_t kMostHints = 10000;
 /// A drill's point: what is blunter than this is no chamfer and no taper, whatever language names
 /// it.
 constexpr double kLeastDrillAngle_deg = 100;
 
-std::string_view skip(std::string_view text, std::string_view characters) {
-  const std::size_t first = text.find_first_not_of(characters);
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
-}
-
-/// Digits at the start; moves `text` behind them.
-std::optional<int> take_integer(std::string_view& text) {
-  int value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || !is_digit(text.front()) || error != std::errc()) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
-  return value;
-}
-
-/// "T12 rest", "T01 = rest", "TOOL: T1 = rest", "Tool 3: rest". After the bare word "tool" the
-/// number needs a separator, or it is a size ("Tool: 1/4 in end mill").
-struct NumberedText {
-  int tool = 0;
-  char separator = ' ';  ///< ':', '=', '|', '-' or ' '
-  std::string_view rest;
-};
-std::optional<NumberedText> split_tool_number(std::string_view lower) {
-  std::string_view text = lower;
-  const bool word = text.starts_with("tool");
-  bool is_numbered = false;  // "tool #1", "tools: t05"
-  if (word) {
-    text.remove_prefix(text.starts_with("tools:") ? 5 : 4);
-    const std::string_view after = skip(text, " \t:#");
-    const std::string_view signs = text.substr(0, text.size() - after.size());
-    is_numbered = signs.ends_with('#') || (signs.starts_with(':') && after.starts_with('t'));
-    text = after;
-  }
-  if (text.starts_with("t")) {
-    text.remove_prefix(1);
-  } else if (!word) {
-    return std::nullopt;
-  }
-  const std::optional<int> tool = take_integer(text);
-  if (!tool) return std::nullopt;
-  NumberedText numbered;
-  numbered.tool = *tool;
-  const bool touches = !text.empty() && text.front() != ' ' && text.front() != '\t';
-  text = skip(text, " \t");
-  if (!text.empty() && std::string_view(":=|-").find(text.front()) != std::string_view::npos) {
-    numbered.separator = text.front();
-    text = skip(text.substr(1), " \t>");
-  } else if (touches || (word && !is_numbered)) {
-    return std::nullopt;
-  }
-  numbered.rest = text;
-  return numbered;
-}
-
-/// Tools that a text names: "t05", "tool 5", "tool no. 5", "tool #5". Of none: -1; of several:
-/// kSeveralTools.
-constexpr int kSeveralTools = -2;
-int tool_named_in(std::string_view lower) {
-  int named = -1;
-  for (std::size_t at = lower.find('t'); at != std::string_view::npos;
-       at = lower.find('t', at + 1)) {
-    if (at > 0 && (is_letter(lower[at - 1]) || is_digit(lower[at - 1]))) continue;
-    std::string_view rest = lower.substr(at + 1);
-    if (rest.starts_with("ool")) {
-      rest = skip(rest.substr(3), " \t");
-      if (rest.starts_with("no")) rest = skip(rest.substr(2), ". \t");
-      rest = skip(rest, "# \t");
-      // "tool 6mm", "tool 1/4": a size.
-      const std::size_t end = std::min(rest.find_first_not_of("0123456789"), rest.size());
-      const std::string_view behind = rest.substr(end);
-      if (behind.starts_with('.') || behind.starts_with('/') || behind.starts_with('"') ||
-          behind.starts_with("mm") || behind.starts_with(" mm") || behind.starts_with(" in")) {
-        continue;
-      }
-    }
-    const std::optional<int> tool = take_integer(rest);
-    if (!tool || (!rest.empty() && is_letter(rest.front()))) continue;
-    if (named >= 0 && named != *tool) return kSeveralTools;
-    named = *tool;
-  }
-  return named;
-}
-
 /// "KEY=number": value after the first such key that stands by itself.
 std::optional<double> field(std::string_view lower, std::string_view key) {
   for (std::size_t at = lower.find(key); at != std::string_view::npos;
        at = lower.find(key, at + 1)) {
     if (at > 0 && lower[at - 1] != ' ' && lower[at - 1] != '\t' && lower[at - 1] != ',') continue;
-    std::string_view rest = skip(lower.substr(at + key.size()), " \t");
+    std::string_view rest = without_leading(lower.substr(at + key.size()), " \t");
     if (!rest.starts_with('=')) continue;
-    rest = skip(rest.substr(1), " \t");
+    rest = without_leading(rest.substr(1), " \t");
     if (rest.starts_with('+')) rest.remove_prefix(1);
     const std::size_t end = std::min(rest.find_first_not_of("0123456789.-"), rest.size());
     return parse_decimal(rest.substr(0, end));
@@ -232,7 +148,7 @@ class HintFinder {
     const std::size_t number = lower_.find("tool - ");
     const std::size_t size = lower_.find(kSize);
     if (number == std::string::npos || size == std::string::npos || size < number) return false;
-    std::string_view rest = skip(std::string_view(lower_).substr(number + 7), " ");
+    std::string_view rest = without_leading(std::string_view(lower_).substr(number + 7), " ");
     const std::optional<int> tool = take_integer(rest);
     const std::string_view written = trim(std::string_view(lower_).substr(size + kSize.size()));
     const std::optional<double> diameter = parse_decimal(written);
@@ -265,7 +181,7 @@ class HintFinder {
     std::string_view rest = lower_;
     int tool = -1;
     if (const std::optional<int> number = take_integer(rest)) {
-      const std::string_view name = skip(rest, " \t");
+      const std::string_view name = without_leading(rest, " \t");
       if (!name.starts_with('=')) return false;
       tool = *number;
       rest = name.substr(1);
@@ -348,7 +264,7 @@ class HintFinder {
   /// Turret No. : 0 Diameter :6.350 MM BALLNOSE
   bool read_turret() {
     if (!lower_.starts_with("turret no")) return false;
-    std::string_view rest = skip(std::string_view(lower_).substr(9), " .:");
+    std::string_view rest = without_leading(std::string_view(lower_).substr(9), " .:");
     const std::optional<int> tool = take_integer(rest);
     if (tool) add(*tool, "turret", read_free_text(rest, comment().inches));
     return true;
@@ -433,7 +349,7 @@ class HintFinder {
     const bool tool = rest.starts_with("tool:");
     const bool message = rest.starts_with("msg,");
     if (!tool && !message) return false;
-    rest = skip(rest.substr(tool ? 5 : 4), " \t");
+    rest = without_leading(rest.substr(tool ? 5 : 4), " \t");
     if (message && !rest.starts_with("insert ") && !rest.starts_with("load ") &&
         !rest.starts_with("change to ")) {
       return false;

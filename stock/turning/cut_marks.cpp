@@ -27,6 +27,15 @@ void TurnedPart::keep_cut_ids(bool keep) {
   touch_all();
 }
 
+std::optional<std::uint32_t> TurnedPart::cut_id_at(const Vec2& zr_mm, double angle_rad,
+                                                   double within_mm) const {
+  if (!marked_ || threads_.empty()) return cut_id_at(zr_mm, within_mm);
+  TurnedPart flat = *this;
+  flat.threads_.carve(angle_rad / (2 * kPi), zr_mm.x - within_mm, zr_mm.x + within_mm,
+                      flat.scratch_.cut, *flat.marked_);
+  return flat.cut_id_at(zr_mm, within_mm);
+}
+
 std::optional<std::uint32_t> TurnedPart::cut_id_at(const Vec2& zr_mm, double within_mm) const {
   if (!marked_) return std::nullopt;
   /// As near as doubles tell.

@@ -33,6 +33,9 @@ class GridPart {
   /// The part without a border of this width; empty where that is all of it. Sides stay known.
   GridPart inset(double width_mm) const;
   bool empty() const { return corners_.size() < 3; }
+  const std::vector<Point>& corners() const { return corners_; }
+  /// Of the edge that ends at each corner.
+  const std::vector<InsertSide>& sides() const { return sides_; }
 
   /// Some of the part's edges as they lie across the way, in units, rising: where the tool goes
   /// first.

@@ -13,18 +13,6 @@ namespace {
 
 constexpr int kFewestSegments = 12;
 
-int segments_for(double radius_mm, double tolerance_mm) {
-  if (!(radius_mm > tolerance_mm)) return kFewestSegments;
-  const double half = std::acos(1 - tolerance_mm / radius_mm);
-  return std::max(kFewestSegments, static_cast<int>(std::ceil(kPi / half)));
-}
-
-/// Whole edges of a bar, and the middles of its flats, lie on directions.
-int segments_with(int segments, const std::optional<BarFlats>& flats) {
-  const int step = flats ? 2 * flats->count : 1;
-  return (segments + step - 1) / step * step;
-}
-
 std::vector<Vec2> divided_at_flats(const std::vector<Vec2>& chain, const BarFlats& flats,
                                    double tolerance_mm) {
   std::vector<Vec2> result{chain[0]};
@@ -68,6 +56,17 @@ void keep_corners(std::span<const Vec2> chain, double tolerance_mm, std::size_t 
 }
 
 }  // namespace
+
+int segments_for(double radius_mm, double tolerance_mm) {
+  if (!(radius_mm > tolerance_mm)) return kFewestSegments;
+  const double half = std::acos(1 - tolerance_mm / radius_mm);
+  return std::max(kFewestSegments, static_cast<int>(std::ceil(kPi / half)));
+}
+
+int segments_with(int segments, const std::optional<BarFlats>& flats) {
+  const int step = flats ? 2 * flats->count : 1;
+  return (segments + step - 1) / step * step;
+}
 
 std::vector<Vec2> simplified(std::span<const Vec2> chain, double tolerance_mm) {
   if (!(tolerance_mm > 0) || chain.size() < 4) return {chain.begin(), chain.end()};

@@ -3,6 +3,7 @@
 // The point (z, r) of a contour at the angle a is (r cos a, r sin a, z) of the workpiece frame.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,6 +22,12 @@ namespace kerf::turning {
 /// to represent a digitized line or its caricature", 1973.
 std::vector<Vec2> simplified(std::span<const Vec2> chain_zr_mm, double tolerance_mm);
 
+/// How often a circle is divided so that its sides keep within this of it.
+int segments_for(double radius_mm, double tolerance_mm);
+
+/// That or more: whole edges of a bar, and the middles of its flats, lie on directions.
+int segments_with(int segments, const std::optional<BarFlats>& flats);
+
 /// A closed surface for each contour, within the tolerance of it: half of that is for the contour,
 /// half for the angle. With 0 no corner is left out, and the angle is divided as for kFinest_mm.
 /// Walls thinner than the tolerance may pass through each other. What lies beyond flats is not
@@ -37,5 +44,16 @@ MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_
                        bool has_high_face, double tolerance_mm,
                        const std::optional<BarFlats>& flats = std::nullopt);
 inline constexpr int kPatchSegments = 120;
+
+/// A part of a contour within a band, and the mark of each edge; closed where it never leaves.
+struct BandChain {
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> marks;
+};
+/// The chains that revolve_band() is made of, in the contour's direction.
+std::vector<BandChain> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                   bool has_high_face);
+/// Simplified between corners where another mark begins.
+BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm);
 
 }  // namespace kerf::turning

@@ -13,28 +13,6 @@ namespace {
 /// Surfaces look round where they turn by less.
 constexpr double kCreaseCosine = 0.866;
 
-/// A mark for each edge.
-struct BandChain {
-  std::vector<Vec2> points;
-  std::vector<std::uint32_t> marks;
-};
-
-/// Simplified between corners where another mark begins.
-BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm) {
-  BandChain result;
-  for (std::size_t begin = 0; begin < chain.marks.size();) {
-    std::size_t end = begin + 1;
-    while (end < chain.marks.size() && chain.marks[end] == chain.marks[begin]) ++end;
-    const std::vector<Vec2> part =
-        simplified(std::span(chain.points).subspan(begin, end - begin + 1), tolerance_mm);
-    if (result.points.empty()) result.points.push_back(part.front());
-    result.points.insert(result.points.end(), part.begin() + 1, part.end());
-    result.marks.resize(result.points.size() - 1, chain.marks[begin]);
-    begin = end;
-  }
-  return result;
-}
-
 BandChain divided_at_flats(const BandChain& chain, const BarFlats& flats, double tolerance_mm) {
   BandChain result{{chain.points[0]}, {}};
   for (std::size_t i = 0; i < chain.marks.size(); ++i) {
@@ -202,6 +180,26 @@ class PatchBuilder {
 };
 
 }  // namespace
+
+BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm) {
+  BandChain result;
+  for (std::size_t begin = 0; begin < chain.marks.size();) {
+    std::size_t end = begin + 1;
+    while (end < chain.marks.size() && chain.marks[end] == chain.marks[begin]) ++end;
+    const std::vector<Vec2> part =
+        simplified(std::span(chain.points).subspan(begin, end - begin + 1), tolerance_mm);
+    if (result.points.empty()) result.points.push_back(part.front());
+    result.points.insert(result.points.end(), part.begin() + 1, part.end());
+    result.marks.resize(result.points.size() - 1, chain.marks[begin]);
+    begin = end;
+  }
+  return result;
+}
+
+std::vector<BandChain> band_chains(const Contour& contour, Unit low_z, Unit high_z,
+                                   bool has_high_face) {
+  return BandChains(low_z, high_z, has_high_face).of(contour);
+}
 
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
                        bool has_high_face, double tolerance_mm,

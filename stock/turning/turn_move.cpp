@@ -4,7 +4,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace kerf::turning {
+#include "stock/turning/thread_pass.h"
+
+namespace kerf {
+
+bool TurnMove::winds() const {
+  return !arc && std::isfinite(lead_mm) && std::abs(lead_mm) >= turning::kLeastLead_mm;
+}
+
+namespace turning {
 namespace {
 
 bool is_finite(const Vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
@@ -63,4 +71,5 @@ void append_way(const TurnMove& move, double reach_mm, std::vector<WayChord>& ch
   append(at, {move.to_mm, 1});
 }
 
-}  // namespace kerf::turning
+}  // namespace turning
+}  // namespace kerf

@@ -24,6 +24,12 @@ struct TurnMove {
   Vec2 to_mm{0};
   std::optional<TurnArc> arc;
   std::uint64_t id = 0;  ///< the caller's; comes back in reports
+  /// Not 0: the workpiece turns once a lead of the way, which is straight: a thread. Positive as
+  /// M3 has it, so that a way toward -z leaves a right-hand one. It is at angle 0 where the move
+  /// begins, or goes on from one that ended there.
+  double lead_mm = 0;
+  /// It has a lead that is one (kLeastLead_mm).
+  bool winds() const;
 };
 
 namespace turning {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -107,6 +108,13 @@ TurningTool TurningTool::inset(double width_mm) const {
   return tool;
 }
 
+bool TurningTool::is_like(const TurningTool& other) const {
+  const auto same = [](const turning::GridPart& a, const turning::GridPart& b) {
+    return a.corners() == b.corners();
+  };
+  return std::equal(parts_.begin(), parts_.end(), other.parts_.begin(), other.parts_.end(), same);
+}
+
 std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSide chuck,
                                              const std::optional<BarFlats>& flats) {
   turning::Rings rings, united;
@@ -177,19 +185,28 @@ bool TurnedPart::thins() const {
   return after < moment6();
 }
 
+turning::Engagement TurnedPart::cut_ring(const TurningTool& tool, const TurnMove& move) {
+  return each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
+    if (!met.any && !thins()) return;
+    touch_bands(scratch_.cut.changed());
+    scratch_.cut.apply(contours_);
+    if (marked_) cut_marked(move.id);
+  });
+}
+
 TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
+  scratch_.changed = {};
+  sections_.reset();
+  if (move.winds()) return cut_thread(tool, move);
   TurnCut report;
   report.id = move.id;
   const Wide before = moment6();
-  const double missing_before = missing_mm3();
-  const turning::Engagement engagement =
-      each_swept(tool, move, [&](const turning::WayChord&, const turning::Engagement& met) {
-        if (!met.any && !thins()) return;
-        touch_bands(scratch_.cut.changed());
-        scratch_.cut.apply(contours_);
-        if (marked_) cut_marked(move.id);
-      });
-  const double removed = turning::volume_mm3(before - moment6()) - (missing_before - missing_mm3());
+  const double missing_before = missing_mm3(), wound_before = threads_.volume_mm3();
+  end_winding();
+  const turning::Engagement engagement = cut_ring(tool, move);
+  threads_.refresh(scratch_.changed, contours_);
+  const double removed = turning::volume_mm3(before - moment6()) -
+                         (missing_before - missing_mm3()) - (wound_before - threads_.volume_mm3());
   report.removed_mm3 = std::max(removed, 0.0);
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
@@ -201,6 +218,12 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
 
 std::optional<TurnContact> TurnedPart::first_contact(const TurningTool& tool,
                                                      const TurnMove& move) const {
+  if (move.winds()) return thread_contact(tool, move);
+  if (winding_) {
+    TurnedPart turned = *this;
+    turned.end_winding();
+    return turned.first_contact(tool, move);
+  }
   TurnContact contact;
   contact.t = 2;  // not yet
   const turning::Engagement engagement =
@@ -224,6 +247,7 @@ std::uint64_t TurnedPart::next_version() {
 void TurnedPart::touch_all() { versions_.fill(next_version()); }
 
 void TurnedPart::touch_bands(const Rect& box) {
+  scratch_.changed.extend(box);
   const std::uint64_t version = next_version();
   // A border belongs to both of its bands.
   for (std::size_t i = 0; i < kBands; ++i) {
@@ -231,10 +255,43 @@ void TurnedPart::touch_bands(const Rect& box) {
   }
 }
 
+/// One of its pieces by itself, the holes in it included.
+std::shared_ptr<const TurnedPart> TurnedPart::piece_of(std::size_t contour,
+                                                       std::size_t held) const {
+  auto piece = std::make_shared<TurnedPart>(*this);
+  piece->freed_.clear();
+  piece->winding_.reset();
+  piece->sections_.reset();
+  const Rect box = contours_[contour].box();
+  keep_piece(piece->contours_, contour);
+  piece->threads_.refresh(contours_[held].box(), piece->contours_);
+  if (!piece->marked_) return piece;
+  // Corners of the two may differ by some units.
+  std::size_t same = 0;
+  const auto off = [&](const Contour& other) {
+    return std::abs(other.box().min_x - box.min_x) + std::abs(other.box().max_x - box.max_x);
+  };
+  for (std::size_t i = 0; i < piece->marked_->size(); ++i) {
+    const std::vector<Contour>& marked = *piece->marked_;
+    if (marked[i].is_outer() && (!marked[same].is_outer() || off(marked[i]) < off(marked[same])))
+      same = i;
+  }
+  if (!piece->marked_->empty()) keep_piece(*piece->marked_, same);
+  return piece;
+}
+
 /// What the chuck does not hold falls, with the holes in it.
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
   const std::optional<std::size_t> held = piece_held(contours_, chuck_);
   if (!held) return;
+  const std::size_t first = freed_.size();
+  if (first > 0) {  // it is not shown any more
+    const TurnedPiece& last = freed_.back();
+    Rect box;
+    box.extend(turning::to_units(Vec2(last.low_z_mm, last.low_r_mm)));
+    box.extend(turning::to_units(Vec2(last.high_z_mm, last.high_r_mm)));
+    touch_bands(box);
+  }
   for (std::size_t i = 0; i < contours_.size(); ++i) {
     if (i == *held || !contours_[i].is_outer()) continue;
     const Rect& box = contours_[i].box();
@@ -248,10 +305,11 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
     }
     freed_.push_back({id, turning::volume_mm3(moment6) - missing, turning::to_mm(box.min_x),
                       turning::to_mm(box.max_x), turning::to_mm(box.min_y),
-                      turning::to_mm(box.max_y)});
+                      turning::to_mm(box.max_y), piece_of(i, *held)});
     touch_bands(box);
   }
   keep_piece(contours_, *held);
+  drop_threads_of_pieces(first);
   if (!marked_) return;
   if (const std::optional<std::size_t> same = piece_held(*marked_, chuck_))
     keep_piece(*marked_, *same);
@@ -267,7 +325,9 @@ double TurnedPart::missing_mm3() const {
   return flats_ ? turning::missing_mm3(contours_, *flats_) : 0;
 }
 
-double TurnedPart::remaining_mm3() const { return turning::volume_mm3(moment6()) - missing_mm3(); }
+double TurnedPart::remaining_mm3() const {
+  return turning::volume_mm3(moment6()) - missing_mm3() - threads_.volume_mm3();
+}
 
 Box TurnedPart::bounds_mm() const {
   const double r = turning::to_mm(blank_.max_y);
@@ -286,6 +346,7 @@ TurnedProfile TurnedPart::profile() const {
 std::size_t TurnedPart::corner_count() const {
   std::size_t count = 0;
   for (const Contour& contour : contours_) count += contour.corner_count();
+  for (const auto& pass : threads_.passes()) count += pass->corners().size();
   return count;
 }
 
@@ -316,12 +377,18 @@ std::string TurnedPart::digest() const {
     XXH3_128bits_update(&state, &size, sizeof size);
     XXH3_128bits_update(&state, ring.data(), ring.size() * sizeof(Point));
   }
+  for (const auto& pass : threads_.passes()) {
+    const double way[6] = {pass->from_mm().x, pass->from_mm().y, pass->to_mm().x,
+                           pass->to_mm().y,   pass->lead_mm(),   pass->from_turns()};
+    XXH3_128bits_update(&state, way, sizeof way);
+    XXH3_128bits_update(&state, pass->corners().data(), pass->corners().size() * sizeof(Vec2));
+  }
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 std::size_t TurnedPart::unique_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = threads_.unique_bytes();
   const auto add = [&bytes](const Contour& contour) {
     bytes += contour.runs().capacity() * sizeof(turning::RunPointer);
     for (const turning::RunPointer& run : contour.runs()) {
@@ -346,6 +413,7 @@ turning::Unit TurnedPart::band_low(std::size_t band) const {
 double TurnedPart::band_low_z_mm(std::size_t band) const { return turning::to_mm(band_low(band)); }
 
 TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
+  if (!threads_.empty()) return turning::wind(contours_, threads_, tolerance_mm, flats());
   return turning::revolve(contours_, tolerance_mm, flats());
 }
 
@@ -358,9 +426,17 @@ int TurnedPart::level_within(double tolerance_mm) {
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
+  const turning::Unit low = band_low(band), high = band_low(band + 1);
+  const bool is_last = band + 1 == kBands;
+  const Rect wound = threads_.box();
+  const bool is_wound = !threads_.empty() && wound.min_x <= high && wound.max_x >= low;
+  if (is_wound && sections_ == nullptr) {
+    sections_ = std::make_shared<const turning::WoundSections>(
+        turning::wound_sections(shown(), threads_, turning::kPatchSegments, flats_));
+  }
   MeshPatch patch =
-      turning::revolve_band(marked_ ? *marked_ : contours_, band_low(band), band_low(band + 1),
-                            band + 1 == kBands, tolerance_mm, flats());
+      is_wound ? turning::wind_band(*sections_, shown(), low, high, is_last, tolerance_mm, flats())
+               : turning::revolve_band(shown(), low, high, is_last, tolerance_mm, flats());
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];
   patch.level = level;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,7 +25,9 @@
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
 #include "stock/turning/insert_sweep.h"
+#include "stock/turning/thread_set.h"
 #include "stock/turning/turn_move.h"
+#include "stock/turning/wound_surface.h"
 
 namespace kerf {
 
@@ -53,6 +56,8 @@ class TurningTool {
   /// The same without a border of this width: what touches with it is that much inside the tool.
   /// Nothing is left of a tool that is nowhere twice as wide, and meets nothing.
   TurningTool inset(double width_mm) const;
+  /// Of the same outline.
+  bool is_like(const TurningTool& other) const;
   /// Its parts on the grid, or those of the tool as it is seen in a mirror, the axis.
   std::span<const turning::GridPart> parts(bool mirrored) const {
     return mirrored ? below_ : parts_;
@@ -91,11 +96,15 @@ struct TurnContact {
   std::array<double, kInsertSides> side_mm{};  ///< as in TurnCut, over the whole move
 };
 
+class TurnedPart;
+
 /// A piece that has come off; it is no part of the workpiece any more.
 struct TurnedPiece {
   std::uint64_t freed_by = 0;  ///< TurnMove::id
   double volume_mm3 = 0;
   double low_z_mm = 0, high_z_mm = 0, low_r_mm = 0, high_r_mm = 0;
+  /// As it came off, where it was.
+  std::shared_ptr<const TurnedPart> part{};
 };
 
 /// Coordinates are whole steps of 10 nm. What straight ways make of edges and noses is exact to
@@ -108,7 +117,15 @@ struct TurnedPiece {
 /// A bar of flats is the round one through its corners with a note of the flats: volumes and
 /// surfaces are those of the bar, a tool touches where the corners come by.
 ///
-/// Not held: threads (a groove that winds is cut as a ring), runout.
+/// A move with a lead leaves a groove that winds. The region is then what is there at some angle,
+/// and the grooves are kept beside it (thread_set.h): volumes, sections and meshes are without
+/// them, contacts of moves that go all round are those of the region. What a groove is not there at
+/// all round is in the region: the crests of a thread are judged as rings. Where a move with a lead
+/// has ended in material, and does not go on, the tool leaves a ring, with the next move. A groove
+/// that cuts through a wall does not set it free, and one beyond the flats of a bar counts as if
+/// the bar were round there.
+///
+/// Not held: runout.
 class TurnedPart {
  public:
   /// So far the controlled point is followed along either axis: farther away no tool reaches a
@@ -128,6 +145,8 @@ class TurnedPart {
   /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
   /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
   std::optional<TurnedPart> turned_about(double at_z_mm) const;
+  /// The same moved: z becomes `at_z_mm` + z.
+  std::optional<TurnedPart> moved(double at_z_mm) const;
 
   /// Removes what the tool sweeps. O(runs of corners), and what is near the way; as often for an
   /// arc as it has chords.
@@ -147,6 +166,9 @@ class TurnedPart {
   /// ends and another's begins, also within a cylinder; what a move cuts that lies less than 20 nm
   /// below what was there keeps the id of that. O(corners).
   std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double within_mm) const;
+  /// The same on the section at this angle: with threads these differ.
+  std::optional<std::uint32_t> cut_id_at(const Vec2& zr_mm, double angle_rad,
+                                         double within_mm) const;
 
   /// What came off so far, in order.
   const std::vector<TurnedPiece>& freed() const { return freed_; }
@@ -155,10 +177,15 @@ class TurnedPart {
   const std::optional<BarFlats>& flats() const { return flats_; }
   double blank_mm3() const { return blank_mm3_; }
   double remaining_mm3() const;
+  /// Grooves that wind. Empty without moves that have a lead.
+  const turning::ThreadSet& threads() const { return threads_; }
+  /// Rings round the material at one angle of the workpiece, as profile() gives them.
+  TurnedProfile section(double angle_rad) const;
   /// Of the blank. x and y from -r to r.
   Box bounds_mm() const;
   /// Rings round the material, holes clockwise. Corners (z, r).
   TurnedProfile profile() const;
+  /// Of what is there at some angle.
   const std::vector<turning::Contour>& contours() const { return contours_; }
   std::size_t corner_count() const;
   /// Hash of the contours, 32 hex digits; whatever the runs that they are kept in.
@@ -166,7 +193,8 @@ class TurnedPart {
   /// Memory for runs that no copy has.
   std::size_t unique_bytes() const;
 
-  /// Closed surface (revolve.h), about the z axis of the workpiece frame.
+  /// Closed surface (revolve.h), about the z axis of the workpiece frame. With threads as
+  /// wound_surface.h has it.
   TriangleMesh mesh(double tolerance_mm) const;
 
   /// For views the part is divided along z into kBands of equal width.
@@ -197,16 +225,46 @@ class TurnedPart {
     turning::GridPart::Scratch sweep;
     turning::EngagementGauge gauge;
     std::vector<turning::WayChord> chords;
+    turning::Rect changed;  // by the move that is cut
+    std::vector<turning::ProfileEdge> edges;
+  };
+  /// The last move, which had a lead: another one may go on from there. Else the tool stands there
+  /// until the part has turned.
+  struct Winding {
+    std::shared_ptr<const TurningTool> tool;
+    Vec2 at_mm{0};
+    double lead_mm = 0, turns = 0;  // there
+    std::uint64_t id = 0;
+    // Where it began to go straight, and the directions, relative to the first, that keep to it.
+    Vec2 from_mm{0};
+    double from_turns = 0, heading_rad = 0, low_rad = 0, high_rad = 0;
+    std::vector<std::shared_ptr<const turning::ThreadPass>> passes;  // of that
   };
 
   TurnedPart() = default;
   template <class Each>
   turning::Engagement each_swept(const TurningTool& tool, const TurnMove& move, Each&& each) const;
+  turning::Engagement cut_ring(const TurningTool& tool, const TurnMove& move);
+  TurnCut cut_thread(const TurningTool& tool, const TurnMove& move);
+  std::optional<TurnContact> thread_contact(const TurningTool& tool, const TurnMove& move) const;
+  std::vector<std::shared_ptr<const turning::ThreadPass>> passes_of(
+      const TurningTool& tool, const Vec2& from_mm, const Vec2& to_mm, double lead_mm,
+      double from_turns, std::uint64_t id) const;
+  bool goes_on(const TurnMove& move) const;
+  Winding winding_after(const TurningTool& tool, const TurnMove& move) const;
+  void measure_thread(const std::vector<std::shared_ptr<const turning::ThreadPass>>& fresh,
+                      double from_way_mm, TurnCut& report, TurnContact& first) const;
+  void clear_all_round(std::span<const std::shared_ptr<const turning::ThreadPass>> fresh);
+  void end_winding();
+  void drop_threads_of_pieces(std::size_t first_piece);
+  std::shared_ptr<const TurnedPart> piece_of(std::size_t contour, std::size_t held) const;
+  const std::vector<turning::Contour>& shown() const { return marked_ ? *marked_ : contours_; }
   turning::Wide moment6() const;
   bool thins() const;
   void drop_free_pieces(std::uint64_t id);
   void cut_marked(std::uint64_t id);
   double missing_mm3() const;
+  std::optional<TurnedPart> placed(double at_z_mm, bool turned_about) const;
   static std::uint64_t next_version();
   void touch_all();
   void touch_bands(const turning::Rect& box);
@@ -216,6 +274,8 @@ class TurnedPart {
   /// The same by moves, where these are kept: cut for itself, so that contours_ are the same
   /// whether they are or not. Corners may differ by some units.
   std::optional<std::vector<turning::Contour>> marked_;
+  turning::ThreadSet threads_;
+  std::optional<Winding> winding_;
   turning::Rect blank_;
   double blank_mm3_ = 0;
   ChuckSide chuck_ = ChuckSide::kLowZ;
@@ -223,6 +283,7 @@ class TurnedPart {
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;
+  mutable std::shared_ptr<const turning::WoundSections> sections_;  // for patches, until it is cut
 };
 
 }  // namespace kerf

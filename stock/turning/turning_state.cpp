@@ -18,6 +18,12 @@ namespace {
 constexpr std::int64_t kLayoutOfParts = 1;
 constexpr std::string_view kPartTag = "PART";
 constexpr std::uint32_t kPartVersion = 1;
+constexpr std::string_view kThreadTag = "THRD";
+constexpr std::uint32_t kThreadVersion = 1;
+/// From z r, to z r, lead, turns, low and high r.
+constexpr std::size_t kThreadNumbers = 8;
+constexpr std::size_t kThreadBytes =
+    sizeof(std::uint64_t) + kThreadNumbers * sizeof(double) + sizeof(std::uint32_t);
 /// Volumes are sums of doubles.
 constexpr double kVolumeSlack = 1e-9;
 
@@ -124,6 +130,50 @@ void append_number(std::string& bytes, Number number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
+bool read_threads(std::string_view section,
+                  std::vector<std::shared_ptr<const ThreadPass>>& threads) {
+  PartBytes bytes(section);
+  std::uint32_t count = 0;
+  if (!bytes.take_count(count, kThreadBytes) || count == 0) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint64_t id = 0;
+    double n[kThreadNumbers];
+    std::uint32_t corner_count = 0;
+    if (!bytes.take(&id, sizeof id) || !bytes.take(n, sizeof n) ||
+        !bytes.take_count(corner_count, 2 * sizeof(double)))
+      return false;
+    ConvexChain corners;
+    for (std::uint32_t k = 0; k < corner_count; ++k) {
+      double zr[2];
+      if (!bytes.take(zr, sizeof zr)) return false;
+      corners.emplace_back(zr[0], zr[1]);
+    }
+    std::optional<ThreadPass> pass = ThreadPass::restored(std::move(corners), {n[0], n[1]},
+                                                          {n[2], n[3]}, n[4], n[5], n[6], n[7], id);
+    if (!pass) return false;
+    threads.push_back(std::make_shared<const ThreadPass>(std::move(*pass)));
+  }
+  return bytes.is_at_end();
+}
+
+std::string thread_bytes(const std::vector<std::shared_ptr<const ThreadPass>>& threads) {
+  std::string bytes;
+  append_number(bytes, static_cast<std::uint32_t>(threads.size()));
+  for (const auto& pass : threads) {
+    append_number(bytes, pass->id());
+    for (const double number :
+         {pass->from_mm().x, pass->from_mm().y, pass->to_mm().x, pass->to_mm().y, pass->lead_mm(),
+          pass->from_turns(), pass->low_r_mm(), pass->high_r_mm()})
+      append_number(bytes, number);
+    append_number(bytes, static_cast<std::uint32_t>(pass->corners().size()));
+    for (const Vec2& p : pass->corners()) {
+      append_number(bytes, p.x);
+      append_number(bytes, p.y);
+    }
+  }
+  return bytes;
+}
+
 std::string contour_bytes(const std::vector<Contour>& contours) {
   std::string bytes;
   append_number(bytes, static_cast<std::uint32_t>(contours.size()));
@@ -157,6 +207,8 @@ Done write_part(const std::string& path, const SavedPart& saved) {
       b.max_x, b.max_y, saved.blank_mm3, flats.count, flats.inner_radius_mm);
   file->put(head.data(), head.size());
   put_section(*file, kPartTag, kPartVersion, contour_bytes(saved.contours));
+  if (!saved.threads.empty())
+    put_section(*file, kThreadTag, kThreadVersion, thread_bytes(saved.threads));
   return file->commit();
 }
 
@@ -187,6 +239,12 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
       return Error{damaged};
     const std::optional<std::string_view> section = rest.take(size);
     if (!section) return Error{damaged};
+    if (std::string_view(tag, sizeof tag) == kThreadTag && version == kThreadVersion) {
+      if (!saved.threads.empty() || !read_threads(*section, saved.threads)) {
+        return Error{trf("{}: the threads are damaged", name)};
+      }
+      continue;
+    }
     if (std::string_view(tag, sizeof tag) != kPartTag || version != kPartVersion) {
       return Error{trf("{}: has a section '{}' of version {}, which this kerf cannot read", name,
                        shown(std::string_view(tag, sizeof tag)), version)};
@@ -210,7 +268,8 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
 namespace kerf {
 
 turning::SavedPart TurnedPart::saved() const {
-  return {chuck_, blank_, blank_mm3_, flats_, contours_};
+  return {chuck_, blank_,    blank_mm3_,
+          flats_, contours_, {threads_.passes().begin(), threads_.passes().end()}};
 }
 
 TurnedPart TurnedPart::restored(turning::SavedPart saved) {
@@ -220,26 +279,36 @@ TurnedPart TurnedPart::restored(turning::SavedPart saved) {
   part.blank_mm3_ = saved.blank_mm3;
   part.chuck_ = saved.chuck;
   part.flats_ = saved.flats;
+  part.threads_.restore(std::move(saved.threads), part.contours_);
   part.touch_all();
   return part;
 }
 
-std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+std::optional<TurnedPart> TurnedPart::placed(double at_z_mm, bool turned_about) const {
   if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
   const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
-  turning::SavedPart turned = saved();
-  turned.blank.min_x = at - blank_.max_x;
-  turned.blank.max_x = at - blank_.min_x;
-  if (turned.blank.min_x < -most || turned.blank.max_x > most) return std::nullopt;
+  turning::SavedPart lies = saved();
+  lies.blank.min_x = at + (turned_about ? -blank_.max_x : blank_.min_x);
+  lies.blank.max_x = at + (turned_about ? -blank_.min_x : blank_.max_x);
+  if (lies.blank.min_x < -most || lies.blank.max_x > most) return std::nullopt;
   turning::ContourBuilder builder;
-  for (turning::Contour& contour : turned.contours) {
+  for (turning::Contour& contour : lies.contours) {
     turning::Ring ring = contour.ring();
-    std::reverse(ring.begin(), ring.end());
-    for (turning::Point& p : ring) p.X = at - p.X;
-    for (const turning::Point& p : ring) builder.append(p);
+    if (turned_about) std::reverse(ring.begin(), ring.end());
+    for (const turning::Point& p : ring) builder.append({at + (turned_about ? -p.X : p.X), p.Y});
     contour = builder.close();
   }
-  return restored(std::move(turned));
+  for (auto& pass : lies.threads) {
+    pass = std::make_shared<const turning::ThreadPass>(turned_about ? pass->turned_about(at_z_mm)
+                                                                    : pass->moved(at_z_mm));
+  }
+  return restored(std::move(lies));
 }
+
+std::optional<TurnedPart> TurnedPart::turned_about(double at_z_mm) const {
+  return placed(at_z_mm, true);
+}
+
+std::optional<TurnedPart> TurnedPart::moved(double at_z_mm) const { return placed(at_z_mm, false); }
 
 }  // namespace kerf

@@ -11,9 +11,13 @@
 //   PART 1   the number of contours, 32 bits, and of each the number of its corners, 32 bits, and
 //            these, z then r, 32 bits each, signed: the first contour round the material, the
 //            others round holes in it
-// What has come off is not kept, nor which moves have made the surface.
+//   THRD 1   grooves that wind (thread_pass.h), where there are some: their number, 32 bits, and of
+//            each its id, 64 bits, from z r, to z r, lead, turns, low and high r, doubles, and the
+//            number of its corners, 32 bits, and these, doubles
+// What has come off is not kept, nor which moves have made the surface, nor where a tool stands.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +33,7 @@ struct SavedPart {
   double blank_mm3 = 0;
   std::optional<BarFlats> flats;
   std::vector<Contour> contours;
+  std::vector<std::shared_ptr<const ThreadPass>> threads;
 };
 
 Done write_part(const std::string& path, const SavedPart& saved);

@@ -56,6 +56,25 @@ void extend(TurnCut& whole, const TurnCut& part) {
     whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
 }
 
+/// Of a model that has no skirts.
+void append(MeshPatch& patch, const MeshPatch& other) {
+  const auto first = static_cast<std::uint32_t>(patch.vertices.size());
+  patch.vertices.insert(patch.vertices.end(), other.vertices.begin(), other.vertices.end());
+  patch.cut_by.insert(patch.cut_by.end(), other.cut_by.begin(), other.cut_by.end());
+  patch.indices.reserve(patch.indices.size() + other.indices.size());
+  for (const std::uint32_t index : other.indices) patch.indices.push_back(first + index);
+  patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
+}
+
+/// What a tool on the axis leaves is the same whatever the lead.
+std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
+  std::vector<TurnMove> moves = turning_moves(move);
+  if (cutter.insert() == nullptr) {
+    for (TurnMove& turn : moves) turn.lead_mm = 0;
+  }
+  return moves;
+}
+
 }  // namespace
 
 std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter) {
@@ -66,7 +85,10 @@ std::shared_ptr<const InsertOutline> turning_outline(const Cutter& cutter) {
 
 std::vector<TurnMove> turning_moves(const CutMove& move) {
   TurnMove turn{in_plane(move.from_mm), in_plane(move.to_mm), std::nullopt, move.id};
-  if (!move.arc) return {turn};
+  if (!move.arc) {
+    turn.lead_mm = move.lead_mm;
+    return {turn};
+  }
   const CutArc& arc = *move.arc;
   if (std::abs(arc.axis.y) == 1) {
     turn.arc = TurnArc{in_plane(arc.center_mm), arc.axis.y * arc.sweep_rad};
@@ -101,7 +123,7 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
-    for (const TurnMove& turn : turning_moves(move)) extend(whole, part_.cut(tool, turn));
+    for (const TurnMove& turn : moves_of(cutter, move)) extend(whole, part_.cut(tool, turn));
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;
@@ -121,7 +143,7 @@ std::optional<TurnContact> TurningStock::first_turn_contact(const Cutter& cutter
     ready_.inset_mm = tolerance_mm;
   }
   std::optional<TurnContact> first;
-  const std::vector<TurnMove> turns = turning_moves(move);
+  const std::vector<TurnMove> turns = moves_of(cutter, move);
   for (std::size_t i = 0; i < turns.size(); ++i) {
     std::optional<TurnContact> met = part_.first_contact(*ready_.inset, turns[i]);
     if (!met) continue;
@@ -153,7 +175,7 @@ std::optional<std::uint32_t> TurningStock::cut_id_at(const Vec3& point_mm) const
   const double off_rad = (angle - std::floor(angle) - 0.5) * kStep_rad;
   const double on_facet = std::hypot(point_mm.x, point_mm.y);
   const double r = on_facet * std::cos(off_rad) / std::cos(kStep_rad / 2);
-  return part_.cut_id_at({point_mm.z, r}, kNear_mm);
+  return part_.cut_id_at({point_mm.z, r}, std::atan2(point_mm.y, point_mm.x), kNear_mm);
 }
 
 Done TurningStock::save(const std::string& path) const {
@@ -224,7 +246,11 @@ std::uint64_t TurningStock::patch_version(std::uint32_t tile) const {
 }
 
 MeshPatch TurningStock::patch(std::uint32_t tile, int level) const {
-  return part_.patch(tile, level);
+  MeshPatch patch = part_.patch(tile, level);
+  if (!part_.freed().empty() && part_.freed().back().part) {
+    append(patch, part_.freed().back().part->patch(tile, level));
+  }
+  return patch;
 }
 
 }  // namespace kerf

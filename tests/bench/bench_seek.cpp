@@ -8,8 +8,8 @@
 // Loads it, cuts it once to its end, and seeks to random lines, to and fro. The workpieces of a
 // sample of the places are first compared with those of cutting from the start: wrong ones end the
 // run. Then times, from the command until the state of the new place is there: p50, p95, maximum;
-// single blocks forward and back; finding the motion that made a point of the surface. Ends with 1
-// if the p95 of the seeks exceeds kMost_ms.
+// single blocks forward and back; of a Z-map finding the motion that made a point of its surface.
+// Ends with 1 if the p95 of the seeks exceeds kMost_ms.
 #include <fmt/format.h>
 #include <stdlib.h>
 
@@ -315,7 +315,7 @@ int run(const Arguments& arguments) {
   print_times("a block forward", time_steps(player, 1));
   print_times("a block back", time_steps(player, -1));
   reached(player, player.seek_end());
-  if (cuts) {
+  if (cuts && dynamic_cast<const ZMap*>(player.state()->stock.get())) {
     print_times("who cut this point", time_queries(*cuts, player, true));
     print_times("who cut this point (nobody)", time_queries(*cuts, player, false));
   }

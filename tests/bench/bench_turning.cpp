@@ -5,7 +5,8 @@
 // A bar of 60 x 160 mm, a nose of 0.4 mm, 100 000 moves: 4 000 of longitudinal roughing, passes
 // along a wavy contour of 2 000 chords each, and the last of them, whose volume is that of the
 // contour. CPU seconds, the least of N runs (default 3), what a copy costs, and peak memory. Then
-// quarter circles of the same nose, each of some hundred chords.
+// quarter circles of the same nose, each of some hundred chords; and threads: 20 passes of 40
+// turns, as G76 gives them, with sections, patches and a mesh.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -133,6 +134,55 @@ void measure_arcs(const TurningTool& tool) {
       part.library_calls());
 }
 
+/// 20 passes along 60 mm, with an entry and a way out; their volume is that of the groove.
+void measure_threads() {
+  constexpr double kPitch = 1.5, kDepth = 0.92, kBar = 12, kThreaded = 58;
+  const TurningTool tool(*thread_insert({kPi / 3, 0.1875, 3, 6}));
+  TurnedPart part = *TurnedPart::create(bar_profile(-kLength_mm, 0, 2 * kBar));
+  const double start = cpu_s();
+  for (int i = 1; i <= 20; ++i) {
+    const double depth = kDepth * std::sqrt(i / 20.0), in = depth * std::tan(29.5 * kPi / 180);
+    const double x = kBar - depth;
+    const auto go = [&](const Vec2& from, const Vec2& to, double lead) {
+      part.cut(tool, {from, to, std::nullopt, static_cast<std::uint64_t>(i), lead});
+    };
+    const double slant = std::hypot(kPitch, kDepth);
+    go({5 - in, x + 2 + kDepth}, {5 - in, x + kDepth}, slant);
+    go({5 - in, x + kDepth}, {3.5 - in, x}, slant);
+    go({3.5 - in, x}, {-kThreaded - in, x}, kPitch);
+    go({-kThreaded - in, x}, {-kThreaded - kPitch - in, x + kDepth}, slant);
+    go({-kThreaded - kPitch - in, x + kDepth}, {-kThreaded - kPitch - in, 2 * kBar}, 0);
+    go({-kThreaded - kPitch - in, 2 * kBar}, {5 - in, 2 * kBar}, 0);
+  }
+  const double cut_s = cpu_s() - start;
+  // Of a stretch in the middle.
+  TurnedPart middle = part;
+  const TurningTool blade(*groove_insert({130, 0, 60, 1}));
+  middle.cut(blade, {{-40, 80}, {-40, -1}, std::nullopt, 0});
+  const TurningTool end(*groove_insert({80, 0, 60, 2}));
+  middle.cut(end, {{-10, 80}, {-10, -1}, std::nullopt, 0});
+  const double tan = std::tan(kPi / 6), r = kBar - kDepth, h = kDepth;
+  const double moment = 0.1875 * (r * h + h * h / 2) + 2 * tan * (r * h * h / 2 + h * h * h / 3);
+  const double expected = kPi * kBar * kBar * 30 - 2 * kPi / kPitch * 30 * moment;
+  const double got = middle.remaining_mm3();
+  if (!(std::abs(got / expected - 1) < 1e-6))
+    fail(fmt::format("the threaded part has {} mm3, not {}", got, expected));
+  fmt::print("threads: 20 passes of 40 turns, {:.1f} ms CPU, {} passes kept, {} bytes\n",
+             cut_s * 1e3, part.threads().passes().size(), part.threads().unique_bytes());
+  const double before = cpu_s();
+  for (int i = 0; i < 100; ++i) part.section(0.01 * i);
+  const double section_s = (cpu_s() - before) / 100, patches = cpu_s();
+  std::size_t triangles = 0;
+  for (std::size_t band = 0; band < TurnedPart::kBands; ++band)
+    triangles += part.patch(band, 0).indices.size() / 3;
+  const double patch_s = cpu_s() - patches, mesh = cpu_s();
+  const std::size_t faces = part.mesh(0.01).triangles.size();
+  fmt::print(
+      "a section: {:.3f} ms; all patches: {:.1f} ms, {} triangles; a mesh of 0.01 mm: {:.1f} "
+      "ms, {} triangles\n",
+      section_s * 1e3, patch_s * 1e3, triangles, (cpu_s() - mesh) * 1e3, faces);
+}
+
 }  // namespace
 }  // namespace kerf
 
@@ -171,5 +221,6 @@ int main(int argc, char** argv) {
   fmt::print("a copy: {:.1f} us, {} bytes of its own\n", (cpu_s() - start) * 1e3,
              copies.back().unique_bytes());
   measure_arcs(tool);
+  measure_threads();
   return 0;
 }

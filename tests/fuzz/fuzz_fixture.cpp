@@ -1,4 +1,5 @@
-// --fixture text from arbitrary bytes; what can be understood is built, and held against a tool.
+// --fixture, --chuck and --tailstock text from arbitrary bytes; what can be understood is built,
+// and held against a tool.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -7,8 +8,25 @@
 
 #include "twin/collision/sweep.h"
 #include "twin/job/fixtures.h"
+#include "twin/job/work_holding.h"
+
+namespace {
+
+/// --chuck and --tailstock of the same bytes, about a bar.
+void hold(const std::string& text) {
+  kerf::WorkHolding holding;
+  if (const auto chuck = kerf::parse_chuck(text)) holding.chuck = *chuck;
+  if (const auto tailstock = kerf::parse_tailstock(text)) holding.tailstock = *tailstock;
+  const auto bodies = kerf::holding_bodies(holding, kerf::bar_profile(-60, 0, 40));
+  if (!bodies) return;
+  for (const kerf::HoldingBody& body : *bodies)
+    if (!(body.ring.remaining_mm3() > 0)) std::abort();
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  hold(std::string(data, data + size));
   const auto spec = kerf::parse_fixture(std::string(data, data + size));
   if (!spec) {
     if (spec.error().empty()) std::abort();

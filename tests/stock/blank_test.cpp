@@ -118,6 +118,27 @@ TEST(Blank, BarsOfFlats) {
   EXPECT_EQ(parse_blank("hex:0,0,-1:0:1", LengthUnit::kInch)->bodies[0].diameter_mm, 25.4);
 }
 
+TEST(Blank, ASavedPartLiesElsewhere) {
+  const Result<Blank> plain = parse_blank("state:a:b.state");
+  ASSERT_TRUE(plain) << plain.error();
+  EXPECT_EQ(plain->state_file, "a:b.state");
+  EXPECT_TRUE(plain->saved_place.is_as_saved());
+  const Result<Blank> about = parse_blank("state:a:b.state:flip=x:at=0,0,-2.5");
+  ASSERT_TRUE(about) << about.error();
+  EXPECT_EQ(about->state_file, "a:b.state");
+  EXPECT_TRUE(about->saved_place.is_turned_about);
+  EXPECT_EQ(about->saved_place.at_z_mm, -2.5);
+  EXPECT_EQ(describe(*about), "workpiece saved in a:b.state, turned about, Z0 at Z-2.5");
+  EXPECT_EQ(described("state:a:at=0,0,4"), "workpiece saved in a, Z0 at Z4");
+  EXPECT_EQ(error_of("state:a:flip=y"), "'flip=y' is not allowed; must be flip=x");
+  EXPECT_EQ(error_of("state:a:at=0,1,4"),
+            "'at=0,1,4' is not allowed; a part that turns stays at X0 Y0: at=0,0,z");
+  EXPECT_EQ(error_of("state:a:at=4"), "at: '4' has 1 value; must be x,y,z");
+  EXPECT_EQ(error_of("state:a:flip=x:flip=x"), "'flip=x': flip= is given twice");
+  EXPECT_EQ(error_of("state:flip=x"), "no error") << "that is a name";
+  EXPECT_EQ(error_of("state::flip=x"), "state:: the file name is missing; the form is state:FILE");
+}
+
 TEST(Blank, Profile) {
   const Result<Blank> drawn = parse_blank("Profile: a+b:c.DXF");
   ASSERT_TRUE(drawn) << drawn.error();

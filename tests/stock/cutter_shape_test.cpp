@@ -175,7 +175,7 @@ TEST(Shape, UnknownNames) {
             "lollipop, tslot, dovetail, kerf, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
-            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L, teeth=N");
+            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L, teeth=N, live=x|z");
 }
 
 TEST(Shape, MissingAndSurplusValues) {
@@ -362,6 +362,21 @@ TEST(Shape, Teeth) {
     EXPECT_EQ(error_of(spec),
               spec + ": teeth: '" + bad + "' is not allowed; must be a whole number from 1 to 99");
   }
+}
+
+// A lathe's driven tool says along which axis it lies.
+TEST(Shape, DrivenToolsLieAlongXOrZ) {
+  EXPECT_FALSE(parse_shape("flat:3")->live());
+  EXPECT_EQ(parse_shape("flat:3:live=x")->live(), LiveAxis::kX);
+  EXPECT_EQ(parse_shape("drill:3:118:teeth=2:live=Z")->live(), LiveAxis::kZ);
+  EXPECT_EQ(spec_of("flat:3:live=X:teeth=2"), "flat:3:teeth=2:live=x");
+  EXPECT_EQ(shape_in("flat:25.4:flute=50.8:live=x", LengthUnit::kInch), "flat:1:flute=2:live=x");
+  EXPECT_EQ(parse_shape("flat:3:live=y").error(),
+            "flat:3:live=y: live: 'y' is not allowed; x and z are: the axis of a lathe along which "
+            "the driven tool lies");
+  EXPECT_EQ(parse_shape("flat:3:live=x:live=x").error(),
+            "flat:3:live=x:live=x: live= is given twice");
+  EXPECT_FALSE(parse_shape("turn:0.4:2:85:30:live=x"));
 }
 
 TEST(Shape, ToolArguments) {

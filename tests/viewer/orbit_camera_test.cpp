@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "base/geometry.h"
 
@@ -43,6 +45,52 @@ TEST(OrbitCamera, DetailIsWhatThePictureShowsOfAPlace) {
       EXPECT_LE(detail.smallest_in(content), detail.at(content.min));
       EXPECT_GE(detail.largest_in(content), detail.at(content.max));
     }
+  }
+}
+
+/// What is to the right, up and towards the eye in the picture, as axes of the workpiece.
+struct Seen {
+  Vec3 right, up, back;
+};
+Seen seen_from(StandardView view, Standing standing) {
+  OrbitCamera camera;
+  camera.set_standing(standing);
+  camera.look_from(view);
+  const glm::dmat4 rows(
+      glm::transpose(camera.projection({Vec3(-10), Vec3(10)}, kSize_px).view_from_world));
+  return {Vec3(rows[0]), Vec3(rows[1]), Vec3(rows[2])};
+}
+
+void expect_same(const Vec3& found, const Vec3& wanted) {
+  EXPECT_LT(glm::distance(found, wanted), 1e-6)
+      << found.x << ' ' << found.y << ' ' << found.z << " instead of " << wanted.x << ' '
+      << wanted.y << ' ' << wanted.z;
+}
+
+TEST(OrbitCamera, OfALatheTheFrontViewHasZToTheRightAndXUp) {
+  const Seen front = seen_from(StandardView::kFront, Standing::kInLathe);
+  expect_same(front.right, {0, 0, 1});
+  expect_same(front.up, {1, 0, 0});
+  expect_same(front.back, {0, 1, 0});
+  const Seen end = seen_from(StandardView::kRight, Standing::kInLathe);  // what the tailstock sees
+  expect_same(end.back, {0, 0, 1});
+  expect_same(end.up, {1, 0, 0});
+  expect_same(seen_from(StandardView::kTop, Standing::kInLathe).back, {1, 0, 0});
+  const Seen iso = seen_from(StandardView::kIsometric, Standing::kInLathe);
+  expect_same(iso.back, Vec3(1) / std::sqrt(3.0));
+}
+
+TEST(OrbitCamera, ALatheAroundItStandsOnItsBed) {
+  const Seen front = seen_from(StandardView::kFront, Standing::kOnLatheBed);
+  expect_same(front.right, {0, 0, 1});
+  expect_same(front.up, {0, 1, 0});
+  expect_same(front.back, {-1, 0, 0});
+}
+
+TEST(OrbitCamera, EachWayUpIsATurnAndNoMirror) {
+  for (const Standing standing : {Standing::kOnTable, Standing::kInLathe, Standing::kOnLatheBed}) {
+    const Vec3 x = in_workpiece({1, 0, 0}, standing), y = in_workpiece({0, 1, 0}, standing);
+    expect_same(glm::cross(x, y), up_of(standing));
   }
 }
 

@@ -101,6 +101,51 @@ TEST_F(PictureTest, BoxHasThreeFacesOnALightBackground) {
   EXPECT_GT(right.brightness(), 70);
 }
 
+/// The hatching of a section's face: brown, where the axes are red, green, blue and parts grey.
+bool is_hatched(const Color& c) { return c.r > c.g + 25 && c.g > c.b + 25; }
+
+/// The front half is away: at the place of the front there is the face, and nothing is hatched
+/// without a section.
+TEST_F(PictureTest, ASectionIsHatched) {
+  PictureOptions options = options_of(640, 480);
+  const Picture whole = draw(box_mesh(kBlank), options);
+  const auto hatched = [](const Picture& picture) {
+    return count(picture, 0.1, 0.2, 0.9, 0.9, is_hatched);
+  };
+  EXPECT_EQ(hatched(whole), 0);
+  options.section = SectionKind::kHalf;
+  const Picture half = draw(box_mesh(kBlank), options);
+  // 100 x 50 mm, seen at 46 degrees to its normal, of a picture of some 200 x 150 mm.
+  EXPECT_NEAR(hatched(half), 0.12 * 640 * 480, 0.03 * 640 * 480);
+  options.section = SectionKind::kQuarter;
+  const Picture quarter = draw(box_mesh(kBlank), options);
+  EXPECT_GT(hatched(quarter), hatched(half) / 2);
+  EXPECT_NE(quarter.rgb, half.rgb);
+}
+
+/// A bar in a lathe lies: it is longer than it is high in the picture.
+TEST_F(PictureTest, ATurnedPartLiesWithItsAxisToTheRight) {
+  const Box bar{{-10, -10, -100}, {10, 10, 0}};
+  PictureOptions options = options_of(640, 480);
+  options.blank_mm = bar;
+  options.standing = Standing::kInLathe;
+  const Picture lying = draw(box_mesh(bar), options);
+  // Blue Z points right of the red X.
+  const auto mean_x = [&](auto is_color) {
+    double sum = 0;
+    int n = 0;
+    for (int x = 0; x < lying.width_px; ++x) {
+      const double share = static_cast<double>(x) / lying.width_px;
+      const int here = count(lying, share, 0, share + 1.0 / lying.width_px, 1, is_color);
+      sum += here * share;
+      n += here;
+    }
+    EXPECT_GT(n, 20);
+    return sum / std::max(1, n);
+  };
+  EXPECT_GT(mean_x(is_blue), mean_x(is_red) + 0.02);
+}
+
 TEST_F(PictureTest, SameInputGivesTheSamePixels) {
   const TriangleMesh mesh = relief_mesh(60);
   const PictureOptions options = options_of(320, 240);

@@ -102,7 +102,70 @@ TEST_P(Section, FromItsFarSideOnlyTheCutAwayPartIsMissing) {
   EXPECT_EQ(differing_pixels(scene.read(), whole), 0);
 }
 
+/// Away goes what lies before y 20 and to the right of x 20; both faces show, and no more of the
+/// block is away than that.
+TEST_P(Section, OfAQuarterShowsBothFaces) {
+  camera_.set_perspective(GetParam());
+  MeshPatch patch;
+  add_box(&patch, kBlock);
+  SceneRenderer scene = renderer();
+  scene.apply(update_of(patch, kBlock));
+  camera_.look_from(-0.7, 0.3);  // of the eye: from the front, the right and above
+  const Projection projection = view_of(scene);
+  DrawOptions options = everything_;
+  options.section = SectionPlane{Vec3(0, -1, 0), -20.0};
+  options.section_beside = SectionPlane{Vec3(2, 0, 0), 40.0};
+  draw(&scene, projection, options);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> along(20.6, 39.4), down(-19.4, -0.6);
+  const auto expect_at = [&](const Vec3& p) {
+    const std::optional<Vec3> found = scene.pick(pixel_of(projection, p));
+    ASSERT_TRUE(found);
+    EXPECT_LT(glm::distance(*found, p), 0.6) << p.x << ' ' << p.y << ' ' << p.z;
+  };
+  for (int i = 0; i < 100; ++i) {
+    const double a = along(random), z = down(random);
+    expect_at({a, 20, z});                   // of the first plane
+    expect_at({20, 40 - a, z});              // of the second one
+    expect_at({40 - a, 0, z});               // what is left of the front
+    expect_at({a, 40 - 0.5 * (a - 20), 0});  // and of the top
+  }
+}
+
+/// From behind, the quarter that is away is not seen at all.
+TEST_P(Section, OfAQuarterIsNotSeenFromBehind) {
+  camera_.set_perspective(GetParam());
+  MeshPatch patch;
+  add_box(&patch, kBlock);
+  SceneRenderer scene = renderer();
+  scene.apply(update_of(patch, kBlock));
+  camera_.look_from(2.3, -0.3);
+  const Projection projection = view_of(scene);
+  draw(&scene, projection, everything_);
+  const Picture whole = scene.read();
+  DrawOptions options = everything_;
+  options.section = SectionPlane{Vec3(0, -1, 0), -20.0};
+  options.section_beside = SectionPlane{Vec3(1, 0, 0), 20.0};
+  draw(&scene, projection, options);
+  for (const Vec3& p : {Vec3(10, 40, -10), Vec3(0, 30, -10), Vec3(10, 30, -20)})
+    EXPECT_EQ(at(whole, pixel_of(projection, p)), at(scene.read(), pixel_of(projection, p)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Views, Section, testing::Bool());
+
+TEST(UsualSection, GoesThroughTheMiddle) {
+  const auto half = usual_section(SectionKind::kHalf, kBlock, Standing::kOnTable);
+  ASSERT_TRUE(half);
+  EXPECT_EQ(half->plane, (SectionPlane{Vec3(0, -1, 0), -20.0}));
+  EXPECT_FALSE(half->beside);
+  const Box bar{Vec3(-20, -20, -60), Vec3(20, 20, 0)};
+  const auto quarter = usual_section(SectionKind::kQuarter, bar, Standing::kInLathe);
+  ASSERT_TRUE(quarter && quarter->beside);
+  EXPECT_EQ(quarter->plane, (SectionPlane{Vec3(0, 1, 0), 0.0}));
+  EXPECT_EQ(*quarter->beside, (SectionPlane{Vec3(1, 0, 0), 0.0}));
+  EXPECT_FALSE(usual_section(SectionKind::kNone, bar, Standing::kInLathe));
+  EXPECT_FALSE(usual_section(SectionKind::kHalf, Box{}, Standing::kInLathe));
+}
 
 TEST_F(SceneRendererTest, ASectionCutsNeitherPathNorTool) {
   MeshPatch patch;

@@ -394,6 +394,42 @@ TEST_F(WindowTest, MeasuresBetweenTwoClicks) {
   EXPECT_TRUE(turn_until([&] { return count_pixels(window_->read(), kScene, kMeasured) == 0; }));
 }
 
+/// Half: what lies before the axis; a quarter: the upper part of that.
+TEST_F(WindowTest, OfAPartThatTurnsTheSectionIsHalfThenAQuarter) {
+  open();
+  SceneSetup setup;
+  setup.title = "shaft.ngc";
+  setup.bounds_mm = {Vec3(-20, -20, -60), Vec3(20, 20, 0)};
+  setup.turns = true;
+  setup.standing = Standing::kInLathe;
+  SceneUpdate update;
+  update.setup = std::make_shared<const SceneSetup>(setup);
+  mailbox_.publish(std::move(update));
+  settle();
+  const DrawOptions& drawing = window_->settings().drawing;
+  EXPECT_FALSE(drawing.section);
+  key("z");
+  settle();
+  EXPECT_EQ(drawing.section, (SectionPlane{Vec3(0, 1, 0), 0.0}));
+  EXPECT_FALSE(drawing.section_beside);
+  key("z");
+  settle();
+  EXPECT_EQ(drawing.section, (SectionPlane{Vec3(0, 1, 0), 0.0}));
+  EXPECT_EQ(drawing.section_beside, (SectionPlane{Vec3(1, 0, 0), 0.0}));
+  key("z");
+  settle();
+  EXPECT_FALSE(drawing.section);
+  EXPECT_FALSE(drawing.section_beside);
+}
+
+TEST_F(WindowTest, ASectionThatIsAskedForIsThereAtOnce) {
+  WindowOptions options;
+  options.section = SectionKind::kQuarter;
+  open(options);
+  EXPECT_TRUE(window_->settings().drawing.section);
+  EXPECT_TRUE(window_->settings().drawing.section_beside);
+}
+
 TEST_F(WindowTest, SectionHidesHalfOfTheWorkpiece) {
   open();
   const Picture before = window_->read_scene();

@@ -110,7 +110,7 @@ class SecondPass {
       if (stop_.stop_requested()) return false;
     const std::shared_ptr<const PlayerState> state = player_.state();
     shot.stock = state->stock;
-    shot.tool = tool_pose_at(shown_.moves.path(), player_.track(), *state);
+    shot.tool = tool_pose_at(shown_.moves, player_.track(), *state);
     shot.nose_z_mm = state->motion.tool_offset_mm.z;
     shot.cutter = state->cutter;
     // Of a tool that has cut nothing yet the player has no shape.

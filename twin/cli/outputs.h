@@ -22,7 +22,8 @@ struct OutputPaths {
   std::string stl;
   std::string ply;
   std::string state;
-  std::string dxf;  ///< what is left of a sheet, and parts beside it (write_outlines)
+  /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
+  std::string dxf;
   std::string svg;
   SectionKind section = SectionKind::kNone;  ///< of `png`
 

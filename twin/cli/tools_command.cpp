@@ -77,7 +77,7 @@ void list_inserts(LengthUnit unit) {
   for (const IsoShape& shape : iso_shapes()) {
     const std::optional<double> angle = iso_angle_deg(shape.letter);
     kerf::print(stdout, "{}  {:>3}  {:>2}  {}\n", shape.letter,
-                shape.corners == 0 ? "-" : number_text(shape.nose_rad / kRadPerDeg),
+                shape.corners == 0 ? "-" : number_text(std::round(shape.nose_rad / kRadPerDeg)),
                 angle ? number_text(*angle) : "-", sizes_of(shape.letter, unit));
   }
   kerf::print(stdout, "{}",
@@ -113,6 +113,17 @@ std::string number_of(const LibraryTool& tool) {
   return tool.number ? fmt::format("{}", *tool.number) : "-";
 }
 
+/// As LinuxCNC's tool table would have it.
+std::string tip_text(const Cutter& cutter) {
+  const InsertTip& tip = cutter.insert_tip();
+  std::string text =
+      trf("orientation {}, nose radius {:.4g} mm", tip.orientation, tip.nose_radius_mm);
+  if (tip.front_deg && tip.back_deg) {
+    text += trf(", front angle {:.4g}, back angle {:.4g}", *tip.front_deg, *tip.back_deg);
+  }
+  return text;
+}
+
 void list_library(const ToolLibrary& library, LengthUnit unit) {
   std::size_t width = 1;
   std::size_t understood = 0;
@@ -125,6 +136,7 @@ void list_library(const ToolLibrary& library, LengthUnit unit) {
     kerf::print(stdout, "{:>{}}  {}{}{}\n", number_of(tool), width, shape,
                 tool.name.empty() ? "" : "  # ", shown(tool.name));
     std::vector<std::string> notes = tool.remarks;
+    if (tool.cutter && tool.cutter->insert()) notes.insert(notes.begin(), tip_text(*tool.cutter));
     if (!tool.trouble.empty()) notes.insert(notes.begin(), trf("left out: {}", tool.trouble));
     if (!tool.number && tool.trouble.empty()) notes.push_back(tr("left out: it has no number"));
     for (const std::string& note : notes) {
@@ -145,6 +157,13 @@ Json library_json(const ToolLibrary& library) {
     one["kind"] = tool.kind.empty() ? Json(nullptr) : Json(tool.kind);
     one["shape"] = tool.cutter ? Json(tool.cutter->spec()) : Json(nullptr);
     if (tool.cutter && tool.cutter->teeth()) one["teeth"] = *tool.cutter->teeth();
+    if (tool.cutter && tool.cutter->insert()) {
+      const InsertTip& tip = tool.cutter->insert_tip();
+      one["orientation"] = tip.orientation;
+      one["nose_radius_mm"] = tip.nose_radius_mm;
+      one["front_deg"] = tip.front_deg ? Json(*tip.front_deg) : Json(nullptr);
+      one["back_deg"] = tip.back_deg ? Json(*tip.back_deg) : Json(nullptr);
+    }
     one["trouble"] = tool.trouble.empty() ? Json(nullptr) : Json(tool.trouble);
     one["remarks"] = tool.remarks;
     tools.push_back(std::move(one));

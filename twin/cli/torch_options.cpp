@@ -73,11 +73,12 @@ BeamOptions understand_torch(OptionReader& reader, TorchOptions& torch) {
 
 void check_outline_wishes(const std::optional<Blank>& blank, const OutputPaths& outputs,
                           OptionReader& reader) {
-  if (blank && is_sheet(*blank)) return;
+  // Whether a bar is turned or milled is seen when the program is read.
+  if (!blank || is_sheet(*blank) || may_be_turned(*blank)) return;
   for (const auto& [option, path] :
        {std::pair("--dxf", &outputs.dxf), std::pair("--svg", &outputs.svg)}) {
     if (path->empty()) continue;
-    reader.fault(option, tr("only a sheet has outlines to write"),
+    reader.fault(option, tr("only a sheet or a turned part has outlines to write"),
                  tr("--stock sheet:x0,y0:x1,y1:THICKNESS cuts from one"));
   }
 }

@@ -53,7 +53,7 @@ struct ConfigMachine {
   std::vector<ToolSection> spindle;
   std::string spindle_spec;  ///< the text that `spindle` was read from
   std::optional<double> spindle_accel_rpm_per_s;
-  WorkHolding holding;       ///< `chuck` and `tailstock`
+  WorkHolding holding;  ///< `chuck` and `tailstock`
   std::optional<double> spindle_max_rpm;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored

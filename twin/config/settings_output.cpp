@@ -62,7 +62,8 @@ constexpr std::array kOutputSettings{
             .commands = kRun | kBesideMachine,
             .type = T::kFile,
             .help = tr_noop("what is left of a sheet, for --stock sheet:FILE.dxf:THICKNESS, and "
-                            "each part beside it: NAME-part-N.dxf"),
+                            "each part beside it: NAME-part-N.dxf; of a turned part its contour, "
+                            "for --stock profile:FILE.dxf"),
             .value_name = "FILE"},
     Setting{.option = "--svg",
             .commands = kRun | kBesideMachine,

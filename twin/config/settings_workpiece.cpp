@@ -20,8 +20,11 @@ constexpr std::array kWorkpieceSettings{
             "blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, sheet:0,0:600,400:3, .."),
         .help = tr_noop(
             "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | "
-            "tube:x,y,z0:z1:d:inner[:axis] | several of these joined by +; or state:FILE (a "
-            "saved workpiece); or "
+            "tube:x,y,z0:z1:d:inner[:axis] | hex:x,y,z0:z1:FLATS | square:x,y,z0:z1:FLATS (bars "
+            "for "
+            "a lathe, width across flats) | several of these joined by +; or state:FILE (a saved "
+            "workpiece); or profile:FILE.dxf, profile:FILE.svg (what turns about the drawing's x "
+            "axis); or "
             "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
             "(metal to be cut by a torch, laser or jet, or punched; its top is at Z0)"),
         .value_name = "SPEC"},

@@ -179,6 +179,10 @@ const char* to_string(FindingId id) {
       return "bar-contact";
     case FindingId::kOverDepth:
       return "over-depth";
+    case FindingId::kOverSpeed:
+      return "over-speed";
+    case FindingId::kThreadShallow:
+      return "thread-shallow";
     case FindingId::kUncompensated:
       return "uncompensated";
   }

@@ -93,6 +93,8 @@ enum class FindingId : std::uint8_t {
   kJawContact,        ///< the same of its jaws
   kBarContact,        ///< the bar that holds an insert touches the workpiece
   kOverDepth,         ///< a cut is deeper than an insert's edge is long
+  kOverSpeed,         ///< the spindle of a lathe is asked for more than it does
+  kThreadShallow,     ///< a thread is less deep than its pitch asks for
   kUncompensated,     ///< a nose's contour is off the programmed one
 };
 

@@ -23,16 +23,16 @@ class TurnedTrace {
 
  private:
   bool feeds_ = false, last_fed_ = false;
-  double widest_mm_ = 0;   ///< from the axis, of feeds
-  double least_mm_ = 0;    ///< how near the axis they come, with the side's sign
+  double widest_mm_ = 0;  ///< from the axis, of feeds
+  double least_mm_ = 0;   ///< how near the axis they come, with the side's sign
   double lowest_mm_ = 0;
   double pitch_mm_ = 0;
-  double along_mm_ = 0;    ///< length of feeds with Z in them, below the ends
-  double steepest_ = 0;    ///< fall of a feed towards -z, of its way along z
+  double along_mm_ = 0;       ///< length of feeds with Z in them, below the ends
+  double steepest_ = 0;       ///< fall of a feed towards -z, of its way along z
   double highest_in_mm_ = 0;  ///< of feeds straight towards the axis
   bool goes_in_ = false;
-  int outward_ = 0;        ///< traverses behind feeds: away from the axis, less those towards it
-  double side_sum_mm_ = 0; ///< of x
+  int outward_ = 0;         ///< traverses behind feeds: away from the axis, less those towards it
+  double side_sum_mm_ = 0;  ///< of x
   double chuckward_mm_ = 0, outward_z_mm_ = 0;  ///< ways of feeds along z
 };
 

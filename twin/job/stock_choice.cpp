@@ -264,6 +264,14 @@ bool is_sheet(const Blank& blank) {
          (!blank.state_file.empty() && saved_kind(blank.state_file) == StockKind::kSheet);
 }
 
+bool may_be_turned(const Blank& blank) {
+  if (!blank.state_file.empty()) return saved_kind(blank.state_file) == StockKind::kTurning;
+  return !blank.sheet &&
+         std::none_of(blank.bodies.begin(), blank.bodies.end(), [](const BlankBody& body) {
+           return body.kind == BlankBody::Kind::kBox || body.axis != 'z';
+         });
+}
+
 std::string misfit(const StockSettings& settings, const Blank& blank) {
   const bool sheet_wanted = settings.kind == StockKind::kSheet;
   if (blank.sheet && settings.additive) {

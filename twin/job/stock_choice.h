@@ -90,6 +90,9 @@ StockNeeds stock_needs(const ToolSources& tools);
 StockKind saved_kind(const std::string& path);
 /// Of sheet metal, new or saved. Reads the head of a saved one.
 bool is_sheet(const Blank& blank);
+/// Whether a lathe may hold it: a saved part that turns, or a blank of bodies that stand on the
+/// axis. Reads the head of a saved one.
+bool may_be_turned(const Blank& blank);
 /// Why the model that was asked for is not for this blank; empty: it is, or none was asked for.
 std::string misfit(const StockSettings& settings, const Blank& blank);
 /// What only the octree holds of a blank; empty: nothing.

@@ -8,7 +8,6 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
-#include "stock/cutter/turning_shape.h"
 #include "twin/job/turning_row.h"
 
 namespace kerf {
@@ -21,9 +20,7 @@ std::string_view kind_of(std::string_view shape) { return shape.substr(0, shape.
 
 /// What the interpreter compensates by.
 KnownDiameter compensation_of(const Cutter& cutter, bool by_argument) {
-  if (cutter.insert() == nullptr) return {2 * cutter.radius_mm(), by_argument, 0};
-  const InsertTip& tip = cutter.insert_tip();
-  return {2 * tip.nose_radius_mm, by_argument, tip.orientation};
+  return {table_diameter_mm(cutter), by_argument, cutter.insert_tip().orientation};
 }
 
 /// Two descriptions that cannot be of one cutter. Corners and points are often left out.
@@ -42,6 +39,20 @@ bool disagree(const ToolHint& a, const ToolHint& b) {
 
 }  // namespace
 
+std::vector<ToolHint> hints_in_force(const ToolSources& sources) {
+  if (!sources.turning) return sources.hints;
+  std::vector<ToolHint> hints = sources.turning_hints;
+  for (const ToolHint& hint : sources.hints) {
+    const auto about_it = [&](const ToolHint& turning) {
+      return turning.line == hint.line || (hint.tool >= 0 && turning.tool == hint.tool);
+    };
+    if (std::none_of(sources.turning_hints.begin(), sources.turning_hints.end(), about_it)) {
+      hints.push_back(hint);
+    }
+  }
+  return hints;
+}
+
 std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
   std::map<int, KnownDiameter> known;
   for (const ToolShapeArgument& argument : sources.arguments) {
@@ -51,10 +62,10 @@ std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
     if (tool.cutter) known.try_emplace(*tool.number, compensation_of(*tool.cutter, false));
   }
   // Whole shapes before those of which only the diameter is known, as ToolResolver has it.
+  const std::vector<ToolHint> hints = hints_in_force(sources);
   for (const bool guessed : {false, true}) {
-    for (const ToolHint& hint : sources.hints) {
+    for (const ToolHint& hint : hints) {
       if (hint.tool <= 0 || hint.shape_guessed != guessed || known.count(hint.tool) != 0) continue;
-      if (is_turning_shape(hint.shape) && !sources.turning) continue;
       if (const Result<Cutter> cutter = parse_shape(hint.shape)) {
         known[hint.tool] = compensation_of(*cutter, false);
       }
@@ -63,8 +74,13 @@ std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
   return known;
 }
 
+KnownTools known_tools(const ToolSources& sources) {
+  return {known_diameters(sources), sources.turning};
+}
+
 ToolResolver::ToolResolver(ToolSources sources, CutterCheck can_cut)
     : sources_(std::move(sources)), can_cut_(can_cut) {
+  sources_.hints = hints_in_force(sources_);
   std::stable_sort(sources_.hints.begin(), sources_.hints.end(),
                    [](const ToolHint& a, const ToolHint& b) { return a.line < b.line; });
 }
@@ -117,7 +133,6 @@ bool ToolResolver::from_library(ResolvedTool& out) const {
 }
 
 bool ToolResolver::from_hint(ResolvedTool& out, const ToolHint& hint) const {
-  if (is_turning_shape(hint.shape) && !sources_.turning) return false;
   Result<Cutter> cutter = parse_shape(hint.shape);
   if (!cutter) {
     out.trouble = trf("the comment in line {} ({}) gives no usable shape: {}", hint.line,

@@ -33,6 +33,7 @@ struct ToolSources {
   std::vector<LibraryTool> library;          ///< of --tools: those with a number, each one once
   std::set<int> named_of_library;            ///< those of them that the program's text names
   std::vector<ToolHint> hints;               ///< comments of the program, in order of lines
+  std::vector<ToolHint> turning_hints;       ///< the same for lathes (turning_hints.h)
   std::vector<ToolTableRow> table;           ///< rows of the tool table
   std::vector<ToolGuess> guesses;            ///< taken where nothing else tells
   bool turning = false;  ///< the workpiece turns: rows of the table are lathe tools (turning_row.h)
@@ -42,9 +43,15 @@ struct ToolSources {
   bool describes() const { return !arguments.empty() || !library.empty() || !table.empty(); }
 };
 
+/// The comments that count: of a lathe those for lathes, and others about what these say nothing
+/// of.
+std::vector<ToolHint> hints_in_force(const ToolSources& sources);
+
 /// The diameters of the tools that arguments and comments describe by number: of the widest place;
 /// of turning tools that of the nose, and its orientation.
 std::map<int, KnownDiameter> known_diameters(const ToolSources& sources);
+/// They, and whether tools stand still.
+KnownTools known_tools(const ToolSources& sources);
 
 /// A tool of the program and where its shape comes from.
 struct ResolvedTool {

@@ -11,7 +11,6 @@
 #include "base/units.h"
 #include "stock/cutter/insert_shape.h"
 #include "stock/cutter/turning_flanks.h"
-#include "stock/cutter/turning_text.h"
 
 namespace kerf {
 namespace {
@@ -44,15 +43,29 @@ int orientation_behind(const FlankAngles& angles) {
   return best;
 }
 
-}  // namespace
-
-std::optional<ShapeText> turning_remark_shape(const ToolTableRow& row) {
+TurningFacts facts_of(const ToolTableRow& row) {
   TurningFacts facts;
   facts.nose_diameter_mm = std::abs(row.diameter_mm);
   facts.orientation = row.orientation;
   facts.front_deg = row.front_angle_deg;
   facts.back_deg = row.back_angle_deg;
-  return turning_shape_in_text(row.remark, false, facts);
+  return facts;
+}
+
+}  // namespace
+
+double table_diameter_mm(const Cutter& cutter) {
+  return 2 * (cutter.insert() ? cutter.insert_tip().nose_radius_mm : cutter.radius_mm());
+}
+
+std::map<int, TurningFacts> turning_facts(const std::vector<ToolTableRow>& rows) {
+  std::map<int, TurningFacts> facts;
+  for (const ToolTableRow& row : rows) facts.emplace(row.tool, facts_of(row));
+  return facts;
+}
+
+std::optional<ShapeText> turning_remark_shape(const ToolTableRow& row) {
+  return turning_shape_in_text(row.remark, false, facts_of(row));
 }
 
 ShapeText turning_row_shape(const ToolTableRow& row, bool drills) {

@@ -1,13 +1,23 @@
 // twin/job/turning_row.h - a lathe tool as a row of LinuxCNC's tool table describes it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "interp_bridge/program.h"
+#include "stock/cutter/cutter.h"
 #include "stock/cutter/free_text.h"
+#include "stock/cutter/turning_text.h"
 
 namespace kerf {
+
+/// What a table's D is of such a tool: of a turning tool twice its nose radius, else its width.
+double table_diameter_mm(const Cutter& cutter);
+
+/// Of the rows' tools, for texts about them.
+std::map<int, TurningFacts> turning_facts(const std::vector<ToolTableRow>& rows);
 
 /// The tool that the remark names (turning_text.h), with the row's Q, I, J and D where it leaves
 /// them out. None: it names none.

@@ -42,9 +42,9 @@ void LiveSession::conclude() {
   if (const Sheet* const sheet = shift_->stock().sheet()) {
     report_.sheet = sheet_report(*sheet, cutter.stage().process(), options_.beam.density_kg_per_m3);
   }
-  if (const TurningStock* const turned = shift_->stock().turned()) {
+  if (shift_->stock().turned()) {
     report_.turning =
-        turning_report(*turned, cutter.stage().process(), options_.beam.density_kg_per_m3);
+        turning_report(shift_->stock(), cutter.stage().process(), options_.beam.density_kg_per_m3);
   }
   report_.timing.total_s = std::chrono::duration<double>(Clock::now() - start_).count();
   report_.peak_rss_mb = peak_rss_mb();

@@ -115,6 +115,11 @@ bool moves_sideways(const Motion& m) {
   return m.from_mm.x != m.to_mm.x || m.from_mm.y != m.to_mm.y;
 }
 
+double lead_mm_of(const Motion& m) {
+  if (m.kind != MotionKind::kThread || m.spindle == SpindleState::kStopped) return 0;
+  return m.spindle == SpindleState::kClockwise ? m.feed_mm_per_min : -m.feed_mm_per_min;
+}
+
 CutMove cut_move_from(const Motion& m, std::uint64_t id) {
   CutMove move;
   move.from_mm = m.from_mm;
@@ -122,6 +127,7 @@ CutMove cut_move_from(const Motion& m, std::uint64_t id) {
   if (m.kind == MotionKind::kArc) {
     move.arc = CutArc{m.arc.center_mm, m.arc.axis, m.arc.sweep_rad};
   }
+  move.lead_mm = lead_mm_of(m);
   move.id = id;
   return move;
 }

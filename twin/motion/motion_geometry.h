@@ -35,6 +35,12 @@ bool stands_still(const Motion& motion);
 /// In X or Y, or around a circle.
 bool moves_sideways(const Motion& motion);
 
+/// CutMove::lead_mm: of a thread how far the tool goes along its way in a turn of the spindle,
+/// negative where that turns as M4 has it. LinuxCNC's K is that, also of slanting ways; G76 gives
+/// its slanting ends a longer one, so that they keep the lead along the axis. 0 for all other
+/// motions, and where the spindle stands.
+double lead_mm_of(const Motion& motion);
+
 /// The motion as the stock model takes it.
 CutMove cut_move_from(const Motion& motion, std::uint64_t id);
 

@@ -216,9 +216,8 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
     front.blank_origin = tr("guessed");
     front.blank_guessed = true;
     front.is_drawn = survey.is_drawn();
-    front.guess_reason = front.is_turned()
-                             ? std::string(tr("a bar as wide as it is turned"))
-                             : trf("the feed moves plus {:g} mm", options.margin_mm);
+    front.guess_reason = front.is_turned() ? std::string(tr("a bar as wide as it is turned"))
+                                           : trf("the feed moves plus {:g} mm", options.margin_mm);
     if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
       remarks.add(std::move(*warning));
     }
@@ -276,7 +275,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
     said.clear();
     front->program = Program::open(options.program, diagnostics);
     if (!front->program) return nullptr;
-    front->program->give_diameters(known_diameters(front->tools));
+    front->program->give_tools(known_tools(front->tools));
     reading.emplace(options, *front, *process, control, true);
     loaded->summary = reading->read(said);
   }

@@ -97,6 +97,7 @@ CutMove ProgramTrack::cut_move(std::size_t i) const {
   if (mode.kind == MotionKind::kArc) {
     move.arc = CutArc{read(arc_center_mm_, i), mode.arc.axis, arc_sweep_rad_.real_at(i)};
   }
+  if (mode.kind == MotionKind::kThread) move.lead_mm = lead_mm_of(motion(i));
   return move;
 }
 

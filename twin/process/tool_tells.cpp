@@ -14,7 +14,7 @@ namespace kerf {
 ToolUse use_of(const ResolvedTool& tool) {
   ToolUse use;
   use.number = tool.number;
-  use.origin = tool.origin;
+  if (tool.cutter) use.origin = tool.origin;
   use.guessed = tool.guessed;
   if (tool.cutter) {
     use.shape = tool.cutter->spec();

@@ -9,7 +9,8 @@
 
 namespace kerf {
 
-/// Of a tool that has done nothing yet.
+/// Of a tool that has done nothing yet; without an origin where there is no cutter: that is told
+/// when it first feeds.
 ToolUse use_of(const ResolvedTool& tool);
 /// tool-assumed and tool-guessed, where it first moves.
 void tell_tool(const ResolvedTool& tool, const Motion& motion, FindingLog& log);

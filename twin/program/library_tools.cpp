@@ -9,6 +9,7 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "twin/job/turning_row.h"
 
 namespace kerf {
 namespace {
@@ -48,7 +49,7 @@ void tell_of(const LibraryTool& tool, Diagnostics& diagnostics) {
 
 /// Of a taper the tip's diameter may be meant, too.
 bool has_diameter(const Cutter& cutter, double mm) {
-  if (std::abs(2 * cutter.radius_mm() - mm) <= kSameDiameter_mm) return true;
+  if (std::abs(table_diameter_mm(cutter) - mm) <= kSameDiameter_mm) return true;
   const std::vector<std::string_view> fields = split(cutter.spec(), ':');
   const auto tip = fields.size() > 1 ? parse_decimal(fields[1]) : std::nullopt;
   return fields[0] == "taper" && tip && std::abs(*tip - mm) <= kSameDiameter_mm;
@@ -103,11 +104,11 @@ void compare_with_table(const ToolSources& sources, Diagnostics& diagnostics) {
     if (!tool->cutter || !(row->diameter_mm > 0) || has_diameter(*tool->cutter, row->diameter_mm)) {
       continue;
     }
-    diagnostics.push_back(
-        warning(tool->path,
-                trf("{}: the tool table (line {}) says {:.4g} mm, the library {:.4g} "
-                    "mm; the library counts",
-                    title_of(*tool), row->line, row->diameter_mm, 2 * tool->cutter->radius_mm())));
+    diagnostics.push_back(warning(
+        tool->path,
+        trf("{}: the tool table (line {}) says {:.4g} mm, the library {:.4g} "
+            "mm; the library counts",
+            title_of(*tool), row->line, row->diameter_mm, table_diameter_mm(*tool->cutter))));
   }
 }
 

@@ -7,16 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/translate.h"
 #include "base/units.h"
+#include "stock/cutter/turning_hints.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/turning/turning_stock.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
+#include "twin/job/turning_row.h"
 #include "twin/program/library_tools.h"
 
 namespace kerf {
@@ -61,6 +64,27 @@ Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string
   return as_stock(ZMap::load(path, settings.threads, settings.kernel));
 }
 
+/// As it lies now; null, with an error: only what turns is turned about, and not beyond a lathe.
+std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blank& blank,
+                                   Diagnostics& diagnostics) {
+  const SavedPlace& place = blank.saved_place;
+  if (place.is_as_saved()) return stock;
+  const TurningStock* const turned = stock->turned();
+  if (turned == nullptr) {
+    diagnostics.push_back(general_error(
+        trf("{}: flip= and at= are for parts that are turned; this one was saved as {}",
+            blank.state_file, stock->name())));
+    return nullptr;
+  }
+  std::optional<TurnedPart> part = place.is_turned_about
+                                       ? turned->part().turned_about(place.at_z_mm)
+                                       : turned->part().moved(place.at_z_mm);
+  if (part) return std::make_unique<TurningStock>(std::move(*part));
+  diagnostics.push_back(general_error(trf("{}: at Z{:g} it would lie beyond {} mm from Z0",
+                                          blank.state_file, place.at_z_mm, kMaxTurnedZ_mm)));
+  return nullptr;
+}
+
 std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& choice,
                                        const StockSettings& settings, Diagnostics& diagnostics,
                                        Outcome& outcome) {
@@ -81,7 +105,7 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   auto loaded = load_saved(saved, blank.state_file, settings);
-  if (loaded) return std::move(loaded.value());
+  if (loaded) return placed(std::move(loaded.value()), blank, diagnostics);
   diagnostics.push_back(general_error(loaded.error()));
   outcome = Outcome::kFailed;
   return nullptr;
@@ -154,7 +178,8 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
   setup.stock = blank.state_file.empty()
                     ? fill_stock(blank, fitting, settings, origin, diagnostics)
                     : load_stock(blank, fitting, settings, diagnostics, outcome);
-  if (!setup.stock && blank.sheet && !blank.sheet->file.empty()) outcome = Outcome::kFailed;
+  const bool is_drawn = (blank.sheet && !blank.sheet->file.empty()) || !blank.profile_file.empty();
+  if (!setup.stock && is_drawn) outcome = Outcome::kFailed;
   return setup;
 }
 
@@ -181,8 +206,13 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
                          Diagnostics& diagnostics) {
   sources.arguments = arguments;
   add_library_tools(libraries, program, sources, diagnostics);
-  if (program) sources.hints = find_tool_hints(comments_with_units(*program, options.path));
-  if (options.tool_table_path.empty()) return true;
+  std::vector<CommentText> comments;
+  if (program) comments = comments_with_units(*program, options.path);
+  sources.hints = find_tool_hints(comments);
+  if (options.tool_table_path.empty()) {
+    sources.turning_hints = find_turning_hints(comments);
+    return true;
+  }
   auto rows = read_tool_table(options.tool_table_path, diagnostics,
                               mm_of_unit(options.machine.inch_machine));
   if (!rows) {
@@ -190,6 +220,7 @@ bool gather_tool_sources(const std::vector<ToolShapeArgument>& arguments,
     return false;
   }
   sources.table = std::move(rows.value());
+  sources.turning_hints = find_turning_hints(comments, turning_facts(sources.table));
   compare_with_table(sources, diagnostics);
   return !has_error(diagnostics);
 }

@@ -44,6 +44,14 @@ std::string sign_of_tools(const TurningWords& words, const std::vector<ToolTable
   return {};
 }
 
+std::string sign_of_shapes(const ToolSources& tools) {
+  for (const ToolShapeArgument& tool : tools.arguments) {
+    if (!tool.cutter.insert()) continue;
+    return trf("--tool {}={}, a turning tool", tool.tool, tool.cutter.spec());
+  }
+  return {};
+}
+
 std::string sign_of_blank(const Blank& blank) {
   if (!blank.state_file.empty() && saved_kind(blank.state_file) == StockKind::kTurning) {
     return trf("{}: a turned part", blank.state_file);
@@ -74,6 +82,7 @@ bool note_turning(const ProgramOptions& options, const Program* program,
   tools.turning = kind == StockKind::kTurning;
   if (tools.turning || options.as_mill) return true;
   std::string sign = blank ? sign_of_blank(*blank) : std::string();
+  if (sign.empty()) sign = sign_of_shapes(tools);
   if (sign.empty()) sign = turning_sign(options, program, tools.table);
   if (sign.empty()) return true;
   if (kind) {

@@ -22,7 +22,8 @@ std::string turning_sign(const ProgramOptions& options, const Program* program,
 
 /// Notes in `tools` that the workpiece turns, if there is a sign and options.as_mill does not say
 /// that it is to be milled all the same, or if the model turning is asked for, or the blank is one
-/// that only turns (a hexagonal bar, a turned part that was saved). False, with an error: another
+/// that only turns (a hexagonal bar, a turned part that was saved), or a tool is a turning tool
+/// (--tool). False, with an error: another
 /// model is asked for, and there is a sign.
 bool note_turning(const ProgramOptions& options, const Program* program,
                   std::optional<StockKind> kind, const std::optional<Blank>& blank,

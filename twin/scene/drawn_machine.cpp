@@ -84,6 +84,16 @@ Vec3 held_from_tip(const ToolShape& shape) {
   return is_bar ? Vec3(0, 0, static_cast<double>(high.x)) : Vec3(static_cast<double>(high.y), 0, 0);
 }
 
+double before_turret_mm(const MachineModel& machine) {
+  float low = 0;
+  if (machine.name != name_of(MachineKind::kLathe)) return 0;
+  for (const LinkShape& link : machine.links) {
+    if (link.name != "turret" || !link.mesh) continue;
+    for (const glm::vec3& p : link.mesh->positions_mm) low = std::min(low, p.z);
+  }
+  return -static_cast<double>(low);
+}
+
 std::vector<glm::mat4> drawn_poses(const MachineModel& machine, const Vec3& tip_mm,
                                    const std::array<double, 3>& abc_deg, double tool_length_mm,
                                    const AxisValues& joints) {

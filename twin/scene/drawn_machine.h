@@ -38,6 +38,9 @@ SceneMachine scene_machine(const MachineModel& model);
 double drawn_height_mm(const ToolShape& shape);
 /// Of a tool on a lathe: where the turret holds it, along X or Z.
 Vec3 held_from_tip(const ToolShape& shape);
+/// So far the turret of the built-in lathe reaches towards the chuck, from its nose on; 0 of
+/// others.
+double before_turret_mm(const MachineModel& machine);
 
 /// Poses of the links of a machine that stands so that the tool is seen from the workpiece as
 /// `tool_in_workpiece` (its origin the tip). The slides are solved for; A, B and C are those of the

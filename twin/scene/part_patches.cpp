@@ -15,6 +15,11 @@ constexpr double kCellsPerPixel = 1.6;
 constexpr double kUnseenPixels = 0.25;
 constexpr double kTurnedCell_mm = 0.1;
 
+/// Of contours; once it is milled as well it has cells.
+bool is_exact(const StockModel& stock) {
+  return stock.turned() && stock.cell_mm() == stock.turned()->cell_mm();
+}
+
 }  // namespace
 
 int patch_level(double pixel_mm, double cell_mm) {
@@ -25,12 +30,12 @@ int patch_level(double pixel_mm, double cell_mm) {
 }
 
 int patch_level(const StockModel& stock, double pixel_mm) {
-  return stock.turned() ? TurnedPart::level_within(kUnseenPixels * pixel_mm)
-                        : patch_level(pixel_mm, stock.cell_mm());
+  return is_exact(stock) ? TurnedPart::level_within(kUnseenPixels * pixel_mm)
+                         : patch_level(pixel_mm, stock.cell_mm());
 }
 
 double patch_cell_mm(const StockModel& stock) {
-  return stock.turned() ? kTurnedCell_mm : stock.cell_mm();
+  return is_exact(stock) ? kTurnedCell_mm : stock.cell_mm();
 }
 
 PartPatches part_patches(const StockModel& stock) {

@@ -43,7 +43,10 @@ std::string notice_of(const PlayerState& state) {
 
 }  // namespace
 
-ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state) {
+ToolPose tool_pose_at(const MotionMoves& moves, const ProgramTrack& track,
+                      const PlayerState& state) {
+  const ToolPath* const live = state.cutter ? moves.live_path(*state.cutter) : nullptr;
+  const ToolPath* const path = live ? live : moves.path();
   if (path == nullptr) return {state.tip_mm, Vec3(0, 0, 1)};
   const Pose pose = path->pose_at(state.motion, fraction_of(track, state));
   return {pose.origin_mm, pose.direction(path->machine().nose_from_tip)};
@@ -79,7 +82,9 @@ std::vector<glm::mat4> machine_poses_at(const ViewedProgram& shown, const Progra
   if (path == nullptr) {
     if (shown.turns && state.cutter) {
       const Vec3 held = held_from_tip(*tool_shape_of(*state.cutter));
-      return drawn_poses(machine, state.tip_mm + Vec3(0, 0, held.z), state.abc_deg, held.x);
+      const double before_mm = held.z > 0 ? before_turret_mm(machine) : 0;
+      return drawn_poses(machine, state.tip_mm + Vec3(0, 0, held.z + before_mm), state.abc_deg,
+                         held.x);
     }
     if (!shown.punch) return drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm);
     std::vector<glm::mat4> poses = drawn_poses(machine, state.tip_mm, state.abc_deg, tool_length_mm,
@@ -294,7 +299,7 @@ double PlayerScene::removed_mm3(const PlayerState& state) {
 
 ToolPose PlayerScene::tool_pose(const PlayerState& state) const {
   if (shown_.punch) return {shown_.punch->tip_mm(*track_, state), Vec3(0, 0, 1)};
-  return tool_pose_at(shown_.moves.path(), *track_, state);
+  return tool_pose_at(shown_.moves, *track_, state);
 }
 
 std::shared_ptr<const Moment> PlayerScene::moment_of(const PlayerState& state) {

@@ -50,8 +50,9 @@ struct ViewedProgram {
   CollisionWishes collisions;                   ///< fixtures and spindle, as they are checked
 };
 
-/// Where the tool is in the workpiece. `path`: null: nothing turns.
-ToolPose tool_pose_at(const ToolPath* path, const ProgramTrack& track, const PlayerState& state);
+/// Where the tool is in the workpiece.
+ToolPose tool_pose_at(const MotionMoves& moves, const ProgramTrack& track,
+                      const PlayerState& state);
 
 /// The machine around it; see drawn_machine(). Null without a workpiece.
 std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,

@@ -11,25 +11,25 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kMostCorners = 24;
-constexpr int kAround = 72;  // of a circle; a multiple of four
+constexpr int kCircleSteps = 72;  // of a circle; a multiple of four
 
-glm::vec3 on_circle(const Vec2& zr, int step) {
-  const double angle = 2 * kPi * step / kAround;
+glm::vec3 on_round(const Vec2& zr, int step) {
+  const double angle = 2 * kPi * step / kCircleSteps;
   return glm::vec3(Vec3(zr.y * std::cos(angle), zr.y * std::sin(angle), zr.x));
 }
 
-void add_chain(const std::vector<Vec2>& chain, std::vector<LineSegment>& lines) {
+void add_profile(const std::vector<Vec2>& chain, std::vector<LineSegment>& lines) {
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const Vec2& from = chain[i];
     const Vec2& to = chain[(i + 1) % chain.size()];
     if (from.y > 0) {
-      for (int k = 0; k < kAround; ++k)
-        lines.push_back({on_circle(from, k), on_circle(from, k + 1)});
+      for (int k = 0; k < kCircleSteps; ++k)
+        lines.push_back({on_round(from, k), on_round(from, k + 1)});
     }
     // A face is seen by its circles.
     if (from.x == to.x || (from.y == 0 && to.y == 0)) continue;
-    for (int k = 0; k < kAround; k += kAround / 4)
-      lines.push_back({on_circle(from, k), on_circle(to, k)});
+    for (int k = 0; k < kCircleSteps; k += kCircleSteps / 4)
+      lines.push_back({on_round(from, k), on_round(to, k)});
   }
 }
 
@@ -53,10 +53,10 @@ std::vector<LineSegment> turned_outline(const TurningStock& stock) {
   const TurnedPart& part = stock.part();
   std::vector<LineSegment> lines;
   if (part.corner_count() <= kMostCorners) {
-    for (const std::vector<Vec2>& chain : part.profile()) add_chain(chain, lines);
+    for (const std::vector<Vec2>& chain : part.profile()) add_profile(chain, lines);
   } else {
     const Box box = part.bounds_mm();
-    add_chain(bar_profile(box.min.z, box.max.z, box.size().x).front(), lines);
+    add_profile(bar_profile(box.min.z, box.max.z, box.size().x).front(), lines);
   }
   return lines;
 }

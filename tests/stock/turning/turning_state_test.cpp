@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include "stock/state_bytes.h"
@@ -122,6 +124,52 @@ TEST_F(TurningState, holes_and_the_side_of_the_chuck_come_back) {
   EXPECT_NEAR((*loaded)->part().freed()[0].low_z_mm, -64, 1e-9);
 }
 
+TEST_F(TurningState, threads_come_back_and_lie_the_same_when_turned_about) {
+  TurningStock first = stock();
+  const Cutter tool = Cutter::from_insert("thread:60", *thread_insert({radians(60), 0.2, 3, 6}));
+  std::vector<CutReport> reports;
+  std::vector<CutMove> moves{straight(4, 19, -30, 19), straight(-30, 19, -32, 21),
+                             straight(-32, 21, -32, 30)};
+  moves[0].lead_mm = moves[1].lead_mm = 2.5;
+  first.cut(tool, moves, reports);
+  ASSERT_EQ(first.part().threads().passes().size(), 2u);
+  const std::string bytes = bytes_of(first);
+  const auto loaded = TurningStock::load(path_);
+  ASSERT_TRUE(loaded) << loaded.error();
+  EXPECT_EQ((*loaded)->digest(), first.digest());
+  EXPECT_EQ((*loaded)->remaining_mm3(), first.remaining_mm3());
+  const CutMove along = straight(2, 19.4, -20, 19.4);
+  first.cut(finisher(), {&along, 1}, reports);
+  (*loaded)->cut(finisher(), {&along, 1}, reports);
+  EXPECT_EQ((*loaded)->digest(), first.digest());
+  EXPECT_EQ((*loaded)->remaining_mm3(), first.remaining_mm3());
+  // About a place: the same material at the opposite angle, and about it again as it was.
+  const std::optional<TurnedPart> about = first.part().turned_about(-5);
+  ASSERT_TRUE(about);
+  EXPECT_NEAR(about->remaining_mm3(), first.remaining_mm3(), 1e-6);
+  const double angle = 1.234;
+  const TurnedProfile there = first.part().section(angle), here = about->section(-angle);
+  ASSERT_EQ(there.size(), here.size());
+  double off = 0;
+  for (const Vec2& p : here[0]) {
+    double least = 1e300;
+    for (const Vec2& q : there[0]) least = std::min(least, std::hypot(-5 - p.x - q.x, p.y - q.y));
+    off = std::max(off, least);
+  }
+  EXPECT_LT(off, 5e-5);
+  // Not one number of it that is wrong comes through.
+  const std::size_t section = bytes.find("THRD");
+  ASSERT_NE(section, std::string::npos);
+  const std::size_t lead = section + 4 + 4 + 8 + 4 + 8 + 4 * 8;
+  for (const double wrong : {0.0, std::nan(""), 1e-4, std::numeric_limits<double>::infinity()}) {
+    std::string other = bytes;
+    std::memcpy(other.data() + lead, &wrong, sizeof wrong);
+    EXPECT_EQ(error_of(with_checksum(other)), "part.state: the threads are damaged");
+  }
+  for (std::size_t end = section + 1; end < bytes.size() - kStateHashBytes; ++end)
+    EXPECT_NE(error_of(with_sum_added(bytes.substr(0, end))), "none") << end;
+}
+
 TEST_F(TurningState, nothing_left_is_a_state_too) {
   TurningStock gone(*TurnedPart::create(bar_profile(-1, 0, 4)));
   std::vector<CutReport> reports;
@@ -149,6 +197,11 @@ TEST_F(TurningState, turned_about_and_back_it_is_the_same) {
   b.cut(disc, line({20, 25}, {20, 15}));
   EXPECT_NEAR(a.remaining_mm3(), b.remaining_mm3(), 1e-9);
   EXPECT_FALSE(first.part().turned_about(2000.5));
+  const std::optional<TurnedPart> moved = first.part().moved(25.5);
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(moved->bounds_mm(), (Box{{-20, -20, -38.5}, {20, 20, 25.5}}));
+  EXPECT_EQ(moved->moved(-25.5)->digest(), first.digest());
+  EXPECT_FALSE(first.part().moved(-1936.5));
   EXPECT_FALSE(first.part().turned_about(std::nan("")));
 }
 
@@ -205,8 +258,8 @@ TEST_F(TurningState, says_what_is_wrong) {
   };
   EXPECT_EQ(changed(4, 2),
             "part.state: has a section 'PART' of version 2, which this kerf cannot read");
-  EXPECT_EQ(changed(0, 0x44524854),
-            "part.state: has a section 'THRD' of version 1, which this kerf cannot read");
+  EXPECT_EQ(changed(0, 0x41525458),
+            "part.state: has a section 'XTRA' of version 1, which this kerf cannot read");
   EXPECT_EQ(changed(8, 12), damaged) << "another size";
   EXPECT_EQ(changed(16, 0xffff'ffff), damaged) << "more contours than bytes";
   EXPECT_EQ(changed(20, 0xffff'ffff), damaged) << "more corners than bytes";

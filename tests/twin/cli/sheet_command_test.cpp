@@ -184,7 +184,7 @@ TEST_F(SheetCommand, FaultsOfOptionsAreTold) {
   expect_refused(run({"slot.canon", "--stock", stock, "--cell", "0.1"}), 2,
                  "kerf: error: --cell: a sheet has no cells; leave it out\n");
   expect_refused(run({"slot.canon", "--stock", "box:0,0,0:1,1,1", "--svg", "a.svg"}), 2,
-                 "kerf: error: --svg: only a sheet has outlines to write\n"
+                 "kerf: error: --svg: only a sheet or a turned part has outlines to write\n"
                  "   hint: --stock sheet:x0,y0:x1,y1:THICKNESS cuts from one\n");
 }
 

@@ -157,7 +157,7 @@ TEST_F(SheetReuse, OutlinesAreOfSheetsAlone) {
                                  "--speed", "max", "--dxf", "rest.dxf"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err.substr(0, result.err.find('\n')),
-            "kerf: error: --dxf: only a sheet has outlines to write");
+            "kerf: error: --dxf: only a sheet or a turned part has outlines to write");
 }
 
 }  // namespace

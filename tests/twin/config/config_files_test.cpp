@@ -170,6 +170,9 @@ TEST(ConfigPrint, ReadsTheSameAgain) {
       "follow: {program: null.ngc, path: programmed, off_path_mm: 0.3, look_ahead_s: 2.25}\n");
   expect_round_trip("machine: {ini: 'null', tool_table: '~'}\n");
   expect_round_trip(
+      "machine: {chuck: '160:80:120:25:bore=30:at=-40', tailstock: '40:75', "
+      "spindle_max_rpm: 4000}\n");
+  expect_round_trip(
       "source:\n  type: modbus\n  tcp: '[::1]:7'\n  units: inch\n  stale_after_ms: 33.3\n"
       "  lost_after_ms: 77.7\n  gap: cut\n  frame: workpiece\n  map:\n"
       "    X: {register: 3, table: input, type: float64, word_order: badc, scale: 0.1, offset: 7, "

@@ -16,6 +16,24 @@ TEST(ConfigKeys, EmptyIsAllDefaults) {
   EXPECT_TRUE(std::holds_alternative<std::monostate>(read.config->source));
 }
 
+TEST(ConfigKeys, WhatHoldsAWorkpieceThatTurns) {
+  const ReadText read(
+      "machine: {chuck: '160:80:120:25', tailstock: '40:75:at=-3', spindle_max_rpm: 4000}\n");
+  ASSERT_TRUE(read.config) << read.said();
+  const ConfigMachine& machine = read.config->machine;
+  ASSERT_TRUE(machine.holding.chuck && machine.holding.chuck->jaws);
+  EXPECT_EQ(machine.holding.chuck->jaws->diameter_mm, 120);
+  ASSERT_TRUE(machine.holding.tailstock);
+  EXPECT_EQ(machine.holding.tailstock->angle_deg, 75);
+  EXPECT_EQ(machine.holding.tailstock->point_mm, -3);
+  EXPECT_EQ(machine.spindle_max_rpm, 4000);
+  const ReadText faulty("machine: {chuck: '160', tailstock: '40:5', spindle_max_rpm: 0}\n");
+  EXPECT_FALSE(faulty.config);
+  EXPECT_NE(faulty.said().find("the form is D:L"), std::string::npos) << faulty.said();
+  EXPECT_NE(faulty.said().find("from 10 to 170"), std::string::npos);
+  EXPECT_NE(faulty.said().find("spindle_max_rpm"), std::string::npos);
+}
+
 TEST(ConfigKeys, ValuesArrive) {
   const ReadText read(
       "machine:\n"

@@ -11,6 +11,7 @@
 
 #include "interp_bridge/tool_table.h"
 #include "stock/cutter/insert_shape.h"
+#include "stock/cutter/turning_hints.h"
 #include "twin/job/tools.h"
 
 namespace kerf {
@@ -185,7 +186,8 @@ TEST(TurningTools, CommentsWithADiameterAloneComeAfterTheTable) {
   size.shape_guessed = true;
   whole.tool = 2;
   whole.shape = "iso:CNMG120408";
-  sources.hints = {size, whole};
+  sources.hints = {size};
+  sources.turning_hints = {whole};
   ToolResolver resolver(sources, nullptr);
   EXPECT_EQ(resolver.mount(1, 1).cutter->spec(), "turn:0.4:2:85:25");
   EXPECT_EQ(resolver.mount(2, 2).cutter->spec(), "iso:CNMG120408");
@@ -197,6 +199,79 @@ TEST(TurningTools, CommentsWithADiameterAloneComeAfterTheTable) {
   EXPECT_EQ(known_diameters(sources).count(2), 0u);
   ToolResolver mill(sources, nullptr);
   EXPECT_EQ(mill.mount(2, 2).cutter->spec(), "flat:0.8");
+}
+
+std::vector<ToolHint> hints_of(std::vector<CommentText> comments) {
+  std::uint32_t line = 0;
+  for (CommentText& comment : comments) comment.line = ++line;
+  return find_turning_hints(comments);
+}
+
+TEST(TurningHints, CommentsAboutATool) {
+  CommentText block;
+  block.text = "DNMG 150608 finish";
+  block.block_tool = 4;
+  CommentText list, named, loose, tiny;
+  list.text = "T01 - CNMG 432 OD rough";
+  named.text = "TOOL 2: groove 3mm";
+  loose.text = "insert: WNMG080408";
+  loose.at_change = false;
+  tiny.text = "T3 = 1/8 parting";
+  tiny.inches = true;
+  const std::vector<ToolHint> hints = hints_of({list, named, tiny, block, loose});
+  ASSERT_EQ(hints.size(), 5u);
+  EXPECT_EQ(hints[0].tool, 1);
+  EXPECT_EQ(hints[0].shape, "iso:CNMG432:R");
+  EXPECT_EQ(hints[1].tool, 2);
+  EXPECT_EQ(hints[1].shape, "groove:3");
+  EXPECT_EQ(hints[2].shape, "part:3.175");
+  EXPECT_EQ(hints[3].tool, 4);
+  EXPECT_EQ(hints[3].shape, "iso:DNMG150608:R");
+  EXPECT_EQ(hints[4].tool, -1);
+  EXPECT_TRUE(hints[4].near);
+}
+
+TEST(TurningHints, TheTableSaysWhatTheyLeaveOut) {
+  Diagnostics diagnostics;
+  const std::map<int, TurningFacts> rows =
+      turning_facts(parse_tool_table("T1 P1 D0.8 I275 J355 Q3\nT4 P4 Q8\n", "t.tbl", diagnostics));
+  CommentText insert, thread, other;
+  insert.text = "T1 - CCMT 09T308";
+  thread.text = "T4: threading tool 60";
+  other.text = "T5 - CCMT 09T308";
+  const std::vector<CommentText> comments{insert, thread, other};
+  const std::vector<ToolHint> hints = find_turning_hints(comments, rows);
+  ASSERT_EQ(hints.size(), 3u);
+  EXPECT_EQ(hints[0].shape, "iso:CCMT09T308:R:orient=3");
+  EXPECT_EQ(hints[1].shape, "thread:60:orient=8");
+  EXPECT_EQ(hints[2].shape, "iso:CCMT09T308:R");
+}
+
+TEST(TurningHints, WordsAboutTheWorkAreNone) {
+  for (const char* const text :
+       {"t1 is for facing and left turning, t4 is threading tool, t9 parting", "thread M20x1.5",
+        "groove 3 deep", "part off", "drill 8mm", "face", "T1 rough", "proper tool offsets"}) {
+    CommentText comment;
+    comment.text = text;
+    EXPECT_TRUE(hints_of({comment}).empty()) << text;
+  }
+}
+
+TEST(TurningTools, CommentsOfLathesCountOnLathesAlone) {
+  ToolSources sources;
+  ToolHint mill, turning;
+  mill.tool = turning.tool = 1;
+  mill.line = turning.line = 3;
+  mill.shape = "flat:0.8";
+  turning.shape = "iso:CNMG120408";
+  sources.hints = {mill};
+  sources.turning_hints = {turning};
+  ToolResolver on_mill(sources, nullptr);
+  EXPECT_EQ(on_mill.mount(1, 5).cutter->spec(), "flat:0.8");
+  sources.turning = true;
+  ToolResolver on_lathe(sources, nullptr);
+  EXPECT_EQ(on_lathe.mount(1, 5).cutter->spec(), "iso:CNMG120408");
+  EXPECT_FALSE(on_lathe.mount(1, 5).guessed);
 }
 
 TEST(TurningTools, TurningToolsDoNotMill) {

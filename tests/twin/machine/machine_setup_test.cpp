@@ -55,7 +55,8 @@ const char* const kMill =
     "[AXIS_X]\nMAX_VELOCITY = 80\nMAX_ACCELERATION = 400\nMIN_LIMIT = -1\nMAX_LIMIT = 401.5\n"
     "[JOINT_1]\nMAX_VELOCITY = 70\nMAX_ACCELERATION = 300\nMIN_LIMIT = 0\nMAX_LIMIT = 300\n"
     "[AXIS_Z]\nMAX_VELOCITY = 50\nMAX_ACCELERATION = 200\n[JOINT_2]\nHOME = 90\n"
-    "[AXIS_A]\nMAX_VELOCITY = 36\nMAX_ACCELERATION = 72\nMIN_LIMIT = -360\nMAX_LIMIT = 360\n";
+    "[AXIS_A]\nMAX_VELOCITY = 36\nMAX_ACCELERATION = 72\nMIN_LIMIT = -360\nMAX_LIMIT = 360\n"
+    "[SPINDLE_0]\nMAX_FORWARD_VELOCITY = 4500\n";
 
 TEST_F(MachineSetupTest, AMetricMill) {
   write("tool.tbl", "T1 P1 D6\n");
@@ -71,6 +72,7 @@ TEST_F(MachineSetupTest, AMetricMill) {
   EXPECT_EQ(setup_.interpreter.working_folder, folder_);
   EXPECT_EQ(setup_.interpreter.parameter_path, folder_ + "/mill.var");
   EXPECT_EQ(setup_.tool_table_path, folder_ + "/tool.tbl");
+  EXPECT_EQ(setup_.spindle_max_rpm, 4500);
   EXPECT_EQ(axis('X').max, 401.5);
   EXPECT_EQ(axis('X').max_velocity, 80);
   EXPECT_EQ(axis('Y').max_acceleration, 300) << "of its joint";

@@ -25,6 +25,16 @@ class MotionList {
     state_.torch.spindles_on = on ? 1 : 0;
     return *this;
   }
+  /// Bit n: M3 $n.
+  MotionList& spindles(std::uint8_t on) {
+    state_.torch.spindles_on = on;
+    return *this;
+  }
+  /// Of the spindle that is on.
+  MotionList& rpm(double speed) {
+    state_.spindle_rpm = speed;
+    return *this;
+  }
   MotionList& output(unsigned n, bool on) {
     const std::uint64_t bit = std::uint64_t{1} << n;
     state_.torch.outputs = on ? state_.torch.outputs | bit : state_.torch.outputs & ~bit;
@@ -49,6 +59,13 @@ class MotionList {
   MotionList& traverse(Vec3 to) { return move(MotionKind::kTraverse, to); }
   MotionList& feed(Vec3 to) { return move(MotionKind::kFeed, to); }
   MotionList& probe(Vec3 to) { return move(MotionKind::kProbe, to); }
+  /// As G33 gives it: so far along the way in a turn.
+  MotionList& thread(Vec3 to, double lead_mm) {
+    move(MotionKind::kThread, to);
+    list_.back().feed_per_rev = true;
+    list_.back().feed_mm_per_min = lead_mm;
+    return *this;
+  }
   MotionList& arc(Vec3 to, Vec3 center, Vec3 axis, double sweep_rad) {
     move(MotionKind::kArc, to);
     list_.back().arc = ArcGeometry{center, axis, sweep_rad};

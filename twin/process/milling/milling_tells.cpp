@@ -99,7 +99,7 @@ void MillingStage::report_undefined(const Motion& m, const TimedStep& step) {
   const bool first = use.origin.empty();
   use.feed_mm += step.length_mm;
   if (!first) return;
-  use.origin = tr("nothing");
+  use.origin = mounted_->origin.empty() ? tr("nothing") : mounted_->origin;
   tell_undefined(*mounted_, m, step, log_);
 }
 

@@ -12,6 +12,12 @@
 #include "twin/process/turning/tool_outlines.h"
 
 namespace kerf {
+namespace {
+
+/// Sine of the least angle between an edge that cuts and its way.
+constexpr double kLeastLean = 0.4;
+
+}  // namespace
 
 void EdgeChecks::mount(const Cutter& cutter) {
   unmount();
@@ -36,9 +42,9 @@ void EdgeChecks::check(const TurnedMove& move, const TurnCut& cut, bool blank_gu
   way = glm::normalize(way);
   double reach_mm = 0, met_mm = 0;
   for (const Edge& edge : edges_) {
-    // It leads where its outer side looks along the way.
+    // It leads where its outer side looks along the way; what lies along it trails, or slides.
     const double across = edge.along_mm.x * way.y - edge.along_mm.y * way.x;
-    if (-across < kShortest_mm) continue;
+    if (-across < std::max(kShortest_mm, kLeastLean * glm::length(edge.along_mm))) continue;
     const double met = cut.side_mm[static_cast<std::size_t>(edge.side)];
     if (met < -across - kSlack_mm) continue;
     reach_mm = -across;

@@ -33,6 +33,8 @@ TurningStage::TurningStage(ProcessSite& site)
       holders_(*stock_.turned(), log_),
       depths_(log_),
       noses_(*stock_.turned(), log_),
+      speeds_(log_),
+      threads_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
@@ -45,11 +47,12 @@ void TurningStage::begin_reporting() {
   holding_.begin_reporting();
   holders_.begin_reporting();
   noses_.forget();
+  threads_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
   unmount();
-  mill_turn_told_ = unmilled_told_ = false;
+  mill_turn_told_ = unmilled_told_ = threads_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -62,6 +65,7 @@ void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
+    threads_.end();
     noses_.finish();
     report_nothing_cut();
   }
@@ -77,8 +81,16 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
     unmount();
   }
   if (!stands(m)) checks_.end_standing();
-  if (is_traverse(m)) take_traverse(m, step);
-  if (is_feed(m)) take_feed(m, step);
+  if (is_traverse(m)) {
+    take_traverse(m, step);
+    behind_feed_ = false;
+  }
+  if (is_feed(m)) {
+    take_feed(m, step);
+    behind_feed_ = true;
+  }
+  // The tool is known now: a driven one has a speed of its own.
+  if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
 
 /// Told to stop, or to turn at no speed. What nobody tells of a machine that is watched cannot be
@@ -110,8 +122,10 @@ void TurningStage::mount_checks() {
   const Cutter& cutter = *mounted_->cutter;
   if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
   holders_.mount(cutter, mounted_->number);
+  uses_[use_].holder_checked = holders_.active();
   depths_.mount(cutter);
   noses_.mount(cutter, mounted_->number);
+  threads_.mount(cutter);
   edges_ = holders_.active()
                ? Cutter::from_insert(cutter.spec(), outlines_of(cutter).cutter, cutter.insert_tip())
                : cutter;
@@ -125,6 +139,8 @@ void TurningStage::unmount() {
   holders_.unmount();
   depths_.unmount();
   noses_.unmount();
+  speeds_.end_tool();
+  threads_.end();
 }
 
 std::vector<CollisionPair> TurningStage::collisions() const {
@@ -140,8 +156,7 @@ bool TurningStage::divide(const Motion& m, std::vector<CutMove>& moves) {
 }
 
 TurnedMove TurningStage::turned(const Motion& m, const TimedStep& step) const {
-  return {m,      step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed,
-          ends_};
+  return {m, step, *mounted_->cutter, *edges_, moves_, mounted_->number, mounted_->guessed, ends_};
 }
 
 void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
@@ -155,7 +170,7 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
     checks_.clear_traverse();
     return;
   }
-  checks_.check_traverse(move);
+  checks_.check_traverse(move, behind_feed_);
   cut(m, step);
 }
 
@@ -177,14 +192,23 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
   check_bodies(move);
-  if (!checks_.may_touch(move)) return;
-  if (!is_driven()) checks_.check_thread(m, step, site_.limits_known);
+  if (!checks_.may_touch(move)) {
+    // One that goes on from it does so with the turn.
+    if (m.kind == MotionKind::kThread) cut(m, step);
+    return;
+  }
+  if (!is_driven()) {
+    checks_.check_thread(m, step, site_.limits_known);
+    threads_.note(move);
+  }
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing.
+/// What a tool must not touch, and what of it must touch nothing. A driven one comes at any angle
+/// to a workpiece that stands: not looked at.
 void TurningStage::check_bodies(const TurnedMove& move) {
+  if (is_driven()) return;
   if (holding_.active()) holding_.check(move);
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
@@ -218,17 +242,30 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
   if (!is_feed(m) || std::exchange(unmilled_told_, true)) return true;
   if (main_turns) {
     tell_not_modelled(m, step,
-                      tr("a driven tool while the main spindle turns as well (turn-milling): it is "
-                         "not cut"),
-                      tr("M5 $0 stands before milling; M3 $0 without another spindle turns the "
-                         "driven tool itself"));
+                      tr("a driven tool cuts while the main spindle turns as well (turn-milling): "
+                         "its moves are not cut"),
+                      tr("M5 $0 comes before milling; M3 $0 alone turns the driven tool itself"));
   } else {
     tell_not_modelled(m, step,
                       tr("a driven tool on a machine whose kinematics are switched: how they hold "
-                         "the workpiece is not known, and it is not cut"),
+                         "the workpiece is not known, and its moves are not cut"),
                       tr("machine.kinematics: links says how the machine moves"));
   }
   return true;
+}
+
+/// Once, when a part has been milled and has threads.
+void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
+  const TurningStock& turned = *stock_.turned();
+  const bool is_milled = stock_.cell_mm() != turned.cell_mm();
+  if (threads_told_ || !is_milled || turned.part().threads().empty()) return;
+  threads_told_ = true;
+  Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
+  finding.tool = m.tool;
+  finding.text =
+      tr("the part has threads and is milled: pictures, meshes and what driven tools meet have the "
+         "threads as plain cylinders and cones");
+  log_.add(std::move(finding));
 }
 
 void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,
@@ -246,7 +283,7 @@ void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
   undefined_ = true;
   use.feed_mm += step.length_mm;
   if (!first) return;
-  use.origin = tr("nothing");
+  use.origin = mounted_->origin.empty() ? tr("nothing") : mounted_->origin;
   tell_undefined(*mounted_, m, step, log_);
 }
 
@@ -262,6 +299,7 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
     });
   }
   note_fallen(m, step);
+  report_lost_threads(m, step);
   touched_ = touched_ || whole.removed_mm3 > 0;
   if (!is_feed(m) || is_driven()) return;
   const TurnedMove move = turned(m, step);

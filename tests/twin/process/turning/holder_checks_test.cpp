@@ -89,7 +89,7 @@ TEST(HolderChecks, ABarThickerThanTheBoreIsToldOnTheRapid) {
 TEST(HolderChecks, OnAFeedTheInsertGoesAhead) {
   // Bored out to 24: the bar follows into what the insert has cut.
   MotionList sound = start_at({12, 0, 5});
-  sound.traverse({12, 0, 2}).feed({12, 0, -30}).traverse({11, 0, -30}).traverse({11, 0, 5});
+  sound.traverse({12, 0, 2}).feed({12, 0, -30}).feed({11, 0, -29}).traverse({11, 0, 5});
   EXPECT_EQ(BarShop(sound, kBar8, tube20()).ids(), Ids{});
 }
 
@@ -139,45 +139,39 @@ TEST(EdgeChecks, ABladeIsAlwaysInWithItsWholeFront) {
   EXPECT_EQ(BarShop(program, "groove:3:edge=30", bar_profile(-60, 0, 50)).ids(), Ids{});
 }
 
-/// Down a taper of 30 degrees from the face to a cylinder of 40, along it, out.
+/// Up a taper of 30 degrees from the face to a cylinder of 40, along it.
 MotionList taper(bool compensated) {
-  MotionList program = start_at({14, 0, 0});
-  program.feed({14, 0, 0}).feed({20, 0, -6 / std::tan(kPi / 6)}).feed({20, 0, -30});
-  std::vector<Motion> list = program.list();
-  if (compensated) {
-    MotionList beside = start_at({14, 0, 0});
-    beside.feed({14, 0, 0}).feed({20, 0, -6 / std::tan(kPi / 6)});
-    beside.last().compensated = true;
-    beside.feed({20, 0, -30});
-    return beside;
-  }
+  MotionList program = start_at({14, 0, 2});
+  program.feed({14, 0, 0}).feed({20, 0, -6 / std::tan(kPi / 6)});
+  program.last().compensated = compensated;
+  program.feed({20, 0, -30});
   return program;
 }
 
 TEST(NoseChecks, ATaperIsOffByTheNose) {
   // Of the taper's normal (sin 30, cos 30) the nose's centre, at 0.8 (1, 1), is 0.8 * 1.3660 from
   // the programmed line, and its rim 0.8 * 0.3660 off it.
-  const TurnedProfile bar = bar_profile(-60, 0, 50);
-  const BarShop shop(taper(false), "turn:0.8:2:95:355", bar);
+  const TurnedProfile bar = bar_profile(-60, 0, 44);
+  const BarShop shop(taper(false), "turn:0.8:2:85:5", bar);
   ASSERT_EQ(shop.ids(), Ids{"uncompensated"});
   const Finding& finding = shop.finding(0);
   EXPECT_EQ(finding.severity, Severity::kNote);
   EXPECT_NE(finding.text.find("0.293 mm"), std::string::npos) << finding.text;
   EXPECT_EQ(finding.source.line, 3U);
-  EXPECT_EQ(BarShop(taper(true), "turn:0.8:2:95:355", bar).ids(), Ids{});
+  EXPECT_EQ(BarShop(taper(true), "turn:0.8:2:85:5", bar).ids(), Ids{});
 }
 
 TEST(NoseChecks, CylindersAndFacesAreRight) {
   MotionList program = start_at({20, 0, 2});
   program.feed({20, 0, -20}).feed({26, 0, -20});
-  EXPECT_EQ(BarShop(program, "turn:0.8:2:95:355", bar_profile(-60, 0, 50)).ids(), Ids{});
+  EXPECT_EQ(BarShop(program, "turn:0.8:2:85:5", bar_profile(-60, 0, 44)).ids(), Ids{});
 }
 
 TEST(NoseChecks, AnArcIsOffMostWhereItLeans) {
   // A quarter from the face to a cylinder, convex: at 45 degrees the rim is 0.8 (sqrt 2 - 1) off.
   MotionList program = start_at({10, 0, 0});
-  program.feed({10, 0, 0}).arc({20, 0, -10}, {10, 0, -10}, {0, -1, 0}, kPi / 2);
-  const BarShop shop(program, "turn:0.8:2:95:355", bar_profile(-60, 0, 50));
+  program.feed({10, 0, 0}).arc({20, 0, -10}, {10, 0, -10}, {0, 1, 0}, kPi / 2);
+  const BarShop shop(program, "turn:0.8:2:85:5", bar_profile(-60, 0, 44));
   ASSERT_EQ(shop.ids(), Ids{"uncompensated"});
   EXPECT_NE(shop.finding(0).text.find("0.331 mm"), std::string::npos) << shop.finding(0).text;
 }
@@ -186,7 +180,7 @@ TEST(NoseChecks, WhatIsCutAwayLaterIsNoError) {
   MotionList program = start_at({14, 0, 0});
   program.feed({14, 0, 0}).feed({20, 0, -10}).feed({20, 0, -30}).traverse({30, 0, 2});
   program.traverse({12, 0, 2}).feed({12, 0, -30});
-  EXPECT_EQ(BarShop(program, "turn:0.8:2:95:355", bar_profile(-60, 0, 50)).ids(), Ids{});
+  EXPECT_EQ(BarShop(program, "turn:0.8:2:85:5", bar_profile(-60, 0, 44)).ids(), Ids{});
 }
 
 }  // namespace

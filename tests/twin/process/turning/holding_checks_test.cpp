@@ -123,7 +123,7 @@ TEST(HoldingChecks, AFeedThatEndsBeforeTheJaws) {
   // The jaws' inner corner is 5 before the tip and 5 above it: as far from the flank as
   // 5 (sin 85 + cos 85).
   MotionList program = begin();
-  program.traverse({15, 0, 5}).feed({15, 0, -30}).traverse({25, 0, -30});
+  program.traverse({15, 0, 5}).feed({15, 0, -30}).feed({25, 0, -30});
   const ChuckShop shop(program);
   EXPECT_EQ(shop.ids(), Ids{});
   const double flank_mm = 5 * (std::sin(85 * kDegree) + std::cos(85 * kDegree));

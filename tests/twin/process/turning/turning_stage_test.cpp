@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stock/cutter/insert_shape.h"
+#include "stock/turning/thread_gauge.h"
 #include "stock/turning/turning_stock.h"
 #include "tests/twin/process/motions.h"
 #include "twin/job/stock_choice.h"
@@ -64,6 +65,8 @@ class LatheShop {
     sources.turning = true;
     sources.arguments.push_back({1, nose(nose_mm, 2, 85, 5)});
     sources.arguments.push_back({2, blade(3)});
+    sources.arguments.push_back(
+        {4, Cutter::from_insert("thread:60", *thread_insert({60 * kDeg, 0.3, 3, 6}))});
     return sources;
   }
   static ProcessWish wish() {
@@ -148,8 +151,9 @@ TEST(TurningStage, WhatIsNoEdgeMustNotTouch) {
   // Out of a groove towards +z the back of the insert goes first.
   MotionList program = start();
   program.traverse({30, 0, -20}).feed({15, 0, -20}).feed({15, 0, -10});
-  EXPECT_EQ(LatheShop(program).ids(), Ids{"flank-contact"});
-  EXPECT_EQ(LatheShop(program).finding(0).severity, Severity::kError);
+  // Into it the whole flank along the axis cuts, and it ends there.
+  EXPECT_EQ(LatheShop(program).ids(), (Ids{"over-depth", "flank-contact"}));
+  EXPECT_EQ(LatheShop(program).finding(1).severity, Severity::kError);
 }
 
 TEST(TurningStage, ABladeThatGoesFarBeyondTheAxisIsTold) {
@@ -202,6 +206,56 @@ TEST(TurningStage, NothingCutIsTold) {
   MotionList program = start();
   program.traverse({25, 0, 2}).feed({25, 0, -30});
   EXPECT_EQ(LatheShop(program).ids(), Ids{"nothing-cut"});
+}
+
+/// A pass of G76 with both ends slanting (E, L3), as LinuxCNC's interpreter gives it: into the
+/// entry, the entry and the way out have a lead along their ways that keeps that along the axis.
+void g76_pass(MotionList& program, double depth) {
+  const double in = depth * std::tan(29.5 * kDeg), x = 20 - depth, slant = std::hypot(1.84, 3.0);
+  program.traverse({24 - depth, 0, 8 - in})
+      .thread({22 - depth, 0, 8 - in}, slant)
+      .thread({x, 0, 5 - in}, slant)
+      .thread({x, 0, -30 - in}, 3)
+      .thread({22 - depth, 0, -33 - in}, slant)
+      .traverse({24 - depth, 0, -33 - in});
+}
+
+TEST(TurningStage, PassesOfAThreadAreOneThread) {
+  MotionList program = start(4);
+  program.rpm(500);
+  for (const double depth : {0.3, 0.7, 1.1, 1.5, 1.84, 1.84}) g76_pass(program, depth);
+  const LatheShop shop(program);
+  EXPECT_EQ(shop.ids(), Ids{});
+  const std::vector<MeasuredThread> threads = measure_threads(shop.stock().part());
+  ASSERT_EQ(threads.size(), 1U);
+  EXPECT_TRUE(threads[0].is_right_hand);
+  EXPECT_EQ(threads[0].starts, 1);
+  EXPECT_NEAR(threads[0].lead_mm, 3, 1e-9);
+  EXPECT_NEAR(threads[0].major_mm, 40, 1e-3);
+  EXPECT_NEAR(threads[0].minor_mm, 40 - 2 * 1.84, 1e-3);
+  EXPECT_NEAR(threads[0].angle_rad, 60 * kDeg, 1e-4);
+  // What leads in through the air, and is not cut, counts for where the groove is.
+  MotionList last = start(4);
+  last.rpm(500);
+  g76_pass(last, 1.84);
+  const LatheShop once(last);
+  EXPECT_NEAR(once.stock().remaining_mm3(), shop.stock().remaining_mm3(), 1e-6);
+  EXPECT_EQ(once.stock().part().threads().passes().size(),
+            shop.stock().part().threads().passes().size());
+}
+
+TEST(TurningStage, M4LeavesALeftHandThread) {
+  MotionList program = start(4);
+  program.rpm(500);
+  program.traverse({18.7, 0, 5});
+  program.thread({18.7, 0, -30}, 2);
+  program.last().spindle = SpindleState::kCounterclockwise;
+  program.traverse({30, 0, -30});
+  const LatheShop shop(program);
+  EXPECT_EQ(shop.ids(), Ids{});  // out of where it has stopped, too
+  const std::vector<MeasuredThread> threads = measure_threads(shop.stock().part());
+  ASSERT_EQ(threads.size(), 1U);
+  EXPECT_FALSE(threads[0].is_right_hand);
 }
 
 }  // namespace

@@ -1,0 +1,152 @@
+#include "twin/process/turning/thread_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/process/contact_grounds.h"
+#include "twin/process/finding_at.h"
+
+namespace kerf {
+namespace {
+
+struct ThreadForm {
+  double angle_deg, outside, inside;
+};
+/// ISO 68-1, ISO 228-1, ISO 2901 and ASME B1.5.
+constexpr std::array kThreadForms{ThreadForm{60, 0.6134, 0.5413}, ThreadForm{55, 0.6403, 0.6403},
+                                  ThreadForm{30, 0.5, 0.5}, ThreadForm{29, 0.5, 0.5}};
+constexpr double kAngleSlack_deg = 0.4;
+/// Passes less apart in depth are as deep: spring passes, rounding.
+constexpr double kAsDeep_mm = 0.005;
+/// Of the lead: starts that lie less apart are one.
+constexpr double kSameStart = 0.04;
+/// Threads are no more slanting to the axis, as a tangent.
+constexpr double kMostTaper = 0.3;
+/// Flanks that lean less from square to the axis are none of a thread.
+constexpr double kLeastFlank = 0.2;
+
+/// Angle between the two flanks of a tool that points straight at the axis, or away from it.
+std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bore) {
+  std::optional<Vec2> front, back;
+  for (const InsertPart& part : outline.parts) {
+    Vec2 from = part.back().end_mm;
+    for (const InsertEdge& edge : part) {
+      const Vec2 way = edge.end_mm - from;
+      const bool leaves = std::abs(edge.end_mm.y) > std::abs(from.y);
+      from = edge.end_mm;
+      if (edge.center_mm || glm::length(way) == 0) continue;
+      const Vec2 out = glm::normalize(leaves ? way : -way);  // away from the tip
+      if (edge.side == InsertSide::kFront) front = out;
+      if (edge.side == InsertSide::kBack) back = out;
+    }
+  }
+  if (!front || !back || std::abs(front->x) < kLeastFlank || front->x * back->x >= 0) {
+    return std::nullopt;
+  }
+  // Symmetric: its middle is square to the axis.
+  if (std::abs(front->x + back->x) > 1e-3 || front->y * back->y <= 0) return std::nullopt;
+  in_bore = front->y < 0;
+  return std::acos(std::clamp(glm::dot(*front, *back), -1.0, 1.0)) * 180 / kPi;
+}
+
+}  // namespace
+
+void ThreadChecks::mount(const Cutter& cutter) {
+  form_.reset();
+  if (!cutter.insert()) return;
+  bool in_bore = false;
+  const std::optional<double> angle = flank_angle_deg(*cutter.insert(), in_bore);
+  if (!angle) return;
+  for (const ThreadForm& form : kThreadForms) {
+    if (std::abs(form.angle_deg - *angle) < kAngleSlack_deg)
+      form_ = Form{form.angle_deg, form.outside, form.inside, in_bore};
+  }
+}
+
+/// Radius of the surface that the thread is cut into: the outermost, or the bore's.
+std::optional<double> ThreadChecks::crest_at(double z_mm) const {
+  std::optional<double> crest;
+  for (const std::vector<Vec2>& ring : stock_.part().profile()) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+      if ((a.x > z_mm) == (b.x > z_mm)) continue;
+      const double r = a.y + (z_mm - a.x) / (b.x - a.x) * (b.y - a.y);
+      if (form_->in_bore && r <= 0) return std::nullopt;  // solid down to the axis
+      if (!crest || (form_->in_bore ? r < *crest : r > *crest)) crest = r;
+    }
+  }
+  return crest;
+}
+
+void ThreadChecks::note(const TurnedMove& move) {
+  const Motion& m = move.motion;
+  if (!form_ || m.kind != MotionKind::kThread || m.feed_mm_per_min <= 0) return;
+  const double low = std::min(m.from_mm.z, m.to_mm.z), high = std::max(m.from_mm.z, m.to_mm.z);
+  // What slants more is the way in or out of a pass (G76 L).
+  if (high - low <= 0 || std::abs(m.to_mm.x - m.from_mm.x) > kMostTaper * (high - low)) return;
+  const double lead = m.feed_mm_per_min;
+  const double z = 0.5 * (low + high), x = std::abs(0.5 * (m.from_mm.x + m.to_mm.x));
+  if (thread_ && (std::abs(thread_->lead_mm - lead) > 1e-6 * lead || low >= thread_->high_z_mm ||
+                  high <= thread_->low_z_mm)) {
+    end();
+  }
+  if (!thread_) {
+    const std::optional<double> crest = crest_at(z);
+    if (!crest) return;
+    thread_ = Thread{};
+    thread_->lead_mm = lead;
+    thread_->low_z_mm = low;
+    thread_->high_z_mm = high;
+    thread_->crest_mm = *crest;
+  }
+  Thread& thread = *thread_;
+  thread.low_z_mm = std::min(thread.low_z_mm, low);
+  thread.high_z_mm = std::max(thread.high_z_mm, high);
+  const double depth = form_->in_bore ? x - thread.crest_mm : thread.crest_mm - x;
+  if (depth < thread.depth_mm - kAsDeep_mm || depth <= 0) return;
+  if (depth > thread.depth_mm + kAsDeep_mm) thread.phases.clear();
+  thread.phases.push_back(m.from_mm.z / lead);
+  if (depth <= thread.depth_mm) return;
+  thread.depth_mm = depth;
+  thread.source = m.source;
+  thread.time_s = move.step.start_s;
+  thread.place_mm = m.from_mm;
+  thread.tool = move.tool;
+  thread.tool_guessed = move.tool_guessed;
+}
+
+void ThreadChecks::end() {
+  if (!thread_ || !form_) return thread_.reset();
+  const Thread thread = *std::exchange(thread_, std::nullopt);
+  if (thread.depth_mm <= 0) return;
+  std::vector<double> starts;
+  for (const double phase : thread.phases) {
+    const bool known = std::ranges::any_of(starts, [&](double start) {
+      const double apart = phase - start;
+      return std::abs(apart - std::round(apart)) < kSameStart;
+    });
+    if (!known) starts.push_back(phase);
+  }
+  const double pitch = thread.lead_mm / static_cast<double>(starts.size());
+  const double share = form_->in_bore ? form_->inside : form_->outside;
+  if (thread.depth_mm >= share * pitch * (1 - kMissing)) return;
+  const Grounds grounds{false, thread.tool_guessed};
+  Finding finding =
+      finding_at(FindingId::kThreadShallow, Severity::kWarning, thread.source, thread.time_s);
+  finding.text = trf("the thread is {:.3f} mm deep: a pitch of {:g} mm and {:g} degrees ask for "
+                     "{:.3f} mm ({:g} P)",
+                     thread.depth_mm, pitch, form_->angle_deg, share * pitch, share) +
+                 doubt_of(FindingId::kThreadShallow, grounds);
+  finding.position_mm = thread.place_mm;
+  finding.tool = thread.tool;
+  finding.hint =
+      tr("deeper passes: K of G76 is the whole depth; or the diameter before the "
+         "thread is another one than it should be");
+  log_.add(std::move(finding));
+}
+
+}  // namespace kerf

@@ -1,0 +1,68 @@
+// twin/process/turning/thread_checks.h - how deep a thread has become: thread-shallow.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "stock/turning/turning_stock.h"
+#include "twin/findings/finding.h"
+#include "twin/process/turning/turning_checks.h"
+
+namespace kerf {
+
+/// Passes of one tool with one lead over one stretch are a thread. Its depth is that of the deepest
+/// pass below the crest, which is the surface that was there before the first one, both in the
+/// middle of the pass. What pitch and form ask for:
+///
+///     60 degrees (ISO 68-1)   0.6134 P outside, 0.5413 P in a bore
+///     55 degrees (ISO 228)    0.6403 P
+///     29, 30 degrees          0.5 P
+///
+/// The pitch is the lead over the number of starts: of passes as deep as the deepest, how many
+/// begin elsewhere along the lead. Tools of another angle, taps, and threads of no crest are not
+/// judged.
+class ThreadChecks {
+ public:
+  ThreadChecks(const TurningStock& stock, FindingLog& log) : stock_(stock), log_(log) {}
+
+  void mount(const Cutter& cutter);
+  /// A motion with a lead, before it is cut.
+  void note(const TurnedMove& move);
+  /// No more passes come: the tool is changed, the program is over.
+  void end();
+  void forget() {
+    thread_.reset();
+    form_.reset();
+  }
+
+  /// So much of the depth may be missing: tips are not as the form has them.
+  static constexpr double kMissing = 0.05;
+
+ private:
+  struct Form {
+    double angle_deg = 0;
+    double outside = 0, inside = 0;  ///< depth over pitch
+    bool in_bore = false;
+  };
+  struct Thread {
+    double lead_mm = 0;
+    double low_z_mm = 0, high_z_mm = 0;
+    double crest_mm = 0;
+    double depth_mm = 0;         ///< of the deepest pass
+    std::vector<double> phases;  ///< of passes as deep, where they begin over the lead
+    SourceRef source;            ///< of the deepest pass, and the rest of it
+    double time_s = 0;
+    Vec3 place_mm{0};
+    int tool = 0;
+    bool tool_guessed = false;
+  };
+  std::optional<double> crest_at(double z_mm) const;
+
+  const TurningStock& stock_;
+  FindingLog& log_;
+  std::optional<Form> form_;
+  std::optional<Thread> thread_;
+};
+
+}  // namespace kerf
