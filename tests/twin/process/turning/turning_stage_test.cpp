@@ -244,8 +244,8 @@ TEST(TurningStage, PassesOfAThreadAreOneThread) {
 
 TEST(TurningStage, M4LeavesALeftHandThread) {
   MotionList program = start(4);
-  program.traverse({19, 0, 5});
-  program.thread({19, 0, -30}, 2);
+  program.traverse({18.75, 0, 5});
+  program.thread({18.75, 0, -30}, 2);
   program.last().spindle = SpindleState::kCounterclockwise;
   program.traverse({30, 0, -30});
   const LatheShop shop(program);
