@@ -58,7 +58,7 @@ std::unique_ptr<MillTurn::Milled> MillTurn::begun() const {
   milled->tree = std::move(box.value());
   milled->tree->keep_cut_ids(keeps_cut_ids());
   follow_profile(*milled);
-  milled->beside_mm3 = turned_.remaining_mm3() - milled->tree->remaining_mm3();
+  milled->beside_mm3 = turned_.remaining_mm3() + threads_mm3() - milled->tree->remaining_mm3();
   return milled;
 }
 
@@ -172,7 +172,7 @@ std::size_t MillTurn::cell_count() const {
 double MillTurn::remaining_mm3() const {
   if (!milled_) return turned_.remaining_mm3();
   const Milled& now = shown();
-  return now.tree->remaining_mm3() + now.beside_mm3;
+  return now.tree->remaining_mm3() + now.beside_mm3 - threads_mm3();
 }
 
 std::string MillTurn::digest() const { return milled_ ? tree().digest() : turned_.digest(); }

@@ -22,11 +22,12 @@ constexpr std::array kThreadForms{ThreadForm{60, 0.6134, 0.5413}, ThreadForm{55,
 constexpr double kAngleSlack_deg = 0.4;
 /// Passes less apart in depth are as deep: spring passes, rounding.
 constexpr double kAsDeep_mm = 0.005;
-/// Radius over length: pipe threads have 1/32.
-constexpr double kMostTaper = 0.2;
+/// Of the lead: what differs by more is another thread.
 constexpr double kSameLead = 1e-4;
 /// Of the lead: starts that lie less apart are one.
 constexpr double kSameStart = 0.04;
+/// Threads are no more slanting to the axis, as a tangent.
+constexpr double kMostTaper = 0.3;
 /// Flanks that lean less from square to the axis are none of a thread.
 constexpr double kLeastFlank = 0.2;
 
