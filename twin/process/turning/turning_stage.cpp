@@ -81,8 +81,14 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
     unmount();
   }
   if (!stands(m)) checks_.end_standing();
-  if (is_traverse(m)) take_traverse(m, step);
-  if (is_feed(m)) take_feed(m, step);
+  if (is_traverse(m)) {
+    take_traverse(m, step);
+    behind_feed_ = false;
+  }
+  if (is_feed(m)) {
+    take_feed(m, step);
+    behind_feed_ = true;
+  }
   // The tool is known now: a driven one has a speed of its own.
   if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
@@ -164,7 +170,7 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
     checks_.clear_traverse();
     return;
   }
-  checks_.check_traverse(move);
+  checks_.check_traverse(move, behind_feed_);
   cut(m, step);
 }
 

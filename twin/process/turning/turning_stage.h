@@ -99,6 +99,7 @@ class TurningStage final : public Process {
   bool unmilled_told_ = false;
   bool threads_told_ = false;
   bool touched_ = false;
+  bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };
 
 }  // namespace kerf
