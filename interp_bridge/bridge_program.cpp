@@ -387,8 +387,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.interpreter = "bridge";
   const Contents contents(options_.path);
   ToolDiameters diameters;
-  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(), diameters_,
-                                diameters);
+  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(),
+                                known_tools_.diameters, diameters);
   auto session = start_session();
   if (!session) {
     Diagnostic diagnostic;
@@ -422,7 +422,8 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   const InterpreterSetup& machine = options_.machine;
   if (machine.start_known) feeding.start = machine.start;
   feeding.places = {machine.unknown_places && !machine.start_known, machine.start,
-                    machine.work_offset || !machine.parameter_path.empty(), machine.z_matters};
+                    machine.work_offset || !machine.parameter_path.empty(), machine.z_matters,
+                    !known_tools_.turning};
   MotionFeeder feeder(std::move(feeding), named_sink, summary, diagnostics);
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);

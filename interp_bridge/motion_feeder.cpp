@@ -74,8 +74,10 @@ void MotionFeeder::start_fold() {
   if (!places.followed || summary_.files.empty()) return;
   constexpr std::uint8_t kAll = 7;
   constexpr std::uint8_t kButZ = 3;
+  constexpr std::uint8_t kButY = 5;
   const std::uint8_t named = blocks_.named_in(summary_.files[0]);
-  const auto axes = static_cast<std::uint8_t>(named & (places.z_matters ? kAll : kButZ));
+  const auto axes = static_cast<std::uint8_t>(named & (places.z_matters ? kAll : kButZ) &
+                                              (places.y_matters ? kAll : kButY));
   fold_.start_unknown(places.interpreter_start, axes, places.zero_known ? kAll : 0);
 }
 

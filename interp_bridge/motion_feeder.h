@@ -36,6 +36,7 @@ struct MotionFeederOptions {
     std::array<double, 9> interpreter_start{};
     bool zero_known = false;  ///< the interpreter's work offsets are the machine's
     bool z_matters = true;
+    bool y_matters = true;
     bool has_blocks = true;  ///< the text of the program is there; else it is a listing
   };
   Places places;

@@ -164,7 +164,8 @@ CanonicalReaderOptions NcProgram::reader_options(const Session& session) const {
   reading.feeder.torch = torch_;
   reading.feeder.signals = options_.signals;
   const InterpreterSetup& machine = options_.machine;
-  reading.feeder.places = {machine.unknown_places, {}, has_parameters(), machine.z_matters};
+  reading.feeder.places = {
+      machine.unknown_places, {}, has_parameters(), machine.z_matters, !known_tools_.turning};
   reading.feeder.follows_probes = follows_probes_;
   reading.feeder.no_answer = tr("rs274 cannot ask, --interp bridge can");
   return reading;
@@ -287,8 +288,8 @@ ProgramSummary NcProgram::run(const MotionSink& sink, std::stop_token stop,
   summary.files = {options_.path};
   summary.program_lines = survey_.lines;
   summary.interpreter = "text";
-  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(), diameters_,
-                                told_diameters_);
+  tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(),
+                                known_tools_.diameters, told_diameters_);
   auto session = start_session();
   if (!session) {
     report(Severity::kError, {}, session.error(), {}, summary, diagnostics);

@@ -105,6 +105,12 @@ struct KnownDiameter {
   bool by_argument = false;  ///< --tool; else a comment of the program
   int orientation = 0;       ///< of a turning tool, as ToolTableRow has it
 };
+/// What is known of a program's tools beforehand.
+struct KnownTools {
+  std::map<int, KnownDiameter> diameters;  ///< by tool number
+  /// They stand still, and the workpiece turns: nothing need say where Y is.
+  bool turning = false;
+};
 
 /// What comes of a probing move, G38.2 to G38.5.
 struct ProbeAnswer {
@@ -227,9 +233,9 @@ class Program {
   /// Of the text; of listings empty.
   const TurningWords& turning_words() const { return turning_; }
 
-  /// Before run(): diameters by tool number, for cutter compensation (G41, G42). A tool whose row
+  /// Before run(): diameters for cutter compensation (G41, G42). A tool whose row
   /// of the table has a diameter keeps that, as on the machine.
-  void give_diameters(std::map<int, KnownDiameter> diameters) { diameters_ = std::move(diameters); }
+  void give_tools(KnownTools tools) { known_tools_ = std::move(tools); }
   /// Before run(): probing moves are asked about (kerf-interp only; rs274 and listings cannot ask,
   /// theirs are not known). Null: of none is anything known. From one of which nothing is known on
   /// the motions come with start_known = false, and a note says so, until the program sets the work
@@ -247,7 +253,7 @@ class Program {
   std::vector<std::string> files_;
   WorkpieceFrame frame_;
   std::vector<TorchMaterial> materials_{TorchMaterial{}};
-  std::map<int, KnownDiameter> diameters_;
+  KnownTools known_tools_;
   bool follows_probes_ = false;
   ProbeAnswerer answer_probe_;
 

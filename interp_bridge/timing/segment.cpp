@@ -204,9 +204,8 @@ void keep_slowness(Segment& segment, double from, double to) {
   if (time <= 0) return;
   segment.spindle_speed *= (to - from) / time;
   const double unit = segment.slow_from;
-  const WayInTime left = law.part(from, to);
-  segment.slow_from = unit * static_cast<double>(left.slow_from);
-  segment.slow_to = unit * static_cast<double>(left.slow_to);
+  segment.slow_from = unit * law.slowness_at(from);
+  segment.slow_to = unit * law.slowness_at(to);
 }
 
 void clamp_to_cycle(Segment& segment, double cycle_s) {

@@ -62,8 +62,8 @@ struct Slowness {
   bool falls;
 
   explicit Slowness(const WayInTime& w)
-      : from(static_cast<double>(w.slow_from)),
-        to(static_cast<double>(w.slow_to)),
+      : from(1),
+        to(static_cast<double>(w.slowness)),
         cap(static_cast<double>(w.cap)),
         falls(to < from) {}
 
@@ -109,11 +109,11 @@ double WayInTime::unevenness() const {
   const auto look = [&](double way, double time) {
     most = std::max(most, std::abs(before_s + left_s * time - before - left * way));
   };
-  if (slow_from != slow_to) {
-    const Slowness slowness(*this);
-    const double whole_s = slowness.whole_s();
-    for (const double way : {slowness.cap, slowness.cap / 2, (1 + slowness.cap) / 2}) {
-      look(way, slowness.time_of(way) / whole_s);
+  if (slowness != 1) {
+    const Slowness slow(*this);
+    const double whole_s = slow.whole_s();
+    for (const double way : {slow.cap, slow.cap / 2, (1 + slow.cap) / 2}) {
+      look(way, slow.time_of(way) / whole_s);
     }
     return most;
   }
@@ -132,8 +132,7 @@ void WayInTime::set_slowness(double first, double last, double mean) {
   // Even at the slower or the faster end, so long that the mean is right.
   const double slope =
       last < first ? 2 * (mean - last) / (first - last) : 1 - 2 * (mean - first) / (last - first);
-  slow_from = 1;
-  slow_to = static_cast<float>(last / first);
+  slowness = static_cast<float>(last / first);
   cap = static_cast<float>(std::clamp(slope, 0.0, 1.0));
 }
 
@@ -155,9 +154,9 @@ double WayInTime::time_of(double way) const {
   if (length <= kNone) return before_s;
   const double on = std::clamp((way - before) / length, 0.0, 1.0);
   double share = 0;
-  if (slow_from != slow_to) {
-    const Slowness slowness(*this);
-    share = slowness.time_of(on) / slowness.whole_s();
+  if (slowness != 1) {
+    const Slowness slow(*this);
+    share = slow.time_of(on) / slow.whole_s();
   } else {
     const Middle middle(*this);
     share = middle.time_of(on) / middle.whole_s();
@@ -176,9 +175,9 @@ double WayInTime::way_of(double time) const {
   if (whole_s <= kNone) return before;
   const double on = std::clamp((time - before_s) / whole_s, 0.0, 1.0);
   double share = 0;
-  if (slow_from != slow_to) {
-    const Slowness slowness(*this);
-    share = slowness.way_of(on * slowness.whole_s());
+  if (slowness != 1) {
+    const Slowness slow(*this);
+    share = slow.way_of(on * slow.whole_s());
   } else {
     const Middle middle(*this);
     share = middle.way_of(on * middle.whole_s());
@@ -213,6 +212,8 @@ WayInTime::Part WayInTime::between(double from_way, double to_way) const {
   return out;
 }
 
+double WayInTime::slowness_at(double way) const { return Slowness(*this).at(way); }
+
 double WayInTime::speed_at(double way) const {
   const Middle m(*this);
   if (way >= m.up && way <= m.down) return 1;
@@ -226,10 +227,9 @@ WayInTime WayInTime::part(double from_way, double to_way) const {
   WayInTime out;
   const double length = to_way - from_way;
   if (length <= kNone) return out;
-  if (slow_from != slow_to) {
-    const Slowness slowness(*this);
-    out.slow_from = static_cast<float>(slowness.at(from_way));
-    out.slow_to = static_cast<float>(slowness.at(to_way));
+  if (slowness != 1) {
+    out.slowness = static_cast<float>(slowness_at(to_way) / slowness_at(from_way));
+    if (out.slowness == 1) return out;
     const double at = (static_cast<double>(cap) - from_way) / length;
     out.cap = static_cast<float>(std::clamp(at, 0.0, 1.0));
     return out;

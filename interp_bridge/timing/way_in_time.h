@@ -15,15 +15,15 @@ namespace kerf {
 /// Under G96 the middle is on the way at a slowness (1 / speed) that changes in proportion to the
 /// way, and is even where the cap holds, before or behind `cap`.
 ///
-/// 40 bytes. The default is an even way.
+/// 36 bytes. The default is an even way.
 struct WayInTime {
   float in_way = 0, in_time = 0;    ///< shares of the motion
   float out_way = 0, out_time = 0;  ///< likewise
   float from = 1, to = 1;           ///< of the greatest speed
   /// Share of the middle's way in which standstill would become the greatest speed.
   float ramp = 0;
-  float slow_from = 1, slow_to = 1;  ///< slowness at the ends of the middle; G96
-  float cap = 0;                     ///< share of the middle's way; G96
+  float slowness = 1;  ///< at the end of the middle, over that at its start; G96, else 1
+  float cap = 0;       ///< share of the middle's way; G96
 
   /// Share of the time at which this share of the way is done; 0 to 1 from 0 to 1, never falling.
   double time_of(double way) const;
@@ -48,6 +48,8 @@ struct WayInTime {
   WayInTime part(double from_way, double to_way) const;
   /// Of a middle's way, the speed there over its greatest.
   double speed_at(double way) const;
+  /// Of a middle's way, the slowness there over that at its start; without G96 1.
+  double slowness_at(double way) const;
 };
 
 struct WayInTime::Part {

@@ -29,8 +29,9 @@ std::optional<ToolHint> turning_hint(const CommentText& comment,
     tool = numbered->tool;
     about = text.substr(text.size() - numbered->rest.size());
   }
-  // What a comment begins with counts: "T4: threading tool 60" is not about tool 60.
-  const int named = numbered ? -1 : tool_named_in(lower);
+  // What a list begins with counts: "T4: threading tool 60" is not about tool 60.
+  const bool is_list = numbered && numbered->separator != ' ';
+  const int named = is_list ? -1 : tool_named_in(lower);
   if (named == kSeveralTools || (tool >= 0 && named >= 0 && named != tool)) return std::nullopt;
   const bool is_tools = tool >= 0;
   if (!is_tools) tool = named;

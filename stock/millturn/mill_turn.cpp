@@ -58,7 +58,7 @@ std::unique_ptr<MillTurn::Milled> MillTurn::begun() const {
   milled->tree = std::move(box.value());
   milled->tree->keep_cut_ids(keeps_cut_ids());
   follow_profile(*milled);
-  milled->beside_mm3 = turned_.remaining_mm3() - milled->tree->remaining_mm3();
+  milled->beside_mm3 = turned_.remaining_mm3() + threads_mm3() - milled->tree->remaining_mm3();
   return milled;
 }
 
@@ -104,12 +104,15 @@ void MillTurn::cut(const Cutter& cutter, std::span<const CutMove> moves,
   if (moves.empty()) return;
   if (milled_) {
     follow_profile(*milled_);
-  } else {
-    shown();  // as it is now: it has become that
-    milled_ = std::move(shown_);
+    shown_.reset();
+    milled_->tree->cut(cutter, moves, reports);
+    return;
   }
-  shown_.reset();
-  milled_->tree->cut(cutter, moves, reports);
+  shown();  // as it is now: what is milled becomes that
+  const std::unique_ptr<StockModel> before = shown_->tree->snapshot();
+  shown_->tree->cut(cutter, moves, reports);
+  if (shown_->tree->differing_tiles(*before).empty()) return;  // they went through the air
+  milled_ = std::move(shown_);
 }
 
 std::optional<Contact> MillTurn::first_contact(const Cutter& cutter, const CutMove& move,
@@ -172,7 +175,7 @@ std::size_t MillTurn::cell_count() const {
 double MillTurn::remaining_mm3() const {
   if (!milled_) return turned_.remaining_mm3();
   const Milled& now = shown();
-  return now.tree->remaining_mm3() + now.beside_mm3;
+  return now.tree->remaining_mm3() + now.beside_mm3 - threads_mm3();
 }
 
 std::string MillTurn::digest() const { return milled_ ? tree().digest() : turned_.digest(); }

@@ -21,8 +21,8 @@ struct MillTurnOptions {
   std::size_t memory_limit_bytes = std::size_t{4} << 30;
 };
 
-/// Until a driven tool (Cutter::live()) comes it is a TurningStock and nothing else. With the first
-/// one it becomes an octree: the blank's box, less what lies beyond the profile, less what is
+/// Until a driven tool (Cutter::live()) cuts it is a TurningStock and nothing else. With the first
+/// cut it becomes an octree: the blank's box, less what lies beyond the profile, less what is
 /// milled. What is removed adds up in whatever order, so profile and milled ways are kept apart:
 ///
 ///     workpiece = what the profile sweeps  AND  what the driven tools have left of the blank
@@ -36,6 +36,9 @@ struct MillTurnOptions {
 /// profile alone: of turned moves contacts and what is removed are those of a ring which nobody has
 /// milled. remaining_mm3(), digest(), mesh() and patches are of the whole; volumes are exact until
 /// it is milled, then the octree's from there on.
+///
+/// Threads are not in the octree: it has them as what is there at some angle, plain cylinders and
+/// cones. Their volume counts as if nobody had milled them.
 ///
 /// Equal bits for any division into calls and any number of threads: the octree follows the profile
 /// where a driven tool's moves begin, and for who looks it does so on a copy.
@@ -94,7 +97,8 @@ class MillTurn final : public StockModel, public WaySearcher {
   struct Milled {
     std::unique_ptr<Octree> tree;
     std::vector<std::uint64_t> bands;
-    double beside_mm3 = 0;  ///< by how much its volume was less than the exact one when it was made
+    double beside_mm3 = 0;  ///< by how much its volume was less than the exact one of the part
+                            ///< without threads, when it was made
   };
   MillTurn(TurningStock turned, const MillTurnOptions& options);
   Result<std::unique_ptr<Octree>> box_tree() const;
@@ -103,6 +107,7 @@ class MillTurn final : public StockModel, public WaySearcher {
   std::unique_ptr<Milled> copy_of(const Milled& milled) const;
   void follow_profile(Milled& milled) const;
   const Milled& shown() const;
+  double threads_mm3() const { return turned_.part().threads().volume_mm3(); }
   const Octree& tree() const { return *shown().tree; }
 
   TurningStock turned_;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -254,11 +255,43 @@ void TurnedPart::touch_bands(const Rect& box) {
   }
 }
 
+/// One of its pieces by itself, the holes in it included.
+std::shared_ptr<const TurnedPart> TurnedPart::piece_of(std::size_t contour,
+                                                       std::size_t held) const {
+  auto piece = std::make_shared<TurnedPart>(*this);
+  piece->freed_.clear();
+  piece->winding_.reset();
+  piece->sections_.reset();
+  const Rect box = contours_[contour].box();
+  keep_piece(piece->contours_, contour);
+  piece->threads_.refresh(contours_[held].box(), piece->contours_);
+  if (!piece->marked_) return piece;
+  // Corners of the two may differ by some units.
+  std::size_t same = 0;
+  const auto off = [&](const Contour& other) {
+    return std::abs(other.box().min_x - box.min_x) + std::abs(other.box().max_x - box.max_x);
+  };
+  for (std::size_t i = 0; i < piece->marked_->size(); ++i) {
+    const std::vector<Contour>& marked = *piece->marked_;
+    if (marked[i].is_outer() && (!marked[same].is_outer() || off(marked[i]) < off(marked[same])))
+      same = i;
+  }
+  if (!piece->marked_->empty()) keep_piece(*piece->marked_, same);
+  return piece;
+}
+
 /// What the chuck does not hold falls, with the holes in it.
 void TurnedPart::drop_free_pieces(std::uint64_t id) {
   const std::optional<std::size_t> held = piece_held(contours_, chuck_);
   if (!held) return;
   const std::size_t first = freed_.size();
+  if (first > 0) {  // it is not shown any more
+    const TurnedPiece& last = freed_.back();
+    Rect box;
+    box.extend(turning::to_units(Vec2(last.low_z_mm, last.low_r_mm)));
+    box.extend(turning::to_units(Vec2(last.high_z_mm, last.high_r_mm)));
+    touch_bands(box);
+  }
   for (std::size_t i = 0; i < contours_.size(); ++i) {
     if (i == *held || !contours_[i].is_outer()) continue;
     const Rect& box = contours_[i].box();
@@ -272,7 +305,7 @@ void TurnedPart::drop_free_pieces(std::uint64_t id) {
     }
     freed_.push_back({id, turning::volume_mm3(moment6) - missing, turning::to_mm(box.min_x),
                       turning::to_mm(box.max_x), turning::to_mm(box.min_y),
-                      turning::to_mm(box.max_y)});
+                      turning::to_mm(box.max_y), piece_of(i, *held)});
     touch_bands(box);
   }
   keep_piece(contours_, *held);

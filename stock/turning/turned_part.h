@@ -96,11 +96,15 @@ struct TurnContact {
   std::array<double, kInsertSides> side_mm{};  ///< as in TurnCut, over the whole move
 };
 
+class TurnedPart;
+
 /// A piece that has come off; it is no part of the workpiece any more.
 struct TurnedPiece {
   std::uint64_t freed_by = 0;  ///< TurnMove::id
   double volume_mm3 = 0;
   double low_z_mm = 0, high_z_mm = 0, low_r_mm = 0, high_r_mm = 0;
+  /// As it came off, where it was.
+  std::shared_ptr<const TurnedPart> part{};
 };
 
 /// Coordinates are whole steps of 10 nm. What straight ways make of edges and noses is exact to
@@ -253,6 +257,7 @@ class TurnedPart {
   void clear_all_round(std::span<const std::shared_ptr<const turning::ThreadPass>> fresh);
   void end_winding();
   void drop_threads_of_pieces(std::size_t first_piece);
+  std::shared_ptr<const TurnedPart> piece_of(std::size_t contour, std::size_t held) const;
   const std::vector<turning::Contour>& shown() const { return marked_ ? *marked_ : contours_; }
   turning::Wide moment6() const;
   bool thins() const;

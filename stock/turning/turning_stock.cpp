@@ -56,6 +56,16 @@ void extend(TurnCut& whole, const TurnCut& part) {
     whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
 }
 
+/// Of a model that has no skirts.
+void append(MeshPatch& patch, const MeshPatch& other) {
+  const auto first = static_cast<std::uint32_t>(patch.vertices.size());
+  patch.vertices.insert(patch.vertices.end(), other.vertices.begin(), other.vertices.end());
+  patch.cut_by.insert(patch.cut_by.end(), other.cut_by.begin(), other.cut_by.end());
+  patch.indices.reserve(patch.indices.size() + other.indices.size());
+  for (const std::uint32_t index : other.indices) patch.indices.push_back(first + index);
+  patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
+}
+
 /// What a tool on the axis leaves is the same whatever the lead.
 std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
   std::vector<TurnMove> moves = turning_moves(move);
@@ -236,7 +246,11 @@ std::uint64_t TurningStock::patch_version(std::uint32_t tile) const {
 }
 
 MeshPatch TurningStock::patch(std::uint32_t tile, int level) const {
-  return part_.patch(tile, level);
+  MeshPatch patch = part_.patch(tile, level);
+  if (!part_.freed().empty() && part_.freed().back().part) {
+    append(patch, part_.freed().back().part->patch(tile, level));
+  }
+  return patch;
 }
 
 }  // namespace kerf

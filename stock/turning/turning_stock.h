@@ -72,6 +72,7 @@ class TurningStock final : public StockModel {
   std::vector<std::uint32_t> take_dirty_tiles() override;
   std::vector<std::uint32_t> differing_tiles(const StockModel& other) const override;
   std::uint64_t patch_version(std::uint32_t tile) const override;
+  /// With the last piece that has come off, where it came off.
   MeshPatch patch(std::uint32_t tile, int level) const override;
 
  private:

@@ -52,6 +52,23 @@ Span span_of(const std::vector<Vec2>& points) {
   return span;
 }
 
+/// The contract of InsertPart: convex, counter-clockwise.
+void expect_convex_parts(const Cutter& cutter) {
+  for (const InsertPart& part : cutter.insert()->parts) {
+    const std::vector<Vec2> points = insert_points(part, 60);
+    const std::size_t n = points.size();
+    double turned = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec2 in = points[(i + 1) % n] - points[i],
+                 out = points[(i + 2) % n] - points[(i + 1) % n];
+      const double cross = in.x * out.y - in.y * out.x;
+      EXPECT_GT(cross, -1e-9) << cutter.spec();
+      turned += std::atan2(cross, glm::dot(in, out));
+    }
+    EXPECT_NEAR(turned, 2 * kPi, 1e-6) << cutter.spec();
+  }
+}
+
 TEST(TurningShape, CanonicalTextParsesToTheSameTool) {
   const std::vector<std::pair<const char*, const char*>> texts = {
       {"turn:0.4:2:85:25", "turn:0.4:2:85:25"},
@@ -84,6 +101,7 @@ TEST(TurningShape, CanonicalTextParsesToTheSameTool) {
     const Cutter again = tool(first.spec());
     EXPECT_EQ(again.spec(), first.spec());
     ASSERT_NE(first.insert(), nullptr) << text;
+    expect_convex_parts(first);
     EXPECT_EQ(span_of(corners_of(again, false)).high, span_of(corners_of(first, false)).high);
   }
 }

@@ -53,6 +53,20 @@ void note_failure(const Done& done, Diagnostics& diagnostics) {
   if (!done) fault(diagnostics, done.error());
 }
 
+/// What has come off a workpiece that turns, each piece beside `path` (part_path()).
+template <class Write>
+void write_pieces(const StockModel& stock, const std::string& path, Diagnostics& diagnostics,
+                  Write&& write) {
+  const TurningStock* const turned = stock.turned();
+  if (!turned || path.empty() || written_as_it_comes(path)) return;
+  std::uint32_t number = 0;
+  for (const TurnedPiece& piece : turned->part().freed()) {
+    ++number;
+    if (piece.part && piece.volume_mm3 >= kLeastPiece_mm3)
+      note_failure(write(*piece.part, part_path(path, number)), diagnostics);
+  }
+}
+
 Done write_text(const std::string& path, const std::string& text) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return Error{file.error()};
@@ -185,8 +199,14 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
     report.timing.mesh_s = std::chrono::duration<double>(Clock::now() - mesh_start).count();
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
-    done_with(paths.stl);
     if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
+    write_pieces(*stock, paths.stl, diagnostics, [&](const TurnedPart& piece, const auto& path) {
+      return write_stl(path, piece.mesh(mesh_tolerance_mm));
+    });
+    write_pieces(*stock, paths.ply, diagnostics, [&](const TurnedPart& piece, const auto& path) {
+      return write_ply(path, piece.mesh(mesh_tolerance_mm));
+    });
+    done_with(paths.stl);
     done_with(paths.ply);
   }
   const Sheet* const sheet = stock && report.sheet ? stock->sheet() : nullptr;
@@ -199,8 +219,10 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   const bool wants_outline = !paths.dxf.empty() || !paths.svg.empty();
   if (const TurningStock* const turned = stock ? stock->turned() : nullptr) {
     if (!paths.dxf.empty()) note_failure(write_turned_dxf(turned->part(), paths.dxf), diagnostics);
+    write_pieces(*stock, paths.dxf, diagnostics, write_turned_dxf);
     done_with(paths.dxf);
     if (!paths.svg.empty()) note_failure(write_turned_svg(turned->part(), paths.svg), diagnostics);
+    write_pieces(*stock, paths.svg, diagnostics, write_turned_svg);
     done_with(paths.svg);
   } else if (stock && !stock->sheet() && wants_outline) {
     fault(diagnostics, fmt::format("{}: {}", paths.dxf.empty() ? "--svg" : "--dxf",

@@ -12,6 +12,8 @@ namespace kerf {
 namespace {
 
 constexpr double kAlong_mm = 1e-6;
+/// Threads are no more slanting to the axis, as a tangent.
+constexpr double kMostTaper = 0.3;
 /// What an 80 degree insert in its usual holder follows.
 constexpr double kFall_deg = 4;
 /// Straight in that far below the end it is a groove, not a face.
@@ -38,7 +40,11 @@ void TurnedTrace::add(const Motion& m) {
   least_mm_ = std::min({least_mm_, std::abs(m.from_mm.x), std::abs(m.to_mm.x)});
   lowest_mm_ = std::min(lowest_mm_, way.min.z);
   side_sum_mm_ += m.from_mm.x + m.to_mm.x;
-  if (m.kind == MotionKind::kThread) pitch_mm_ = std::max(pitch_mm_, m.feed_mm_per_min);
+  // What slants is the way in or out of a pass, with a lead of its own.
+  if (m.kind == MotionKind::kThread &&
+      std::abs(m.to_mm.x - m.from_mm.x) <= kMostTaper * std::abs(m.to_mm.z - m.from_mm.z)) {
+    pitch_mm_ = std::max(pitch_mm_, m.feed_mm_per_min);
+  }
   const double dz = m.to_mm.z - m.from_mm.z;
   const double dx = std::abs(m.to_mm.x) - std::abs(m.from_mm.x);
   if (std::abs(dz) < kAlong_mm && m.kind != MotionKind::kArc) {

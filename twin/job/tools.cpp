@@ -74,6 +74,10 @@ std::map<int, KnownDiameter> known_diameters(const ToolSources& sources) {
   return known;
 }
 
+KnownTools known_tools(const ToolSources& sources) {
+  return {known_diameters(sources), sources.turning};
+}
+
 ToolResolver::ToolResolver(ToolSources sources, CutterCheck can_cut)
     : sources_(std::move(sources)), can_cut_(can_cut) {
   sources_.hints = hints_in_force(sources_);

@@ -50,6 +50,8 @@ std::vector<ToolHint> hints_in_force(const ToolSources& sources);
 /// The diameters of the tools that arguments and comments describe by number: of the widest place;
 /// of turning tools that of the nose, and its orientation.
 std::map<int, KnownDiameter> known_diameters(const ToolSources& sources);
+/// They, and whether tools stand still.
+KnownTools known_tools(const ToolSources& sources);
 
 /// A tool of the program and where its shape comes from.
 struct ResolvedTool {

@@ -19,9 +19,9 @@ bool LivePrograms::open(const ProgramOptions& first, Diagnostics& diagnostics) {
   return true;
 }
 
-bool LivePrograms::start(const std::map<int, KnownDiameter>& diameters,
-                         std::span<const std::string> others, Diagnostics& diagnostics) {
-  if (followed_) followed_->give_diameters(diameters);
+bool LivePrograms::start(const KnownTools& tools, std::span<const std::string> others,
+                         Diagnostics& diagnostics) {
+  if (followed_) followed_->give_tools(tools);
   readings_.resize(1);
   for (const std::string& path : others) {
     ProgramOptions other = options_;
@@ -29,7 +29,7 @@ bool LivePrograms::start(const std::map<int, KnownDiameter>& diameters,
     readings_.push_back(std::make_shared<ProgramReadings>(std::move(other)));
   }
   for (const std::shared_ptr<ProgramReadings>& readings : readings_) {
-    if (readings) readings->give_diameters(diameters);
+    if (readings) readings->give_tools(tools);
     const std::size_t i = all_.size();
     ShiftProgram& program =
         all_.emplace_back(ShiftProgram{i == 0 ? options_.path : others[i - 1], {}});

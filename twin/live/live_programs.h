@@ -27,7 +27,7 @@ class LivePrograms {
   bool open(const ProgramOptions& first, Diagnostics& diagnostics);
   /// With the tools' diameters, which all readings need, and the paths of the others, of the same
   /// settings. Not without open(). False with diagnostics.
-  bool start(const std::map<int, KnownDiameter>& diameters, std::span<const std::string> others,
+  bool start(const KnownTools& tools, std::span<const std::string> others,
              Diagnostics& diagnostics);
 
   /// The first one, for what is known without interpreting; null: there is none.

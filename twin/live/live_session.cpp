@@ -103,7 +103,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     outcome = Outcome::kUsageError;
     return false;
   }
-  if (first && !programs_.start(known_diameters(tools), options_.more_programs, diagnostics)) {
+  if (first && !programs_.start(known_tools(tools), options_.more_programs, diagnostics)) {
     return false;
   }
   for (const ToolTableRow& row : tools.table) {

@@ -9,11 +9,10 @@
 namespace kerf {
 namespace {
 
-std::unique_ptr<Program> open_program(const ProgramOptions& options,
-                                      const std::map<int, KnownDiameter>& diameters,
+std::unique_ptr<Program> open_program(const ProgramOptions& options, const KnownTools& tools,
                                       Diagnostics& diagnostics) {
   std::unique_ptr<Program> opened = Program::open(options, diagnostics);
-  if (opened) opened->give_diameters(diameters);
+  if (opened) opened->give_tools(tools);
   return opened;
 }
 
@@ -54,11 +53,11 @@ ProgramReadings::Known ProgramReadings::open(const Start& start, Diagnostics& di
   ProgramOptions options = options_;
   options.machine.start = start;
   Known known{start, stamps(), now_ns(), nullptr};
-  std::unique_ptr<Program> program = open_program(options, diameters_, diagnostics);
+  std::unique_ptr<Program> program = open_program(options, tools_, diagnostics);
   if (!program) return known;
-  known.reading = SharedReading::of(std::move(program), [options, diameters = diameters_] {
+  known.reading = SharedReading::of(std::move(program), [options, tools = tools_] {
     Diagnostics ignored;
-    return open_program(options, diameters, ignored);
+    return open_program(options, tools, ignored);
   });
   return known;
 }
@@ -73,9 +72,9 @@ std::shared_ptr<ProgramReadings> ProgramReadings::open(const ProgramOptions& opt
   return readings;
 }
 
-void ProgramReadings::give_diameters(const std::map<int, KnownDiameter>& diameters) {
-  diameters_ = diameters;
-  if (first_) first_->source().give_diameters(diameters);
+void ProgramReadings::give_tools(const KnownTools& tools) {
+  tools_ = tools;
+  if (first_) first_->source().give_tools(tools);
 }
 
 std::unique_ptr<Program> ProgramReadings::reader(const Start& start, Diagnostics& diagnostics) {

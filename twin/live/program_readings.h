@@ -41,7 +41,7 @@ class ProgramReadings {
   /// For what is known without interpreting. Of open() only, and before reader().
   const Program& source() const { return first_->source(); }
   /// Before reader().
-  void give_diameters(const std::map<int, KnownDiameter>& diameters);
+  void give_tools(const KnownTools& tools);
   /// The program from its beginning, of a machine that stands there. Null with diagnostics: it has
   /// to be opened, and cannot be.
   std::unique_ptr<Program> reader(const Start& start, Diagnostics& diagnostics);
@@ -66,7 +66,7 @@ class ProgramReadings {
   Known open(const Start& start, Diagnostics& diagnostics) const;
 
   ProgramOptions options_;
-  std::map<int, KnownDiameter> diameters_;
+  KnownTools tools_;
   std::shared_ptr<SharedReading> first_;
   std::mutex mutex_;          // of known_
   std::vector<Known> known_;  ///< at most two: from options_' start, and from another one

@@ -275,7 +275,7 @@ std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
     said.clear();
     front->program = Program::open(options.program, diagnostics);
     if (!front->program) return nullptr;
-    front->program->give_diameters(known_diameters(front->tools));
+    front->program->give_tools(known_tools(front->tools));
     reading.emplace(options, *front, *process, control, true);
     loaded->summary = reading->read(said);
   }

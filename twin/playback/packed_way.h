@@ -1,24 +1,21 @@
-// twin/playback/packed_way.h - how the way of a motion goes in its time, in 20 bytes.
+// twin/playback/packed_way.h - how the way of a motion goes in its time, in 28 bytes.
 #pragma once
-
-#include <cstdint>
 
 #include "interp_bridge/timing/way_in_time.h"
 
 namespace kerf {
 
-/// Shares of the way and of speeds are kept to a sixty-thousandth, times as floats: places come out
-/// within 0.01 mm on ways of up to half a metre.
+/// Gives it back bit for bit. What a motion under G96 does not need makes room for what only it
+/// has.
 class PackedWay {
  public:
   explicit PackedWay(const WayInTime& way);
   WayInTime unpacked() const;
 
  private:
-  float in_time_, out_time_;
-  float ramp_;  ///< negative: under G96, slowness at the end over that at the start
-  std::uint16_t in_way_, out_way_;
-  std::uint16_t from_, to_;  ///< speeds over twice the greatest; under G96 the cap, and nothing
+  float in_way_, in_time_, out_way_, out_time_;
+  float ramp_;       ///< negative: under G96, slowness
+  float from_, to_;  ///< under G96 the cap, and nothing
 };
 
 }  // namespace kerf

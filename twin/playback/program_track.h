@@ -40,7 +40,7 @@ class ProgramTrack {
   bool empty() const { return size() == 0; }
 
   Motion motion(std::size_t i) const;
-  /// As the planner gave it, but for the last digits of TimedStep::way.
+  /// As the planner gave it.
   TimedStep step(std::size_t i) const;
   /// cut_move_from(motion(i), i), at a fifth of the cost.
   CutMove cut_move(std::size_t i) const;

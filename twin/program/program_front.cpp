@@ -149,7 +149,7 @@ std::optional<ProgramFront> open_front(const SessionOptions& options, Diagnostic
     outcome = Outcome::kUsageError;
     return std::nullopt;
   }
-  front.program->give_diameters(known_diameters(front.tools));
+  front.program->give_tools(known_tools(front.tools));
   front.choice = choose_stock(options.stock, stock_needs(front.tools));
   if (!choose_known_blank(options, front, diagnostics, outcome)) return std::nullopt;
   outcome = Outcome::kFinished;

@@ -42,7 +42,7 @@ class SharedReading : public std::enable_shared_from_this<SharedReading> {
   SharedReading(const SharedReading&) = delete;
   SharedReading& operator=(const SharedReading&) = delete;
 
-  /// For what is known without interpreting, and for Program::give_diameters() before the first
+  /// For what is known without interpreting, and for Program::give_tools() before the first
   /// reader runs. It must not be run.
   Program& source() { return *program_; }
   /// From the program's beginning. Null: the interpreter was ended before the program was, since

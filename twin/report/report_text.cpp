@@ -86,11 +86,14 @@ std::string lines_text(const LineRange& lines) {
   return out + "\n";
 }
 
+/// What is finer is the step of a profile's corners: it has no cells until it is milled.
+constexpr double kFinestCell_mm = 1e-3;
+
 void add_stock(std::string& out, const StockReport& s) {
   out += trf("stock     {} ({})\n", s.description, s.origin);
   if (s.model == "sheet") {
     out += trf("          {}, {} corners of polygons\n", s.model, s.cells);
-  } else if (s.model == "turning") {
+  } else if (s.model == "turning" && s.cell_mm < kFinestCell_mm) {
     out += trf("          {}, {} corners of its profile\n", s.model, s.cells);
   } else {
     out += trf("          {}, cells of {:.4g} mm, {:.2f} million\n", s.model, s.cell_mm,

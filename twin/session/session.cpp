@@ -140,7 +140,7 @@ Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
   if (!kept_whole_) {
     const bool second = !report_.program.interpreter.empty();
     if (second) second_pass_ = Program::open(options_.program, diagnostics);
-    if (second_pass_) second_pass_->give_diameters(known_diameters(front_.tools));
+    if (second_pass_) second_pass_->give_tools(known_tools(front_.tools));
     return second && !second_pass_ ? Pass::kWhole : stream(stage, stop);
   }
   const std::span<const Motion> all(kept_);

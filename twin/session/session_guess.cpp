@@ -30,7 +30,7 @@ bool Session::survey_program(std::stop_token stop, Diagnostics& diagnostics, Out
   if (!report_.program.interpreter.empty()) {
     second_pass_ = Program::open(options_.program, diagnostics);
     if (!second_pass_) return false;
-    second_pass_->give_diameters(known_diameters(front_.tools));
+    second_pass_->give_tools(known_tools(front_.tools));
   }
   Program& program = second_pass_ ? *second_pass_ : *front_.program;
   ProgramSurvey survey(SurveyWishes::of(options_, front_), front_.tools);

@@ -102,6 +102,9 @@ TEST(MillTurn, UntilItIsMilledItIsTurned) {
   EXPECT_TRUE(stock->first_contact(driven("flat:6:live=z"), line({5, 5, 2}, {5, 5, -1}), 1e-3));
   EXPECT_FALSE(stock->is_milled());
   EXPECT_EQ(stock->digest(), turned.digest());
+  // Nor do moves through the air make an octree of it.
+  EXPECT_EQ(cut(*stock, driven("flat:6:live=z"), {line({5, 5, 9}, {5, 5, 2})}), 0);
+  EXPECT_FALSE(stock->is_milled());
 }
 
 TEST(MillTurn, AnEccentricHole) {

@@ -82,7 +82,8 @@ TEST_F(TurnedReuse, a_saved_part_is_turned_about) {
   // What was at Z-60 is the face at Z0: the other end, which is still as it was.
   result = cut("first.canon", "state:part.state:flip=x:at=0,0,-60");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NEAR(stock_report()["removed_mm3"].get<double>(), removed, 0.01);
+  // Of the whole blank, both sides.
+  EXPECT_NEAR(stock_report()["removed_mm3"].get<double>(), 2 * removed, 0.01);
   EXPECT_NEAR(stock_report()["remaining_mm3"].get<double>(), remaining - removed, 0.01);
   result = cut("first.canon", "state:part.state:at=0,0,3000");
   EXPECT_EQ(result.exit_code, 2);

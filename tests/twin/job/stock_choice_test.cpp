@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "stock/cutter/shape_spec.h"
 
 namespace kerf {
@@ -80,6 +82,25 @@ TEST(StockChoice, BlanksThatOnlyTheOctreeHolds) {
             "the blank has a cylinder along x");
   EXPECT_EQ(need_of_blank(parse_blank("box:0,0,-5:10,10,0+box:20,0,-2:30,10,0").value()),
             "the blank has a body that begins at Z-2, above its floor Z-5");
+}
+
+TEST(StockChoice, WhatALatheMayHold) {
+  for (const char* const spec : {"cylinder:0,0,-60:0:40", "tube:0,0,-60:0:40:20",
+                                 "hex:0,0,-60:0:27", "square:0,0,-60:0:27", "profile:part.dxf"}) {
+    EXPECT_TRUE(may_be_turned(*parse_blank(spec))) << spec;
+  }
+  for (const char* const spec :
+       {"box:0,0,0:1,1,1", "cylinder:0,0,0:9:4:x", "cylinder:0,0,0:9:4+box:0,0,0:1,1,1",
+        "sheet:0,0:9,9:1", "state:no_such.state"}) {
+    EXPECT_FALSE(may_be_turned(*parse_blank(spec))) << spec;
+  }
+  const StockModelRow& row = stock_model(StockKind::kTurning);
+  const auto made = row.create(*parse_blank("hex:0,0,-10:0:20"), {});
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_NEAR((*made)->blank_mm3(), 20 * 20 * std::sqrt(3.0) / 2 * 10, 1e-3);
+  const auto refused = stock_model(StockKind::kZmap).create(*parse_blank("hex:0,0,-10:0:20"), {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), "a Z-map cannot hold it: the blank is a hexagonal bar");
 }
 
 TEST(StockChoice, ACutterThatNoModelHoldsIsRefused) {

@@ -107,9 +107,7 @@ class SheetWatch {
       const double t = std::min(end_s, i / rate_hz);
       AxisSample sample = machine.sample(t);
       const Motion& m = machine.at(t).motion;
-      const double share = std::clamp(
-          (t - machine.at(t).step.start_s) / std::max(1e-9, machine.at(t).step.duration_s), 0.0,
-          1.0);
+      const double share = machine.at(t).step.way_at(t);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         sample.set(3 + axis,
                    m.from_abc_deg[axis] + share * (m.to_abc_deg[axis] - m.from_abc_deg[axis]));

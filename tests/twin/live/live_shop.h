@@ -74,10 +74,7 @@ class RunningMachine {
   }
   Vec3 tip(double t_s) const {
     const TimedMotion& m = at(t_s);
-    const double share = m.step.duration_s > 0
-                             ? std::clamp((t_s - m.step.start_s) / m.step.duration_s, 0.0, 1.0)
-                             : 1.0;
-    return point_at(m.motion, share);
+    return point_at(m.motion, m.step.way_at(t_s));
   }
   AxisSample sample(double t_s, bool with_line = false) const {
     AxisSample sample;

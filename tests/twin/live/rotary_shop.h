@@ -158,9 +158,7 @@ class RotaryShop {
   AxisSample sample_of(const RunningMachine& machine, const ToolPath& path, double t,
                        Positions positions) const {
     const TimedMotion& now = machine.at(t);
-    const double done = now.step.duration_s > 0
-                            ? std::clamp((t - now.step.start_s) / now.step.duration_s, 0.0, 1.0)
-                            : 1.0;
+    const double done = now.step.way_at(t);
     AxisSample sample;
     sample.tool = 1;
     sample.tool_offset_z_mm = now.motion.tool_offset_mm.z;

@@ -30,6 +30,11 @@ class MotionList {
     state_.torch.spindles_on = on;
     return *this;
   }
+  /// Of the spindle that is on.
+  MotionList& rpm(double speed) {
+    state_.spindle_rpm = speed;
+    return *this;
+  }
   MotionList& output(unsigned n, bool on) {
     const std::uint64_t bit = std::uint64_t{1} << n;
     state_.torch.outputs = on ? state_.torch.outputs | bit : state_.torch.outputs & ~bit;

@@ -67,9 +67,7 @@ void HolderChecks::begin_reporting() {
 }
 
 void HolderChecks::check(const TurnedMove& move, bool blank_guessed) {
-  std::vector<TurnMove> turns;
-  for (const CutMove& cut : move.moves)
-    for (TurnMove& turn : turning_moves(cut)) turns.push_back(std::move(turn));
+  const std::vector<TurnMove> turns = rings_of(move);
   std::optional<Touch> touch = touch_of_traverse(turns);
   if (!is_traverse(move.motion)) {
     // Most of what is there the insert takes away first.

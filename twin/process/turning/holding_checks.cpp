@@ -130,10 +130,7 @@ void HoldingChecks::check(const TurnedMove& move) {
         if (is_traverse(move.motion)) pair.event.reset();
         continue;
       }
-      if (turns.empty()) {
-        for (const CutMove& cut : move.moves)
-          for (TurnMove& turn : turning_moves(cut)) turns.push_back(std::move(turn));
-      }
+      if (turns.empty()) turns = rings_of(move);
       check_pair(part, pair, move, turns, apart);
     }
   }

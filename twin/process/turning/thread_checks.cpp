@@ -22,8 +22,12 @@ constexpr std::array kThreadForms{ThreadForm{60, 0.6134, 0.5413}, ThreadForm{55,
 constexpr double kAngleSlack_deg = 0.4;
 /// Passes less apart in depth are as deep: spring passes, rounding.
 constexpr double kAsDeep_mm = 0.005;
+/// Of the lead: what differs by more is another thread.
+constexpr double kSameLead = 1e-4;
 /// Of the lead: starts that lie less apart are one.
 constexpr double kSameStart = 0.04;
+/// Threads are no more slanting to the axis, as a tangent.
+constexpr double kMostTaper = 0.3;
 /// Flanks that lean less from square to the axis are none of a thread.
 constexpr double kLeastFlank = 0.2;
 
@@ -84,11 +88,13 @@ void ThreadChecks::note(const TurnedMove& move) {
   const Motion& m = move.motion;
   if (!form_ || m.kind != MotionKind::kThread || m.feed_mm_per_min <= 0) return;
   const double low = std::min(m.from_mm.z, m.to_mm.z), high = std::max(m.from_mm.z, m.to_mm.z);
-  if (high - low <= 0) return;
-  const double lead = m.feed_mm_per_min;
+  // Ways in and out slant (E and L of G76); taper threads hardly do.
+  const double across = std::abs(m.to_mm.x - m.from_mm.x);
+  if (across >= kMostTaper * (high - low)) return;
+  const double lead = m.feed_mm_per_min * (high - low) / std::hypot(across, high - low);
   const double z = 0.5 * (low + high), x = std::abs(0.5 * (m.from_mm.x + m.to_mm.x));
-  if (thread_ && (std::abs(thread_->lead_mm - lead) > 1e-6 * lead || low >= thread_->high_z_mm ||
-                  high <= thread_->low_z_mm)) {
+  if (thread_ && (std::abs(thread_->lead_mm - lead) > kSameLead * lead ||
+                  low >= thread_->high_z_mm || high <= thread_->low_z_mm)) {
     end();
   }
   if (!thread_) {

@@ -16,6 +16,8 @@ namespace kerf {
 namespace {
 
 constexpr std::size_t kMostFaces = 64;
+/// Of a traverse: it touches from the first, as soon as that is a contact (kContactTolerance_mm).
+constexpr double kAtOnce_mm = 0.5;
 /// Faces are turned along X alone.
 constexpr double kAlong_mm = 1e-6;
 
@@ -62,6 +64,17 @@ bool is_inside(const TurnedProfile& profile, const Vec2& p) {
 
 }  // namespace
 
+std::vector<TurnMove> rings_of(const TurnedMove& move) {
+  std::vector<TurnMove> turns;
+  for (const CutMove& cut : move.moves) {
+    for (TurnMove& turn : turning_moves(cut)) {
+      turn.lead_mm = 0;
+      turns.push_back(std::move(turn));
+    }
+  }
+  return turns;
+}
+
 bool TurningChecks::may_touch(const TurnedMove& move) const {
   const Box blank = stock_.bounds_mm();
   if (move.cutter.live()) {
@@ -103,7 +116,9 @@ std::optional<TurningChecks::Touch> TurningChecks::first_touch(const TurnedMove&
   for (std::size_t i = 0; i < move.moves.size(); ++i) {
     const auto met = stock_.first_turn_contact(move.edges, move.moves[i], kContactTolerance_mm);
     if (!met) continue;
-    if (!first) first = Touch{0, move.share_of(i, met->t)};
+    if (!first) first = Touch{0, move.share_of(i, met->t), true};
+    first->by_edges = first->by_edges && side_of(met->side_mm, InsertSide::kBody) <= 0 &&
+                      side_of(met->side_mm, InsertSide::kHolder) <= 0;
     first->depth_mm = std::max(first->depth_mm, met->depth_mm);
   }
   return first;
@@ -123,15 +138,27 @@ std::optional<TurningChecks::Touch> TurningChecks::first_milled_touch(
   return Touch{met->contact.depth_mm, move.share_of(met->move, within)};
 }
 
-void TurningChecks::check_traverse(const TurnedMove& move) {
+void TurningChecks::check_traverse(const TurnedMove& move, bool behind_feed) {
   const std::optional<Touch> touch = first_touch(move);
   if (!touch) {
     rapid_.reset();
     return;
   }
   if (!rapid_) {
-    Finding finding = finding_of(FindingId::kRapidContact, move, touch->share,
-                                 tr("traverse touches the workpiece"));
+    // From a shoulder straight out the edge takes what its own slant has left there: it marks the
+    // part, and breaks nothing.
+    const bool drags = behind_feed && touch->by_edges &&
+                       touch->share * move.step.length_mm < kAtOnce_mm &&
+                       touch->depth_mm <= kSliver_mm;
+    Finding finding =
+        finding_of(FindingId::kRapidContact, move, touch->share,
+                   drags ? tr("traverse drags along the shoulder that the feed before "
+                              "it has left")
+                         : tr("traverse touches the workpiece"));
+    if (drags) {
+      finding.severity = std::min(finding.severity, Severity::kWarning);
+      finding.hint = tr("a feed along the shoulder first, or away from it along X and Z at once");
+    }
     finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
     rapid_ = log_.add(std::move(finding));
   }

@@ -35,6 +35,9 @@ struct TurnedMove {
   }
 };
 
+/// Its moves in the plane of the axis; a thread's, too, go all round.
+std::vector<TurnMove> rings_of(const TurnedMove& move);
+
 /// Watches the moves of one program against one workpiece that turns. The caller calls before it
 /// cuts the move, except where it says otherwise.
 class TurningChecks {
@@ -52,7 +55,9 @@ class TurningChecks {
   bool touches(const TurnedMove& move) const { return first_touch(move).has_value(); }
 
   /// rapid-contact. An event ends with the first traverse that touches nothing.
-  void check_traverse(const TurnedMove& move);
+  /// `behind_feed`: it begins where a feed has ended. A sliver that it takes from the shoulder
+  /// there (kSliver_mm) is a warning.
+  void check_traverse(const TurnedMove& move, bool behind_feed);
   void clear_traverse() { rapid_.reset(); }
   /// spindle-off-contact. An event lasts until the spindle turns or the tool changes.
   void check_standing(const TurnedMove& move);
@@ -75,6 +80,7 @@ class TurningChecks {
   /// What a flank may be in material beside the edge that leads: corners are rounded, tables give
   /// angles in whole degrees.
   static constexpr double kFlank_mm = 0.05;
+  static constexpr double kSliver_mm = 0.5;
   /// A tool may go so much farther beyond the axis than its nose has to.
   static constexpr double kBeyond_mm = 0.5;
   /// A pip is what stands so much above its face, and is no thicker than that.
@@ -83,7 +89,8 @@ class TurningChecks {
  private:
   struct Touch {
     double depth_mm = 0;
-    double share = 0;  ///< of the motion
+    double share = 0;       ///< of the motion
+    bool by_edges = false;  ///< alone, of a tool that stands still
   };
   /// Where a face was turned towards the axis.
   struct Face {

@@ -52,7 +52,7 @@ void TurningStage::begin_reporting() {
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
   unmount();
-  mill_turn_told_ = unmilled_told_ = false;
+  mill_turn_told_ = unmilled_told_ = threads_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -81,8 +81,14 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
     unmount();
   }
   if (!stands(m)) checks_.end_standing();
-  if (is_traverse(m)) take_traverse(m, step);
-  if (is_feed(m)) take_feed(m, step);
+  if (is_traverse(m)) {
+    take_traverse(m, step);
+    behind_feed_ = false;
+  }
+  if (is_feed(m)) {
+    take_feed(m, step);
+    behind_feed_ = true;
+  }
   // The tool is known now: a driven one has a speed of its own.
   if (!is_driven()) speeds_.check(m, step, checks_.options().spindle_max_rpm);
 }
@@ -164,7 +170,7 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
     checks_.clear_traverse();
     return;
   }
-  checks_.check_traverse(move);
+  checks_.check_traverse(move, behind_feed_);
   cut(m, step);
 }
 
@@ -248,6 +254,20 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
   return true;
 }
 
+/// Once, when a part has been milled and has threads.
+void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
+  const TurningStock& turned = *stock_.turned();
+  const bool is_milled = stock_.cell_mm() != turned.cell_mm();
+  if (threads_told_ || !is_milled || turned.part().threads().empty()) return;
+  threads_told_ = true;
+  Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
+  finding.tool = m.tool;
+  finding.text =
+      tr("the part has threads and is milled: pictures, meshes and what driven tools meet have the "
+         "threads as plain cylinders and cones");
+  log_.add(std::move(finding));
+}
+
 void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,
                                      std::string hint) {
   Finding finding = finding_at(FindingId::kNotModelled, Severity::kError, m, step);
@@ -279,6 +299,7 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
     });
   }
   note_fallen(m, step);
+  report_lost_threads(m, step);
   touched_ = touched_ || whole.removed_mm3 > 0;
   if (!is_feed(m) || is_driven()) return;
   const TurnedMove move = turned(m, step);

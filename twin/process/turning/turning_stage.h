@@ -56,6 +56,7 @@ class TurningStage final : public Process {
   bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
   bool report_unmilled(const Motion& motion, const TimedStep& step);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
+  void report_lost_threads(const Motion& motion, const TimedStep& step);
   void tell_not_modelled(const Motion& motion, const TimedStep& step, std::string text,
                          std::string hint);
   void report_undefined(const Motion& motion, const TimedStep& step);
@@ -96,7 +97,9 @@ class TurningStage final : public Process {
   bool undefined_ = false;
   bool mill_turn_told_ = false;
   bool unmilled_told_ = false;
+  bool threads_told_ = false;
   bool touched_ = false;
+  bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };
 
 }  // namespace kerf

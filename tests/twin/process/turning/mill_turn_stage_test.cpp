@@ -1,6 +1,7 @@
 // Driven tools on a lathe: what they cut with C, A and Y, what is told of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -188,6 +189,28 @@ TEST(MillTurnStage, ADrivenToolHasASpindleOfItsOwn) {
   program.spindle(false).spindles(2);  // M5 $0, M3 $1
   program.traverse({25, 0, -20}).feed({17, 0, -20}).traverse({30, 0, -20});
   EXPECT_EQ(MillTurnShop(program).ids(), Ids{});
+}
+
+TEST(MillTurnStage, ThreadsOfAMilledPartAreTold) {
+  const auto program_of = [](bool mills) {
+    MotionList program = start(1);
+    program.traverse({19, 0, 3}).feed({19, 0, -20});
+    Motion& thread = program.last();
+    thread.kind = MotionKind::kThread;
+    thread.feed_mm_per_min = 2;  // a turn
+    program.traverse({30, 0, -20}).traverse({30, 0, 5}).tool(2);
+    program.traverse({10, 0, 2}).feed({10, 0, mills ? -10.0 : 1.0}).traverse({10, 0, 2});
+    return program;
+  };
+  const auto tells = [](const MillTurnShop& shop) {
+    const Ids ids = shop.ids();
+    return std::count(ids.begin(), ids.end(), "not-simulated");
+  };
+  const MillTurnShop milled(program_of(true)), turned(program_of(false));
+  EXPECT_EQ(tells(milled), 1);
+  EXPECT_EQ(tells(turned), 0);
+  EXPECT_GT(turned.removed_mm3(), 1);
+  EXPECT_NEAR(milled.removed_mm3() - turned.removed_mm3(), kPi * 9 * 10, 1);
 }
 
 TEST(MillTurnStage, TurnMillingIsNotModelled) {

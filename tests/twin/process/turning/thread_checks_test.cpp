@@ -91,6 +91,29 @@ TEST(ThreadChecks, EachThreadIsOne) {
   EXPECT_EQ(log.kept().size(), 1U);  // 0.7 is enough for 1, and not for 1.5
 }
 
+TEST(ThreadChecks, WaysInAndOutAreNoPasses) {
+  const TurningStock stock(*TurnedPart::create(rod20()));
+  FindingLog log;
+  ThreadChecks checks(stock, log);
+  const Cutter cutter = *parse_shape("thread:60:1.5");
+  checks.mount(cutter);
+  const auto pass = [&](Vec3 from, Vec3 to, double lead) {
+    Motion m;
+    m.kind = MotionKind::kThread;
+    m.feed_mm_per_min = lead;
+    m.from_mm = from;
+    m.to_mm = to;
+    checks.note(TurnedMove{m, TimedStep{}, cutter, cutter, {}, 1, false});
+  };
+  for (const double x : {9.5, 9.08}) {
+    pass({x + 1, 0, 3}, {x, 0, 0}, 1.58);
+    pass({x, 0, 0}, {x, 0, -20}, 1.5);
+    pass({x, 0, -20}, {x + 1, 0, -23}, 1.58);
+  }
+  checks.end();
+  EXPECT_EQ(log.kept().size(), 0U);
+}
+
 TEST(ThreadChecks, WhatIsNoThreadOfAFormIsNotJudged) {
   EXPECT_EQ(threads_told("turn:0:2:85:5", rod20(), 1.5, {{9.9}}).size(), 0U);
   EXPECT_EQ(threads_told("groove:2", rod20(), 1.5, {{9.9}}).size(), 0U);

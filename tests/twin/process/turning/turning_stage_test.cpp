@@ -222,6 +222,7 @@ void g76_pass(MotionList& program, double depth) {
 
 TEST(TurningStage, PassesOfAThreadAreOneThread) {
   MotionList program = start(4);
+  program.rpm(500);
   for (const double depth : {0.3, 0.7, 1.1, 1.5, 1.84, 1.84}) g76_pass(program, depth);
   const LatheShop shop(program);
   EXPECT_EQ(shop.ids(), Ids{});
@@ -235,6 +236,7 @@ TEST(TurningStage, PassesOfAThreadAreOneThread) {
   EXPECT_NEAR(threads[0].angle_rad, 60 * kDeg, 1e-4);
   // What leads in through the air, and is not cut, counts for where the groove is.
   MotionList last = start(4);
+  last.rpm(500);
   g76_pass(last, 1.84);
   const LatheShop once(last);
   EXPECT_NEAR(once.stock().remaining_mm3(), shop.stock().remaining_mm3(), 1e-6);
@@ -244,8 +246,9 @@ TEST(TurningStage, PassesOfAThreadAreOneThread) {
 
 TEST(TurningStage, M4LeavesALeftHandThread) {
   MotionList program = start(4);
-  program.traverse({19, 0, 5});
-  program.thread({19, 0, -30}, 2);
+  program.rpm(500);
+  program.traverse({18.7, 0, 5});
+  program.thread({18.7, 0, -30}, 2);
   program.last().spindle = SpindleState::kCounterclockwise;
   program.traverse({30, 0, -30});
   const LatheShop shop(program);
