@@ -169,7 +169,10 @@ WayInTime middle_of(const Segment& segment, const SpeedProfile& profile) {
   return middle;
 }
 
-/// From where to where, in shares of its way, a segment is run by itself.
+/// From where to where, in shares of its way, a segment is run by itself. What is run together with
+/// its neighbours takes half of that time for it: evenly, at the speed that it is entered with.
+///
+///     |--- a t^2 / 2 ---|  in t / 2: at a t, as it was when it began to brake
 struct AloneRange {
   double from = 0, to = 1;
   AloneRange(const WayInTime& middle, double moving_s, double before_s, double behind_s) {
@@ -187,7 +190,8 @@ void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedPro
                           double corner_s) {
   const bool blend = segment.shape == SegmentShape::kBlend;
   const WayInTime middle = blend ? WayInTime{} : middle_of(segment, profile);
-  const AloneRange alone(middle, profile.duration_s - profile.rest_s, corner_s_, corner_s);
+  const AloneRange alone(middle, profile.duration_s - profile.rest_s, 2 * corner_s_, 2 * corner_s);
+  const double begins_s = corner_s_;
   const double moving_s = std::max(seconds - profile.rest_s, 0.0);
   const double cut_from = blend ? 0 : segment.cut_from();
   const double left = std::max(1 - cut_from - (blend ? 0 : segment.cut_to()), 1e-9);
@@ -210,6 +214,7 @@ void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedPro
     const double piece_s = moving_s * (run_to - run) + (last ? seconds - moving_s : 0);
     Pending& pending = add_time(piece.motion, piece_s, profile.peak_speed);
     run = run_to;
+    if (i == 0) pending.in_s += begins_s;
     pending.middles += blend ? 2 : 1;
     WayInTime& way = pending.timing.way;
     way = from > 0 || to < 1 ? middle.part(from, to) : middle;
@@ -220,7 +225,7 @@ void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedPro
       way.out_way = static_cast<float>(std::clamp(out, 0.0, 1.0));
     }
     if (last) {
-      pending.out_s += profile.rest_s;
+      pending.out_s += profile.rest_s + corner_s;
       pending.timing.duration_s += corner_s;
     }
     if (with_path_ && segment.shape == SegmentShape::kArc) {

@@ -81,6 +81,8 @@ struct Passing {
   std::size_t compared = 0, in_corners = 0;
   double worst_s = 0;            ///< by the time of the program
   double in_motion_worst_s = 0;  ///< by the time of its motion: without what came before
+  /// Likewise, of places in the corner that the planner passes while both motions run.
+  double corner_worst_s = 0;
   double worst_share = 0;   ///< of that, what exceeds two servo periods, over the motion's time
   double even_worst_s = 0;  ///< of ways that are run evenly
 };
@@ -89,6 +91,7 @@ struct Passing {
 struct Found {
   std::size_t motion = 0;
   double error_s = 0, even_error_s = 0;
+  bool corner = false;
 };
 
 inline std::optional<Found> passed(const std::vector<Motion>& motions, const Plan& plan,
@@ -108,7 +111,9 @@ inline std::optional<Found> passed(const std::vector<Motion>& motions, const Pla
     }
     const double error_s = t.start_s + t.duration_s * t.way.time_of(share) - now_s;
     if (found && std::abs(error_s - usual_s) >= std::abs(found->error_s - usual_s)) continue;
-    found = Found{i, error_s, t.start_s + t.duration_s * share - now_s};
+    const bool corner =
+        share < static_cast<double>(t.way.in_way) || share > 1 - static_cast<double>(t.way.out_way);
+    found = Found{i, error_s, t.start_s + t.duration_s * share - now_s, corner};
   }
   return found;
 }
@@ -122,7 +127,7 @@ inline Passing compare(const std::vector<Motion>& motions, const Plan& plan,
   for (std::size_t i = 0; i < motions.size() && begin_s < 0; ++i) {
     if (is_move(motions[i]) && plan.timings[i].duration_s > 0) begin_s = plan.timings[i].start_s;
   }
-  std::map<std::size_t, std::vector<double>> of_motion;
+  std::map<std::size_t, std::vector<double>> of_motion, of_corner;
   double usual_s = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
@@ -139,13 +144,16 @@ inline Passing compare(const std::vector<Motion>& motions, const Plan& plan,
     usual_s = found->error_s;
     out.worst_s = std::max(out.worst_s, std::abs(found->error_s));
     out.even_worst_s = std::max(out.even_worst_s, std::abs(found->even_error_s));
-    of_motion[found->motion].push_back(found->error_s);
+    (found->corner ? of_corner : of_motion)[found->motion].push_back(found->error_s);
   }
   for (auto& [motion, errors_s] : of_motion) {
     std::sort(errors_s.begin(), errors_s.end());
     const double middle_s = errors_s[errors_s.size() / 2];
     const double most_s = std::max(middle_s - errors_s.front(), errors_s.back() - middle_s);
     out.in_motion_worst_s = std::max(out.in_motion_worst_s, most_s);
+    for (const double error_s : of_corner[motion]) {
+      out.corner_worst_s = std::max(out.corner_worst_s, std::abs(error_s - middle_s));
+    }
     const double beyond_s = most_s - kSpindlePeriods * kPeriod_s;
     out.worst_share = std::max(out.worst_share, beyond_s / plan.timings[motion].duration_s);
   }
