@@ -154,7 +154,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.max_mm_per_s2) printer.put("max_acceleration_mm_per_s2", *machine.max_mm_per_s2);
   if (machine.drawn.kind) printer.put("model", kerf::name_of(*machine.drawn.kind));
   if (!machine.spindle_spec.empty()) printer.text("spindle", machine.spindle_spec);
-  if (machine.spindle_accel_rpm_per_s) {
+  if (machine.spindle_accel_rpm_per_s.value_or(0) > 0) {
     printer.put("spindle_accel", *machine.spindle_accel_rpm_per_s);
   }
   if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);

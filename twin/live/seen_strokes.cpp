@@ -16,6 +16,9 @@ using Kind = BeamTrigger::Kind;
 constexpr double kStanding_rpm = 1.0;
 /// Sensors tremble: a sheet that has moved less stands. mm.
 constexpr double kStill_mm = 0.005;
+/// Hits at the ends of moves lie farther apart: a machine that brakes creeps through the last of
+/// its way in steps that are less than kStill_mm.
+constexpr double kApart_mm = 0.05;
 /// Z that comes down by less is no stroke, and up by as much it is over. mm.
 constexpr double kPlunge_mm = 0.5;
 constexpr double kBack_mm = 0.05;
@@ -94,12 +97,13 @@ void SeenStrokes::take_state(bool on, const ProgramPose& place, int tool) {
     if (!turret_->strikes_at_ends) strike(place, tool);
   } else if (on && turret_->strikes_at_ends) {
     since_mm_ += way_mm;
-    if (way_mm < kStill_mm && since_mm_ >= kStill_mm) strike(place, tool);
+    if (way_mm < kStill_mm && since_mm_ >= kApart_mm) strike(place, tool);
   } else if (on && pitch_mm > 0) {
     if (way_mm >= kStill_mm) nibble(place, tool, pitch_mm);
   } else if (on) {
     drags_ = way_mm >= kStill_mm;
-  } else if (*on_ && since_mm_ >= kStill_mm && (turret_->strikes_at_ends || pitch_mm > 0)) {
+  } else if (*on_ && since_mm_ >= (turret_->strikes_at_ends ? kApart_mm : kStill_mm) &&
+             (turret_->strikes_at_ends || pitch_mm > 0)) {
     strike(*before_, tool);
   }
 }

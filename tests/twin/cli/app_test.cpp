@@ -51,7 +51,8 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
   EXPECT_EQ(faults_of(a),
             "kerf: error: --interp: 'rs274' is no interpreter; allowed: bridge, text\n"
             "kerf: error: --block-delete: 'maybe' is not allowed; must be on or off\n"
-            "kerf: error: --model: 'voxels' is no model; allowed: auto, zmap, mmap, octree, sheet\n"
+            "kerf: error: --model: 'voxels' is no model; allowed: auto, zmap, mmap, octree, sheet, "
+            "turning\n"
             "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
             "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
             "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"

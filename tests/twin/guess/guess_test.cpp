@@ -193,12 +193,13 @@ TEST(BlankGuessSteps, TheFirstLevelCutsAsDeepAsTheOthers) {
 }
 
 TEST(StockSpec, IsWhatStockTakes) {
-  for (const char* spec : {"box:-5,-5.5,-10:105,65,0.5", "sheet:0,0:600,400:3"}) {
+  for (const char* spec :
+       {"box:-5,-5.5,-10:105,65,0.5", "sheet:0,0:600,400:3", "cylinder:0,0,-60:0:40"}) {
     const Result<Blank> blank = parse_blank(spec);
     ASSERT_TRUE(blank);
     EXPECT_EQ(stock_spec(*blank), spec);
   }
-  EXPECT_EQ(stock_spec(*parse_blank("cylinder:0,0,0:10:5")), "");
+  EXPECT_EQ(stock_spec(*parse_blank("tube:0,0,0:10:5:2")), "");
 }
 
 TEST(GuessText, EndsWithTheCommandToCopy) {

@@ -84,7 +84,8 @@ TEST(RotaryLive, TheWorkpieceIsThatOfTheDryRun) {
         // By axes the way is another one only as far as the frame.
         if (positions == Positions::kAxes && (followed || &one != &all.back())) continue;
         // A thousand samples a second of one machine are enough.
-        const double rate_hz = &one == &all[2] ? 1000 : 200;
+        // (Between two samples a corner is cut: half a step.)
+        const double rate_hz = &one == &all[2] ? 1000 : 400;
         const RotaryShop::Watched seen = shop.watch(one.program, rate_hz, positions, followed);
         const std::string what =
             fmt::format("{} by {}{}", one.name, positions == Positions::kJoints ? "joints" : "axes",

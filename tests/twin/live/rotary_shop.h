@@ -158,7 +158,10 @@ class RotaryShop {
   AxisSample sample_of(const RunningMachine& machine, const ToolPath& path, double t,
                        Positions positions) const {
     const TimedMotion& now = machine.at(t);
-    const double done = now.step.way_at(t);
+    // Evenly: where a corner is rounded the planner's tip is beside the way that is turned here.
+    const double done = now.step.duration_s > 0
+                            ? std::clamp((t - now.step.start_s) / now.step.duration_s, 0.0, 1.0)
+                            : 1.0;
     AxisSample sample;
     sample.tool = 1;
     sample.tool_offset_z_mm = now.motion.tool_offset_mm.z;

@@ -53,6 +53,7 @@ PlayerProgram program_of(const std::vector<Motion>& motions) {
   program.track = test::track_of(motions);
   program.blank = bar_40();
   program.tools.arguments.push_back({1, nose()});
+  program.tools.turning = true;
   ProcessWish wish;
   wish.is_turned = true;
   program.process = choose_process(wish);
