@@ -91,6 +91,10 @@ LiveFrame::Axes LiveFrame::axes_of(const AxisSample& sample, int type, double to
     out.value[static_cast<std::size_t>(axis)] = sample.position[i];
     out.known |= 1U << axis;
   }
+  if (options_.y_stands && (out.known & bit(1)) == 0) {
+    if (!options_.workpiece_frame) out.value[1] = options_.work.g5x_mm.y + options_.work.g92_mm.y;
+    out.known |= bit(1);
+  }
   return out;
 }
 

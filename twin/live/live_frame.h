@@ -34,6 +34,8 @@ struct LiveFrameOptions {
   /// follow the tip, robots): position i is that of joint i then, and `axis` does not matter. Null:
   /// `axis` says it all.
   std::shared_ptr<const MachineKinematics> kinematics;
+  /// A lathe: where no position of Y comes, tools stand in the plane of the axis.
+  bool y_stands = false;
   bool workpiece_frame = false;  ///< positions are the tip's, in the workpiece frame
   WorkpieceFrame work;           ///< where the workpiece lies in the machine
   ToolLengthFrom tool_length = ToolLengthFrom::kAuto;

@@ -103,6 +103,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
     outcome = Outcome::kUsageError;
     return false;
   }
+  options_.cutting.frame.y_stands = tools.turning;
   if (first && !programs_.start(known_tools(tools), options_.more_programs, diagnostics)) {
     return false;
   }
