@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -86,5 +87,10 @@ std::string number_text(double value);
 /// Text as a message shows it: control characters as '?', long text cut after 60 characters with
 /// "...".
 std::string shown(std::string_view text);
+
+/// One of the parts stands in the text.
+bool contains_any(std::string_view text, std::initializer_list<std::string_view> parts);
+/// `word` with no letter on either side.
+bool contains_word(std::string_view text, std::string_view word);
 
 }  // namespace kerf

@@ -36,23 +36,6 @@ struct Quantity {
   Label label = Label::kNone;
 };
 
-bool contains_any(std::string_view text, std::initializer_list<std::string_view> parts) {
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](std::string_view part) { return contains(text, part); });
-}
-
-/// `word` with no letter on either side.
-bool contains_word(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos;
-       at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end]))) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// Picks the numbers of a text with their units and labels.
 class QuantityScanner {
  public:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -27,26 +26,9 @@ constexpr std::size_t kLongestCode = 20;
 /// As near as an angle of the table and one of an insert are the same.
 constexpr double kSameAngle_deg = 0.5;
 
-bool names_one_of(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](std::string_view word) { return contains(text, word); });
-}
-
-/// A word by itself, not a part of one.
-bool has_word(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos;
-       at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end]))) {
-      return true;
-    }
-  }
-  return false;
-}
-
 bool is_internal(std::string_view lower) {
-  return names_one_of(lower, {"internal", "boring", "innen", "inside"}) ||
-         has_word(lower, "bore") || has_word(lower, "id") || has_word(lower, "int");
+  return contains_any(lower, {"internal", "boring", "innen", "inside"}) ||
+         contains_word(lower, "bore") || contains_word(lower, "id") || contains_word(lower, "int");
 }
 
 std::optional<ShapeText> sure(std::string shape) { return ShapeText{std::move(shape), false, {}}; }
@@ -108,9 +90,10 @@ ShapeText insert_of(const IsoCode& code, std::string_view lower, const TurningFa
   Hand hand = Hand::kRight;
   if (facts.orientation > 0) {
     hand = hand_of_orientation(facts.orientation);
-  } else if (has_word(lower, "left") || has_word(lower, "lh") || has_word(lower, "links")) {
+  } else if (contains_word(lower, "left") || contains_word(lower, "lh") ||
+             contains_word(lower, "links")) {
     hand = Hand::kLeft;
-  } else if (has_word(lower, "neutral")) {
+  } else if (contains_word(lower, "neutral")) {
     hand = Hand::kNeutral;
   }
   ShapeText out{"iso:" + code.text, false, {}};
@@ -145,17 +128,17 @@ int orientation_among(std::initializer_list<int> allowed, int orientation) {
 
 std::optional<ShapeText> thread_in(std::string_view lower, const CutterFacts& read,
                                    const TurningFacts& facts) {
-  if (!names_one_of(lower, {"thread", "gewinde"}) ||
-      names_one_of(lower, {"mill", "fr\xc3\xa4s", "bohrer", "tap"})) {
+  if (!contains_any(lower, {"thread", "gewinde"}) ||
+      contains_any(lower, {"mill", "fr\xc3\xa4s", "bohrer", "tap"})) {
     return std::nullopt;
   }
   ShapeText out;
   double angle = read.angle_deg.value_or(0);
   if (angle == 0) {
     for (const char* const bare : {"60", "55", "30", "29"})
-      if (angle == 0 && has_word(lower, bare)) angle = *parse_decimal(bare);
+      if (angle == 0 && contains_word(lower, bare)) angle = *parse_decimal(bare);
   }
-  if (angle == 0 && names_one_of(lower, {"whitworth", "bsp", "bsw"})) angle = 55;
+  if (angle == 0 && contains_any(lower, {"whitworth", "bsp", "bsw"})) angle = 55;
   if (angle == 0 && contains(lower, "acme")) angle = 29;
   if (angle == 0 && contains(lower, "trapez")) angle = 30;
   if (angle == 0) {
@@ -172,12 +155,12 @@ std::optional<ShapeText> thread_in(std::string_view lower, const CutterFacts& re
 
 std::optional<ShapeText> blade_in(std::string_view lower, const CutterFacts& read,
                                   const TurningFacts& facts) {
-  const bool parts = names_one_of(lower, {"parting", "part off", "part-off", "partoff", "cutoff",
+  const bool parts = contains_any(lower, {"parting", "part off", "part-off", "partoff", "cutoff",
                                           "cut-off", "cut off", "abstech"}) ||
                      lower == "part" || lower.starts_with("part ");
-  const bool grooves = names_one_of(lower, {"groov", "einstech", "einstich", "stechstahl"});
+  const bool grooves = contains_any(lower, {"groov", "einstech", "einstich", "stechstahl"});
   if (!parts && !grooves) return std::nullopt;
-  const bool axial = !parts && (names_one_of(lower, {"face groov", "facegroov", "axial"}) ||
+  const bool axial = !parts && (contains_any(lower, {"face groov", "facegroov", "axial"}) ||
                                 facts.orientation == 5 || facts.orientation == 7);
   ShapeText out;
   double width = read.diameter_mm.value_or(0);
@@ -201,7 +184,7 @@ std::optional<ShapeText> blade_in(std::string_view lower, const CutterFacts& rea
 
 std::optional<ShapeText> bar_in(std::string_view lower, const CutterFacts& read,
                                 const TurningFacts& facts) {
-  if (!names_one_of(lower, {"boring bar", "boringbar", "bohrstange", "innendreh"})) {
+  if (!contains_any(lower, {"boring bar", "boringbar", "bohrstange", "innendreh"})) {
     return std::nullopt;
   }
   const int orientation = orientation_among({3, 1, 2, 4}, facts.orientation);
@@ -235,8 +218,8 @@ std::optional<ShapeText> axial_in(std::string_view lower, bool inches, const Tur
   CutterFacts read = read_free_text(lower, inches);
   const bool is_drill = read.kind == CutterKind::kDrill;
   const bool is_other =
-      names_one_of(lower, {"reamer", "reibahle", "mill", "fr\xc3\xa4s", "gewindebohr"}) ||
-      has_word(lower, "tap");
+      contains_any(lower, {"reamer", "reibahle", "mill", "fr\xc3\xa4s", "gewindebohr"}) ||
+      contains_word(lower, "tap");
   if (!is_drill && !is_other) return std::nullopt;
   if (read.kind == CutterKind::kUnnamed || read.kind == CutterKind::kNotCutter) {
     read.kind = CutterKind::kFlat;

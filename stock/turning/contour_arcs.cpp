@@ -17,7 +17,7 @@ constexpr double kMaxArcRadius_mm = 1e5;
 /// One edge of an arc turns by no more: outlines have at least eight for half a turn.
 constexpr double kMaxEdge_rad = kPi / 6;
 /// Edges that do not bend are followed no farther, in the hope that they will.
-constexpr std::size_t kMostStraight = 4096;
+constexpr std::size_t kMostStraight = 512;
 /// Gauss, three points of an edge: places and weights.
 constexpr std::array<double, 3> kGaussAt{0.1127016653792583, 0.5, 0.8872983346207417};
 constexpr std::array<double, 3> kGaussWeight{5.0 / 18, 8.0 / 18, 5.0 / 18};

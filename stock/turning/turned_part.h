@@ -8,6 +8,7 @@
 //        +---'--'----'----------'--> z
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -86,6 +87,16 @@ struct TurnCut {
   /// The width that front and back flank came to at once, the lesser of the two: one leads, and the
   /// other one trails.
   double flanks_mm = 0;
+
+  /// With another part of the same motion: volumes and lengths add up, widths are the greatest.
+  void extend(const TurnCut& other) {
+    removed_mm3 += other.removed_mm3;
+    way_mm += other.way_mm;
+    depth_mm = std::max(depth_mm, other.depth_mm);
+    flanks_mm = std::max(flanks_mm, other.flanks_mm);
+    for (std::size_t i = 0; i < kInsertSides; ++i)
+      side_mm[i] = std::max(side_mm[i], other.side_mm[i]);
+  }
 };
 
 /// Where a move first meets material.

@@ -47,15 +47,6 @@ void append_chords(const CutMove& move, std::vector<TurnMove>& moves) {
   moves.push_back({at, in_plane(move.to_mm), std::nullopt, move.id});
 }
 
-void extend(TurnCut& whole, const TurnCut& part) {
-  whole.removed_mm3 += part.removed_mm3;
-  whole.depth_mm = std::max(whole.depth_mm, part.depth_mm);
-  whole.way_mm += part.way_mm;
-  whole.flanks_mm = std::max(whole.flanks_mm, part.flanks_mm);
-  for (std::size_t i = 0; i < kInsertSides; ++i)
-    whole.side_mm[i] = std::max(whole.side_mm[i], part.side_mm[i]);
-}
-
 /// Of a model that has no skirts.
 void append(MeshPatch& patch, const MeshPatch& other) {
   const auto first = static_cast<std::uint32_t>(patch.vertices.size());
@@ -123,7 +114,7 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
-    for (const TurnMove& turn : moves_of(cutter, move)) extend(whole, part_.cut(tool, turn));
+    for (const TurnMove& turn : moves_of(cutter, move)) whole.extend(part_.cut(tool, turn));
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;

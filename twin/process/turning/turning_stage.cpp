@@ -330,12 +330,7 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
     use.max_depth_mm = std::max(use.max_depth_mm, piece.depth_mm);
     add_cutting(use, cut_s, piece.removed_mm3);
   }
-  whole.removed_mm3 += piece.removed_mm3;
-  whole.way_mm += piece.way_mm;
-  whole.depth_mm = std::max(whole.depth_mm, piece.depth_mm);
-  whole.flanks_mm = std::max(whole.flanks_mm, piece.flanks_mm);
-  for (std::size_t side = 0; side < kInsertSides; ++side)
-    whole.side_mm[side] = std::max(whole.side_mm[side], piece.side_mm[side]);
+  whole.extend(piece);
 }
 
 /// Of what has just been cut.
@@ -348,14 +343,7 @@ TurnCut TurningStage::sum_of_piece() const {
     }
     return piece;
   }
-  for (const TurnCut& cut : stock_.turned()->last_cuts()) {
-    piece.removed_mm3 += cut.removed_mm3;
-    piece.way_mm += cut.way_mm;
-    piece.depth_mm = std::max(piece.depth_mm, cut.depth_mm);
-    piece.flanks_mm = std::max(piece.flanks_mm, cut.flanks_mm);
-    for (std::size_t side = 0; side < kInsertSides; ++side)
-      piece.side_mm[side] = std::max(piece.side_mm[side], cut.side_mm[side]);
-  }
+  for (const TurnCut& cut : stock_.turned()->last_cuts()) piece.extend(cut);
   return piece;
 }
 
