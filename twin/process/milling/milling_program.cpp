@@ -29,7 +29,8 @@ void MillingStage::watch_program(const Motion& m, const TimedStep& step) {
   if (feeds) ++feed_moves_made_;
   if (feeds || is_traverse(m)) ++moves_made_;
   if (m.kind == MotionKind::kToolChange) {
-    program_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
+    changes_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
+    changes_.end_tool();
     program_.end_tool();
   }
   if (checks_.options().is_drawn) return;

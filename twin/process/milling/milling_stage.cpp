@@ -45,6 +45,7 @@ MillingStage::MillingStage(ProcessSite& site)
       resolver_(site.tools),
       log_(site.log),
       checks_(stock_, log_),
+      changes_(log_),
       program_(stock_, log_),
       load_meter_(stock_),
       lengths_(stock_.bounds_mm(), log_),
@@ -70,6 +71,7 @@ void MillingStage::begin_reporting() {
   parts_.begin_reporting();
   fixtures_.begin_reporting();
   machine_.forget();
+  changes_.forget_events();
   program_.forget_events();
   speed_unsaid_.reset();
   uses_.clear();
@@ -83,7 +85,7 @@ void MillingStage::finish(bool whole) {
   parts_.finish();
   fixtures_.finish();
   machine_.finish();
-  program_.finish(whole);
+  changes_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
   for (ToolUse& use : uses_) {
@@ -198,7 +200,7 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
-  if (!site_.watched) program_.feeds(m, step, mounted_->number);
+  if (!site_.watched) changes_.feeds(m, step, mounted_->number);
   site_.feeds.note(m, step);
   if (!divide(m, step)) return;
   const CheckedMove move = checked(m, step);

@@ -25,6 +25,7 @@
 #include "twin/process/milling/part_checks.h"
 #include "twin/process/milling/program_checks.h"
 #include "twin/process/process.h"
+#include "twin/process/tool_change_check.h"
 
 namespace kerf {
 
@@ -123,6 +124,7 @@ class MillingStage final : public Process {
   std::vector<double> ends_;         ///< CheckedMove::ends of it
   std::span<const PathPiece> path_;  ///< of it
   Checks checks_;
+  ToolChangeCheck changes_;
   ProgramChecks program_;
   bool touched_ = false;          ///< a feed move has met material, whatever the cells have of it
   int contact_looks_ = 0;         ///< for that

@@ -1,6 +1,5 @@
 // twin/process/milling/program_checks.h - troubles that lie in the order of a program's words
-// rather than in one move: a tool that is selected and not changed, a stop inside the part, a drill
-// fed sideways, nothing cut at all.
+// rather than in one move: a stop inside the part, a drill fed sideways, nothing cut at all.
 #pragma once
 
 #include <cstdint>
@@ -25,17 +24,8 @@ class ProgramChecks {
         is_empty_(stock.blank_mm3() <= 0),
         log_(log) {}
 
-  /// tool-not-changed, of feed moves with tool number `tool`, before they are cut. A T word waits
-  /// from its line on; feed moves of another tool meanwhile are told when the next T word or the
-  /// program's end shows that no M6 comes; the same T word again goes on waiting (T2 .. T2 M6).
-  /// What is fetched ahead for a change to come is sound, and so is a last T word behind which
-  /// nothing is fed.
-  void feeds(const Motion& motion, const TimedStep& step, int tool);
   /// The tool is changed.
-  void end_tool() {
-    waiting_ = {};
-    drill_told_ = false;
-  }
+  void end_tool() { drill_told_ = false; }
 
   /// stop-in-part is to be looked for: the motion stops, and the tip is below the top of the blank,
   /// inside its outline.
@@ -55,31 +45,15 @@ class ProgramChecks {
   /// What went on before is not reported on.
   void forget_events();
 
-  /// The program is over (`whole`) or stopped before its end.
-  void finish(bool whole) {
-    if (whole) tell_not_changed();
-  }
-
   static constexpr double kSpotting_deg = 100;
 
  private:
-  struct Waiting {
-    int tool = 0;       ///< T word
-    SourceRef source;   ///< of it, where it came first
-    SourceRef last;     ///< .. and last
-    int used = 0;       ///< instead
-    SourceRef first;    ///< its first feed move
-    double time_s = 0;  ///< of that
-    bool fed = false;
-  };
-  void tell_not_changed();
   bool touches(const Cutter& cutter, const Vec3& tip, const Vec3& to) const;
 
   const StockModel& stock_;
   Box bounds_mm_;
   bool is_empty_;  ///< material is added
   FindingLog& log_;
-  Waiting waiting_;
   bool drill_told_ = false;
 };
 

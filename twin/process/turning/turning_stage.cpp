@@ -28,6 +28,7 @@ TurningStage::TurningStage(ProcessSite& site)
       stock_(site.stock),
       resolver_(site.tools),
       log_(site.log),
+      changes_(log_),
       checks_(stock_, log_),
       holding_(log_),
       holders_(*stock_.turned(), log_),
@@ -44,6 +45,7 @@ void TurningStage::check_by(const CheckOptions& options) {
 
 void TurningStage::begin_reporting() {
   checks_.forget();
+  changes_.forget_events();
   holding_.begin_reporting();
   holders_.begin_reporting();
   noses_.forget();
@@ -62,6 +64,7 @@ void TurningStage::go_on_from(const Process& process) {
 }
 
 void TurningStage::finish(bool whole) {
+  changes_.finish(whole);
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
@@ -79,6 +82,10 @@ void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const 
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     spindle_tool_ = m.tool;
     unmount();
+  }
+  if (m.kind == MotionKind::kToolChange && !site_.watched) {
+    changes_.feeds(m, step, m.tool);  // its T word may be another than the one that waited
+    changes_.end_tool();
   }
   if (!stands(m)) checks_.end_standing();
   if (is_traverse(m)) {
@@ -183,6 +190,7 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   }
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
+  if (!site_.watched) changes_.feeds(m, step, mounted_->number);
   if (m.kind != MotionKind::kThread) site_.feeds.note(m, step);
   if (report_unmilled(m, step)) return;
   if (!is_driven()) {

@@ -15,6 +15,7 @@
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/process.h"
+#include "twin/process/tool_change_check.h"
 #include "twin/process/turning/edge_checks.h"
 #include "twin/process/turning/holder_checks.h"
 #include "twin/process/turning/holding_checks.h"
@@ -73,6 +74,7 @@ class TurningStage final : public Process {
   StockModel& stock_;
   ToolResolver& resolver_;
   FindingLog& log_;
+  ToolChangeCheck changes_;
   TurningChecks checks_;
   HoldingChecks holding_;
   HolderChecks holders_;
