@@ -98,7 +98,7 @@ constexpr const char* kSourceList = tr_noop(
 std::string model_list() {
   std::string list;
   for (const StockModelRow& row : stock_models()) {
-    list += fmt::format("{:<7} {}\n", row.name, tr(row.purpose));
+    list += fmt::format("{:<8}{}\n", row.name, tr(row.purpose));
   }
   return list +
          tr("auto    sheet for a sheet, else the first of these that holds what tools, blank and "

@@ -32,8 +32,7 @@ constexpr std::array kMachineSettings{
             .type = T::kYesNo,
             .fallback = "no",
             .purpose = tr_noop("what is for a lathe is milled all the same (--as-mill)"),
-            .help = tr_noop(
-                "mill what is for a lathe (kerf has no model for turning, and refuses it else)"),
+            .help = tr_noop("mill what is for a lathe (without it, that is turned)"),
             .flag = "yes"},
     Setting{.key = "machine.joints",
             .type = T::kText,
