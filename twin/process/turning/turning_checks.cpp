@@ -220,7 +220,7 @@ void TurningChecks::check_sides(const TurnedMove& move, const TurnCut& cut) {
 
 void TurningChecks::check_centre(const TurnedMove& move, const TurnCut& cut) {
   if (cut.removed_mm3 <= 0 || !move.cutter.insert()) return;
-  note_face(move, cut);
+  note_face(move);
   if (centre_told_) return;
   const InsertOutline& outline = *move.cutter.insert();
   const double sign = is_above(outline) ? 1 : -1;
@@ -239,7 +239,7 @@ void TurningChecks::check_centre(const TurnedMove& move, const TurnCut& cut) {
 }
 
 /// A feed along X that ends near the axis.
-void TurningChecks::note_face(const TurnedMove& move, const TurnCut&) {
+void TurningChecks::note_face(const TurnedMove& move) {
   const Motion& m = move.motion;
   if (m.kind != MotionKind::kFeed || std::abs(m.to_mm.z - m.from_mm.z) > kAlong_mm) return;
   if (std::abs(m.to_mm.x) > kPipWidest_mm / 2 || std::abs(m.from_mm.x) <= std::abs(m.to_mm.x))
@@ -247,7 +247,7 @@ void TurningChecks::note_face(const TurnedMove& move, const TurnCut&) {
   const auto known = std::find_if(faces_.begin(), faces_.end(), [&](const Face& face) {
     return std::abs(face.z_mm - m.to_mm.z) < kPipHeight_mm;
   });
-  const Face face{m.to_mm.z, 1, m.source, move.step.start_s, move.tool};
+  const Face face{m.to_mm.z, m.source, move.step.start_s, move.tool};
   if (known != faces_.end()) {
     *known = face;
   } else if (faces_.size() < kMostFaces) {

@@ -95,7 +95,6 @@ class TurningChecks {
   /// Where a face was turned towards the axis.
   struct Face {
     double z_mm = 0;
-    double side = 1;  ///< material is on the other side of it: +1 is towards -z
     SourceRef source;
     double time_s = 0;
     int tool = 0;
@@ -103,7 +102,7 @@ class TurningChecks {
   std::optional<Touch> first_touch(const TurnedMove& move) const;
   std::optional<Touch> first_milled_touch(const TurnedMove& move) const;
   Finding finding_of(FindingId id, const TurnedMove& move, double share, std::string text) const;
-  void note_face(const TurnedMove& move, const TurnCut& cut);
+  void note_face(const TurnedMove& move);
   void tell_pip(const Face& face);
 
   const StockModel& model_;
