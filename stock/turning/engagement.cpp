@@ -20,10 +20,12 @@ double front_at(const GridPart::Lead& lead, double across) {
 }
 
 /// Thinner on the average than what two traces of a nose that stands at one place leave of each
-/// other: each is a chain of chords, to within kArcBound_mm of the arc. Such shreds are long beside
-/// their thickness, and where a tool leaves along them they would be as deep as they are long.
+/// other: each is a chain of chords. They are within kArcBound_mm of the arc, but beside the corner
+/// that a way has moved along it (GridPart::touch), where a chord is half as long again, and there
+/// is 0.3 um between them. Such shreds are long beside their thickness, and where a tool leaves
+/// along them they would be as deep as they are long.
 bool is_trace(std::span<const Point> ring) {
-  constexpr double kTraces = 2 * kArcBound_mm * kUnitsPerMm;
+  constexpr double kTraces = 4 * kArcBound_mm * kUnitsPerMm;
   double around = 0;
   Point last = ring.back();
   for (const Point& p : ring) {

@@ -68,7 +68,7 @@ class Sections {
 };
 
 /// What is less than ConvexCut::kFilm wide or long does not count: rounding makes such. Nor do
-/// pieces thinner than 0.2 um on the average: noses are chains of chords.
+/// pieces thinner than 0.4 um on the average: noses are chains of chords.
 class EngagementGauge {
  public:
   /// `way` is the tool's, to - from, in units.

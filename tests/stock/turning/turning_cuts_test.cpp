@@ -32,7 +32,7 @@ TEST(TurningCuts, depth_is_across_the_way_whatever_the_way) {
 }
 
 /// The nose's place at a shoulder is left twice: by the cut that ends there, and by the way out
-/// that begins there. The chords of the two differ by 0.1 um, over lengths of 20 um.
+/// that begins there. The chords of the two differ by some 0.1 um, over lengths of 20 um.
 TEST(TurningCuts, leaving_a_shoulder_meets_nothing) {
   for (const double radius : {0.1, 0.2, 0.4, 0.8, 1.2, 2.4}) {
     for (const double degrees : {35.0, 45.0, 63.4, 70.0, 80.0}) {
