@@ -20,8 +20,8 @@ namespace kerf {
 ///     29, 30 degrees          0.5 P
 ///
 /// The pitch is the lead over the number of starts: of passes as deep as the deepest, how many
-/// begin elsewhere along the lead. Tools of another angle, taps, and threads of no crest are not
-/// judged.
+/// begin elsewhere along the lead. Beside a machine a pass comes in pieces; each is judged in its
+/// own middle. Tools of another angle, taps, and threads of no crest are not judged.
 class ThreadChecks {
  public:
   ThreadChecks(const TurningStock& stock, FindingLog& log) : stock_(stock), log_(log) {}
@@ -34,6 +34,7 @@ class ThreadChecks {
   void forget() {
     thread_.reset();
     form_.reset();
+    pass_.reset();
   }
 
   /// So much of the depth may be missing: tips are not as the form has them.
@@ -48,7 +49,8 @@ class ThreadChecks {
   struct Thread {
     double lead_mm = 0;
     double low_z_mm = 0, high_z_mm = 0;
-    double crest_mm = 0;
+    std::vector<Vec2> crests_mm;  ///< (z, r) of pieces of the first pass
+    int first_pass = 0, last_pass = 0;
     double depth_mm = 0;         ///< of the deepest pass
     std::vector<double> phases;  ///< of passes as deep, where they begin over the lead
     SourceRef source;            ///< of the deepest pass, and the rest of it
@@ -57,12 +59,21 @@ class ThreadChecks {
     int tool = 0;
     bool tool_guessed = false;
   };
+  /// The last pass, so far.
+  struct Pass {
+    int number = 0;
+    Vec3 from_mm{0}, to_mm{0};
+    SourceRef source;
+  };
   std::optional<double> crest_at(double z_mm) const;
+  void follow_pass(const Motion& motion);
+  bool is_apart(double low_z_mm, double high_z_mm) const;
 
   const TurningStock& stock_;
   FindingLog& log_;
   std::optional<Form> form_;
   std::optional<Thread> thread_;
+  std::optional<Pass> pass_;
 };
 
 }  // namespace kerf
