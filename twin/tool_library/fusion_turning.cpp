@@ -103,18 +103,18 @@ class FusionInsert {
     if (said != "r") remark(tr("its holder has no HAND: a right-hand one is taken"));
     return 'R';
   }
-  /// None: the usual one is to be taken, which is said.
-  std::optional<double> kappa_deg(bool is_bar) {
+  /// 0: the usual one is to be taken, which is said.
+  double kappa_deg(bool is_bar) {
     std::string style = text(holder_json_, "THSC");
     if (style.starts_with(kBarPrefix)) style.erase(0, kBarPrefix.size());
-    const auto find = [&](const auto& styles) -> std::optional<double> {
+    const auto find = [&](const auto& styles) -> double {
       for (const HolderStyle& row : styles) {
         if (style.size() == 1 && style[0] == row.letter) return row.kappa_deg;
       }
-      return std::nullopt;
+      return 0;
     };
-    const std::optional<double> found = is_bar ? find(kBarStyles) : find(kStyles);
-    if (!found) {
+    const double found = is_bar ? find(kBarStyles) : find(kStyles);
+    if (found == 0) {
       remark(style.empty()
                  ? std::string(tr("its holder has no style THSC: the usual angle of its edge is "
                                   "taken"))
@@ -171,13 +171,13 @@ class FusionInsert {
     if (!size_mm) return trouble(tr("it has no INSD, the size of its insert, above 0"));
     const double corner_mm = geometry_.positive_mm("RE").value_or(0);
     const char side = hand();
-    const std::optional<double> kappa = shape->corners == 0 ? std::nullopt : kappa_deg(is_bar);
+    const double kappa = shape->corners == 0 ? 0 : kappa_deg(is_bar);
     if (const auto code = designation(*shape, *size_mm, corner_mm)) {
       shape_ = fmt::format("iso:{}:{}", *code, side);
-      if (kappa) shape_ += fmt::format(":{:g}", *kappa);
-    } else if (kappa && side != 'N' && !is_bar) {
+      if (kappa > 0) shape_ += fmt::format(":{:g}", kappa);
+    } else if (kappa > 0 && side != 'N' && !is_bar) {
       // The corner alone: where its body ends does not matter much.
-      const double front = side == 'R' ? 180 - *kappa : *kappa;
+      const double front = side == 'R' ? 180 - kappa : kappa;
       const double nose = shape->nose_rad * kDegPerRad;
       shape_ = fmt::format("turn:{:g}:{}:{:g}:{:g}", corner_mm, side == 'R' ? 2 : 1, front,
                            side == 'R' ? front - nose : front + nose);
