@@ -97,7 +97,7 @@ struct FollowedRun {
   }
   int gaps() const {
     const Json live = report("live");
-    return live.is_object() ? live["live"].value("gaps", 0) + live["live"].value("lost", 0) : 0;
+    return live.is_object() ? live["live"].value("gaps", 0) : 0;
   }
   double removed_mm3(const std::string& name) const {
     const Json all = report(name);

@@ -307,8 +307,9 @@ TEST_F(TurnedDrawing, flats_are_dashed_where_the_bar_still_has_them) {
     if (group == 11) lines.back()[2] = std::stod(value);
     if (group == 21) lines.back()[3] = std::stod(value);
   }
-  // The shoulder leans by 5 degrees: at the flats it is 2.5 tan 5 before Z-20.
-  const double shoulder = -20 + 2.5 * std::tan(radians(5));
+  // The shoulder leans by 5 degrees from the radius of 15 at Z-20 on: at the corners, where flats
+  // end, it is farthest in front.
+  const double shoulder = -20 + (flats.outer_radius_mm() - 15) * std::tan(radians(5));
   const double expected[2][2] = {{-60, -34}, {-31, shoulder}};
   ASSERT_EQ(lines.size(), 2u) << "the groove to 36 has no end of the flats";
   EXPECT_EQ(notes, 2);

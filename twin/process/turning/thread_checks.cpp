@@ -41,6 +41,17 @@ std::optional<double> crest_near(const std::vector<Vec2>& crests_mm, double z_mm
   return std::ranges::min(crests_mm, {}, [&](const Vec2& c) { return std::abs(c.x - z_mm); }).y;
 }
 
+/// Of what of a stretch lies within the workpiece, as far as that reaches along z.
+std::optional<double> middle_within(const TurnedPart& part, double low_z_mm, double high_z_mm) {
+  turning::Rect box;
+  for (const turning::Contour& contour : part.contours()) box.extend(contour.box());
+  if (box.empty()) return std::nullopt;
+  const double low = std::max(low_z_mm, turning::to_mm(box.min_x));
+  const double high = std::min(high_z_mm, turning::to_mm(box.max_x));
+  if (low >= high) return std::nullopt;
+  return 0.5 * (low + high);
+}
+
 /// Angle between the two flanks of a tool that points straight at the axis, or away from it.
 std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bore) {
   std::optional<Vec2> front, back;
@@ -118,8 +129,11 @@ void ThreadChecks::note(const TurnedMove& move) {
   const double across = std::abs(m.to_mm.x - m.from_mm.x);
   if (across >= kMostTaper * (high - low)) return;
   const double lead = m.feed_mm_per_min * (high - low) / std::hypot(across, high - low);
-  const double z = 0.5 * (low + high), x = std::abs(0.5 * (m.from_mm.x + m.to_mm.x));
+  const std::optional<double> middle = middle_within(stock_.part(), low, high);
   follow_pass(m);
+  if (!middle) return;  // beside the workpiece
+  const double z = *middle, done = (z - m.from_mm.z) / (m.to_mm.z - m.from_mm.z);
+  const double x = std::abs(m.from_mm.x + done * (m.to_mm.x - m.from_mm.x));
   const std::optional<double> there = crest_at(z);
   const auto below = [&](double crest) { return form_->in_bore ? x - crest : crest - x; };
   if (!there || below(*there) <= 0) return;  // in the air

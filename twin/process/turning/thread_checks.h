@@ -13,7 +13,7 @@ namespace kerf {
 
 /// Passes of one tool with one lead over one stretch are a thread. Its depth is that of the deepest
 /// pass below the crest, which is the surface that was there before the first one, both in the
-/// middle of the pass. What pitch and form ask for:
+/// middle of what of the pass lies within the workpiece. What pitch and form ask for:
 ///
 ///     60 degrees (ISO 68-1)   0.6134 P outside, 0.5413 P in a bore
 ///     55 degrees (ISO 228)    0.6403 P

@@ -73,6 +73,13 @@ TEST(ThreadChecks, TwoStartsHaveHalfThePitch) {
   EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 3, {{9.1}, {9.1, 8}}).size(), 1U);
 }
 
+TEST(ThreadChecks, APassMayBeginFarInFront) {
+  // From Z40 to Z-20: its middle is beside the rod.
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 1.5, {{9.13, 40}}).size(), 1U);
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 1.5, {{9.12, 40}}).size(), 0U);
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 3, {{9.1}, {9.1, 21.5}}).size(), 0U);
+}
+
 TEST(ThreadChecks, EachThreadIsOne) {
   // Another lead is another thread.
   const TurningStock stock(*TurnedPart::create(rod20()));
