@@ -34,14 +34,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 7> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 10> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
      {"--ply", &OutputPaths::ply},
      {"--state", &OutputPaths::state},
      {"--dxf", &OutputPaths::dxf},
-     {"--svg", &OutputPaths::svg}}};
+     {"--svg", &OutputPaths::svg},
+     {"--junit", &OutputPaths::junit},
+     {"--sarif", &OutputPaths::sarif},
+     {"--csv", &OutputPaths::csv}}};
 
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -65,13 +68,6 @@ void write_pieces(const StockModel& stock, const std::string& path, Diagnostics&
     if (piece.part && piece.volume_mm3 >= kLeastPiece_mm3)
       note_failure(write(*piece.part, part_path(path, number)), diagnostics);
   }
-}
-
-Done write_text(const std::string& path, const std::string& text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return Error{file.error()};
-  file->write(text.data(), text.size());
-  return file->commit();
 }
 
 std::string file_name(const std::string& path) {
@@ -115,8 +111,8 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 7> OutputPaths::named() const {
-  std::array<NamedPath, 7> all;
+std::array<std::pair<const char*, const std::string*>, 10> OutputPaths::named() const {
+  std::array<NamedPath, 10> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;
@@ -242,6 +238,24 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   report.timing.total_s += elapsed_s();
   report.peak_rss_mb = peak_rss_mb();
   if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
+}
+
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
+void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,
+                         Diagnostics& diagnostics) {
+  if (!paths.junit.empty()) {
+    note_failure(write_text(paths.junit, junit_text(programs, KERF_VERSION)), diagnostics);
+  }
+  if (paths.sarif.empty()) return;
+  std::error_code unknown;
+  const std::string folder = std::filesystem::current_path(unknown).string();
+  note_failure(write_text(paths.sarif, sarif_text(programs, KERF_VERSION, folder)), diagnostics);
 }
 
 std::string names_left(const OutputPaths& paths, unsigned dealt_with) {
