@@ -186,8 +186,12 @@ int diff_command(const Arguments& arguments) {
   const DiffRequest first = understand_diff(arguments, path_a, diagnostics);
   const ViewKind kind_a = kind_of("A", path_a, diagnostics);
   const ViewKind kind_b = kind_of("B", path_b, diagnostics);
+  const bool is_usage = has_error(diagnostics);
+  OutputPaths places;
+  places.json = first.json;
+  check_output_places(places, diagnostics);
   print_diagnostics(diagnostics, first.run.quiet);
-  if (has_error(diagnostics)) return kExitUsage;
+  if (has_error(diagnostics)) return is_usage ? kExitUsage : kExitFailure;
   show_lengths_in(first.run.units);
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });

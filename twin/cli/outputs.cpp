@@ -118,6 +118,14 @@ std::array<std::pair<const char*, const std::string*>, 10> OutputPaths::named() 
   return all;
 }
 
+unsigned OutputPaths::bit_of(const std::string& path) const {
+  const auto all = named();
+  for (unsigned i = 0; i < all.size(); ++i) {
+    if (all[i].second == &path) return 1u << i;
+  }
+  return 0;
+}
+
 OutputPaths understand_outputs(const OptionReader& reader) {
   OutputPaths paths;
   for (const auto& [option, path] : kPaths) paths.*path = reader.text(option);
@@ -174,10 +182,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
                    const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
                    std::atomic<unsigned>* dealt_with) {
   const auto done_with = [&](const std::string& path) {
-    const auto all = paths.named();
-    for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
-      if (all[i].second == &path) *dealt_with |= 1u << i;
-    }
+    if (dealt_with) *dealt_with |= paths.bit_of(path);
   };
   const Clock::time_point start = Clock::now();
   const auto elapsed_s = [&] {

@@ -35,6 +35,8 @@ struct OutputPaths {
 
   /// With the options that give them.
   std::array<std::pair<const char*, const std::string*>, 10> named() const;
+  /// Of one of them (`path` is a member of this), its bit where what is done is noted.
+  unsigned bit_of(const std::string& path) const;
   bool uses_stdout() const {
     for (const auto& [option, path] : named()) {
       if (*path == "-" || *path == "/dev/stdout") return true;
@@ -61,7 +63,7 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// mesh time, adds it to the total, and brings the peak memory up to date before the JSON is
 /// written, which comes last.
 /// `stock`: null if there was none. `fixtures`: drawn in pictures; may be null. `dealt_with`, if
-/// given, gets a bit for each of paths.named() that is there, or has failed; another thread may
+/// given, gets the bit_of() each of paths.named() that is there, or has failed; another thread may
 /// look at it.
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,

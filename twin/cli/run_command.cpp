@@ -153,6 +153,24 @@ StdinProgram::Listings listings_of(const SessionOptions& session) {
                                     : StdinProgram::Listings::kKept;
 }
 
+/// The session tells it of its motions; null, with a diagnostic, if it cannot be written.
+std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinProgram& kept,
+                                         Session& session, Diagnostics& diagnostics) {
+  auto begun = MotionTable::create(
+      path, [&kept](std::string text) { return kept.renamed(std::move(text)); });
+  if (!begun) {
+    diagnostics.push_back(general_error(begun.error()));
+    return nullptr;
+  }
+  session.record_by(*begun.value());
+  return std::move(begun.value());
+}
+
+void end_table(MotionTable& table, Diagnostics& diagnostics) {
+  if (const Done written = table.commit(); !written)
+    diagnostics.push_back(general_error(written.error()));
+}
+
 RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
@@ -184,15 +202,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   rename_stdin(kept, session ? session->report() : none, diagnostics);
   std::unique_ptr<MotionTable> table;
   if (session && !request.outputs.csv.empty()) {
-    auto begun = MotionTable::create(
-        request.outputs.csv, [&kept](std::string text) { return kept.renamed(std::move(text)); });
-    if (begun) {
-      table = std::move(begun.value());
-      session->record_by(*table);
-    } else {
-      diagnostics.push_back(general_error(begun.error()));
-      session.reset();
-    }
+    table = begin_table(request.outputs.csv, kept, *session, diagnostics);
+    if (!table) session.reset();
   }
   print(diagnostics);
   if (!session) {
@@ -213,12 +224,12 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
+    if (table) {
+      end_table(*table, diagnostics);
+      dealt_with |= request.outputs.bit_of(request.outputs.csv);
+    }
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
                   request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
-    if (table) {
-      if (const Done written = table->commit(); !written)
-        diagnostics.push_back(general_error(written.error()));
-    }
     if (!request.finding_png.empty()) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);

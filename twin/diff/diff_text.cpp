@@ -9,6 +9,7 @@
 
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
+#include "twin/machine/motion_json.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -51,7 +52,7 @@ LineSpan span_of(const DiffSide& side, std::size_t begin, std::size_t end) {
 std::string words_of(const LineSpan& span) {
   if (span.empty && span.first == 0) return trf("{}: before its first motion", span.file);
   if (span.empty) return trf("{}: behind line {}", span.file, span.first);
-  if (span.first == span.last) return trf("{}:{}", span.file, span.first);
+  if (span.first == span.last) return fmt::format("{}:{}", span.file, span.first);
   return trf("{}:{} to {}", span.file, span.first, span.last);
 }
 
@@ -85,6 +86,8 @@ std::string coolant_words(const DiffStep& s) {
   return s.flood && s.mist ? "M7 M8" : s.flood ? "M8" : "M7";
 }
 
+constexpr std::size_t kMostEvents = 8;
+
 double way_mm(std::span<const DiffStep> steps) {
   double sum_mm = 0;
   for (const DiffStep& step : steps) {
@@ -93,8 +96,15 @@ double way_mm(std::span<const DiffStep> steps) {
   return sum_mm;
 }
 
-/// What there is in one alone.
+/// What there is in one alone: how much of a way, or which events.
 std::string alone_words(std::span<const DiffStep> steps) {
+  if (std::none_of(steps.begin(), steps.end(), has_way)) {
+    std::string kinds;
+    for (const DiffStep& step : steps.first(std::min(steps.size(), kMostEvents))) {
+      kinds += (kinds.empty() ? "" : ", ") + std::string(to_string(step.kind));
+    }
+    return kinds + (steps.size() > kMostEvents ? ", .." : "");
+  }
   return trf("{} motions, {:.3f} mm of way", steps.size(), way_mm(steps));
 }
 

@@ -275,16 +275,16 @@ constexpr bool in_order() {
 static_assert(in_order(), "a row for each FindingId, in the order of the enum");
 
 constexpr std::array<FindingTopicRow, kFindingTopics> kTopics{{
-    {Topic::kProgram, "program", tr_noop("the program as it is written")},
-    {Topic::kTools, "tools", tr_noop("tools, and their lengths")},
-    {Topic::kBlank, "blank", tr_noop("the blank, and the cells of its model")},
-    {Topic::kCutter, "cutting", tr_noop("how the cutter meets the workpiece")},
-    {Topic::kCollisions, "collisions", tr_noop("what must not touch")},
-    {Topic::kMachine, "machine", tr_noop("limits and kinematics of the machine")},
-    {Topic::kTurning, "turning", tr_noop("what is turned")},
-    {Topic::kBeam, "beam", tr_noop("sheets under a torch, laser or jet")},
-    {Topic::kPunch, "punch", tr_noop("sheets under a punch")},
-    {Topic::kSource, "source", tr_noop("the positions of a machine")},
+    {Topic::kProgram, "program"},
+    {Topic::kTools, "tools"},
+    {Topic::kBlank, "blank"},
+    {Topic::kCutter, "cutting"},
+    {Topic::kCollisions, "collisions"},
+    {Topic::kMachine, "machine"},
+    {Topic::kTurning, "turning"},
+    {Topic::kBeam, "beam"},
+    {Topic::kPunch, "punch"},
+    {Topic::kSource, "source"},
 }};
 
 constexpr bool topics_in_order() {

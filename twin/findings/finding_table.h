@@ -37,8 +37,7 @@ struct FindingRow {
 
 struct FindingTopicRow {
   FindingTopic topic;
-  const char* name;     ///< "collisions"; never translated
-  const char* purpose;  ///< tr() shows it
+  const char* name;  ///< "collisions"; never translated
 };
 
 /// With the last ones of the enums: these numbers grow with them.
