@@ -244,8 +244,7 @@ class MotionDiffer {
     const auto differs = [&](bool is_so, DiffKind kind) {
       if (is_so) kinds = static_cast<std::uint16_t>(kinds | kind);
     };
-    const std::size_t a_steps = gap.a_end - gap.a_begin, b_steps = gap.b_end - gap.b_begin;
-    differs(a_steps != ways_a.size() || b_steps != ways_b.size(), kDiffEvents);
+    differs(!same_events(gap), kDiffEvents);
     if (ways_a.empty() || ways_b.empty()) {
       differs(!ways_a.empty() || !ways_b.empty(), kDiffPath);
       hunk.kinds = kinds;
@@ -269,6 +268,17 @@ class MotionDiffer {
     kinds = static_cast<std::uint16_t>(kinds | states_apart(ways_a.front(), ways_b.front()));
     hunk.kinds = kinds == 0 ? std::uint16_t{kDiffPath} : kinds;
     return hunk;
+  }
+
+  /// Tool changes, dwells and stops, in their order.
+  bool same_events(const AlignedGap& gap) const {
+    std::size_t i = gap.a_begin, j = gap.b_begin;
+    while (true) {
+      while (i < gap.a_end && is_move(a_[i].kind)) ++i;
+      while (j < gap.b_end && is_move(b_[j].kind)) ++j;
+      if (i == gap.a_end || j == gap.b_end) return i == gap.a_end && j == gap.b_end;
+      if (!same_way(a_[i++], b_[j++])) return false;
+    }
   }
 
   static void pick(std::span<const DiffStep> steps, std::vector<DiffStep>& ways,

@@ -1,7 +1,9 @@
 #include "twin/diff/part_diff.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "base/translate.h"
 #include "surface/height_grid.h"
@@ -9,6 +11,12 @@
 
 namespace kerf {
 namespace {
+
+/// Points of a surface that are looked at: a cell apart, or so that there are no more.
+constexpr double kMostPoints = 2e6;
+constexpr double kPointsWithoutCells_mm = 0.1;
+/// Of distances: none is.
+constexpr double kBeyond_mm = 1e6;
 
 /// Of the cells around (i, j), itself included.
 struct HeightRange {
@@ -76,16 +84,53 @@ void diff_heights(const DiffedPart& a, const DiffedPart& b, const HeightGrid& he
   out.b_cut = cut_at(b, at_b);
 }
 
-/// The corners of a mesh that are farthest from the surface of the other one.
-void farthest(const TriangleMesh& mesh, const DesignPart& other, PartDiff& out) {
+using Corners = std::array<Vec3, 3>;
+
+/// The corners, the longest edge between the first two.
+Corners corners_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  Corners c;
+  for (std::size_t i = 0; i < 3; ++i) c[i] = Vec3(mesh.positions_mm[triangle[i]]);
+  std::size_t longest = 0;
+  const auto edge_mm = [&](std::size_t i) { return glm::length(c[(i + 1) % 3] - c[i]); };
+  for (std::size_t i = 1; i < 3; ++i) longest = edge_mm(i) > edge_mm(longest) ? i : longest;
+  std::rotate(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(longest), c.end());
+  return c;
+}
+
+double area_mm2(const Corners& c) { return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) / 2; }
+
+/// Points all over a triangle, its corners among them: in rows along its longest edge, rows and
+/// points at most `spacing_mm` apart.
+template <class Point>
+void for_each_point(const Corners& c, double spacing_mm, const Point& point) {
+  const auto parts = [&](double length_mm) {
+    return std::max(1, static_cast<int>(std::ceil(length_mm / spacing_mm)));
+  };
+  const double base_mm = glm::length(c[1] - c[0]);
+  const int rows = base_mm > 0 ? parts(2 * area_mm2(c) / base_mm) : 1;
+  for (int row = 0; row <= rows; ++row) {
+    const double up = static_cast<double>(row) / rows;
+    const Vec3 from = c[0] + up * (c[2] - c[0]), to = c[1] + up * (c[2] - c[1]);
+    const int steps = row == rows ? 0 : parts(glm::length(to - from));
+    for (int i = 0; i <= steps; ++i) {
+      point(steps == 0 ? from : from + (static_cast<double>(i) / steps) * (to - from));
+    }
+  }
+}
+
+/// Of the points of a surface those that are farthest from the other one.
+void farthest(const TriangleMesh& mesh, const DesignPart& other, double cell_mm, PartDiff& out) {
+  double whole_mm2 = 0;
+  for (const auto& triangle : mesh.triangles) whole_mm2 += area_mm2(corners_of(mesh, triangle));
+  const double spacing_mm = std::max(cell_mm, std::sqrt(whole_mm2 / kMostPoints));
   DesignProbe probe(other);
-  constexpr double kBeyond_mm = 1e6;
-  for (const auto& corner : mesh.positions_mm) {
-    const Vec3 place(corner);
-    const double mm = std::abs(probe.distance_mm(place, kBeyond_mm));
-    if (mm <= out.most_mm) continue;
-    out.most_mm = mm;
-    out.at_mm = place;
+  for (const auto& triangle : mesh.triangles) {
+    for_each_point(corners_of(mesh, triangle), spacing_mm, [&](const Vec3& place) {
+      const double mm = std::abs(probe.distance_mm(place, kBeyond_mm));
+      if (mm <= out.most_mm) return;
+      out.most_mm = mm;
+      out.at_mm = place;
+    });
   }
 }
 
@@ -97,8 +142,10 @@ void diff_meshes(const DiffedPart& a, const DiffedPart& b, double tolerance_mm, 
     return;
   }
   Diagnostics unheard;  // of holes in meshes of our own there is nothing to say
-  farthest(mesh_a, DesignPart(mesh_b, "B", unheard), out);
-  farthest(mesh_b, DesignPart(mesh_a, "A", unheard), out);
+  // Of models without cells (sheets, turned parts) the points need a distance all the same.
+  const double cell_mm = out.cell_mm > 0 ? out.cell_mm : kPointsWithoutCells_mm;
+  farthest(mesh_a, DesignPart(mesh_b, "B", unheard), cell_mm, out);
+  farthest(mesh_b, DesignPart(mesh_a, "A", unheard), cell_mm, out);
   if (out.most_mm <= tolerance_mm) return;
   out.a_cut = cut_at(a, out.at_mm);
   out.b_cut = cut_at(b, out.at_mm);

@@ -24,7 +24,7 @@ struct PartDiff {
   double a_mm3 = 0, b_mm3 = 0;  ///< what is left of each
 
   /// What was measured: along Z where both are heights over the same cells, else the distance of
-  /// the corners of either's mesh from the other's surface.
+  /// points of either's surface, a cell apart, from the other's surface.
   bool by_heights = false;
   double most_mm = 0;
   Vec3 at_mm{0};
@@ -41,7 +41,8 @@ struct PartDiff {
 
 /// `walls_count`: walls that have moved by less than a cell are a difference; not if the motions
 /// that cut them are known to be the same within a tolerance. Both in the same coordinates.
-/// Heights: O(cells), some 10 ns each. Meshes: O(corners), about 1 us each.
+/// Heights: O(cells), some 10 ns each. Surfaces: about 1 us a point, 2 million points of either at
+/// most.
 PartDiff diff_parts(const DiffedPart& a, const DiffedPart& b, double tolerance_mm,
                     bool walls_count);
 

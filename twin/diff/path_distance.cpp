@@ -16,6 +16,8 @@ constexpr int kMostArcPoints = 7200;
 constexpr int kLinePoints = 4;
 /// Looked at ahead of the place that has been reached, at least.
 constexpr std::size_t kLeastAhead = 8;
+/// And where the ways are far apart at most, beyond what has been gone.
+constexpr std::size_t kMostAhead = 64;
 
 int points_of(const DiffStep& step) {
   if (step.kind != MotionKind::kArc) return kLinePoints;
@@ -74,7 +76,9 @@ class Follower {
         best_t = near.t;
       }
       looked_mm += lengths_mm_[i] * (1 - from_t);
-      if (i >= at_ + kLeastAhead && looked_mm > 2 * gone_mm + best_mm) break;
+      const std::size_t ahead = i - at_;
+      if (ahead < kLeastAhead || looked_mm <= 2 * gone_mm) continue;
+      if (ahead >= kMostAhead || looked_mm > 2 * gone_mm + best_mm) break;
     }
     at_ = best;
     t_ = best_t;

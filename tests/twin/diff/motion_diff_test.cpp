@@ -129,6 +129,19 @@ TEST(MotionDiff, ADwellIsAnEvent) {
   EXPECT_EQ(found.hunks[0].a_begin, found.hunks[0].a_end);
 }
 
+/// A dwell between moves that differ is none, if both have it.
+TEST(MotionDiff, ADwellInBothIsNoDifference) {
+  const auto steps = [](double x_mm, double seconds) {
+    return StepWriter().feed({x_mm, 0, 0}).dwell(seconds).feed({x_mm, 10, 0}).steps();
+  };
+  const MotionDiff same = diff(steps(10, 1), steps(10.5, 1));
+  ASSERT_EQ(same.hunk_count, 1u);
+  EXPECT_EQ(same.hunks[0].kinds, kDiffPath);
+  const MotionDiff other = diff(steps(10, 1), steps(10.5, 2));
+  ASSERT_EQ(other.hunk_count, 1u);
+  EXPECT_EQ(other.hunks[0].kinds, kDiffPath | kDiffEvents);
+}
+
 TEST(MotionDiff, ToolSpindleAndCoolantAreTold) {
   for (const auto& [kind, change] : std::vector<std::pair<DiffKind, void (*)(DiffStep&)>>{
            {kDiffTool, [](DiffStep& s) { s.tool = 2; }},
