@@ -247,7 +247,8 @@ class MotionDiffer {
     differs(!same_events(gap), kDiffEvents);
     if (ways_a.empty() || ways_b.empty()) {
       differs(!ways_a.empty() || !ways_b.empty(), kDiffPath);
-      hunk.kinds = kinds;
+      // The first moves, which come from nobody knows where, go elsewhere.
+      hunk.kinds = kinds == 0 ? std::uint16_t{kDiffPath} : kinds;
       return hunk;
     }
     PathDistance apart = path_distance(ways_a, ways_b, tolerance_mm_);

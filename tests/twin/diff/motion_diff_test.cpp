@@ -135,8 +135,8 @@ TEST(MotionDiff, ADwellInBothIsNoDifference) {
     return StepWriter().feed({x_mm, 0, 0}).dwell(seconds).feed({x_mm, 10, 0}).steps();
   };
   const MotionDiff same = diff(steps(10, 1), steps(10.5, 1));
-  ASSERT_EQ(same.hunk_count, 1u);
-  EXPECT_EQ(same.hunks[0].kinds, kDiffPath);
+  ASSERT_EQ(same.hunk_count, 2u);  // before it, and behind it
+  for (const MotionHunk& hunk : same.hunks) EXPECT_EQ(hunk.kinds, kDiffPath);
   const MotionDiff other = diff(steps(10, 1), steps(10.5, 2));
   ASSERT_EQ(other.hunk_count, 1u);
   EXPECT_EQ(other.hunks[0].kinds, kDiffPath | kDiffEvents);
@@ -156,6 +156,18 @@ TEST(MotionDiff, ToolSpindleAndCoolantAreTold) {
     EXPECT_EQ(found.hunks[0].a_begin, 3u);
     EXPECT_EQ(found.hunks[0].a_end, 4u);
   }
+}
+
+/// Where the first move comes from nobody knows; where it goes counts.
+TEST(MotionDiff, AFirstMoveToElsewhereIsAPath) {
+  std::vector<DiffStep> a = StepWriter().rapid({10, 0, 5}).steps();
+  a[0].start_known = false;
+  std::vector<DiffStep> b = a;
+  EXPECT_TRUE(diff(a, b).is_same());
+  b[0].to_mm.x = 11;
+  const MotionDiff found = diff(a, b);
+  ASSERT_EQ(found.hunk_count, 1u);
+  EXPECT_EQ(found.hunks[0].kinds, kDiffPath);
 }
 
 TEST(MotionDiff, AProgramIsNotAnEmptyOne) {
