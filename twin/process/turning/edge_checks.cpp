@@ -51,7 +51,12 @@ void EdgeChecks::check(const TurnedMove& move, const TurnCut& cut, bool blank_gu
   if (edges_.empty()) return;
   Full full;
   if (m.kind == MotionKind::kArc) {
-    full = look_along(move);
+    // Most arcs are cut with a part of an edge that is too short for any direction.
+    const bool may_be_full = std::ranges::any_of(edges_, [&](const Edge& edge) {
+      const double least = std::max(kShortest_mm, kLeastLean * glm::length(edge.along_mm));
+      return cut.side_mm[static_cast<std::size_t>(edge.side)] >= least - kSlack_mm;
+    });
+    if (may_be_full) full = look_along(move);
   } else {
     const Vec2 way(m.to_mm.z - m.from_mm.z, m.to_mm.x - m.from_mm.x);
     if (glm::length(way) == 0) return;

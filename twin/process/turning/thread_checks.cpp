@@ -140,19 +140,15 @@ void ThreadChecks::note(const TurnedMove& move) {
   thread.tool_guessed = move.tool_guessed;
 }
 
-/// Once a thread.
+/// Once a thread. How high the profile of a guessed tool is nobody knows.
 void ThreadChecks::tell_body(const TurnedMove& move, Thread& thread, double depth_mm) {
-  if (thread.body_told || depth_mm <= form_->profile_mm + kBeyond_mm) return;
+  if (thread.body_told || move.tool_guessed || depth_mm <= form_->profile_mm + kBeyond_mm) return;
   thread.body_told = true;
-  const Grounds grounds{false, move.tool_guessed};
-  Finding finding =
-      finding_at(FindingId::kFlankContact, severity_of(FindingId::kFlankContact, grounds),
-                 move.motion, move.step);
+  Finding finding = finding_at(FindingId::kFlankContact, Severity::kError, move.motion, move.step);
   finding.text =
       trf("the thread is {:.2f} mm deep, and the profile of the insert {:.2f} mm high: what of it "
           "does not cut runs into the crests",
-          depth_mm, form_->profile_mm) +
-      doubt_of(FindingId::kFlankContact, grounds);
+          depth_mm, form_->profile_mm);
   finding.hint = tr("edge=L of the tool's SHAPE is how high its profile is");
   finding.position_mm = move.motion.from_mm;
   finding.tool = move.tool;
