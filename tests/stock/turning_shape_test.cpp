@@ -400,7 +400,7 @@ TEST(TurningShape, HowItIsUsedIsInItsText) {
   EXPECT_EQ(insert_use_of(cutter).max_depth_mm, 2.5);
   EXPECT_TRUE(insert_use_of(cutter).goes_its_path);
   EXPECT_EQ(turning_shape_in(cutter.spec(), LengthUnit::kInch),
-            turning_shape_in("turn:0.4:2:85:5", LengthUnit::kInch) + ":max_ap=0.0984252:path=tool");
+            turning_shape_in("turn:0.4:2:85:5", LengthUnit::kInch) + ":max_ap=0.098425:path=tool");
   const Cutter plain = *parse_shape("turn:0.4:2:85:5:path=contour");
   EXPECT_FALSE(insert_use_of(plain).max_depth_mm);
   EXPECT_FALSE(insert_use_of(plain).goes_its_path);
