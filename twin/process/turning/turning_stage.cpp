@@ -70,7 +70,7 @@ void TurningStage::begin_reporting() {
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
   unmount();
-  mill_turn_told_ = unmilled_told_ = threads_told_ = fixtures_told_ = false;
+  mill_turn_told_ = unmilled_told_ = threads_told_ = fixtures_told_ = floating_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -237,6 +237,7 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!is_driven()) {
     report_mill_turn(m, step);
     checks_.check_plane(m, step);
+    report_floating_tap(m, step);
   }
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
@@ -366,6 +367,25 @@ void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
       tr("the part has threads and is milled: pictures, meshes and what driven tools meet have the "
          "threads as plain cylinders and cones");
   log_.add(std::move(finding));
+}
+
+/// Once, of a tool on the axis that is fed into a hole, and out of it with the spindle reversed.
+void TurningStage::report_floating_tap(const Motion& m, const TimedStep& step) {
+  if (m.kind != MotionKind::kFeed || mounted_->cutter->insert()) return;
+  const double way_mm = m.to_mm.z - m.from_mm.z;
+  const bool reversed = m.spindle != SpindleState::kStopped && in_by_ != SpindleState::kStopped &&
+                        m.spindle != in_by_;
+  if (way_mm > 0 && reversed && m.from_mm == in_to_mm_ && !std::exchange(floating_told_, true)) {
+    Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
+    finding.tool = m.tool;
+    finding.text =
+        tr("a tap in a chuck that floats (G84): its feed is in step with nothing, and the part has "
+           "the hole that its diameter sweeps, without a thread");
+    finding.hint = tr("G33.1 taps in step with the spindle");
+    log_.add(std::move(finding));
+  }
+  in_by_ = way_mm < 0 ? m.spindle : SpindleState::kStopped;
+  in_to_mm_ = m.to_mm;
 }
 
 void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,

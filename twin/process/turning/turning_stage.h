@@ -65,6 +65,7 @@ class TurningStage final : public Process {
   void report_lost_threads(const Motion& motion, const TimedStep& step);
   void tell_not_modelled(const Motion& motion, const TimedStep& step, std::string text,
                          std::string hint);
+  void report_floating_tap(const Motion& motion, const TimedStep& step);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
   bool divide(const Motion& motion, std::vector<CutMove>& moves);
@@ -112,6 +113,9 @@ class TurningStage final : public Process {
   bool unmilled_told_ = false;
   bool threads_told_ = false;
   bool fixtures_told_ = false;
+  bool floating_told_ = false;
+  SpindleState in_by_ = SpindleState::kStopped;  ///< of the last feed into a hole
+  Vec3 in_to_mm_{0};                             ///< where it ended
   bool touched_ = false;
   bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };
