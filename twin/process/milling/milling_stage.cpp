@@ -122,7 +122,10 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
 void MillingStage::mount_parts(const Motion& m) {
   nose_mm_ = m.tool_offset_mm.z;
   parts_.mount(*mounted_->cutter, mounted_->number, spindle_, nose_mm_);
-  fixtures_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
+  if (fixtures_.active()) {
+    fixtures_.mount(carried_bodies(tool_bodies(*mounted_->cutter, spindle_, nose_mm_)),
+                    mounted_->number, mounted_->guessed);
+  }
   if (machine_.active()) machine_.set_place(site_.kinematics, site_.frame);
   machine_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
 }
@@ -211,8 +214,8 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   if (site_.moves.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);
   if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, step, move);
-  if (ProgramChecks::is_drill(move.cutter) && !program_.drill_told() &&
-      ProgramChecks::goes_sideways(move) && comes_near(m)) {
+  if (is_drill(move.cutter) && !program_.drill_told() && ProgramChecks::goes_sideways(move) &&
+      comes_near(m)) {
     complete();
     program_.check_drill(move);
   }

@@ -1,4 +1,5 @@
-// twin/process/turning/thread_checks.h - how deep a thread has become: thread-shallow.
+// twin/process/turning/thread_checks.h - how deep a thread has become: thread-shallow,
+// flank-contact of what stands beside the insert's profile.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,9 @@ namespace kerf {
 ///     55 degrees (ISO 228)    0.6403 P
 ///     29, 30 degrees          0.5 P
 ///
+/// Deeper than the insert's profile is high is flank-contact: what of it does not cut runs into the
+/// crests.
+///
 /// The pitch is the lead over the number of starts: of passes as deep as the deepest, how many
 /// begin elsewhere along the lead. Tools of another angle, taps, and threads of no crest are not
 /// judged.
@@ -38,12 +42,15 @@ class ThreadChecks {
 
   /// So much of the depth may be missing: tips are not as the form has them.
   static constexpr double kMissing = 0.05;
+  /// The profile may be too low by this, as in TurningChecks::kFlank_mm.
+  static constexpr double kBeyond_mm = 0.05;
 
  private:
   struct Form {
     double angle_deg = 0;
     double outside = 0, inside = 0;  ///< depth over pitch
     bool in_bore = false;
+    double profile_mm = 0;  ///< from the tip to where the first of its flanks ends
   };
   struct Thread {
     double lead_mm = 0;
@@ -56,8 +63,10 @@ class ThreadChecks {
     Vec3 place_mm{0};
     int tool = 0;
     bool tool_guessed = false;
+    bool body_told = false;
   };
   std::optional<double> crest_at(double z_mm) const;
+  void tell_body(const TurnedMove& move, Thread& thread, double depth_mm);
 
   const TurningStock& stock_;
   FindingLog& log_;
