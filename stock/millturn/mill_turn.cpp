@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
+
+#include "base/translate.h"
+#include "stock/turning/turning_state.h"
 
 namespace kerf {
 namespace {
@@ -198,8 +203,40 @@ std::optional<std::uint32_t> MillTurn::cut_id_at(const Vec3& point_mm) const {
   return milled ? milled : turned_.cut_id_at(point_mm);
 }
 
+/// Beside the octree: Milled::beside_mm3, a double, and the turned part's file.
 Done MillTurn::save(const std::string& path) const {
-  return milled_ ? tree().save(path) : turned_.save(path);
+  if (!milled_) return turned_.save(path);
+  std::string beside(sizeof(double), '\0');
+  std::memcpy(beside.data(), &milled_->beside_mm3, sizeof(double));
+  return tree().save_with(path, beside + turning::bytes_of_part(turned_.part().saved()));
+}
+
+Result<std::unique_ptr<MillTurn>> MillTurn::load(const std::string& path,
+                                                 const MillTurnOptions& options) {
+  std::string beside;
+  Result<std::unique_ptr<Octree>> tree = Octree::load_with(path, options.threads, beside);
+  if (!tree) return Error{tree.error()};
+  if (beside.empty()) {
+    return Error{trf("{}: nothing in it says how it was turned: a mill has saved it", path)};
+  }
+  if (beside.size() < sizeof(double)) return Error{trf("{}: the contours are damaged", path)};
+  auto milled = std::make_unique<Milled>();
+  std::memcpy(&milled->beside_mm3, beside.data(), sizeof(double));
+  Result<turning::SavedPart> saved = turning::parse_part(beside.substr(sizeof(double)), path);
+  if (!saved) return Error{saved.error()};
+  MillTurnOptions as_saved = options;
+  as_saved.cell_mm = tree.value()->cell_mm();
+  Result<std::unique_ptr<MillTurn>> stock =
+      create(TurningStock(TurnedPart::restored(std::move(saved.value()))), as_saved);
+  if (!stock) return stock;
+  MillTurn& made = **stock;
+  const bool fits = tree.value()->bounds_mm() == made.bounds_mm() &&
+                    std::abs(milled->beside_mm3) <= made.blank_mm3();
+  if (!fits) return Error{trf("{}: the contours are damaged", path)};
+  milled->tree = std::move(tree.value());
+  milled->bands = made.bands();
+  made.milled_ = std::move(milled);
+  return stock;
 }
 
 Done MillTurn::can_cut(const Cutter& cutter) {

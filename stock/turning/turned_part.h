@@ -149,12 +149,13 @@ class TurnedPart {
                                           ChuckSide chuck = ChuckSide::kLowZ,
                                           const std::optional<BarFlats>& flats = std::nullopt);
 
-  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  /// What is kept on disk (turning_state.h), and from it again, with what came off.
   turning::SavedPart saved() const;
   static TurnedPart restored(turning::SavedPart saved);
 
   /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
-  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  /// axis stay where they are, and what came off is left behind. None: it would lie beyond 2 m, or
+  /// not a number.
   std::optional<TurnedPart> turned_about(double at_z_mm) const;
   /// The same moved: z becomes `at_z_mm` + z.
   std::optional<TurnedPart> moved(double at_z_mm) const;

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "base/geometry.h"
 #include "tests/twin/cli/kerf_process.h"
@@ -90,6 +93,59 @@ TEST_F(TurnedReuse, a_saved_part_is_turned_about) {
   EXPECT_NE(result.err.find("part.state: at Z3000 it would lie beyond 2000 mm from Z0"),
             std::string::npos)
       << result.err;
+}
+
+/// A keyway by a driven tool along X, then a lathe again: as in one go.
+TEST_F(TurnedReuse, a_milled_part_is_turned_on) {
+  const auto keyway = [](int number, int line) {
+    std::string text = fmt::format(
+        "{:>5} N{:<5} CHANGE_TOOL(2)\n{:>5} N{:<5} SET_SPINDLE_SPEED(0, 3000.0000)\n"
+        "{:>5} N{:<5} START_SPINDLE_CLOCKWISE(0)\n",
+        number, line, number + 1, line, number + 2, line);
+    number += 3;
+    const auto add = [&](const std::string& call, double x, double z) {
+      text += fmt::format("{:>5} N{:<5} {}({:.4f}, 0.0000, {:.4f}, 0.0000, 0.0000, 0.0000)\n",
+                          number++, ++line, call, x, z);
+    };
+    add("STRAIGHT_TRAVERSE", 30, 8);
+    add("STRAIGHT_TRAVERSE", 14, 8);
+    add("STRAIGHT_FEED", 14, -12);
+    add("STRAIGHT_FEED", 30, -12);
+    return text + fmt::format("{:>5} N{:<5} PROGRAM_END()\n", number, ++line);
+  };
+  const auto without_end = [](std::string text) {
+    return text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+  };
+  const std::string first = passes({19});
+  const int lines = static_cast<int>(std::count(first.begin(), first.end(), '\n'));
+  const std::string milled = without_end(first) + keyway(lines, lines);
+  folder_.write("milled.canon", milled);
+  folder_.write("second.canon", passes({18, 17}));
+  const std::vector<std::string> mill{"--tool", "2=flat:6:live=x"};
+  const auto with = [&mill](std::vector<std::string> more) {
+    more.insert(more.end(), mill.begin(), mill.end());
+    return more;
+  };
+  KerfResult result = cut("milled.canon", "cylinder:0,0,-60:0:40", with({"--state", "part.state"}));
+  ASSERT_LE(result.exit_code, 1) << result.err;
+  const Json before = stock_report();
+  result = cut("second.canon", "state:part.state", with({"--state", "again.state"}));
+  ASSERT_LE(result.exit_code, 1) << result.err;
+  const Json after = stock_report();
+  EXPECT_EQ(after["model"], "turning");
+  EXPECT_EQ(after["blank_mm3"], before["blank_mm3"]);
+  // Turning from 19 to 17 takes the ring off, but for the keyway, which is 6 wide and ends with the
+  // mill's round. Its bottom is at 14, so all of the ring is open there.
+  const double ring = kPi * (19 * 19 - 17 * 17) * 20;
+  const double taken = before["remaining_mm3"].get<double>() - after["remaining_mm3"].get<double>();
+  EXPECT_LT(taken, ring - 6 * 2 * 12);
+  EXPECT_GT(taken, ring - 6 * 2.2 * 15.5);
+  // It is not turned about.
+  result = cut("second.canon", "state:part.state:flip=x", mill);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "kerf: error: part.state: flip= and at= are for parts that are turned; this one has "
+            "been milled as well\n");
 }
 
 TEST_F(TurnedReuse, a_drawn_part_is_a_blank_again) {
