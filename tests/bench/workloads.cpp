@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 namespace kerf {
 namespace {
 
 constexpr double kFinishSide_mm = 200.0;
-constexpr double kPi = 3.14159265358979323846;
 
 double wavy_surface_mm(double x_mm, double y_mm) {
   return -6 + 3 * std::sin(x_mm / 13.0) * std::cos(y_mm / 17.0) +
@@ -66,7 +66,7 @@ std::string trochoid() {
 /// chords each, which come nearer to the contour by what is left over their number. Radii.
 std::string lathe() {
   constexpr int kPasses = 1000, kChords = 2000, kFinishing = 48;
-  constexpr double kMean = 16, kWave = 2, kPeriod = 40, kNose = 0.4;
+  constexpr double kMean = 16, kWave = 2, kPeriod = 40, kNose = 0.4, kPi = std::numbers::pi;
   std::string text = "G21 G90 G18 G8 G94 G64 P0.01\nT1 M6\nG97 S1200 M3\nG0 X40 Z5\nF300\n";
   const auto out = std::back_inserter(text);
   for (int i = 0; i < kPasses; ++i) {
@@ -99,7 +99,7 @@ constexpr std::array kWorkloads{
     Workload{"w3_trochoid", "trochoidal slots in four layers, 10k moves, half of them arcs",
              "box:0,0,-20:150,100,0", "2=flat:10", trochoid},
     Workload{"w4_lathe", "a wavy shaft, 1000 passes and 48 finishing passes, 100k moves",
-             "cylinder:0,0,-160:0:60", "1=turn:0.4:3:95:40", lathe, true},
+             "cylinder:0,0,-160:0:60", "1=turn:0.4:2:85:30", lathe, true},
 };
 
 }  // namespace

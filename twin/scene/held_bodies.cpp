@@ -122,6 +122,7 @@ std::vector<PictureBody> picture_bodies(const HoldingList& held_by) {
 
 FlatTool flat_tool(const Cutter& cutter) {
   FlatTool tool;
+  if (cutter.live()) return tool;
   const std::shared_ptr<const InsertOutline> outline = turning_outline(cutter);
   if (!outline) return tool;
   for (const InsertPart& part : outline->parts) {

@@ -146,9 +146,9 @@ TEST(HeldBodies, ClearanceIsInThePlaneOfTheAxis) {
   BodyWatch watch(held_bar());
   EXPECT_EQ(watch.scene()->links.size(), 3u);
   EXPECT_EQ(watch.poses().size(), 3u);
-  watch.mount(turning_tool("turn:0.4:3:95:40"), 0);
+  watch.mount(turning_tool("turn:0.4:2:85:30"), 0);
   Moment moment;
-  // Orientation 3: the point lies at low z and x. The jaws end at Z-35, and at X60.
+  // Orientation 2: the point lies at low z and x. The jaws end at Z-35, and at X60.
   watch.look({{40, 0, -30}, {0, 0, 1}}, 0, 0, nullptr, &moment);
   ASSERT_TRUE(moment.clearance);
   EXPECT_NEAR(moment.clearance->mm, 5, 0.01);
@@ -212,7 +212,7 @@ FindingShot shot_in_bore() {
   FindingShot shot;
   const TurningStock stock(*TurnedPart::create(tube_profile(-60, 0, 40, 20)));
   shot.stock = stock.snapshot();
-  shot.cutter = turning_tool("turn:0.4:2:95:40");
+  shot.cutter = turning_tool("turn:0.4:3:275:335");
   shot.tool = {{10, 0, -20}, {0, 0, 1}};
   shot.finding.id = FindingId::kRapidContact;
   shot.message = "traverse touches the workpiece";
@@ -240,7 +240,7 @@ TEST(TurnedFindingView, LooksIntoABore) {
 TEST(TurnedFindingView, ThePlaceIsWhereTheOutlinesMeet) {
   BodyWatch watch(held_bar());
   FindingShot shot = shot_in_bore();
-  shot.cutter = turning_tool("turn:0.4:3:95:40");
+  shot.cutter = turning_tool("turn:0.4:2:85:30");
   shot.tool.tip_mm = {40, 0, -35.05};  // 0.05 into the face of the jaws
   shot.finding.id = FindingId::kJawContact;
   shot.finding.bodies = {"cutter", "jaws"};
@@ -268,7 +268,8 @@ int red_of(const Picture& picture) {
 int hatched_of(const Picture& picture) {
   int count = 0;
   for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
-    count += picture.rgb[i] > 150 && picture.rgb[i] - picture.rgb[i + 2] > 60 ? 1 : 0;
+    count += picture.rgb[i] > 150 && picture.rgb[i] - picture.rgb[i + 2] > 60 &&
+             picture.rgb[i + 1] > picture.rgb[i] / 2;
   return count;
 }
 
@@ -281,7 +282,7 @@ TEST(TurnedFindingPicture, IsRedAndCutOpenWhereItIsInside) {
   ASSERT_TRUE(inside) << inside.error();
   EXPECT_GT(hatched_of(*inside), 10000);
   EXPECT_EQ(red_of(*inside), 0);
-  shot.cutter = turning_tool("turn:0.4:3:95:40");
+  shot.cutter = turning_tool("turn:0.4:2:85:30");
   shot.tool.tip_mm = {40, 0, -36};
   shot.finding.id = FindingId::kJawContact;
   shot.finding.bodies = {"cutter", "jaws"};
