@@ -212,8 +212,10 @@ std::vector<std::string> dry_run(const ProgramTrack& track, const SessionOptions
                                  const std::vector<std::size_t>& places) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
+  StockChoice choice;
+  if (options.stock.kind) choice.kind = *options.stock.kind;
   const StockSetup setup =
-      make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
+      make_stock(*options.blank, choice, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
   ToolResolver resolver(tools, row_of(*setup.stock).can_cut);
   FindingLog log;
