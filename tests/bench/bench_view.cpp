@@ -2,7 +2,7 @@
 // all threads that the window has, by the software renderer and without a window.
 //
 //   bench_view [--program FILE] [--stock SPEC] [--tool N=SHAPE] [--cells N] [--speed X]
-//              [--seconds N] [--full-redraw on|off] [--follow on|off] [--turning on|off]
+//              [--seconds N] [--full-redraw on|off] [--follow on|off]
 //
 // Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. First goes through
 // it in steps of a sixtieth of a second at `speed` times its own time and draws each: processor
@@ -66,7 +66,6 @@ struct Arguments {
   double seconds = 20;
   bool local = true;
   bool follow = true;
-  bool turning = false;  ///< --model turning
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -194,10 +193,7 @@ class Screen {
     patches_ += update.patches.size();
     if (update.moment) moment_ = update.moment;
     renderer_.apply(update);
-    if (update.setup) {
-      camera_.set_standing(update.setup->standing);
-      camera_.fit(renderer_.fit_box(), kSize);
-    }
+    if (update.setup) camera_.fit(renderer_.fit_box(), kSize);
   }
 
   void draw(const DrawOptions& options) {
@@ -223,7 +219,6 @@ SessionOptions session_of(const Arguments& arguments) {
   Result<ToolShapeArgument> tool = parse_tool_argument(arguments.tool);
   if (!tool) fail(tool.error());
   options.tools.push_back(std::move(tool.value()));
-  if (arguments.turning) options.stock.kind = StockKind::kTurning;
   return options;
 }
 
@@ -244,7 +239,7 @@ class Stage {
  public:
   explicit Stage(const Arguments& arguments) {
     SessionOptions options = session_of(arguments);
-    if (!arguments.turning) options.stock.cell_mm = cell_mm_of(arguments);
+    options.stock.cell_mm = cell_mm_of(arguments);
     Diagnostics diagnostics;
     Outcome outcome = Outcome::kFailed;
     std::unique_ptr<LoadedProgram> loaded = load_program(options, {}, diagnostics, outcome);
@@ -538,8 +533,6 @@ Arguments understand(int argc, char** argv) {
       arguments.seconds = std::max(1.0, std::atof(value));
     } else if (name == "--full-redraw") {
       arguments.local = std::string_view(value) != "on";
-    } else if (name == "--turning") {
-      arguments.turning = std::string_view(value) == "on";
     } else if (name == "--follow") {
       arguments.follow = std::string_view(value) != "off";
     } else {
