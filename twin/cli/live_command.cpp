@@ -208,6 +208,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
                 session->report(), diagnostics);
+  const ListedProgram listed = listed_program(session->report());
+  write_finding_lists(request.outputs, {&listed, 1}, diagnostics);
   if (shots) {
     shots->write(request.finding_png, session->collisions(), diagnostics);
   }

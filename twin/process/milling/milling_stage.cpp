@@ -349,6 +349,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.duration_s = step.duration_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
+  flight.motion = site_.motion;
   flight.use = use_;
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
@@ -397,6 +398,7 @@ void MillingStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
+    site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);
     if (move.feed && !move.measured) {
       count_feed(use, move, report);
     } else {
