@@ -23,6 +23,7 @@
 #include "twin/program/session_parts.h"
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
+#include "twin/scene/held_bodies.h"
 #include "twin/scene/part_patches.h"
 #include "twin/scene/turned_look.h"
 #include "viewer/picture.h"
@@ -75,7 +76,7 @@ std::string file_name(const std::string& path) {
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const OutputPaths& paths, const StockModel& stock, const FixtureList& fixtures,
+Done write_picture(const OutputPaths& paths, const StockModel& stock, const CollisionWishes& around,
                    const std::string& name, Diagnostics& diagnostics) {
   const std::string& path = paths.png;
   PictureOptions options;
@@ -88,7 +89,11 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
     options.blank_outline = turned_outline(*turned);
   }
   options.section = paths.section;
-  if (fixtures) options.bodies = picture_bodies(*fixtures);
+  options.bodies = picture_bodies(around.held_by);
+  if (around.fixtures) {
+    for (PictureBody& body : picture_bodies(*around.fixtures))
+      options.bodies.push_back(std::move(body));
+  }
   Result<Picture> picture = draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
@@ -104,7 +109,7 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
   Diagnostic note;
   note.severity = Severity::kNote;
   note.message = trf("{}: drawn by rays on the CPU, not by OpenGL: {}", path, reason);
-  if (fixtures && !fixtures->empty()) note.hint = tr("fixtures are drawn by OpenGL alone");
+  if (!options.bodies.empty()) note.hint = tr("fixtures are drawn by OpenGL alone");
   diagnostics.push_back(std::move(note));
   return write_png(path, *picture);
 }
@@ -179,7 +184,7 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 }
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
-                   const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
+                   const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
                    std::atomic<unsigned>* dealt_with) {
   const auto done_with = [&](const std::string& path) {
     if (dealt_with) *dealt_with |= paths.bit_of(path);
@@ -192,7 +197,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
   const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
   if (stock && !paths.png.empty()) {
-    note_failure(write_picture(paths, *stock, fixtures, name, diagnostics), diagnostics);
+    note_failure(write_picture(paths, *stock, around, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
   if (stock && wants_mesh) {

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "stock/stock_model.h"
 #include "twin/cli/option_reader.h"
-#include "twin/job/fixtures.h"
+#include "twin/process/check_options.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report.h"
 #include "viewer/section.h"
@@ -62,11 +62,11 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// fails is a diagnostic and does not keep the others from being written. Fills in the report's
 /// mesh time, adds it to the total, and brings the peak memory up to date before the JSON is
 /// written, which comes last.
-/// `stock`: null if there was none. `fixtures`: drawn in pictures; may be null. `dealt_with`, if
-/// given, gets the bit_of() each of paths.named() that is there, or has failed; another thread may
-/// look at it.
+/// `stock`: null if there was none. `around`: its fixtures, chuck and tailstock are drawn in
+/// pictures. `dealt_with`, if given, gets the bit_of() each of paths.named() that is there, or has
+/// failed; another thread may look at it.
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
-                   const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
+                   const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
                    std::atomic<unsigned>* dealt_with = nullptr);
 
 /// A file of text that appears whole or not at all. Error: what could not be written.

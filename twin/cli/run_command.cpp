@@ -111,7 +111,7 @@ void tell_interrupted(const RunRequest& request, Report report, unsigned dealt_w
   OutputPaths paths;
   paths.json = request.outputs.json;
   Diagnostics diagnostics;
-  write_outputs(paths, 0, nullptr, nullptr, report, diagnostics);
+  write_outputs(paths, 0, nullptr, {}, report, diagnostics);
   print_results(request, report);
   if (const std::string left = names_left(request.outputs, dealt_with); !left.empty()) {
     Diagnostic d;
@@ -230,7 +230,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
       dealt_with |= request.outputs.bit_of(request.outputs.csv);
     }
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                  request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
+                  session->collisions(), session->report(), diagnostics, &dealt_with);
     if (!request.finding_png.empty()) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);

@@ -81,6 +81,8 @@ class Session {
   const Report& report() const { return report_; }
   /// Null if the run ended before there was one.
   const StockModel* stock() const { return front_.stock.stock.get(); }
+  /// As findings were judged by, with what holds the blank there is.
+  CollisionWishes collisions() const { return checks_of(options_, front_).collisions; }
 
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
