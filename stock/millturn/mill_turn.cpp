@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -21,6 +22,27 @@ octree::RevolvedBody body_of(const TurnedPart& part) {
     body.inner_radius_mm = part.flats()->inner_radius_mm;
   }
   return body;
+}
+
+/// The part stays at least so far from the box; 0: it may not. Of a tool that keeps its direction.
+double box_spare_mm(const Box& box, const CarriedPart& part, const CutMove& move) {
+  if (move.axis_from != move.axis_to) return 0;
+  double around_mm = part.radius_mm;
+  if (move.arc) {
+    around_mm += 2 * std::max(glm::distance(move.from_mm, move.arc->center_mm),
+                              glm::distance(move.to_mm, move.arc->center_mm));
+  }
+  const double reach_mm = glm::distance(move.from_mm, box.min) + glm::length(box.size());
+  Box way;
+  for (const Vec3& tip : {move.from_mm, move.to_mm})
+    for (const double along : {part.from_z_mm, std::min(part.to_z_mm, part.from_z_mm + reach_mm)})
+      way.extend(tip + along * move.axis_from);
+  double apart_mm = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart_mm = std::max({apart_mm, way.min[axis] - around_mm - box.max[axis],
+                         box.min[axis] - way.max[axis] - around_mm});
+  }
+  return apart_mm;
 }
 
 }  // namespace
@@ -132,6 +154,24 @@ std::optional<WayContact> MillTurn::first_contact_of(const Cutter& cutter,
                                                      const WayWatch& watch) const {
   return cutter.live() ? tree().first_contact_of(cutter, moves, tolerance_mm, watch)
                        : kerf::first_contact_of(turned_, cutter, moves, tolerance_mm, watch);
+}
+
+double MillTurn::part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                               double most_mm) const {
+  // An octree is made only for who comes near.
+  const double apart_mm = box_spare_mm(bounds_mm(), part, move);
+  if (apart_mm > enough_mm) return std::min(apart_mm, most_mm);
+  return tree().part_spare_mm(part, move, enough_mm, most_mm);
+}
+
+std::optional<PartContact> MillTurn::part_contact(const Cutter& cutter, const CarriedPart& part,
+                                                  const CutMove& move, double tolerance_mm) const {
+  return tree().part_contact(cutter, part, move, tolerance_mm);
+}
+
+std::optional<PartGap> MillTurn::part_gap(const Cutter& cutter, const CarriedPart& part,
+                                          const CutMove& move, double below_mm) const {
+  return tree().part_gap(cutter, part, move, below_mm);
 }
 
 std::unique_ptr<StockModel> MillTurn::snapshot() const {

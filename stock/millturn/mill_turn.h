@@ -60,6 +60,14 @@ class MillTurn final : public StockModel, public WaySearcher {
   std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,
                                              double tolerance_mm,
                                              const WayWatch& watch) const override;
+  /// Of what driven tools carry: as the octree has it.
+  bool checks_parts() const override { return true; }
+  double part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                       double most_mm) const override;
+  std::optional<PartContact> part_contact(const Cutter& cutter, const CarriedPart& part,
+                                          const CutMove& move, double tolerance_mm) const override;
+  std::optional<PartGap> part_gap(const Cutter& cutter, const CarriedPart& part,
+                                  const CutMove& move, double below_mm) const override;
   bool is_milled() const { return milled_ != nullptr; }
 
   std::unique_ptr<StockModel> snapshot() const override;

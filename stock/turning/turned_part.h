@@ -168,6 +168,10 @@ class TurnedPart {
   /// is deeper counts.
   std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
 
+  /// The tool that a move with a lead has left in material goes back as it has come: where it
+  /// turned round it leaves no ring.
+  void turn_back() { winding_.reset(); }
+
   /// From now on remembers which move has made each edge of the contours; all of them count as not
   /// cut. Costs as much again as cutting does, and nothing while off. A move is named by its id, of
   /// which 0xffff'fffe and above count as 0xffff'fffe.

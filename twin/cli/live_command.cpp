@@ -184,8 +184,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<FindingShots> shots;
   if (!request.finding_png.empty()) {
-    const Box blank_mm = session->stock()->bounds_mm();
-    observer = &shots.emplace(*session, machine_beside(request, blank_mm, diagnostics), *observer);
+    observer = &shots.emplace(*session, machine_beside(request, *session, diagnostics), *observer);
     print_diagnostics(diagnostics, request.quiet);
     diagnostics.clear();
   }
@@ -207,10 +206,12 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
-  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics);
+  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
+                session->report(), diagnostics);
+  const ListedProgram listed = listed_program(session->report());
+  write_finding_lists(request.outputs, {&listed, 1}, diagnostics);
   if (shots) {
-    shots->write(request.finding_png, request.options.cutting.checks.collisions, diagnostics);
+    shots->write(request.finding_png, session->collisions(), diagnostics);
   }
   if (console.unprinted() > 0) {
     print_text(stderr,

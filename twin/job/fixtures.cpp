@@ -343,13 +343,17 @@ bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& bl
     return false;
   }
   if (blank.bodies.empty()) return true;
-  const SolidPointer whole = Solid::of_bodies(blank.bodies);
+  return check_fixtures_beside(fixtures, *Solid::of_bodies(blank.bodies), diagnostics);
+}
+
+bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Solid& blank,
+                           Diagnostics& diagnostics) {
   bool beside = true;
   for (const Fixture& fixture : fixtures) {
     if (fixture.in_blank || !fixture.on.empty()) continue;
     const double depth =
-        std::max(overlap_mm(*whole, fixture.fixture_from_workpiece, *fixture.solid),
-                 overlap_mm(*fixture.solid, fixture.workpiece_from_fixture, *whole));
+        std::max(overlap_mm(blank, fixture.fixture_from_workpiece, *fixture.solid),
+                 overlap_mm(*fixture.solid, fixture.workpiece_from_fixture, blank));
     if (depth <= kTouching_mm) continue;
     tell(diagnostics, Severity::kError,
          trf("fixture '{}' stands in the blank, {:.2f} mm deep", fixture.name, depth),

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/collision/tool_bodies.h"
 #include "twin/process/contact_grounds.h"
 #include "twin/process/finding_at.h"
 
@@ -76,6 +77,21 @@ std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bor
   return std::acos(std::clamp(glm::dot(*front, *back), -1.0, 1.0)) * 180 / kPi;
 }
 
+/// From the controlled point to where the lower of the flanks ends.
+double profile_height_mm(const InsertOutline& outline) {
+  double front = 0, back = 0;
+  for (const InsertPart& part : outline.parts) {
+    Vec2 from = part.back().end_mm;
+    for (const InsertEdge& edge : part) {
+      const double far_mm = std::max(std::abs(edge.end_mm.y), std::abs(from.y));
+      from = edge.end_mm;
+      if (edge.side == InsertSide::kFront) front = std::max(front, far_mm);
+      if (edge.side == InsertSide::kBack) back = std::max(back, far_mm);
+    }
+  }
+  return std::min(front, back);
+}
+
 }  // namespace
 
 void ThreadChecks::mount(const Cutter& cutter) {
@@ -86,7 +102,8 @@ void ThreadChecks::mount(const Cutter& cutter) {
   if (!angle) return;
   for (const ThreadForm& form : kThreadForms) {
     if (std::abs(form.angle_deg - *angle) < kAngleSlack_deg)
-      form_ = Form{form.angle_deg, form.outside, form.inside, in_bore};
+      form_ = Form{form.angle_deg, form.outside, form.inside, in_bore,
+                   profile_height_mm(*cutter.insert())};
   }
 }
 
@@ -156,6 +173,7 @@ void ThreadChecks::note(const TurnedMove& move) {
   const std::optional<double> crest = crest_near(thread.crests_mm, z);
   if (!crest) return;
   const double depth = below(*crest);
+  tell_body(move, thread, depth);
   if (depth < thread.depth_mm - kAsDeep_mm || depth <= 0) return;
   if (depth > thread.depth_mm + kAsDeep_mm) thread.phases.clear();
   const double phase = pass_->from_mm.z / lead;
@@ -167,6 +185,23 @@ void ThreadChecks::note(const TurnedMove& move) {
   thread.place_mm = pass_->from_mm;
   thread.tool = move.tool;
   thread.tool_guessed = move.tool_guessed;
+}
+
+/// Once a thread. How high the profile of a guessed tool is nobody knows.
+void ThreadChecks::tell_body(const TurnedMove& move, Thread& thread, double depth_mm) {
+  if (thread.body_told || move.tool_guessed || depth_mm <= form_->profile_mm + kBeyond_mm) return;
+  thread.body_told = true;
+  Finding finding = finding_at(FindingId::kFlankContact, Severity::kError, move.motion, move.step);
+  finding.text =
+      trf("the thread is {:.2f} mm deep, and the profile of the insert {:.2f} mm high: what of it "
+          "does not cut runs into the crests",
+          depth_mm, form_->profile_mm);
+  finding.hint = tr("edge=L of the tool's SHAPE is how high its profile is");
+  finding.position_mm = move.motion.from_mm;
+  finding.tool = move.tool;
+  finding.depth_mm = depth_mm - form_->profile_mm;
+  finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
+  log_.add(std::move(finding));
 }
 
 void ThreadChecks::end() {

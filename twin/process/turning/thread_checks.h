@@ -1,4 +1,5 @@
-// twin/process/turning/thread_checks.h - how deep a thread has become: thread-shallow.
+// twin/process/turning/thread_checks.h - how deep a thread has become: thread-shallow,
+// flank-contact of what stands beside the insert's profile.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,9 @@ namespace kerf {
 ///     60 degrees (ISO 68-1)   0.6134 P outside, 0.5413 P in a bore
 ///     55 degrees (ISO 228)    0.6403 P
 ///     29, 30 degrees          0.5 P
+///
+/// Deeper than the insert's profile is high is flank-contact: what of it does not cut runs into the
+/// crests.
 ///
 /// The pitch is the lead over the number of starts: of passes as deep as the deepest, how many
 /// begin elsewhere along the lead. Beside a machine a pass comes in pieces; each is judged in its
@@ -39,12 +43,15 @@ class ThreadChecks {
 
   /// So much of the depth may be missing: tips are not as the form has them.
   static constexpr double kMissing = 0.05;
+  /// The profile may be too low by this, as in TurningChecks::kFlank_mm.
+  static constexpr double kBeyond_mm = 0.05;
 
  private:
   struct Form {
     double angle_deg = 0;
     double outside = 0, inside = 0;  ///< depth over pitch
     bool in_bore = false;
+    double profile_mm = 0;  ///< from the tip to where the first of its flanks ends
   };
   struct Thread {
     double lead_mm = 0;
@@ -58,6 +65,7 @@ class ThreadChecks {
     Vec3 place_mm{0};
     int tool = 0;
     bool tool_guessed = false;
+    bool body_told = false;
   };
   /// The last pass, so far.
   struct Pass {
@@ -66,6 +74,7 @@ class ThreadChecks {
     SourceRef source;
   };
   std::optional<double> crest_at(double z_mm) const;
+  void tell_body(const TurnedMove& move, Thread& thread, double depth_mm);
   void follow_pass(const Motion& motion);
   bool is_apart(double low_z_mm, double high_z_mm) const;
 

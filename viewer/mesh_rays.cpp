@@ -1,4 +1,4 @@
-#include "viewer/window/mesh_rays.h"
+#include "viewer/mesh_rays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,10 @@ constexpr std::size_t kLeafTriangles = 4;
 /// Halving what has 2^32 triangles is over before.
 constexpr std::size_t kDeepest = 64;
 
-/// The way from 0 to 1 has a part in the box.
-bool passes(const glm::vec3& min, const glm::vec3& max, const Vec3& from, const Vec3& way) {
-  double begin = 0.0, end = 1.0;
+/// The way from 0 to `end` has a part in the box.
+bool passes(const glm::vec3& min, const glm::vec3& max, const Vec3& from, const Vec3& way,
+            double end) {
+  double begin = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto low = static_cast<double>(min[axis]), high = static_cast<double>(max[axis]);
     if (way[axis] == 0.0) {
@@ -80,36 +81,38 @@ void MeshRays::build(std::size_t first, std::size_t count, const std::vector<glm
   build(first + half, count - half, middles);
 }
 
-bool MeshRays::hits_triangle(std::size_t which, const Vec3& from_mm, const Vec3& way_mm) const {
+std::optional<MeshRays::Met> MeshRays::meet(std::size_t which, const Vec3& from_mm,
+                                            const Vec3& way_mm) const {
   const auto& corners = mesh_->triangles[order_[which]];
   const Vec3 a(mesh_->positions_mm[corners[0]]);
   const Vec3 ab = Vec3(mesh_->positions_mm[corners[1]]) - a;
   const Vec3 ac = Vec3(mesh_->positions_mm[corners[2]]) - a;
   const Vec3 across = glm::cross(way_mm, ac);
   const double volume = glm::dot(ab, across);
-  if (volume == 0.0) return false;  // seen edge on
+  if (volume == 0.0) return std::nullopt;  // seen edge on
   const Vec3 from_a = from_mm - a;
   const double u = glm::dot(from_a, across) / volume;
-  if (u < 0.0 || u > 1.0) return false;
+  if (u < 0.0 || u > 1.0) return std::nullopt;
   const Vec3 other = glm::cross(from_a, ab);
   const double v = glm::dot(way_mm, other) / volume;
-  if (v < 0.0 || u + v > 1.0) return false;
+  if (v < 0.0 || u + v > 1.0) return std::nullopt;
   const double along = glm::dot(ac, other) / volume;
-  return along >= 0.0 && along <= 1.0;
+  if (along < 0.0) return std::nullopt;
+  return Met{{along, order_[which], u, v}, volume > 0.0};
 }
 
-bool MeshRays::hits(const Vec3& from_mm, const Vec3& to_mm) const {
+template <class End, class Leaf>
+bool MeshRays::walk(const Vec3& from_mm, const Vec3& way_mm, const End& end,
+                    const Leaf& leaf) const {
   if (nodes_.empty()) return false;
-  const Vec3 way = to_mm - from_mm;
   std::uint32_t waiting[kDeepest];
   std::size_t count = 0;
   for (std::uint32_t at = 0;;) {
     const Node& node = nodes_[at];
-    bool goes_on = passes(node.min, node.max, from_mm, way);
+    bool goes_on = passes(node.min, node.max, from_mm, way_mm, end());
     if (goes_on && node.count > 0) {
-      for (std::uint32_t i = 0; i < node.count; ++i) {
-        if (hits_triangle(node.first + i, from_mm, way)) return true;
-      }
+      for (std::uint32_t i = 0; i < node.count; ++i)
+        if (leaf(node.first + i)) return true;
       goes_on = false;
     }
     if (goes_on) {
@@ -121,6 +124,34 @@ bool MeshRays::hits(const Vec3& from_mm, const Vec3& to_mm) const {
       return false;
     }
   }
+}
+
+bool MeshRays::hits(const Vec3& from_mm, const Vec3& to_mm) const {
+  const Vec3 way = to_mm - from_mm;
+  return walk(
+      from_mm, way, [] { return 1.0; },
+      [&](std::size_t which) {
+        const std::optional<Met> met = meet(which, from_mm, way);
+        return met && met->hit.t <= 1.0;
+      });
+}
+
+std::optional<MeshRays::Hit> MeshRays::first_front(const Vec3& from_mm, const Vec3& way_mm,
+                                                   double before_t) const {
+  Hit first;
+  first.t = before_t;
+  bool is_met = false;
+  walk(
+      from_mm, way_mm, [&] { return first.t; },
+      [&](std::size_t which) {
+        const std::optional<Met> met = meet(which, from_mm, way_mm);
+        if (met && met->is_front && met->hit.t < first.t) {
+          first = met->hit;
+          is_met = true;
+        }
+        return false;
+      });
+  return is_met ? std::optional(first) : std::nullopt;
 }
 
 }  // namespace kerf

@@ -1,4 +1,4 @@
-// twin/process/milling/part_checks.h - shank, holder and spindle against the workpiece:
+// twin/process/part_checks.h - shank, holder and spindle against the workpiece:
 // holder-contact, shank-contact, flute-too-short, spindle-contact, near-miss.
 #pragma once
 
@@ -11,8 +11,8 @@
 #include "interp_bridge/motion_kinds.h"
 #include "stock/stock_model.h"
 #include "twin/findings/finding.h"
+#include "twin/process/checked_move.h"
 #include "twin/process/collision_table.h"
-#include "twin/process/milling/checks.h"
 
 namespace kerf {
 

@@ -1,4 +1,4 @@
-#include "twin/process/milling/part_checks.h"
+#include "twin/process/part_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "base/translate.h"
 #include "interp_bridge/motion_kinds.h"
+#include "twin/process/contact_grounds.h"
 
 namespace kerf {
 namespace {

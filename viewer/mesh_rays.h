@@ -1,10 +1,11 @@
-// viewer/window/mesh_rays.h - does a mesh lie between two points? For the sources of viewer/ only.
+// viewer/mesh_rays.h - where rays meet a mesh. For the sources of viewer/ only.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/geometry.h"
@@ -23,6 +24,15 @@ class MeshRays {
   /// A triangle, seen from either side, lies on the way from one point to the other.
   bool hits(const Vec3& from_mm, const Vec3& to_mm) const;
 
+  struct Hit {
+    double t = 0.0;              ///< share of the way
+    std::uint32_t triangle = 0;  ///< of the mesh
+    double u = 0.0, v = 0.0;     ///< weights of its second and third corner
+  };
+  /// The first triangle that is seen from outside, on the way from `from_mm` on without an end, and
+  /// before share `before_t` of it.
+  std::optional<Hit> first_front(const Vec3& from_mm, const Vec3& way_mm, double before_t) const;
+
  private:
   struct Node {
     glm::vec3 min{0.0f}, max{0.0f};
@@ -31,7 +41,14 @@ class MeshRays {
   };
 
   void build(std::size_t first, std::size_t count, const std::vector<glm::vec3>& middles);
-  bool hits_triangle(std::size_t which, const Vec3& from_mm, const Vec3& way_mm) const;
+  struct Met {
+    Hit hit;
+    bool is_front = false;
+  };
+  std::optional<Met> meet(std::size_t which, const Vec3& from_mm, const Vec3& way_mm) const;
+  /// Calls leaf(which) for triangles that the way may meet up to share end(); until it says true.
+  template <class End, class Leaf>
+  bool walk(const Vec3& from_mm, const Vec3& way_mm, const End& end, const Leaf& leaf) const;
 
   std::shared_ptr<const TriangleMesh> mesh_;
   std::vector<std::uint32_t> order_;  ///< of triangles, as the leaves have them

@@ -1,7 +1,9 @@
-#include "viewer/window/sight_lines.h"
+#include "viewer/sight_lines.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -49,6 +51,17 @@ std::vector<SightLine> sight_lines(const Box& box, const Projection& eye, double
   }
   for (SightLine& line : lines) line.share /= sum;
   return lines;
+}
+
+float most_opacity(const MeshRays& body, const glm::mat4& pose, std::span<const SightLine> lines) {
+  const glm::dmat4 body_from_world = glm::inverse(glm::dmat4(pose));
+  const auto in_body = [&](const Vec3& at) { return Vec3(body_from_world * glm::dvec4(at, 1.0)); };
+  double hidden = 0.0;
+  for (const SightLine& line : lines) {
+    if (body.hits(in_body(line.from_mm), in_body(line.to_mm))) hidden += line.share;
+  }
+  const double faded = std::clamp((hidden - kMayHide) / (kHidesAll - kMayHide), 0.0, 1.0);
+  return glm::mix(1.0f, kClearest, static_cast<float>(faded));
 }
 
 }  // namespace kerf

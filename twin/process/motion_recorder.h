@@ -1,0 +1,28 @@
+// twin/process/motion_recorder.h - who wants to know of each motion what came of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "twin/machine/timeline.h"
+
+namespace kerf {
+
+/// Every call comes from the thread that cuts.
+class MotionRecorder {
+ public:
+  virtual ~MotionRecorder() = default;
+  /// Everything begins again, for a workpiece in another model: what has been told is void.
+  virtual void restart() = 0;
+  /// What SourceRef::file of the motions means; before those that name a new one. Only grows.
+  virtual void name_files(const std::vector<std::string>& files) = 0;
+  /// In program order, each motion that is reported on; numbers ascend.
+  virtual void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) = 0;
+  /// A move of that motion has been cut, of which there may be several. Numbers do not fall. Also
+  /// of motions that are not reported on, which on_step() has not told of.
+  virtual void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) = 0;
+};
+
+}  // namespace kerf
