@@ -34,14 +34,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 7> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 9> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
      {"--ply", &OutputPaths::ply},
      {"--state", &OutputPaths::state},
      {"--dxf", &OutputPaths::dxf},
-     {"--svg", &OutputPaths::svg}}};
+     {"--svg", &OutputPaths::svg},
+     {"--html", &OutputPaths::html},
+     {"--pdf", &OutputPaths::pdf}}};
 
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -115,8 +117,8 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 7> OutputPaths::named() const {
-  std::array<NamedPath, 7> all;
+std::array<std::pair<const char*, const std::string*>, 9> OutputPaths::named() const {
+  std::array<NamedPath, 9> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;

@@ -25,10 +25,13 @@ struct OutputPaths {
   /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
   std::string dxf;
   std::string svg;
+  std::string html;  ///< the report as a page: write_pages()
+  std::string pdf;   ///< and printed
+  bool wants_page() const { return !html.empty() || !pdf.empty(); }
   SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
-  std::array<std::pair<const char*, const std::string*>, 7> named() const;
+  std::array<std::pair<const char*, const std::string*>, 9> named() const;
   bool uses_stdout() const {
     for (const auto& [option, path] : named()) {
       if (*path == "-" || *path == "/dev/stdout") return true;

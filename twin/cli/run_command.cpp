@@ -20,6 +20,7 @@
 #include "twin/cli/console.h"
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/option_reader.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/progress_bar.h"
 #include "twin/cli/stdin_program.h"
 #include "twin/cli/stop_deadline.h"
@@ -168,6 +169,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
       kRunPatience);
   kept.take(request.session.program.path, listings_of(request.session), stop.get_token(),
             diagnostics);
+  request.session.keep_labels = request.session.keep_curve = request.outputs.wants_page();
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
   Report none;
   rename_stdin(kept, session ? session->report() : none, diagnostics);
@@ -187,6 +189,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
+    const std::string command = command_line(
+        with_guesses(request.written, rows_in(session->report().guesses, request.units)));
+    write_pages(request.outputs, session->report(), session->stock(),
+                {session->cut_labels(), &session->curve(), command, request.units}, diagnostics);
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
                   request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
     if (!request.finding_png.empty()) {

@@ -30,6 +30,7 @@
 #include "twin/process/cut_progress.h"
 #include "twin/process/fallen_piece.h"
 #include "twin/process/feed_check.h"
+#include "twin/process/run_curve.h"
 #include "twin/process/sheet_checks.h"
 
 namespace kerf {
@@ -44,6 +45,7 @@ struct ProcessSite {
   MotionMoves moves;            ///< as the model cuts
   bool limits_known = false;    ///< TimelineOptions
   CutLabels* labels = nullptr;  ///< CutStage::label_by()
+  RunCurve* curve = nullptr;    ///< CutStage::keep_curve()
   BlankKind blank = BlankKind::kUnjudged;
   bool timed = false;    ///< motions come with their times: CutStage::take_timed()
   bool watched = false;  ///< CutStage::watch_machine()

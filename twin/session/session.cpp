@@ -200,6 +200,15 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
+  if (options_.keep_labels && !front_.is_sheet()) {
+    labels_ = CutLabels();
+    front_.stock.stock->keep_cut_ids(true);
+    stage.label_by(labels_);
+  }
+  if (options_.keep_curve) {
+    curve_ = RunCurve();
+    stage.keep_curve(curve_);
+  }
   work_read_ = work_done_ = 0;
   stage.count_work(work_done_);
   const double cpu_before = thread_cpu_s();

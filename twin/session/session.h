@@ -74,6 +74,10 @@ class Session {
   const Report& report() const { return report_; }
   /// Null if the run ended before there was one.
   const StockModel* stock() const { return front_.stock.stock.get(); }
+  /// With SessionOptions::keep_labels what the workpiece's cut ids mean; else empty. Not of sheets.
+  std::span<const CutLabel> cut_labels() const { return labels_.all(); }
+  /// With SessionOptions::keep_curve; else empty.
+  const RunCurve& curve() const { return curve_; }
 
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
@@ -117,6 +121,8 @@ class Session {
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass
   SessionObserver* observer_ = nullptr;
+  CutLabels labels_;
+  RunCurve curve_;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;
