@@ -212,6 +212,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
               {session->cut_labels(), nullptr, {}, request.units}, diagnostics);
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
                 request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics);
+  const ListedProgram listed = listed_program(session->report());
+  write_finding_lists(request.outputs, {&listed, 1}, diagnostics);
   if (shots) {
     shots->write(request.finding_png, request.options.cutting.checks.collisions, diagnostics);
   }

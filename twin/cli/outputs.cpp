@@ -34,7 +34,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 9> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 12> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
@@ -42,6 +42,9 @@ constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 9> kPat
      {"--state", &OutputPaths::state},
      {"--dxf", &OutputPaths::dxf},
      {"--svg", &OutputPaths::svg},
+     {"--junit", &OutputPaths::junit},
+     {"--sarif", &OutputPaths::sarif},
+     {"--csv", &OutputPaths::csv},
      {"--html", &OutputPaths::html},
      {"--pdf", &OutputPaths::pdf}}};
 
@@ -67,13 +70,6 @@ void write_pieces(const StockModel& stock, const std::string& path, Diagnostics&
     if (piece.part && piece.volume_mm3 >= kLeastPiece_mm3)
       note_failure(write(*piece.part, part_path(path, number)), diagnostics);
   }
-}
-
-Done write_text(const std::string& path, const std::string& text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return Error{file.error()};
-  file->write(text.data(), text.size());
-  return file->commit();
 }
 
 std::string file_name(const std::string& path) {
@@ -117,11 +113,19 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 9> OutputPaths::named() const {
-  std::array<NamedPath, 9> all;
+std::array<std::pair<const char*, const std::string*>, 12> OutputPaths::named() const {
+  std::array<NamedPath, 12> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;
+}
+
+unsigned OutputPaths::bit_of(const std::string& path) const {
+  const auto all = named();
+  for (unsigned i = 0; i < all.size(); ++i) {
+    if (all[i].second == &path) return 1u << i;
+  }
+  return 0;
 }
 
 OutputPaths understand_outputs(const OptionReader& reader) {
@@ -180,10 +184,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
                    const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
                    std::atomic<unsigned>* dealt_with) {
   const auto done_with = [&](const std::string& path) {
-    const auto all = paths.named();
-    for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
-      if (all[i].second == &path) *dealt_with |= 1u << i;
-    }
+    if (dealt_with) *dealt_with |= paths.bit_of(path);
   };
   const Clock::time_point start = Clock::now();
   const auto elapsed_s = [&] {
@@ -244,6 +245,24 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   report.timing.total_s += elapsed_s();
   report.peak_rss_mb = peak_rss_mb();
   if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
+}
+
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
+void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,
+                         Diagnostics& diagnostics) {
+  if (!paths.junit.empty()) {
+    note_failure(write_text(paths.junit, junit_text(programs, KERF_VERSION)), diagnostics);
+  }
+  if (paths.sarif.empty()) return;
+  std::error_code unknown;
+  const std::string folder = std::filesystem::current_path(unknown).string();
+  note_failure(write_text(paths.sarif, sarif_text(programs, KERF_VERSION, folder)), diagnostics);
 }
 
 std::string names_left(const OutputPaths& paths, unsigned dealt_with) {

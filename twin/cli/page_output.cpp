@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "twin/page/page_mesh.h"
 #include "twin/page/page_printer.h"
 #include "twin/page/report_page.h"
@@ -29,13 +28,6 @@ PageCurves curves_of(const RunCurve& curve) {
     out.spindle_rpm.push_back(60 * column.turns / curve.step_s());
   }
   return out;
-}
-
-Done write_whole(const std::string& path, const std::string& text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return Error{file.error()};
-  file->write(text.data(), text.size());
-  return file->commit();
 }
 
 void note(const Done& done, Diagnostics& diagnostics) {
@@ -69,7 +61,7 @@ void write_pages(const OutputPaths& paths, const Report& report, const StockMode
     };
   }
   const std::string page = report_page(report, stock, options);
-  if (!paths.html.empty()) note(write_whole(paths.html, page), diagnostics);
+  if (!paths.html.empty()) note(write_text(paths.html, page), diagnostics);
   if (!paths.pdf.empty()) note(print_page(page, paths.pdf), diagnostics);
 }
 

@@ -77,7 +77,8 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
     site_.log.set_muted(true);
     if (stepped_ == report_from_) begin_reporting();
   }
-  ++stepped_;
+  site_.motion = stepped_++;
+  if (site_.recorder && !site_.holding) site_.recorder->on_step(site_.motion, motion, timed);
   site_.progress.begin_step(work_of(motion), path.empty());
   if (!site_.progress.stop_now()) cut(motion, timed, path);
   site_.progress.end_step();
@@ -123,13 +124,6 @@ void CutStage::cut(const Motion& m, const TimedStep& step, std::span<const PathP
   if (traits_.turns) check_turns(m, step);
   const bool is_displaced = !traits_.by_length && m.length.displaces;
   process_->take(is_displaced ? as_programmed(m) : m, step, path);
-  if (site_.curve && !site_.holding) note_speeds(m, step);
-}
-
-void CutStage::note_speeds(const Motion& m, const TimedStep& step) {
-  const bool is_turning = m.spindle != SpindleState::kStopped;
-  site_.curve->add({step.start_s, step.duration_s, 0, is_feed(m) ? step.length_mm : 0,
-                    is_turning ? m.spindle_rpm : 0});
 }
 
 void CutStage::check_turns(const Motion& m, const TimedStep& step) {

@@ -44,9 +44,9 @@ class CutStage : private StepSink {
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage. Not of sheets.
   void label_by(CutLabels& labels) { site_.labels = &labels; }
-  /// From now on what the program does over its time is added up: removed volumes of mills and
-  /// lathes. Outlives the stage.
-  void keep_curve(RunCurve& curve) { site_.curve = &curve; }
+  /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
+  /// outlives the stage.
+  void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }
   /// Of a torch program, all that the motions name from here on.
   void set_materials(std::span<const TorchMaterial> materials);
   /// Troubles are looked for as if this stage had done what the other one has: what is free,
@@ -111,7 +111,6 @@ class CutStage : private StepSink {
   void step(const Motion& motion, const TimedStep& timed, std::span<const PathPiece> path) override;
   void begin_reporting();
   void cut(const Motion& motion, const TimedStep& step, std::span<const PathPiece> path);
-  void note_speeds(const Motion& motion, const TimedStep& step);
   void check_turns(const Motion& motion, const TimedStep& step);
   void check_slides(const Motion& motion, const TimedStep& step);
   void report_ignored_turn(const Motion& motion, const TimedStep& step);

@@ -45,4 +45,17 @@ void RunCurve::add(const Share& share) {
   }
 }
 
+void RunCurve::on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) {
+  const bool is_turning = motion.spindle != SpindleState::kStopped;
+  add({step.start_s, step.duration_s, 0, is_feed(motion) ? step.length_mm : 0,
+       is_turning ? motion.spindle_rpm : 0});
+  waiting_.push_back({number, step.start_s, step.duration_s});
+}
+
+void RunCurve::on_cut(std::uint64_t number, double removed_mm3, double /*depth_mm*/) {
+  while (!waiting_.empty() && waiting_.front().number < number) waiting_.pop_front();
+  if (waiting_.empty() || waiting_.front().number != number) return;  // not reported on
+  add({waiting_.front().start_s, waiting_.front().duration_s, removed_mm3});
+}
+
 }  // namespace kerf

@@ -47,8 +47,6 @@ struct SessionOptions {
   std::string guess_reason;
   std::vector<ToolGuess> tool_guesses;
   std::string beam_text;  ///< of beam.trigger, where that is a guess
-  bool keep_labels = false;  ///< who cut what is to be known at the end: Session::cut_labels()
-  bool keep_curve = false;   ///< what happens when, too: Session::curve()
   LineRange lines;        ///< cut silently up to there, reported from there, stopped there
 };
 

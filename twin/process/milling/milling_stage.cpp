@@ -349,6 +349,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.duration_s = step.duration_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
+  flight.motion = site_.motion;
   flight.use = use_;
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
@@ -361,7 +362,6 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
     const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
     flight.duration_s = step.duration_s * share;
     in_flight_.push_back(flight);
-    flight.start_s += flight.duration_s;
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
     hand_over();
@@ -398,6 +398,7 @@ void MillingStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
+    site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);
     if (move.feed && !move.measured) {
       count_feed(use, move, report);
     } else {
@@ -408,8 +409,6 @@ void MillingStage::collect_reports() {
     if (report.film.area_mm2 > 0 && !site_.holding)
       films_.take(report.film, {move.source, move.start_s, use.number});
     if (report.removed_mm3 <= 0) continue;
-    if (site_.curve && !site_.holding)
-      site_.curve->add({move.start_s, move.duration_s, report.removed_mm3});
     use.removed_mm3 += report.removed_mm3;
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);

@@ -69,6 +69,7 @@ class MillingStage final : public Process {
     double start_s = 0;   ///< of its motion
     double cut_part = 1;  ///< of its time, where it is one of several moves: LoadMeter
     SourceRef source;
+    std::uint64_t motion = 0;  ///< ProcessSite::motion
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;

@@ -333,8 +333,7 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
                                     : 1;
   const double cut_s = step.duration_s * share;
   if (site_.labels) site_.labels->note(id, piece.removed_mm3, step.duration_s);
-  if (site_.curve && !site_.holding && piece.removed_mm3 > 0)
-    site_.curve->add({step.start_s, step.duration_s, piece.removed_mm3});
+  site_.note_cut(site_.motion, piece.removed_mm3, piece.depth_mm);
   use.removed_mm3 += piece.removed_mm3;
   if (is_feed(m)) {
     use.max_depth_mm = std::max(use.max_depth_mm, piece.depth_mm);
