@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interp_bridge/motion_kinds.h"
+
 namespace kerf {
 
 void RunCurve::double_step() {
