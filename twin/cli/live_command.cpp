@@ -20,6 +20,7 @@
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/live_console.h"
 #include "twin/cli/live_window.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/scheduling.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
@@ -190,8 +191,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
+  if (window || request.outputs.wants_page()) session->keep_cut_ids();
   if (window) {
-    session->keep_cut_ids();
     view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
                  window->commands());
     observer = &*view;
@@ -206,6 +207,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
+  write_pages(request.outputs, session->report(), session->stock(),
+              {session->cut_labels(), nullptr, {}, request.units}, diagnostics);
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
                 session->report(), diagnostics);
   const ListedProgram listed = listed_program(session->report());

@@ -35,7 +35,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 10> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 12> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
@@ -45,7 +45,9 @@ constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 10> kPa
      {"--svg", &OutputPaths::svg},
      {"--junit", &OutputPaths::junit},
      {"--sarif", &OutputPaths::sarif},
-     {"--csv", &OutputPaths::csv}}};
+     {"--csv", &OutputPaths::csv},
+     {"--html", &OutputPaths::html},
+     {"--pdf", &OutputPaths::pdf}}};
 
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -116,8 +118,8 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Coll
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 10> OutputPaths::named() const {
-  std::array<NamedPath, 10> all;
+std::array<std::pair<const char*, const std::string*>, 12> OutputPaths::named() const {
+  std::array<NamedPath, 12> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -21,6 +22,7 @@
 #include "twin/cli/console.h"
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/option_reader.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/progress_bar.h"
 #include "twin/cli/stdin_program.h"
 #include "twin/cli/stop_deadline.h"
@@ -28,6 +30,7 @@
 #include "twin/cli/torch_options.h"
 #include "twin/cli/view_command.h"
 #include "twin/cli/window_host.h"
+#include "twin/process/run_curve.h"
 #include "twin/program/session_parts.h"
 #include "twin/report/motion_table.h"
 
@@ -167,6 +170,10 @@ std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinPro
   return std::move(begun.value());
 }
 
+std::span<const CutLabel> labels_in(const Session& session) {
+  return session.cut_labels() ? session.cut_labels()->all() : std::span<const CutLabel>();
+}
+
 void end_table(MotionTable& table, Diagnostics& diagnostics) {
   if (const Done written = table.commit(); !written)
     diagnostics.push_back(general_error(written.error()));
@@ -206,6 +213,11 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     table = begin_table(request.outputs.csv, kept, *session, diagnostics);
     if (!table) session.reset();
   }
+  std::optional<RunCurve> curve;
+  if (session && request.outputs.wants_page()) {
+    session->keep_cut_labels();
+    session->record_by(curve.emplace());
+  }
   print(diagnostics);
   if (!session) {
     return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested(),
@@ -225,6 +237,12 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
+    const std::string command = command_line(
+        with_guesses(request.written, rows_in(session->report().guesses, request.units)));
+    write_pages(request.outputs, session->report(), session->stock(),
+                {labels_in(*session), curve ? &*curve : nullptr, command, request.units}, diagnostics);
+    dealt_with |= request.outputs.bit_of(request.outputs.html);
+    dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {
       end_table(*table, diagnostics);
       dealt_with |= request.outputs.bit_of(request.outputs.csv);

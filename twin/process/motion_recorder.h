@@ -25,4 +25,27 @@ class MotionRecorder {
   virtual void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) = 0;
 };
 
+/// Several, each told what all are told.
+class MotionRecorders final : public MotionRecorder {
+ public:
+  void add(MotionRecorder& recorder) { all_.push_back(&recorder); }
+  bool empty() const { return all_.empty(); }
+
+  void restart() override {
+    for (MotionRecorder* const each : all_) each->restart();
+  }
+  void name_files(const std::vector<std::string>& files) override {
+    for (MotionRecorder* const each : all_) each->name_files(files);
+  }
+  void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override {
+    for (MotionRecorder* const each : all_) each->on_step(number, motion, step);
+  }
+  void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override {
+    for (MotionRecorder* const each : all_) each->on_cut(number, removed_mm3, depth_mm);
+  }
+
+ private:
+  std::vector<MotionRecorder*> all_;
+};
+
 }  // namespace kerf

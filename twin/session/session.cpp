@@ -69,7 +69,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   if (must_begin_again()) return false;
   stage.set_frame(frame);
   if (materials_.take(taken_materials_)) stage.set_materials(taken_materials_);
-  if (recorder_ && files_.take(taken_files_)) recorder_->name_files(taken_files_);
+  if (!recorders_.empty() && files_.take(taken_files_)) recorders_.name_files(taken_files_);
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
@@ -168,7 +168,7 @@ bool Session::begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcom
     return false;
   }
   report_.findings = {};
-  if (recorder_) recorder_->restart();
+  recorders_.restart();
   if (labels_) labels_.emplace();
   window_ = LineWindow(options_.lines);
   switched_ = SwitchedMotions(options_.timeline.kinematics);
@@ -205,7 +205,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
-  if (recorder_) stage.record_by(*recorder_);
+  if (!recorders_.empty()) stage.record_by(recorders_);
   if (labels_ && !front_.is_sheet()) {
     front_.stock.stock->keep_cut_ids(true);
     stage.label_by(*labels_);

@@ -60,7 +60,7 @@ class Session {
 
   void set_observer(SessionObserver* observer) { observer_ = observer; }
   /// Hears of each motion that is reported on. Before run(); outlives the session.
-  void record_by(MotionRecorder& recorder) { recorder_ = &recorder; }
+  void record_by(MotionRecorder& recorder) { recorders_.add(recorder); }
   /// Before run(): the workpiece remembers which move made its surface (StockModel::cut_id_at()),
   /// by numbers of cut_labels(). Costs memory and time. Of sheets there are none.
   void keep_cut_labels() { labels_.emplace(); }
@@ -128,7 +128,7 @@ class Session {
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass
   SessionObserver* observer_ = nullptr;
-  MotionRecorder* recorder_ = nullptr;
+  MotionRecorders recorders_;
   std::optional<CutLabels> labels_;
   Report report_;
   std::atomic<bool> interpreting_{false};
