@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/page/html_text.h"
 #include "twin/page/page_curve.h"
+#include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
 #include "twin/report/shown_lengths.h"
 
@@ -20,7 +20,7 @@ namespace {
 class SectionText {
  public:
   SectionText(std::string heading, LengthUnit units) : units_(units) {
-    html_ = fmt::format("<section><h2>{}</h2>\n", html_text(heading));
+    html_ = fmt::format("<section><h2>{}</h2>\n", xml_text(heading));
   }
 
   void paragraph(std::string_view text) {
@@ -39,7 +39,7 @@ class SectionText {
       numbers_.push_back(heading.starts_with('#'));
       if (numbers_.back()) heading.remove_prefix(1);
       html_ += fmt::format("<th{}>{}</th>", numbers_.back() ? " class=\"n\"" : "",
-                           html_text(heading));
+                           xml_text(heading));
     }
     html_ += "</tr></thead><tbody>\n";
   }
@@ -57,7 +57,7 @@ class SectionText {
   void facts(std::span<const std::pair<std::string, std::string>> facts) {
     html_ += "<dl class=\"facts\">\n";
     for (const auto& [name, value] : facts)
-      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_text(name), shown(value));
+      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(name), shown(value));
     html_ += "</dl>\n";
     is_empty_ = is_empty_ && facts.empty();
   }
@@ -69,7 +69,7 @@ class SectionText {
   std::string done() && { return is_empty_ ? std::string() : std::move(html_) + "</section>\n"; }
 
  private:
-  std::string shown(std::string_view text) const { return html_text(in_unit(text, units_)); }
+  std::string shown(std::string_view text) const { return xml_text(in_unit(text, units_)); }
 
   LengthUnit units_;
   std::string html_;
@@ -113,12 +113,12 @@ std::string name_of_tool(const ToolUse& use) { return fmt::format("T{}", use.num
 std::string head_section(const Report& report, const PageOptions& options) {
   const std::string name =
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
-  std::string out = fmt::format("<header><h1>{}</h1>\n", html_text(name));
+  std::string out = fmt::format("<header><h1>{}</h1>\n", xml_text(name));
   out += fmt::format("<p><span class=\"{}\">{}</span></p>\n", class_of(report.findings),
-                     html_text(verdict_text(report.findings)));
+                     xml_text(verdict_text(report.findings)));
   if (!report.partial_reason.empty()) {
     out += fmt::format("<p><b>{}</b></p>\n",
-                       html_text(trf("Partial: {}. All here is of the part that was run.",
+                       xml_text(trf("Partial: {}. All here is of the part that was run.",
                                      report.partial_reason)));
   }
   Facts facts;
@@ -141,8 +141,8 @@ std::string head_section(const Report& report, const PageOptions& options) {
   }
   out += "<dl class=\"facts\">\n";
   for (const auto& [key, value] : facts) {
-    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_text(key),
-                       html_text(in_unit(value, options.units)));
+    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(key),
+                       xml_text(in_unit(value, options.units)));
   }
   return out + "</dl></header>\n";
 }
@@ -157,15 +157,15 @@ std::string finding_list(const Report& report, LengthUnit units) {
     std::string place = d.line > 0 ? fmt::format("{}:{}", d.file, d.line) : d.file;
     if (finding.time_s) place += (place.empty() ? "" : ", ") + duration_text(*finding.time_s);
     out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}", to_string(finding.severity),
-                       html_text(to_string(finding.id)), html_text(message));
-    if (!place.empty()) out += fmt::format("<small>{}</small>", html_text(place));
-    if (!d.hint.empty()) out += fmt::format("<small>{}</small>", html_text(d.hint));
+                       xml_text(to_string(finding.id)), xml_text(message));
+    if (!place.empty()) out += fmt::format("<small>{}</small>", xml_text(place));
+    if (!d.hint.empty()) out += fmt::format("<small>{}</small>", xml_text(d.hint));
     out += "</button>\n";
   }
-  if (kept.empty()) out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", html_text(tr("no findings")));
+  if (kept.empty()) out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", xml_text(tr("no findings")));
   if (report.findings.total() > std::min(kept.size(), kMostOnPage)) {
     out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n",
-                       html_text(trf("and {} more", report.findings.total() -
+                       xml_text(trf("and {} more", report.findings.total() -
                                                         std::min(kept.size(), kMostOnPage))));
   }
   return out + "</div>\n";
@@ -280,7 +280,7 @@ std::string exactness_section(const Report& report, const PageOptions& options,
     facts.emplace_back(tr("Interpreter"), report.program.interpreter);
   if (report.stock) facts.emplace_back(tr("Digest of the workpiece"), report.stock->digest);
   out.facts(facts);
-  if (!options.command.empty()) out.raw(fmt::format("<pre>{}</pre>\n", html_text(options.command)));
+  if (!options.command.empty()) out.raw(fmt::format("<pre>{}</pre>\n", xml_text(options.command)));
   return std::move(out).done();
 }
 
