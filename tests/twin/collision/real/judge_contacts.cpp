@@ -242,15 +242,23 @@ bool passes(const Tool& tool, const Move& move, V p, double until, double top) {
 
 /// How near a part comes to boxes, by projections to and fro.
 struct Body {
-  const Tool* tool;  ///< of the cutter itself; null: a cylinder
+  Tool cutter;  ///< of the cutter itself; without a kind: a cylinder
   double radius, from_z, to_z;
+
+  Body thinner(double by) const {
+    Body out{cutter, radius - by, from_z + by, to_z - by};
+    out.cutter.radius -= by;
+    if (out.cutter.kind == "bull") out.cutter.a = std::max(0.0, out.cutter.a - by);
+    return out;
+  }
+  double low(double r) const { return from_z + cutter.low(r); }
   V nearest(V p, const Pose& pose) const {
     const V w = p - pose.tip;
     double z = dot(w, pose.axis);
     const V out = w - z * pose.axis;
     double r = norm(out);
     const V unit = r > 1e-12 ? 1 / r * out : V{};
-    if (tool && tool->kind != "flat") {
+    if (!cutter.kind.empty() && cutter.kind != "flat") {
       nearest_of_cutter(r, z);
     } else {
       z = std::clamp(z, from_z, to_z), r = std::min(r, radius);
@@ -259,13 +267,13 @@ struct Body {
   }
   /// Its lower side is convex: the nearest of 400 places of it, and of its cylinder.
   void nearest_of_cutter(double& r, double& z) const {
-    if (r <= radius && z <= to_z && z >= tool->low(r)) return;
-    const double inside = std::min(r, radius), up = std::clamp(z, tool->low(inside), to_z);
+    if (r <= radius && z <= to_z && z >= low(r)) return;
+    const double inside = std::min(r, radius), up = std::clamp(z, low(inside), to_z);
     double best = std::hypot(r - inside, z - up), at_r = inside, at_z = up;
-    const auto far = [&](double s) { return std::hypot(r - s, z - tool->low(s)); };
+    const auto far = [&](double s) { return std::hypot(r - s, z - low(s)); };
     for (int i = 0; i <= 400; ++i) {
       const double s = radius * i / 400;
-      if (far(s) < best) best = far(s), at_r = s, at_z = tool->low(s);
+      if (far(s) < best) best = far(s), at_r = s, at_z = low(s);
     }
     r = at_r, z = at_z;
   }
@@ -504,26 +512,27 @@ std::string Judge::of_fixture(const Contact& contact, double& place) const {
   const Move& move = moves_[at->move];
   std::vector<Body> bodies;
   for (const Part& part : parts_.at(contact.tool))
-    if (part.name == contact.part) bodies.push_back({nullptr, part.radius, part.from_z, part.to_z});
-  if (contact.part == "cutter") bodies.push_back({&tool, tool.radius, 0, tool.flutes});
+    if (part.name == contact.part) bodies.push_back({{}, part.radius, part.from_z, part.to_z});
+  if (contact.part == "cutter") bodies.push_back({tool, tool.radius, 0, tool.flutes});
   const double speed = std::max(move.travel(200), 1e-9);
-  // Where they are first nearer than that, by steps that cannot jump over it.
-  const auto first = [&](double near) -> std::optional<double> {
+  // Where one of them, so much thinner, first is nearer than that; by steps that cannot jump over
+  // it.
+  const auto first = [&](double thinner, double near) -> std::optional<double> {
     for (double t = 0;;) {
       double now = 1e9;
-      for (const Body& body : bodies) now = std::min(now, gap(body, move.pose(t), box));
+      for (const Body& body : bodies)
+        now = std::min(now, gap(body.thinner(thinner), move.pose(t), box));
       if (now <= near + 2e-6) return t;
       if (t >= 1) return std::nullopt;
       t = std::min(1.0, t + std::max(now - near, 1e-5) / speed);
     }
   };
-  const auto touch = first(0), before = first(kWay_mm);
+  const auto touch = first(0, 0), before = first(0, kWay_mm);
   if (!touch) return before ? "near" : "false";
-  // What comes to it at a flat angle is that near for long.
-  const double from = std::min(*before, *touch);
-  const double along = std::clamp(at->t, from, *touch);
-  place = norm(move.pose(along).tip - contact.tip);
-  if (along == *touch) place = std::min(place, norm(move.pose(*touch).tip - contact.tip));
+  // What comes to it at a flat angle is that near, and that deep, for long.
+  const double from = std::min(*before, *touch), to = first(kWay_mm, 0).value_or(1);
+  if (at->t < from || at->t > to)
+    place = norm(move.pose(std::clamp(at->t, from, to)).tip - contact.tip);
   return "true";
 }
 
