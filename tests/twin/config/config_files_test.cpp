@@ -39,10 +39,11 @@ TEST(ConfigMeshes, OutsideOfTheFolderIsNotedOnce) {
       "  - {shape: \"stl:../c.stl\"}\n"
       "  - {shape: \"obj:/elsewhere/d.obj\"}\n";
   const std::string said = said_in(folder, fixtures);
-  EXPECT_EQ(said,
-            "read\n"
-            "m.yaml:4:12: note: fixtures.shape: '../c.stl' lies outside of this file's folder: who "
-            "copies that has no such mesh\n");
+  EXPECT_EQ(
+      said,
+      "read\n"
+      "m.yaml:4:13: note: fixtures[3].shape: '../c.stl' lies outside of this file's folder: who "
+      "copies that has no such mesh\n");
   EXPECT_EQ(said_in(folder, "fixtures:\n  - {shape: \"box:0,0,0:1,1,1\"}\n"), "read\n");
   EXPECT_EQ(said_in(folder, "fixtures:\n  - {shape: \"stl:" + folder.path() + "/a.stl\"}\n"),
             "read\n");

@@ -83,8 +83,9 @@ UnderSpans spans_under(const BlankBody& body, const Vec3& from, const Vec3& to, 
     out.add(in.begin, in.end);
     return out;
   }
-  out.add(in.begin, std::min(in.end, hole->begin));
-  out.add(std::max(in.begin, hole->end), in.end);
+  // A way that ends in the hole ends at its end.
+  if (in.begin < hole->begin) out.add(in.begin, std::min(in.end, hole->begin));
+  if (hole->end < in.end) out.add(std::max(in.begin, hole->end), in.end);
   return out;
 }
 
