@@ -347,11 +347,15 @@ bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& bl
     return false;
   }
   if (blank.bodies.empty()) return true;
-  const SolidPointer whole = Solid::of_bodies(blank.bodies);
+  return check_fixtures_beside(fixtures, *Solid::of_bodies(blank.bodies), diagnostics);
+}
+
+bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Solid& blank,
+                           Diagnostics& diagnostics) {
   bool beside = true;
   for (const Fixture& fixture : fixtures) {
     if (fixture.in_blank || !fixture.on.empty()) continue;
-    const double depth = depth_in_blank_mm(*fixture.solid, fixture.workpiece_from_fixture, *whole);
+    const double depth = depth_in_blank_mm(*fixture.solid, fixture.workpiece_from_fixture, blank);
     if (depth <= kTouching_mm) continue;
     tell(diagnostics, Severity::kError,
          trf("fixture '{}' stands in the blank, {:.2f} mm deep", fixture.name, depth),

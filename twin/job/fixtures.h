@@ -81,5 +81,8 @@ inline constexpr double kTouching_mm = 0.01;
 /// Those on links are not looked at.
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
                            Diagnostics& diagnostics);
+/// The same of a blank of any shape.
+bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Solid& blank,
+                           Diagnostics& diagnostics);
 
 }  // namespace kerf

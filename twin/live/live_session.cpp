@@ -141,7 +141,8 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   }
   if (!stock_) return false;
   CollisionWishes& wishes = options_.cutting.checks.collisions;
-  if (!hold_workpiece(wishes.holding, wishes.fixtures, *stock_, wishes.held_by, diagnostics)) {
+  if (!hold_workpiece(wishes.holding, wishes.fixtures, *stock_, found.blank.has_value(),
+                      wishes.held_by, diagnostics)) {
     outcome = Outcome::kUsageError;
     return false;
   }

@@ -44,6 +44,9 @@ class CutStage : private StepSink {
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage. Not of sheets.
   void label_by(CutLabels& labels) { site_.labels = &labels; }
+  /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
+  /// outlives the stage.
+  void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }
   /// Of a torch program, all that the motions name from here on.
   void set_materials(std::span<const TorchMaterial> materials);
   /// Troubles are looked for as if this stage had done what the other one has: what is free,

@@ -114,8 +114,8 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
                            diagnostics, outcome);
   if (!front.stock.stock) return false;
   const CollisionWishes& wishes = options.collisions;
-  if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, front.held_by,
-                     diagnostics)) {
+  if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, !front.blank_guessed,
+                     front.held_by, diagnostics)) {
     return true;
   }
   outcome = Outcome::kUsageError;
