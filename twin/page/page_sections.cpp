@@ -16,6 +16,11 @@
 namespace kerf {
 namespace {
 
+struct PageColumn {
+  const char* heading;
+  bool has_numbers = false;
+};
+
 /// A section of its own, with cells whose lengths are in the reader's unit.
 class SectionText {
  public:
@@ -31,15 +36,13 @@ class SectionText {
     html_ += fmt::format("<pre>{}</pre>\n", shown(text));
     is_empty_ = false;
   }
-  /// A column's heading that begins with '#' is one of numbers.
-  void table(std::initializer_list<std::string_view> headings) {
+  void table(std::initializer_list<PageColumn> columns) {
     html_ += "<table><thead><tr>";
     numbers_.clear();
-    for (std::string_view heading : headings) {
-      numbers_.push_back(heading.starts_with('#'));
-      if (numbers_.back()) heading.remove_prefix(1);
-      html_ += fmt::format("<th{}>{}</th>", numbers_.back() ? " class=\"n\"" : "",
-                           xml_text(heading));
+    for (const PageColumn& column : columns) {
+      numbers_.push_back(column.has_numbers);
+      html_ += fmt::format("<th{}>{}</th>", column.has_numbers ? " class=\"n\"" : "",
+                           xml_text(column.heading));
     }
     html_ += "</tr></thead><tbody>\n";
   }
@@ -195,8 +198,14 @@ std::string setup_section(const Report& report, const PageOptions& options, bool
 std::string tool_section(const Report& report, LengthUnit units) {
   if (report.tools.empty()) return {};
   SectionText out(tr("Tools, in their order"), units);
-  out.table({tr("Tool"), tr("Shape"), tr("Known from"), tr("#Cutting"), tr("#Way"), tr("#Removed"),
-             tr("#Deepest"), tr("#Peak rate")});
+  out.table({{tr("Tool")},
+             {tr("Shape")},
+             {tr("Known from")},
+             {tr("Cutting"), true},
+             {tr("Way"), true},
+             {tr("Removed"), true},
+             {tr("Deepest"), true},
+             {tr("Peak rate"), true}});
   for (const ToolUse& use : report.tools) {
     if (use.shape.empty()) {
       out.row({name_of_tool(use), tr("undefined, did not cut"), use.origin});
@@ -215,7 +224,11 @@ std::string tool_section(const Report& report, LengthUnit units) {
 std::string collision_section(const Report& report, LengthUnit units) {
   if (report.collisions.empty()) return {};
   SectionText out(tr("Collisions and clearances"), units);
-  out.table({tr("What"), tr("Against"), tr("#Contacts"), tr("#Least clearance"), tr("#Line")});
+  out.table({{tr("What")},
+             {tr("Against")},
+             {tr("Contacts"), true},
+             {tr("Least clearance"), true},
+             {tr("Line"), true}});
   for (const CollisionPair& pair : report.collisions) {
     const std::string what = pair.first.empty()
                                  ? trf("{} of tool {}", name_of(pair.part), pair.tool)
