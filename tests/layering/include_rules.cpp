@@ -121,7 +121,6 @@ constexpr std::array kLibraryRules{
     LibraryRule{"zip.h", "base/"},
     LibraryRule{"expat.h", "twin/collision/"},
     LibraryRule{"xxhash.h", "stock/"},
-    LibraryRule{"meshoptimizer.h", "twin/page/"},
     LibraryRule{"polyclipping/", "stock/plane/"},
     LibraryRule{"clipper.hpp", "stock/plane/"},
     LibraryRule{"canon.hh", "interp_bridge/kerf_interp/"},

@@ -240,7 +240,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     const std::string command = command_line(
         with_guesses(request.written, rows_in(session->report().guesses, request.units)));
     write_pages(request.outputs, session->report(), session->stock(),
-                {labels_in(*session), curve ? &*curve : nullptr, command, request.units}, diagnostics);
+                {labels_in(*session), curve ? &*curve : nullptr, command, request.units},
+                diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {

@@ -120,9 +120,9 @@ std::string head_section(const Report& report, const PageOptions& options) {
   out += fmt::format("<p><span class=\"{}\">{}</span></p>\n", class_of(report.findings),
                      xml_text(verdict_text(report.findings)));
   if (!report.partial_reason.empty()) {
-    out += fmt::format("<p><b>{}</b></p>\n",
-                       xml_text(trf("Partial: {}. All here is of the part that was run.",
-                                     report.partial_reason)));
+    out += fmt::format(
+        "<p><b>{}</b></p>\n",
+        xml_text(trf("Partial: {}. All here is of the part that was run.", report.partial_reason)));
   }
   Facts facts;
   const MotionTotals& m = report.motion;
@@ -159,17 +159,19 @@ std::string finding_list(const Report& report, LengthUnit units) {
     std::string message = in_unit(message_of(finding), units);
     std::string place = d.line > 0 ? fmt::format("{}:{}", d.file, d.line) : d.file;
     if (finding.time_s) place += (place.empty() ? "" : ", ") + duration_text(*finding.time_s);
-    out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}", to_string(finding.severity),
-                       xml_text(to_string(finding.id)), xml_text(message));
+    out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}",
+                       to_string(finding.severity), xml_text(to_string(finding.id)),
+                       xml_text(message));
     if (!place.empty()) out += fmt::format("<small>{}</small>", xml_text(place));
     if (!d.hint.empty()) out += fmt::format("<small>{}</small>", xml_text(d.hint));
     out += "</button>\n";
   }
-  if (kept.empty()) out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", xml_text(tr("no findings")));
+  if (kept.empty())
+    out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", xml_text(tr("no findings")));
   if (report.findings.total() > std::min(kept.size(), kMostOnPage)) {
-    out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n",
-                       xml_text(trf("and {} more", report.findings.total() -
-                                                        std::min(kept.size(), kMostOnPage))));
+    out += fmt::format(
+        "<p class=\"soft\">&nbsp;{}</p>\n",
+        xml_text(trf("and {} more", report.findings.total() - std::min(kept.size(), kMostOnPage))));
   }
   return out + "</div>\n";
 }
@@ -230,9 +232,8 @@ std::string collision_section(const Report& report, LengthUnit units) {
              {tr("Least clearance"), true},
              {tr("Line"), true}});
   for (const CollisionPair& pair : report.collisions) {
-    const std::string what = pair.first.empty()
-                                 ? trf("{} of tool {}", name_of(pair.part), pair.tool)
-                                 : pair.first;
+    const std::string what =
+        pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
     const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
                                   : pair.least_clearance_mm
                                       ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
@@ -264,8 +265,10 @@ std::string curve_section(const PageCurves& curves, LengthUnit units) {
       scaled(curves.removed_mm3_per_s, inch ? 60 / (kInch_mm * kInch_mm * kInch_mm) : 1);
   const std::vector<double> feeds = scaled(curves.feed_mm_per_min, inch ? 1 / kInch_mm : 1);
   SectionText out(tr("Over its time"), units);
-  out.raw(curve_svg({tr("Material removed"), inch ? "in3/min" : "mm3/s", "#2f6690", curves.step_s, rates}));
-  out.raw(curve_svg({tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
+  out.raw(curve_svg(
+      {tr("Material removed"), inch ? "in3/min" : "mm3/s", "#2f6690", curves.step_s, rates}));
+  out.raw(curve_svg(
+      {tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
   out.raw(curve_svg({tr("Spindle"), tr("rpm"), "#9a5b00", curves.step_s, curves.spindle_rpm}));
   return std::move(out).done();
 }
@@ -285,8 +288,9 @@ std::string exactness_section(const Report& report, const PageOptions& options,
   facts.emplace_back(tr("Times"), report.time_model);
   if (!mesh.empty()) facts.emplace_back(tr("3D view"), mesh);
   for (const GuessRow& row : rows_in(report.guesses, options.units)) {
-    facts.emplace_back(trf("Guessed: {}", row.what),
-                       row.reason.empty() ? row.value : fmt::format("{} ({})", row.value, row.reason));
+    facts.emplace_back(
+        trf("Guessed: {}", row.what),
+        row.reason.empty() ? row.value : fmt::format("{} ({})", row.value, row.reason));
   }
   facts.emplace_back("kerf", report.version);
   if (!report.program.interpreter.empty())

@@ -17,8 +17,8 @@ std::string collision_section(const Report& report, LengthUnit units);
 /// What became of a sheet or a turned part.
 std::string part_section(const Report& report, LengthUnit units);
 std::string curve_section(const PageCurves& curves, LengthUnit units);
-/// How exact it is, what was guessed, and how to make it again. `mesh`: of the view, a sentence; may
-/// be empty.
+/// How exact it is, what was guessed, and how to make it again. `mesh`: of the view, a sentence;
+/// may be empty.
 std::string exactness_section(const Report& report, const PageOptions& options,
                               const std::string& mesh);
 

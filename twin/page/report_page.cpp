@@ -83,7 +83,8 @@ Json sources_json(const Report& report) {
     const Diagnostic d = diagnostic_of(kept[i], report.program.files);
     const auto line = static_cast<std::uint32_t>(d.line);
     if (line == 0 || d.file.empty()) continue;
-    for (std::uint32_t n = line > kNeighbours ? line - kNeighbours : 1; n <= line + kNeighbours; ++n)
+    for (std::uint32_t n = line > kNeighbours ? line - kNeighbours : 1; n <= line + kNeighbours;
+         ++n)
       wanted[d.file].insert(n);
   }
   Json out = Json::object();
@@ -126,9 +127,9 @@ std::string view_section(const PageMesh& mesh, const PageOptions& options) {
   const auto option = [](const char* value, const char* text) {
     return fmt::format("<option value=\"{}\">{}</option>", value, xml_text(text));
   };
-  std::string out = fmt::format(
-      "<div><div id=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
-      xml_text(tr("The part is drawn by a script, which this browser does not run.")));
+  std::string out =
+      fmt::format("<div><div id=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
+                  xml_text(tr("The part is drawn by a script, which this browser does not run.")));
   out += "<div class=\"tools\">" + button("iso", tr("oblique")) + button("top", tr("top")) +
          button("front", tr("front")) + button("right", tr("right")) + button("reset", tr("all"));
   out += fmt::format("<label>{} <select id=\"color\">", xml_text(tr("colours")));
@@ -141,7 +142,7 @@ std::string view_section(const PageMesh& mesh, const PageOptions& options) {
       "disabled></label></div>\n<div id=\"legend\"></div>";
   out += fmt::format("<p class=\"soft\">{}</p></div>\n",
                      xml_text(tr("Drag to turn, with Shift or the right button to shift, wheel "
-                                  "for nearer. A mark is a finding.")));
+                                 "for nearer. A mark is a finding.")));
   static_cast<void>(options);
   return out;
 }
@@ -154,8 +155,7 @@ std::string mesh_text(const PageMesh& mesh) {
 
 }  // namespace
 
-std::string report_page(const Report& report, const StockModel* stock,
-                        const PageOptions& options) {
+std::string report_page(const Report& report, const StockModel* stock, const PageOptions& options) {
   PageMesh mesh;
   if (stock) {
     PageMeshOptions wanted;
@@ -178,7 +178,8 @@ std::string report_page(const Report& report, const StockModel* stock,
     data["lathe"] = report.turning.has_value();
     data["groups"] = Json::array();
     for (const PageGroup& group : options.groups)
-      data["groups"].push_back({{"name", in_unit(group.name, options.units)}, {"color", group.color}});
+      data["groups"].push_back(
+          {{"name", in_unit(group.name, options.units)}, {"color", group.color}});
   } else {
     data["mesh"] = nullptr;
   }
@@ -188,7 +189,8 @@ std::string report_page(const Report& report, const StockModel* stock,
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"kerf {}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
+      "<meta name=\"generator\" content=\"kerf "
+      "{}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
       "<body><main>\n",
       language(), xml_text(report.version), xml_text(title), page_assets::page_css);
   out += head_section(report, options);
