@@ -154,6 +154,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
         fault(fmt::format("--events: {}: {}", request.events, std::strerror(events.error))));
   }
   choose_frame(request, *source, diagnostics);
+  const std::shared_ptr<const DesignFile> design = open_design(request.compare, diagnostics);
   std::unique_ptr<LiveSession> session;
   if (!has_error(diagnostics)) {
     session = LiveSession::open(request.options, std::move(source), diagnostics, outcome);
@@ -191,8 +192,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
+  if (window || design) session->keep_cut_ids();
   if (window) {
-    session->keep_cut_ids();
     view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
                  window->commands());
     observer = &*view;
@@ -207,8 +208,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
+  std::shared_ptr<const DesignPart> compared;
+  if (design) {
+    compared = compare_finished(request.compare, *design, session->stock(),
+                                {session->cut_labels(), nullptr}, session->report(), diagnostics);
+  }
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics);
+                request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics,
+                nullptr, compared);
   if (shots) {
     shots->write(request.finding_png, request.options.cutting.checks.collisions, diagnostics);
   }

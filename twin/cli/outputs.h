@@ -3,12 +3,14 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "base/diagnostic.h"
 #include "stock/stock_model.h"
 #include "twin/cli/option_reader.h"
+#include "twin/compare/design_part.h"
 #include "twin/job/fixtures.h"
 #include "twin/report/report.h"
 #include "viewer/section.h"
@@ -25,10 +27,11 @@ struct OutputPaths {
   /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
   std::string dxf;
   std::string svg;
+  std::string compare_png;                   ///< coloured by deviations; of a comparison alone
   SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
-  std::array<std::pair<const char*, const std::string*>, 7> named() const;
+  std::array<std::pair<const char*, const std::string*>, 8> named() const;
   bool uses_stdout() const {
     for (const auto& [option, path] : named()) {
       if (*path == "-" || *path == "/dev/stdout") return true;
@@ -56,10 +59,11 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// written, which comes last.
 /// `stock`: null if there was none. `fixtures`: drawn in pictures; may be null. `dealt_with`, if
 /// given, gets a bit for each of paths.named() that is there, or has failed; another thread may
-/// look at it.
+/// look at it. `design`: what report.comparison was made with; null: none was.
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
-                   std::atomic<unsigned>* dealt_with = nullptr);
+                   std::atomic<unsigned>* dealt_with = nullptr,
+                   const std::shared_ptr<const DesignPart>& design = nullptr);
 
 /// The files of those that are not dealt with, but for the report: "part.png, part.stl".
 std::string names_left(const OutputPaths& paths, unsigned dealt_with);

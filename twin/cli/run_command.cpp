@@ -153,6 +153,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     diagnostics.push_back(std::move(d));
   }
   if (request.view) check_shapes(request.machine, diagnostics);
+  const std::shared_ptr<const DesignFile> design = open_design(request.compare, diagnostics);
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
   StdinProgram kept;
@@ -180,6 +181,12 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     outcome = session->run(stop.get_token(), diagnostics);
   }
   rename_stdin(kept, session->report(), diagnostics);
+  std::shared_ptr<const DesignPart> compared;
+  if (!has_error(diagnostics) && design) {
+    compared = compare_finished(request.compare, *design, session->stock(),
+                                {session->cut_labels(), &session->kept_moves()}, session->report(),
+                                diagnostics);
+  }
   if (!has_error(diagnostics)) {
     std::atomic<unsigned> dealt_with{0};
     deadline->set_last_words(
@@ -188,7 +195,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
         },
         kWritingPatience);
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                  request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with);
+                  request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with,
+                  compared);
     if (!request.finding_png.empty()) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);

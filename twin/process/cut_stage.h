@@ -44,6 +44,8 @@ class CutStage : private StepSink {
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage. Not of sheets.
   void label_by(CutLabels& labels) { site_.labels = &labels; }
+  /// From now on milling moves are kept as the model gets them. Outlives the stage.
+  void keep_moves(KeptMoves& kept) { site_.kept = &kept; }
   /// Of a torch program, all that the motions name from here on.
   void set_materials(std::span<const TorchMaterial> materials);
   /// Troubles are looked for as if this stage had done what the other one has: what is free,

@@ -200,6 +200,13 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
+  if (options_.keep_cuts && !front_.is_sheet()) {
+    labels_ = CutLabels();
+    kept_moves_ = KeptMoves();
+    front_.stock.stock->keep_cut_ids(true);
+    stage.label_by(labels_);
+    stage.keep_moves(kept_moves_);
+  }
   work_read_ = work_done_ = 0;
   stage.count_work(work_done_);
   const double cpu_before = thread_cpu_s();

@@ -18,6 +18,7 @@
 #include "twin/guess/program_survey.h"
 #include "twin/machine/kinematics/switched_motions.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/kept_moves.h"
 #include "twin/program/material_handover.h"
 #include "twin/program/program_front.h"
 #include "twin/report/line_window.h"
@@ -74,6 +75,9 @@ class Session {
   const Report& report() const { return report_; }
   /// Null if the run ended before there was one.
   const StockModel* stock() const { return front_.stock.stock.get(); }
+  /// With SessionOptions::keep_cuts what the workpiece's cut ids mean, and the moves; else empty.
+  std::span<const CutLabel> cut_labels() const { return labels_.all(); }
+  const KeptMoves& kept_moves() const { return kept_moves_; }
 
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
@@ -117,6 +121,8 @@ class Session {
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass
   SessionObserver* observer_ = nullptr;
+  CutLabels labels_;
+  KeptMoves kept_moves_;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;

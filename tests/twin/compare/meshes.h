@@ -1,4 +1,4 @@
-// tests/twin/scene/compare/meshes.h - design parts whose distances are known.
+// tests/twin/compare/meshes.h - design parts whose distances are known.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "twin/scene/compare/design_part.h"
+#include "twin/compare/design_part.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 
 #include "base/mesh_file.h"
 #include "tests/base/temporary_folder.h"
-#include "tests/twin/scene/compare/meshes.h"
+#include "tests/twin/compare/meshes.h"
+#include "twin/compare/design_file.h"
 
 namespace kerf {
 namespace {
@@ -231,7 +232,7 @@ TEST(DesignPart, FilesThatAreNone) {
   const std::string folder = temporary.path() + "/";
   const auto said = [&](const std::string& name) {
     Diagnostics diagnostics;
-    EXPECT_EQ(DesignPart::read(folder + name, diagnostics), nullptr);
+    EXPECT_EQ(read_design(folder + name, 1, diagnostics), nullptr);
     EXPECT_EQ(diagnostics.size(), 1u);
     return diagnostics.empty() ? std::string() : diagnostics[0].message;
   };
@@ -243,7 +244,7 @@ TEST(DesignPart, FilesThatAreNone) {
   EXPECT_EQ(said("no_triangle.stl"), "--compare: " + folder + "no_triangle.stl: has no triangles");
   ASSERT_TRUE(write_stl(folder + "whole_design.stl", box_mesh({0, 0, 0}, {1, 1, 1})));
   Diagnostics diagnostics;
-  const auto part = DesignPart::read(folder + "whole_design.stl", diagnostics);
+  const auto part = read_design(folder + "whole_design.stl", 1, diagnostics);
   ASSERT_NE(part, nullptr);
   EXPECT_TRUE(diagnostics.empty());
   EXPECT_EQ(part->size(), 12u);

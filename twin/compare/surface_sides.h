@@ -1,4 +1,4 @@
-// twin/scene/compare/surface_sides.h - which side of a mesh is outside, at its faces, edges and
+// twin/compare/surface_sides.h - which side of a mesh is outside, at its faces, edges and
 // corners.
 #pragma once
 

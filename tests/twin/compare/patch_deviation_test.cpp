@@ -1,4 +1,4 @@
-#include "twin/scene/compare/patch_deviation.h"
+#include "twin/compare/patch_deviation.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <map>
 #include <tuple>
 
+#include "tests/twin/compare/meshes.h"
 #include "tests/twin/playback/tracks.h"
-#include "tests/twin/scene/compare/meshes.h"
 #include "twin/scene/patch_feeder.h"
 #include "twin/scene/player_scene.h"
 

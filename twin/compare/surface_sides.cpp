@@ -1,4 +1,4 @@
-#include "twin/scene/compare/surface_sides.h"
+#include "twin/compare/surface_sides.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,15 @@
-// twin/scene/compare/design_part.h - the part as it was designed, to compare a workpiece with.
+// twin/compare/design_part.h - the part as it was designed, to compare a workpiece with.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "base/geometry.h"
-#include "base/result.h"
 #include "base/triangle_mesh.h"
-#include "twin/scene/compare/surface_sides.h"
-#include "twin/scene/compare/triangle_tree.h"
+#include "twin/compare/surface_sides.h"
+#include "twin/compare/triangle_tree.h"
 
 namespace kerf {
 
@@ -29,16 +27,23 @@ class DesignPart {
   /// out (it is turned then).
   DesignPart(const TriangleMesh& mesh, const std::string& name, Diagnostics& diagnostics);
 
-  /// An STL file in mm (read_stl() has the errors); null with an error in `diagnostics`.
-  static std::shared_ptr<const DesignPart> read(const std::string& path, Diagnostics& diagnostics);
-
   /// From the surface, mm: negative inside the part's material. About 1 us where a hint helps
   /// (DesignProbe), some more without.
   double distance_mm(const Vec3& p) const;
 
+  /// The nearest point of it; `hint`: a triangle that is likely near.
+  NearestPoint nearest(const Vec3& p, std::uint32_t hint = 0) const {
+    return tree_.nearest(p, hint);
+  }
+
   const Box& box_mm() const { return tree_.box_mm(); }
   const MeshFacts& facts() const { return facts_; }
   std::size_t size() const { return tree_.size(); }
+  /// Of a triangle, 0 .. size() - 1, counter-clockwise from outside unless is_inside_out().
+  const std::array<glm::vec3, 3>& corners(std::uint32_t triangle) const {
+    return tree_.corners(triangle);
+  }
+  bool is_inside_out() const { return outward_ < 0; }
 
  private:
   friend class DesignProbe;

@@ -1,9 +1,9 @@
-// twin/scene/compare/patch_deviation.h - how far the surface of a workpiece is from the design
+// twin/compare/patch_deviation.h - how far the surface of a workpiece is from the design
 // part's.
 #pragma once
 
 #include "base/mesh_patch.h"
-#include "twin/scene/compare/design_part.h"
+#include "twin/compare/design_part.h"
 
 namespace kerf {
 
@@ -11,6 +11,7 @@ namespace kerf {
 struct DeviationDetail {
   double cell_mm = 0.1;        ///< edges up to 1.5 cells stay whole
   double tolerance_mm = 0.05;  ///< of the comparison: edges are halved where it would show
+  double reach_mm = 0;         ///< what is farther is given as this; 0: 40 tolerances
 };
 
 /// Fills `patch->deviation_mm`. Patches have large triangles where the workpiece is level and on
@@ -21,7 +22,7 @@ struct DeviationDetail {
 /// A patch knows walls to a cell only, and so does its deviation; those of levels above 0 stand for
 /// the lowest of their cells and deviate by as much as that.
 ///
-/// Beyond 40 tolerances from the surface the deviation is given as 40 tolerances.
+/// Beyond the reach from the surface the deviation is given as the reach.
 ///
 /// O(vertices); 0.4 us a vertex on the surface of a part of 100,000 triangles, 1 us within a mm.
 void add_deviation(const DesignPart& design, const DeviationDetail& detail, MeshPatch* patch);

@@ -1,4 +1,4 @@
-#include "twin/scene/compare/triangle_tree.h"
+#include "twin/compare/triangle_tree.h"
 
 #include <algorithm>
 #include <cmath>

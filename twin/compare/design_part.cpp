@@ -1,4 +1,4 @@
-#include "twin/scene/compare/design_part.h"
+#include "twin/compare/design_part.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/collision/stl_mesh.h"
 
 namespace kerf {
 namespace {
@@ -63,18 +62,6 @@ DesignPart::DesignPart(const TriangleMesh& mesh, const std::string& name, Diagno
     diagnostics.push_back(remark(
         Severity::kNote, name, tr("is inside out (all normals point inwards); it is turned"), {}));
   }
-}
-
-std::shared_ptr<const DesignPart> DesignPart::read(const std::string& path,
-                                                   Diagnostics& diagnostics) {
-  const Result<TriangleMesh> mesh = read_stl(path, 1.0);
-  if (!mesh) {
-    Diagnostic d;
-    d.message = "--compare: " + mesh.error();
-    diagnostics.push_back(std::move(d));
-    return nullptr;
-  }
-  return std::make_shared<const DesignPart>(*mesh, path, diagnostics);
 }
 
 double DesignPart::distance_mm(const Vec3& p) const {

@@ -1,4 +1,4 @@
-// twin/scene/compare/triangle_tree.h - which point of a mesh is nearest to a point.
+// twin/compare/triangle_tree.h - which point of a mesh is nearest to a point.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "twin/scene/compare/patch_deviation.h"
+#include "twin/compare/patch_deviation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,8 @@ class Refiner {
         finest_mm_(kFinest_cells * static_cast<float>(detail.cell_mm)),
         coarsest_mm_(kCoarsest_cells * static_cast<float>(detail.cell_mm)),
         tolerance_mm_(static_cast<float>(detail.tolerance_mm)),
-        reach_mm_(kReach_tolerances * tolerance_mm_) {
+        reach_mm_(detail.reach_mm > 0 ? static_cast<float>(detail.reach_mm)
+                                      : kReach_tolerances * tolerance_mm_) {
     patch_.deviation_mm.reserve(patch_.vertices.size() + patch_.vertices.size() / 4);
     for (const MeshVertex& vertex : patch_.vertices) {
       patch_.deviation_mm.push_back(deviation_at(vertex.position_mm));
