@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
+#include <unordered_set>
 #include <vector>
 
 #include "twin/compare/column_lines.h"
@@ -18,6 +21,48 @@ constexpr double kMostColumns = 1e6;
 constexpr double kPieceCells = 2;
 
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) { return glm::cross(b - a, c - a); }
+
+/// Where walls stand in a patch of cells, seen from above; and its border, beyond which there may
+/// be one.
+class WallPlaces {
+ public:
+  WallPlaces(const MeshPatch& patch, const Box& tile_mm, bool is_asked)
+      : patch_(patch), tile_mm_(tile_mm), is_asked_(is_asked) {
+    if (!is_asked) return;
+    const std::span<const std::uint32_t> indices = patch.surface_indices();
+    for (std::size_t n = 0; n + 2 < indices.size(); n += 3) {
+      const auto at = [&](std::size_t k) {
+        return Vec3(patch.vertices[indices[n + k]].position_mm);
+      };
+      const Vec3 across = normal_of(at(0), at(1), at(2));
+      constexpr double kLevel = 0.95;
+      if (std::abs(across.z) > kLevel * glm::length(across)) continue;
+      for (std::size_t k = 0; k < 3; ++k) places_.insert(key(at(k)));
+    }
+  }
+  bool has(std::uint32_t vertex) const {
+    if (!is_asked_) return false;
+    const Vec3 p(patch_.vertices[vertex].position_mm);
+    constexpr double kNear_mm = 1e-4;
+    for (int axis = 0; axis < 2; ++axis)
+      if (p[axis] < tile_mm_.min[axis] + kNear_mm || p[axis] > tile_mm_.max[axis] - kNear_mm)
+        return true;
+    return places_.contains(key(p));
+  }
+
+ private:
+  static std::uint64_t key(const Vec3& p) {
+    const auto bits = [](double mm) {
+      return std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(mm))};
+    };
+    return bits(p.x) << 32 | bits(p.y);
+  }
+
+  const MeshPatch& patch_;
+  Box tile_mm_;
+  bool is_asked_;
+  std::unordered_set<std::uint64_t> places_;
+};
 
 /// A triangle whose deviation changes evenly.
 struct Facet {
@@ -56,8 +101,9 @@ void add_pieces(const Facet& facet, const SurfaceSample& like, double longest_mm
   }
 }
 
-void add_triangles(const MeshPatch& patch, const Box& blank_mm, double cell_mm,
+void add_triangles(const MeshPatch& patch, const Box& blank_mm, const Box& tile_mm, double cell_mm,
                    const SurfaceDoubt& doubt, DeviationSums& sums) {
+  const WallPlaces walls(patch, tile_mm, doubt.walls_mm > 0);
   const std::span<const std::uint32_t> indices = patch.surface_indices();
   for (std::size_t n = 0; n + 2 < indices.size(); n += 3) {
     const std::array<std::uint32_t, 3> t{indices[n], indices[n + 1], indices[n + 2]};
@@ -74,7 +120,8 @@ void add_triangles(const MeshPatch& patch, const Box& blank_mm, double cell_mm,
       if (std::abs(deviation) > std::abs(static_cast<double>(patch.deviation_mm[t[worst]])))
         worst = k;
     }
-    const double off = doubt.of(across / size);
+    const bool meets_wall = walls.has(t[0]) || walls.has(t[1]) || walls.has(t[2]);
+    const double off = meets_wall ? doubt.most_mm() : doubt.anywhere_mm;
     const auto sure = [off](double deviation) {
       return std::copysign(std::max(0.0, std::abs(deviation) - off), deviation);
     };
@@ -120,7 +167,7 @@ class VolumeCounter {
  public:
   VolumeCounter(const Box& bounds_mm, double cell_mm, const DesignPart& design,
                 const SurfaceDoubt& doubt, DeviationSums& sums)
-      : design_(design), sums_(sums), doubt_mm_(std::max(doubt.level_mm, doubt.upright_mm)) {
+      : design_(design), sums_(sums), doubt_mm_(doubt.most_mm()) {
     const Vec3 size = bounds_mm.size();
     const double pitch = std::max(cell_mm, std::sqrt(size.x * size.y / kMostColumns));
     grid_ = {bounds_mm, std::max(1, static_cast<int>(std::ceil(size.x / pitch))),
@@ -165,14 +212,18 @@ class VolumeCounter {
         const double low =
             std::max(static_cast<double>(crossings_[n + 1].z_mm), grid_.bounds_mm.min.z);
         if (!(high - low > sums_.tolerance_mm())) continue;
-        add_part(column, low, high, in_design, cell.x * cell.y, probe);
+        // It is counted where the workpiece's surface is, if one of its ends is that.
+        std::optional<double> surface_z;
+        if (crossings_[n].workpiece != 0) surface_z = high;
+        if (crossings_[n + 1].workpiece != 0) surface_z = low;
+        add_part(column, low, high, surface_z, in_design, cell.x * cell.y, probe);
       }
     }
   }
 
  private:
-  void add_part(std::uint32_t column, double low, double high, bool is_gouge, double area_mm2,
-                DesignProbe& probe) {
+  void add_part(std::uint32_t column, double low, double high, std::optional<double> surface_z,
+                bool is_gouge, double area_mm2, DesignProbe& probe) {
     const auto nx = static_cast<std::uint32_t>(grid_.nx);
     const Vec2 xy = grid_.center(static_cast<int>(column % nx), static_cast<int>(column / nx));
     // Its ends and its middle: what is farthest from the design's surface.
@@ -188,6 +239,7 @@ class VolumeCounter {
     // It is not the place that counts, but what there is of it: the surface says how deep it is.
     constexpr double kJust = 1 + 1e-6;
     if (!(worst > kJust * sums_.tolerance_mm() + doubt_mm_)) return;
+    if (surface_z) place.z = *surface_z;
     const double told = kJust * sums_.tolerance_mm();
     SurfaceSample sample{place, is_gouge ? -told : told, 0, (high - low) * area_mm2,
                          MeshPatch::kNotCut};
@@ -204,10 +256,6 @@ class VolumeCounter {
 
 }  // namespace
 
-double SurfaceDoubt::of(const Vec3& n) const {
-  return level_mm * std::abs(n.z) + upright_mm * std::hypot(n.x, n.y);
-}
-
 void compare_patches(const StockModel& stock, double cell_mm, const DesignPart& design,
                      const SurfaceDoubt& doubt, DeviationSums& sums) {
   const Box bounds = stock.bounds_mm();
@@ -217,7 +265,7 @@ void compare_patches(const StockModel& stock, double cell_mm, const DesignPart& 
     if (patch.indices.empty()) continue;
     volumes.add(patch);
     add_deviation(design, {cell_mm, sums.tolerance_mm(), kReach_mm}, &patch);
-    add_triangles(patch, bounds, cell_mm, doubt, sums);
+    add_triangles(patch, bounds, stock.tile_box(tile), cell_mm, doubt, sums);
   }
   volumes.count();
 }

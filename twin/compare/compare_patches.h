@@ -1,6 +1,8 @@
 // twin/compare/compare_patches.h - the deviations of a workpiece by the triangles of its surface.
 #pragma once
 
+#include <algorithm>
+
 #include "stock/stock_model.h"
 #include "twin/compare/design_part.h"
 #include "twin/compare/deviation_sums.h"
@@ -9,9 +11,9 @@ namespace kerf {
 
 /// How far the surface that a model shows may be off.
 struct SurfaceDoubt {
-  double level_mm = 0;    ///< what is level
-  double upright_mm = 0;  ///< walls; what slants lies in between
-  double of(const Vec3& unit_normal) const;
+  double anywhere_mm = 0;
+  double walls_mm = 0;  ///< of walls, what meets them, and at the borders of tiles
+  double most_mm() const { return std::max(anywhere_mm, walls_mm); }
 };
 
 /// What compare_stock() does of any model: triangles by their vertices' deviations, less the doubt;

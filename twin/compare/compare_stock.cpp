@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "stock/turning/turning_stock.h"
+#include "twin/compare/column_lines.h"
 #include "twin/compare/compare_heights.h"
 #include "twin/compare/compare_patches.h"
 #include "twin/compare/deviation_sums.h"
@@ -39,8 +41,9 @@ double cell_of(const StockModel& stock) {
 SurfaceDoubt doubt_of(const StockModel& stock) {
   const double cell = stock.cell_mm();
   if (has_contours(stock)) return {};
-  if (stock.name() == "mmap") return {0, 0.5 * cell};
-  return {kOctree_cells * cell, kOctree_cells * cell};
+  // A wall is anywhere between the middles of two cells, a corner of walls of three.
+  if (stock.name() == "mmap") return {0, std::numbers::sqrt2 / 2 * cell};
+  return {kOctree_cells * cell, 0};
 }
 
 CutBy named(std::uint32_t label, std::span<const CutLabel> labels) {
@@ -155,7 +158,7 @@ Comparison compare_stock(const StockModel& shown, const DesignPart& design,
   } else {
     const SurfaceDoubt doubt = doubt_of(stock);
     compare_patches(stock, cell, design, doubt, sums);
-    out.walls_mm = doubt.upright_mm;
+    out.walls_mm = doubt.most_mm();
   }
   out.bound_mm = kHeights_mm + (heights ? kSharpened_cells * cell : 0.25 * settings.tolerance_mm);
   std::vector<FoundRegion> regions = sums.regions();
