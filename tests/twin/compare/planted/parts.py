@@ -14,6 +14,7 @@ import math
 import struct
 
 SIZE = 60.0  # of the block in X and Y, about 0
+SIDE = 120
 SEGMENTS = 1440  # of a circle: a chord is off by a hundred-thousandth of its radius
 
 # spec, radius, height above the tip from which on it is as wide as its radius; None: no wall for it
@@ -42,6 +43,7 @@ class Planted:
     lines: set  # any of them: the deepest place is common to all
     depth: float
     bound: float
+    has_gaps: bool
 
 
 def write_stl(path, triangles):
@@ -93,8 +95,12 @@ def circle(radius):
 
 
 def rectangle(half_x, half_y, angle):
+    """With many points on each side: ring_between() goes by angles, and its triangles must not reach far around."""
     c, s = math.cos(angle), math.sin(angle)
-    return [(x * c - y * s, x * s + y * c) for x, y in ((-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y))]
+    corners = [(-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y)]
+    points = [(ax + (bx - ax) * n / SIDE, ay + (by - ay) * n / SIDE)
+              for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1]) for n in range(SIDE)]
+    return [(x * c - y * s, x * s + y * c) for x, y in points]
 
 
 def block(pocket, floor, bottom, boss=None):
@@ -144,10 +150,9 @@ def rectangular(rng, spec, radius, width_from, depth, planted_at, gouge):
             p.add("G1 Z0.5 F600")
         for n, y in enumerate(ys):
             ends = (-x1, x1) if n % 2 == 0 else (x1, -x1)
-            first = p.add(f"G1 {at(ends[0], y, angle)} F900") if n else p.add(f"G0 {at(ends[0], y, angle)}")
+            p.add(f"{'G1' if n else 'G0'} {at(ends[0], y, angle)} F900")
             if n == 0:
                 p.add(f"G1 Z{-depth:.6f} F300")
-            del first
             if n == fault_lane and planted_at == "floor":
                 way = 2.0 if ends[1] > ends[0] else -2.0
                 p.add(f"G1 {at(dip, y, angle)}")
@@ -239,4 +244,4 @@ def plant(rng, number):
                  f"{cell:g}"]
     what = f"{shape}, {planted_at}, {spec}"
     return Planted(f"{planted_at} {spec}", what, block(pocket, -depth, bottom, boss), arguments, faulty, sound, lines, gouge,
-                   cell / 10 + 0.002)
+                   cell / 10 + 0.002, "tslot" in spec or "lollipop" in spec)
