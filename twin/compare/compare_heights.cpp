@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -75,6 +76,16 @@ class HeightComparer {
   bool is_solid(std::size_t at) const { return heights_[at] > floor_; }
   double distance(const Vec3& p) {
     return probe_.distance_mm(p, std::numeric_limits<double>::infinity());
+  }
+  /// 0 inside the design, where a ball about the last such place is known to lie. Far inside all
+  /// its triangles may be about as near, and finding the nearest takes long.
+  double outer_distance(const Vec3& p) {
+    if (glm::distance(p, inner_at_mm_) < inner_mm_) return 0;
+    const double deviation = distance(p);
+    if (deviation >= 0) return deviation;
+    inner_mm_ = -deviation;
+    inner_at_mm_ = p;
+    return 0;
   }
   Kind kind_of(double deviation) const {
     if (deviation < -tolerance_mm_) return Kind::kGouge;
@@ -209,12 +220,11 @@ class HeightComparer {
         if (!is_solid(at)) continue;
         const Vec3 p(grid_.center(i, j), static_cast<double>(floor_));
         const double rise = static_cast<double>(columns_.bottom_mm(at)) - p.z;
+        // Nothing is gouged from below; the design goes on below the blank.
         const double deviation =
-            std::abs(rise) <= kSurelyWithin * tolerance_mm_ ? rise : distance(p);
+            std::abs(rise) <= kSurelyWithin * tolerance_mm_ ? rise : outer_distance(p);
         SurfaceSample sample{p, deviation, cell_mm2_ * kFaceStep * kFaceStep, 0,
                              MeshPatch::kNotCut};
-        // Nothing is gouged from below; the design goes on below the blank.
-        if (kind_of(deviation) == Kind::kGouge) sample.deviation_mm = 0;
         if (kind_of(deviation) == Kind::kExcess && kinds_[at] != Kind::kExcess) {
           const double height = static_cast<double>(heights_[at]);
           sample.volume_mm3 = sample.area_mm2 * std::max(0.0, height - p.z - below(at));
@@ -293,9 +303,7 @@ class HeightComparer {
     p[axis] = border;
     for (int n = 0; n < points; ++n) {
       p.z = static_cast<double>(floor_) + rise * (n + 0.5) / points;
-      double deviation = distance(p);
-      // The design goes on beyond the blank.
-      if (kind_of(deviation) == Kind::kGouge) deviation = 0;
+      const double deviation = outer_distance(p);  // the design goes on beyond the blank
       sums_.add({p, deviation, across * rise / points, 0, MeshPatch::kNotCut});
     }
   }
@@ -313,6 +321,8 @@ class HeightComparer {
   DesignProbe probe_;
   WallFinder walls_;
   std::vector<Kind> kinds_;
+  double inner_mm_ = 0;
+  Vec3 inner_at_mm_{0};
 };
 
 }  // namespace
