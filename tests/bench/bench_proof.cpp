@@ -134,8 +134,9 @@ int run(int runs) {
     ready = std::min(ready, made - start);
     compare = std::min(compare, done - made);
   }
-  fmt::print("design {:.2f} s, comparison {:.2f} s, both {:.2f} s of processor (best of {}, one thread)\n",
-             ready, compare, ready + compare, runs);
+  fmt::print(
+      "design {:.2f} s, comparison {:.2f} s, both {:.2f} s of processor (best of {}, one thread)\n",
+      ready, compare, ready + compare, runs);
   fmt::print("gouge {:.4f} mm, excess {:.3f} mm3, {:.2f} % within\n", told.gouge.mm,
              told.excess_mm3, told.within_percent());
   return 0;

@@ -247,7 +247,7 @@ TEST(DesignPart, FilesThatAreNone) {
   const auto part = read_design(folder + "whole_design.stl", 1, diagnostics);
   ASSERT_NE(part, nullptr);
   EXPECT_TRUE(diagnostics.empty());
-  EXPECT_EQ(part->size(), 12u);
+  EXPECT_EQ(part->mesh.triangles.size(), 12u);
 }
 
 }  // namespace

@@ -242,6 +242,11 @@ def plant(rng, number):
     cell = rng.choice([0.1, 0.15, 0.2])
     arguments = ["--stock", f"box:{-SIZE / 2:g},{-SIZE / 2:g},{bottom:g}:{SIZE / 2:g},{SIZE / 2:g},0", "--tool", f"1={spec}", "--cell",
                  f"{cell:g}"]
+    has_gaps = "tslot" in spec or "lollipop" in spec
+    model = ""
+    if number % 8 == 3 and not has_gaps:
+        cell, model = 0.2, "octree "
+        arguments[-1:] = ["0.2", "--model", "octree"]
     what = f"{shape}, {planted_at}, {spec}"
-    return Planted(f"{planted_at} {spec}", what, block(pocket, -depth, bottom, boss), arguments, faulty, sound, lines, gouge,
-                   cell / 10 + 0.002, "tslot" in spec or "lollipop" in spec)
+    return Planted(f"{model}{planted_at} {spec}", what, block(pocket, -depth, bottom, boss), arguments, faulty, sound, lines, gouge,
+                   cell / 10 + 0.002, has_gaps)
