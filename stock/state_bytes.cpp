@@ -55,9 +55,19 @@ bool has_right_checksum(std::string_view bytes) {
 }  // namespace
 
 struct StateWriter::Impl {
-  AtomicFile file;
+  std::optional<AtomicFile> file;  ///< none: to memory
+  std::string* memory = nullptr;
   XXH3_state_t hash;
   explicit Impl(AtomicFile f) : file(std::move(f)) { XXH3_128bits_reset(&hash); }
+  explicit Impl(std::string& bytes) : memory(&bytes) { XXH3_128bits_reset(&hash); }
+
+  void write(const void* data, std::size_t bytes) {
+    if (file) {
+      file->write(data, bytes);
+    } else {
+      memory->append(static_cast<const char*>(data), bytes);
+    }
+  }
 };
 
 StateWriter::StateWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -70,16 +80,21 @@ Result<StateWriter> StateWriter::create(const std::string& path) {
   return StateWriter(std::make_unique<Impl>(std::move(*file)));
 }
 
+StateWriter StateWriter::into(std::string& bytes) {
+  return StateWriter(std::make_unique<Impl>(bytes));
+}
+
 void StateWriter::put(const void* data, std::size_t bytes) {
   XXH3_128bits_update(&impl_->hash, data, bytes);
-  impl_->file.write(data, bytes);
+  impl_->write(data, bytes);
 }
 
 Done StateWriter::commit() {
   XXH128_canonical_t sum;
   XXH128_canonicalFromHash(&sum, XXH3_128bits_digest(&impl_->hash));
-  impl_->file.write(&sum, sizeof sum);
-  return impl_->file.commit();
+  impl_->write(&sum, sizeof sum);
+  if (!impl_->file) return std::monostate{};
+  return impl_->file->commit();
 }
 
 std::optional<std::string_view> StateHead::line(std::string_view key) {

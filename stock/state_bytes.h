@@ -30,6 +30,8 @@ inline constexpr std::size_t kStateHashBytes = 16;
 class StateWriter {
  public:
   static Result<StateWriter> create(const std::string& path);
+  /// Into memory: a file that lies within another one. Cannot fail.
+  static StateWriter into(std::string& bytes);
   StateWriter(StateWriter&&) noexcept;
   ~StateWriter();
   void put(const void* data, std::size_t bytes);

@@ -205,41 +205,57 @@ void PartRenderer::draw_surface(const PartSurface& part, const Camera& camera) c
   glDisable(GL_DEPTH_TEST);
 }
 
-/// As SceneRenderer does.
+/// A ray is in material where it meets a plane if it meets an odd number of surfaces behind it. All
+/// of them are counted, hidden or not: which of two is the nearer one cannot be told where the
+/// surface folds.
 void PartRenderer::draw_cut_open(const PartSurface& part, const Camera& camera) const {
   glClearStencil(0);
   glClear(GL_STENCIL_BUFFER_BIT);
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_STENCIL_TEST);
-  glStencilFuncSeparate(GL_FRONT, GL_ALWAYS, 0, 0xff);
-  glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 1, 0xff);
-  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-  for (const glm::dvec4& kept : kept_) draw_pieces(part, camera, glm::vec4(kept));
+  glStencilFunc(GL_ALWAYS, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_INVERT, GL_INVERT);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    glStencilMask(1u << i);
+    draw_pieces(part, camera, glm::vec4(kept_[i]));
+  }
   glDisable(GL_CLIP_DISTANCE0);
-  draw_faces(camera);
+  glStencilMask(0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(1u << i), 1u << i);
+    draw_face(i, camera);
+  }
   glDisable(GL_STENCIL_TEST);
 }
 
-void PartRenderer::draw_faces(const Camera& camera) const {
-  glStencilFunc(GL_EQUAL, 1, 0xff);
-  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  glDepthFunc(GL_ALWAYS);
-  glBindVertexArray(no_vertices_.name());
-  const glm::dmat4 clip_from_view(camera.clip_from_view());
+/// Of a plane, if it faces the eye, which is at the origin.
+void PartRenderer::draw_face(std::size_t which, const Camera& camera) const {
+  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(camera.view_from_world()));
+  const glm::dmat4 view_from_clip = glm::inverse(glm::dmat4(camera.clip_from_view()));
+  const auto in_view = [&](const glm::dvec4& kept) {
+    return glm::transpose(world_from_view) * kept;
+  };
+  const auto in_clip = [&](const glm::dvec4& plane) {
+    return glm::transpose(view_from_clip) * plane;
+  };
+  const glm::dvec4 face = -in_view(kept_[which]);
+  if (!(face.w > 0)) return;
+  const glm::dvec4 plane = in_clip(face);
   const glm::dvec2 half_px = 0.5 * kSamples * glm::dvec2(picture_px_);
+  glm::dvec3 beside(0.0);
+  if (kept_.size() > 1) beside = kept_beside(plane, in_clip(in_view(kept_[1 - which])));
+  glBindVertexArray(no_vertices_.name());
   programs_.face.use();
   programs_.face.set("middle_px", glm::vec2(half_px));
-  for (const glm::dvec4& face : faces_in_view(camera)) {
-    // On the plane the window depth is affine in the picture.
-    const glm::dvec4 plane = glm::transpose(glm::inverse(clip_from_view)) * face;
-    programs_.face.set("normal_view", glm::vec3(face));
-    programs_.face.set("depth_plane", glm::vec3(-0.5 * plane.x / (plane.z * half_px.x),
-                                                -0.5 * plane.y / (plane.z * half_px.y),
-                                                0.5 - 0.5 * plane.w / plane.z));
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDepthFunc(GL_LESS);
-  }
-  glDepthFunc(GL_LESS);
+  programs_.face.set("normal_view", glm::vec3(face));
+  // On the plane the window depth is affine in the picture.
+  programs_.face.set("depth_plane", glm::vec3(-0.5 * plane.x / (plane.z * half_px.x),
+                                              -0.5 * plane.y / (plane.z * half_px.y),
+                                              0.5 - 0.5 * plane.w / plane.z));
+  programs_.face.set("kept_beside",
+                     glm::vec3(beside.x / half_px.x, beside.y / half_px.y, beside.z));
+  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 /// Those that face the eye, which is at the origin: normals towards it.

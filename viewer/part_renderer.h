@@ -68,7 +68,7 @@ class PartRenderer {
   Done allocate(glm::ivec2 picture_px);
   void draw_pieces(const PartSurface& part, const Camera& camera, const glm::vec4& kept) const;
   void draw_cut_open(const PartSurface& part, const Camera& camera) const;
-  void draw_faces(const Camera& camera) const;
+  void draw_face(std::size_t which, const Camera& camera) const;
   std::vector<glm::dvec4> faces_in_view(const Camera& camera) const;
   void draw_surface(const PartSurface& part, const Camera& camera) const;
   void draw_resolved() const;

@@ -25,6 +25,8 @@ constexpr int kMaxSize_px = 8192;
 constexpr double kFieldOfView_deg = 24.0;
 /// Of what stands around the blank so much of the blank's greatest length is shown.
 constexpr double kBodyReach = 0.4;
+/// What holds a part that turns is round, and wider than the part on all sides.
+constexpr double kBodyReachInLathe = 0.15;
 /// From front right above, towards the eye, in the frame of views.
 constexpr Vec3 kEyeDirection{0.60, -1.0, 0.86};
 
@@ -42,7 +44,8 @@ double smallest_pixel_mm(const Camera& camera, const Box& box) {
 /// The corners of what of the bodies lies near the blank: a table is not to make the part small.
 void add_bodies(const PictureOptions& options, std::vector<Vec3>& points_mm) {
   const Vec3 size = options.blank_mm.empty() ? Vec3(0) : options.blank_mm.size();
-  const double reach_mm = kBodyReach * std::max({size.x, size.y, size.z});
+  const double share = options.standing == Standing::kOnTable ? kBodyReach : kBodyReachInLathe;
+  const double reach_mm = share * std::max({size.x, size.y, size.z});
   for (const PictureBody& body : options.bodies) {
     if (!body.mesh) continue;
     Box box;

@@ -20,6 +20,12 @@ std::optional<Section> usual_section(SectionKind kind, const Box& bounds_mm, Sta
   return section;
 }
 
+glm::dvec3 kept_beside(const glm::dvec4& plane, const glm::dvec4& other) {
+  // The point's depth is affine in the picture, and so is what lies beside it.
+  const double share = other.z / plane.z;
+  return {other.x - share * plane.x, other.y - share * plane.y, other.w - share * plane.w};
+}
+
 std::optional<glm::dvec4> kept_side(const SectionPlane& plane) {
   const double length = glm::length(plane.normal);
   if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(plane.offset_mm)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 
@@ -37,5 +38,10 @@ std::optional<Section> usual_section(SectionKind kind, const Box& bounds_mm, Sta
 /// The plane in the frame of the workpiece, of unit normal: dot(plane, (p, 1)) >= 0 is kept. None
 /// where there is no direction.
 std::optional<glm::dvec4> kept_side(const SectionPlane& plane);
+
+/// Of two planes in the frame of clip space: where a pixel shows a point of the first one that the
+/// second one keeps, dot(result, (x, y, 1)) > 0, x and y from -1 to 1. The first is not seen from
+/// its edge.
+glm::dvec3 kept_beside(const glm::dvec4& plane, const glm::dvec4& other);
 
 }  // namespace kerf

@@ -44,7 +44,8 @@ struct BarSize {
 
 struct TurningOptions {
   std::optional<int> orientation;
-  std::optional<double> edge_mm, f_mm;
+  std::optional<double> edge_mm, f_mm, max_depth_mm;
+  std::optional<bool> goes_its_path;
   std::optional<BarSize> shank, bar;
   std::string holder_file;
 };

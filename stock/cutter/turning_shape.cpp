@@ -67,8 +67,8 @@ constexpr std::array kTurningForms{
                   {tr_noop("front angle FRONT"), kIsAngle},
                   {tr_noop("back angle BACK"), kIsAngle}}}}};
 
-constexpr std::array<std::string_view, 5> kTurningOptions = {"orient", "edge", "holder", "bar",
-                                                             "f"};
+constexpr std::array<std::string_view, 7> kTurningOptions = {"orient", "edge",   "holder", "bar",
+                                                             "f",      "max_ap", "path"};
 constexpr std::array<std::string_view, 5> kMillOptions = {"flute", "shank", "stickout", "teeth",
                                                           "live"};
 
@@ -81,7 +81,8 @@ constexpr const char* kTurningHelp = tr_noop(
     "facegroove:W[:R]     blade for grooves in faces\n"
     "thread:ANGLE[:PITCH]  threading tool: 60, 55, 30, 29; sharp without PITCH\n"
     "bore:R:BAR[:LENGTH[:FRONT:BACK]]  boring bar\n"
-    "each of these may add  :orient=N:edge=L:holder=WxL|profile:FILE:bar=DxL:f=L");
+    "each of these may add  :orient=N:edge=L:holder=WxL|profile:FILE:bar=DxL:f=L:max_ap=L\n"
+    "  :path=tool|contour");
 
 Result<BarSize> parse_bar_size(std::string_view name, std::string_view text, LengthUnit unit) {
   const std::size_t x = text.find_first_of("xX");
@@ -123,6 +124,22 @@ Done parse_turning_option(std::string_view name, std::string_view value, LengthU
     if (options.f_mm) return twice();
     return take_value(parse_length("f", value, 0, kMostBar_mm, unit), options.f_mm);
   }
+  if (name == "max_ap") {
+    if (options.max_depth_mm) return twice();
+    return take_value(parse_length("max_ap", value, kLeastEdge_mm, kMostEdge_mm, unit),
+                      options.max_depth_mm);
+  }
+  if (name == "path") {
+    if (options.goes_its_path) return twice();
+    const std::string word = to_lower(trim(value));
+    if (word != "tool" && word != "contour") {
+      return Error{
+          trf("path: '{}' is not allowed; must be tool (CAM has compensated the nose) or contour",
+              shown(value))};
+    }
+    options.goes_its_path = word == "tool";
+    return std::monostate{};
+  }
   if (name == "bar") {
     if (options.bar) return twice();
     return take_value(parse_bar_size("bar", value, unit), options.bar);
@@ -142,12 +159,12 @@ Done parse_turning_option(std::string_view name, std::string_view value, LengthU
   if (std::find(kMillOptions.begin(), kMillOptions.end(), name) != kMillOptions.end()) {
     return Error{
         trf("{}= is for tools that turn; a turning tool takes orient=N, edge=L, "
-            "holder=WxL|profile:FILE, bar=DxL, f=L",
+            "holder=WxL|profile:FILE, bar=DxL, f=L, max_ap=L, path=tool|contour",
             name)};
   }
   return Error{
       trf("unknown option '{}'{} Options: orient=N, edge=L, holder=WxL|profile:FILE, "
-          "bar=DxL, f=L",
+          "bar=DxL, f=L, max_ap=L, path=tool|contour",
           shown(name), did_you_mean(name, kTurningOptions))};
 }
 
@@ -162,6 +179,8 @@ std::string turning_options_text(const TurningOptions& options) {
   if (!options.holder_file.empty()) text += ":holder=profile:" + options.holder_file;
   if (options.bar) text += ":bar=" + size(*options.bar);
   if (options.f_mm) text += ":f=" + number_text(*options.f_mm);
+  if (options.max_depth_mm) text += ":max_ap=" + number_text(*options.max_depth_mm);
+  if (options.goes_its_path) text += *options.goes_its_path ? ":path=tool" : ":path=contour";
   return text;
 }
 
@@ -268,6 +287,18 @@ Result<Cutter> parse_turning_shape(std::string_view name, std::string_view rest,
                              made->tip);
 }
 
+InsertUse insert_use_of(const Cutter& cutter) {
+  InsertUse use;
+  if (!is_turning_shape(cutter.spec())) return use;
+  // What no form has a value for stands in the text as it was understood.
+  for (const std::string_view field : shape_fields(cutter.spec(), kTurningOptions)) {
+    constexpr std::string_view kMost = "max_ap=";
+    if (field.starts_with(kMost)) use.max_depth_mm = parse_decimal(field.substr(kMost.size()));
+    use.goes_its_path = use.goes_its_path || field == "path=tool";
+  }
+  return use;
+}
+
 std::string turning_shape_in(std::string_view spec, LengthUnit unit) {
   const std::size_t colon = spec.find(':');
   const TurningForm& form = *turning_form(spec.substr(0, colon));
@@ -289,7 +320,7 @@ std::string turning_shape_in(std::string_view spec, LengthUnit unit) {
     }
     const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
     const std::size_t x = value.find('x');
-    if (name == "orient" || is_holder_file(field)) {
+    if (name == "orient" || name == "path" || is_holder_file(field)) {
       out += field;
     } else if (x == std::string_view::npos) {
       out += fmt::format("{}={}", name, length(value));

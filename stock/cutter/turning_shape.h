@@ -1,6 +1,7 @@
 // stock/cutter/turning_shape.h - SHAPE texts of turning tools: "iso:CNMG120408:R:95:holder=20x100".
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,6 +39,9 @@ namespace kerf {
 ///                         orient= says so
 ///     f=L                 ISO 5610's f of either: from the tip to the shank's far side (by
 ///                         default 1.25 W), or to the bar's axis (0.68 D)
+///     max_ap=L            the depth of cut that it takes
+///     path=tool           programs have the tool's path, which CAM has compensated for the nose;
+///                         path=contour: they have the contour (so it is without)
 /// Not those of tools that turn: flute=, shank=, stickout=, teeth=, live=.
 bool is_turning_form(std::string_view name);
 /// What a SHAPE text begins with.
@@ -45,6 +49,13 @@ bool is_turning_shape(std::string_view shape);
 
 /// Of `name` and what follows its colon; no data: there is none. Ranges are told in the errors.
 Result<Cutter> parse_turning_shape(std::string_view name, std::string_view rest, LengthUnit unit);
+
+/// How such a tool is used, as its spec() has it.
+struct InsertUse {
+  std::optional<double> max_depth_mm;  ///< of cut, that it takes
+  bool goes_its_path = false;          ///< programs have its path, not the contour
+};
+InsertUse insert_use_of(const Cutter& cutter);
 
 /// A spec() of such a tool with its lengths in `unit`.
 std::string turning_shape_in(std::string_view spec, LengthUnit unit);

@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
+
+#include "base/translate.h"
+#include "stock/turning/turning_state.h"
 
 namespace kerf {
 namespace {
@@ -16,6 +22,27 @@ octree::RevolvedBody body_of(const TurnedPart& part) {
     body.inner_radius_mm = part.flats()->inner_radius_mm;
   }
   return body;
+}
+
+/// The part stays at least so far from the box; 0: it may not. Of a tool that keeps its direction.
+double box_spare_mm(const Box& box, const CarriedPart& part, const CutMove& move) {
+  if (move.axis_from != move.axis_to) return 0;
+  double around_mm = part.radius_mm;
+  if (move.arc) {
+    around_mm += 2 * std::max(glm::distance(move.from_mm, move.arc->center_mm),
+                              glm::distance(move.to_mm, move.arc->center_mm));
+  }
+  const double reach_mm = glm::distance(move.from_mm, box.min) + glm::length(box.size());
+  Box way;
+  for (const Vec3& tip : {move.from_mm, move.to_mm})
+    for (const double along : {part.from_z_mm, std::min(part.to_z_mm, part.from_z_mm + reach_mm)})
+      way.extend(tip + along * move.axis_from);
+  double apart_mm = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart_mm = std::max({apart_mm, way.min[axis] - around_mm - box.max[axis],
+                         box.min[axis] - way.max[axis] - around_mm});
+  }
+  return apart_mm;
 }
 
 }  // namespace
@@ -129,6 +156,24 @@ std::optional<WayContact> MillTurn::first_contact_of(const Cutter& cutter,
                        : kerf::first_contact_of(turned_, cutter, moves, tolerance_mm, watch);
 }
 
+double MillTurn::part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                               double most_mm) const {
+  // An octree is made only for who comes near.
+  const double apart_mm = box_spare_mm(bounds_mm(), part, move);
+  if (apart_mm > enough_mm) return std::min(apart_mm, most_mm);
+  return tree().part_spare_mm(part, move, enough_mm, most_mm);
+}
+
+std::optional<PartContact> MillTurn::part_contact(const Cutter& cutter, const CarriedPart& part,
+                                                  const CutMove& move, double tolerance_mm) const {
+  return tree().part_contact(cutter, part, move, tolerance_mm);
+}
+
+std::optional<PartGap> MillTurn::part_gap(const Cutter& cutter, const CarriedPart& part,
+                                          const CutMove& move, double below_mm) const {
+  return tree().part_gap(cutter, part, move, below_mm);
+}
+
 std::unique_ptr<StockModel> MillTurn::snapshot() const {
   auto copy = std::unique_ptr<MillTurn>(new MillTurn(TurningStock(turned_.part()), options_));
   copy->options_.threads = 1;
@@ -158,8 +203,40 @@ std::optional<std::uint32_t> MillTurn::cut_id_at(const Vec3& point_mm) const {
   return milled ? milled : turned_.cut_id_at(point_mm);
 }
 
+/// Beside the octree: Milled::beside_mm3, a double, and the turned part's file.
 Done MillTurn::save(const std::string& path) const {
-  return milled_ ? tree().save(path) : turned_.save(path);
+  if (!milled_) return turned_.save(path);
+  std::string beside(sizeof(double), '\0');
+  std::memcpy(beside.data(), &milled_->beside_mm3, sizeof(double));
+  return tree().save_with(path, beside + turning::bytes_of_part(turned_.part().saved()));
+}
+
+Result<std::unique_ptr<MillTurn>> MillTurn::load(const std::string& path,
+                                                 const MillTurnOptions& options) {
+  std::string beside;
+  Result<std::unique_ptr<Octree>> tree = Octree::load_with(path, options.threads, beside);
+  if (!tree) return Error{tree.error()};
+  if (beside.empty()) {
+    return Error{trf("{}: nothing in it says how it was turned: a mill has saved it", path)};
+  }
+  if (beside.size() < sizeof(double)) return Error{trf("{}: the contours are damaged", path)};
+  auto milled = std::make_unique<Milled>();
+  std::memcpy(&milled->beside_mm3, beside.data(), sizeof(double));
+  Result<turning::SavedPart> saved = turning::parse_part(beside.substr(sizeof(double)), path);
+  if (!saved) return Error{saved.error()};
+  MillTurnOptions as_saved = options;
+  as_saved.cell_mm = tree.value()->cell_mm();
+  Result<std::unique_ptr<MillTurn>> stock =
+      create(TurningStock(TurnedPart::restored(std::move(saved.value()))), as_saved);
+  if (!stock) return stock;
+  MillTurn& made = **stock;
+  const bool fits = tree.value()->bounds_mm() == made.bounds_mm() &&
+                    std::abs(milled->beside_mm3) <= made.blank_mm3();
+  if (!fits) return Error{trf("{}: the contours are damaged", path)};
+  milled->tree = std::move(tree.value());
+  milled->bands = made.bands();
+  made.milled_ = std::move(milled);
+  return stock;
 }
 
 Done MillTurn::can_cut(const Cutter& cutter) {

@@ -60,6 +60,14 @@ class MillTurn final : public StockModel, public WaySearcher {
   std::optional<WayContact> first_contact_of(const Cutter& cutter, std::span<const CutMove> moves,
                                              double tolerance_mm,
                                              const WayWatch& watch) const override;
+  /// Of what driven tools carry: as the octree has it.
+  bool checks_parts() const override { return true; }
+  double part_spare_mm(const CarriedPart& part, const CutMove& move, double enough_mm,
+                       double most_mm) const override;
+  std::optional<PartContact> part_contact(const Cutter& cutter, const CarriedPart& part,
+                                          const CutMove& move, double tolerance_mm) const override;
+  std::optional<PartGap> part_gap(const Cutter& cutter, const CarriedPart& part,
+                                  const CutMove& move, double below_mm) const override;
   bool is_milled() const { return milled_ != nullptr; }
 
   std::unique_ptr<StockModel> snapshot() const override;
@@ -68,8 +76,13 @@ class MillTurn final : public StockModel, public WaySearcher {
   void keep_cut_ids(bool keep) override;
   bool keeps_cut_ids() const override { return turned_.keeps_cut_ids(); }
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;
-  /// TurningStock's file, or once it is milled an octree's, whose profile nobody knows any more.
+  /// TurningStock's file, or once it is milled an octree's, with the profile beside it: a mill goes
+  /// on with the octree alone, a lathe with both.
   Done save(const std::string& path) const override;
+  /// Of one that has been milled; its cells are those that it has. Error: cannot be read, damaged,
+  /// an octree without a profile.
+  static Result<std::unique_ptr<MillTurn>> load(const std::string& path,
+                                                const MillTurnOptions& options);
 
   /// Driven tools as an octree takes them, others as a TurningStock.
   static Done can_cut(const Cutter& cutter);

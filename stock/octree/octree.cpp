@@ -256,11 +256,20 @@ Result<std::unique_ptr<Octree>> Octree::create(const OctreeOptions& options) {
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }
 
-Done Octree::save(const std::string& path) const {
-  return write_tree(path, {impl_->tree, impl_->additive, impl_->blank_mm3, impl_->removed});
+Done Octree::save(const std::string& path) const { return save_with(path, {}); }
+
+Done Octree::save_with(const std::string& path, std::string beside) const {
+  return write_tree(
+      path, {impl_->tree, impl_->additive, impl_->blank_mm3, impl_->removed, std::move(beside)});
 }
 
 Result<std::unique_ptr<Octree>> Octree::load(const std::string& path, int threads) {
+  std::string beside;
+  return load_with(path, threads, beside);
+}
+
+Result<std::unique_ptr<Octree>> Octree::load_with(const std::string& path, int threads,
+                                                  std::string& beside) {
   const Result<std::string> bytes = read_state_bytes(path);
   if (!bytes) return Error{bytes.error()};
   Result<SavedTree> saved = parse_tree(*bytes, path);
@@ -269,6 +278,7 @@ Result<std::unique_ptr<Octree>> Octree::load(const std::string& path, int thread
   impl->additive = saved->additive;
   impl->blank_mm3 = saved->blank_mm3;
   impl->removed = saved->removed;
+  beside = std::move(saved->beside);
   impl->pool = std::make_shared<WorkerPool>(std::max(1, threads));
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }

@@ -107,6 +107,11 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   /// is an error that says what is wrong with it.
   Done save(const std::string& path) const override;
   static Result<std::unique_ptr<Octree>> load(const std::string& path, int threads = 1);
+  /// The same with bytes that lie beside it in the file, and mean nothing to it: it does not keep
+  /// them.
+  Done save_with(const std::string& path, std::string beside) const;
+  static Result<std::unique_ptr<Octree>> load_with(const std::string& path, int threads,
+                                                   std::string& beside);
   std::string name() const override { return "octree"; }
   Box bounds_mm() const override;
   double cell_mm() const override;

@@ -21,6 +21,7 @@ std::uint8_t byte_of(const SparseRef<T>& ref) {
 }
 
 struct Head {
+  std::int64_t beside = 0;
   double bounds[6] = {};
   std::int64_t cells[3] = {};
   std::int64_t additive = 0;
@@ -46,6 +47,9 @@ bool sane(const Head& h) {
 }
 
 bool read_head(StateHead& reader, Head& h) {
+  StateHead before = reader;
+  if (before.line("beside") && (!reader.numbers("beside", &h.beside, 1) || h.beside < 1))
+    return false;
   return reader.numbers("bounds_mm", h.bounds, 6) && reader.numbers("cells", h.cells, 3) &&
          reader.numbers("additive", &h.additive, 1) &&
          reader.numbers("blank_mm3", &h.blank_mm3, 1) && reader.numbers("removed", &h.removed, 1) &&
@@ -185,10 +189,11 @@ Done write_tree(const std::string& path, const SavedTree& saved) {
   const Lattice& lattice = saved.tree.lattice();
   const Box& b = lattice.bounds_mm;
   const std::string head = fmt::format(
-      "{}model octree\nbounds_mm {} {} {} {} {} {}\ncells {} {} {}\nadditive {}\nblank_mm3 {}\n"
+      "{}model octree\n{}bounds_mm {} {} {} {} {} {}\ncells {} {} {}\nadditive {}\nblank_mm3 {}\n"
       "removed {}\ndata\n",
-      kStateMagic, b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z, lattice.cells[0],
-      lattice.cells[1], lattice.cells[2], saved.additive ? 1 : 0, saved.blank_mm3, saved.removed);
+      kStateMagic, saved.beside.empty() ? "" : fmt::format("beside {}\n", saved.beside.size()),
+      b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z, lattice.cells[0], lattice.cells[1],
+      lattice.cells[2], saved.additive ? 1 : 0, saved.blank_mm3, saved.removed);
   file->put(head.data(), head.size());
   for (std::uint32_t number = 0; number < saved.tree.tile_count(); ++number) {
     const TileRef& tile = saved.tree.tile(number);
@@ -205,6 +210,7 @@ Done write_tree(const std::string& path, const SavedTree& saved) {
       file->put(brick->places(), crossings * sizeof(std::uint16_t));
     }
   }
+  file->put(saved.beside.data(), saved.beside.size());
   return file->commit();
 }
 
@@ -213,14 +219,19 @@ Result<SavedTree> parse_tree(const std::string& bytes, const std::string& name) 
   const Result<StateHead> reader = head_of_state(
       bytes, name, "octree", [&head](StateHead& lines) { return read_head(lines, head); });
   if (!reader) return Error{reader.error()};
-  const Result<std::string_view> data = data_of_state(*reader, name);
+  Result<std::string_view> data = data_of_state(*reader, name);
   if (!data) return Error{data.error()};
   const std::string damaged = trf("{}: the tiles are damaged", name);
+  const auto beside = static_cast<std::uint64_t>(head.beside);
+  if (beside > data->size()) return Error{damaged};
+  const std::string_view behind = data->substr(data->size() - beside);
+  *data = data->substr(0, data->size() - beside);
   const Lattice lattice = lattice_of(head);
   const double tiles = static_cast<double>(lattice.tiles[0]) * lattice.tiles[1] * lattice.tiles[2];
   if (tiles > static_cast<double>(data->size())) return Error{damaged};
 
-  SavedTree saved{BrickTree(lattice), head.additive == 1, head.blank_mm3, head.removed};
+  SavedTree saved{BrickTree(lattice), head.additive == 1, head.blank_mm3, head.removed,
+                  std::string(behind)};
   TileReader tile_reader(*data);
   const std::uint64_t version = next_version();
   const int columns = lattice.column_count();

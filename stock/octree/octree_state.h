@@ -1,6 +1,8 @@
 // stock/octree/octree_state.h - an octree on disk: kerf-state/1 (stock/state_bytes.h).
 //
 //   model octree
+//   beside n               bytes of another file behind the tiles; the line is missing where there
+//                          are none
 //   bounds_mm x0 y0 z0 x1 y1 z1
 //   cells nx ny nz
 //   additive 0|1           1: what is kept is the air around the material
@@ -26,6 +28,7 @@ struct SavedTree {
   bool additive = false;
   double blank_mm3 = 0;
   std::int64_t removed = 0;
+  std::string beside;  ///< what belongs to who saved it: an octree knows nothing of it
 };
 
 /// Without ids.

@@ -12,6 +12,8 @@
 namespace kerf {
 namespace {
 
+constexpr double kNoteHeight_mm = 2.5;  // ISO 3098
+
 Done write_text(const std::string& path, const fmt::memory_buffer& text) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return Error{file.error()};
@@ -111,6 +113,14 @@ Done plane::write_curves_dxf(const std::vector<Curve>& curves, const DrawingStyl
     point(10, style.centre_line->first);
     point(11, style.centre_line->second);
   }
+  for (const auto& [from, to] : style.flats) {
+    fmt::format_to(out, "0\nLINE\n8\nFLATS\n6\nDASHED\n");
+    point(10, from);
+    point(11, to);
+    fmt::format_to(out, "0\nTEXT\n8\nFLATS\n");
+    point(10, from);
+    fmt::format_to(out, "40\n{}\n1\n{}\n", kNoteHeight_mm, style.flats_note);
+  }
   fmt::format_to(out, "0\nENDSEC\n0\nEOF\n");
   return write_text(path, text);
 }
@@ -134,15 +144,22 @@ Done plane::write_curves_svg(const std::vector<Curve>& curves, const DrawingStyl
                  std::max(size.x, least), std::max(size.y, least), digits, left);
   for (const Curve& curve : curves) paths.append(curve);
   fmt::format_to(out, "\"/>\n");
-  if (style.centre_line) {
-    const Vec2 a = paths.place(style.centre_line->first),
-               b = paths.place(style.centre_line->second);
+  const auto line = [&](std::string_view kind, const std::pair<Vec2, Vec2>& ends,
+                        std::string_view dashes, const std::string& title) {
+    const Vec2 a = paths.place(ends.first), b = paths.place(ends.second);
     fmt::format_to(out,
-                   "<line class=\"axis\" x1=\"{:.{}f}\" y1=\"{:.{}f}\" x2=\"{:.{}f}\" "
+                   "<line class=\"{}\" x1=\"{:.{}f}\" y1=\"{:.{}f}\" x2=\"{:.{}f}\" "
                    "y2=\"{:.{}f}\" stroke=\"#303030\" stroke-width=\"0.1\" "
-                   "stroke-dasharray=\"4 1 0.5 1\"/>\n",
-                   a.x, digits, a.y, digits, b.x, digits, b.y, digits);
-  }
+                   "stroke-dasharray=\"{}\"",
+                   kind, a.x, digits, a.y, digits, b.x, digits, b.y, digits, dashes);
+    if (title.empty()) {
+      fmt::format_to(out, "/>\n");
+    } else {
+      fmt::format_to(out, "><title>{}</title></line>\n", title);
+    }
+  };
+  if (style.centre_line) line("axis", *style.centre_line, "4 1 0.5 1", "");
+  for (const auto& ends : style.flats) line("flats", ends, "2 1", style.flats_note);
   fmt::format_to(out, "</svg>\n");
   return write_text(path, text);
 }

@@ -18,6 +18,11 @@ struct DrawingStyle {
   /// "axis". Outlines are read without it: of DXF where contours close along the axis, of SVG
   /// anyway.
   std::optional<std::pair<Vec2, Vec2>> centre_line;
+  /// What is no edge of the section, dashed, with a note of what it is: of DXF on the layer FLATS,
+  /// of SVG of the class "flats", the note its title. Outlines are read without them where they are
+  /// read without a centre line.
+  std::vector<std::pair<Vec2, Vec2>> flats;
+  std::string flats_note;
   /// What the SVG shows, from the lower left corner to the upper right one.
   Vec2 low_mm{0}, high_mm{0};
   /// SVG: x is that of the curves; or else the picture's left edge is 0.

@@ -132,11 +132,18 @@ class DxfReader {
     return scale_ * Vec2(x, y);
   }
 
+  static std::string_view layer_of(const std::vector<Group>& entity) {
+    const auto layer = std::find_if(entity.begin(), entity.end(),
+                                    [](const Group& group) { return group.code == 8; });
+    return layer == entity.end() ? std::string_view() : layer->value;
+  }
+
   void take(const std::vector<Group>& entity) {
     if (entity.empty() || !error_.empty()) return;
     const std::string_view kind = entity[0].value;
     if (value_of(entity, 230, -1, 1, 1.0) < 1 - 1e-6)
       return fail(entity[0].line, trf("{} drawn from below (group 230)", kind));
+    if (kind == "LINE" && has_axis_ && layer_of(entity) == "FLATS") return;
     if (kind == "LINE") {
       pieces_.push_back({{point_of(entity, 10), point_of(entity, 11)}, entity[0].line});
     } else if (kind == "ARC" || kind == "CIRCLE") {

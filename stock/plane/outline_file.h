@@ -15,7 +15,8 @@ enum class OutlineFormat { kDxf, kSvg };
 enum class OutlineClosing {
   kByThemselves,
   /// Chains of loose edges with both ends on the x axis of the drawing (within kJoin_mm) are closed
-  /// along it, and edges that lie on it (centre lines) are no part of the outline. Of DXF.
+  /// along it, and edges that lie on it (centre lines) are no part of the outline, nor lines on the
+  /// layer FLATS. Of DXF.
   kAlongAxis
 };
 
@@ -39,8 +40,8 @@ OutlineFormat outline_format_of(const std::string& path);
 /// SVG: path (M L H V C S Q T A Z, both cases), rect (square corners), circle, ellipse, polygon.
 /// One user unit is 1 mm, or what width="..mm|cm|in" and viewBox of the svg element say. y points
 /// down there: it is turned round, so that the picture's lower edge is y = 0 if there is a height,
-/// and y is negative otherwise. A line of the class "axis" is read past. transform is an error, and
-/// so is a path that is not closed.
+/// and y is negative otherwise. Lines of the classes "axis" and "flats" are read past. transform is
+/// an error, and so is a path that is not closed.
 Result<PlaneOutline> parse_dxf_outline(std::string_view text, const std::string& name,
                                        double tolerance_mm,
                                        OutlineClosing closing = OutlineClosing::kByThemselves);

@@ -95,8 +95,9 @@ class SvgReader {
       not_drawn_ += empty ? 0 : 1;
     } else if (not_drawn_ == 0) {
       const auto kind = attributes.find("class");
-      const bool is_axis = element == "line" && kind != attributes.end() && kind->second == "axis";
-      if (!is_axis) take(element, attributes);
+      const bool is_no_edge = element == "line" && kind != attributes.end() &&
+                              (kind->second == "axis" || kind->second == "flats");
+      if (!is_no_edge) take(element, attributes);
     }
     return true;
   }

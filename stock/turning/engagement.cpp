@@ -19,6 +19,22 @@ double front_at(const GridPart::Lead& lead, double across) {
   return lead.along[i - 1] + share * (lead.along[i] - lead.along[i - 1]);
 }
 
+/// Thinner on the average than what two traces of a nose that stands at one place leave of each
+/// other: each is a chain of chords. They are within kArcBound_mm of the arc, but beside the corner
+/// that a way has moved along it (GridPart::touch), where a chord is half as long again, and there
+/// is 0.3 um between them. Such shreds are long beside their thickness, and where a tool leaves
+/// along them they would be as deep as they are long.
+bool is_trace(std::span<const Point> ring) {
+  constexpr double kTraces = 4 * kArcBound_mm * kUnitsPerMm;
+  double around = 0;
+  Point last = ring.back();
+  for (const Point& p : ring) {
+    around += std::hypot(static_cast<double>(p.X - last.X), static_cast<double>(p.Y - last.Y));
+    last = p;
+  }
+  return static_cast<double>(twice_area(ring)) < kTraces * around;
+}
+
 }  // namespace
 
 void Engagement::join(const Engagement& other) {
@@ -136,6 +152,7 @@ Engagement EngagementGauge::measure(const ConvexCut& cut, const GridPart::Lead& 
   ahead_.clear();
   across_.clear();
   for (std::size_t i = 0; i < cut.removed_count(); ++i) {
+    if (is_trace(cut.removed(i))) continue;
     add_piece(cut.removed(i), lead,
               Vec2(static_cast<double>(way.X), static_cast<double>(way.Y)) / length);
   }

@@ -75,6 +75,12 @@ void look_between(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, Ne
 void look_at(const Contour& contour, const ConvexRegion& swept, Nearest& nearest) {
   Point before = contour.runs().back()->points.back();
   for (const turning::RunPointer& run : contour.runs()) {
+    Rect whole = run->box;
+    whole.extend(before);
+    if (box_gap(whole, swept.box()) >= nearest.units) {
+      before = run->points.back();
+      continue;
+    }
     for (const Point& p : run->points) {
       Rect edge;
       edge.extend(before);
@@ -148,6 +154,10 @@ std::optional<TurnGap> least_gap(const TurnedPart& part, const TurningTool& tool
         if (std::max(a.Y, b.Y) + turning::to_units(one.reach_mm()) <= 0) continue;
         one.sweep(a, b, scratch, swept, lead);
         if (swept.empty() || swept.box().max_y <= 0) continue;
+        const bool is_far = std::ranges::all_of(part.contours(), [&](const Contour& contour) {
+          return box_gap(contour.box(), swept.box()) >= below;
+        });
+        if (is_far) continue;
         Nearest nearest{below, Vec2{0}};
         for (const Contour& contour : part.contours()) {
           if (box_gap(contour.box(), swept.box()) >= nearest.units) continue;

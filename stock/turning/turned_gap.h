@@ -16,7 +16,8 @@ struct TurnGap {
 
 /// The least distance between them on the move, in the plane of the axis, if it is below
 /// `below_mm`. As exact as the coordinates (turned_part.h). Of a move beyond the axis both sides
-/// count. O(corners of the part near the way times those of the tool); boxes first.
+/// count. O(corners of the part near the way times those of the tool); boxes first. Where the boxes
+/// of both come nearer than that, O(corners of the part) as well.
 std::optional<TurnGap> least_gap(const TurnedPart& part, const TurningTool& tool,
                                  const TurnMove& move, double below_mm);
 

@@ -149,12 +149,13 @@ class TurnedPart {
                                           ChuckSide chuck = ChuckSide::kLowZ,
                                           const std::optional<BarFlats>& flats = std::nullopt);
 
-  /// What is kept on disk (turning_state.h), and from it again: without what came off.
+  /// What is kept on disk (turning_state.h), and from it again, with what came off.
   turning::SavedPart saved() const;
   static TurnedPart restored(turning::SavedPart saved);
 
   /// The part as it lies when it is held the other way round: z becomes `at_z_mm` - z. Chuck and
-  /// axis stay where they are. None: it would lie beyond 2 m, or not a number.
+  /// axis stay where they are, and what came off is left behind. None: it would lie beyond 2 m, or
+  /// not a number.
   std::optional<TurnedPart> turned_about(double at_z_mm) const;
   /// The same moved: z becomes `at_z_mm` + z.
   std::optional<TurnedPart> moved(double at_z_mm) const;
@@ -166,6 +167,10 @@ class TurnedPart {
   /// Where the tool first meets material; nothing is changed. With TurningTool::inset() only what
   /// is deeper counts.
   std::optional<TurnContact> first_contact(const TurningTool& tool, const TurnMove& move) const;
+
+  /// The tool that a move with a lead has left in material goes back as it has come: where it
+  /// turned round it leaves no ring.
+  void turn_back() { winding_.reset(); }
 
   /// From now on remembers which move has made each edge of the contours; all of them count as not
   /// cut. Costs as much again as cutting does, and nothing while off. A move is named by its id, of

@@ -20,6 +20,9 @@ constexpr std::string_view kPartTag = "PART";
 constexpr std::uint32_t kPartVersion = 1;
 constexpr std::string_view kThreadTag = "THRD";
 constexpr std::uint32_t kThreadVersion = 1;
+constexpr std::string_view kFreedTag = "FREE";
+constexpr std::uint32_t kFreedVersion = 1;
+constexpr std::size_t kFreedBytes = 3 * sizeof(std::uint64_t);  // of each piece, at least
 /// From z r, to z r, lead, turns, low and high r.
 constexpr std::size_t kThreadNumbers = 8;
 constexpr std::size_t kThreadBytes =
@@ -193,11 +196,66 @@ std::string contour_bytes(const std::vector<Contour>& contours) {
   return bytes;
 }
 
-}  // namespace
+std::string freed_bytes(const std::vector<SavedPiece>& pieces) {
+  std::string bytes;
+  append_number(bytes, static_cast<std::uint32_t>(pieces.size()));
+  for (const SavedPiece& piece : pieces) {
+    append_number(bytes, piece.freed_by);
+    for (const std::string& part :
+         {contour_bytes(piece.contours),
+          piece.threads.empty() ? std::string() : thread_bytes(piece.threads)}) {
+      append_number(bytes, static_cast<std::uint64_t>(part.size()));
+      bytes += part;
+    }
+  }
+  return bytes;
+}
 
-Done write_part(const std::string& path, const SavedPart& saved) {
-  Result<StateWriter> file = StateWriter::create(path);
-  if (!file) return Error{file.error()};
+bool read_freed(std::string_view section, const Rect& blank, std::vector<SavedPiece>& pieces) {
+  PartBytes bytes(section);
+  std::uint32_t count = 0;
+  if (!bytes.take_count(count, kFreedBytes) || count == 0) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    SavedPiece& piece = pieces.emplace_back();
+    if (!bytes.take(&piece.freed_by, sizeof piece.freed_by)) return false;
+    std::string_view parts[2];
+    for (std::string_view& part : parts) {
+      std::uint64_t size = 0;
+      if (!bytes.take(&size, sizeof size)) return false;
+      const std::optional<std::string_view> taken = bytes.take(size);
+      if (!taken) return false;
+      part = *taken;
+    }
+    if (!read_contours(parts[0], blank, piece.contours) || piece.contours.empty()) return false;
+    if (!parts[1].empty() && !read_threads(parts[1], piece.threads)) return false;
+  }
+  return bytes.is_at_end();
+}
+
+/// None if a part of it is less than nothing.
+std::optional<double> volume_of(const std::vector<Contour>& contours,
+                                const std::optional<BarFlats>& flats) {
+  double volume_mm3 = 0;
+  for (const Contour& contour : contours) {
+    volume_mm3 += turning::volume_mm3(contour.moment6());
+    if (flats) volume_mm3 -= missing_mm3(contour, *flats);
+  }
+  if (!(volume_mm3 >= 0)) return std::nullopt;
+  return volume_mm3;
+}
+
+/// With all that has come off no more than the blank had.
+bool is_of_its_blank(const SavedPart& saved) {
+  std::optional<double> sum_mm3 = volume_of(saved.contours, saved.flats);
+  for (const SavedPiece& piece : saved.pieces) {
+    const std::optional<double> volume_mm3 = volume_of(piece.contours, saved.flats);
+    if (!volume_mm3 || !sum_mm3) return false;
+    *sum_mm3 += *volume_mm3;
+  }
+  return sum_mm3 && *sum_mm3 <= saved.blank_mm3 * (1 + kVolumeSlack) + kVolumeSlack;
+}
+
+void put_part(StateWriter& file, const SavedPart& saved) {
   const Rect& b = saved.blank;
   const BarFlats flats = saved.flats.value_or(BarFlats{});
   const std::string head = fmt::format(
@@ -205,11 +263,28 @@ Done write_part(const std::string& path, const SavedPart& saved) {
       "data\n",
       kStateMagic, kLayoutOfParts, saved.chuck == ChuckSide::kHighZ ? 1 : 0, b.min_x, b.min_y,
       b.max_x, b.max_y, saved.blank_mm3, flats.count, flats.inner_radius_mm);
-  file->put(head.data(), head.size());
-  put_section(*file, kPartTag, kPartVersion, contour_bytes(saved.contours));
+  file.put(head.data(), head.size());
+  put_section(file, kPartTag, kPartVersion, contour_bytes(saved.contours));
   if (!saved.threads.empty())
-    put_section(*file, kThreadTag, kThreadVersion, thread_bytes(saved.threads));
+    put_section(file, kThreadTag, kThreadVersion, thread_bytes(saved.threads));
+  if (!saved.pieces.empty()) put_section(file, kFreedTag, kFreedVersion, freed_bytes(saved.pieces));
+}
+
+}  // namespace
+
+Done write_part(const std::string& path, const SavedPart& saved) {
+  Result<StateWriter> file = StateWriter::create(path);
+  if (!file) return Error{file.error()};
+  put_part(*file, saved);
   return file->commit();
+}
+
+std::string bytes_of_part(const SavedPart& saved) {
+  std::string bytes;
+  StateWriter writer = StateWriter::into(bytes);
+  put_part(writer, saved);
+  (void)writer.commit();  // memory takes it all
+  return bytes;
 }
 
 Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) {
@@ -245,6 +320,12 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
       }
       continue;
     }
+    if (std::string_view(tag, sizeof tag) == kFreedTag && version == kFreedVersion) {
+      if (!saved.pieces.empty() || !read_freed(*section, saved.blank, saved.pieces)) {
+        return Error{trf("{}: the pieces that have come off are damaged", name)};
+      }
+      continue;
+    }
     if (std::string_view(tag, sizeof tag) != kPartTag || version != kPartVersion) {
       return Error{trf("{}: has a section '{}' of version {}, which this kerf cannot read", name,
                        shown(std::string_view(tag, sizeof tag)), version)};
@@ -253,13 +334,7 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
     has_part = true;
   }
   if (!has_part) return Error{damaged};
-  double volume_mm3 = 0;
-  for (const Contour& contour : saved.contours) {
-    volume_mm3 += turning::volume_mm3(contour.moment6());
-    if (saved.flats) volume_mm3 -= missing_mm3(contour, *saved.flats);
-  }
-  if (!(volume_mm3 >= 0) || volume_mm3 > saved.blank_mm3 * (1 + kVolumeSlack) + kVolumeSlack)
-    return Error{damaged};
+  if (!is_of_its_blank(saved)) return Error{damaged};
   return saved;
 }
 
@@ -268,8 +343,15 @@ Result<SavedPart> parse_part(const std::string& bytes, const std::string& name) 
 namespace kerf {
 
 turning::SavedPart TurnedPart::saved() const {
-  return {chuck_, blank_,    blank_mm3_,
-          flats_, contours_, {threads_.passes().begin(), threads_.passes().end()}};
+  const auto passes_of = [](const TurnedPart& part) {
+    return std::vector(part.threads_.passes().begin(), part.threads_.passes().end());
+  };
+  turning::SavedPart saved{chuck_, blank_, blank_mm3_, flats_, contours_, passes_of(*this), {}};
+  for (const TurnedPiece& piece : freed_) {
+    if (piece.part)
+      saved.pieces.push_back({piece.freed_by, piece.part->contours_, passes_of(*piece.part)});
+  }
+  return saved;
 }
 
 TurnedPart TurnedPart::restored(turning::SavedPart saved) {
@@ -281,6 +363,19 @@ TurnedPart TurnedPart::restored(turning::SavedPart saved) {
   part.flats_ = saved.flats;
   part.threads_.restore(std::move(saved.threads), part.contours_);
   part.touch_all();
+  for (turning::SavedPiece& piece : saved.pieces) {
+    const turning::Rect box = piece.contours.front().box();
+    auto off = std::make_shared<const TurnedPart>(restored({saved.chuck,
+                                                            saved.blank,
+                                                            saved.blank_mm3,
+                                                            saved.flats,
+                                                            std::move(piece.contours),
+                                                            std::move(piece.threads),
+                                                            {}}));
+    part.freed_.push_back({piece.freed_by, off->remaining_mm3(), turning::to_mm(box.min_x),
+                           turning::to_mm(box.max_x), turning::to_mm(box.min_y),
+                           turning::to_mm(box.max_y), off});
+  }
   return part;
 }
 
@@ -288,6 +383,7 @@ std::optional<TurnedPart> TurnedPart::placed(double at_z_mm, bool turned_about) 
   if (!(std::abs(at_z_mm) <= 2 * kMaxTurnedZ_mm)) return std::nullopt;
   const turning::Unit at = turning::to_units(at_z_mm), most = turning::to_units(kMaxTurnedZ_mm);
   turning::SavedPart lies = saved();
+  lies.pieces.clear();  // they stay where they have fallen
   lies.blank.min_x = at + (turned_about ? -blank_.max_x : blank_.min_x);
   lies.blank.max_x = at + (turned_about ? -blank_.min_x : blank_.max_x);
   if (lies.blank.min_x < -most || lies.blank.max_x > most) return std::nullopt;

@@ -10,6 +10,7 @@
 #include "stock/cutter/insert_shape.h"
 #include "stock/state_bytes.h"
 #include "stock/turning/revolve.h"
+#include "stock/turning/tap.h"
 #include "stock/turning/turning_state.h"
 
 namespace kerf {
@@ -57,7 +58,7 @@ void append(MeshPatch& patch, const MeshPatch& other) {
   patch.skirt_begin = static_cast<std::uint32_t>(patch.indices.size());
 }
 
-/// What a tool on the axis leaves is the same whatever the lead.
+/// What a tool on the axis leaves is the same whatever the lead, but for a tap's.
 std::vector<TurnMove> moves_of(const Cutter& cutter, const CutMove& move) {
   std::vector<TurnMove> moves = turning_moves(move);
   if (cutter.insert() == nullptr) {
@@ -114,13 +115,34 @@ void TurningStock::cut(const Cutter& cutter, std::span<const CutMove> moves,
   for (const CutMove& move : moves) {
     TurnCut& whole = last_cuts_.emplace_back();
     whole.id = move.id;
-    for (const TurnMove& turn : moves_of(cutter, move)) whole.extend(part_.cut(tool, turn));
+    if (!cut_by_tap(cutter, move, whole))
+      for (const TurnMove& turn : moves_of(cutter, move)) whole.extend(part_.cut(tool, turn));
     CutReport report;
     report.id = move.id;
     report.removed_mm3 = whole.removed_mm3;
     report.depth_mm = whole.depth_mm;
     reports.push_back(report);
   }
+}
+
+/// A tool on the axis that goes in step with the workpiece is a tap. False: it is none.
+bool TurningStock::cut_by_tap(const Cutter& cutter, const CutMove& move, TurnCut& whole) {
+  if (cutter.insert() != nullptr) return false;
+  TurnMove turn = turning_moves(move).front();
+  const bool is_axial = turn.from_mm.y == 0 && turn.to_mm.y == 0;
+  if (!turn.winds() || !is_axial) return false;
+  const std::optional<TapTools> tap =
+      tap_tools(2 * cutter.radius_mm(), std::abs(turn.lead_mm), kAxialLength_mm);
+  if (!tap) return false;
+  TurnMove straight = turn;
+  straight.lead_mm = 0;
+  whole.extend(part_.cut(tap->core, straight));
+  // On the way out it runs in the thread that it has cut.
+  if (turn.to_mm.x < turn.from_mm.x) {
+    whole.extend(part_.cut(tap->groove, turn));
+    part_.turn_back();
+  }
+  return true;
 }
 
 void TurningStock::finish(std::vector<CutReport>&) {}

@@ -22,7 +22,8 @@ std::vector<TurnMove> turning_moves(const CutMove& move);
 /// of z and x, within 0.02 um.
 ///
 /// Of a cutter with an outline (Cutter::insert()) that is cut; any other stands still along the
-/// axis with its tip towards -z, as a drill in the tailstock does.
+/// axis with its tip towards -z, as a drill in the tailstock does. With a lead such a one is a tap
+/// of that pitch and its own diameter (tap.h).
 ///
 /// Nothing is held back: finish() has nothing to do. One thread.
 class TurningStock final : public StockModel {
@@ -85,6 +86,7 @@ class TurningStock final : public StockModel {
     std::optional<TurningTool> inset;
   };
   const TurningTool& tool_of(const Cutter& cutter) const;
+  bool cut_by_tap(const Cutter& cutter, const CutMove& move, TurnCut& whole);
 
   TurnedPart part_;
   std::vector<TurnCut> last_cuts_;

@@ -2,9 +2,11 @@
 //
 //   bench_seek [--program FILE --stock SPEC --tool N=SHAPE] [--cell MM] [--seeks N] [--seed N]
 //   bench_seek --nest MOVES [--seeks N] [--seed N]
+//   bench_seek --workload NAME [--seeks N] [--seed N]
 //
 // Without a program: w2_finish_1m (workloads.h). --nest: a torch program of so many cuts, discs
 // with two holes each in a lattice (lead-in and full circle), from a sheet of 2000 mm x 1000 mm.
+// --workload: another one of workloads.h; of one that is turned 50 ms are asked for.
 // Loads it, cuts it once to its end, and seeks to random lines, to and fro. The workpieces of a
 // sample of the places are first compared with those of cutting from the start: wrong ones end the
 // run. Then times, from the command until the state of the new place is there: p50, p95, maximum;
@@ -43,6 +45,7 @@ using Clock = std::chrono::steady_clock;
 
 /// What is asked of the player: any line of w2_finish_1m within this (p95).
 constexpr double kMost_ms = 100;
+constexpr double kMostTurned_ms = 50;
 constexpr std::chrono::minutes kPatience{30};
 constexpr int kComparedPlaces = 4;
 constexpr int kSteps = 200;
@@ -51,6 +54,8 @@ struct Arguments {
   std::string program, stock, tool;
   double cell_mm = 0;
   int nest_moves = 0;
+  std::string workload = "w2_finish_1m";
+  bool turns = false;  ///< of the workload
   int seeks = 200;
   unsigned seed = 1;
 };
@@ -128,12 +133,14 @@ class Source {
       return;
     }
     for (const Workload& workload : workloads()) {
-      if (workload.name != "w2_finish_1m") continue;
-      arguments_.program = folder_ / "w2_finish_1m.ngc";
+      if (workload.name != arguments_.workload) continue;
+      arguments_.program = folder_ / (std::string(workload.name) + ".ngc");
       arguments_.stock = workload.stock;
       arguments_.tool = workload.tool;
+      arguments_.turns = workload.turns;
       std::ofstream(arguments_.program) << workload.program();
     }
+    if (arguments_.program.empty()) fail(arguments_.workload + " is no workload");
   }
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
@@ -146,6 +153,7 @@ class Source {
     SessionOptions options;
     options.program.path = arguments_.program;
     options.stock.cell_mm = arguments_.cell_mm;
+    if (turns()) options.stock.kind = StockKind::kTurning;
     if (!arguments_.stock.empty()) {
       const Result<Blank> blank = parse_blank(arguments_.stock);
       if (!blank) fail(blank.error());
@@ -156,6 +164,8 @@ class Source {
     options.tools.push_back(std::move(*tool));
     return options;
   }
+
+  bool turns() const { return arguments_.turns; }
 
  private:
   Arguments arguments_;
@@ -202,8 +212,10 @@ std::vector<std::string> dry_run(const ProgramTrack& track, const SessionOptions
                                  const std::vector<std::size_t>& places) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
+  StockChoice choice;
+  if (options.stock.kind) choice.kind = *options.stock.kind;
   const StockSetup setup =
-      make_stock(*options.blank, StockChoice{}, options.stock, "--stock", diagnostics, outcome);
+      make_stock(*options.blank, choice, options.stock, "--stock", diagnostics, outcome);
   if (!setup.stock) fail("no blank");
   ToolResolver resolver(tools, row_of(*setup.stock).can_cut);
   FindingLog log;
@@ -323,8 +335,9 @@ int run(const Arguments& arguments) {
   fmt::print("afterwards: {} keyframes, {:.0f} MB; process {:.0f} MB, at most {:.0f} MB\n",
              state->keyframes, static_cast<double>(state->keyframe_bytes) / 1e6, rss_mb(),
              peak_rss_mb());
-  const bool good = p95(seeks) <= kMost_ms;
-  fmt::print("p95 of seeks {} {:g} ms: {}\n", good ? "<=" : ">", kMost_ms, good ? "good" : "BAD");
+  const double most_ms = source.turns() ? kMostTurned_ms : kMost_ms;
+  const bool good = p95(seeks) <= most_ms;
+  fmt::print("p95 of seeks {} {:g} ms: {}\n", good ? "<=" : ">", most_ms, good ? "good" : "BAD");
   return good ? 0 : 1;
 }
 
@@ -342,6 +355,8 @@ Arguments understand(int argc, char** argv) {
       arguments.tool = value;
     } else if (name == "--cell") {
       arguments.cell_mm = std::atof(value);
+    } else if (name == "--workload") {
+      arguments.workload = value;
     } else if (name == "--nest") {
       arguments.nest_moves = std::max(1, std::atoi(value));
     } else if (name == "--seeks") {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 namespace kerf {
 namespace {
@@ -61,6 +62,35 @@ std::string trochoid() {
   return text;
 }
 
+/// A wavy shaft from a bar of 60 mm: 1000 passes along it and back, then finishing passes of 2000
+/// chords each, which come nearer to the contour by what is left over their number. Radii.
+std::string lathe() {
+  constexpr int kPasses = 1000, kChords = 2000, kFinishing = 48;
+  constexpr double kMean = 16, kWave = 2, kPeriod = 40, kNose = 0.4, kPi = std::numbers::pi;
+  std::string text = "G21 G90 G18 G8 G94 G64 P0.01\nT1 M6\nG97 S1200 M3\nG0 X40 Z5\nF300\n";
+  const auto out = std::back_inserter(text);
+  for (int i = 0; i < kPasses; ++i) {
+    const double x = 30 - (30 - kMean - kWave - 6) * (i + 1) / kPasses, z = -150 + 0.02 * i;
+    fmt::format_to(out, "G0 X{:.4f} Z2\nG1 Z{:.4f}\nG1 X{:.4f} Z{:.4f}\nG0 Z2\n", x, z, x + 0.5,
+                   z + 0.5);
+  }
+  for (int pass = 0; pass < kFinishing; ++pass) {
+    const double left = 5.0 * (kFinishing - 1 - pass) / kFinishing;
+    text += "G0 X40 Z2\n";
+    for (int i = 0; i < kChords - 2; ++i) {
+      const double z = 2 - 142.0 * i / (kChords - 3), turn = 2 * kPi * z / kPeriod;
+      const double slope = kWave * 2 * kPi / kPeriod * std::cos(turn);
+      const double length = std::hypot(slope, 1.0);
+      fmt::format_to(out, "G1 X{:.4f} Z{:.4f}\n",
+                     kMean + kWave * std::sin(turn) + (kNose + left) / length - kNose,
+                     z - (kNose + left) * slope / length - kNose);
+    }
+    text += "G0 X40\n";
+  }
+  text += "M5\nM2\n";
+  return text;
+}
+
 constexpr std::array kWorkloads{
     Workload{"w2_finish_100k", "ball finishing of a wavy surface, 0.5 mm rows, 100k moves",
              "box:0,0,-30:200,200,0", "1=ball:6", finish_100k},
@@ -68,6 +98,8 @@ constexpr std::array kWorkloads{
              "box:0,0,-30:200,200,0", "1=ball:6", finish_1m},
     Workload{"w3_trochoid", "trochoidal slots in four layers, 10k moves, half of them arcs",
              "box:0,0,-20:150,100,0", "2=flat:10", trochoid},
+    Workload{"w4_lathe", "a wavy shaft, 1000 passes and 48 finishing passes, 100k moves",
+             "cylinder:0,0,-160:0:60", "1=turn:0.4:2:85:30", lathe, true},
 };
 
 }  // namespace

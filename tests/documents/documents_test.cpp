@@ -97,8 +97,8 @@ std::size_t characters(const std::string& utf8) {
 }
 
 constexpr const char* kLongOption = R"((?:^|[\s,\[`(])(--[a-z][a-z0-9-]+))";
-const char* const kCommands[] = {"run",    "view",  "shadow", "replay", "canon",
-                                 "config", "tools", "models", "sources"};
+const char* const kCommands[] = {"run",    "view",  "shadow", "replay",  "canon",
+                                 "config", "tools", "models", "sources", "diff"};
 
 Words options_of(const std::string& command) {
   const CommandResult help = run_kerf(command + " --help");
@@ -126,7 +126,9 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
   Words known{"--version"}, told;
   for (const char* command : kCommands) known.merge(options_of(command));
   std::string of_others = read_file(kRoot / "scripts/format_check") +
-                          read_file(kRoot / "tests/truth/run_truth") + read_file(kRoot / "check");
+                          read_file(kRoot / "tests/truth/run_truth") + read_file(kRoot / "check") +
+                          read_file(kRoot / "examples/ci/kerf.yml") +
+                          read_file(kRoot / "examples/ci/pre-commit");
   of_others += run_kerf("machine --help").output + " --build --preset --workflow --install ";
   const Words foreign = find_all(of_others, R"((--[a-z][a-z-]+))");
   for (const std::string& document : documents()) {
@@ -209,8 +211,8 @@ std::map<std::string, std::string> told_findings() {
 }
 
 TEST(Documents, TheTableOfFindingsHasThoseOfTheSource) {
-  const Words known =
-      find_all(read_file(kRoot / "twin/findings/finding.cpp"), R"re(return "([a-z-]+)";)re");
+  const Words known = find_all(read_file(kRoot / "twin/findings/finding_table.cpp"),
+                               R"re(Id::\w+,\s+"([a-z-]+)")re");
   ASSERT_TRUE(known.contains("rapid-contact"));
   Words told;
   for (const auto& [id, severity] : told_findings()) told.insert(id);

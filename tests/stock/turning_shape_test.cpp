@@ -394,5 +394,22 @@ TEST(TurningFlanks, AnglesAreTakenAsTheyAreNearest) {
   }
 }
 
+TEST(TurningShape, HowItIsUsedIsInItsText) {
+  const Cutter cutter = *parse_shape("turn:0.4:2:85:5:max_ap=2.5:path=tool");
+  EXPECT_EQ(cutter.spec(), "turn:0.4:2:85:5:max_ap=2.5:path=tool");
+  EXPECT_EQ(insert_use_of(cutter).max_depth_mm, 2.5);
+  EXPECT_TRUE(insert_use_of(cutter).goes_its_path);
+  EXPECT_EQ(turning_shape_in(cutter.spec(), LengthUnit::kInch),
+            turning_shape_in("turn:0.4:2:85:5", LengthUnit::kInch) + ":max_ap=0.098425:path=tool");
+  const Cutter plain = *parse_shape("turn:0.4:2:85:5:path=contour");
+  EXPECT_FALSE(insert_use_of(plain).max_depth_mm);
+  EXPECT_FALSE(insert_use_of(plain).goes_its_path);
+  EXPECT_FALSE(insert_use_of(*parse_shape("flat:6")).goes_its_path);
+  EXPECT_NE(parse_shape("turn:0.4:2:85:5:path=centre").error().find("must be tool"),
+            std::string::npos);
+  EXPECT_NE(parse_shape("turn:0.4:2:85:5:max_ap=1:max_ap=2").error().find("given twice"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace kerf

@@ -173,8 +173,9 @@ void write_finding_pictures(const std::string& folder, const SessionOptions& opt
   }
   const std::shared_ptr<const MachineModel> around =
       machine_around(*loaded, machine, ini, diagnostics);
+  const CollisionWishes wishes = loaded->player.checks.collisions;  // about the blank there is
   SecondPass pass(std::move(loaded), around, stop);
-  Album album(folder, options.collisions, around, diagnostics);
+  Album album(folder, wishes, around, diagnostics);
   std::vector<std::size_t> order(shots.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {},

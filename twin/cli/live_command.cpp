@@ -20,6 +20,7 @@
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/live_console.h"
 #include "twin/cli/live_window.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/scheduling.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
@@ -185,14 +186,13 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<FindingShots> shots;
   if (!request.finding_png.empty()) {
-    const Box blank_mm = session->stock()->bounds_mm();
-    observer = &shots.emplace(*session, machine_beside(request, blank_mm, diagnostics), *observer);
+    observer = &shots.emplace(*session, machine_beside(request, *session, diagnostics), *observer);
     print_diagnostics(diagnostics, request.quiet);
     diagnostics.clear();
   }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
-  if (window || design) session->keep_cut_ids();
+  if (window || design || request.outputs.wants_page()) session->keep_cut_ids();
   if (window) {
     view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
                  window->commands());
@@ -213,11 +213,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {session->cut_labels(), nullptr}, session->report(), diagnostics);
   }
-  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                request.options.cutting.checks.collisions.fixtures, session->report(), diagnostics,
-                nullptr, compared);
+  write_pages(request.outputs, session->report(), session->stock(),
+              {session->cut_labels(), nullptr, {}, request.units}, diagnostics);
+  write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
+                session->report(), diagnostics, nullptr, compared);
+  const ListedProgram listed = listed_program(session->report());
+  write_finding_lists(request.outputs, {&listed, 1}, diagnostics);
   if (shots) {
-    shots->write(request.finding_png, request.options.cutting.checks.collisions, diagnostics);
+    shots->write(request.finding_png, session->collisions(), diagnostics);
   }
   if (console.unprinted() > 0) {
     print_text(stderr,

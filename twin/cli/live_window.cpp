@@ -60,11 +60,13 @@ std::vector<std::string> faults_of(const Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request, const Box& blank_mm,
+std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request,
+                                                   const LiveSession& session,
                                                    Diagnostics& diagnostics) {
   WorkRoom room;
   room.frame = request.options.cutting.frame.work;
-  room.blank_mm = blank_mm;
+  room.blank_mm = session.stock()->bounds_mm();
+  room.chuck = chuck_room(session.collisions().held_by);
   return drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
 }
 
@@ -99,9 +101,9 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
   options.stock = session.stock()->snapshot();
   options.tools = session.tool_sources();
   Diagnostics diagnostics;
-  options.machine = machine_beside(request, options.blank_mm, diagnostics);
+  options.machine = machine_beside(request, session, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
-  options.collisions = request.options.cutting.checks.collisions;
+  options.collisions = session.collisions();
   options.log = request.options.log();
   options.speed = options.log ? request.options.speed : 1.0;
   options.on_close = [stop, this]() mutable {

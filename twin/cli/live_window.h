@@ -19,7 +19,8 @@
 namespace kerf {
 
 /// The machine that is watched, around the blank; see drawn_machine().
-std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request, const Box& blank_mm,
+std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request,
+                                                   const LiveSession& session,
                                                    Diagnostics& diagnostics);
 
 /// A session is one round. Another one follows when files of a log were changed, or when another

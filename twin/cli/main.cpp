@@ -22,6 +22,7 @@
 #include "twin/cli/cli_options.h"
 #include "twin/cli/config_command.h"
 #include "twin/cli/console.h"
+#include "twin/cli/diff_command.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/machine_command.h"
 #include "twin/cli/run_command.h"
@@ -39,6 +40,7 @@ constexpr const char* kExamples =
     "  kerf shadow -c mill.yaml --program part.ngc\n"
     "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
     "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  kerf diff old.ngc new.ngc\n"
     "  kerf canon part.ngc\n"
     "  kerf models\n"
     "  kerf tools\n";
@@ -52,6 +54,12 @@ constexpr const char* kViewExample =
     "Examples:\n"
     "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf view part.ngc --frames film --fps 25 --speed 10\n";
+
+constexpr const char* kDiffExample = tr_noop(
+    "Exit code 0: the same; 1: different.\n\n"
+    "Examples:\n"
+    "  kerf diff old.ngc new.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  kerf diff part.ngc part.state --json -\n");
 
 constexpr const char* kCanonExample = tr_noop(
     "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
@@ -176,6 +184,7 @@ constexpr std::array kCalls{
     CommandCall{kView, kViewExample, view_command},
     CommandCall{kShadow, kShadowExample, live_command},
     CommandCall{kReplay, kReplayExample, live_command},
+    CommandCall{kDiff, kDiffExample, diff_command},
     CommandCall{kCanon, kCanonExample, canon_command},
     CommandCall{kConfig, kConfigExample, config_command},
     // Found and started by machine_command(), before this is asked.

@@ -25,6 +25,7 @@
 #include "twin/scene/deviation_picture.h"
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
+#include "twin/scene/held_bodies.h"
 #include "twin/scene/part_patches.h"
 #include "twin/scene/turned_look.h"
 #include "viewer/deviation_colors.h"
@@ -37,7 +38,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 8> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 13> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
@@ -45,7 +46,12 @@ constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 8> kPat
      {"--state", &OutputPaths::state},
      {"--dxf", &OutputPaths::dxf},
      {"--svg", &OutputPaths::svg},
-     {"--compare-png", &OutputPaths::compare_png}}};
+     {"--compare-png", &OutputPaths::compare_png},
+     {"--junit", &OutputPaths::junit},
+     {"--sarif", &OutputPaths::sarif},
+     {"--csv", &OutputPaths::csv},
+     {"--html", &OutputPaths::html},
+     {"--pdf", &OutputPaths::pdf}}};
 
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -71,19 +77,12 @@ void write_pieces(const StockModel& stock, const std::string& path, Diagnostics&
   }
 }
 
-Done write_text(const std::string& path, const std::string& text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return Error{file.error()};
-  file->write(text.data(), text.size());
-  return file->commit();
-}
-
 std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
 /// By OpenGL; by rays where there is none, which is said.
-Done write_picture(const OutputPaths& paths, const StockModel& stock, const FixtureList& fixtures,
+Done write_picture(const OutputPaths& paths, const StockModel& stock, const CollisionWishes& around,
                    const std::string& name, Diagnostics& diagnostics) {
   const std::string& path = paths.png;
   PictureOptions options;
@@ -96,7 +95,11 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
     options.blank_outline = turned_outline(*turned);
   }
   options.section = paths.section;
-  if (fixtures) options.bodies = picture_bodies(*fixtures);
+  options.bodies = picture_bodies(around.held_by);
+  if (around.fixtures) {
+    for (PictureBody& body : picture_bodies(*around.fixtures))
+      options.bodies.push_back(std::move(body));
+  }
   Result<Picture> picture = draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
@@ -112,7 +115,7 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Fixt
   Diagnostic note;
   note.severity = Severity::kNote;
   note.message = trf("{}: drawn by rays on the CPU, not by OpenGL: {}", path, reason);
-  if (fixtures && !fixtures->empty()) note.hint = tr("fixtures are drawn by OpenGL alone");
+  if (!options.bodies.empty()) note.hint = tr("fixtures are drawn by OpenGL alone");
   diagnostics.push_back(std::move(note));
   return write_png(path, *picture);
 }
@@ -135,11 +138,19 @@ VertexMarks vertex_deviations(const TriangleMesh& mesh, const DesignPart& design
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 8> OutputPaths::named() const {
-  std::array<NamedPath, 8> all;
+std::array<std::pair<const char*, const std::string*>, 13> OutputPaths::named() const {
+  std::array<NamedPath, 13> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;
+}
+
+unsigned OutputPaths::bit_of(const std::string& path) const {
+  const auto all = named();
+  for (unsigned i = 0; i < all.size(); ++i) {
+    if (all[i].second == &path) return 1u << i;
+  }
+  return 0;
 }
 
 OutputPaths understand_outputs(const OptionReader& reader) {
@@ -196,14 +207,11 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 }
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
-                   const FixtureList& fixtures, Report& report, Diagnostics& diagnostics,
+                   const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
                    std::atomic<unsigned>* dealt_with,
                    const std::shared_ptr<const DesignPart>& design) {
   const auto done_with = [&](const std::string& path) {
-    const auto all = paths.named();
-    for (unsigned i = 0; dealt_with && i < all.size(); ++i) {
-      if (all[i].second == &path) *dealt_with |= 1u << i;
-    }
+    if (dealt_with) *dealt_with |= paths.bit_of(path);
   };
   const Clock::time_point start = Clock::now();
   const auto elapsed_s = [&] {
@@ -213,7 +221,7 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
   const bool wants_mesh = !paths.stl.empty() || !paths.ply.empty();
   if (stock && !paths.png.empty()) {
-    note_failure(write_picture(paths, *stock, fixtures, name, diagnostics), diagnostics);
+    note_failure(write_picture(paths, *stock, around, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
   if (stock && design && !paths.compare_png.empty()) {
@@ -277,6 +285,24 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   report.timing.total_s += elapsed_s();
   report.peak_rss_mb = peak_rss_mb();
   if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
+}
+
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
+void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,
+                         Diagnostics& diagnostics) {
+  if (!paths.junit.empty()) {
+    note_failure(write_text(paths.junit, junit_text(programs, KERF_VERSION)), diagnostics);
+  }
+  if (paths.sarif.empty()) return;
+  std::error_code unknown;
+  const std::string folder = std::filesystem::current_path(unknown).string();
+  note_failure(write_text(paths.sarif, sarif_text(programs, KERF_VERSION, folder)), diagnostics);
 }
 
 std::string names_left(const OutputPaths& paths, unsigned dealt_with) {

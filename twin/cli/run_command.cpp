@@ -6,7 +6,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -20,6 +22,7 @@
 #include "twin/cli/console.h"
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/option_reader.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/progress_bar.h"
 #include "twin/cli/stdin_program.h"
 #include "twin/cli/stop_deadline.h"
@@ -27,6 +30,9 @@
 #include "twin/cli/torch_options.h"
 #include "twin/cli/view_command.h"
 #include "twin/cli/window_host.h"
+#include "twin/process/run_curve.h"
+#include "twin/program/session_parts.h"
+#include "twin/report/motion_table.h"
 
 namespace kerf {
 namespace {
@@ -108,7 +114,7 @@ void tell_interrupted(const RunRequest& request, Report report, unsigned dealt_w
   OutputPaths paths;
   paths.json = request.outputs.json;
   Diagnostics diagnostics;
-  write_outputs(paths, 0, nullptr, nullptr, report, diagnostics);
+  write_outputs(paths, 0, nullptr, {}, report, diagnostics);
   print_results(request, report);
   if (const std::string left = names_left(request.outputs, dealt_with); !left.empty()) {
     Diagnostic d;
@@ -131,7 +137,16 @@ Report report_of_nothing(const RunRequest& request) {
 struct RunVerdict {
   int code = kExitGood;
   bool interrupted = false;
+  ListedProgram listed;  ///< for --junit and --sarif
 };
+
+/// Of one that has not come to a report.
+ListedProgram listed_fault(const RunRequest& request, const Diagnostics& diagnostics) {
+  ListedProgram listed;
+  listed.path = request.session.program.path;
+  listed.faults = diagnostics;
+  return listed;
+}
 
 /// What nobody has said is guessed, or asked for, by a first reading.
 StdinProgram::Listings listings_of(const SessionOptions& session) {
@@ -140,6 +155,28 @@ StdinProgram::Listings listings_of(const SessionOptions& session) {
   const bool all_known = session.blank && (tools_known || is_sheet(*session.blank));
   return all_known && session.guess ? StdinProgram::Listings::kStreamed
                                     : StdinProgram::Listings::kKept;
+}
+
+/// The session tells it of its motions; null, with a diagnostic, if it cannot be written.
+std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinProgram& kept,
+                                         Session& session, Diagnostics& diagnostics) {
+  auto begun = MotionTable::create(
+      path, [&kept](std::string text) { return kept.renamed(std::move(text)); });
+  if (!begun) {
+    diagnostics.push_back(general_error(begun.error()));
+    return nullptr;
+  }
+  session.record_by(*begun.value());
+  return std::move(begun.value());
+}
+
+std::span<const CutLabel> labels_in(const Session& session) {
+  return session.cut_labels() ? session.cut_labels()->all() : std::span<const CutLabel>();
+}
+
+void end_table(MotionTable& table, Diagnostics& diagnostics) {
+  if (const Done written = table.commit(); !written)
+    diagnostics.push_back(general_error(written.error()));
 }
 
 RunVerdict run_one(const Arguments& arguments, RunRequest request) {
@@ -172,8 +209,22 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
   Report none;
   rename_stdin(kept, session ? session->report() : none, diagnostics);
+  std::unique_ptr<MotionTable> table;
+  if (session && !request.outputs.csv.empty()) {
+    table = begin_table(request.outputs.csv, kept, *session, diagnostics);
+    if (!table) session.reset();
+  }
+  if (session && request.compare.is_wanted()) session->keep_moves();
+  std::optional<RunCurve> curve;
+  if (session && request.outputs.wants_page()) {
+    session->keep_cut_labels();
+    session->record_by(curve.emplace());
+  }
   print(diagnostics);
-  if (!session) return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested()};
+  if (!session) {
+    return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested(),
+            listed_fault(request, diagnostics)};
+  }
   diagnostics.clear();
   opened = session.get();
   {
@@ -184,7 +235,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   std::shared_ptr<const DesignPart> compared;
   if (!has_error(diagnostics) && design) {
     compared = compare_finished(request.compare, *design, session->stock(),
-                                {session->cut_labels(), &session->kept_moves()}, session->report(),
+                                {labels_in(*session), session->kept_moves()}, session->report(),
                                 diagnostics);
   }
   if (!has_error(diagnostics)) {
@@ -194,9 +245,19 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
+    const std::string command = command_line(
+        with_guesses(request.written, rows_in(session->report().guesses, request.units)));
+    write_pages(request.outputs, session->report(), session->stock(),
+                {labels_in(*session), curve ? &*curve : nullptr, command, request.units},
+                diagnostics);
+    dealt_with |= request.outputs.bit_of(request.outputs.html);
+    dealt_with |= request.outputs.bit_of(request.outputs.pdf);
+    if (table) {
+      end_table(*table, diagnostics);
+      dealt_with |= request.outputs.bit_of(request.outputs.csv);
+    }
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                  request.session.collisions.fixtures, session->report(), diagnostics, &dealt_with,
-                  compared);
+                  session->collisions(), session->report(), diagnostics, &dealt_with, compared);
     if (!request.finding_png.empty()) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);
@@ -210,21 +271,24 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   flush_console();
   print(diagnostics);
   const int code = exit_code(outcome, session->report(), diagnostics);
+  ListedProgram listed = listed_program(session->report());
+  listed.faults = diagnostics;
   if (!request.view || stop.stop_requested() || !session->stock()) {
-    return {code, stop.stop_requested()};
+    return {code, stop.stop_requested(), std::move(listed)};
   }
   session.reset();
   opened = nullptr;
   deadline.reset();  // the window has its own
   const int shown = show_program(arguments, request, stop);
-  return {shown == kExitGood ? code : shown, stop.stop_requested()};
+  return {shown == kExitGood ? code : shown, stop.stop_requested(), std::move(listed)};
 }
 
 /// What one file or one window cannot take of several programs.
 void refuse_shared_outputs(const RunRequest& request, std::size_t programs,
                            Diagnostics& diagnostics) {
   for (const auto& [option, path] : request.outputs.named()) {
-    if (path->empty()) continue;
+    const bool takes_all = path == &request.outputs.junit || path == &request.outputs.sarif;
+    if (path->empty() || takes_all) continue;
     add_fault(option, trf("{}: one file, and there are {} programs", *path, programs),
               tr("run them one by one, each with a file of its own"), diagnostics);
   }
@@ -236,6 +300,14 @@ void refuse_shared_outputs(const RunRequest& request, std::size_t programs,
   if (request.view) {
     add_fault("--view", tr("one window, and there are several programs"), {}, diagnostics);
   }
+}
+
+/// The exit code: `code`, or that of a list that cannot be written.
+int list_findings(const OutputPaths& outputs, const std::vector<ListedProgram>& listed, int code) {
+  Diagnostics diagnostics;
+  write_finding_lists(outputs, listed, diagnostics);
+  print(diagnostics);
+  return has_error(diagnostics) ? kExitFailure : code;
 }
 
 }  // namespace
@@ -254,17 +326,24 @@ int run_command(const Arguments& arguments) {
   }
   show_lengths_in(request.units);
   print(diagnostics);  // warnings about files
-  if (programs.size() <= 1) return run_one(one, std::move(request)).code;
+  const OutputPaths outputs = request.outputs;
+  std::vector<ListedProgram> listed;
+  if (programs.size() <= 1) {
+    RunVerdict end = run_one(one, std::move(request));
+    listed.push_back(std::move(end.listed));
+    return list_findings(outputs, listed, end.code);
+  }
   RunVerdict worst;
   for (const std::string& program : programs) {
     RunRequest own = request;
     own.session.program.path = program;
     own.written.options.set("PROGRAM", program);
-    const RunVerdict end = run_one(one, std::move(own));
+    RunVerdict end = run_one(one, std::move(own));
     worst.code = std::max(worst.code, end.code);
+    listed.push_back(std::move(end.listed));
     if (end.interrupted) break;
   }
-  return worst.code;
+  return list_findings(outputs, listed, worst.code);
 }
 
 }  // namespace kerf

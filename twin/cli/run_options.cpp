@@ -105,7 +105,6 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
                  tr("the program comes from standard input, which cannot be read again"));
   }
   request.compare = understand_compare(reader);
-  request.session.keep_cuts = request.compare.is_wanted();
   request.view = reader.is_yes("--view");
   if (request.view && request.compare.is_fitted) {
     reader.fault("--compare-fit",

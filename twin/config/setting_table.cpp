@@ -14,6 +14,7 @@ constexpr std::array kCommands{
     CommandRow{kView, "view", tr_noop("a program, a log or a saved workpiece in a window")},
     CommandRow{kShadow, "shadow", tr_noop("follow a machine that runs")},
     CommandRow{kReplay, "replay", tr_noop("run a log of a machine again")},
+    CommandRow{kDiff, "diff", tr_noop("what differs between two programs or workpieces")},
     CommandRow{kCanon, "canon", tr_noop("print what a program commands as JSON lines")},
     CommandRow{kConfig, "config", tr_noop("check or print a configuration, or list every key")},
     CommandRow{kMachine, "machine", tr_noop("a simulated machine that serves its positions")},

@@ -50,9 +50,10 @@ enum Command : std::uint16_t {
   kModels = 128,
   kSources = 256,
   kTools = 512,
+  kDiff = 1024,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
-inline constexpr std::uint16_t kCutting = kRun | kView | kBesideMachine;
+inline constexpr std::uint16_t kCutting = kRun | kView | kBesideMachine | kDiff;
 
 /// One row. In `key`, ITEM stands for what a map may name (X..W, J0..J8, tool, line, ...), and
 /// NUMBER for a tool number, PIN for a number that kinematics take.

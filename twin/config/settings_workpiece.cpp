@@ -203,7 +203,7 @@ constexpr std::array kWorkpieceSettings{
             .value_name = "NAME",
             .refusal = tr_noop("'{}' is no kernel; allowed: {}")},
     Setting{.option = "--no-guess",
-            .commands = kRun | kView,
+            .commands = kRun | kView | kDiff,
             .type = T::kYesNo,
             .fallback = "no",
             .help = tr_noop("for scripts: a blank or a tool that nobody has described is an error "

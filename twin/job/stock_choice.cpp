@@ -125,6 +125,13 @@ Done sheet_can_cut(const Cutter& cutter) {
                    2 * cutter.radius_mm(), Sheet::kMinKerf_mm)};
 }
 
+MillTurnOptions milling_options(const StockSettings& settings) {
+  MillTurnOptions options;
+  options.threads = settings.threads;
+  options.memory_limit_bytes = memory_allowed_bytes() / 3;
+  return options;
+}
+
 constexpr std::array kModels{
     StockModelRow{
         StockKind::kZmap, "zmap",
@@ -171,11 +178,15 @@ const StockModelRow& stock_model(StockKind kind) {
 Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,
                                                  const StockSettings& settings) {
   if (!turned) return Error{turned.error()};
-  MillTurnOptions options;
+  MillTurnOptions options = milling_options(settings);
   options.cell_mm = octree_cell_mm(turned.value()->bounds_mm());
-  options.threads = settings.threads;
-  options.memory_limit_bytes = memory_allowed_bytes() / 3;
   return as_model(MillTurn::create(std::move(*turned.value()), options));
+}
+
+Result<std::unique_ptr<StockModel>> load_turned(const std::string& path,
+                                                const StockSettings& settings) {
+  if (is_milled_part(path)) return as_model(MillTurn::load(path, milling_options(settings)));
+  return with_milling(TurningStock::load(path), settings);
 }
 
 const StockModelRow& row_of(const StockModel& stock) { return *find_stock_model(stock.name()); }
@@ -251,12 +262,25 @@ StockNeeds stock_needs(const ToolSources& tools) {
   return needs;
 }
 
-StockKind saved_kind(const std::string& path) {
+namespace {
+
+std::string head_of_file(const std::string& path) {
   constexpr std::size_t kHeadBytes = 128;
   std::ifstream file(path, std::ios::binary);
-  const auto model = model_of_state(read_up_to(file, kHeadBytes), path);
+  return read_up_to(file, kHeadBytes);
+}
+
+}  // namespace
+
+StockKind saved_kind(const std::string& path) {
+  const auto model = model_of_state(head_of_file(path), path);
   const StockModelRow* const row = model ? find_stock_model(model.value()) : nullptr;
   return row ? row->kind : StockKind::kZmap;
+}
+
+bool is_milled_part(const std::string& path) {
+  const auto is_octree = [](StateHead& lines) { return lines.line("beside").has_value(); };
+  return static_cast<bool>(head_of_state(head_of_file(path), path, "octree", is_octree));
 }
 
 bool is_sheet(const Blank& blank) {
@@ -265,7 +289,9 @@ bool is_sheet(const Blank& blank) {
 }
 
 bool may_be_turned(const Blank& blank) {
-  if (!blank.state_file.empty()) return saved_kind(blank.state_file) == StockKind::kTurning;
+  if (!blank.state_file.empty()) {
+    return saved_kind(blank.state_file) == StockKind::kTurning || is_milled_part(blank.state_file);
+  }
   return !blank.sheet &&
          std::none_of(blank.bodies.begin(), blank.bodies.end(), [](const BlankBody& body) {
            return body.kind == BlankBody::Kind::kBox || body.axis != 'z';

@@ -46,6 +46,9 @@ const StockModelRow& stock_model(StockKind kind);
 /// threads. Error: that of `turned`, or why it cannot be milled.
 Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,
                                                  const StockSettings& settings);
+/// The same of a file: a part that was turned, milled or not (is_milled_part()).
+Result<std::unique_ptr<StockModel>> load_turned(const std::string& path,
+                                                const StockSettings& settings);
 /// Which of them this is, whoever wraps it.
 const StockModelRow& row_of(const StockModel& stock);
 /// Of that name, or null.
@@ -88,6 +91,8 @@ class TiltWatch {
 StockNeeds stock_needs(const ToolSources& tools);
 /// Of a saved workpiece, by the head of its file; of one that has none, loading says what is wrong.
 StockKind saved_kind(const std::string& path);
+/// A saved octree that has been turned as well: a lathe can go on with it.
+bool is_milled_part(const std::string& path);
 /// Of sheet metal, new or saved. Reads the head of a saved one.
 bool is_sheet(const Blank& blank);
 /// Whether a lathe may hold it: a saved part that turns, or a blank of bodies that stand on the

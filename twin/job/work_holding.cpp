@@ -269,10 +269,39 @@ void refuse(std::string message, std::string hint, Diagnostics& diagnostics) {
   diagnostics.push_back(std::move(error));
 }
 
+/// What the profile sweeps about the axis, all of it from the axis outward.
+SolidPointer swept_by(const TurnedProfile& profile) {
+  std::vector<std::vector<RoundedDisc>> frustums;
+  for (const std::vector<Vec2>& ring : profile) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+      if (a.x != b.x) frustums.push_back({{a.y, a.x, 0}, {b.y, b.x, 0}});
+    }
+  }
+  return Solid::of_hulls(frustums);
+}
+
+bool stand_beside(const std::vector<Fixture>& fixtures, const TurnedProfile& profile,
+                  bool blank_given, Diagnostics& diagnostics) {
+  bool all_stand = true;
+  for (const Fixture& fixture : fixtures) {
+    if (fixture.on.empty()) continue;
+    refuse(trf("fixture '{}' is on link '{}': beside a workpiece that turns fixtures stand still",
+               fixture.name, fixture.on),
+           tr("what turns with the workpiece is --chuck; what stands is placed in the program's "
+              "coordinates, without on="),
+           diagnostics);
+    all_stand = false;
+  }
+  if (!all_stand) return false;
+  return !blank_given || check_fixtures_beside(fixtures, *swept_by(profile), diagnostics);
+}
+
 }  // namespace
 
 bool hold_workpiece(const WorkHolding& holding, const FixtureList& fixtures,
-                    const StockModel& stock, HoldingList& out, Diagnostics& diagnostics) {
+                    const StockModel& stock, bool blank_given, HoldingList& out,
+                    Diagnostics& diagnostics) {
   out = nullptr;
   const TurningStock* const turned = stock.turned();
   if (!turned) {
@@ -283,14 +312,10 @@ bool hold_workpiece(const WorkHolding& holding, const FixtureList& fixtures,
            diagnostics);
     return false;
   }
-  if (fixtures && !fixtures->empty()) {
-    refuse(trf("fixture '{}': the workpiece turns, and nothing stands beside it",
-               fixtures->front().name),
-           tr("--chuck and --tailstock hold a workpiece that turns"), diagnostics);
-    return false;
-  }
+  const TurnedProfile profile = turned->part().profile();
+  if (fixtures && !stand_beside(*fixtures, profile, blank_given, diagnostics)) return false;
   if (!holding.any()) return true;
-  auto bodies = holding_bodies(holding, turned->part().profile());
+  auto bodies = holding_bodies(holding, profile);
   if (!bodies) {
     refuse(bodies.error(), {}, diagnostics);
     return false;

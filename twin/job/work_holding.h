@@ -76,10 +76,13 @@ Result<std::vector<HoldingBody>> holding_bodies(const WorkHolding& holding,
                                                 const TurnedProfile& blank);
 
 using HoldingList = std::shared_ptr<const std::vector<HoldingBody>>;
-/// About a workpiece before its program. Chuck and tailstock are for one that turns, which has no
-/// fixtures. False with errors; `out` is null where nothing holds it. Who uses the bodies takes
-/// copies: TurnedPart is for one thread.
+/// About a workpiece before its program. Chuck and tailstock are for one that turns. Fixtures
+/// beside such a one stand still: on no link, and beside what it sweeps as it turns, its bores
+/// filled
+/// (`blank_given`: it is no guess, and that is looked at). False with errors; `out` is null where
+/// nothing holds it. Who uses the bodies takes copies: TurnedPart is for one thread.
 bool hold_workpiece(const WorkHolding& holding, const FixtureList& fixtures,
-                    const StockModel& stock, HoldingList& out, Diagnostics& diagnostics);
+                    const StockModel& stock, bool blank_given, HoldingList& out,
+                    Diagnostics& diagnostics);
 
 }  // namespace kerf

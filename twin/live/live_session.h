@@ -170,6 +170,8 @@ class LiveSession {
   Report& report() { return report_; }
   const StockModel* stock() const { return shift_ ? &shift_->stock() : stock_.get(); }
   const ToolSources& tool_sources() const { return tool_sources_; }
+  /// As findings are judged by, with what holds the blank there is.
+  const CollisionWishes& collisions() const { return options_.cutting.checks.collisions; }
   std::string source_name() const { return source_->describe(); }
 
  private:

@@ -8,14 +8,17 @@
 
 namespace kerf {
 
+bool LivePaths::is_described(const MachineKinematics& machine) {
+  return machine.module == "links" || !takes_rotary_placement(machine.module);
+}
+
 std::shared_ptr<const LivePaths> LivePaths::create(
     const std::shared_ptr<const MachineKinematics>& machine, const WorkpieceFrame& frame,
     double cell_mm) {
   if (machine && (machine->is_switchable() || machine->is_arm())) return nullptr;
-  const bool is_described =
-      machine && (machine->module == "links" || !takes_rotary_placement(machine->module));
+  const bool described = machine && is_described(*machine);
   MachineKinematics lathe;
-  if (is_described) {
+  if (described) {
     lathe = *machine;
   } else {
     lathe.module = "lathe";
@@ -24,7 +27,7 @@ std::shared_ptr<const LivePaths> LivePaths::create(
     lathe.types.emplace_back();
   }
   // The axis of a lathe is that of its program's Z, wherever the work offset is.
-  const WorkpieceFrame place = is_described ? frame : WorkpieceFrame{};
+  const WorkpieceFrame place = described ? frame : WorkpieceFrame{};
   const ToolPathTolerance tolerance = ToolPathTolerance::of_cell(cell_mm);
   Result<ToolPath> along_z = ToolPath::create(lathe, place, tolerance);
   lathe.nose_from_tip = {1.0, 0.0, 0.0};

@@ -20,6 +20,8 @@ class LivePaths {
   static std::shared_ptr<const LivePaths> create(
       const std::shared_ptr<const MachineKinematics>& machine, const WorkpieceFrame& frame,
       double cell_mm);
+  /// It moves as it is described.
+  static bool is_described(const MachineKinematics& machine);
   const ToolPath& path(LiveAxis axis) const { return axis == LiveAxis::kX ? x_ : z_; }
 
  private:

@@ -8,12 +8,18 @@ namespace kerf {
 namespace {
 
 constexpr int kStations = 8;
+/// What stands in one place is drawn so far apart, and does not flicker: the blank's end and the
+/// chuck, the chuck and the rings that it sweeps.
+constexpr double kApart_mm = 0.5;
 
 struct LatheSizes {
   double radius = 0;      // of the blank
   double chuck = 0;       // radius of the chuck
   double chuck_face = 0;  // z
   double chuck_deep = 0;
+  double rim = 0;          // radius of the chuck's body
+  double jaw_length = 0;   // before the face
+  double jaw_radius = 0;   // outside
   double turret = 0;       // radius of its disc
   double turret_near = 0;  // z of the disc from the nose
   double turret_far = 0;
@@ -31,6 +37,19 @@ LatheSizes lathe_sizes(const FittedRoom& room) {
   s.chuck = std::max(1.9 * s.radius, 70.0);
   s.chuck_face = blank.min.z;
   s.chuck_deep = 0.7 * s.chuck;
+  s.rim = s.chuck;
+  if (room.chuck) {
+    s.chuck = std::max(room.chuck->diameter_mm / 2, s.radius + 1);
+    s.chuck_face = room.chuck->face_z_mm;
+    s.chuck_deep = room.chuck->length_mm;
+    s.rim = s.chuck - kApart_mm;
+  }
+  s.jaw_length = std::min(0.3 * blank.size().z, 0.4 * s.chuck);
+  s.jaw_radius = 0.97 * s.chuck;
+  if (room.chuck && room.chuck->jaw_diameter_mm > 0) {
+    s.jaw_length = room.chuck->jaw_length_mm - kApart_mm;
+    s.jaw_radius = room.chuck->jaw_diameter_mm / 2 - kApart_mm;
+  }
   s.turret = std::max(0.9 * s.chuck, 1.1 * room.tool_length_mm);
   s.turret_near = -0.16 * s.turret;
   s.turret_far = 0.3 * s.turret;
@@ -70,25 +89,29 @@ MeshBuilder lathe_headstock(const LatheSizes& s) {
   return head;
 }
 
-MeshBuilder lathe_chuck(const LatheSizes& s, const FittedRoom& room) {
+MeshBuilder lathe_chuck(const LatheSizes& s) {
   const double c = s.chuck;
-  const double face = s.chuck_face - 0.5;  // the blank's end does not flicker in it
+  const double face = s.chuck_face - kApart_mm;
   MeshBuilder chuck;
-  const double deep = s.chuck_deep - 0.5;
-  const std::array<Vec2, 8> body{
-      Vec2(0, -deep),     Vec2(0.6 * c, -deep), Vec2(0.6 * c, -0.9 * deep), Vec2(c, -0.88 * deep),
-      Vec2(c, -0.05 * c), Vec2(0.95 * c, 0),    Vec2(0.2 * c, 0),           Vec2(0, 0)};
+  const double deep = s.chuck_deep - kApart_mm;
+  const std::array<Vec2, 8> body{Vec2(0, -deep),
+                                 Vec2(0.6 * c, -deep),
+                                 Vec2(0.6 * c, -0.9 * deep),
+                                 Vec2(s.rim, -0.88 * deep),
+                                 Vec2(s.rim, -0.05 * c),
+                                 Vec2(0.95 * c, 0),
+                                 Vec2(0.2 * c, 0),
+                                 Vec2(0, 0)};
   chuck.turned({0, 0, face}, 2, body);
   // Three jaws, stepped, outside of the blank.
-  const double length = room.blank_mm.size().z;
-  const double grip = std::min(0.3 * length, 0.4 * c);
-  const double in = s.radius + 0.3;
+  const double grip = s.jaw_length;
+  const double in = s.radius + 0.3, out = std::max(s.jaw_radius, in + 1);
   const std::vector<Vec2> jaw{{face, in},
                               {face + grip, in},
-                              {face + grip, in + 0.15 * (0.97 * c - in)},
-                              {face + 0.6 * grip, in + 0.5 * (0.97 * c - in)},
-                              {face + 0.6 * grip, 0.97 * c},
-                              {face, 0.97 * c}};
+                              {face + grip, in + 0.15 * (out - in)},
+                              {face + 0.6 * grip, in + 0.5 * (out - in)},
+                              {face + 0.6 * grip, out},
+                              {face, out}};
   MeshBuilder one;
   one.prism(jaw, 1, -0.13 * c, 0.13 * c);  // (u, v) = (z, x)
   for (const double angle : {90.0, 210.0, 330.0}) chuck.add(one.mesh(), turn({0, 0, 1}, angle));
@@ -156,7 +179,7 @@ MachineModel build_lathe(const MachineRoom& room) {
   chuck.parent = "headstock";
   chuck.joint = room.has_c_axis ? JointKind::kRotary : JointKind::kFixed;
   chuck.input = 5;
-  machine.add(std::move(chuck), lathe_chuck(s, fitted).take(), paint::kSteel);
+  machine.add(std::move(chuck), lathe_chuck(s).take(), paint::kSteel);
   machine.slide("carriage", "bed", 2, {0, 0, 1}, lathe_carriage(s), paint::kBlue);
   machine.slide("turret", "carriage", 0, outwards, lathe_turret(s), paint::kAccent);
   return machine.finish("lathe", "chuck", "turret", room.machine_from_workpiece, outwards);

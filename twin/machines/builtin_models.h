@@ -54,6 +54,13 @@ struct TrunnionGeometry {
   double z_offset_mm = 0.0;
 };
 
+/// A lathe's chuck as somebody described it; z in the workpiece frame.
+struct ChuckRoom {
+  double diameter_mm = 0, length_mm = 0, face_z_mm = 0;
+  double jaw_diameter_mm = 0;  ///< outside; 0: jaws are as is usual
+  double jaw_length_mm = 0;
+};
+
 /// What a machine is built around.
 struct MachineRoom {
   Box blank_mm;  ///< Workpiece frame. Empty: a block of 100 x 100 x 50 below the origin.
@@ -61,8 +68,9 @@ struct MachineRoom {
   Pose machine_from_workpiece;  ///< The work offset.
   /// Of the nose, machine coordinates. Not given: what blank and reach need.
   std::array<std::optional<AxisTravel>, kAxisCount> travel{};
-  double tool_length_mm = 100.0;  ///< From tip to nose, of the longest tool.
-  bool has_c_axis = false;        ///< Lathe: the chuck turns with C.
+  double tool_length_mm = 100.0;   ///< From tip to nose, of the longest tool.
+  bool has_c_axis = false;         ///< Lathe: the chuck turns with C.
+  std::optional<ChuckRoom> chuck;  ///< Of a lathe; not given: one that goes around the blank.
   TrunnionGeometry trunnion;
   /// Of a head that tilts: from the nose up to the pivot. Not given: as is usual.
   std::optional<double> head_pivot_mm;

@@ -18,6 +18,9 @@ FittedRoom fit(const MachineRoom& room, const Vec3& nose_from_tip) {
   const Box blank = room.blank_mm.empty() ? kUsualBlank : room.blank_mm;
   fitted.blank_mm = box_around(room.machine_from_workpiece, blank);
   fitted.tool_length_mm = room.tool_length_mm;
+  fitted.chuck = room.chuck;
+  if (fitted.chuck)
+    fitted.chuck->face_z_mm = room.machine_from_workpiece.point({0, 0, room.chuck->face_z_mm}).z;
   // Tips: all over the blank and where the program goes.
   Box tips = fitted.blank_mm;
   tips.extend(box_around(room.machine_from_workpiece, room.reach_mm));

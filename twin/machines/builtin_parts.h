@@ -17,6 +17,7 @@ struct FittedRoom {
   Vec3 nose_min_mm{0.0};
   Vec3 nose_max_mm{0.0};
   double tool_length_mm = 0.0;
+  std::optional<ChuckRoom> chuck;  ///< Likewise.
 
   Vec3 blank_middle() const { return 0.5 * (blank_mm.min + blank_mm.max); }
   Vec3 travel() const { return nose_max_mm - nose_min_mm; }

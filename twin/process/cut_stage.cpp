@@ -77,7 +77,8 @@ void CutStage::step(const Motion& motion, const TimedStep& timed, std::span<cons
     site_.log.set_muted(true);
     if (stepped_ == report_from_) begin_reporting();
   }
-  ++stepped_;
+  site_.motion = stepped_++;
+  if (site_.recorder && !site_.holding) site_.recorder->on_step(site_.motion, motion, timed);
   site_.progress.begin_step(work_of(motion), path.empty());
   if (!site_.progress.stop_now()) cut(motion, timed, path);
   site_.progress.end_step();

@@ -46,6 +46,9 @@ class CutStage : private StepSink {
   void label_by(CutLabels& labels) { site_.labels = &labels; }
   /// From now on milling moves are kept as the model gets them. Outlives the stage.
   void keep_moves(KeptMoves& kept) { site_.kept = &kept; }
+  /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
+  /// outlives the stage.
+  void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }
   /// Of a torch program, all that the motions name from here on.
   void set_materials(std::span<const TorchMaterial> materials);
   /// Troubles are looked for as if this stage had done what the other one has: what is free,

@@ -30,6 +30,7 @@
 #include "twin/process/cut_progress.h"
 #include "twin/process/fallen_piece.h"
 #include "twin/process/feed_check.h"
+#include "twin/process/motion_recorder.h"
 #include "twin/process/sheet_checks.h"
 
 namespace kerf {
@@ -53,7 +54,14 @@ struct ProcessSite {
   bool holding = false;  ///< nothing is reported on yet
   /// How the machine turns tool and workpiece, whatever the model takes; null: nobody has said.
   std::shared_ptr<const MachineKinematics> kinematics{};
-  WorkpieceFrame frame{};  ///< where the workpiece lies in the machine
+  WorkpieceFrame frame{};              ///< where the workpiece lies in the machine
+  MotionRecorder* recorder = nullptr;  ///< CutStage::record_by()
+  std::uint64_t motion = 0;            ///< its number of the motion that is taken now
+
+  /// Of a motion, one of its moves has been cut.
+  void note_cut(std::uint64_t number, double removed_mm3, double depth_mm) const {
+    if (recorder) recorder->on_cut(number, removed_mm3, depth_mm);
+  }
 };
 
 /// What a process has done, as its section of the report. Immutable.

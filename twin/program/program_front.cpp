@@ -103,6 +103,7 @@ CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front)
   CheckOptions checks{front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
   checks.collisions.held_by = front.held_by;
   checks.spindle_max_rpm = options.spindle_max_rpm;
+  if (front.blank) checks.blank = front.blank->bodies;
   return checks;
 }
 
@@ -113,8 +114,8 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
                            diagnostics, outcome);
   if (!front.stock.stock) return false;
   const CollisionWishes& wishes = options.collisions;
-  if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, front.held_by,
-                     diagnostics)) {
+  if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, !front.blank_guessed,
+                     front.held_by, diagnostics)) {
     return true;
   }
   outcome = Outcome::kUsageError;

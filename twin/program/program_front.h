@@ -46,9 +46,8 @@ struct SessionOptions {
   bool blank_is_guess = false;
   std::string guess_reason;
   std::vector<ToolGuess> tool_guesses;
-  std::string beam_text;   ///< of beam.trigger, where that is a guess
-  bool keep_cuts = false;  ///< who cut what is to be known at the end: Session::cut_labels()
-  LineRange lines;         ///< cut silently up to there, reported from there, stopped there
+  std::string beam_text;  ///< of beam.trigger, where that is a guess
+  LineRange lines;        ///< cut silently up to there, reported from there, stopped there
 };
 
 /// A program that can be interpreted, and what is known before it is.

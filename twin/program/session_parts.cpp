@@ -13,6 +13,7 @@
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/turning_hints.h"
+#include "stock/millturn/mill_turn.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/turning/turning_stock.h"
@@ -56,7 +57,7 @@ Result<std::unique_ptr<StockModel>> as_stock(Result<std::unique_ptr<Model>> mode
 Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string& path,
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
-  if (kind == StockKind::kTurning) return with_milling(TurningStock::load(path), settings);
+  if (kind == StockKind::kTurning) return load_turned(path, settings);
   if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));
@@ -66,7 +67,7 @@ Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string
 
 /// As it lies now; null, with an error: only what turns is turned about, and not beyond a lathe.
 std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blank& blank,
-                                   Diagnostics& diagnostics) {
+                                   const StockSettings& settings, Diagnostics& diagnostics) {
   const SavedPlace& place = blank.saved_place;
   if (place.is_as_saved()) return stock;
   const TurningStock* const turned = stock->turned();
@@ -76,10 +77,22 @@ std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blan
             blank.state_file, stock->name())));
     return nullptr;
   }
+  if (const auto* const both = dynamic_cast<const MillTurn*>(stock.get());
+      both && both->is_milled()) {
+    diagnostics.push_back(general_error(
+        trf("{}: flip= and at= are for parts that are turned; this one has been milled as well",
+            blank.state_file)));
+    return nullptr;
+  }
   std::optional<TurnedPart> part = place.is_turned_about
                                        ? turned->part().turned_about(place.at_z_mm)
                                        : turned->part().moved(place.at_z_mm);
-  if (part) return std::make_unique<TurningStock>(std::move(*part));
+  if (part) {
+    auto lies = with_milling(std::make_unique<TurningStock>(std::move(*part)), settings);
+    if (lies) return std::move(lies.value());
+    diagnostics.push_back(general_error(lies.error()));
+    return nullptr;
+  }
   diagnostics.push_back(general_error(trf("{}: at Z{:g} it would lie beyond {} mm from Z0",
                                           blank.state_file, place.at_z_mm, kMaxTurnedZ_mm)));
   return nullptr;
@@ -93,7 +106,9 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
         general_error(tr("--cell: a saved workpiece keeps its own cells; leave --cell out")));
     return nullptr;
   }
-  const StockKind saved = saved_kind(blank.state_file);
+  StockKind saved = saved_kind(blank.state_file);
+  if (choice.kind == StockKind::kTurning && is_milled_part(blank.state_file))
+    saved = StockKind::kTurning;
   const bool is_other = settings.kind && *settings.kind != saved;
   if (is_other || choice.kind > saved) {
     const std::string why = choice.reason.empty() ? "" : fmt::format(" ({})", choice.reason);
@@ -105,7 +120,7 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   auto loaded = load_saved(saved, blank.state_file, settings);
-  if (loaded) return placed(std::move(loaded.value()), blank, diagnostics);
+  if (loaded) return placed(std::move(loaded.value()), blank, settings, diagnostics);
   diagnostics.push_back(general_error(loaded.error()));
   outcome = Outcome::kFailed;
   return nullptr;

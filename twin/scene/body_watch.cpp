@@ -58,6 +58,12 @@ void add_body(const std::string& name, const DrawnBodies& drawn, SceneContact& c
     contact.fixture = i;
     return;
   }
+  const std::size_t fixtures = drawn.fixtures ? drawn.fixtures->size() : 0;
+  for (std::size_t i = 0; drawn.held_by && i < drawn.held_by->size(); ++i) {
+    if (name != to_string((*drawn.held_by)[i].kind)) continue;
+    contact.fixture = fixtures + i;
+    return;
+  }
   for (std::size_t i = 0; drawn.machine && i < drawn.machine->links.size(); ++i) {
     if (drawn.machine->links[i].name != name) continue;
     contact.links.push_back(i);
@@ -106,11 +112,12 @@ std::optional<SceneContact> contact_of(const Finding& finding, const DrawnBodies
   return has_one ? std::optional(std::move(contact)) : std::nullopt;
 }
 
-BodyWatch::BodyWatch(CollisionWishes wishes)
-    : wishes_(std::move(wishes)), scene_(std::make_shared<const SceneMachine>()) {
-  if (!fixtures()) return;
-  scene_ = std::make_shared<const SceneMachine>(scene_fixtures(*fixtures()));
-  if (wishes_.machine) link_groups_ = rigid_groups(wishes_.machine->chain);
+BodyWatch::BodyWatch(CollisionWishes wishes) : wishes_(std::move(wishes)), held_(wishes_.held_by) {
+  SceneMachine scene;
+  if (fixtures()) scene = scene_fixtures(*fixtures());
+  for (MachineLink& link : held_links(wishes_.held_by)) scene.links.push_back(std::move(link));
+  scene_ = std::make_shared<const SceneMachine>(std::move(scene));
+  if (fixtures() && wishes_.machine) link_groups_ = rigid_groups(wishes_.machine->chain);
   set_link_poses({});
 }
 
@@ -120,10 +127,10 @@ void BodyWatch::set_machine(std::shared_ptr<const SceneMachine> machine) {
 }
 
 void BodyWatch::set_link_poses(std::span<const glm::mat4> link_poses) {
-  if (!fixtures()) return;
   static const SceneMachine kNone;
-  places_ = fixture_places(*fixtures(), machine_ ? *machine_ : kNone, link_poses);
+  if (fixtures()) places_ = fixture_places(*fixtures(), machine_ ? *machine_ : kNone, link_poses);
   std::vector<glm::mat4> poses = fixture_poses(places_);
+  poses.resize(places_.size() + held_.size(), glm::mat4(1.0f));
   if (poses == poses_) return;
   poses_ = std::move(poses);
   measured_.reset();
@@ -148,6 +155,7 @@ std::shared_ptr<const ToolShape> BodyWatch::mount(const std::shared_ptr<const Cu
   measured_.reset();
   for (Told& told : told_) told.seen_from.reset();
   bodies_.clear();
+  held_.mount(cutter.get());
   if (!cutter) return std::make_shared<const ToolShape>();
   bodies_ = tool_bodies(*cutter, wishes_.spindle, nose_mm);
   return tool_shape_of(*cutter, wishes_.spindle, nose_mm);
@@ -175,26 +183,17 @@ const ToolBody* BodyWatch::body_of(ToolPiece piece) const {
   return nullptr;
 }
 
-/// Each part of the tool against each fixture, as it stands.
-void BodyWatch::measure(const ToolPose& tool) {
-  if (measured_ == tool) return;
-  measured_ = tool;
-  clearance_.reset();
-  touched_.clear();
-  if (!fixtures() || fixtures()->empty() || bodies_.empty()) return;
-  SceneClearance nearest;
-  nearest.mm = kReach_mm;
-  nearest.is_beyond = true;
+/// Each part of the tool against each fixture, as it stands. False: one is nowhere.
+bool BodyWatch::measure_fixtures(const Pose& tool, SceneClearance& nearest) {
   bool is_known = true;
-  const Pose pose = pose_of(tool);
-  for (std::size_t i = 0; i < fixtures()->size(); ++i) {
+  for (std::size_t i = 0; i < fixture_count(); ++i) {
     const Fixture& fixture = (*fixtures())[i];
     if (goes_with_tool(fixture)) continue;
     if (!places_[i]) {
       is_known = false;
       continue;
     }
-    const Pose fixture_from_tool = places_[i]->inverse() * pose;
+    const Pose fixture_from_tool = places_[i]->inverse() * tool;
     for (const ToolBody& body : bodies_) {
       const double mm = distance_mm(body, fixture_from_tool, *fixture.solid, kReach_mm);
       if (mm <= 0 && touches(body, fixture_from_tool, *fixture.solid)) {
@@ -207,7 +206,43 @@ void BodyWatch::measure(const ToolPose& tool) {
       nearest = {mm, false, name_of(body.part), fixture.name};
     }
   }
+  return is_known;
+}
+
+/// Insert and holder against chuck, jaws and tailstock, in the plane of the axis.
+void BodyWatch::measure_held(const Vec3& tip_mm, SceneClearance& nearest) {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    for (const ToolPart part : {ToolPart::kCutter, ToolPart::kHolder}) {
+      const TurnedProfile& outline =
+          part == ToolPart::kCutter ? held_.tool().cutter : held_.tool().holder;
+      const auto gap = gap_between(outline, {tip_mm.z, tip_mm.x}, held_.profile(i));
+      if (!gap) continue;
+      if (gap->depth_mm > kTouchDepth_mm) {
+        SceneContact contact;
+        contact.piece = piece_of(part);
+        contact.fixture = fixture_count() + i;
+        touched_.push_back(contact);
+      }
+      if (gap->mm >= nearest.mm) continue;
+      nearest = {gap->mm, false, name_of(part), name_of(held_.kind(i))};
+    }
+  }
+}
+
+void BodyWatch::measure(const ToolPose& tool) {
+  if (measured_ == tool) return;
+  measured_ = tool;
+  clearance_.reset();
+  touched_.clear();
+  const bool has_fixtures = fixture_count() > 0 && !bodies_.empty();
+  const bool is_held = held_.size() > 0 && held_.is_mounted();
+  if (!has_fixtures && !is_held) return;
+  SceneClearance nearest;
+  nearest.mm = kReach_mm;
+  nearest.is_beyond = true;
   // What is nowhere may be nearer.
+  const bool is_known = !has_fixtures || measure_fixtures(pose_of(tool), nearest);
+  if (is_held) measure_held(tool.tip_mm, nearest);
   if (is_known) clearance_ = std::move(nearest);
 }
 

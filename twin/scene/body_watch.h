@@ -15,6 +15,7 @@
 #include "twin/collision/tool_bodies.h"
 #include "twin/findings/finding.h"
 #include "twin/process/check_options.h"
+#include "twin/scene/held_bodies.h"
 #include "viewer/scene.h"
 
 namespace kerf {
@@ -24,12 +25,14 @@ Pose pose_of(const ToolPose& tool);
 
 /// What may touch, besides the tool and the workpiece.
 struct DrawnBodies {
-  const std::vector<Fixture>* fixtures = nullptr;  ///< null: there are none
-  const SceneMachine* machine = nullptr;           ///< null: none is drawn
+  const std::vector<Fixture>* fixtures = nullptr;     ///< null: there are none
+  const std::vector<HoldingBody>* held_by = nullptr;  ///< null: nothing holds a turned workpiece
+  const SceneMachine* machine = nullptr;              ///< null: none is drawn
 };
 
-/// The collision that a finding tells of, as the viewer marks it: without a place. Nothing: it
-/// tells of none, or of bodies of which none is drawn.
+/// The collision that a finding tells of, as the viewer marks it: without a place. What holds a
+/// turned workpiece counts as fixtures that come after the others. Nothing: it tells of none, or of
+/// bodies of which none is drawn.
 std::optional<SceneContact> contact_of(const Finding& finding, const DrawnBodies& drawn);
 
 /// For a view of a program or a machine. One thread.
@@ -40,7 +43,7 @@ class BodyWatch {
   /// How long the bodies of a finding stay red, in seconds of who looks on.
   static constexpr double kRed_s = 0.5;
 
-  /// Fixtures, spindle.
+  /// Fixtures, spindle, chuck and tailstock.
   explicit BodyWatch(CollisionWishes wishes);
 
   /// Null if there are no fixtures.
@@ -52,7 +55,8 @@ class BodyWatch {
   /// Fixtures on links that it does not have, and before set_link_poses(), are nowhere.
   void set_machine(std::shared_ptr<const SceneMachine> machine);
   const std::shared_ptr<const SceneMachine>& drawn_machine() const { return machine_; }
-  DrawnBodies drawn() const { return {fixtures(), machine_.get()}; }
+  DrawnBodies drawn() const { return {fixtures(), wishes_.held_by.get(), machine_.get()}; }
+  const HeldWatch& held() const { return held_; }
 
   /// In the spindle; null: none that is known. Returns its shape if it is another one than before.
   std::shared_ptr<const ToolShape> mount(const std::shared_ptr<const Cutter>& cutter,
@@ -70,7 +74,7 @@ class BodyWatch {
   void set_link_poses(std::span<const glm::mat4> link_poses);
   /// Of a fixture, to the workpiece frame; none: it is on a link of which that is not known.
   const std::optional<Pose>& place_of(std::size_t fixture) const { return places_[fixture]; }
-  /// For Moment::fixture_poses.
+  /// For Moment::fixture_poses: of fixtures, and of what holds a workpiece that turns.
   const std::vector<glm::mat4>& poses() const { return poses_; }
   /// Clearance and contacts. There is no clearance while a fixture is nowhere, and one that the
   /// tool's own link carries is not looked at. Fixtures are red while the tool is in them, and like
@@ -87,16 +91,20 @@ class BodyWatch {
     std::optional<ToolPose> seen_from;  ///< `contact.point_mm` has been looked for there
   };
   void measure(const ToolPose& tool);
+  bool measure_fixtures(const Pose& tool, SceneClearance& nearest);
+  void measure_held(const Vec3& tip_mm, SceneClearance& nearest);
+  std::size_t fixture_count() const { return fixtures() ? fixtures()->size() : 0; }
   bool goes_with_tool(const Fixture& fixture) const;
   void add_told(const ToolPose& tool, double time_s, double speed, const StockModel* stock,
                 std::vector<SceneContact>& contacts);
 
   CollisionWishes wishes_;
+  HeldWatch held_;
   std::shared_ptr<const SceneMachine> scene_;
   std::shared_ptr<const SceneMachine> machine_;
   std::vector<std::size_t> link_groups_;     ///< rigid_groups() of the machine that is described
   std::vector<std::optional<Pose>> places_;  ///< of fixtures
-  std::vector<glm::mat4> poses_;             ///< the same
+  std::vector<glm::mat4> poses_;             ///< the same, and of what stands with the workpiece
   std::shared_ptr<const Cutter> cutter_;
   double nose_z_mm_ = 0;
   bool is_mounted_ = false;

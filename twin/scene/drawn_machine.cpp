@@ -31,6 +31,20 @@ WorkRoom work_room(const ProgramTrack& track, const Box& blank_mm, double tool_l
   return room;
 }
 
+std::optional<ChuckRoom> chuck_room(const HoldingList& held_by) {
+  std::optional<ChuckRoom> room;
+  for (std::size_t i = 0; held_by && i < held_by->size(); ++i) {
+    const Box box = (*held_by)[i].ring.bounds_mm();
+    if ((*held_by)[i].kind == HoldingBody::Kind::kChuck)
+      room = ChuckRoom{2 * box.max.x, box.size().z, box.max.z};
+    if ((*held_by)[i].kind == HoldingBody::Kind::kJaws && room) {
+      room->jaw_diameter_mm = 2 * box.max.x;
+      room->jaw_length_mm = box.size().z;
+    }
+  }
+  return room;
+}
+
 std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
                                                   const std::string& ini, const WorkRoom& room,
                                                   Diagnostics& diagnostics) {
@@ -48,6 +62,7 @@ std::shared_ptr<const MachineModel> drawn_machine(const MachineChoice& choice,
   MachineRoom around = machine_room(setup ? &*setup : nullptr, room.frame, room.blank_mm,
                                     room.reach_mm, room.tool_length_mm);
   around.turret = room.turret;
+  around.chuck = room.chuck;
   std::optional<MachineModel> model = make_machine(choice, facts, around, diagnostics);
   return model ? std::make_shared<const MachineModel>(std::move(*model)) : nullptr;
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/diagnostic.h"
 #include "base/geometry.h"
+#include "twin/job/work_holding.h"
 #include "twin/machines/machine_choice.h"
 #include "twin/playback/program_track.h"
 #include "viewer/scene.h"
@@ -16,13 +18,17 @@ namespace kerf {
 struct WorkRoom {
   WorkpieceFrame frame;
   Box blank_mm;
-  Box reach_mm;               ///< of the tips; may be empty
-  double tool_length_mm = 0;  ///< of the longest tool as it is drawn
-  TurretPointer turret;       ///< of a punch press
+  Box reach_mm;                    ///< of the tips; may be empty
+  double tool_length_mm = 0;       ///< of the longest tool as it is drawn
+  TurretPointer turret;            ///< of a punch press
+  std::optional<ChuckRoom> chuck;  ///< chuck_room()
 };
 
 /// The room of a program: all its motions, and all its tools as tool_shape_of() draws them.
 WorkRoom work_room(const ProgramTrack& track, const Box& blank_mm, double tool_length_mm);
+
+/// Of a workpiece that turns: its chuck, if somebody described it.
+std::optional<ChuckRoom> chuck_room(const HoldingList& held_by);
 
 /// The machine that is chosen, or that the INI describes; null, without an error: there is no INI
 /// and nothing is chosen, or none is wanted. `ini` empty: no INI.

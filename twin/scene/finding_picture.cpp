@@ -23,6 +23,7 @@
 #include "viewer/labels.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/raycast/stroke_raster.h"
+#include "viewer/section.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
@@ -194,6 +195,7 @@ SceneUpdate FindingPictures::Impl::scene_of(const FindingShot& shot, const Findi
   SceneUpdate update;
   auto setup = std::make_shared<SceneSetup>();
   setup->bounds_mm = shot.stock->bounds_mm();
+  setup->standing = view.standing;
   setup->blank_outline = blank_outline_of(*shot.stock);
   update.setup = std::move(setup);
   update.tool_shape = view.tool_shape;
@@ -217,16 +219,24 @@ Done FindingPictures::Impl::draw_whole(SceneRenderer& renderer, const Projection
 /// The best of the candidates: what shows more of the places that are to be seen counts first.
 Result<OrbitCamera> FindingPictures::Impl::chosen_camera(const FindingView& view, bool* is_hidden) {
   OrbitCamera best;
+  best.set_standing(view.standing);
+  if (view.is_flat) {
+    best.set_perspective(false);
+    best.look_from(StandardView::kFront);
+    best.fit(view.frame_mm, size_px_);
+    return best;
+  }
   double best_score = -std::numeric_limits<double>::infinity();
   for (const ViewAngles& angles : candidate_views()) {
     OrbitCamera camera;
+    camera.set_standing(view.standing);
     camera.look_from(angles.yaw_rad, angles.pitch_rad);
     camera.fit(view.frame_mm, kScout_px);
     const Projection projection = camera.projection(scout_.depth_box(), kScout_px);
     if (Done done = draw_whole(scout_, projection, options_); !done) return Error{done.error()};
     // A pixel of slope, and a place that lies on the surface.
     const double near_mm = 3 * camera.pixel_mm(kScout_px);
-    const Vec3 to_eye = direction_of(angles);
+    const Vec3 to_eye = direction_of(angles, view.standing);
     const auto is_seen = [&](const Vec3& place) {
       const auto px = picture_px(place, projection);
       if (!px) return false;
@@ -305,9 +315,16 @@ Result<Picture> FindingPictures::Impl::draw(const FindingShot& shot) {
       renderer.apply(update);
     } while (feeder.behind());
   };
-  OrbitCamera whole;
-  whole.fit(view.frame_mm, kScout_px);
-  feed(scout_, scout_feeder_, whole.detail(kScout_px));
+  if (!view.is_flat) {
+    OrbitCamera whole;
+    whole.fit(view.frame_mm, kScout_px);
+    feed(scout_, scout_feeder_, whole.detail(kScout_px));
+  }
+  options_.section.reset();
+  if (view.is_inside) {
+    const Box middle{Vec3(-1), Vec3(1)};  // of the axis
+    options_.section = usual_section(SectionKind::kHalf, middle, view.standing)->plane;
+  }
   bool is_hidden = false;
   const Result<OrbitCamera> camera = chosen_camera(view, &is_hidden);
   if (!camera) return Error{camera.error()};

@@ -52,9 +52,10 @@ class FindingPictures {
   /// machine touch something, these too, and the rest of it as glass. Both bodies are red
   /// (amber if they only come near), a ring marks where they touch, once more and larger in a
   /// corner, a caption says what, the file and the line. Seen from the side on which the workpiece
-  /// does not hide the place; where it does on all sides, it is seen through. About a second on a
-  /// core without a graphics card; less for workpieces that share tiles with the one before. Error:
-  /// OpenGL failed.
+  /// does not hide the place; where it does on all sides, it is seen through. On a lathe straight
+  /// from the front, Z to the right and X up, and cut open where they touch within the workpiece.
+  /// About a second on a core without a graphics card; less for workpieces that share tiles with
+  /// the one before. Error: OpenGL failed.
   Result<Picture> draw(const FindingShot& shot);
 
  private:

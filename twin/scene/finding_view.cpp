@@ -10,6 +10,7 @@
 
 #include "twin/collision/solid_sweep.h"
 #include "twin/scene/contact_places.h"
+#include "twin/scene/turned_finding_view.h"
 
 namespace kerf {
 namespace {
@@ -42,7 +43,7 @@ Box common(const Box& a, const Box& b) {
 std::optional<double> facing_of(const FindingView& view, const ViewAngles& angles) {
   constexpr double kOnAxis_mm = 0.05;
   const Vec3 outward = view.place_mm - view.axis_mm;
-  const Vec3 to_eye = direction_of(angles);
+  const Vec3 to_eye = direction_of(angles, view.standing);
   const Vec3 across = to_eye - glm::dot(to_eye, view.axis) * view.axis;
   const double lengths = glm::length(outward) * glm::length(across);
   if (glm::length(outward) < kOnAxis_mm || lengths <= 0) return std::nullopt;
@@ -92,7 +93,8 @@ std::vector<StandingBody> touching_bodies(const FindingShot& shot, const SceneCo
     const glm::dmat4 m(shot.link_poses[link]);
     bodies.push_back({name, body->solids, Pose{glm::dmat3(m), Vec3(m[3])}});
   }
-  if (contact.fixture && watch.place_of(*contact.fixture)) {
+  const std::size_t fixtures = watch.fixtures() ? watch.fixtures()->size() : 0;
+  if (contact.fixture && *contact.fixture < fixtures && watch.place_of(*contact.fixture)) {
     const Fixture& fixture = (*watch.fixtures())[*contact.fixture];
     bodies.push_back({fixture.name, {fixture.solid}, *watch.place_of(*contact.fixture)});
   }
@@ -159,7 +161,9 @@ void show_standing(const Box& shown, FindingView& view) {
 }  // namespace
 
 FindingView finding_view(const FindingShot& shot, BodyWatch& watch, const MachineBodies* links) {
+  if (is_turned_shot(shot)) return turned_finding_view(shot, watch);
   FindingView view;
+  if (shot.stock->turned()) view.standing = Standing::kInLathe;
   view.tool_shape = watch.mount(shot.cutter, shot.nose_z_mm);
   watch.set_link_poses(shot.link_poses);
   const Pose pose = pose_of(shot.tool);
@@ -224,10 +228,11 @@ std::vector<ViewAngles> candidate_views() {
   return views;
 }
 
-Vec3 direction_of(const ViewAngles& angles) {
+Vec3 direction_of(const ViewAngles& angles, Standing standing) {
   const double flat = std::cos(angles.pitch_rad);
-  return {flat * std::cos(angles.yaw_rad), flat * std::sin(angles.yaw_rad),
-          std::sin(angles.pitch_rad)};
+  return in_workpiece({flat * std::cos(angles.yaw_rad), flat * std::sin(angles.yaw_rad),
+                       std::sin(angles.pitch_rad)},
+                      standing);
 }
 
 bool tool_hides_place(const FindingView& view, const ViewAngles& angles) {
@@ -245,7 +250,7 @@ double score_of(const FindingView& view, const ViewAngles& angles, bool shows_pl
   if (const auto facing = facing_of(view, angles))
     score -= kBeside * std::abs(*facing - kALittleBefore);
   // Along its axis a tool is short.
-  const double along = std::abs(glm::dot(direction_of(angles), view.axis));
+  const double along = std::abs(glm::dot(direction_of(angles, view.standing), view.axis));
   score -= kAlong * std::max(0.0, along - 0.5);
   // Else from where the operator stands.
   score -= kFront * (1 + std::sin(angles.yaw_rad));

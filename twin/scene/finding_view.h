@@ -11,6 +11,7 @@
 #include "twin/scene/body_watch.h"
 #include "twin/scene/finding_picture.h"
 #include "viewer/scene.h"
+#include "viewer/standing.h"
 
 namespace kerf {
 
@@ -29,10 +30,15 @@ struct FindingView {
   std::string other_name;
   Box frame_mm;  ///< that the picture shows
   Box close_mm;  ///< that is shown once more, larger; empty: there is nothing more to be seen
+  Standing standing = Standing::kOnTable;  ///< which way up it is looked at
+  /// Seen straight from the front, without perspective: what touches lies in one plane.
+  bool is_flat = false;
+  bool is_inside = false;  ///< the workpiece is cut open in that plane
 };
 
 /// `watch`: it is given the shot's tool and poses of links. `links`: shapes of those of the machine
-/// that it draws; null: they are not known. Costs what place_between() and place_on_workpiece() do.
+/// that it draws; null: they are not known. On a lathe as turned_finding_view() has it. Costs what
+/// place_between() and place_on_workpiece() do.
 FindingView finding_view(const FindingShot& shot, BodyWatch& watch,
                          const MachineBodies* links = nullptr);
 
@@ -42,8 +48,8 @@ struct ViewAngles {
 };
 /// From all around, at some heights; the usual one first.
 std::vector<ViewAngles> candidate_views();
-/// Unit vector to the eye.
-Vec3 direction_of(const ViewAngles& angles);
+/// Unit vector to the eye, in the workpiece frame.
+Vec3 direction_of(const ViewAngles& angles, Standing standing = Standing::kOnTable);
 
 /// It stands before the place where it touches.
 bool tool_hides_place(const FindingView& view, const ViewAngles& angles);

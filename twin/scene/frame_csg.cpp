@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "twin/scene/frame_bodies.h"
 #include "twin/scene/frame_drawer.h"
 #include "twin/scene/frame_lines.h"
 #include "twin/scene/frame_moves.h"
@@ -42,7 +43,8 @@ class CsgDrawer final : public FrameDrawer {
         renderer_(std::move(renderer)),
         moves_(std::move(moves)),
         projection_(frame_projection(start)),
-        lines_(start, projection_) {}
+        lines_(start, projection_),
+        bodies_(start, projection_) {}
 
   Done can_reach(const TrackPosition& place) override {
     if (std::tie(place.motion, place.fraction) <= std::tie(reach_.motion, reach_.fraction)) {
@@ -69,6 +71,7 @@ class CsgDrawer final : public FrameDrawer {
     std::vector<float> depths = renderer_.read_depth().depths;
     lay_over(caster_, &picture, &depths);
     lines_.draw(*state, &picture, &depths);
+    bodies_.draw(*state, depths, &picture);
     return picture;
   }
 
@@ -89,6 +92,7 @@ class CsgDrawer final : public FrameDrawer {
   FrameMoves moves_;
   Projection projection_;
   FrameLines lines_;
+  FrameBodies bodies_;
   RayCaster caster_{ray_threads()};  // of the tool alone
   FrameTool tool_;
   TrackPosition place_;  ///< the moves up to here are subtracted

@@ -28,7 +28,7 @@ struct DrawerStart {
 
 /// All objects, through the window's renderer. Error: no OpenGL.
 Result<std::unique_ptr<FrameDrawer>> make_mesh_drawer(DrawerStart start);
-/// Workpiece, tool, path, outline of the blank, frames and findings, by rays on the CPU. Never
+/// Workpiece, tool, path, outline of the blank, frames, findings and fixtures, by rays. Never
 /// touches OpenGL.
 Result<std::unique_ptr<FrameDrawer>> make_raycast_drawer(DrawerStart start);
 /// The same objects, the workpiece by image-space CSG from the moves. Error: no OpenGL; the blank

@@ -7,6 +7,7 @@
 #include "base/translate.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/scene/drawn_machine.h"
+#include "twin/scene/frame_bodies.h"
 #include "twin/scene/frame_drawer.h"
 #include "twin/scene/frame_lines.h"
 #include "twin/scene/frame_tool.h"
@@ -21,7 +22,9 @@ constexpr int kMostThreads = 8;
 class RaycastDrawer final : public FrameDrawer {
  public:
   explicit RaycastDrawer(const DrawerStart& start)
-      : projection_(frame_projection(start)), lines_(start, projection_) {}
+      : projection_(frame_projection(start)),
+        lines_(start, projection_),
+        bodies_(start, projection_) {}
 
   Result<Picture> draw(const std::shared_ptr<const PlayerState>& state) override {
     if (stock_ != state->stock) {
@@ -33,12 +36,14 @@ class RaycastDrawer final : public FrameDrawer {
     Picture picture = caster_.picture();
     std::vector<float> depths(caster_.depths().begin(), caster_.depths().end());
     lines_.draw(*state, &picture, &depths);
+    bodies_.draw(*state, depths, &picture);
     return picture;
   }
 
  private:
   Projection projection_;
   FrameLines lines_;
+  FrameBodies bodies_;
   RayCaster caster_{ray_threads()};
   FrameTool tool_;
   std::shared_ptr<const StockModel> stock_;

@@ -72,6 +72,7 @@ std::shared_ptr<const MachineModel> machine_around(const LoadedProgram& loaded,
   if (loaded.player.blank->turned() && !choice.is_chosen()) wished.kind = MachineKind::kLathe;
   WorkRoom room = work_room(*loaded.player.track, loaded.player.blank->bounds_mm(), longest_mm);
   room.turret = turret;
+  room.chuck = chuck_room(loaded.player.checks.collisions.held_by);
   return drawn_machine(wished, ini, room, diagnostics);
 }
 

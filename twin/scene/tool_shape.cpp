@@ -40,6 +40,8 @@ constexpr double kInsert_mm = 5, kHolder_mm = 20, kBelowFace_mm = 0.2;
 
 glm::vec2 plate_point(const Vec2& zx) { return glm::vec2(zx); }
 
+}  // namespace
+
 ToolPlate plate_of(const InsertPart& part) {
   ToolPlate plate;
   const auto is_cutting = [](InsertSide side) { return side < InsertSide::kBody; };
@@ -71,8 +73,6 @@ ToolPlate plate_of(const InsertPart& part) {
   plate.low_y_mm = static_cast<float>(high_mm - (has_edge ? kInsert_mm : kHolder_mm));
   return plate;
 }
-
-}  // namespace
 
 std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
                                                std::span<const ToolSection> spindle,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "stock/cutter/cutter.h"
+#include "stock/cutter/insert.h"
 #include "viewer/scene.h"
 
 namespace kerf {
@@ -20,6 +21,9 @@ namespace kerf {
 std::shared_ptr<const ToolShape> tool_shape_of(const Cutter& cutter,
                                                std::span<const ToolSection> spindle = {},
                                                double nose_z_mm = 0);
+
+/// A part of an insert, or of what holds it. Arcs as chords of 5 degrees.
+ToolPlate plate_of(const InsertPart& part);
 
 /// For people, from the shape's text: "ball 10", "bull 10 R2", "drill 8".
 std::string tool_name_of(const Cutter& cutter);

@@ -69,6 +69,7 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   if (must_begin_again()) return false;
   stage.set_frame(frame);
   if (materials_.take(taken_materials_)) stage.set_materials(taken_materials_);
+  if (!recorders_.empty() && files_.take(taken_files_)) recorders_.name_files(taken_files_);
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);
@@ -106,6 +107,7 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
   const auto read = [&] {
     const MotionSink sink = [&](std::span<const Motion> motions) {
       materials_.put(program.materials());
+      files_.put(program.files());
       double work = work_read_;
       for (const Motion& m : motions) work += CutStage::work_of(m);
       work_read_ = work;
@@ -143,6 +145,7 @@ Session::Pass Session::cut_program(CutStage& stage, std::stop_token stop,
     if (second_pass_) second_pass_->give_tools(known_tools(front_.tools));
     return second && !second_pass_ ? Pass::kWhole : stream(stage, stop);
   }
+  files_.put(report_.program.files);
   const std::span<const Motion> all(kept_);
   double work = 0;
   for (const Motion& m : all) work += CutStage::work_of(m);
@@ -165,6 +168,8 @@ bool Session::begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcom
     return false;
   }
   report_.findings = {};
+  recorders_.restart();
+  if (labels_) labels_.emplace();
   window_ = LineWindow(options_.lines);
   switched_ = SwitchedMotions(options_.timeline.kinematics);
   if (std::exchange(lacks_tool_, false) && !survey_program(stop, diagnostics, outcome))
@@ -200,12 +205,11 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
-  if (options_.keep_cuts && !front_.is_sheet()) {
-    labels_ = CutLabels();
-    kept_moves_ = KeptMoves();
+  if (!recorders_.empty()) stage.record_by(recorders_);
+  if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
+  if (labels_ && !front_.is_sheet()) {
     front_.stock.stock->keep_cut_ids(true);
-    stage.label_by(labels_);
-    stage.keep_moves(kept_moves_);
+    stage.label_by(*labels_);
   }
   work_read_ = work_done_ = 0;
   stage.count_work(work_done_);

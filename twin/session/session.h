@@ -17,6 +17,7 @@
 #include "twin/findings/outcome.h"
 #include "twin/guess/program_survey.h"
 #include "twin/machine/kinematics/switched_motions.h"
+#include "twin/process/cut_labels.h"
 #include "twin/process/cut_stage.h"
 #include "twin/process/kept_moves.h"
 #include "twin/program/material_handover.h"
@@ -59,6 +60,18 @@ class Session {
   ~Session();
 
   void set_observer(SessionObserver* observer) { observer_ = observer; }
+  /// Hears of each motion that is reported on. Before run(); outlives the session.
+  void record_by(MotionRecorder& recorder) { recorders_.add(recorder); }
+  /// Before run(): the workpiece remembers which move made its surface (StockModel::cut_id_at()),
+  /// by numbers of cut_labels(). Costs memory and time. Of sheets there are none.
+  void keep_cut_labels() { labels_.emplace(); }
+  const CutLabels* cut_labels() const { return labels_ ? &*labels_ : nullptr; }
+  /// Before run(): the moves that cut are kept, about 100 bytes each, with the labels.
+  void keep_moves() {
+    keep_cut_labels();
+    kept_moves_.emplace();
+  }
+  const KeptMoves* kept_moves() const { return kept_moves_ ? &*kept_moves_ : nullptr; }
 
   /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that
   /// leave nothing to report on (the guessed blank does not fit the memory, a stdin too long to
@@ -75,9 +88,8 @@ class Session {
   const Report& report() const { return report_; }
   /// Null if the run ended before there was one.
   const StockModel* stock() const { return front_.stock.stock.get(); }
-  /// With SessionOptions::keep_cuts what the workpiece's cut ids mean, and the moves; else empty.
-  std::span<const CutLabel> cut_labels() const { return labels_.all(); }
-  const KeptMoves& kept_moves() const { return kept_moves_; }
+  /// As findings were judged by, with what holds the blank there is.
+  CollisionWishes collisions() const { return checks_of(options_, front_).collisions; }
 
  private:
   Session(SessionOptions options, ProgramFront front, std::chrono::steady_clock::time_point start);
@@ -110,6 +122,8 @@ class Session {
   std::atomic<const Program*> shown_program_{nullptr};  ///< the one that runs now, for progress()
   MaterialHandover materials_;  ///< from the thread that reads to the one that cuts
   std::vector<TorchMaterial> taken_materials_;
+  FileHandover files_;  ///< the same of the names of files
+  std::vector<std::string> taken_files_;
   LineWindow window_;
   TiltWatch tilt_;
   std::atomic<double> work_read_{0};  ///< CutStage::work_of() of what has come to be cut
@@ -121,8 +135,9 @@ class Session {
   bool kept_whole_ = false;
   Diagnostics interpreter_;  ///< what the interpreter said in the last pass
   SessionObserver* observer_ = nullptr;
-  CutLabels labels_;
-  KeptMoves kept_moves_;
+  MotionRecorders recorders_;
+  std::optional<CutLabels> labels_;
+  std::optional<KeptMoves> kept_moves_;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;

@@ -10,6 +10,7 @@
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/shape_limits.h"
+#include "twin/tool_library/fusion_turning.h"
 #include "twin/tool_library/library_number.h"
 #include "twin/tool_library/tool_geometry.h"
 
@@ -250,6 +251,12 @@ const std::array<Tool::Maker, 23> Tool::kMakers{{
     {"waterjet", &Tool::beam},
 }};
 
+bool make_turned(const Json& tool, std::string_view type, LibraryTool& out) {
+  const Json* const holder = member(tool, "holder");
+  const bool has_unit = holder && member(*holder, "unit");
+  return make_fusion_turning_tool(tool, type, mm_of(tool), mm_of(has_unit ? *holder : tool), out);
+}
+
 LibraryTool fusion_tool(const Json& tool, const std::string& type) {
   LibraryTool out;
   out.kind = type;
@@ -257,7 +264,7 @@ LibraryTool fusion_tool(const Json& tool, const std::string& type) {
   if (out.name.empty()) out.name = text_of(member(tool, "product-id"));
   if (type.empty()) {
     out.trouble = tr("it has no type");
-  } else if (!Tool(tool, out).make(type)) {
+  } else if (!Tool(tool, out).make(type) && !make_turned(tool, type, out)) {
     out.trouble = trf("its kind '{}' is not known", shown(type));
   }
   const Json* const post = member(tool, "post-process");

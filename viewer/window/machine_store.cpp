@@ -71,18 +71,6 @@ std::size_t MachineStore::upload(std::size_t budget_bytes) {
   return bytes;
 }
 
-float MachineStore::most_opacity_of(const Link& link) const {
-  if (!link.pose) return 1.0f;
-  const glm::dmat4 link_from_world = glm::inverse(glm::dmat4(*link.pose));
-  const auto in_link = [&](const Vec3& at) { return Vec3(link_from_world * glm::dvec4(at, 1.0)); };
-  double hidden = 0.0;
-  for (const SightLine& line : lines_) {
-    if (link.rays.hits(in_link(line.from_mm), in_link(line.to_mm))) hidden += line.share;
-  }
-  const double faded = std::clamp((hidden - kMayHide) / (kHidesAll - kMayHide), 0.0, 1.0);
-  return glm::mix(1.0f, kClearest, static_cast<float>(faded));
-}
-
 ScreenRect MachineStore::take_changed(const Projection& projection, const Box& part_mm) {
   ScreenRect changed = std::exchange(dropped_rect_, {});
   const bool is_other_eye = projection != projection_ || !(part_mm == part_mm_);
@@ -95,7 +83,7 @@ ScreenRect MachineStore::take_changed(const Projection& projection, const Box& p
     if (!std::exchange(link.has_changed, false) && !is_other_eye) continue;
     changed.extend(link.rect);
     link.rect = {};
-    link.most_opacity = most_opacity_of(link);
+    link.most_opacity = link.pose ? most_opacity(link.rays, *link.pose, lines_) : 1.0f;
     if (link.pose && !link.box_mm.empty()) {
       link.rect = covered_rect(link.box_mm, {projection.clip_from_world * *link.pose,
                                              projection.view_from_world, projection.size_px});

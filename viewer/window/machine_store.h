@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "viewer/gl_objects.h"
+#include "viewer/mesh_rays.h"
 #include "viewer/scene.h"
+#include "viewer/sight_lines.h"
 #include "viewer/window/body_mark.h"
 #include "viewer/window/mesh_buffers.h"
-#include "viewer/window/mesh_rays.h"
 #include "viewer/window/screen_rect.h"
-#include "viewer/window/sight_lines.h"
 
 namespace kerf {
 
@@ -25,11 +25,6 @@ namespace kerf {
 /// it.
 class MachineStore {
  public:
-  /// Of the workpiece's box, as it is seen: from the first share on a link fades, at the second it
-  /// is as clear as it gets, with the opacity kClearest.
-  static constexpr double kMayHide = 0.05, kHidesAll = 0.35;
-  static constexpr float kClearest = 0.15f;
-
   void set_machine(std::shared_ptr<const SceneMachine> machine);
   /// One a link; links beyond have none, nor have those that are kNotDrawn.
   void set_poses(std::span<const glm::mat4> link_poses);
@@ -72,7 +67,6 @@ class MachineStore {
     bool has_changed = false;
   };
 
-  float most_opacity_of(const Link& link) const;
   static float opacity_of(const Link& link, float opacity);
   void draw_link(const Link& link, const Projection& projection, const GlProgram& program,
                  float opacity) const;

@@ -5,15 +5,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include "stock/cutter/insert_shape.h"
 #include "stock/cutter/shape_spec.h"
+#include "tests/base/temporary_folder.h"
 
 namespace kerf {
 namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 constexpr double kRadius_mm = 20, kLow_mm = -50;
 
@@ -229,6 +238,75 @@ TEST(MillTurn, ACopyStaysAndGoesOn) {
   copy->cut(driven("flat:6:live=x"), keyway(180), reports);
   EXPECT_EQ(copy->digest(), stock->digest());
   EXPECT_EQ(copy->remaining_mm3(), stock->remaining_mm3());
+}
+
+/// Saved and loaded it goes on as if it had never been away: milled, turned, parted off.
+TEST(MillTurn, SavedItGoesOnBeingTurnedAndMilled) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "part.state";
+  const auto stock = stock_of(0.4);
+  cut(*stock, insert(), {line({18, 0, 2}, {18, 0, -25})});
+  cut(*stock, driven("flat:6:live=x"), keyway());
+  cut(*stock, insert(), turning());
+  ASSERT_TRUE(stock->save(path));
+  const auto loaded = MillTurn::load(path, {});
+  ASSERT_TRUE(loaded) << loaded.error();
+  MillTurn& back = **loaded;
+  EXPECT_TRUE(back.is_milled());
+  EXPECT_EQ(back.digest(), stock->digest());
+  EXPECT_EQ(back.turned()->digest(), stock->turned()->digest());
+  EXPECT_EQ(back.remaining_mm3(), stock->remaining_mm3());
+  EXPECT_EQ(back.blank_mm3(), stock->blank_mm3());
+  EXPECT_EQ(back.milling_cell_mm(), stock->milling_cell_mm());
+  for (MillTurn* one : {stock.get(), &back}) {
+    cut(*one, insert(), {line({16, 0, 2}, {16, 0, -22})});
+    cut(*one, driven("flat:6:live=x"), keyway(120));
+    cut(*one, blade(), {line({25, 0, -30}, {-1, 0, -30})});
+  }
+  EXPECT_EQ(back.digest(), stock->digest());
+  EXPECT_EQ(back.remaining_mm3(), stock->remaining_mm3());
+  EXPECT_EQ(back.turned()->part().freed().size(), 1u);
+  // A mill takes the same file as the octree that it is.
+  const auto tree = Octree::load(path);
+  ASSERT_TRUE(tree) << tree.error();
+  ASSERT_TRUE((*tree)->save(path));
+  const auto without = MillTurn::load(path, {});
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error(), path + ": nothing in it says how it was turned: a mill has saved it");
+}
+
+TEST(MillTurn, SavedUnmilledItIsAFileOfTurning) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "part.state";
+  const auto stock = stock_of();
+  cut(*stock, insert(), turning());
+  ASSERT_TRUE(stock->save(path));
+  const auto turned = TurningStock::load(path);
+  ASSERT_TRUE(turned) << turned.error();
+  EXPECT_EQ((*turned)->digest(), stock->digest());
+}
+
+TEST(MillTurn, ADamagedFileIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "part.state";
+  const auto stock = stock_of(1);
+  cut(*stock, driven("flat:6:live=x"), keyway());
+  ASSERT_TRUE(stock->save(path));
+  std::string bytes = text_of(path);
+  const std::size_t beside = bytes.find("\nmodel turning\n");
+  ASSERT_NE(beside, std::string::npos);
+  for (const std::size_t at : {beside + 30, beside + 100, bytes.size() / 2, bytes.size() - 30}) {
+    std::string wrong = bytes;
+    wrong[at] ^= 1;
+    std::ofstream(path, std::ios::binary) << wrong;
+    EXPECT_FALSE(MillTurn::load(path, {})) << at;
+    EXPECT_FALSE(Octree::load(path)) << at;
+  }
+  for (const std::size_t size : {beside + 30, bytes.size() - 1, std::size_t{40}}) {
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, size);
+    EXPECT_FALSE(MillTurn::load(path, {})) << size;
+    EXPECT_FALSE(Octree::load(path)) << size;
+  }
 }
 
 TEST(MillTurn, TilesAreToldOfWhatIsTurnedLater) {

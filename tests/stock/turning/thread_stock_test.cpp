@@ -110,19 +110,5 @@ TEST(ThreadStock, flanks_know_the_move_that_made_them) {
   EXPECT_GT(of_blank, 500u);
 }
 
-TEST(ThreadStock, a_tap_on_the_axis_leaves_a_hole) {
-  const Cutter tap = *Cutter::from_profile(
-      "tap", {{ProfilePiece::Kind::kLine, 0, 0, 4, 0}, {ProfilePiece::Kind::kLine, 4, 0, 4, 60}});
-  CutMove down;
-  down.from_mm = {0, 0, 5};
-  down.to_mm = {0, 0, -20};
-  down.lead_mm = 1.25;
-  TurningStock stock = long_bar();
-  std::vector<CutReport> reports;
-  stock.cut(tap, {&down, 1}, reports);
-  EXPECT_NEAR(reports[0].removed_mm3, cylinder_mm3(8, 20), 1e-3);
-  EXPECT_TRUE(stock.part().threads().empty());
-}
-
 }  // namespace
 }  // namespace kerf

@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <sstream>
+
 #include "base/text_scan.h"
 #include "stock/turning/contour_arcs.h"
 #include "stock/turning/turned_blank.h"
@@ -268,6 +272,69 @@ TEST_F(TurnedDrawing, dxf_has_arcs_with_the_radii_and_a_centre_line) {
   ASSERT_EQ(radii.size(), 4u);
   const double expected[] = {0.4, 2, 4.6, 6.4};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(radii[i], expected[i], 1.1e-4);
+}
+
+/// A hexagon of 35 across flats, its corners at 20.2: turned to 30 in front, with a groove to 34 in
+/// the rest and one to 36, which leaves something of the corners.
+TEST_F(TurnedDrawing, flats_are_dashed_where_the_bar_still_has_them) {
+  const BarFlats flats{6, 17.5};
+  TurnedPart part = *TurnedPart::create(bar_profile(-60, 0, 2 * flats.outer_radius_mm()),
+                                        ChuckSide::kLowZ, flats);
+  part.cut(TurningTool(right_hand(0)), line({2, 15}, {-20, 15}));
+  const TurningTool blade(*groove_insert({3, 0, 40, 2}));
+  for (const auto& [z, r] : {std::pair(-34.0, 17.0), std::pair(-50.0, 18.0)}) {
+    part.cut(blade, line({z, 25}, {z, r}));
+    part.cut(blade, line({z, r}, {z, 25}));
+  }
+  ASSERT_TRUE(write_turned_dxf(part, folder_ / "hex.dxf"));
+  ASSERT_TRUE(write_turned_svg(part, folder_ / "hex.svg"));
+  std::istringstream in(text_of(folder_ / "hex.dxf"));
+  std::vector<std::array<double, 4>> lines;
+  int notes = 0;
+  std::string code, value, entity, layer;
+  while (std::getline(in, code) && std::getline(in, value)) {
+    const int group = std::stoi(code);
+    if (group == 0) entity = value;
+    if (group == 8) layer = value;
+    if (layer != "FLATS") continue;
+    if (group == 1) {
+      EXPECT_EQ(value, "HEX 35");
+      ++notes;
+    }
+    if (entity != "LINE") continue;
+    if (group == 10) lines.push_back({std::stod(value)});
+    if (group == 20) lines.back()[1] = std::stod(value);
+    if (group == 11) lines.back()[2] = std::stod(value);
+    if (group == 21) lines.back()[3] = std::stod(value);
+  }
+  // The shoulder leans by 5 degrees from the radius of 15 at Z-20 on: at the corners, where flats
+  // end, it is farthest in front.
+  const double shoulder = -20 + (flats.outer_radius_mm() - 15) * std::tan(radians(5));
+  const double expected[2][2] = {{-60, -34}, {-31, shoulder}};
+  ASSERT_EQ(lines.size(), 2u) << "the groove to 36 has no end of the flats";
+  EXPECT_EQ(notes, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(lines[i][0], expected[i][0], 1e-4);
+    EXPECT_NEAR(lines[i][2], expected[i][1], 1e-4);
+    EXPECT_EQ(lines[i][1], 17.5);
+    EXPECT_EQ(lines[i][3], 17.5);
+  }
+  const std::string svg = text_of(folder_ / "hex.svg");
+  EXPECT_NE(svg.find("class=\"flats\""), std::string::npos);
+  EXPECT_NE(svg.find("<title>HEX 35</title>"), std::string::npos);
+  // They are no part of the profile.
+  for (const char* const name : {"hex.dxf", "hex.svg"}) {
+    const Result<TurnedProfile> profile = read_profile(folder_ / name);
+    ASSERT_TRUE(profile) << profile.error();
+    TurnedProfile round = part.profile();
+    EXPECT_NEAR(
+        TurnedPart::create(*profile)->remaining_mm3() / TurnedPart::create(round)->remaining_mm3(),
+        1, 1e-6);
+  }
+  // Nothing is left of them: nothing is drawn.
+  part.cut(TurningTool(right_hand(0)), line({2, 15}, {-70, 15}));
+  ASSERT_TRUE(write_turned_dxf(part, folder_ / "round.dxf"));
+  EXPECT_EQ(text_of(folder_ / "round.dxf").find("FLATS"), std::string::npos);
 }
 
 TEST_F(TurnedDrawing, says_what_cannot_be_written) {

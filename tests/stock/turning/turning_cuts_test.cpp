@@ -31,6 +31,22 @@ TEST(TurningCuts, depth_is_across_the_way_whatever_the_way) {
   EXPECT_LE(slope.depth_mm, 6 + kNear_mm);
 }
 
+/// The nose's place at a shoulder is left twice: by the cut that ends there, and by the way out
+/// that begins there. The chords of the two differ by some 0.1 um, over lengths of 20 um.
+TEST(TurningCuts, leaving_a_shoulder_meets_nothing) {
+  for (const double radius : {0.1, 0.2, 0.4, 0.8, 1.2, 2.4}) {
+    for (const double degrees : {35.0, 45.0, 63.4, 70.0, 80.0}) {
+      const TurningTool tool(*nose_insert({radius, 2, radians(85), radians(30), 12}));
+      TurnedPart part = bar();
+      part.cut(tool, line({2, 17.5}, {-20, 17.5}));
+      const Vec2 out = 2.0 * Vec2(std::cos(radians(degrees)), std::sin(radians(degrees)));
+      const TurnCut cut = part.cut(tool, line({-20, 17.5}, Vec2(-20, 17.5) + out));
+      EXPECT_EQ(side(cut, InsertSide::kBody), 0) << radius << " " << degrees;
+      EXPECT_EQ(cut.depth_mm, 0) << radius << " " << degrees;
+    }
+  }
+}
+
 TEST(TurningCuts, way_is_how_long_the_tool_was_in_material) {
   TurnedPart part = bar();
   // A groove from z = -12 to -10 in the way of a pass.

@@ -170,6 +170,74 @@ TEST_F(TurningState, threads_come_back_and_lie_the_same_when_turned_about) {
     EXPECT_NE(error_of(with_sum_added(bytes.substr(0, end))), "none") << end;
 }
 
+TEST_F(TurningState, pieces_that_came_off_come_back) {
+  for (const auto& flats : {std::optional<BarFlats>(), std::optional(BarFlats{6, 17.5})}) {
+    TurningStock first = stock(flats);
+    EXPECT_EQ(bytes_of(first).find("FREE"), std::string::npos) << "as files always were";
+    const Cutter blade = Cutter::from_insert("part:2", *groove_insert({2, 0, 40, 2}));
+    const Cutter sharp = Cutter::from_insert("thread:60", *thread_insert({radians(60), 0.2, 3, 6}));
+    std::vector<CutReport> reports;
+    cut(first, shaft_moves(0, 4));
+    // A thread on what is parted off first, and a second piece behind it.
+    std::vector<CutMove> thread{straight(4, 15, -4, 15), straight(-4, 15, -6, 25)};
+    thread[0].lead_mm = thread[1].lead_mm = 2.5;
+    first.cut(sharp, thread, reports);
+    first.cut(blade, std::vector<CutMove>{straight(-12, 25, -12, -1)}, reports);
+    first.cut(blade, std::vector<CutMove>{straight(-40, 25, -40, -1)}, reports);
+    const std::vector<TurnedPiece>& fell = first.part().freed();
+    ASSERT_EQ(fell.size(), 2u);
+    ASSERT_TRUE(first.save(path_));
+    const auto loaded = TurningStock::load(path_);
+    ASSERT_TRUE(loaded) << loaded.error();
+    const std::vector<TurnedPiece>& back = (*loaded)->part().freed();
+    ASSERT_EQ(back.size(), 2u);
+    for (std::size_t i = 0; i < back.size(); ++i) {
+      EXPECT_EQ(back[i].freed_by, fell[i].freed_by);
+      EXPECT_NEAR(back[i].volume_mm3, fell[i].volume_mm3, 1e-9);
+      EXPECT_GT(back[i].volume_mm3, 1000);
+      EXPECT_EQ(back[i].low_z_mm, fell[i].low_z_mm);
+      EXPECT_EQ(back[i].high_z_mm, fell[i].high_z_mm);
+      EXPECT_EQ(back[i].low_r_mm, fell[i].low_r_mm);
+      EXPECT_EQ(back[i].high_r_mm, fell[i].high_r_mm);
+      EXPECT_EQ(back[i].part->digest(), fell[i].part->digest());
+      EXPECT_EQ(back[i].part->threads().passes().size(), fell[i].part->threads().passes().size());
+    }
+    EXPECT_FALSE(back[0].part->threads().empty());
+    EXPECT_EQ((*loaded)->digest(), first.digest());
+    EXPECT_EQ((*loaded)->remaining_mm3(), first.remaining_mm3());
+    // Turned about or moved on they are left behind.
+    EXPECT_TRUE(first.part().turned_about(-5)->freed().empty());
+    EXPECT_TRUE(first.part().moved(5)->freed().empty());
+  }
+}
+
+TEST_F(TurningState, damaged_pieces_are_refused) {
+  TurningStock first = stock();
+  const CutMove off = straight(-20, 25, -20, -1);
+  std::vector<CutReport> reports;
+  first.cut(Cutter::from_insert("part:2", *groove_insert({2, 0, 40, 2})), {&off, 1}, reports);
+  const std::string bytes = bytes_of(first);
+  ASSERT_EQ(error_of(bytes), "none");
+  const std::size_t section = bytes.find("FREE");
+  ASSERT_NE(section, std::string::npos);
+  for (std::size_t end = section + 1; end < bytes.size() - kStateHashBytes; ++end)
+    EXPECT_NE(error_of(with_sum_added(bytes.substr(0, end))), "none") << end;
+  const auto changed = [&](std::size_t at, auto value) {
+    std::string other = bytes;
+    std::memcpy(other.data() + section + 16 + at, &value, sizeof value);
+    return error_of(with_checksum(other));
+  };
+  const std::string damaged = "part.state: the pieces that have come off are damaged";
+  EXPECT_EQ(changed(0, std::uint32_t{0}), damaged) << "none";
+  EXPECT_EQ(changed(0, std::uint32_t{2}), damaged) << "more than bytes";
+  EXPECT_EQ(changed(12, ~std::uint64_t{0}), damaged) << "of more bytes than there are";
+  EXPECT_EQ(changed(20, std::uint32_t{0}), damaged) << "no contour";
+  EXPECT_EQ(changed(28, std::int32_t{1}), damaged) << "beyond the blank";
+  // The part alone would fit into it, but not with what has come off.
+  EXPECT_EQ(error_of(with_line(bytes, "blank_mm3", "60000")),
+            "part.state: the contours are damaged");
+}
+
 TEST_F(TurningState, nothing_left_is_a_state_too) {
   TurningStock gone(*TurnedPart::create(bar_profile(-1, 0, 4)));
   std::vector<CutReport> reports;

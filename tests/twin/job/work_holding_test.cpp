@@ -1,5 +1,6 @@
 #include "twin/job/work_holding.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,17 +99,33 @@ TEST(WorkHolding, FaultsOfTexts) {
   EXPECT_EQ(parse_chuck("6:3", LengthUnit::kInch)->diameter_mm, 152.4);
 }
 
-TEST(WorkHolding, FixturesAreForWorkpiecesThatStand) {
+TEST(WorkHolding, FixturesStandBesideAWorkpieceThatTurns) {
   const TurningStock turned(*TurnedPart::create(bar()));
-  const FixtureSpec spec = *parse_fixture("box:0,0,0:1,1,1");
-  Diagnostics diagnostics;
-  const FixtureList fixtures = load_fixtures({&spec, 1}, diagnostics);
   HoldingList out;
-  EXPECT_FALSE(hold_workpiece({}, fixtures, turned, out, diagnostics));
-  ASSERT_EQ(diagnostics.size(), 1U);
-  EXPECT_EQ(diagnostics[0].message,
-            "fixture 'box': the workpiece turns, and nothing stands beside it");
-  EXPECT_TRUE(hold_workpiece({}, nullptr, turned, out, diagnostics));
+  const auto held = [&](const char* text, bool blank_given, Diagnostics& diagnostics) {
+    const FixtureSpec spec = *parse_fixture(text);
+    const FixtureList fixtures = load_fixtures({&spec, 1}, diagnostics);
+    return hold_workpiece({}, fixtures, turned, blank_given, out, diagnostics);
+  };
+  Diagnostics none;
+  const Box bounds = turned.bounds_mm();
+  const double r = bounds.max.x;
+  const std::string beside = fmt::format("box:{},-5,-20:{},5,-10", r + 1, r + 9),
+                    in_it = fmt::format("box:-5,{},-20:5,{},-10", r - 1, r + 9);
+  EXPECT_TRUE(held(beside.c_str(), true, none));
+  EXPECT_TRUE(none.empty());
+  Diagnostics told;
+  EXPECT_FALSE(held(in_it.c_str(), true, told));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].message.find("stands in the blank, "), std::string::npos);
+  EXPECT_TRUE(held(in_it.c_str(), false, none)) << "a blank that is a guess";
+  EXPECT_TRUE(held((in_it + ":in-blank").c_str(), true, none));
+  Diagnostics on_link;
+  EXPECT_FALSE(held((beside + ":on=table").c_str(), true, on_link));
+  ASSERT_EQ(on_link.size(), 1U);
+  EXPECT_EQ(on_link[0].message,
+            "fixture 'box' is on link 'table': beside a workpiece that turns fixtures stand still");
+  EXPECT_TRUE(hold_workpiece({}, nullptr, turned, true, out, none));
   EXPECT_EQ(out, nullptr);
 }
 

@@ -39,6 +39,41 @@ TEST(LiveFrame, MachineCoordinatesBecomeThoseOfTheTip) {
   EXPECT_NEAR(back[2], 20, 1e-9);
 }
 
+/// A lathe has X and Z alone: Y is where the program has 0.
+TEST(LiveFrame, OnALatheYStandsWhereNoneComes) {
+  AxisSample sample;
+  sample.set(0, 30);
+  sample.set(2, -12);
+  LiveFrameOptions options;
+  options.work.g5x_mm = {1, 2, 3};
+  options.work.g92_mm = {0.5, 0.25, 0.125};
+  EXPECT_FALSE(LiveFrame(options).pose_of(sample, std::nullopt)) << "a mill: it is missing";
+  EXPECT_EQ(LiveFrame(options).missing_axes(sample), "Y");
+  options.y_stands = true;
+  const LiveFrame lathe(options);
+  EXPECT_EQ(lathe.missing_axes(sample), "");
+  ASSERT_TRUE(lathe.pose_of(sample, std::nullopt));
+  EXPECT_EQ(lathe.pose_of(sample, std::nullopt)->tip_mm, Vec3(28.5, 0, -15.125));
+  // One that comes counts, as that of a lathe with an axis Y.
+  sample.set(1, 7.25);
+  EXPECT_EQ(lathe.pose_of(sample, std::nullopt)->tip_mm, Vec3(28.5, 5, -15.125));
+  // And what is really missing is named.
+  AxisSample no_z;
+  no_z.set(0, 30);
+  EXPECT_EQ(lathe.missing_axes(no_z), "Z");
+  EXPECT_FALSE(lathe.pose_of(no_z, std::nullopt));
+}
+
+TEST(LiveFrame, OfPositionsOfTheTipYIsZeroOnALathe) {
+  AxisSample sample;
+  sample.set(0, 30);
+  sample.set(2, -12);
+  LiveFrameOptions options;
+  options.workpiece_frame = options.y_stands = true;
+  options.work.g5x_mm = {1, 2, 3};
+  EXPECT_EQ(LiveFrame(options).pose_of(sample, std::nullopt)->tip_mm, Vec3(30, 0, -12));
+}
+
 TEST(LiveFrame, JointsAreTheAxesTheyMove) {
   LiveFrameOptions options;
   options.axis = {2, 0, 1, 1, -1, -1, -1, -1, -1};  // ZXYY

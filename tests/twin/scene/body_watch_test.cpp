@@ -154,7 +154,7 @@ TEST(BodyWatch, BodiesAreFoundByTheirNames) {
   const CollisionWishes wishes = wishes_of({"jaw=box:100,0,0:110,10,10"});
   SceneMachine machine;
   machine.links = {{"table", nullptr}, {"head", nullptr}};
-  const DrawnBodies drawn{wishes.fixtures.get(), &machine};
+  const DrawnBodies drawn{wishes.fixtures.get(), nullptr, &machine};
   const auto contact = [&](const char* a, const char* b) {
     return contact_of(collision(FindingId::kFixtureContact, a, b, 1), drawn).value();
   };

@@ -59,7 +59,7 @@ TEST(Fusion, KindsOfTools) {
   EXPECT_EQ(tools[15], "15: kerf:1.5");
   EXPECT_EQ(tools[17], "17: -: it has no DC, its diameter, above 0");
   EXPECT_EQ(tools[18], "18: -: geometry.DC: \"six\" is no length");
-  EXPECT_EQ(tools[21], "21: -: its kind 'turning general' is not known");
+  EXPECT_EQ(tools[21], "21: -: it has no SC, the shape of its insert");
   EXPECT_EQ(tools[22],
             "22: tslot:10:3:6:shank=6:teeth=4 | its holder is left out: "
             "holder.segments.lower-diameter: \"wide\" is no length");
@@ -108,6 +108,72 @@ TEST(Fusion, ShapesThatDoNotFit) {
   EXPECT_EQ(of_tool("ball end mill", R"("DC": 6, "LCF": 12, "SFDM": 9000)"),
             "1: ball:6 | shank and holder are left out: ball:6:flute=12:shank=9000: shank "
             "diameter: 9000 is not allowed; must be from 0.001 to 1000 (mm)\n");
+}
+
+constexpr const char* kShank =
+    R"(, "holder": {"unit": "millimeters", "HAND": "R", "THSC": "l", "W": 25, "OAL": 150})";
+constexpr const char* kBar =
+    R"(, "holder": {"unit": "millimeters", "HAND": "R", "THSC": "boring bar l", "W": 16, "CW": 11,
+        "LH": 80, "OAL": 200})";
+
+TEST(Fusion, InsertsAreThoseOfIso1832) {
+  const auto general = [](const std::string& geometry, const char* holder = kShank) {
+    return of_tool("turning general", geometry, holder);
+  };
+  // By the cutting edge, 12.9 mm, and by the circle, in inches.
+  EXPECT_EQ(general(R"("SC": "C", "INSD": 12.9, "SIZE_SPECIFICATION_MODE": "CE", "RE": 0.8,
+                       "S": 4.76, "RA": 0, "TC": "M", "SCTY": "G")"),
+            "1: iso:CNMG120408:R:95:holder=25x150\n");
+  EXPECT_EQ(general(R"("SC": "D", "INSD": "0.375 in", "SIZE_SPECIFICATION_MODE": "IC",
+                       "RE": "0.0157 in", "S": 3.97, "RA": 7, "TC": "M", "SCTY": "T")"),
+            "1: iso:DCMT11T304:R:95:holder=25x150\n");
+  EXPECT_EQ(general(R"("SC": "R", "INSD": 10, "RE": 5, "S": 3.97, "RA": 7, "TC": "M",
+                       "SCTY": "T")"),
+            "1: iso:RCMT10T3M0:R:holder=25x150\n");
+  // Left, with an angle that no lettered style has.
+  EXPECT_EQ(
+      general(R"("SC": "V", "INSD": 16.6, "RE": 0.4, "S": 4.76, "RA": 5, "TC": "M",
+                       "SCTY": "T")",
+              R"(, "holder": {"HAND": "L", "THSC": "custom"})"),
+      "1: iso:VBMT160404:L | the angle of its holder's style 'custom' is not known: the usual "
+      "one is taken\n");
+  // No such size: 180 - 93 = 87 in front, 55 less behind.
+  EXPECT_EQ(
+      general(R"("SC": "D", "INSD": 100, "RE": 0.8)", R"(, "holder": {"HAND": "R", "THSC": "j"})"),
+      "1: turn:0.8:2:87:32 | there is no such size in ISO 1832: only its corner is taken\n");
+  EXPECT_EQ(general(R"("SC": "Q", "INSD": 9)"),
+            "1: -: the shape SC of its insert, 'q', is not known\n");
+  EXPECT_EQ(general(R"("SC": "C")"), "1: -: it has no INSD, the size of its insert, above 0\n");
+}
+
+TEST(Fusion, BoringBarsStandInBores) {
+  EXPECT_EQ(of_tool("turning boring", R"("SC": "C", "INSD": 9.67, "SIZE_SPECIFICATION_MODE": "CE",
+                       "RE": 0.4, "S": 3.97, "RA": 7, "TC": "M", "SCTY": "T")",
+                    kBar),
+            "1: iso:CCMT09T304:R:95:bar=16x80:f=11\n");
+  EXPECT_EQ(of_tool("turning boring", R"("SC": "C", "INSD": 9.67, "RE": 0.4, "S": 3.97)"),
+            "1: -: its holder has no W, the thickness of its bar, or no length LH | its holder has "
+            "no HAND: a right-hand one is taken | its holder has no style THSC: the usual angle of "
+            "its edge is taken\n");
+}
+
+TEST(Fusion, BladesAndThreads) {
+  const std::string where =
+      " | nothing says whether it cuts outside, in a bore or in a face: outside is taken\n";
+  EXPECT_EQ(of_tool("turning grooving", R"("SC": "groove square", "tool_grooveWidth": 3,
+                       "tool_insertWidth": 2.7, "RE": 0.2, "LH": 14)"),
+            "1: groove:3:0.2:edge=14" + where);
+  EXPECT_EQ(of_tool("turning grooving", R"("SC": "groove round", "tool_insertWidth": 4)"),
+            "1: groove:4:2" + where);
+  EXPECT_EQ(of_tool("turning grooving", R"("SC": "groove square", "RE": 0.2)"),
+            "1: -: it has no tool_grooveWidth, the width of its blade, above 0\n");
+  EXPECT_EQ(of_tool("turning threading", R"("SC": "thread iso triple", "TPN": 1.5, "TPX": 1.5,
+                       "thread-profile-angle": 60, "tool_internalThread": false)"),
+            "1: thread:60:1.5\n");
+  EXPECT_EQ(of_tool("turning threading", R"("SC": "thread iso double", "TPN": 0.5, "TPX": 3,
+                       "thread-profile-angle": 55, "tool_internalThread": true)"),
+            "1: thread:55:orient=8 | it is for more than one pitch, or says none: its tip is taken "
+            "to be sharp\n");
 }
 
 }  // namespace

@@ -14,29 +14,10 @@
 #include "twin/findings/finding.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/check_options.h"
+#include "twin/process/checked_move.h"
 #include "twin/process/contact_grounds.h"
 
 namespace kerf {
-
-/// A motion with what the checks need to know of it.
-struct CheckedMove {
-  const Motion& motion;
-  const TimedStep& step;
-  const Cutter& cutter;
-  std::span<const CutMove> moves;  ///< it is cut as these
-  int tool = 0;
-  bool tool_guessed = false;
-  std::span<const double> ends{};  ///< share of the motion at each move's end; empty: one move
-
-  /// Of the motion, `t` of that move being done.
-  double share_of(std::size_t which, double t) const {
-    if (ends.empty()) return (static_cast<double>(which) + t) / static_cast<double>(moves.size());
-    const double from = which == 0 ? 0 : ends[which - 1];
-    return from + t * (ends[which] - from);
-  }
-  /// When that is.
-  double time_s(std::size_t which, double t) const { return step.time_at(share_of(which, t)); }
-};
 
 /// Watches the moves of one program against one workpiece. The caller calls before it cuts the
 /// move; wherever a `first_contact` is asked, the model must have been finished
@@ -79,9 +60,9 @@ class Checks {
   void forget_events() { rapid_ = spindle_ = below_ = std::nullopt; }
 
   /// below-stock: the tip below the floor of the blank, by more than CheckOptions allow, inside the
-  /// blank's outline (its box): the tool cuts the table. An event ends with the first move that
-  /// stays above. For upright tools: of a machine that turns the workpiece nobody knows what is
-  /// below it.
+  /// blank's outline from above (round ones are, along Z; else its box): the tool cuts the table.
+  /// An event ends with the first move that stays above. For upright tools: of a machine that turns
+  /// the workpiece nobody knows what is below it.
   void check_floor(const CheckedMove& move);
 
  private:

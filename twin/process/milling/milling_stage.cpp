@@ -123,7 +123,10 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
 void MillingStage::mount_parts(const Motion& m) {
   nose_mm_ = m.tool_offset_mm.z;
   parts_.mount(*mounted_->cutter, mounted_->number, spindle_, nose_mm_);
-  fixtures_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
+  if (fixtures_.active()) {
+    fixtures_.mount(carried_bodies(tool_bodies(*mounted_->cutter, spindle_, nose_mm_)),
+                    mounted_->number, mounted_->guessed);
+  }
   if (machine_.active()) machine_.set_place(site_.kinematics, site_.frame);
   machine_.mount(*mounted_->cutter, mounted_->number, mounted_->guessed, nose_mm_);
 }
@@ -212,8 +215,8 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
   if (site_.moves.is_upright(m)) checks_.check_floor(move);
   const bool spindle_off = stands(m);
   if (spindle_off && !checks_.spindle_event_open() && comes_near(m)) check_standing(m, step, move);
-  if (ProgramChecks::is_drill(move.cutter) && !program_.drill_told() &&
-      ProgramChecks::goes_sideways(move) && comes_near(m)) {
+  if (is_drill(move.cutter) && !program_.drill_told() && ProgramChecks::goes_sideways(move) &&
+      comes_near(m)) {
     complete();
     program_.check_drill(move);
   }
@@ -350,6 +353,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.duration_s = step.duration_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
+  flight.motion = site_.motion;
   flight.use = use_;
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
@@ -399,6 +403,7 @@ void MillingStage::collect_reports() {
     const InFlight& move = in_flight_[i];
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
+    site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);
     if (move.feed && !move.measured) {
       count_feed(use, move, report);
     } else {

@@ -16,14 +16,14 @@
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
+#include "twin/process/fixture_checks.h"
 #include "twin/process/milling/checks.h"
 #include "twin/process/milling/film_events.h"
-#include "twin/process/milling/fixture_checks.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
 #include "twin/process/milling/machine_checks.h"
-#include "twin/process/milling/part_checks.h"
 #include "twin/process/milling/program_checks.h"
+#include "twin/process/part_checks.h"
 #include "twin/process/process.h"
 #include "twin/process/tool_change_check.h"
 
@@ -49,7 +49,7 @@ class MillingStage final : public Process {
     checks_.set_options(options);
     parts_.set_blank_guessed(options.blank_guessed);
     parts_.set_clearance(options.collisions.clearance_mm);
-    fixtures_.set_wishes(options.collisions);
+    fixtures_.set_obstacles(obstacles_of(options.collisions.fixtures), options.collisions);
     machine_.set_options(options);
     spindle_ = options.collisions.spindle;
     cut_by_shank_ = options.collisions.cut_by_shank;
@@ -69,6 +69,7 @@ class MillingStage final : public Process {
     double start_s = 0;   ///< of its motion
     double cut_part = 1;  ///< of its time, where it is one of several moves: LoadMeter
     SourceRef source;
+    std::uint64_t motion = 0;  ///< ProcessSite::motion
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     bool feed = false;

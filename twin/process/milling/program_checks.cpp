@@ -42,17 +42,6 @@ std::string extent(const Box& box) {
                      tenths(box.max.z));
 }
 
-/// Of a drill's SHAPE text, "drill:D:ANGLE..".
-double point_angle_deg(const Cutter& cutter) {
-  double rise = 0, run = 0;
-  for (const ProfilePiece& piece : cutter.profile()) {
-    if (piece.r1 <= piece.r0) break;
-    rise = piece.z1;
-    run = piece.r1;
-  }
-  return run > 0 ? 2 * std::atan2(run, rise) * 180 / kPi : 180;
-}
-
 }  // namespace
 
 void ProgramChecks::forget_events() { drill_told_ = false; }
@@ -94,8 +83,6 @@ void ProgramChecks::check_stop(const Motion& m, const TimedStep& step, const Cut
   log_.add(std::move(finding));
 }
 
-bool ProgramChecks::is_drill(const Cutter& cutter) { return cutter.spec().rfind("drill:", 0) == 0; }
-
 bool ProgramChecks::goes_sideways(const CheckedMove& move) {
   if (!is_feed(move.motion)) return false;
   if (move.motion.kind == MotionKind::kArc) return true;
@@ -114,7 +101,7 @@ void ProgramChecks::check_drill(const CheckedMove& move) {
   for (const CutMove& part : move.moves) {
     const auto contact = stock_.first_contact(move.cutter, part, kContactTolerance_mm);
     if (!contact) continue;
-    const double angle_deg = point_angle_deg(move.cutter);
+    const double angle_deg = drill_point_deg(move.cutter);
     Finding finding;
     finding.id = FindingId::kDrillSideways;
     finding.severity = angle_deg <= kSpotting_deg + 1e-6 ? Severity::kWarning : Severity::kError;

@@ -10,6 +10,7 @@
 #include "twin/findings/finding.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/check_options.h"
+#include "twin/process/drill_shape.h"
 #include "twin/process/milling/checks.h"
 
 namespace kerf {
@@ -34,18 +35,15 @@ class ProgramChecks {
   /// however far. Beside the blank and on a shoulder the tool stands free.
   void check_stop(const Motion& motion, const TimedStep& step, const Cutter& cutter, int tool);
 
-  /// drill-sideways is to be looked for: a drill in a feed move that goes across its
-  /// own direction.
-  static bool is_drill(const Cutter& cutter);
+  /// drill-sideways is to be looked for, of a drill (is_drill()): it is a feed move that goes
+  /// across its own direction.
   static bool goes_sideways(const CheckedMove& move);
   bool drill_told() const { return drill_told_; }
   /// drill-sideways: once from tool change to tool change. An error; a warning of a pointed drill
-  /// (up to kSpotting_deg), with which people mill chamfers and letters.
+  /// (drill_shape.h), with which people mill chamfers and letters.
   void check_drill(const CheckedMove& move);
   /// What went on before is not reported on.
   void forget_events();
-
-  static constexpr double kSpotting_deg = 100;
 
  private:
   bool touches(const Cutter& cutter, const Vec3& tip, const Vec3& to) const;

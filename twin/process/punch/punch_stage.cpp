@@ -13,7 +13,8 @@
 namespace kerf {
 
 PunchStage::PunchStage(ProcessSite& site, TurretPointer turret)
-    : feeds_(site.feeds),
+    : site_(site),
+      feeds_(site.feeds),
       stock_(site.stock),
       turret_(std::move(turret)),
       moves_(turret_),
@@ -93,6 +94,7 @@ void PunchStage::strike(const Motion& m, const TimedStep& step, std::span<const 
   stock_.cut(station->punch, fresh, reports_);
   stock_.finish(reports_);
   for (const CutReport& report : reports_) {
+    site_.note_cut(site_.motion, report.removed_mm3, report.depth_mm);
     removed_mm3_ += report.removed_mm3;
     use.removed_mm3 += report.removed_mm3;
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);

@@ -80,6 +80,7 @@ class PunchStage final : public Process, public StrokeTaker {
   double punching_s(const Motion& motion, const TimedStep& step) const;
   ToolUse& use_of(const TurretStation& station);
 
+  ProcessSite& site_;
   FeedCheck& feeds_;
   StockModel& stock_;
   TurretPointer turret_;

@@ -25,7 +25,8 @@ bool goes_up_or_down(const Motion& m) {
 }  // namespace
 
 TorchStage::TorchStage(ProcessSite& site, BeamSettings settings)
-    : feeds_(site.feeds),
+    : site_(site),
+      feeds_(site.feeds),
       stock_(site.stock),
       log_(site.log),
       settings_(std::move(settings)),
@@ -109,6 +110,7 @@ void TorchStage::cut(const Motion& m, const TimedStep& step, bool pierces) {
   ToolUse& use = uses_[use_];
   double removed_mm3 = 0;
   for (const CutReport& report : reports_) {
+    site_.note_cut(site_.motion, report.removed_mm3, report.depth_mm);
     removed_mm3 += report.removed_mm3;
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
   }

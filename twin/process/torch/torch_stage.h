@@ -73,6 +73,7 @@ class TorchStage final : public Process {
   void report_no_beam();
   void report_outside();
 
+  ProcessSite& site_;
   FeedCheck& feeds_;
   StockModel& stock_;
   FindingLog& log_;

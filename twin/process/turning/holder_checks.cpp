@@ -2,46 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <utility>
 
 #include "base/translate.h"
 #include "interp_bridge/motion_kinds.h"
+#include "stock/turning/turned_gap.h"
 #include "twin/process/contact_grounds.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/turning/tool_outlines.h"
+#include "twin/process/turning/turn_steps.h"
 
 namespace kerf {
-namespace {
-
-/// From share a to share b of a move.
-TurnMove part_of(const TurnMove& move, double a, double b) {
-  TurnMove part = move;
-  if (!move.arc) {
-    part.from_mm = move.from_mm + a * (move.to_mm - move.from_mm);
-    part.to_mm = b == 1 ? move.to_mm : move.from_mm + b * (move.to_mm - move.from_mm);
-    return part;
-  }
-  const Vec2 from = move.from_mm - move.arc->center_mm, to = move.to_mm - move.arc->center_mm;
-  const double start = std::atan2(from.y, from.x);
-  const auto place = [&](double t) {
-    const double angle = start + t * move.arc->sweep_rad;
-    const double r = glm::length(from) + t * (glm::length(to) - glm::length(from));
-    return move.arc->center_mm + r * Vec2(std::cos(angle), std::sin(angle));
-  };
-  if (a > 0) part.from_mm = place(a);
-  if (b < 1) part.to_mm = place(b);
-  part.arc->sweep_rad = (b - a) * move.arc->sweep_rad;
-  return part;
-}
-
-double way_mm(const TurnMove& move) {
-  if (!move.arc) return glm::distance(move.from_mm, move.to_mm);
-  return std::abs(move.arc->sweep_rad) * std::max(glm::distance(move.from_mm, move.arc->center_mm),
-                                                  glm::distance(move.to_mm, move.arc->center_mm));
-}
-
-}  // namespace
 
 void HolderChecks::mount(const Cutter& cutter, int tool) {
   unmount();
@@ -50,7 +21,7 @@ void HolderChecks::mount(const Cutter& cutter, int tool) {
   Vec2 low{0}, high{0};
   outline_box(outlines.holder, low, high);
   const TurningTool whole(outlines.holder);
-  holder_ = Holder{whole.inset(kContactTolerance_mm), whole.inset(kContactRounding_mm),
+  holder_ = Holder{whole, whole.inset(kContactTolerance_mm), whole.inset(kContactRounding_mm),
                    TurningTool(outlines.cutter), high.x - low.x > high.y - low.y};
   const auto known =
       std::ranges::find_if(table_, [&](const CollisionPair& row) { return row.tool == tool; });
@@ -59,11 +30,13 @@ void HolderChecks::mount(const Cutter& cutter, int tool) {
   CollisionPair& row = table_.emplace_back();
   row.tool = tool;
   row.part = ToolPart::kHolder;
+  nearest_.emplace_back();
 }
 
 void HolderChecks::begin_reporting() {
   unmount();
   table_.clear();
+  nearest_.clear();
 }
 
 void HolderChecks::check(const TurnedMove& move, bool blank_guessed) {
@@ -74,8 +47,48 @@ void HolderChecks::check(const TurnedMove& move, bool blank_guessed) {
     if (touch) touch = touch_of_feed(turns);
   } else if (!touch) {
     event_.reset();
+    measure_to(move, turns);
   }
+  touched_ = touch.has_value();
   if (touch) tell(move, *touch, blank_guessed);
+}
+
+void HolderChecks::measure(const TurnedMove& move) {
+  if (!touched_) measure_to(move, rings_of(move));
+}
+
+/// The move does not touch.
+void HolderChecks::measure_to(const TurnedMove& move, std::span<const TurnMove> turns) {
+  CollisionPair& row = table_[holder_->row];
+  const double most = std::max(kMeasured_mm, 2 * clearance_mm_);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double below = row.least_clearance_mm.value_or(most) - kGrain_mm;
+    if (below <= 0) return;
+    const auto gap = least_gap(stock_.part(), holder_->whole, turns[i], below);
+    if (!gap) continue;
+    const double share = (static_cast<double>(i) + gap->t) / static_cast<double>(turns.size());
+    row.least_clearance_mm = gap->mm;
+    row.source = move.motion.source;
+    Finding& near = nearest_[holder_->row];
+    near = finding_at(FindingId::kNearMiss, Severity::kNote, move.motion.source,
+                      move.step.time_at(share));
+    near.position_mm = Vec3(gap->at_mm.y, move.motion.from_mm.y, gap->at_mm.x);
+    near.tool = move.tool;
+    near.bodies = {to_string(ToolPart::kHolder), kWorkpieceBody};
+    near.text = holder_->is_bar
+                    ? trf("the bar that holds the insert comes as near as {:.2f} mm to the "
+                          "workpiece",
+                          gap->mm)
+                    : trf("the tool's holder comes as near as {:.2f} mm to the workpiece", gap->mm);
+  }
+}
+
+void HolderChecks::finish() {
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    const CollisionPair& row = table_[i];
+    if (row.contacts == 0 && row.least_clearance_mm && *row.least_clearance_mm < clearance_mm_)
+      log_.add(nearest_[i]);
+  }
 }
 
 std::optional<HolderChecks::Touch> HolderChecks::touch_of_traverse(
@@ -103,11 +116,11 @@ std::optional<HolderChecks::Touch> HolderChecks::touch_of_feed(
   std::optional<Touch> first;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const int steps =
-        std::clamp(static_cast<int>(std::ceil(way_mm(turns[i]) / kStep_mm)), 1, kMostSteps);
+        std::clamp(static_cast<int>(std::ceil(turn_way_mm(turns[i]) / kStep_mm)), 1, kMostSteps);
     bool touches = false;
     for (int k = 0; k < steps; ++k) {
       const double from = static_cast<double>(k) / steps, to = static_cast<double>(k + 1) / steps;
-      const TurnMove step = part_of(turns[i], from, to);
+      const TurnMove step = turn_part(turns[i], from, to);
       part.cut(holder_->insert, step);
       const auto met = part.first_contact(holder_->thin, step);
       if (!met) continue;

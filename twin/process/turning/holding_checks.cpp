@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "base/translate.h"
 #include "interp_bridge/motion_kinds.h"
 #include "stock/turning/turned_gap.h"
 #include "stock/turning/turning_stock.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/contact_grounds.h"
+#include "twin/process/holding_texts.h"
 #include "twin/process/turning/tool_outlines.h"
 
 namespace kerf {
@@ -17,50 +17,6 @@ namespace {
 
 /// Distances are kept to this: a least one that is less by no more is no new one.
 constexpr double kHoldGrain_mm = 0.005;
-
-FindingId id_of(HoldingBody::Kind kind) {
-  switch (kind) {
-    case HoldingBody::Kind::kChuck:
-      return FindingId::kChuckContact;
-    case HoldingBody::Kind::kJaws:
-      return FindingId::kJawContact;
-    case HoldingBody::Kind::kTailstock:
-      break;
-  }
-  return FindingId::kFixtureContact;
-}
-
-std::string hold_contact_text(ToolPart part, HoldingBody::Kind kind) {
-  const bool holder = part == ToolPart::kHolder;
-  switch (kind) {
-    case HoldingBody::Kind::kChuck:
-      return holder ? tr("the tool's holder touches the chuck") : tr("the tool touches the chuck");
-    case HoldingBody::Kind::kJaws:
-      return holder ? tr("the tool's holder touches the jaws of the chuck")
-                    : tr("the tool touches the jaws of the chuck");
-    case HoldingBody::Kind::kTailstock:
-      break;
-  }
-  return holder ? tr("the tool's holder touches the tailstock")
-                : tr("the tool touches the tailstock");
-}
-
-std::string hold_near_text(ToolPart part, HoldingBody::Kind kind, double mm) {
-  const bool holder = part == ToolPart::kHolder;
-  switch (kind) {
-    case HoldingBody::Kind::kChuck:
-      return holder ? trf("the tool's holder comes as near as {:.2f} mm to the chuck", mm)
-                    : trf("the tool comes as near as {:.2f} mm to the chuck", mm);
-    case HoldingBody::Kind::kJaws:
-      return holder
-                 ? trf("the tool's holder comes as near as {:.2f} mm to the jaws of the chuck", mm)
-                 : trf("the tool comes as near as {:.2f} mm to the jaws of the chuck", mm);
-    case HoldingBody::Kind::kTailstock:
-      break;
-  }
-  return holder ? trf("the tool's holder comes as near as {:.2f} mm to the tailstock", mm)
-                : trf("the tool comes as near as {:.2f} mm to the tailstock", mm);
-}
 
 /// No part of the tool is nearer to the body than that on the whole motion.
 double boxes_apart_mm(const Box& way, const Vec2& low, const Vec2& high, const Box& body) {
@@ -192,9 +148,9 @@ void HoldingChecks::meet(const Mounted& part, Pair& pair, const TurnedMove& move
     const HoldingBody::Kind kind = bodies_[pair.body].kind;
     const Grounds grounds{false, guessed_};
     Finding finding;
-    finding.id = id_of(kind);
+    finding.id = holding_contact_id(kind);
     finding.severity = severity_of(finding.id, grounds);
-    finding.text = hold_contact_text(part.part, kind) + doubt_of(finding.id, grounds);
+    finding.text = holding_contact_text(part.part, kind) + doubt_of(finding.id, grounds);
     finding.source = move.motion.source;
     finding.time_s = move.step.time_at(share);
     finding.position_mm = Vec3(first->at_mm.y, move.motion.from_mm.y, first->at_mm.x);
@@ -218,7 +174,7 @@ void HoldingChecks::finish() {
     near.id = FindingId::kNearMiss;
     near.severity = Severity::kNote;
     near.bodies = {to_string(pair.row.part), pair.row.other};
-    near.text = hold_near_text(pair.row.part, bodies_[pair.body].kind, pair.least_mm);
+    near.text = holding_near_text(pair.row.part, bodies_[pair.body].kind, pair.least_mm);
     log_.add(std::move(near));
   }
 }

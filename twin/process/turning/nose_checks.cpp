@@ -8,6 +8,7 @@
 
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
+#include "stock/cutter/turning_shape.h"
 #include "twin/process/finding_at.h"
 
 namespace kerf {
@@ -42,7 +43,7 @@ void NoseChecks::mount(const Cutter& cutter, int tool) {
   unmount();
   const InsertTip& tip = cutter.insert_tip();
   if (!cutter.insert() || tip.orientation < 1 || tip.orientation >= kOrientations ||
-      tip.nose_radius_mm <= 0) {
+      tip.nose_radius_mm <= 0 || insert_use_of(cutter).goes_its_path) {
     return;
   }
   Nose nose;
@@ -156,8 +157,8 @@ void NoseChecks::finish() {
     finding.position_mm = found.place_mm;
     finding.tool = found.tool;
     finding.hint =
-        tr("G42 or G41 before the contour; a program that has been compensated "
-           "beforehand, by CAM, is right as it is");
+        tr("G42 or G41 before the contour; where CAM has compensated the program beforehand, "
+           "path=tool in the tool's SHAPE says so");
     log_.add(std::move(finding));
   }
   found_.clear();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/collision/tool_bodies.h"
 #include "twin/process/contact_grounds.h"
 #include "twin/process/finding_at.h"
 
@@ -30,6 +31,27 @@ constexpr double kSameStart = 0.04;
 constexpr double kMostTaper = 0.3;
 /// Flanks that lean less from square to the axis are none of a thread.
 constexpr double kLeastFlank = 0.2;
+/// Pieces of one pass begin where the one before has ended.
+constexpr double kSamePlace_mm = 1e-3;
+
+/// Of the crest nearest to z; none where a pass in pieces is beside them, in the air.
+std::optional<double> crest_near(const std::vector<Vec2>& crests_mm, double z_mm) {
+  if (crests_mm.size() == 1) return crests_mm.front().y;
+  const auto [low, high] = std::ranges::minmax(crests_mm, {}, &Vec2::x);
+  if (z_mm < low.x || z_mm > high.x) return std::nullopt;
+  return std::ranges::min(crests_mm, {}, [&](const Vec2& c) { return std::abs(c.x - z_mm); }).y;
+}
+
+/// Of what of a stretch lies within the workpiece, as far as that reaches along z.
+std::optional<double> middle_within(const TurnedPart& part, double low_z_mm, double high_z_mm) {
+  turning::Rect box;
+  for (const turning::Contour& contour : part.contours()) box.extend(contour.box());
+  if (box.empty()) return std::nullopt;
+  const double low = std::max(low_z_mm, turning::to_mm(box.min_x));
+  const double high = std::min(high_z_mm, turning::to_mm(box.max_x));
+  if (low >= high) return std::nullopt;
+  return 0.5 * (low + high);
+}
 
 /// Angle between the two flanks of a tool that points straight at the axis, or away from it.
 std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bore) {
@@ -55,6 +77,21 @@ std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bor
   return std::acos(std::clamp(glm::dot(*front, *back), -1.0, 1.0)) * 180 / kPi;
 }
 
+/// From the controlled point to where the lower of the flanks ends.
+double profile_height_mm(const InsertOutline& outline) {
+  double front = 0, back = 0;
+  for (const InsertPart& part : outline.parts) {
+    Vec2 from = part.back().end_mm;
+    for (const InsertEdge& edge : part) {
+      const double far_mm = std::max(std::abs(edge.end_mm.y), std::abs(from.y));
+      from = edge.end_mm;
+      if (edge.side == InsertSide::kFront) front = std::max(front, far_mm);
+      if (edge.side == InsertSide::kBack) back = std::max(back, far_mm);
+    }
+  }
+  return std::min(front, back);
+}
+
 }  // namespace
 
 void ThreadChecks::mount(const Cutter& cutter) {
@@ -65,7 +102,8 @@ void ThreadChecks::mount(const Cutter& cutter) {
   if (!angle) return;
   for (const ThreadForm& form : kThreadForms) {
     if (std::abs(form.angle_deg - *angle) < kAngleSlack_deg)
-      form_ = Form{form.angle_deg, form.outside, form.inside, in_bore};
+      form_ = Form{form.angle_deg, form.outside, form.inside, in_bore,
+                   profile_height_mm(*cutter.insert())};
   }
 }
 
@@ -84,6 +122,22 @@ std::optional<double> ThreadChecks::crest_at(double z_mm) const {
   return crest;
 }
 
+void ThreadChecks::follow_pass(const Motion& motion) {
+  const bool goes_on = pass_ && pass_->source == motion.source &&
+                       glm::distance(pass_->to_mm, motion.from_mm) < kSamePlace_mm;
+  if (!goes_on) {
+    const int number = pass_ ? pass_->number + 1 : 1;
+    pass_ = Pass{number, motion.from_mm, motion.to_mm, motion.source};
+  }
+  pass_->to_mm = motion.to_mm;
+}
+
+/// Of a pass in pieces the first one that counts may begin a bit farther inside.
+bool ThreadChecks::is_apart(double low_z_mm, double high_z_mm) const {
+  const double beside_mm = thread_->crests_mm.size() > 1 ? thread_->lead_mm : 0;
+  return low_z_mm >= thread_->high_z_mm + beside_mm || high_z_mm <= thread_->low_z_mm - beside_mm;
+}
+
 void ThreadChecks::note(const TurnedMove& move) {
   const Motion& m = move.motion;
   if (!form_ || m.kind != MotionKind::kThread || m.feed_mm_per_min <= 0) return;
@@ -92,34 +146,62 @@ void ThreadChecks::note(const TurnedMove& move) {
   const double across = std::abs(m.to_mm.x - m.from_mm.x);
   if (across >= kMostTaper * (high - low)) return;
   const double lead = m.feed_mm_per_min * (high - low) / std::hypot(across, high - low);
-  const double z = 0.5 * (low + high), x = std::abs(0.5 * (m.from_mm.x + m.to_mm.x));
+  const std::optional<double> middle = middle_within(stock_.part(), low, high);
+  follow_pass(m);
+  if (!middle) return;  // beside the workpiece
+  const double z = *middle, done = (z - m.from_mm.z) / (m.to_mm.z - m.from_mm.z);
+  const double x = std::abs(m.from_mm.x + done * (m.to_mm.x - m.from_mm.x));
+  const std::optional<double> there = crest_at(z);
+  const auto below = [&](double crest) { return form_->in_bore ? x - crest : crest - x; };
+  if (!there || below(*there) <= 0) return;  // in the air
   if (thread_ && (std::abs(thread_->lead_mm - lead) > kSameLead * lead ||
-                  low >= thread_->high_z_mm || high <= thread_->low_z_mm)) {
+                  (thread_->last_pass != pass_->number && is_apart(low, high)))) {
     end();
   }
   if (!thread_) {
-    const std::optional<double> crest = crest_at(z);
-    if (!crest) return;
     thread_ = Thread{};
     thread_->lead_mm = lead;
     thread_->low_z_mm = low;
     thread_->high_z_mm = high;
-    thread_->crest_mm = *crest;
+    thread_->first_pass = pass_->number;
   }
   Thread& thread = *thread_;
+  thread.last_pass = pass_->number;
+  if (thread.first_pass == pass_->number) thread.crests_mm.emplace_back(z, *there);
   thread.low_z_mm = std::min(thread.low_z_mm, low);
   thread.high_z_mm = std::max(thread.high_z_mm, high);
-  const double depth = form_->in_bore ? x - thread.crest_mm : thread.crest_mm - x;
+  const std::optional<double> crest = crest_near(thread.crests_mm, z);
+  if (!crest) return;
+  const double depth = below(*crest);
+  tell_body(move, thread, depth);
   if (depth < thread.depth_mm - kAsDeep_mm || depth <= 0) return;
   if (depth > thread.depth_mm + kAsDeep_mm) thread.phases.clear();
-  thread.phases.push_back(m.from_mm.z / lead);
+  const double phase = pass_->from_mm.z / lead;
+  if (thread.phases.empty() || thread.phases.back() != phase) thread.phases.push_back(phase);
   if (depth <= thread.depth_mm) return;
   thread.depth_mm = depth;
   thread.source = m.source;
   thread.time_s = move.step.start_s;
-  thread.place_mm = m.from_mm;
+  thread.place_mm = pass_->from_mm;
   thread.tool = move.tool;
   thread.tool_guessed = move.tool_guessed;
+}
+
+/// Once a thread. How high the profile of a guessed tool is nobody knows.
+void ThreadChecks::tell_body(const TurnedMove& move, Thread& thread, double depth_mm) {
+  if (thread.body_told || move.tool_guessed || depth_mm <= form_->profile_mm + kBeyond_mm) return;
+  thread.body_told = true;
+  Finding finding = finding_at(FindingId::kFlankContact, Severity::kError, move.motion, move.step);
+  finding.text =
+      trf("the thread is {:.2f} mm deep, and the profile of the insert {:.2f} mm high: what of it "
+          "does not cut runs into the crests",
+          depth_mm, form_->profile_mm);
+  finding.hint = tr("edge=L of the tool's SHAPE is how high its profile is");
+  finding.position_mm = move.motion.from_mm;
+  finding.tool = move.tool;
+  finding.depth_mm = depth_mm - form_->profile_mm;
+  finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
+  log_.add(std::move(finding));
 }
 
 void ThreadChecks::end() {

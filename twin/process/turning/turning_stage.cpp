@@ -14,6 +14,7 @@
 #include "twin/process/finding_at.h"
 #include "twin/process/tool_tells.h"
 #include "twin/process/turning/tool_outlines.h"
+#include "twin/process/turning/tool_plates.h"
 
 namespace kerf {
 namespace {
@@ -31,22 +32,37 @@ TurningStage::TurningStage(ProcessSite& site)
       changes_(log_),
       checks_(stock_, log_),
       holding_(log_),
+      fixtures_(log_),
+      rings_(log_),
+      parts_(stock_, log_),
       holders_(*stock_.turned(), log_),
-      depths_(log_),
+      depths_(*stock_.turned(), log_),
       noses_(*stock_.turned(), log_),
       speeds_(log_),
+      stops_(*stock_.turned(), log_),
       threads_(*stock_.turned(), log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
   checks_.set_options(options);
-  if (options.collisions.held_by) holding_.set_wishes(options.collisions);
+  const CollisionWishes& wishes = options.collisions;
+  if (wishes.held_by) {
+    holding_.set_wishes(wishes);
+    rings_.set_obstacles(obstacles_of(*wishes.held_by), wishes);
+  }
+  fixtures_.set_obstacles(obstacles_of(wishes.fixtures), wishes);
+  parts_.set_blank_guessed(options.blank_guessed);
+  parts_.set_clearance(wishes.clearance_mm);
+  holders_.set_clearance(wishes.clearance_mm);
 }
 
 void TurningStage::begin_reporting() {
   checks_.forget();
   changes_.forget_events();
   holding_.begin_reporting();
+  fixtures_.begin_reporting();
+  rings_.begin_reporting();
+  parts_.begin_reporting();
   holders_.begin_reporting();
   noses_.forget();
   threads_.forget();
@@ -54,7 +70,7 @@ void TurningStage::begin_reporting() {
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
   unmount();
-  mill_turn_told_ = unmilled_told_ = threads_told_ = false;
+  mill_turn_told_ = unmilled_told_ = threads_told_ = fixtures_told_ = floating_told_ = false;
 }
 
 void TurningStage::go_on_from(const Process& process) {
@@ -68,6 +84,10 @@ void TurningStage::finish(bool whole) {
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
+    fixtures_.finish();
+    rings_.finish();
+    parts_.finish();
+    holders_.finish();
     threads_.end();
     noses_.finish();
     report_nothing_cut();
@@ -79,6 +99,7 @@ void TurningStage::finish(bool whole) {
 
 void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   path_ = path;
+  if (!site_.watched && cutter()) stops_.check_stop(m, step, *edges_, mounted_->number);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     spindle_tool_ = m.tool;
     unmount();
@@ -127,7 +148,20 @@ bool TurningStage::mount_for(const Motion& m) {
 void TurningStage::mount_checks() {
   if (!mounted_->cutter) return;
   const Cutter& cutter = *mounted_->cutter;
+  if (is_driven()) {
+    const std::vector<ToolBody> bodies = tool_bodies(cutter, {}, 0);
+    if (rings_.active()) rings_.mount(carried_bodies(bodies), mounted_->number, mounted_->guessed);
+    if (fixtures_.active())
+      fixtures_.mount(carried_bodies(bodies), mounted_->number, mounted_->guessed);
+    parts_.mount(cutter, mounted_->number, {}, 0);
+    uses_[use_].shank_checked = parts_.checks_shank();
+    uses_[use_].holder_checked = parts_.checks_holder();
+    edges_ = cutter;
+    return;
+  }
   if (holding_.active()) holding_.mount(cutter, mounted_->number, mounted_->guessed);
+  if (fixtures_.active())
+    fixtures_.mount(standing_bodies(cutter), mounted_->number, mounted_->guessed);
   holders_.mount(cutter, mounted_->number);
   uses_[use_].holder_checked = holders_.active();
   depths_.mount(cutter);
@@ -143,16 +177,23 @@ void TurningStage::unmount() {
   edges_.reset();
   checks_.end_tool();
   holding_.unmount();
+  fixtures_.unmount();
+  rings_.unmount();
+  parts_.unmount();
   holders_.unmount();
   depths_.unmount();
   noses_.unmount();
   speeds_.end_tool();
+  stops_.end_tool();
   threads_.end();
 }
 
 std::vector<CollisionPair> TurningStage::collisions() const {
   std::vector<CollisionPair> rows = holding_.table();
-  rows.insert(rows.end(), holders_.table().begin(), holders_.table().end());
+  for (const FixtureChecks* checks : {&rings_, &fixtures_})
+    for (CollisionPair& row : checks->table()) rows.push_back(std::move(row));
+  for (const std::vector<CollisionPair>* table : {&holders_.table(), &parts_.table()})
+    rows.insert(rows.end(), table->begin(), table->end());
   return rows;
 }
 
@@ -196,6 +237,7 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!is_driven()) {
     report_mill_turn(m, step);
     checks_.check_plane(m, step);
+    report_floating_tap(m, step);
   }
   if (!divide(m, moves_)) return;
   const TurnedMove move = turned(m, step);
@@ -208,17 +250,68 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   if (!is_driven()) {
     checks_.check_thread(m, step, site_.limits_known);
     threads_.note(move);
+    stops_.check_drill(move);
+    depths_.note(move);
   }
   if (stands(m)) checks_.check_standing(move);
   cut(m, step);
 }
 
-/// What a tool must not touch, and what of it must touch nothing. A driven one comes at any angle
-/// to a workpiece that stands: not looked at.
+/// What a tool must not touch, and what of it must touch nothing.
 void TurningStage::check_bodies(const TurnedMove& move) {
-  if (is_driven()) return;
+  const CheckedMove bodies{move.motion, move.step,         move.cutter, move.moves,
+                           move.tool,   move.tool_guessed, move.ends};
+  if (is_driven()) return check_driven(bodies);
   if (holding_.active()) holding_.check(move);
+  if (fixtures_.active()) fixtures_.check(bodies);
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
+}
+
+void TurningStage::check_driven(const CheckedMove& move) {
+  check_driven_parts(move);
+  if (!rings_.active() && !fixtures_.active()) return;
+  if (site_.kinematics && LivePaths::is_described(*site_.kinematics)) {
+    // What holds the workpiece is round, and turns with it.
+    if (rings_.active()) rings_.check(move);
+    if (!fixtures_.active() || std::exchange(fixtures_told_, true)) return;
+    Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, move.motion, move.step);
+    finding.tool = move.tool;
+    finding.text =
+        tr("on a machine that is described by its links driven tools are not held against "
+           "fixtures, which stand still while the workpiece turns");
+    log_.add(std::move(finding));
+    return;
+  }
+  // As the lathe has it: the tool keeps its direction, whatever C does.
+  CutMove here = cut_move_from(move.motion, 0);
+  here.axis_from = here.axis_to =
+      *move.cutter.live() == LiveAxis::kX ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
+  CheckedMove still = move;
+  still.moves = std::span(&here, 1);
+  still.ends = {};
+  if (rings_.active()) rings_.check(still);
+  if (fixtures_.active()) fixtures_.check(still);
+}
+
+/// Shank and holder against the workpiece. Where C turns it, what is far above the flutes needs
+/// shorter pieces than these.
+void TurningStage::check_driven_parts(const CheckedMove& cut) {
+  CheckedMove move = cut;
+  const double reach_mm = parts_.reach_mm();
+  const ToolPath* const path = site_.moves.live_path(cut.cutter);
+  if (path && reach_mm > MotionMoves::reach_mm(cut.cutter) && cut.moves.size() > 1) {
+    finer_.clear();
+    finer_ends_.clear();
+    if (path->moves_of(cut.motion, reach_mm, 0, finer_, &finer_ends_)) {
+      move.moves = finer_;
+      move.ends = finer_ends_;
+    }
+  }
+  if (parts_.may_matter(move.moves)) {
+    parts_.check(move);
+  } else {
+    parts_.pass(move.motion);
+  }
 }
 
 /// Once: a feed of a tool that is not driven beside the plane of the axis, or while the workpiece
@@ -276,6 +369,25 @@ void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
+/// Once, of a tool on the axis that is fed into a hole, and out of it with the spindle reversed.
+void TurningStage::report_floating_tap(const Motion& m, const TimedStep& step) {
+  if (m.kind != MotionKind::kFeed || mounted_->cutter->insert()) return;
+  const double way_mm = m.to_mm.z - m.from_mm.z;
+  const bool reversed = m.spindle != SpindleState::kStopped && in_by_ != SpindleState::kStopped &&
+                        m.spindle != in_by_;
+  if (way_mm > 0 && reversed && m.from_mm == in_to_mm_ && !std::exchange(floating_told_, true)) {
+    Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
+    finding.tool = m.tool;
+    finding.text =
+        tr("a tap in a chuck that floats (G84): its feed is in step with nothing, and the part has "
+           "the hole that its diameter sweeps, without a thread");
+    finding.hint = tr("G33.1 taps in step with the spindle");
+    log_.add(std::move(finding));
+  }
+  in_by_ = way_mm < 0 ? m.spindle : SpindleState::kStopped;
+  in_to_mm_ = m.to_mm;
+}
+
 void TurningStage::tell_not_modelled(const Motion& m, const TimedStep& step, std::string text,
                                      std::string hint) {
   Finding finding = finding_at(FindingId::kNotModelled, Severity::kError, m, step);
@@ -311,6 +423,7 @@ void TurningStage::cut(const Motion& m, const TimedStep& step) {
   touched_ = touched_ || whole.removed_mm3 > 0;
   if (!is_feed(m) || is_driven()) return;
   const TurnedMove move = turned(m, step);
+  if (holders_.active()) holders_.measure(move);
   checks_.check_sides(move, whole);
   checks_.check_centre(move, whole);
   depths_.check(move, whole, checks_.options().blank_guessed);
@@ -333,6 +446,7 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
                                     : 1;
   const double cut_s = step.duration_s * share;
   if (site_.labels) site_.labels->note(id, piece.removed_mm3, step.duration_s);
+  site_.note_cut(site_.motion, piece.removed_mm3, piece.depth_mm);
   use.removed_mm3 += piece.removed_mm3;
   if (is_feed(m)) {
     use.max_depth_mm = std::max(use.max_depth_mm, piece.depth_mm);

@@ -14,6 +14,8 @@
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
+#include "twin/process/fixture_checks.h"
+#include "twin/process/part_checks.h"
 #include "twin/process/process.h"
 #include "twin/process/tool_change_check.h"
 #include "twin/process/turning/edge_checks.h"
@@ -21,6 +23,7 @@
 #include "twin/process/turning/holding_checks.h"
 #include "twin/process/turning/nose_checks.h"
 #include "twin/process/turning/speed_checks.h"
+#include "twin/process/turning/stop_checks.h"
 #include "twin/process/turning/thread_checks.h"
 #include "twin/process/turning/turning_checks.h"
 
@@ -54,12 +57,15 @@ class TurningStage final : public Process {
   void mount_checks();
   void unmount();
   void check_bodies(const TurnedMove& move);
+  void check_driven(const CheckedMove& move);
+  void check_driven_parts(const CheckedMove& move);
   bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
   bool report_unmilled(const Motion& motion, const TimedStep& step);
   void report_mill_turn(const Motion& motion, const TimedStep& step);
   void report_lost_threads(const Motion& motion, const TimedStep& step);
   void tell_not_modelled(const Motion& motion, const TimedStep& step, std::string text,
                          std::string hint);
+  void report_floating_tap(const Motion& motion, const TimedStep& step);
   void report_undefined(const Motion& motion, const TimedStep& step);
   bool stands(const Motion& motion) const;
   bool divide(const Motion& motion, std::vector<CutMove>& moves);
@@ -77,15 +83,21 @@ class TurningStage final : public Process {
   ToolChangeCheck changes_;
   TurningChecks checks_;
   HoldingChecks holding_;
+  FixtureChecks fixtures_;  ///< what stands beside the workpiece
+  FixtureChecks rings_;     ///< what holding_ looks at, for driven tools
+  PartChecks parts_;        ///< of driven tools
   HolderChecks holders_;
   EdgeChecks depths_;
   NoseChecks noses_;
   SpeedChecks speeds_;
+  StopChecks stops_;
   ThreadChecks threads_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
   std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()
   std::vector<CutMove> pieces_;      ///< as the machine runs it
+  std::vector<CutMove> finer_;       ///< of a driven tool, divided for what it carries
+  std::vector<double> finer_ends_;
   std::vector<CutReport> reports_;
   std::vector<ToolUse> uses_;
   std::vector<FallenPiece> fallen_;
@@ -100,6 +112,10 @@ class TurningStage final : public Process {
   bool mill_turn_told_ = false;
   bool unmilled_told_ = false;
   bool threads_told_ = false;
+  bool fixtures_told_ = false;
+  bool floating_told_ = false;
+  SpindleState in_by_ = SpindleState::kStopped;  ///< of the last feed into a hole
+  Vec3 in_to_mm_{0};                             ///< where it ended
   bool touched_ = false;
   bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };

@@ -234,6 +234,10 @@ def plant(rng, number):
     if "tslot" in spec or "lollipop" in spec:
         kinds = [("rectangle", "floor")]
     shape, planted_at = kinds[number // len(CUTTERS) % len(kinds)]
+    has_gaps = "tslot" in spec or "lollipop" in spec
+    is_octree = number % 8 == 3 and not has_gaps
+    if is_octree:  # 8 % of a cell is taken off what is told, and that has to be more than the tolerance
+        gouge = max(gouge, 0.05)
     if shape == "boss":
         gouge = min(gouge, 1.0)
     make = {"rectangle": rectangular, "circle": round_one, "boss": bossed}[shape]
@@ -242,11 +246,9 @@ def plant(rng, number):
     cell = rng.choice([0.1, 0.15, 0.2])
     arguments = ["--stock", f"box:{-SIZE / 2:g},{-SIZE / 2:g},{bottom:g}:{SIZE / 2:g},{SIZE / 2:g},0", "--tool", f"1={spec}", "--cell",
                  f"{cell:g}"]
-    has_gaps = "tslot" in spec or "lollipop" in spec
-    model = ""
-    if number % 8 == 3 and not has_gaps:
-        cell, model = 0.2, "octree "
+    if is_octree:
+        cell = 0.2
         arguments[-1:] = ["0.2", "--model", "octree"]
     what = f"{shape}, {planted_at}, {spec}"
-    return Planted(f"{model}{planted_at} {spec}", what, block(pocket, -depth, bottom, boss), arguments, faulty, sound, lines, gouge,
+    return Planted(f"{'octree ' if is_octree else ''}{planted_at} {spec}", what, block(pocket, -depth, bottom, boss), arguments, faulty, sound, lines, gouge,
                    cell / 10 + 0.002, has_gaps)

@@ -46,7 +46,7 @@ class ChuckShop {
     if (*tailstock) options.collisions.holding.tailstock = *parse_tailstock(tailstock);
     options.collisions.rules.ignored = std::move(ignored);
     Diagnostics diagnostics;
-    EXPECT_TRUE(hold_workpiece(options.collisions.holding, nullptr, stock_,
+    EXPECT_TRUE(hold_workpiece(options.collisions.holding, nullptr, stock_, true,
                                options.collisions.held_by, diagnostics));
     stage_.check_by(options);
     stage_.judge_blank(BlankKind::kUnjudged);

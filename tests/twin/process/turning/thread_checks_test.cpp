@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,13 @@ TEST(ThreadChecks, TwoStartsHaveHalfThePitch) {
   EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 3, {{9.1}, {9.1, 8}}).size(), 1U);
 }
 
+TEST(ThreadChecks, APassMayBeginFarInFront) {
+  // From Z40 to Z-20: its middle is beside the rod.
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 1.5, {{9.13, 40}}).size(), 1U);
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 1.5, {{9.12, 40}}).size(), 0U);
+  EXPECT_EQ(threads_told("thread:60:1.5", rod20(), 3, {{9.1}, {9.1, 21.5}}).size(), 0U);
+}
+
 TEST(ThreadChecks, EachThreadIsOne) {
   // Another lead is another thread.
   const TurningStock stock(*TurnedPart::create(rod20()));
@@ -112,6 +120,56 @@ TEST(ThreadChecks, WaysInAndOutAreNoPasses) {
   }
   checks.end();
   EXPECT_EQ(log.kept().size(), 0U);
+}
+
+/// As samples of a machine divide passes, each pass elsewhere.
+std::vector<Finding> told_in_pieces(const TurnedProfile& blank, double lead_mm, double slope,
+                                    const std::vector<Pass>& passes) {
+  const TurningStock stock(*TurnedPart::create(blank));
+  FindingLog log;
+  ThreadChecks checks(stock, log);
+  const Cutter cutter = *parse_shape("thread:60:1.5");
+  checks.mount(cutter);
+  double piece_mm = 0.31;
+  for (const Pass& pass : passes) {
+    Motion m;
+    m.kind = MotionKind::kThread;
+    m.feed_mm_per_min = lead_mm;
+    m.source.line = 7;
+    const auto place = [&](double z) {
+      return Vec3(pass.radius_mm + slope * (pass.start_z_mm - z), 0, z);
+    };
+    m.to_mm = place(pass.start_z_mm);
+    while (m.to_mm.z > -20) {
+      m.from_mm = m.to_mm;
+      m.to_mm = place(std::max(m.from_mm.z - piece_mm, -20.0));
+      checks.note(TurnedMove{m, TimedStep{}, cutter, cutter, {}, 1, false});
+    }
+    piece_mm += 0.03;
+  }
+  checks.end();
+  return log.kept();
+}
+
+TEST(ThreadChecks, APassInPiecesIsOnePass) {
+  EXPECT_EQ(told_in_pieces(rod20(), 1.5, 0, {{9.6}, {9.3}, {9.12}}).size(), 0U);
+  const auto told = told_in_pieces(rod20(), 1.5, 0, {{9.6}, {9.3}, {9.13}});
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].position_mm, Vec3(9.13, 0, 5)) << "where the pass begins";
+  // Where pieces begin are no starts: two are two.
+  EXPECT_EQ(told_in_pieces(rod20(), 3, 0, {{9.1}, {9.1, 6.5}}).size(), 0U);
+  EXPECT_EQ(told_in_pieces(rod20(), 3, 0, {{9.1}, {9.1}}).size(), 1U);
+}
+
+TEST(ThreadChecks, APassInPiecesFollowsACone) {
+  // 1 in 16 of the diameter. At Z5 the cone would have a radius of 10 - 5/32.
+  const double slope = 1.0 / 32;
+  const TurnedProfile cone = {{{-60, 0}, {0, 0}, {0, 10}, {-60, 10 + 60 * slope}}};
+  const double at_start = 10 - 5 * slope;
+  EXPECT_EQ(told_in_pieces(cone, 1.5, slope, {{at_start - 0.5}, {at_start - 0.88}}).size(), 0U);
+  const auto told = told_in_pieces(cone, 1.5, slope, {{at_start - 0.5}, {at_start - 0.86}});
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].text.find("is 0.8"), std::string::npos) << told[0].text;
 }
 
 TEST(ThreadChecks, WhatIsNoThreadOfAFormIsNotJudged) {

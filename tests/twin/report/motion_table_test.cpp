@@ -1,0 +1,97 @@
+#include "twin/report/motion_table.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/base/temporary_folder.h"
+
+namespace kerf {
+namespace {
+
+Motion feed_to(const Vec3& to, std::uint32_t line) {
+  Motion m;
+  m.kind = MotionKind::kFeed;
+  m.to_mm = to;
+  m.feed_mm_per_min = 600;
+  m.source.line = line;
+  m.tool = 3;
+  m.spindle = SpindleState::kCounterclockwise;
+  m.spindle_rpm = 8000;
+  return m;
+}
+
+std::vector<std::string> lines_of(const std::string& path) {
+  std::ifstream in(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::unique_ptr<MotionTable> table_at(const std::string& path) {
+  auto table = MotionTable::create(path, [](std::string text) { return text; });
+  EXPECT_TRUE(table) << table.error();
+  return table ? std::move(table.value()) : nullptr;
+}
+
+TEST(MotionTable, ARowIsWhatItCutAndHowFast) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/m.csv";
+  const auto table = table_at(path);
+  table->name_files({"a, b.ngc"});
+  TimedStep step;
+  step.start_s = 1;
+  step.duration_s = 2;
+  step.length_mm = 20;
+  table->on_step(4, feed_to({10, -0.0, -1.5}, 7), step);
+  table->on_step(5, feed_to({20, 0, -1.5}, 8), step);
+  table->on_cut(3, 99, 9);  // of a motion that is not reported on
+  table->on_cut(4, 30, 1.5);
+  table->on_cut(4, 12, 1.25);
+  ASSERT_TRUE(table->commit());
+  const std::vector<std::string> lines = lines_of(path);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[1], "7,\"a, b.ngc\",feed,10,0,-1.5,0,0,0,0,0,0,600,,20,1,2,3,-8000,42,1.5,21\r");
+  EXPECT_EQ(lines[2], "8,\"a, b.ngc\",feed,20,0,-1.5,0,0,0,0,0,0,600,,20,1,2,3,-8000,0,0,0\r");
+  const auto cells = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  EXPECT_EQ(cells(lines[0]), cells(lines[2]) - 1);  // the name has one
+}
+
+TEST(MotionTable, WhatIsNotKnownIsEmpty) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/m.csv";
+  const auto table = table_at(path);
+  Motion thread = feed_to({1, 2, 3}, 1);
+  thread.kind = MotionKind::kThread;
+  thread.feed_mm_per_min = 1.5;
+  thread.unknown_to = 2;
+  table->on_step(0, thread, {});
+  ASSERT_TRUE(table->commit());
+  EXPECT_EQ(lines_of(path)[1], "1,,thread,1,,3,0,0,0,0,0,0,,1.5,0,0,0,3,-8000,0,0,0\r");
+}
+
+TEST(MotionTable, ARestartForgets) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/m.csv";
+  const auto table = table_at(path);
+  for (int i = 0; i < 3000; ++i) {
+    table->on_step(static_cast<std::uint64_t>(i), feed_to({1, 1, 1}, 1), {});
+    table->on_cut(static_cast<std::uint64_t>(i), 1, 1);
+  }
+  table->restart();
+  table->on_step(0, feed_to({1, 1, 1}, 1), {});
+  EXPECT_FALSE(std::ifstream(path).is_open());  // not before it is whole
+  ASSERT_TRUE(table->commit());
+  EXPECT_EQ(lines_of(path).size(), 2u);
+}
+
+TEST(MotionTable, AFolderThatIsNotThereIsAnError) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(MotionTable::create(folder.path() + "/no/m.csv", [](std::string t) { return t; }));
+}
+
+}  // namespace
+}  // namespace kerf

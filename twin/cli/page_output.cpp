@@ -1,0 +1,68 @@
+#include "twin/cli/page_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "twin/page/page_mesh.h"
+#include "twin/page/page_printer.h"
+#include "twin/page/report_page.h"
+#include "twin/scene/cut_colors.h"
+
+namespace kerf {
+namespace {
+
+/// 0xAABBGGRR as "#rrggbb".
+std::string web_color(std::uint32_t color) {
+  return fmt::format("#{:02x}{:02x}{:02x}", color & 0xff, color >> 8 & 0xff, color >> 16 & 0xff);
+}
+
+PageCurves curves_of(const RunCurve& curve) {
+  PageCurves out;
+  out.step_s = curve.step_s();
+  for (const RunCurve::Column& column : curve.columns()) {
+    out.removed_mm3_per_s.push_back(column.removed_mm3 / curve.step_s());
+    out.feed_mm_per_min.push_back(column.feed_s > 0 ? 60 * column.feed_mm / column.feed_s : 0);
+    out.spindle_rpm.push_back(60 * column.turns / curve.step_s());
+  }
+  return out;
+}
+
+void note(const Done& done, Diagnostics& diagnostics) {
+  if (done) return;
+  Diagnostic d;
+  d.message = done.error();
+  diagnostics.push_back(std::move(d));
+}
+
+}  // namespace
+
+void write_pages(const OutputPaths& paths, const Report& report, const StockModel* stock,
+                 const PageFacts& facts, Diagnostics& diagnostics) {
+  if (!paths.wants_page()) return;
+  PageOptions options;
+  options.units = facts.units;
+  options.command = facts.command;
+  if (facts.curve) options.curves = curves_of(*facts.curve);
+  for (const ToolUse& use : report.tools) {
+    if (options.groups.size() == kNoGroup) break;
+    options.groups.push_back(
+        {legend_text({use.number, use.shape}), web_color(color_of_number(options.groups.size()))});
+  }
+  if (!facts.labels.empty()) {
+    options.group_of = [&](std::uint32_t label) -> std::uint8_t {
+      if (label >= facts.labels.size()) return kNoGroup;
+      for (std::size_t i = 0; i < options.groups.size(); ++i) {
+        if (report.tools[i].number == facts.labels[label].tool) return static_cast<std::uint8_t>(i);
+      }
+      return kNoGroup;
+    };
+  }
+  const std::string page = report_page(report, stock, options);
+  if (!paths.html.empty()) note(write_text(paths.html, page), diagnostics);
+  if (!paths.pdf.empty()) note(print_page(page, paths.pdf), diagnostics);
+}
+
+}  // namespace kerf

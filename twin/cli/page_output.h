@@ -1,0 +1,31 @@
+// twin/cli/page_output.h - --html: the report of a run as a page.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "base/diagnostic.h"
+#include "base/length_unit.h"
+#include "stock/stock_model.h"
+#include "twin/cli/outputs.h"
+#include "twin/process/cut_labels.h"
+#include "twin/process/run_curve.h"
+#include "twin/report/report.h"
+
+namespace kerf {
+
+/// What a page tells beyond the report.
+struct PageFacts {
+  std::span<const CutLabel> labels;  ///< of the workpiece's cut ids; empty: not known
+  const RunCurve* curve = nullptr;   ///< null: not kept
+  std::string command;               ///< that makes the report again; may be empty
+  LengthUnit units = LengthUnit::kMm;
+};
+
+/// `html` and `pdf` of `paths`, where they are wanted, each under a temporary name that is renamed
+/// when it is whole; "-" is standard output. What fails is a diagnostic. `stock`: null if there was
+/// none.
+void write_pages(const OutputPaths& paths, const Report& report, const StockModel* stock,
+                 const PageFacts& facts, Diagnostics& diagnostics);
+
+}  // namespace kerf

@@ -1,0 +1,252 @@
+#include "twin/page/page_mesh.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+
+#include "base/mesh_patch.h"
+#include "base/triangle_mesh.h"
+#include "twin/compare/triangle_tree.h"
+
+namespace kerf {
+namespace {
+
+/// A surface whose corners are shared, with the move that made each.
+struct PageSurface {
+  std::vector<glm::vec3> corners;
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> cut_by;  ///< one a corner; empty: not known
+};
+
+constexpr std::size_t kStride = sizeof(glm::vec3);
+/// Corners of the full surface that the simplified one is measured by.
+constexpr std::size_t kMeasured = 20'000;
+
+struct PlaceHash {
+  std::size_t operator()(const glm::vec3& p) const {
+    std::uint64_t h = 0x9e3779b97f4a7c15u;
+    for (int i = 0; i < 3; ++i) {
+      std::uint32_t bits;
+      const float value = p[i] == 0 ? 0.0f : p[i];  // -0 is 0
+      std::memcpy(&bits, &value, sizeof(bits));
+      h = (h ^ bits) * 0xff51afd7ed558ccdu;
+      h ^= h >> 29;
+    }
+    return static_cast<std::size_t>(h);
+  }
+};
+
+/// Corners at one place become one: patches part them where their normals differ.
+class Joiner {
+ public:
+  explicit Joiner(PageSurface& into) : into_(into) {}
+
+  void add(const PageSurface& part) {
+    numbers_.resize(part.corners.size());
+    std::fill(numbers_.begin(), numbers_.end(), kNone);
+    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+      std::uint32_t triangle[3];
+      for (std::size_t k = 0; k < 3; ++k) triangle[k] = number_of(part, part.indices[i + k]);
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+        continue;
+      into_.indices.insert(into_.indices.end(), triangle, triangle + 3);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffff'ffff;
+
+  std::uint32_t number_of(const PageSurface& part, std::uint32_t corner) {
+    if (numbers_[corner] != kNone) return numbers_[corner];
+    const auto next = static_cast<std::uint32_t>(into_.corners.size());
+    const auto [at, is_new] = known_.try_emplace(part.corners[corner], next);
+    if (is_new) {
+      into_.corners.push_back(part.corners[corner]);
+      if (!part.cut_by.empty()) into_.cut_by.push_back(part.cut_by[corner]);
+    }
+    return numbers_[corner] = at->second;
+  }
+
+  PageSurface& into_;
+  std::unordered_map<glm::vec3, std::uint32_t, PlaceHash> known_;
+  std::vector<std::uint32_t> numbers_;  ///< of the part's corners in the whole
+};
+
+PageSurface surface_of(MeshPatch patch) {
+  PageSurface part;
+  part.corners.reserve(patch.vertices.size());
+  for (const MeshVertex& vertex : patch.vertices) part.corners.push_back(vertex.position_mm);
+  const auto seen = patch.surface_indices();
+  part.indices.assign(seen.begin(), seen.end());
+  part.cut_by = std::move(patch.cut_by);
+  if (part.cut_by.size() != part.corners.size()) part.cut_by.clear();
+  return part;
+}
+
+/// As far as it deviates by no more than `most_mm` by the library's own measure, and no further
+/// than `most_triangles`. `options`: the library's.
+void simplify(PageSurface& surface, double most_mm, std::size_t most_triangles, unsigned options) {
+  if (surface.indices.empty()) return;
+  const float scale = meshopt_simplifyScale(&surface.corners[0].x, surface.corners.size(), kStride);
+  if (!(scale > 0)) return;
+  std::vector<std::uint32_t> fewer(surface.indices.size());
+  fewer.resize(meshopt_simplify(fewer.data(), surface.indices.data(), surface.indices.size(),
+                                &surface.corners[0].x, surface.corners.size(), kStride,
+                                3 * most_triangles, static_cast<float>(most_mm) / scale, options,
+                                nullptr));
+  surface.indices = std::move(fewer);
+}
+
+/// Some corners of a surface, evenly spread over their order.
+class Sample {
+ public:
+  explicit Sample(std::size_t tiles)
+      : each_(std::max<std::size_t>(1, kMeasured / std::max<std::size_t>(1, tiles))) {}
+
+  void take(const PageSurface& part, std::vector<glm::vec3>& into) const {
+    const std::size_t step = std::max<std::size_t>(1, part.indices.size() / each_);
+    for (std::size_t i = 0; i < part.indices.size(); i += step)
+      into.push_back(part.corners[part.indices[i]]);
+  }
+
+ private:
+  std::size_t each_;
+};
+
+/// The surfaces of all tiles in their order, each simplified within its border; on all processors.
+struct Tiles {
+  PageSurface whole;
+  std::vector<glm::vec3> sample;
+  std::size_t full_triangles = 0;
+};
+
+Tiles take_tiles(const StockModel& stock, double most_mm) {
+  constexpr std::size_t kAtATime = 64;
+  Tiles out;
+  Joiner joiner(out.whole);
+  const std::size_t count = stock.tile_count();
+  const Sample sample(count);
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+  for (std::size_t begin = 0; begin < count; begin += kAtATime) {
+    const std::size_t end = std::min(count, begin + kAtATime);
+    std::vector<PageSurface> parts(end - begin);
+    std::vector<std::vector<glm::vec3>> samples(end - begin);
+    std::vector<std::size_t> full(end - begin);
+    std::atomic<std::size_t> next{begin};
+    const auto work = [&] {
+      for (std::size_t tile; (tile = next++) < end;) {
+        PageSurface& part = parts[tile - begin];
+        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0));
+        full[tile - begin] = part.indices.size() / 3;
+        sample.take(part, samples[tile - begin]);
+        PageSurface joined;
+        Joiner(joined).add(part);
+        part = std::move(joined);
+        simplify(part, most_mm, 0, meshopt_SimplifyLockBorder);
+      }
+    };
+    std::vector<std::jthread> helpers;
+    for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work);
+    work();
+    helpers.clear();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      joiner.add(parts[i]);
+      out.sample.insert(out.sample.end(), samples[i].begin(), samples[i].end());
+      out.full_triangles += full[i];
+    }
+  }
+  return out;
+}
+
+std::uint8_t group_of(const PageSurface& surface, std::size_t triangle,
+                      const PageMeshOptions& options) {
+  std::uint8_t groups[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t move = surface.cut_by[surface.indices[3 * triangle + k]];
+    groups[k] = move == MeshPatch::kNotCut ? kNoGroup : options.group_of(move);
+  }
+  return groups[1] == groups[2] ? groups[1] : groups[0];
+}
+
+double farthest_mm(const PageSurface& surface, const std::vector<glm::vec3>& sample) {
+  TriangleMesh mesh;
+  mesh.positions_mm = surface.corners;
+  mesh.triangles.reserve(surface.indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < surface.indices.size(); i += 3)
+    mesh.triangles.push_back({surface.indices[i], surface.indices[i + 1], surface.indices[i + 2]});
+  if (mesh.triangles.empty()) return 0;
+  const TriangleTree tree(mesh);
+  double farthest2 = 0;
+  std::uint32_t hint = 0;
+  for (const glm::vec3& corner : sample) {
+    const NearestPoint nearest = tree.nearest(Vec3(corner), hint);
+    hint = nearest.triangle;
+    farthest2 = std::max(farthest2, nearest.distance2_mm2);
+  }
+  return std::sqrt(farthest2);
+}
+
+/// Corners that triangles name, in the order of their naming, as numbers of 16 bits.
+void pack(const PageSurface& surface, PageMesh& mesh) {
+  constexpr double kSteps = 65535;
+  std::vector<std::uint32_t> numbers(surface.corners.size(), 0xffff'ffffu);
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t corner : surface.indices) {
+    if (numbers[corner] == 0xffff'ffffu) {
+      numbers[corner] = static_cast<std::uint32_t>(used.size());
+      used.push_back(corner);
+      mesh.box_mm.extend(Vec3(surface.corners[corner]));
+    }
+    mesh.triangles.push_back(numbers[corner]);
+  }
+  if (used.empty()) return;
+  const Vec3 size = mesh.box_mm.size();
+  mesh.places.reserve(3 * used.size());
+  for (const std::uint32_t corner : used) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share =
+          size[axis] > 0
+              ? (static_cast<double>(surface.corners[corner][axis]) - mesh.box_mm.min[axis]) /
+                    size[axis]
+              : 0;
+      mesh.places.push_back(
+          static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kSteps)));
+    }
+  }
+}
+
+}  // namespace
+
+PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options) {
+  PageMesh mesh;
+  Tiles tiles = take_tiles(stock, options.free_deviation_mm);
+  PageSurface& surface = tiles.whole;
+  mesh.full_triangles = tiles.full_triangles;
+  simplify(surface, options.free_deviation_mm, 0, 0);
+  // What is still too much gives up as little as it can: what the library gets is no bound then.
+  if (surface.indices.size() / 3 > options.most_triangles)
+    simplify(surface, stock.bounds_mm().size().x + stock.bounds_mm().size().y,
+             options.most_triangles, 0);
+  mesh.deviation_mm = farthest_mm(surface, tiles.sample);
+  mesh.measured = tiles.sample.size();
+  pack(surface, mesh);
+  if (!surface.cut_by.empty() && options.group_of) {
+    mesh.groups.reserve(mesh.triangles.size() / 3);
+    for (std::size_t i = 0; i < surface.indices.size() / 3; ++i)
+      mesh.groups.push_back(group_of(surface, i, options));
+  }
+  // Numbers of 16 bits are off by half of one.
+  constexpr double kHalfStep = 0.5 / 65535;
+  const Vec3 size = mesh.box_mm.empty() ? Vec3{0} : mesh.box_mm.size();
+  mesh.deviation_mm += kHalfStep * std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);
+  return mesh;
+}
+
+}  // namespace kerf

@@ -1,0 +1,304 @@
+#include "twin/page/page_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/translate.h"
+#include "twin/page/page_curve.h"
+#include "twin/report/finding_lists.h"
+#include "twin/report/report_words.h"
+#include "twin/report/shown_lengths.h"
+
+namespace kerf {
+namespace {
+
+struct PageColumn {
+  const char* heading;
+  bool has_numbers = false;
+};
+
+/// A section of its own, with cells whose lengths are in the reader's unit.
+class SectionText {
+ public:
+  SectionText(std::string heading, LengthUnit units) : units_(units) {
+    html_ = fmt::format("<section><h2>{}</h2>\n", xml_text(heading));
+  }
+
+  void paragraph(std::string_view text) {
+    html_ += fmt::format("<p>{}</p>\n", shown(text));
+    is_empty_ = false;
+  }
+  void pre(std::string_view text) {
+    html_ += fmt::format("<pre>{}</pre>\n", shown(text));
+    is_empty_ = false;
+  }
+  void table(std::initializer_list<PageColumn> columns) {
+    html_ += "<table><thead><tr>";
+    numbers_.clear();
+    for (const PageColumn& column : columns) {
+      numbers_.push_back(column.has_numbers);
+      html_ += fmt::format("<th{}>{}</th>", column.has_numbers ? " class=\"n\"" : "",
+                           xml_text(column.heading));
+    }
+    html_ += "</tr></thead><tbody>\n";
+  }
+  void row(std::initializer_list<std::string> cells) {
+    html_ += "<tr>";
+    std::size_t column = 0;
+    for (const std::string& cell : cells) {
+      const bool is_number = column < numbers_.size() && numbers_[column++];
+      html_ += fmt::format("<td{}>{}</td>", is_number ? " class=\"n\"" : "", shown(cell));
+    }
+    html_ += "</tr>\n";
+    is_empty_ = false;
+  }
+  void end_table() { html_ += "</tbody></table>\n"; }
+  void facts(std::span<const std::pair<std::string, std::string>> facts) {
+    html_ += "<dl class=\"facts\">\n";
+    for (const auto& [name, value] : facts)
+      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(name), shown(value));
+    html_ += "</dl>\n";
+    is_empty_ = is_empty_ && facts.empty();
+  }
+  void raw(std::string_view html) {
+    html_ += html;
+    is_empty_ = is_empty_ && html.empty();
+  }
+
+  std::string done() && { return is_empty_ ? std::string() : std::move(html_) + "</section>\n"; }
+
+ private:
+  std::string shown(std::string_view text) const { return xml_text(in_unit(text, units_)); }
+
+  LengthUnit units_;
+  std::string html_;
+  std::vector<bool> numbers_;
+  bool is_empty_ = true;
+};
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+const char* class_of(const FindingLog& log) {
+  if (log.count(Severity::kError) > 0) return "verdict error";
+  return log.count(Severity::kWarning) > 0 ? "verdict warning" : "verdict";
+}
+
+std::string box_text(const Box& box) {
+  return fmt::format("X{:.4g}..{:.4g} Y{:.4g}..{:.4g} Z{:.4g}..{:.4g}", box.min.x, box.max.x,
+                     box.min.y, box.max.y, box.min.z, box.max.z);
+}
+
+/// Where the zero of the work offset lies on the blank: what is set at the machine.
+std::string zero_text(const Box& box) {
+  if (box.empty()) return {};
+  const auto place = [](double low, double high, const char* at_low, const char* middle,
+                        const char* at_high, const char* axis) {
+    constexpr double kSame_mm = 0.005;
+    if (std::abs(low) < kSame_mm) return std::string(at_low);
+    if (std::abs(high) < kSame_mm) return std::string(at_high);
+    if (std::abs(low + high) < 2 * kSame_mm) return std::string(middle);
+    return trf("{}: {:.3f} mm from the lower end", axis, -low);
+  };
+  return place(box.min.x, box.max.x, tr("left edge"), tr("middle in X"), tr("right edge"), "X") +
+         ", " +
+         place(box.min.y, box.max.y, tr("front edge"), tr("middle in Y"), tr("back edge"), "Y") +
+         ", " + place(box.min.z, box.max.z, tr("underside"), tr("half its height"), tr("top"), "Z");
+}
+
+std::string name_of_tool(const ToolUse& use) { return fmt::format("T{}", use.number); }
+
+}  // namespace
+
+std::string head_section(const Report& report, const PageOptions& options) {
+  const std::string name =
+      report.program_path.empty() && report.live ? report.live->source : report.program_path;
+  std::string out = fmt::format("<header><h1>{}</h1>\n", xml_text(name));
+  out += fmt::format("<p><span class=\"{}\">{}</span></p>\n", class_of(report.findings),
+                     xml_text(verdict_text(report.findings)));
+  if (!report.partial_reason.empty()) {
+    out += fmt::format(
+        "<p><b>{}</b></p>\n",
+        xml_text(trf("Partial: {}. All here is of the part that was run.", report.partial_reason)));
+  }
+  Facts facts;
+  const MotionTotals& m = report.motion;
+  facts.emplace_back(tr("Time"), duration_text(m.duration_s));
+  facts.emplace_back(tr("Way"), trf("feed {}, traverse {}", distance_text(m.feed_mm),
+                                    distance_text(m.traverse_mm)));
+  if (report.stock) {
+    const StockReport& s = *report.stock;
+    const double removed = s.blank_mm3 - s.remaining_mm3;
+    facts.emplace_back(tr("Removed"),
+                       trf("{} of {} ({:.1f} %)", volume_text(removed), volume_text(s.blank_mm3),
+                           s.blank_mm3 > 0 ? 100 * removed / s.blank_mm3 : 0));
+  }
+  if (report.lines.from > 0 || report.lines.until > 0) {
+    facts.emplace_back(tr("Lines"),
+                       fmt::format("{} .. {}", report.lines.from > 0 ? report.lines.from : 1,
+                                   report.lines.until > 0 ? fmt::format("{}", report.lines.until)
+                                                          : std::string(tr("end"))));
+  }
+  out += "<dl class=\"facts\">\n";
+  for (const auto& [key, value] : facts) {
+    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(key),
+                       xml_text(in_unit(value, options.units)));
+  }
+  return out + "</dl></header>\n";
+}
+
+std::string finding_list(const Report& report, LengthUnit units) {
+  std::string out = "<div id=\"findings\">\n";
+  const auto& kept = report.findings.kept();
+  for (std::size_t i = 0; i < std::min(kept.size(), kMostOnPage); ++i) {
+    const Finding& finding = kept[i];
+    Diagnostic d = in_unit(diagnostic_of(finding, report.program.files), units);
+    std::string message = in_unit(message_of(finding), units);
+    std::string place = d.line > 0 ? fmt::format("{}:{}", d.file, d.line) : d.file;
+    if (finding.time_s) place += (place.empty() ? "" : ", ") + duration_text(*finding.time_s);
+    out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}",
+                       to_string(finding.severity), xml_text(to_string(finding.id)),
+                       xml_text(message));
+    if (!place.empty()) out += fmt::format("<small>{}</small>", xml_text(place));
+    if (!d.hint.empty()) out += fmt::format("<small>{}</small>", xml_text(d.hint));
+    out += "</button>\n";
+  }
+  if (kept.empty())
+    out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", xml_text(tr("no findings")));
+  if (report.findings.total() > std::min(kept.size(), kMostOnPage)) {
+    out += fmt::format(
+        "<p class=\"soft\">&nbsp;{}</p>\n",
+        xml_text(trf("and {} more", report.findings.total() - std::min(kept.size(), kMostOnPage))));
+  }
+  return out + "</div>\n";
+}
+
+std::string setup_section(const Report& report, const PageOptions& options, bool has_view) {
+  if (!report.stock) return {};
+  const StockReport& s = *report.stock;
+  SectionText out(tr("Set-up"), options.units);
+  Facts facts;
+  facts.emplace_back(tr("Blank"), fmt::format("{} ({})", s.description, s.origin));
+  if (!report.turning) facts.emplace_back(tr("Zero point"), zero_text(s.bounds_mm));
+  facts.emplace_back(tr("Its ends"), box_text(s.bounds_mm) + " mm");
+  std::string order;
+  for (const ToolUse& use : report.tools) order += (order.empty() ? "" : ", ") + name_of_tool(use);
+  if (!order.empty()) facts.emplace_back(tr("Tools"), order);
+  out.facts(facts);
+  if (has_view) {
+    std::string pictures = "<div id=\"sheet\">";
+    for (const char* view : {"iso", "top", "front"})
+      pictures += fmt::format("<img alt=\"\" data-view=\"{}\">", view);
+    out.raw(pictures + "</div>\n");
+  }
+  return std::move(out).done();
+}
+
+std::string tool_section(const Report& report, LengthUnit units) {
+  if (report.tools.empty()) return {};
+  SectionText out(tr("Tools, in their order"), units);
+  out.table({{tr("Tool")},
+             {tr("Shape")},
+             {tr("Known from")},
+             {tr("Cutting"), true},
+             {tr("Way"), true},
+             {tr("Removed"), true},
+             {tr("Deepest"), true},
+             {tr("Peak rate"), true}});
+  for (const ToolUse& use : report.tools) {
+    if (use.shape.empty()) {
+      out.row({name_of_tool(use), tr("undefined, did not cut"), use.origin});
+      continue;
+    }
+    out.row({name_of_tool(use), use.shape,
+             use.guessed ? tr("guessed from ") + use.origin : use.origin, duration_text(use.cut_s),
+             distance_text(use.feed_mm), volume_text(use.removed_mm3),
+             fmt::format("{:.2f} mm", use.max_depth_mm),
+             fmt::format("{:.1f} mm3/s", use.peak_mm3_per_s)});
+  }
+  out.end_table();
+  return std::move(out).done();
+}
+
+std::string collision_section(const Report& report, LengthUnit units) {
+  if (report.collisions.empty()) return {};
+  SectionText out(tr("Collisions and clearances"), units);
+  out.table({{tr("What")},
+             {tr("Against")},
+             {tr("Contacts"), true},
+             {tr("Least clearance"), true},
+             {tr("Line"), true}});
+  for (const CollisionPair& pair : report.collisions) {
+    const std::string what =
+        pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
+    const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
+                                  : pair.least_clearance_mm
+                                      ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
+                                      : std::string(tr("not measured"));
+    out.row({what, pair.other.empty() ? std::string(tr("workpiece")) : pair.other,
+             fmt::format("{}", pair.contacts), clearance,
+             pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});
+  }
+  out.end_table();
+  return std::move(out).done();
+}
+
+std::string part_section(const Report& report, LengthUnit units) {
+  SectionText out(tr("What was made"), units);
+  if (report.sheet) out.pre(sheet_text(*report.sheet));
+  if (report.turning) out.pre(turning_text(*report.turning));
+  return std::move(out).done();
+}
+
+std::string curve_section(const PageCurves& curves, LengthUnit units) {
+  const bool inch = units == LengthUnit::kInch;
+  constexpr double kInch_mm = 25.4;
+  const auto scaled = [](const std::vector<double>& values, double factor) {
+    std::vector<double> out(values);
+    for (double& value : out) value *= factor;
+    return out;
+  };
+  const std::vector<double> rates =
+      scaled(curves.removed_mm3_per_s, inch ? 60 / (kInch_mm * kInch_mm * kInch_mm) : 1);
+  const std::vector<double> feeds = scaled(curves.feed_mm_per_min, inch ? 1 / kInch_mm : 1);
+  SectionText out(tr("Over its time"), units);
+  out.raw(curve_svg(
+      {tr("Material removed"), inch ? "in3/min" : "mm3/s", "#2f6690", curves.step_s, rates}));
+  out.raw(curve_svg(
+      {tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
+  out.raw(curve_svg({tr("Spindle"), tr("rpm"), "#9a5b00", curves.step_s, curves.spindle_rpm}));
+  return std::move(out).done();
+}
+
+std::string exactness_section(const Report& report, const PageOptions& options,
+                              const std::string& mesh) {
+  SectionText out(tr("How exact this is, and how to make it again"), options.units);
+  Facts facts;
+  if (report.stock) {
+    const StockReport& s = *report.stock;
+    if (report.sheet || report.turning) {
+      facts.emplace_back(tr("Model"), s.model);
+    } else {
+      facts.emplace_back(tr("Model"), trf("{}, cells of {:.4g} mm", s.model, s.cell_mm));
+    }
+  }
+  facts.emplace_back(tr("Times"), report.time_model);
+  if (!mesh.empty()) facts.emplace_back(tr("3D view"), mesh);
+  for (const GuessRow& row : rows_in(report.guesses, options.units)) {
+    facts.emplace_back(
+        trf("Guessed: {}", row.what),
+        row.reason.empty() ? row.value : fmt::format("{} ({})", row.value, row.reason));
+  }
+  facts.emplace_back("kerf", report.version);
+  if (!report.program.interpreter.empty())
+    facts.emplace_back(tr("Interpreter"), report.program.interpreter);
+  if (report.stock) facts.emplace_back(tr("Digest of the workpiece"), report.stock->digest);
+  out.facts(facts);
+  if (!options.command.empty()) out.raw(fmt::format("<pre>{}</pre>\n", xml_text(options.command)));
+  return std::move(out).done();
+}
+
+}  // namespace kerf

@@ -1,0 +1,49 @@
+// twin/page/report_page.h - a report as one HTML file that needs no network: the part in 3D,
+// findings that lead to their places and lines, tools, times; printed, a set-up sheet.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/length_unit.h"
+#include "stock/stock_model.h"
+#include "twin/report/report.h"
+
+namespace kerf {
+
+/// Rates over the time of the program, in columns of `step_s`.
+struct PageCurves {
+  double step_s = 0;
+  std::vector<double> removed_mm3_per_s;
+  std::vector<double> feed_mm_per_min;
+  std::vector<double> spindle_rpm;
+};
+
+/// What triangles are coloured by: who cut them.
+struct PageGroup {
+  std::string name;
+  std::string color;  ///< "#56a0d2"
+};
+
+struct PageOptions {
+  LengthUnit units = LengthUnit::kMm;
+  std::string command;  ///< that makes this report again; may be empty
+  std::size_t most_triangles = 120'000;
+  std::vector<PageGroup> groups;
+  /// Which of `groups` the move with this number (CutMove::id) belongs to; empty: nobody asks.
+  std::function<std::uint8_t(std::uint32_t move)> group_of;
+  PageCurves curves;
+};
+
+/// The whole file, UTF-8, in the language of the process. `stock`: null if the run ended before
+/// there was one. Files of the program are read for the lines that findings name; one that is not
+/// there any more is left out. Findings beyond kMostOnPage are counted. The 3D view takes about
+/// 18 bytes a triangle.
+std::string report_page(const Report& report, const StockModel* stock,
+                        const PageOptions& options = {});
+
+inline constexpr std::size_t kMostOnPage = 500;
+
+}  // namespace kerf

@@ -1,0 +1,51 @@
+// twin/process/motion_recorder.h - who wants to know of each motion what came of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/motion.h"
+#include "twin/machine/timeline.h"
+
+namespace kerf {
+
+/// Every call comes from the thread that cuts.
+class MotionRecorder {
+ public:
+  virtual ~MotionRecorder() = default;
+  /// Everything begins again, for a workpiece in another model: what has been told is void.
+  virtual void restart() = 0;
+  /// What SourceRef::file of the motions means; before those that name a new one. Only grows.
+  virtual void name_files(const std::vector<std::string>& files) = 0;
+  /// In program order, each motion that is reported on; numbers ascend.
+  virtual void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) = 0;
+  /// A move of that motion has been cut, of which there may be several. Numbers do not fall. Also
+  /// of motions that are not reported on, which on_step() has not told of.
+  virtual void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) = 0;
+};
+
+/// Several, each told what all are told.
+class MotionRecorders final : public MotionRecorder {
+ public:
+  void add(MotionRecorder& recorder) { all_.push_back(&recorder); }
+  bool empty() const { return all_.empty(); }
+
+  void restart() override {
+    for (MotionRecorder* const each : all_) each->restart();
+  }
+  void name_files(const std::vector<std::string>& files) override {
+    for (MotionRecorder* const each : all_) each->name_files(files);
+  }
+  void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override {
+    for (MotionRecorder* const each : all_) each->on_step(number, motion, step);
+  }
+  void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override {
+    for (MotionRecorder* const each : all_) each->on_cut(number, removed_mm3, depth_mm);
+  }
+
+ private:
+  std::vector<MotionRecorder*> all_;
+};
+
+}  // namespace kerf

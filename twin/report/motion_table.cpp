@@ -1,0 +1,154 @@
+#include "twin/report/motion_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "interp_bridge/motion_kinds.h"
+#include "twin/machine/motion_json.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::string_view kColumns =
+    "line,file,type,x,y,z,a,b,c,u,v,w,feed_mm_per_min,feed_mm_per_rev,length_mm,start_s,"
+    "duration_s,tool,spindle_rpm,removed_mm3,depth_mm,removed_mm3_per_s\r\n";
+/// Rows go to the file by so many bytes.
+constexpr std::size_t kTextBytes = std::size_t{1} << 16;
+
+void append_cell(double value, std::string& out) {
+  const double scaled = std::round(value * 1e6) / 1e6;
+  out += ',';
+  fmt::format_to(std::back_inserter(out), "{:.10g}", scaled == 0 ? 0.0 : scaled);
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+void append_place(const Motion& m, std::string& out) {
+  for (int i = 0; i < 3; ++i) {
+    if ((m.unknown_to >> i & 1) != 0) {
+      out += ',';
+    } else {
+      append_cell(m.to_mm[i], out);
+    }
+  }
+  for (const double angle_deg : m.to_abc_deg) append_cell(angle_deg, out);
+  for (int i = 0; i < 3; ++i) append_cell(m.to_uvw_mm[i], out);
+}
+
+void append_feed(const Motion& m, std::string& out) {
+  const bool fed = is_feed(m) || m.kind == MotionKind::kProbe;
+  const bool per_turn = m.feed_per_rev || m.kind == MotionKind::kThread;
+  for (const bool column_per_turn : {false, true}) {
+    if (fed && per_turn == column_per_turn) {
+      append_cell(m.feed_mm_per_min, out);
+    } else {
+      out += ',';
+    }
+  }
+}
+
+double signed_rpm(const Motion& m) {
+  if (m.spindle == SpindleState::kStopped) return 0;
+  return m.spindle == SpindleState::kClockwise ? m.spindle_rpm : -m.spindle_rpm;
+}
+
+}  // namespace
+
+MotionTable::MotionTable(std::string path, std::function<std::string(std::string)> renamed)
+    : path_(std::move(path)), renamed_(std::move(renamed)) {
+  as_it_comes_ = written_as_it_comes(path_);
+}
+
+Result<std::unique_ptr<MotionTable>> MotionTable::create(
+    const std::string& path, std::function<std::string(std::string)> renamed) {
+  std::unique_ptr<MotionTable> table(new MotionTable(path, std::move(renamed)));
+  table->begin();
+  if (!table->trouble_.empty()) return Error{table->trouble_};
+  return table;
+}
+
+void MotionTable::begin() {
+  waiting_.clear();
+  text_ = kColumns;
+  if (as_it_comes_) return;
+  file_.reset();
+  Result<AtomicFile> file = AtomicFile::create(path_);
+  if (file) {
+    file_.emplace(std::move(*file));
+  } else {
+    trouble_ = file.error();
+  }
+}
+
+void MotionTable::restart() { begin(); }
+
+void MotionTable::name_files(const std::vector<std::string>& files) {
+  for (std::size_t i = files_.size(); i < files.size(); ++i) {
+    files_.push_back(quoted(renamed_(files[i])));
+  }
+}
+
+void MotionTable::on_step(std::uint64_t number, const Motion& m, const TimedStep& step) {
+  Row& row = waiting_.emplace_back();
+  row.number = number;
+  row.duration_s = step.duration_s;
+  fmt::format_to(std::back_inserter(row.head), "{},{},{}", m.source.line,
+                 m.source.file < files_.size() ? files_[m.source.file] : "", to_string(m.kind));
+  append_place(m, row.head);
+  append_feed(m, row.head);
+  append_cell(step.length_mm, row.head);
+  append_cell(step.start_s, row.head);
+  append_cell(step.duration_s, row.head);
+  fmt::format_to(std::back_inserter(row.head), ",{}", m.tool);
+  append_cell(signed_rpm(m), row.head);
+}
+
+void MotionTable::on_cut(std::uint64_t number, double removed_mm3, double depth_mm) {
+  // Cuts come in order: those before have all of theirs.
+  while (!waiting_.empty() && waiting_.front().number < number) {
+    write(waiting_.front());
+    waiting_.pop_front();
+  }
+  if (waiting_.empty() || waiting_.front().number != number) return;
+  Row& row = waiting_.front();
+  row.removed_mm3 += removed_mm3;
+  row.depth_mm = std::max(row.depth_mm, depth_mm);
+}
+
+void MotionTable::write(const Row& row) {
+  text_ += row.head;
+  append_cell(row.removed_mm3, text_);
+  append_cell(row.depth_mm, text_);
+  append_cell(row.duration_s > 0 ? row.removed_mm3 / row.duration_s : 0, text_);
+  text_ += "\r\n";
+  if (as_it_comes_ || !file_ || text_.size() < kTextBytes) return;
+  file_->write(text_.data(), text_.size());
+  text_.clear();
+}
+
+Done MotionTable::commit() {
+  for (const Row& row : waiting_) write(row);
+  waiting_.clear();
+  if (as_it_comes_) {
+    Result<AtomicFile> file = AtomicFile::create(path_);
+    if (!file) return Error{file.error()};
+    file_.emplace(std::move(*file));
+  }
+  if (!file_) return Error{trouble_};
+  file_->write(text_.data(), text_.size());
+  return file_->commit();
+}
+
+}  // namespace kerf

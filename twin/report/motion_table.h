@@ -1,0 +1,63 @@
+// twin/report/motion_table.h - the motions of a program as a table (CSV, RFC 4180), a row each,
+// with what each of them has cut.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/result.h"
+#include "twin/process/motion_recorder.h"
+
+namespace kerf {
+
+/// Writes while the program is cut; the file appears with commit(). mm, mm/min, s, degrees, rpm,
+/// rounded to 1e-6. Columns, in this order:
+///     line, file, type ("feed"; kerf canon has the names), x, y, z, a, b, c, u, v, w (where it
+///     ends; empty: not known), feed_mm_per_min (feed_mm_per_rev where that is in force, the other
+///     is empty then), length_mm, start_s, duration_s, tool, spindle_rpm (negative: M4),
+///     removed_mm3, depth_mm, removed_mm3_per_s (over its duration)
+/// Columns may be added behind. About 2 us a row; keeps rows of motions whose cuts have not come
+/// yet. What cannot be replaced under its name (standard output) is written by commit() alone.
+class MotionTable final : public MotionRecorder {
+ public:
+  /// `renamed`: how a file is called. Error: the file cannot be written.
+  static Result<std::unique_ptr<MotionTable>> create(
+      const std::string& path, std::function<std::string(std::string)> renamed);
+
+  /// All rows are there; once. Error: what could not be written.
+  Done commit();
+
+  void restart() override;
+  void name_files(const std::vector<std::string>& files) override;
+  void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override;
+  void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override;
+
+ private:
+  struct Row {
+    std::uint64_t number = 0;
+    std::string head;  ///< the columns that are known at once
+    double duration_s = 0;
+    double removed_mm3 = 0;
+    double depth_mm = 0;
+  };
+  MotionTable(std::string path, std::function<std::string(std::string)> renamed);
+  void begin();
+  void write(const Row& row);
+
+  std::string path_;
+  std::function<std::string(std::string)> renamed_;
+  std::optional<AtomicFile> file_;  ///< none: `text_` is kept until commit()
+  std::string trouble_;             ///< why there is none, though there should
+  bool as_it_comes_ = false;
+  std::string text_;
+  std::vector<std::string> files_;  ///< quoted
+  std::deque<Row> waiting_;
+};
+
+}  // namespace kerf
