@@ -13,8 +13,8 @@
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "twin/compare/triangle_tree.h"
 #include "twin/page/surface_simplifier.h"
-#include "twin/scene/compare/triangle_tree.h"
 
 namespace kerf {
 namespace {
