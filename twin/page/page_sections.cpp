@@ -9,6 +9,7 @@
 
 #include "base/translate.h"
 #include "twin/page/page_curve.h"
+#include "twin/report/compare_report.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
 #include "twin/report/shown_lengths.h"
@@ -243,6 +244,12 @@ std::string collision_section(const Report& report, LengthUnit units) {
              pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});
   }
   out.end_table();
+  return std::move(out).done();
+}
+
+std::string compare_section(const Report& report, LengthUnit units) {
+  SectionText out(tr("Against the design"), units);
+  if (report.comparison) out.pre(compare_text(*report.comparison));
   return std::move(out).done();
 }
 

@@ -200,6 +200,7 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
   out += setup_section(report, options, has_view);
   out += tool_section(report, options.units);
   out += collision_section(report, options.units);
+  out += compare_section(report, options.units);
   out += part_section(report, options.units);
   out += curve_section(options.curves, options.units);
   out += exactness_section(report, options, mesh_text(mesh));
