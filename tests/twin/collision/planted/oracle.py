@@ -154,7 +154,7 @@ def nearest_gap(body, piece, tip, axis, memory):
     and goes down fastest by steps to the nearest place and back that keep their swing, until they would go up."""
     p = memory.get((body, piece), body.middle())
     before, swing, last = p, 1.0, math.inf
-    for _ in range(20000):
+    for _ in range(3000):
         further = (1 + math.sqrt(1 + 4 * swing * swing)) / 2
         y = tuple(a + (swing - 1) / further * (a - b) for a, b in zip(p, before))
         _, way = core_gap(piece, tip, axis, y)
@@ -165,7 +165,7 @@ def nearest_gap(body, piece, tip, axis, memory):
             continue
         moved = math.dist(new, p)
         before, p, swing, last = p, new, further, now
-        if now <= EPSILON or moved < 1e-11:
+        if now <= EPSILON or moved < 1e-8:
             break
     memory[(body, piece)] = p
     return last - piece.round_mm, p
