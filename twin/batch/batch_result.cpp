@@ -272,7 +272,9 @@ bool still_holds(const BatchResult& result, const std::string& out, const std::s
     case BatchVerdict::kCrashed:
     case BatchVerdict::kFailed:
     case BatchVerdict::kUsage:
-      return !result.report.empty();
+      // A program that stops at an error leaves them all. Where one is missing, the cause may have
+      // been the disk.
+      return !result.report.empty() && !result.page.empty() && !result.picture.empty();
     default:
       return true;
   }

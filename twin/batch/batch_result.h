@@ -66,8 +66,8 @@ BatchResult result_of_run(const std::string& out, const std::string& program,
                           const ProcessEnd& end);
 
 /// The result is that of the program as it would be run now: its hash is this one, its files are
-/// there, and what was ended by a bound would meet the same bound. What has left no report for
-/// another reason (a full disk) is no result to keep.
+/// there, and what was ended by a bound would meet the same bound. What has failed and lacks a file
+/// is no result to keep: the disk may have been full.
 bool still_holds(const BatchResult& result, const std::string& out, const std::string& hash,
                  const ProcessBounds& bounds);
 

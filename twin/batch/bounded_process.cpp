@@ -2,9 +2,9 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,7 +68,8 @@ Result<BoundedProcess> BoundedProcess::start(const std::vector<std::string>& wor
   errno = error;
   if (process.pid_ < 0) return refused("fork");
   setpgid(process.pid_, process.pid_);  // whoever comes first: it must be before kill()
-  process.ended_fd_ = pidfd_open(process.pid_, 0);
+  // The header of Debian 12's C library that has it is none for C++.
+  process.ended_fd_ = static_cast<int>(syscall(SYS_pidfd_open, process.pid_, 0));
   if (process.ended_fd_ < 0) return refused("pidfd_open");
   if (bounds.seconds > 0) {
     process.deadline_ =

@@ -71,7 +71,7 @@ class WorkList {
       if (name.starts_with('.')) {
         if (at->is_directory(ignored)) at.disable_recursion_pending();
       } else if (at->is_regular_file(ignored) && is_program_name(name)) {
-        found.push_back(at->path().string());
+        found.push_back(at->path().lexically_normal().string());
       }
     }
     if (error) {
@@ -114,12 +114,7 @@ class WorkList {
     if (fs::is_directory(what, ignored)) {
       add_folder(what, place);
     } else if (fs::exists(what, ignored)) {
-      if (is_program_name(what)) {
-        add_program(what);
-      } else {
-        fault(place, trf("{}: not the name of a program", what),
-              tr("programs end in .ngc .nc .gcode .gc .tap .cnc .canon"));
-      }
+      add_program(what);
     } else if (what.find_first_of("*?[") != what.npos) {
       add_pattern(what, place);
     } else {

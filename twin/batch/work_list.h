@@ -17,11 +17,10 @@ bool is_program_name(std::string_view path);
 ///   - a folder: all programs in it and below it, in the order of their paths; hidden folders and
 ///     files are passed over;
 ///   - a pattern, as a shell's, of which programs and folders come;
-///   - any other file, or "-" (standard input): a list, one of the above a line, but for lists.
-///     Paths in it are relative to its folder. Empty lines, and those that begin with #, say
-///     nothing.
-/// Faults, all of them, with list and line: what is not there, what holds no program, a list in a
-/// list.
+///   - any other file, or "-" (standard input): a list, one of the above a line. Files in it are
+///     programs, whatever their names. Paths are relative to the list's folder. Empty lines, and
+///     those that begin with #, say nothing.
+/// Faults, all of them, with list and line: what is not there, what holds no program.
 std::vector<std::string> programs_of(const std::vector<std::string>& what,
                                      Diagnostics& diagnostics);
 

@@ -63,12 +63,11 @@ TEST_F(BatchParts, AListIsReadFromItsFolderAndEachProgramComesOnce) {
 TEST_F(BatchParts, WhatIsMissingInAListIsToldAtItsLineAllAtOnce) {
   write("a.ngc");
   write("empty/readme.txt");
-  const std::string list = write("list.txt", "a.ngc\ngone.ngc\nempty\n*.nc\nlist.txt\nb.ngc\n");
-  EXPECT_EQ(programs({list}), Texts{at("a.ngc")});
+  const std::string list = write("list.txt", "a.ngc\ngone.ngc\nempty\n*.nc\nempty/readme.txt\nb.ngc\n");
+  EXPECT_EQ(programs({list}), (Texts{at("a.ngc"), at("empty/readme.txt")}));
   EXPECT_EQ(told(), (Texts{"list.txt:2: gone.ngc: no such file or folder",
                            "list.txt:3: empty: no program in this folder",
                            "list.txt:4: *.nc: no program fits this pattern",
-                           "list.txt:5: list.txt: not the name of a program",
                            "list.txt:6: b.ngc: no such file or folder"}));
 }
 
@@ -106,7 +105,7 @@ TEST_F(BatchParts, FaultsOfATableHaveLineAndColumn) {
     EXPECT_EQ(told_[i].column, columns[i]) << told_[i].message;
   }
   EXPECT_EQ(told_[2].message, "--cel: no option that a batch passes on; did you mean --cell?");
-  EXPECT_EQ(told_[5].message.substr(0, 45), "--json: no option that a batch passes on; did");
+  EXPECT_EQ(told_[5].message, "--json: no option that a batch passes on");
 }
 
 BatchResult result_named(const std::string& program) {
