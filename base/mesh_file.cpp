@@ -23,6 +23,7 @@ constexpr std::size_t kStlTriangleBytes = 50;
 /// Must not begin with "solid": readers take such a file for the text form.
 constexpr std::string_view kStlHead = "kerf: binary STL, unit mm";
 constexpr std::size_t kPlyVertexBytes = 12;
+constexpr std::size_t kPlyMarkBytes = 7;  // a colour and a value
 constexpr std::size_t kPlyFaceBytes = 13;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
@@ -93,7 +94,9 @@ Done write_stl(const std::string& path, const TriangleMesh& mesh) {
   return file->commit();
 }
 
-Done write_ply(const std::string& path, const TriangleMesh& mesh) {
+namespace {
+
+Done write_ply(const std::string& path, const TriangleMesh& mesh, const VertexMarks* marks) {
   // Corners are written as "int", the one type of index that every reader knows.
   constexpr std::size_t kLimit = std::numeric_limits<std::int32_t>::max();
   if (mesh.positions_mm.size() > kLimit) {
@@ -102,21 +105,44 @@ Done write_ply(const std::string& path, const TriangleMesh& mesh) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return Error{file.error()};
 
+  const std::string marked = marks == nullptr ? ""
+                                              : fmt::format(
+                                                    "property uchar red\nproperty uchar green\n"
+                                                    "property uchar blue\nproperty float {}\n",
+                                                    marks->name);
   const std::string head = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment kerf, unit mm\n"
-      "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n{}"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.positions_mm.size(), mesh.triangles.size());
+      mesh.positions_mm.size(), marked, mesh.triangles.size());
   file->write(head.data(), head.size());
 
-  const auto put_vertex = [&mesh](char* to, std::size_t i) { put(to, mesh.positions_mm[i]); };
-  write_records(*file, mesh.positions_mm.size(), kPlyVertexBytes, put_vertex);
+  const auto put_vertex = [&](char* to, std::size_t i) {
+    to = put(to, mesh.positions_mm[i]);
+    if (marks == nullptr) return;
+    for (const std::uint8_t part : marks->rgb[i]) *to++ = static_cast<char>(part);
+    put(to, std::bit_cast<std::uint32_t>(marks->values[i]));
+  };
+  const std::size_t vertex_bytes = kPlyVertexBytes + (marks == nullptr ? 0 : kPlyMarkBytes);
+  write_records(*file, mesh.positions_mm.size(), vertex_bytes, put_vertex);
   const auto put_face = [&mesh](char* to, std::size_t i) {
     *to++ = 3;
     for (const std::uint32_t corner : mesh.triangles[i]) to = put(to, corner);
   };
   write_records(*file, mesh.triangles.size(), kPlyFaceBytes, put_face);
   return file->commit();
+}
+
+}  // namespace
+
+Done write_ply(const std::string& path, const TriangleMesh& mesh) {
+  return write_ply(path, mesh, nullptr);
+}
+
+Done write_ply(const std::string& path, const TriangleMesh& mesh, const VertexMarks& marks) {
+  assert(marks.rgb.size() == mesh.positions_mm.size());
+  assert(marks.values.size() == mesh.positions_mm.size());
+  return write_ply(path, mesh, &marks);
 }
 
 }  // namespace kerf

@@ -1,7 +1,10 @@
 // base/mesh_file.h - triangle meshes as files.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "base/triangle_mesh.h"
@@ -16,5 +19,14 @@ namespace kerf {
 /// on device". "-" writes to stdout. Every corner must be the index of a position.
 Done write_stl(const std::string& path, const TriangleMesh& mesh);
 Done write_ply(const std::string& path, const TriangleMesh& mesh);
+
+/// Of each position of a mesh.
+struct VertexMarks {
+  std::vector<std::array<std::uint8_t, 3>> rgb;
+  std::vector<float> values;
+  std::string name;  ///< of the values, as the PLY's property: "deviation_mm"
+};
+/// With red, green, blue and the value at each vertex.
+Done write_ply(const std::string& path, const TriangleMesh& mesh, const VertexMarks& marks);
 
 }  // namespace kerf

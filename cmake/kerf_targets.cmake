@@ -79,26 +79,28 @@ function(kerf_set_kernel_options)
   set_property(SOURCE ${ARG_SOURCES} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# Tests are optimised little, and without sanitizers they say where they failed themselves.
+# Tests are optimised little, and say themselves where they failed: what sanitizers find is mostly in libraries. Some sources
+# are compiled at a time.
 function(kerf_compile_quickly name)
   if(NOT KERF_QUICK_BUILD)
     return()
   endif()
-  set(options -O1 ${KERF_FALSE_WARNINGS})
-  if(NOT KERF_SANITIZE)
-    list(APPEND options -g0)
-  endif()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+  set(options -O1 -g0 ${KERF_FALSE_WARNINGS})
   kerf_share_headers(${name} kerf_test_headers LINK GTest::gtest OPTIONS ${options}
     HEADERS <gtest/gtest.h> <string> <vector>)
 endfunction()
 
-# kerf_add_test(name SOURCES ... LINK ... [ALONE | TIMED]): one gtest executable, each TEST a ctest. ALONE: they measure times
-# of processes that give way to others; nothing else is run beside them. TIMED: they mostly wait, and go by a clock; of three
-# tests at a time they count as two, and they are begun first (COST), that others have the processor while they wait.
+# kerf_add_test(name SOURCES ... APART ... LINK ... [ALONE | TIMED]): one gtest executable, each TEST a ctest. Some sources are
+# compiled at a time; those of APART each by itself, since they have names of their own that others have as well. ALONE: they
+# measure times of processes that give way to others; nothing else is run beside them. TIMED: they mostly wait, and go by a
+# clock; of three tests at a time they count as two, and they are begun first (COST), that others have the processor while they
+# wait.
 function(kerf_add_test name)
-  cmake_parse_arguments(ARG "ALONE;TIMED" "" "SOURCES;LINK" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "ALONE;TIMED" "" "SOURCES;APART;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} ${ARG_APART})
   target_link_libraries(${name} PRIVATE kerf_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   kerf_compile_quickly(${name})
   set(properties TIMEOUT 300)
   if(ARG_ALONE)

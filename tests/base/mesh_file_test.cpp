@@ -113,6 +113,35 @@ TEST(WriteStl, normals_of_tiny_and_of_empty_triangles) {
   EXPECT_EQ(reader.vec3(), glm::vec3(0, 0, 0));
 }
 
+TEST(WritePly, marks_of_vertices_come_behind_their_places) {
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = tetrahedron();
+  VertexMarks marks;
+  marks.name = "deviation_mm";
+  for (std::size_t n = 0; n < mesh.positions_mm.size(); ++n) {
+    marks.rgb.push_back({static_cast<std::uint8_t>(n), 200, 255});
+    marks.values.push_back(0.5f - static_cast<float>(n));
+  }
+  ASSERT_TRUE(write_ply(folder / "part.ply", mesh, marks));
+  const std::string bytes = read_file(folder / "part.ply");
+  const std::string end =
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "property float deviation_mm\nelement face ";
+  ASSERT_NE(bytes.find(end), std::string::npos);
+  const std::size_t begin = bytes.find("end_header\n") + 11;
+  ASSERT_EQ(bytes.size(), begin + mesh.positions_mm.size() * 19 + mesh.triangles.size() * 13);
+  for (std::size_t n = 0; n < mesh.positions_mm.size(); ++n) {
+    Reader reader(bytes);
+    reader.skip(begin + 19 * n);
+    EXPECT_EQ(reader.vec3(), mesh.positions_mm[n]);
+    const std::size_t at = begin + 19 * n + 12;
+    EXPECT_EQ(bytes.substr(at, 3), (std::string{static_cast<char>(n), '\xc8', '\xff'}));
+    float value = 0;
+    std::memcpy(&value, bytes.data() + at + 3, 4);
+    EXPECT_EQ(value, marks.values[n]);
+  }
+}
+
 TEST(WritePly, holds_shared_vertices_and_faces) {
   const TemporaryFolder folder;
   for (const TriangleMesh& mesh : {tetrahedron(), strip(90000), TriangleMesh{}}) {

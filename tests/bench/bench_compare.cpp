@@ -15,8 +15,8 @@
 
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
-#include "tests/twin/scene/compare/meshes.h"
-#include "twin/scene/compare/patch_deviation.h"
+#include "tests/twin/compare/meshes.h"
+#include "twin/compare/patch_deviation.h"
 
 namespace kerf {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "base/small_file.h"
 #include "base/translate.h"
-#include "twin/page/html_text.h"
 #include "twin/report/finding_lists.h"
 
 namespace kerf {
@@ -65,24 +64,24 @@ std::string clock_text(double seconds) {
 }
 
 std::string link(const std::string& path, const std::string& inner) {
-  return path.empty() ? inner : fmt::format("<a href=\"{}\">{}</a>", html_text(path), inner);
+  return path.empty() ? inner : fmt::format("<a href=\"{}\">{}</a>", xml_text(path), inner);
 }
 
 std::string row_of(const BatchResult& r) {
   const std::string picture =
       r.picture.empty()
           ? std::string()
-          : fmt::format("<img src=\"{}\" alt=\"\" loading=\"lazy\">", html_text(r.picture));
+          : fmt::format("<img src=\"{}\" alt=\"\" loading=\"lazy\">", xml_text(r.picture));
   std::string row = fmt::format("<tr class=\"{}\"><td>{}</td><td>{}</td><td class=v>{}</td>",
                                 to_string(r.verdict), link(r.page, picture),
-                                link(r.page, html_text(r.program)), shown_verdict(r.verdict));
+                                link(r.page, xml_text(r.program)), shown_verdict(r.verdict));
   row += fmt::format("<td class=n>{}</td><td class=n>{}</td>", r.errors, r.warnings);
   row += fmt::format("<td class=n>{}</td>", r.time_s ? clock_text(*r.time_s) : "");
   row += fmt::format("<td class=n>{}</td>",
                      r.removed_mm3 ? fmt::format("{:.1f}", *r.removed_mm3 / 1000) : "");
   row += fmt::format("<td class=n>{:.1f}</td><td class=n>{:.0f}</td>", r.wall_s, r.peak_rss_mb);
-  row += fmt::format("<td>{}</td><td>{} {}</td></tr>\n", html_text(r.message),
-                     link(r.report, "JSON"), link(r.said, html_text(tr("output"))));
+  row += fmt::format("<td>{}</td><td>{} {}</td></tr>\n", xml_text(r.message),
+                     link(r.report, "JSON"), link(r.said, xml_text(tr("output"))));
   return row;
 }
 
@@ -162,7 +161,7 @@ std::string batch_counts_text(const BatchEnd& end, std::size_t programs) {
 
 std::string batch_index_html(const BatchEnd& end, std::size_t programs,
                              const std::string& version) {
-  const std::string counts = html_text(batch_counts_text(end, programs));
+  const std::string counts = xml_text(batch_counts_text(end, programs));
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html>\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>kerf: {}</title>\n"
@@ -171,12 +170,12 @@ std::string batch_index_html(const BatchEnd& end, std::size_t programs,
   for (const char* const head :
        {"", tr("Program"), tr("Result"), tr("Errors"), tr("Warnings"), tr("Machine time"),
         tr("Removed, cm3"), tr("Run, s"), tr("Memory, MB"), tr("First fault"), tr("Files")}) {
-    page += fmt::format("<th>{}</th>", html_text(head));
+    page += fmt::format("<th>{}</th>", xml_text(head));
   }
   page += "</tr></thead>\n<tbody>\n";
   for (const BatchResult& result : end.results) page += row_of(result);
   return page +
-         fmt::format("</tbody>\n</table>\n<p>kerf {}</p>\n</body>\n</html>\n", html_text(version));
+         fmt::format("</tbody>\n</table>\n<p>kerf {}</p>\n</body>\n</html>\n", xml_text(version));
 }
 
 }  // namespace kerf

@@ -155,6 +155,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
         fault(fmt::format("--events: {}: {}", request.events, std::strerror(events.error))));
   }
   choose_frame(request, *source, diagnostics);
+  const std::shared_ptr<const DesignFile> design = open_design(request.compare, diagnostics);
   std::unique_ptr<LiveSession> session;
   if (!has_error(diagnostics)) {
     session = LiveSession::open(request.options, std::move(source), diagnostics, outcome);
@@ -191,7 +192,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
-  if (window || request.outputs.wants_page()) session->keep_cut_ids();
+  if (window || design || request.outputs.wants_page()) session->keep_cut_ids();
   if (window) {
     view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
                  window->commands());
@@ -207,10 +208,15 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
+  std::shared_ptr<const DesignPart> compared;
+  if (design) {
+    compared = compare_finished(request.compare, *design, session->stock(),
+                                {session->cut_labels(), nullptr}, session->report(), diagnostics);
+  }
   write_pages(request.outputs, session->report(), session->stock(),
               {session->cut_labels(), nullptr, {}, request.units}, diagnostics);
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
-                session->report(), diagnostics);
+                session->report(), diagnostics, nullptr, compared);
   const ListedProgram listed = listed_program(session->report());
   write_finding_lists(request.outputs, {&listed, 1}, diagnostics);
   if (shots) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/diagnostic.h"
+#include "twin/cli/compare_option.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/program_options.h"
 #include "twin/cli/torch_options.h"
@@ -26,6 +27,7 @@ struct LiveRequest {
   std::string parameter_path;  ///< of the INI
   std::string ini;             ///< empty: none
   OutputPaths outputs;
+  CompareRequest compare;  ///< what is left at the end with its design
   std::string record;
   std::string events;
   double mesh_tolerance_mm = 0;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -21,11 +22,13 @@
 #include "stock/turning/turned_drawing.h"
 #include "stock/turning/turning_stock.h"
 #include "twin/program/session_parts.h"
+#include "twin/scene/deviation_picture.h"
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
 #include "twin/scene/held_bodies.h"
 #include "twin/scene/part_patches.h"
 #include "twin/scene/turned_look.h"
+#include "viewer/deviation_colors.h"
 #include "viewer/picture.h"
 #include "viewer/raycast/height_picture.h"
 
@@ -35,7 +38,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 12> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 13> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
@@ -43,6 +46,7 @@ constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 12> kPa
      {"--state", &OutputPaths::state},
      {"--dxf", &OutputPaths::dxf},
      {"--svg", &OutputPaths::svg},
+     {"--compare-png", &OutputPaths::compare_png},
      {"--junit", &OutputPaths::junit},
      {"--sarif", &OutputPaths::sarif},
      {"--csv", &OutputPaths::csv},
@@ -116,10 +120,26 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Coll
   return write_png(path, *picture);
 }
 
+/// Of each corner of the mesh.
+VertexMarks vertex_deviations(const TriangleMesh& mesh, const DesignPart& design,
+                              const Comparison& comparison) {
+  VertexMarks marks;
+  marks.name = "deviation_mm";
+  marks.values.reserve(mesh.positions_mm.size());
+  marks.rgb.reserve(mesh.positions_mm.size());
+  DesignProbe probe(design);
+  for (const glm::vec3& p : mesh.positions_mm) {
+    const double mm = probe.distance_mm(Vec3(p), std::numeric_limits<double>::infinity());
+    marks.values.push_back(static_cast<float>(mm));
+    marks.rgb.push_back(deviation_rgb(mm, comparison.tolerance_mm));
+  }
+  return marks;
+}
+
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 12> OutputPaths::named() const {
-  std::array<NamedPath, 12> all;
+std::array<std::pair<const char*, const std::string*>, 13> OutputPaths::named() const {
+  std::array<NamedPath, 13> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;
@@ -156,6 +176,7 @@ void check_picture_name(const char* option, const std::string& path, Diagnostics
 
 void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
   check_picture_name("--png", paths.png, diagnostics);
+  check_picture_name("--compare-png", paths.compare_png, diagnostics);
   const auto all = paths.named();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -187,7 +208,8 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
-                   std::atomic<unsigned>* dealt_with) {
+                   std::atomic<unsigned>* dealt_with,
+                   const std::shared_ptr<const DesignPart>& design) {
   const auto done_with = [&](const std::string& path) {
     if (dealt_with) *dealt_with |= paths.bit_of(path);
   };
@@ -202,12 +224,25 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     note_failure(write_picture(paths, *stock, around, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
+  if (stock && design && !paths.compare_png.empty()) {
+    const Result<Picture> picture =
+        deviation_picture(*stock, design, *report.comparison, file_name(name));
+    note_failure(picture ? write_png(paths.compare_png, *picture)
+                         : Done{Error{trf("drawing {}: {}", paths.compare_png, picture.error())}},
+                 diagnostics);
+    done_with(paths.compare_png);
+  }
   if (stock && wants_mesh) {
     const Clock::time_point mesh_start = Clock::now();
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
     report.timing.mesh_s = std::chrono::duration<double>(Clock::now() - mesh_start).count();
     if (!paths.stl.empty()) note_failure(write_stl(paths.stl, mesh), diagnostics);
-    if (!paths.ply.empty()) note_failure(write_ply(paths.ply, mesh), diagnostics);
+    if (!paths.ply.empty()) {
+      note_failure(
+          design ? write_ply(paths.ply, mesh, vertex_deviations(mesh, *design, *report.comparison))
+                 : write_ply(paths.ply, mesh),
+          diagnostics);
+    }
     write_pieces(*stock, paths.stl, diagnostics, [&](const TurnedPart& piece, const auto& path) {
       return write_stl(path, piece.mesh(mesh_tolerance_mm));
     });

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "base/result.h"
 #include "stock/stock_model.h"
 #include "twin/cli/option_reader.h"
+#include "twin/compare/design_part.h"
 #include "twin/process/check_options.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report.h"
@@ -28,16 +30,17 @@ struct OutputPaths {
   /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
   std::string dxf;
   std::string svg;
-  std::string junit;  ///< findings, as build servers read them: write_finding_lists()
-  std::string sarif;  ///< and as code hosts and editors do
-  std::string csv;    ///< motions, written as they are cut: MotionTable
-  std::string html;   ///< the report as a page: write_pages()
-  std::string pdf;    ///< and printed
+  std::string compare_png;  ///< coloured by deviations; of a comparison alone
+  std::string junit;        ///< findings, as build servers read them: write_finding_lists()
+  std::string sarif;        ///< and as code hosts and editors do
+  std::string csv;          ///< motions, written as they are cut: MotionTable
+  std::string html;         ///< the report as a page: write_pages()
+  std::string pdf;          ///< and printed
   bool wants_page() const { return !html.empty() || !pdf.empty(); }
   SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
-  std::array<std::pair<const char*, const std::string*>, 12> named() const;
+  std::array<std::pair<const char*, const std::string*>, 13> named() const;
   /// Of one of them (`path` is a member of this), its bit where what is done is noted.
   unsigned bit_of(const std::string& path) const;
   bool uses_stdout() const {
@@ -67,10 +70,12 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// written, which comes last.
 /// `stock`: null if there was none. `around`: its fixtures, chuck and tailstock are drawn in
 /// pictures. `dealt_with`, if given, gets the bit_of() each of paths.named() that is there, or has
-/// failed; another thread may look at it.
+/// failed; another thread may look at it. `design`: what report.comparison was made with; null:
+/// none.
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
-                   std::atomic<unsigned>* dealt_with = nullptr);
+                   std::atomic<unsigned>* dealt_with = nullptr,
+                   const std::shared_ptr<const DesignPart>& design = nullptr);
 
 /// A file of text that appears whole or not at all. Error: what could not be written.
 Done write_text(const std::string& path, const std::string& text);

@@ -16,9 +16,9 @@ namespace kerf {
 
 /// What a page tells beyond the report.
 struct PageFacts {
-  std::span<const CutLabel> labels;   ///< of the workpiece's cut ids; empty: not known
-  const RunCurve* curve = nullptr;    ///< null: not kept
-  std::string command;                ///< that makes the report again; may be empty
+  std::span<const CutLabel> labels;  ///< of the workpiece's cut ids; empty: not known
+  const RunCurve* curve = nullptr;   ///< null: not kept
+  std::string command;               ///< that makes the report again; may be empty
   LengthUnit units = LengthUnit::kMm;
 };
 

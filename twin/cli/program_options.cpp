@@ -27,21 +27,6 @@ std::uint16_t turning_joints_of(const MachineKinematics& machine) {
   return joints;
 }
 
-/// "10,20,-5.5" as mm; nothing if it is not three lengths.
-std::optional<Vec3> three_lengths(const std::string& text, LengthUnit unit) {
-  Vec3 out{0};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (int i = 0; i < 3; ++i) {
-    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
-    const auto [next, error] = std::from_chars(at, end, out[i]);
-    out[i] = to_mm(out[i], unit);
-    if (error != std::errc() || !(std::abs(out[i]) <= kFar_mm)) return std::nullopt;
-    at = next;
-  }
-  return at == end ? std::optional(out) : std::nullopt;
-}
-
 /// Without an INI: the machine that most people have who turn a part, which lies on a table; or
 /// what a configuration says.
 void choose_machine(const ProgramSurroundings& around, OptionReader& reader,
@@ -88,6 +73,20 @@ void read_ini(const std::string& path, const ProgramSurroundings& around, Option
 }
 
 }  // namespace
+
+std::optional<Vec3> three_lengths(const std::string& text, LengthUnit unit) {
+  Vec3 out{0};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    out[i] = to_mm(out[i], unit);
+    if (error != std::errc() || !(std::abs(out[i]) <= kFar_mm)) return std::nullopt;
+    at = next;
+  }
+  return at == end ? std::optional(out) : std::nullopt;
+}
 
 std::optional<WorkpieceFrame> understand_work_offset(const ProgramSurroundings& around,
                                                      OptionReader& reader) {

@@ -45,4 +45,7 @@ std::optional<WorkpieceFrame> understand_work_offset(const ProgramSurroundings& 
 ProgramRequest understand_program(std::string_view program, const ProgramSurroundings& around,
                                   OptionReader& reader);
 
+/// "10,20,-5.5" as mm; nothing if it is not three lengths.
+std::optional<Vec3> three_lengths(const std::string& text, LengthUnit unit);
+
 }  // namespace kerf

@@ -190,6 +190,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     diagnostics.push_back(std::move(d));
   }
   if (request.view) check_shapes(request.machine, diagnostics);
+  const std::shared_ptr<const DesignFile> design = open_design(request.compare, diagnostics);
   Outcome outcome = Outcome::kFailed;
   std::unique_ptr<Session> session;
   StdinProgram kept;
@@ -213,6 +214,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     table = begin_table(request.outputs.csv, kept, *session, diagnostics);
     if (!table) session.reset();
   }
+  if (session && request.compare.is_wanted()) session->keep_moves();
   std::optional<RunCurve> curve;
   if (session && request.outputs.wants_page()) {
     session->keep_cut_labels();
@@ -230,6 +232,12 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     outcome = session->run(stop.get_token(), diagnostics);
   }
   rename_stdin(kept, session->report(), diagnostics);
+  std::shared_ptr<const DesignPart> compared;
+  if (!has_error(diagnostics) && design) {
+    compared = compare_finished(request.compare, *design, session->stock(),
+                                {labels_in(*session), session->kept_moves()}, session->report(),
+                                diagnostics);
+  }
   if (!has_error(diagnostics)) {
     std::atomic<unsigned> dealt_with{0};
     deadline->set_last_words(
@@ -240,7 +248,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     const std::string command = command_line(
         with_guesses(request.written, rows_in(session->report().guesses, request.units)));
     write_pages(request.outputs, session->report(), session->stock(),
-                {labels_in(*session), curve ? &*curve : nullptr, command, request.units}, diagnostics);
+                {labels_in(*session), curve ? &*curve : nullptr, command, request.units},
+                diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {
@@ -248,7 +257,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
       dealt_with |= request.outputs.bit_of(request.outputs.csv);
     }
     write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(),
-                  session->collisions(), session->report(), diagnostics, &dealt_with);
+                  session->collisions(), session->report(), diagnostics, &dealt_with, compared);
     if (!request.finding_png.empty()) {
       std::atomic<double> share{0};
       const ProgressBar bar([&] { return share.load(); }, !request.quiet);

@@ -104,7 +104,12 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
     reader.fault("--finding-png",
                  tr("the program comes from standard input, which cannot be read again"));
   }
+  request.compare = understand_compare(reader);
   request.view = reader.is_yes("--view");
+  if (request.view && request.compare.is_fitted) {
+    reader.fault("--compare-fit",
+                 tr("is for the report; the window shows designs as they are given"));
+  }
   request.draw = understand_draw(reader);
   if (request.draw && !request.view) {
     reader.fault("--draw", tr("is for the window; there is no --view"));

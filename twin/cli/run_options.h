@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/diagnostic.h"
+#include "twin/cli/compare_option.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/program_options.h"
 #include "twin/cli/torch_options.h"
@@ -26,6 +27,7 @@ struct RunRequest {
   std::optional<DrawMode> draw;  ///< in that window; none: as it remembers it
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
+  CompareRequest compare;        ///< the finished part with its design
   bool quiet = false;
   bool verbose = false;
   LengthUnit units = LengthUnit::kMm;  ///< of what is shown

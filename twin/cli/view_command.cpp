@@ -202,7 +202,7 @@ int view_command(const Arguments& arguments) {
   show_lengths_in(request.run.units);
   const ViewKind kind = view_kind_of(request.run.session.program.path);
   if (kind == ViewKind::kLog) {
-    if (!request.compare.empty()) {
+    if (request.compare.is_wanted()) {
       print_diagnostics({fault_of(tr("--compare is for programs and saved workpieces"),
                                   tr("kerf replay LOG --state FILE saves what a log leaves"))},
                         false);
@@ -217,7 +217,7 @@ int view_command(const Arguments& arguments) {
   OutputPaths places;
   places.png = request.png;
   check_output_places(places, diagnostics);
-  if (!request.compare.empty()) request.design = DesignPart::read(request.compare, diagnostics);
+  if (request.compare.is_wanted()) request.design = placed_design(request.compare, diagnostics);
   check_shapes(request.run.machine, diagnostics);
   print_diagnostics(diagnostics, request.run.quiet);
   if (has_error(diagnostics)) return kExitFailure;

@@ -24,26 +24,16 @@ Diagnostics comparison_doubts(const ViewRequest& request, const StockModel& stoc
   const auto doubt = [&](std::string message, std::string hint) {
     Diagnostic d = fault_of(std::move(message), std::move(hint));
     d.severity = Severity::kWarning;
-    d.file = request.compare;
+    d.file = request.compare.path;
     doubts.push_back(std::move(d));
   };
-  const Box part = request.design->box_mm(), blank = stock.bounds_mm();
-  bool apart = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    apart = apart || part.min[axis] > blank.max[axis] || part.max[axis] < blank.min[axis];
-  }
-  if (apart) {
-    doubt(trf("lies beside the blank: X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm; the blank is "
-              "X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm",
-              part.min.x, part.max.x, part.min.y, part.max.y, part.min.z, part.max.z, blank.min.x,
-              blank.max.x, blank.min.y, blank.max.y, blank.min.z, blank.max.z),
-          tr("the design part is taken as mm, in the coordinates that the program writes"));
-  }
-  if (stock.cell_mm() > request.tolerance_mm) {
+  doubt_place(*request.design, request.compare.path, stock.bounds_mm(),
+              request.compare.tolerance_mm, doubts);
+  if (stock.cell_mm() > request.compare.tolerance_mm) {
     doubt(trf("cells of {:g} mm are coarser than the tolerance of {:g} mm: walls may seem "
               "off by up to a cell",
-              stock.cell_mm(), request.tolerance_mm),
-          trf("--cell {:g} or --tolerance {:g}", request.tolerance_mm, stock.cell_mm()));
+              stock.cell_mm(), request.compare.tolerance_mm),
+          trf("--cell {:g} or --tolerance {:g}", request.compare.tolerance_mm, stock.cell_mm()));
   }
   return doubts;
 }
@@ -123,7 +113,7 @@ ViewedProgram viewed(const ViewRequest& request, const LoadedProgram& loaded) {
       loaded, std::filesystem::path(request.run.session.program.path).filename().string());
   if (request.design && loaded.player.blank) {
     shown.design = request.design;
-    shown.tolerance_mm = request.tolerance_mm;
+    shown.tolerance_mm = request.compare.tolerance_mm;
     print_diagnostics(comparison_doubts(request, *loaded.player.blank), request.run.quiet);
   }
   const RunRequest& run = request.run;

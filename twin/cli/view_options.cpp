@@ -78,14 +78,10 @@ void read_section(OptionReader& reader, ViewRequest& request) {
 }
 
 void read_comparison(OptionReader& reader, ViewRequest& request) {
-  request.compare = reader.text("--compare");
-  request.tolerance_mm = reader.length_mm("--tolerance", request.tolerance_mm);
-  if (request.compare.empty() && reader.choose("--tolerance").is_said()) {
-    reader.fault("--tolerance", tr("there is no --compare DESIGN.stl"));
-  }
-  if (request.compare.empty()) return;
+  request.compare = understand_compare(reader);
+  if (!request.compare.is_wanted()) return;
   request.frame.draw.color_by = ColorBy::kDeviation;
-  request.frame.draw.tolerance_mm = request.tolerance_mm;
+  request.frame.draw.tolerance_mm = request.compare.tolerance_mm;
 }
 
 void read_mode(OptionReader& reader, ViewRequest& request) {
@@ -93,7 +89,7 @@ void read_mode(OptionReader& reader, ViewRequest& request) {
   if (!draw_mode) return;
   request.frame.draw_mode = *draw_mode;
   if (request.wants_window()) request.window_mode = *draw_mode;
-  if (*draw_mode != DrawMode::kMesh && !request.compare.empty()) {
+  if (*draw_mode != DrawMode::kMesh && request.compare.is_wanted()) {
     reader.fault("--draw",
                  trf("{} shows no deviations; --compare is for mesh alone", reader.text("--draw")));
   }

@@ -10,9 +10,9 @@
 #include "base/diagnostic.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/run_options.h"
+#include "twin/compare/design_part.h"
 #include "twin/machines/machine_choice.h"
 #include "twin/playback/player.h"
-#include "twin/scene/compare/design_part.h"
 #include "twin/scene/frame_writer.h"
 
 namespace kerf {
@@ -27,12 +27,11 @@ struct ViewRequest {
   FilmOptions film;                          ///< no folder: none is wanted
   FrameOptions frame;                        ///< for files
   std::optional<DrawMode> window_mode;       ///< none: as the window remembers it
-  std::string compare;                       ///< file of the design part
+  CompareRequest compare;                    ///< the design part
   std::shared_ptr<const DesignPart> design;  ///< read by the command, not here
-  double tolerance_mm = 0.05;
-  bool local = true;    ///< the window redraws only where something changed
-  bool at_end = false;  ///< shown first, as after a dry run
-  Arguments written;    ///< what all this was understood from
+  bool local = true;                         ///< the window redraws only where something changed
+  bool at_end = false;                       ///< shown first, as after a dry run
+  Arguments written;                         ///< what all this was understood from
   /// Nothing is drawn into files.
   bool wants_window() const { return png.empty() && film.folder.empty(); }
 };

@@ -175,8 +175,8 @@ bool ViewWork::understand_again() {
     diagnostics_.push_back(
         fault_of(trf("{} is a log", path), tr("kerf view LOG shows it in its own window")));
   }
-  if (!has_error(diagnostics_) && !request.compare.empty()) {
-    request.design = DesignPart::read(request.compare, diagnostics_);
+  if (!has_error(diagnostics_) && request.compare.is_wanted()) {
+    request.design = placed_design(request.compare, diagnostics_);
   }
   check_shapes(request.run.machine, diagnostics_);
   if (has_error(diagnostics_)) {

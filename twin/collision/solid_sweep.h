@@ -26,7 +26,7 @@ std::optional<double> first_touch(const Solid& moving, const RigidWay& way, cons
                                   double thinner_mm);
 
 /// How deep its boxes and bodies of revolution go at most, to 0.01 mm, if that is more than
-/// `known_mm`; else that. Of meshes, nobody measures it.
+/// `known_mm`; else that. Of meshes mesh_depth.h measures it.
 double touch_depth_mm(const Solid& moving, const RigidWay& way, const Solid& still,
                       double known_mm);
 

@@ -156,6 +156,10 @@ void read_fixtures(const GroupReader& root, std::vector<FixtureSpec>& out) {
     for (const std::string_view prefix : {"stl:", "obj:", "3mf:"}) {
       const std::string resolved = resolved_spec(*shape, prefix, root.faults());
       if (resolved != text) text = resolved;
+      if (to_lower(text.substr(0, prefix.size())) == prefix) {
+        const std::string_view file = trim(shape->scalar).substr(prefix.size());
+        note_mesh_outside(*shape, std::string(trim(file.substr(0, file.find(':')))), root.faults());
+      }
     }
     Result<FixtureSpec> spec = parse_fixture(text);
     if (!spec) {
@@ -320,6 +324,19 @@ std::string resolved_path(const ConfigNode& node, const std::string& path,
   if (node.from_set || path.empty() || path.front() == '/' || path == "-") return path;
   const std::filesystem::path folder = std::filesystem::path(faults.text().path()).parent_path();
   return folder.empty() ? path : (folder / path).string();
+}
+
+void note_mesh_outside(const ConfigNode& node, const std::string& file, ConfigFaults& faults) {
+  namespace fs = std::filesystem;
+  if (node.from_set || file.empty()) return;
+  std::error_code none;
+  const fs::path folder =
+      fs::absolute(fs::path(faults.text().path()), none).parent_path().lexically_normal();
+  const fs::path way = (folder / file).lexically_normal().lexically_relative(folder);
+  if ((!way.empty() && *way.begin() != "..") || !faults.first_outside()) return;
+  faults.note_at_value(
+      node, trf("'{}' lies outside of this file's folder: who copies that has no such mesh", file),
+      tr("a copy beside the configuration goes with it"));
 }
 
 std::string resolved_spec(const ConfigNode& node, std::string_view prefix,

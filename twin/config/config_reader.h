@@ -58,6 +58,9 @@ class GroupReader {
 std::string resolved_path(const ConfigNode& node, const std::string& path,
                           const ConfigFaults& faults);
 
+/// A note, once a configuration, if the mesh `file` that `node` names lies outside of its folder.
+void note_mesh_outside(const ConfigNode& node, const std::string& file, ConfigFaults& faults);
+
 /// A SHAPE or --stock text in which the file after `prefix` ("profile:") is resolved_path().
 std::string resolved_spec(const ConfigNode& node, std::string_view prefix,
                           const ConfigFaults& faults);

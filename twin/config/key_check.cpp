@@ -317,6 +317,14 @@ void ConfigFaults::at_value(ConfigNode& node, const std::string& message, std::s
   add(node, node.line, node.column, message, std::move(hint));
 }
 
+void ConfigFaults::note_at_value(const ConfigNode& node, const std::string& message,
+                                 std::string hint) {
+  Diagnostic note = text_.diagnostic(node.line, node.column,
+                                     fmt::format("{}: {}", node.path, message), std::move(hint));
+  note.severity = Severity::kNote;
+  diagnostics_.push_back(std::move(note));
+}
+
 void ConfigFaults::at_key(ConfigNode& node, const std::string& message, std::string hint) {
   // An element of a list has no key.
   const bool has_key = node.key_line > 0 || node.from_set;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "twin/config/config_tree.h"
@@ -20,6 +21,10 @@ class ConfigFaults {
   /// "stock.cell_mm: 0 is not allowed; ...": the path goes in front. The node becomes faulty.
   void at_value(ConfigNode& node, const std::string& message, std::string hint = {});
   void at_key(ConfigNode& node, const std::string& message, std::string hint = {});
+  /// A remark; the node stays as it is.
+  void note_at_value(const ConfigNode& node, const std::string& message, std::string hint = {});
+  /// True the first time: what need not be said of each file.
+  bool first_outside() { return !std::exchange(told_outside_, true); }
   /// Diagnostics of a file that the node names go where all the others go.
   Diagnostics& diagnostics() { return diagnostics_; }
   const ConfigText& text() const { return text_; }
@@ -29,6 +34,7 @@ class ConfigFaults {
 
   const ConfigText& text_;
   Diagnostics& diagnostics_;
+  bool told_outside_ = false;
 };
 
 /// The bit of `source.type`; kForAny if there is none or it is no kind of source.

@@ -85,6 +85,8 @@ LinkSpec read_link(const GroupReader& group) {
     }
   }
   link.stl_path = group.path("stl").value_or("");
+  if (const ConfigNode* const stl = group.find("stl"))
+    note_mesh_outside(*stl, stl->scalar, group.faults());
   if (group.word("stl_units") == 1) link.mm_per_unit = kMmPerInch;
   read_vector(group, "stl_offset", link.mesh_offset_mm);
   for (const char* const key : {"stl_units", "stl_offset"}) {

@@ -7,7 +7,7 @@
 
 #include "base/translate.h"
 #include "surface/height_grid.h"
-#include "twin/scene/compare/design_part.h"
+#include "twin/compare/design_part.h"
 
 namespace kerf {
 namespace {

@@ -18,6 +18,7 @@ std::string coordinate(double value) {
 
 const char* depth_word(FindingId id) {
   if (id == FindingId::kBelowStock) return tr("below its floor");
+  if (id == FindingId::kExcess) return tr("at most");
   return id == FindingId::kOffPath ? tr("off at most, first") : tr("deep");
 }
 

@@ -96,6 +96,8 @@ enum class FindingId : std::uint8_t {
   kOverSpeed,         ///< the spindle of a lathe is asked for more than it does
   kThreadShallow,     ///< a thread is less deep than its pitch asks for
   kUncompensated,     ///< a nose's contour is off the programmed one
+  kGouge,             ///< the workpiece is cut into the design part
+  kExcess,            ///< material is left over on the design part
 };
 
 /// "rapid-contact", ...: the `id` of the report.

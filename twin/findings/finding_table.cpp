@@ -264,6 +264,12 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
     {Id::kUncompensated, "uncompensated", kNote, Topic::kTurning,
      tr_noop("Without G41 or G42 the nose leaves a contour that is off the programmed one."),
      tr_noop("G42 or G41 before the contour.")},
+    {Id::kGouge, "gouge", kError, Topic::kDesign,
+     tr_noop("The workpiece is cut into the design part, deeper than the tolerance."),
+     tr_noop("Look at that line; or at where the design lies (--compare-at).")},
+    {Id::kExcess, "excess", kWarning, Topic::kDesign,
+     tr_noop("On the design part material is left over, more than the tolerance."),
+     tr_noop("Another pass; a larger --tolerance; or it is another setup's.")},
 }};
 
 constexpr bool in_order() {
@@ -285,6 +291,7 @@ constexpr std::array<FindingTopicRow, kFindingTopics> kTopics{{
     {Topic::kBeam, "beam"},
     {Topic::kPunch, "punch"},
     {Topic::kSource, "source"},
+    {Topic::kDesign, "design"},
 }};
 
 constexpr bool topics_in_order() {

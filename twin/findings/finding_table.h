@@ -23,6 +23,7 @@ enum class FindingTopic : std::uint8_t {
   kBeam,
   kPunch,
   kSource,
+  kDesign,
 };
 
 struct FindingRow {
@@ -41,8 +42,8 @@ struct FindingTopicRow {
 };
 
 /// With the last ones of the enums: these numbers grow with them.
-inline constexpr std::size_t kFindingIds = static_cast<std::size_t>(FindingId::kUncompensated) + 1;
-inline constexpr std::size_t kFindingTopics = static_cast<std::size_t>(FindingTopic::kSource) + 1;
+inline constexpr std::size_t kFindingIds = static_cast<std::size_t>(FindingId::kExcess) + 1;
+inline constexpr std::size_t kFindingTopics = static_cast<std::size_t>(FindingTopic::kDesign) + 1;
 
 /// In the order of FindingId.
 std::span<const FindingRow> finding_table();

@@ -22,8 +22,6 @@ constexpr double kLeast_mm = 0.001;
 constexpr double kLargeMesh_mm = 2000;
 /// What is smaller holds nothing: it may be in inches.
 constexpr double kSmallMesh_mm = 10;
-/// What stands so deep in the blank touches it.
-constexpr double kTouching_mm = 0.01;
 /// Of a jaw's width: how thick it is.
 constexpr double kJawThickness = 0.25;
 
@@ -335,6 +333,12 @@ FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagn
   return out;
 }
 
+double depth_in_blank_mm(const Solid& fixture, const Pose& workpiece_from_fixture,
+                         const Solid& blank) {
+  return std::max(overlap_mm(blank, workpiece_from_fixture.inverse(), fixture),
+                  overlap_mm(fixture, workpiece_from_fixture, blank));
+}
+
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
                            Diagnostics& diagnostics) {
   if (blank.sheet && !fixtures.empty()) {
@@ -351,9 +355,7 @@ bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Solid& bl
   bool beside = true;
   for (const Fixture& fixture : fixtures) {
     if (fixture.in_blank || !fixture.on.empty()) continue;
-    const double depth =
-        std::max(overlap_mm(blank, fixture.fixture_from_workpiece, *fixture.solid),
-                 overlap_mm(*fixture.solid, fixture.workpiece_from_fixture, blank));
+    const double depth = depth_in_blank_mm(*fixture.solid, fixture.workpiece_from_fixture, blank);
     if (depth <= kTouching_mm) continue;
     tell(diagnostics, Severity::kError,
          trf("fixture '{}' stands in the blank, {:.2f} mm deep", fixture.name, depth),

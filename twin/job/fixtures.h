@@ -70,6 +70,12 @@ void name_fixtures(std::span<FixtureSpec> specs);
 FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagnostics);
 inline constexpr std::size_t kMostTriangles = 2'000'000;
 
+/// How deep fixture and blank are in each other; no more than kTouching_mm is side by side.
+double depth_in_blank_mm(const Solid& fixture, const Pose& workpiece_from_fixture,
+                         const Solid& blank);
+/// What stands so deep in the blank touches it.
+inline constexpr double kTouching_mm = 0.01;
+
 /// False with an error for each fixture that stands in the blank, and how deep, unless it may; or
 /// if the blank is a sheet, beside which nothing looks for them.
 /// Those on links are not looked at.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "twin/page/html_text.h"
+#include "twin/report/finding_lists.h"
 
 namespace kerf {
 namespace {
@@ -60,7 +60,7 @@ std::string curve_svg(const PageCurve& curve) {
       R"(<svg class="curve" viewBox="0 0 {0:g} {1:g}" role="img" aria-label="{2}">)"
       R"(<text x="{3:g}" y="14">{2}, {4:.4g} {5}</text>)"
       R"(<path d="{6}" fill="{7}" fill-opacity=".35" stroke="{7}" stroke-width="1"/>{8}</svg>)",
-      kWidth, kHeight, html_text(curve.title), kLeft, greatest, html_text(curve.unit), path,
+      kWidth, kHeight, xml_text(curve.title), kLeft, greatest, xml_text(curve.unit), path,
       curve.color, ticks);
 }
 

@@ -9,7 +9,7 @@ namespace kerf {
 /// One line of a picture of its own: columns of `step_s`, from 0 on.
 struct PageCurve {
   std::string title;
-  std::string unit;  ///< beside the greatest value
+  std::string unit;   ///< beside the greatest value
   std::string color;  ///< "#305080"
   double step_s = 1;
   std::span<const double> values;

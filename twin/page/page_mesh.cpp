@@ -1,11 +1,11 @@
 #include "twin/page/page_mesh.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <mutex>
 #include <thread>
 #include <unordered_map>
@@ -13,19 +13,12 @@
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
-#include "twin/scene/compare/triangle_tree.h"
+#include "twin/compare/triangle_tree.h"
+#include "twin/page/surface_simplifier.h"
 
 namespace kerf {
 namespace {
 
-/// A surface whose corners are shared, with the move that made each.
-struct PageSurface {
-  std::vector<glm::vec3> corners;
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> cut_by;  ///< one a corner; empty: not known
-};
-
-constexpr std::size_t kStride = sizeof(glm::vec3);
 /// Corners of the full surface that the simplified one is measured by.
 constexpr std::size_t kMeasured = 20'000;
 
@@ -69,7 +62,7 @@ class Joiner {
     const auto [at, is_new] = known_.try_emplace(part.corners[corner], next);
     if (is_new) {
       into_.corners.push_back(part.corners[corner]);
-      if (!part.cut_by.empty()) into_.cut_by.push_back(part.cut_by[corner]);
+      if (!part.groups.empty()) into_.groups.push_back(part.groups[corner]);
     }
     return numbers_[corner] = at->second;
   }
@@ -79,35 +72,25 @@ class Joiner {
   std::vector<std::uint32_t> numbers_;  ///< of the part's corners in the whole
 };
 
-PageSurface surface_of(MeshPatch patch) {
+PageSurface surface_of(const MeshPatch& patch, const PageMeshOptions& options) {
   PageSurface part;
   part.corners.reserve(patch.vertices.size());
   for (const MeshVertex& vertex : patch.vertices) part.corners.push_back(vertex.position_mm);
   const auto seen = patch.surface_indices();
   part.indices.assign(seen.begin(), seen.end());
-  part.cut_by = std::move(patch.cut_by);
-  if (part.cut_by.size() != part.corners.size()) part.cut_by.clear();
+  if (!options.group_of) return part;
+  part.groups.assign(part.corners.size(), kNoGroup);
+  for (std::size_t i = 0; i < std::min(patch.cut_by.size(), part.groups.size()); ++i) {
+    if (patch.cut_by[i] != MeshPatch::kNotCut) part.groups[i] = options.group_of(patch.cut_by[i]);
+  }
   return part;
-}
-
-/// As far as it deviates by no more than `most_mm` by the library's own measure, and no further than
-/// `most_triangles`. `options`: the library's.
-void simplify(PageSurface& surface, double most_mm, std::size_t most_triangles, unsigned options) {
-  if (surface.indices.empty()) return;
-  const float scale = meshopt_simplifyScale(&surface.corners[0].x, surface.corners.size(), kStride);
-  if (!(scale > 0)) return;
-  std::vector<std::uint32_t> fewer(surface.indices.size());
-  fewer.resize(meshopt_simplify(fewer.data(), surface.indices.data(), surface.indices.size(),
-                                &surface.corners[0].x, surface.corners.size(), kStride,
-                                3 * most_triangles, static_cast<float>(most_mm) / scale, options,
-                                nullptr));
-  surface.indices = std::move(fewer);
 }
 
 /// Some corners of a surface, evenly spread over their order.
 class Sample {
  public:
-  explicit Sample(std::size_t tiles) : each_(std::max<std::size_t>(1, kMeasured / std::max<std::size_t>(1, tiles))) {}
+  explicit Sample(std::size_t tiles)
+      : each_(std::max<std::size_t>(1, kMeasured / std::max<std::size_t>(1, tiles))) {}
 
   void take(const PageSurface& part, std::vector<glm::vec3>& into) const {
     const std::size_t step = std::max<std::size_t>(1, part.indices.size() / each_);
@@ -126,7 +109,7 @@ struct Tiles {
   std::size_t full_triangles = 0;
 };
 
-Tiles take_tiles(const StockModel& stock, double most_mm) {
+Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   constexpr std::size_t kAtATime = 64;
   Tiles out;
   Joiner joiner(out.whole);
@@ -142,13 +125,13 @@ Tiles take_tiles(const StockModel& stock, double most_mm) {
     const auto work = [&] {
       for (std::size_t tile; (tile = next++) < end;) {
         PageSurface& part = parts[tile - begin];
-        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0));
+        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), options);
         full[tile - begin] = part.indices.size() / 3;
         sample.take(part, samples[tile - begin]);
         PageSurface joined;
         Joiner(joined).add(part);
         part = std::move(joined);
-        simplify(part, most_mm, 0, meshopt_SimplifyLockBorder);
+        simplify_surface(part, {.most_mm = options.free_deviation_mm, .keeps_rim = true});
       }
     };
     std::vector<std::jthread> helpers;
@@ -164,13 +147,11 @@ Tiles take_tiles(const StockModel& stock, double most_mm) {
   return out;
 }
 
-std::uint8_t group_of(const PageSurface& surface, std::size_t triangle,
-                      const PageMeshOptions& options) {
-  std::uint8_t groups[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t move = surface.cut_by[surface.indices[3 * triangle + k]];
-    groups[k] = move == MeshPatch::kNotCut ? kNoGroup : options.group_of(move);
-  }
+/// Of a triangle whose corners differ, what was not cut: above and below it there are smaller ones.
+std::uint8_t group_of(const PageSurface& surface, std::size_t triangle) {
+  std::array<std::uint8_t, 3> groups;
+  for (std::size_t k = 0; k < 3; ++k) groups[k] = surface.groups[surface.indices[3 * triangle + k]];
+  if (std::ranges::find(groups, kNoGroup) != groups.end()) return kNoGroup;
   return groups[1] == groups[2] ? groups[1] : groups[0];
 }
 
@@ -212,9 +193,11 @@ void pack(const PageSurface& surface, PageMesh& mesh) {
     for (int axis = 0; axis < 3; ++axis) {
       const double share =
           size[axis] > 0
-              ? (static_cast<double>(surface.corners[corner][axis]) - mesh.box_mm.min[axis]) / size[axis]
+              ? (static_cast<double>(surface.corners[corner][axis]) - mesh.box_mm.min[axis]) /
+                    size[axis]
               : 0;
-      mesh.places.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kSteps)));
+      mesh.places.push_back(
+          static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kSteps)));
     }
   }
 }
@@ -223,25 +206,28 @@ void pack(const PageSurface& surface, PageMesh& mesh) {
 
 PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options) {
   PageMesh mesh;
-  Tiles tiles = take_tiles(stock, options.free_deviation_mm);
+  Tiles tiles = take_tiles(stock, options);
   PageSurface& surface = tiles.whole;
   mesh.full_triangles = tiles.full_triangles;
-  simplify(surface, options.free_deviation_mm, 0, 0);
-  // What is still too much gives up as little as it can: what the library gets is no bound then.
-  if (surface.indices.size() / 3 > options.most_triangles)
-    simplify(surface, stock.bounds_mm().size().x + stock.bounds_mm().size().y, options.most_triangles, 0);
+  simplify_surface(surface, {.most_mm = options.free_deviation_mm});
+  // What is still too much gives up as little as it can.
+  const Vec3 size = stock.bounds_mm().size();
+  const double largest_mm = std::max({size.x, size.y, size.z});
+  for (double most_mm = 2 * options.free_deviation_mm;
+       surface.indices.size() / 3 > options.most_triangles && most_mm < largest_mm; most_mm *= 2) {
+    simplify_surface(surface, {.most_mm = most_mm, .least_triangles = options.most_triangles});
+  }
   mesh.deviation_mm = farthest_mm(surface, tiles.sample);
   mesh.measured = tiles.sample.size();
   pack(surface, mesh);
-  if (!surface.cut_by.empty() && options.group_of) {
+  if (!surface.groups.empty()) {
     mesh.groups.reserve(mesh.triangles.size() / 3);
     for (std::size_t i = 0; i < surface.indices.size() / 3; ++i)
-      mesh.groups.push_back(group_of(surface, i, options));
+      mesh.groups.push_back(group_of(surface, i));
   }
   // Numbers of 16 bits are off by half of one.
   constexpr double kHalfStep = 0.5 / 65535;
-  const Vec3 size = mesh.box_mm.empty() ? Vec3{0} : mesh.box_mm.size();
-  mesh.deviation_mm += kHalfStep * std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);
+  if (!mesh.box_mm.empty()) mesh.deviation_mm += kHalfStep * glm::length(mesh.box_mm.size());
   return mesh;
 }
 

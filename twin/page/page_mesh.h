@@ -14,13 +14,13 @@ namespace kerf {
 
 /// Triangles counter-clockwise seen from outside; corners are shared.
 struct PageMesh {
-  Box box_mm;                             ///< in which `places` lie
-  std::vector<std::uint16_t> places;      ///< three a corner: X, Y, Z in 65535ths of the box
-  std::vector<std::uint32_t> triangles;   ///< three a triangle
-  std::vector<std::uint8_t> groups;       ///< one a triangle, of who cut it; empty: not asked for
-  std::size_t full_triangles = 0;         ///< of the surface that it was made from
-  /// How far the full surface's corners are from this one at most, mm: by `measured` of them, spread
-  /// evenly.
+  Box box_mm;                            ///< in which `places` lie
+  std::vector<std::uint16_t> places;     ///< three a corner: X, Y, Z in 65535ths of the box
+  std::vector<std::uint32_t> triangles;  ///< three a triangle
+  std::vector<std::uint8_t> groups;      ///< one a triangle, of who cut it; empty: not asked for
+  std::size_t full_triangles = 0;        ///< of the surface that it was made from
+  /// How far the full surface's corners are from this one at most, mm: by `measured` of them,
+  /// spread evenly.
   double deviation_mm = 0;
   std::size_t measured = 0;
 };
@@ -36,8 +36,8 @@ struct PageMeshOptions {
   std::function<std::uint8_t(std::uint32_t move)> group_of;
 };
 
-/// The finest surface that `stock` has (patches of level 0), simplified. Memory: some tiles of it at
-/// a time, and what is left of all.
+/// The finest surface that `stock` has (patches of level 0), simplified. Memory: some tiles of it
+/// at a time, and what is left of all.
 PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options = {});
 
 }  // namespace kerf

@@ -72,7 +72,8 @@ pid_t start(const std::vector<std::string>& words, const std::string& said) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   posix_spawnattr_setpgroup(&attributes, 0);
   pid_t child = -1;
-  const int error = posix_spawn(&child, words[0].c_str(), &files, &attributes, arguments.data(), environ);
+  const int error =
+      posix_spawn(&child, words[0].c_str(), &files, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   if (error == 0) return child;

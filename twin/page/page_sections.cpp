@@ -8,19 +8,25 @@
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/page/html_text.h"
 #include "twin/page/page_curve.h"
+#include "twin/report/compare_report.h"
+#include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
 namespace {
 
+struct PageColumn {
+  const char* heading;
+  bool has_numbers = false;
+};
+
 /// A section of its own, with cells whose lengths are in the reader's unit.
 class SectionText {
  public:
   SectionText(std::string heading, LengthUnit units) : units_(units) {
-    html_ = fmt::format("<section><h2>{}</h2>\n", html_text(heading));
+    html_ = fmt::format("<section><h2>{}</h2>\n", xml_text(heading));
   }
 
   void paragraph(std::string_view text) {
@@ -31,15 +37,13 @@ class SectionText {
     html_ += fmt::format("<pre>{}</pre>\n", shown(text));
     is_empty_ = false;
   }
-  /// A column's heading that begins with '#' is one of numbers.
-  void table(std::initializer_list<std::string_view> headings) {
+  void table(std::initializer_list<PageColumn> columns) {
     html_ += "<table><thead><tr>";
     numbers_.clear();
-    for (std::string_view heading : headings) {
-      numbers_.push_back(heading.starts_with('#'));
-      if (numbers_.back()) heading.remove_prefix(1);
-      html_ += fmt::format("<th{}>{}</th>", numbers_.back() ? " class=\"n\"" : "",
-                           html_text(heading));
+    for (const PageColumn& column : columns) {
+      numbers_.push_back(column.has_numbers);
+      html_ += fmt::format("<th{}>{}</th>", column.has_numbers ? " class=\"n\"" : "",
+                           xml_text(column.heading));
     }
     html_ += "</tr></thead><tbody>\n";
   }
@@ -57,7 +61,7 @@ class SectionText {
   void facts(std::span<const std::pair<std::string, std::string>> facts) {
     html_ += "<dl class=\"facts\">\n";
     for (const auto& [name, value] : facts)
-      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_text(name), shown(value));
+      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(name), shown(value));
     html_ += "</dl>\n";
     is_empty_ = is_empty_ && facts.empty();
   }
@@ -69,7 +73,7 @@ class SectionText {
   std::string done() && { return is_empty_ ? std::string() : std::move(html_) + "</section>\n"; }
 
  private:
-  std::string shown(std::string_view text) const { return html_text(in_unit(text, units_)); }
+  std::string shown(std::string_view text) const { return xml_text(in_unit(text, units_)); }
 
   LengthUnit units_;
   std::string html_;
@@ -113,13 +117,13 @@ std::string name_of_tool(const ToolUse& use) { return fmt::format("T{}", use.num
 std::string head_section(const Report& report, const PageOptions& options) {
   const std::string name =
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
-  std::string out = fmt::format("<header><h1>{}</h1>\n", html_text(name));
+  std::string out = fmt::format("<header><h1>{}</h1>\n", xml_text(name));
   out += fmt::format("<p><span class=\"{}\">{}</span></p>\n", class_of(report.findings),
-                     html_text(verdict_text(report.findings)));
+                     xml_text(verdict_text(report.findings)));
   if (!report.partial_reason.empty()) {
-    out += fmt::format("<p><b>{}</b></p>\n",
-                       html_text(trf("Partial: {}. All here is of the part that was run.",
-                                     report.partial_reason)));
+    out += fmt::format(
+        "<p><b>{}</b></p>\n",
+        xml_text(trf("Partial: {}. All here is of the part that was run.", report.partial_reason)));
   }
   Facts facts;
   const MotionTotals& m = report.motion;
@@ -141,8 +145,8 @@ std::string head_section(const Report& report, const PageOptions& options) {
   }
   out += "<dl class=\"facts\">\n";
   for (const auto& [key, value] : facts) {
-    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_text(key),
-                       html_text(in_unit(value, options.units)));
+    out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(key),
+                       xml_text(in_unit(value, options.units)));
   }
   return out + "</dl></header>\n";
 }
@@ -156,17 +160,19 @@ std::string finding_list(const Report& report, LengthUnit units) {
     std::string message = in_unit(message_of(finding), units);
     std::string place = d.line > 0 ? fmt::format("{}:{}", d.file, d.line) : d.file;
     if (finding.time_s) place += (place.empty() ? "" : ", ") + duration_text(*finding.time_s);
-    out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}", to_string(finding.severity),
-                       html_text(to_string(finding.id)), html_text(message));
-    if (!place.empty()) out += fmt::format("<small>{}</small>", html_text(place));
-    if (!d.hint.empty()) out += fmt::format("<small>{}</small>", html_text(d.hint));
+    out += fmt::format("<button type=\"button\" class=\"{}\"><b>{}</b> {}",
+                       to_string(finding.severity), xml_text(to_string(finding.id)),
+                       xml_text(message));
+    if (!place.empty()) out += fmt::format("<small>{}</small>", xml_text(place));
+    if (!d.hint.empty()) out += fmt::format("<small>{}</small>", xml_text(d.hint));
     out += "</button>\n";
   }
-  if (kept.empty()) out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", html_text(tr("no findings")));
+  if (kept.empty())
+    out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n", xml_text(tr("no findings")));
   if (report.findings.total() > std::min(kept.size(), kMostOnPage)) {
-    out += fmt::format("<p class=\"soft\">&nbsp;{}</p>\n",
-                       html_text(trf("and {} more", report.findings.total() -
-                                                        std::min(kept.size(), kMostOnPage))));
+    out += fmt::format(
+        "<p class=\"soft\">&nbsp;{}</p>\n",
+        xml_text(trf("and {} more", report.findings.total() - std::min(kept.size(), kMostOnPage))));
   }
   return out + "</div>\n";
 }
@@ -195,8 +201,14 @@ std::string setup_section(const Report& report, const PageOptions& options, bool
 std::string tool_section(const Report& report, LengthUnit units) {
   if (report.tools.empty()) return {};
   SectionText out(tr("Tools, in their order"), units);
-  out.table({tr("Tool"), tr("Shape"), tr("Known from"), tr("#Cutting"), tr("#Way"), tr("#Removed"),
-             tr("#Deepest"), tr("#Peak rate")});
+  out.table({{tr("Tool")},
+             {tr("Shape")},
+             {tr("Known from")},
+             {tr("Cutting"), true},
+             {tr("Way"), true},
+             {tr("Removed"), true},
+             {tr("Deepest"), true},
+             {tr("Peak rate"), true}});
   for (const ToolUse& use : report.tools) {
     if (use.shape.empty()) {
       out.row({name_of_tool(use), tr("undefined, did not cut"), use.origin});
@@ -215,11 +227,14 @@ std::string tool_section(const Report& report, LengthUnit units) {
 std::string collision_section(const Report& report, LengthUnit units) {
   if (report.collisions.empty()) return {};
   SectionText out(tr("Collisions and clearances"), units);
-  out.table({tr("What"), tr("Against"), tr("#Contacts"), tr("#Least clearance"), tr("#Line")});
+  out.table({{tr("What")},
+             {tr("Against")},
+             {tr("Contacts"), true},
+             {tr("Least clearance"), true},
+             {tr("Line"), true}});
   for (const CollisionPair& pair : report.collisions) {
-    const std::string what = pair.first.empty()
-                                 ? trf("{} of tool {}", name_of(pair.part), pair.tool)
-                                 : pair.first;
+    const std::string what =
+        pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
     const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
                                   : pair.least_clearance_mm
                                       ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
@@ -229,6 +244,12 @@ std::string collision_section(const Report& report, LengthUnit units) {
              pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});
   }
   out.end_table();
+  return std::move(out).done();
+}
+
+std::string compare_section(const Report& report, LengthUnit units) {
+  SectionText out(tr("Against the design"), units);
+  if (report.comparison) out.pre(compare_text(*report.comparison));
   return std::move(out).done();
 }
 
@@ -251,8 +272,10 @@ std::string curve_section(const PageCurves& curves, LengthUnit units) {
       scaled(curves.removed_mm3_per_s, inch ? 60 / (kInch_mm * kInch_mm * kInch_mm) : 1);
   const std::vector<double> feeds = scaled(curves.feed_mm_per_min, inch ? 1 / kInch_mm : 1);
   SectionText out(tr("Over its time"), units);
-  out.raw(curve_svg({tr("Material removed"), inch ? "in3/min" : "mm3/s", "#2f6690", curves.step_s, rates}));
-  out.raw(curve_svg({tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
+  out.raw(curve_svg(
+      {tr("Material removed"), inch ? "in3/min" : "mm3/s", "#2f6690", curves.step_s, rates}));
+  out.raw(curve_svg(
+      {tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
   out.raw(curve_svg({tr("Spindle"), tr("rpm"), "#9a5b00", curves.step_s, curves.spindle_rpm}));
   return std::move(out).done();
 }
@@ -272,15 +295,16 @@ std::string exactness_section(const Report& report, const PageOptions& options,
   facts.emplace_back(tr("Times"), report.time_model);
   if (!mesh.empty()) facts.emplace_back(tr("3D view"), mesh);
   for (const GuessRow& row : rows_in(report.guesses, options.units)) {
-    facts.emplace_back(trf("Guessed: {}", row.what),
-                       row.reason.empty() ? row.value : fmt::format("{} ({})", row.value, row.reason));
+    facts.emplace_back(
+        trf("Guessed: {}", row.what),
+        row.reason.empty() ? row.value : fmt::format("{} ({})", row.value, row.reason));
   }
   facts.emplace_back("kerf", report.version);
   if (!report.program.interpreter.empty())
     facts.emplace_back(tr("Interpreter"), report.program.interpreter);
   if (report.stock) facts.emplace_back(tr("Digest of the workpiece"), report.stock->digest);
   out.facts(facts);
-  if (!options.command.empty()) out.raw(fmt::format("<pre>{}</pre>\n", html_text(options.command)));
+  if (!options.command.empty()) out.raw(fmt::format("<pre>{}</pre>\n", xml_text(options.command)));
   return std::move(out).done();
 }
 

@@ -12,10 +12,11 @@
 #include "base/small_file.h"
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
-#include "twin/page/html_text.h"
+#include "twin/page/base64.h"
 #include "twin/page/page_assets.h"
 #include "twin/page/page_mesh.h"
 #include "twin/page/page_sections.h"
+#include "twin/report/finding_lists.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -66,7 +67,7 @@ Json places_json(const Report& report) {
     const Diagnostic d = diagnostic_of(kept[i], report.program.files);
     Json item;
     item["severity"] = to_string(kept[i].severity);
-    item["file"] = valid_utf8(d.file);
+    item["file"] = d.file;
     item["line"] = d.line;
     item["place"] = kept[i].position_mm ? vector_json(*kept[i].position_mm) : Json(nullptr);
     out.push_back(std::move(item));
@@ -82,7 +83,8 @@ Json sources_json(const Report& report) {
     const Diagnostic d = diagnostic_of(kept[i], report.program.files);
     const auto line = static_cast<std::uint32_t>(d.line);
     if (line == 0 || d.file.empty()) continue;
-    for (std::uint32_t n = line > kNeighbours ? line - kNeighbours : 1; n <= line + kNeighbours; ++n)
+    for (std::uint32_t n = line > kNeighbours ? line - kNeighbours : 1; n <= line + kNeighbours;
+         ++n)
       wanted[d.file].insert(n);
   }
   Json out = Json::object();
@@ -96,17 +98,17 @@ Json sources_json(const Report& report) {
       if (!lines.contains(number)) continue;
       if (line.ends_with('\r')) line.pop_back();
       if (line.size() > kMostLine) line.resize(kMostLine);
-      rows[fmt::format("{}", number)] = valid_utf8(line);
+      rows[fmt::format("{}", number)] = line;
     }
-    out[valid_utf8(file)] = std::move(rows);
+    out[file] = std::move(rows);
   }
   return out;
 }
 
-/// JSON within an element of a page: no "<" is left that could end it.
+/// JSON within an element of a page: no "<" is left that could end it; what is no UTF-8 is U+FFFD.
 std::string embedded(const Json& json) {
   std::string out;
-  for (const char c : json.dump()) {
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {
       out += "\\u003c";
     } else {
@@ -120,27 +122,27 @@ std::string view_section(const PageMesh& mesh, const PageOptions& options) {
   if (mesh.triangles.empty()) return {};
   const auto button = [](const char* look, const char* text) {
     return fmt::format("<button type=\"button\" data-look=\"{}\">{}</button>", look,
-                       html_text(text));
+                       xml_text(text));
   };
   const auto option = [](const char* value, const char* text) {
-    return fmt::format("<option value=\"{}\">{}</option>", value, html_text(text));
+    return fmt::format("<option value=\"{}\">{}</option>", value, xml_text(text));
   };
-  std::string out = fmt::format(
-      "<div><div id=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
-      html_text(tr("The part is drawn by a script, which this browser does not run.")));
+  std::string out =
+      fmt::format("<div><div id=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
+                  xml_text(tr("The part is drawn by a script, which this browser does not run.")));
   out += "<div class=\"tools\">" + button("iso", tr("oblique")) + button("top", tr("top")) +
          button("front", tr("front")) + button("right", tr("right")) + button("reset", tr("all"));
-  out += fmt::format("<label>{} <select id=\"color\">", html_text(tr("colours")));
+  out += fmt::format("<label>{} <select id=\"color\">", xml_text(tr("colours")));
   if (!mesh.groups.empty()) out += option("tool", tr("by tool"));
   out += option("height", tr("by height")) + option("plain", tr("plain")) + "</select></label>";
-  out += fmt::format("<label>{} <select id=\"section\">", html_text(tr("cut open")));
+  out += fmt::format("<label>{} <select id=\"section\">", xml_text(tr("cut open")));
   out += option("-1", tr("no")) + option("0", "X") + option("1", "Y") + option("2", "Z");
   out +=
       "</select><input id=\"share\" type=\"range\" min=\"0\" max=\"1000\" value=\"500\" "
       "disabled></label></div>\n<div id=\"legend\"></div>";
   out += fmt::format("<p class=\"soft\">{}</p></div>\n",
-                     html_text(tr("Drag to turn, with Shift or the right button to shift, wheel "
-                                  "for nearer. A mark is a finding.")));
+                     xml_text(tr("Drag to turn, with Shift or the right button to shift, wheel "
+                                 "for nearer. A mark is a finding.")));
   static_cast<void>(options);
   return out;
 }
@@ -153,8 +155,7 @@ std::string mesh_text(const PageMesh& mesh) {
 
 }  // namespace
 
-std::string report_page(const Report& report, const StockModel* stock,
-                        const PageOptions& options) {
+std::string report_page(const Report& report, const StockModel* stock, const PageOptions& options) {
   PageMesh mesh;
   if (stock) {
     PageMeshOptions wanted;
@@ -177,7 +178,8 @@ std::string report_page(const Report& report, const StockModel* stock,
     data["lathe"] = report.turning.has_value();
     data["groups"] = Json::array();
     for (const PageGroup& group : options.groups)
-      data["groups"].push_back({{"name", in_unit(group.name, options.units)}, {"color", group.color}});
+      data["groups"].push_back(
+          {{"name", in_unit(group.name, options.units)}, {"color", group.color}});
   } else {
     data["mesh"] = nullptr;
   }
@@ -187,16 +189,18 @@ std::string report_page(const Report& report, const StockModel* stock,
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"kerf {}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
+      "<meta name=\"generator\" content=\"kerf "
+      "{}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
       "<body><main>\n",
-      language(), html_text(report.version), html_text(title), page_assets::page_css);
+      language(), xml_text(report.version), xml_text(title), page_assets::page_css);
   out += head_section(report, options);
-  out += fmt::format("<section><h2>{}</h2>\n", html_text(tr("Part and findings")));
+  out += fmt::format("<section><h2>{}</h2>\n", xml_text(tr("Part and findings")));
   out += has_view ? "<div class=\"split\">" + view_section(mesh, options) + "<div>" : "<div><div>";
   out += finding_list(report, options.units) + "<pre id=\"program\"></pre></div></div></section>\n";
   out += setup_section(report, options, has_view);
   out += tool_section(report, options.units);
   out += collision_section(report, options.units);
+  out += compare_section(report, options.units);
   out += part_section(report, options.units);
   out += curve_section(options.curves, options.units);
   out += exactness_section(report, options, mesh_text(mesh));

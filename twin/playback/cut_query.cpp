@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/golden_section.h"
+#include "twin/motion/least_height.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/motion/motion_nearest.h"
 #include "twin/process/process.h"
@@ -14,118 +14,7 @@
 namespace kerf {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// At the rim of the cutter a point counts as under it: there rounding decides; mm.
-constexpr double kRim_mm = 1e-9;
-/// Slopes of profile pieces that differ by less go on in one direction.
-constexpr double kSameSlope = 1e-9;
-/// Steps of a search along curved ways, in radii of the cutter.
-constexpr double kSearchStep = 0.02;
-constexpr int kMostSteps = 20'000;
-/// Shrinks the interval by 1e-12.
-constexpr int kGoldenSteps = 58;
-
 bool is_cutting(const Motion& m) { return is_feed(m) || is_traverse(m); }
-
-double slope_at(const ProfilePiece& piece, double r, double z) {
-  if (piece.kind == ProfilePiece::Kind::kLine) {
-    const double run = piece.r1 - piece.r0;
-    return run > 0 ? (piece.z1 - piece.z0) / run : kInfinity;
-  }
-  const double fall = piece.center_z - z;
-  return fall > 0 ? (r - piece.center_r) / fall : kInfinity;
-}
-
-/// The height over the tip is a convex function of the radius: flat, ball, bull, vee, drill.
-bool is_convex(const Cutter& cutter) {
-  double slope = -kInfinity;
-  for (const ProfilePiece& piece : cutter.profile()) {
-    if (piece.kind == ProfilePiece::Kind::kArc && !piece.convex) return false;
-    if (slope_at(piece, piece.r0, piece.z0) < slope - kSameSlope) return false;
-    slope = slope_at(piece, piece.r1, piece.z1);
-  }
-  return true;
-}
-
-/// Height over the middle of the point that the cutter, widened by the tolerance, leaves while its
-/// tip is at `tip`; infinite beside it.
-struct LeftHeight {
-  const Cutter& cutter;
-  Vec2 point_mm;
-  double tolerance_mm;
-
-  double at(const Vec3& tip) const {
-    const double beside = glm::length(point_mm - Vec2(tip)) - tolerance_mm;
-    const double r = std::max(0.0, beside);
-    const double radius = cutter.radius_mm();
-    if (r > radius + kRim_mm) return kInfinity;
-    return tip.z + cutter.height_mm(std::min(r, radius));
-  }
-};
-
-/// Least value of a function with one minimum on [a, b].
-template <class F>
-double least_between(const F& f, double a, double b) {
-  const double least = golden_section(f, a, b, kGoldenSteps, std::less<>{}).least;
-  return std::min({f(a), f(b), least});
-}
-
-/// The part of a straight way over which the cutter is, in fractions. False: none.
-bool under_cutter(const Motion& m, const Vec2& point, double reach_mm, double& from, double& to) {
-  const Vec2 way = Vec2(m.to_mm) - Vec2(m.from_mm);
-  const Vec2 start = Vec2(m.from_mm) - point;
-  const double square = glm::dot(way, way);
-  const double inner = glm::dot(start, start) - reach_mm * reach_mm;
-  from = 0;
-  to = 1;
-  if (square == 0) return inner <= 0;
-  const double middle = -glm::dot(start, way) / square;
-  const double root = middle * middle - inner / square;
-  if (root < 0) return false;
-  from = std::max(0.0, middle - std::sqrt(root));
-  to = std::min(1.0, middle + std::sqrt(root));
-  return from <= to;
-}
-
-/// Samples, and a search around those that are lower than their neighbours.
-template <class F>
-double searched_minimum(const F& f, int steps) {
-  const auto t = [steps](int i) { return static_cast<double>(i) / steps; };
-  double least = kInfinity;
-  double before = kInfinity;
-  double here = f(0.0);
-  for (int i = 0; i <= steps; ++i) {
-    const double next = i < steps ? f(t(i + 1)) : kInfinity;
-    if (here < kInfinity && here <= before && here <= next) {
-      least = std::min(least, least_between(f, t(std::max(0, i - 1)), t(std::min(steps, i + 1))));
-    }
-    before = here;
-    here = next;
-  }
-  return least;
-}
-
-bool is_level(const Motion& m) {
-  if (m.from_mm.z != m.to_mm.z) return false;
-  return m.kind != MotionKind::kArc || (m.arc.axis.x == 0 && m.arc.axis.y == 0);
-}
-
-/// Least height that the motion leaves over the point.
-double least_height(const Motion& m, const LeftHeight& left, bool convex) {
-  const double radius = left.cutter.radius_mm();
-  if (is_level(m)) {
-    const Vec3 beside(left.point_mm, m.from_mm.z);
-    return left.at(point_at(m, nearest_on(m, beside, 0).t));
-  }
-  const auto height = [&](double t) { return left.at(point_at(m, t)); };
-  if (m.kind != MotionKind::kArc) {
-    double from = 0, to = 1;
-    if (!under_cutter(m, left.point_mm, radius + left.tolerance_mm, from, to)) return kInfinity;
-    if (convex) return least_between(height, from, to);
-  }
-  const double steps = path_length_mm(m) / (kSearchStep * radius);
-  return searched_minimum(height, static_cast<int>(std::clamp<double>(steps, 8, kMostSteps)));
-}
 
 }  // namespace
 
@@ -171,7 +60,7 @@ const Cutter* CutQuery::cutter_at(std::size_t motion) const {
 }
 
 bool CutQuery::may_touch(const Box& tip_mm, double radius_mm, const Probe& probe) {
-  const double reach = radius_mm + probe.tolerance_mm + kRim_mm;
+  const double reach = radius_mm + probe.tolerance_mm + kCutterRim_mm;
   const Vec3& p = probe.point_mm;
   return p.x >= tip_mm.min.x - reach && p.x <= tip_mm.max.x + reach &&
          p.y >= tip_mm.min.y - reach && p.y <= tip_mm.max.y + reach &&

@@ -44,6 +44,8 @@ class CutStage : private StepSink {
   /// From now on moves are named by the numbers of their labels (CutMove::id), instead of one after
   /// the other. Outlives the stage. Not of sheets.
   void label_by(CutLabels& labels) { site_.labels = &labels; }
+  /// From now on milling moves are kept as the model gets them. Outlives the stage.
+  void keep_moves(KeptMoves& kept) { site_.kept = &kept; }
   /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
   /// outlives the stage.
   void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }

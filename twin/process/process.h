@@ -35,6 +35,8 @@
 
 namespace kerf {
 
+class KeptMoves;
+
 /// What CutStage holds for its process, and keeps up to date. It outlives the process.
 struct ProcessSite {
   StockModel& stock;
@@ -45,6 +47,7 @@ struct ProcessSite {
   MotionMoves moves;            ///< as the model cuts
   bool limits_known = false;    ///< TimelineOptions
   CutLabels* labels = nullptr;  ///< CutStage::label_by()
+  KeptMoves* kept = nullptr;    ///< CutStage::keep_moves()
   BlankKind blank = BlankKind::kUnjudged;
   bool timed = false;    ///< motions come with their times: CutStage::take_timed()
   bool watched = false;  ///< CutStage::watch_machine()

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interp_bridge/program.h"
+#include "twin/compare/comparison.h"
 #include "twin/findings/finding.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/cut_stage.h"
@@ -53,6 +54,7 @@ struct Report {
   std::optional<StockReport> stock;      ///< absent if the run ended before there was one
   std::optional<SheetReport> sheet;      ///< of a workpiece that is one
   std::optional<TurningReport> turning;  ///< of one that turns
+  std::optional<Comparison> comparison;  ///< with the design part, where one was given
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>
       collisions;                  ///< what was held against each other, and how near it came
@@ -70,7 +72,8 @@ struct Report {
 /// program.from_line, program.until_line (where asked for), tools[].origin, guessed (what, option,
 /// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
 /// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
-/// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same).
+/// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same), compare
+/// (compare_json(); where a design was given).
 std::string json_text(const Report& report);
 
 struct SummaryOptions {

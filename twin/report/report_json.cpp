@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/findings/finding_json.h"
+#include "twin/report/compare_report.h"
 #include "twin/report/report.h"
 #include "twin/report/run_json.h"
 
@@ -189,6 +190,9 @@ std::string json_text(const Report& report) {
   if (report.turning) out["turning"] = turning_json(*report.turning, report.program.files);
   out["tools"] = tools_json(report);
   out["collisions"] = collisions_json(report);
+  if (report.comparison) {
+    out["compare"] = compare_json(*report.comparison, report.program.files);
+  }
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);
   if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "twin/report/compare_report.h"
 #include "twin/report/report.h"
 #include "twin/report/report_words.h"
 #include "twin/report/shown_lengths.h"
@@ -279,6 +280,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
+  if (report.comparison) out += compare_text(*report.comparison);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);
@@ -315,6 +317,7 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.stock) add_removed(out, *report.stock);
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
+  if (report.comparison) out += compare_text(*report.comparison);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "twin/scene/compare/patch_deviation.h"
+#include "twin/compare/patch_deviation.h"
 #include "twin/scene/part_patches.h"
 
 namespace kerf {

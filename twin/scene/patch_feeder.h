@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "stock/stock_model.h"
-#include "twin/scene/compare/design_part.h"
+#include "twin/compare/design_part.h"
 #include "viewer/scene.h"
 #include "viewer/view_detail.h"
 

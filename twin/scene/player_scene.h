@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "twin/compare/design_part.h"
 #include "twin/machines/machine_choice.h"
 #include "twin/machines/machine_model.h"
 #include "twin/playback/cut_query.h"
 #include "twin/playback/load_program.h"
 #include "twin/playback/player.h"
 #include "twin/scene/body_watch.h"
-#include "twin/scene/compare/design_part.h"
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
 #include "twin/scene/patch_feeder.h"

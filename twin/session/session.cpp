@@ -206,6 +206,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);
   if (!recorders_.empty()) stage.record_by(recorders_);
+  if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
   if (labels_ && !front_.is_sheet()) {
     front_.stock.stock->keep_cut_ids(true);
     stage.label_by(*labels_);

@@ -19,6 +19,7 @@
 #include "twin/machine/kinematics/switched_motions.h"
 #include "twin/process/cut_labels.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/kept_moves.h"
 #include "twin/program/material_handover.h"
 #include "twin/program/program_front.h"
 #include "twin/report/line_window.h"
@@ -65,6 +66,12 @@ class Session {
   /// by numbers of cut_labels(). Costs memory and time. Of sheets there are none.
   void keep_cut_labels() { labels_.emplace(); }
   const CutLabels* cut_labels() const { return labels_ ? &*labels_ : nullptr; }
+  /// Before run(): the moves that cut are kept, about 100 bytes each, with the labels.
+  void keep_moves() {
+    keep_cut_labels();
+    kept_moves_.emplace();
+  }
+  const KeptMoves* kept_moves() const { return kept_moves_ ? &*kept_moves_ : nullptr; }
 
   /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that
   /// leave nothing to report on (the guessed blank does not fit the memory, a stdin too long to
@@ -130,6 +137,7 @@ class Session {
   SessionObserver* observer_ = nullptr;
   MotionRecorders recorders_;
   std::optional<CutLabels> labels_;
+  std::optional<KeptMoves> kept_moves_;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;

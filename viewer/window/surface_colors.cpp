@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "viewer/deviation_colors.h"
+
 namespace kerf {
 namespace {
 
@@ -19,13 +21,6 @@ using Stops = std::array<glm::vec3, 5>;
 constexpr Stops kHeightStops{glm::vec3(0.16f, 0.14f, 0.46f), glm::vec3(0.10f, 0.42f, 0.66f),
                              glm::vec3(0.12f, 0.66f, 0.58f), glm::vec3(0.62f, 0.82f, 0.30f),
                              glm::vec3(0.99f, 0.91f, 0.42f)};
-/// Too much gone in red, right in green, left over in blue.
-constexpr Stops kDeviationStops{glm::vec3(0.76f, 0.08f, 0.10f), glm::vec3(0.96f, 0.58f, 0.34f),
-                                glm::vec3(0.46f, 0.74f, 0.46f), glm::vec3(0.48f, 0.70f, 0.94f),
-                                glm::vec3(0.10f, 0.22f, 0.74f)};
-/// Full colour, in tolerances.
-constexpr double kFullDeviation = 2.0;
-
 const Stops& stops_of(ColorBy mode) {
   return mode == ColorBy::kDeviation ? kDeviationStops : kHeightStops;
 }

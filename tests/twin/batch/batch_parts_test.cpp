@@ -63,7 +63,8 @@ TEST_F(BatchParts, AListIsReadFromItsFolderAndEachProgramComesOnce) {
 TEST_F(BatchParts, WhatIsMissingInAListIsToldAtItsLineAllAtOnce) {
   write("a.ngc");
   write("empty/readme.txt");
-  const std::string list = write("list.txt", "a.ngc\ngone.ngc\nempty\n*.nc\nempty/readme.txt\nb.ngc\n");
+  const std::string list =
+      write("list.txt", "a.ngc\ngone.ngc\nempty\n*.nc\nempty/readme.txt\nb.ngc\n");
   EXPECT_EQ(programs({list}), (Texts{at("a.ngc"), at("empty/readme.txt")}));
   EXPECT_EQ(told(), (Texts{"list.txt:2: gone.ngc: no such file or folder",
                            "list.txt:3: empty: no program in this folder",

@@ -30,6 +30,35 @@ std::string said_in(const ConfigFolder& folder, std::string_view text) {
   return out;
 }
 
+TEST(ConfigMeshes, OutsideOfTheFolderIsNotedOnce) {
+  const ConfigFolder folder;
+  const std::string fixtures =
+      "fixtures:\n"
+      "  - {shape: \"stl:inside/a.stl\"}\n"
+      "  - {shape: \"stl:inside/../b.stl:inch\"}\n"
+      "  - {shape: \"stl:../c.stl\"}\n"
+      "  - {shape: \"obj:/elsewhere/d.obj\"}\n";
+  const std::string said = said_in(folder, fixtures);
+  EXPECT_EQ(
+      said,
+      "read\n"
+      "m.yaml:4:13: note: fixtures[3].shape: '../c.stl' lies outside of this file's folder: who "
+      "copies that has no such mesh\n");
+  EXPECT_EQ(said_in(folder, "fixtures:\n  - {shape: \"box:0,0,0:1,1,1\"}\n"), "read\n");
+  EXPECT_EQ(said_in(folder, "fixtures:\n  - {shape: \"stl:" + folder.path() + "/a.stl\"}\n"),
+            "read\n");
+  const std::string links =
+      "machine:\n"
+      "  kinematics: links\n"
+      "  workpiece_on: table\n"
+      "  tool_on: head\n"
+      "  links:\n"
+      "    - {name: table, axis: X, direction: \"-1,0,0\"}\n"
+      "    - {name: saddle, axis: Y}\n"
+      "    - {name: head, parent: saddle, axis: Z, stl: ../head.stl}\n";
+  EXPECT_EQ(said_in(folder, links).find("read\nm.yaml:8:"), 0U) << said_in(folder, links);
+}
+
 TEST(ConfigDbc, SignalsByName) {
   const ConfigFolder folder;
   folder.write("bus.dbc", kDbc);

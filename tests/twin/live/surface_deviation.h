@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "stock/octree/octree.h"
-#include "twin/scene/compare/triangle_tree.h"
+#include "twin/compare/triangle_tree.h"
 
 namespace kerf {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <limits>
+#include <random>
 
 namespace kerf {
 namespace {
@@ -38,7 +38,8 @@ TEST(RunCurve, KeepsItsSumsHoweverLongItGets) {
   double clock_s = 0, removed = 0, way = 0, turns = 0;
   for (int i = 0; i < 20'000; ++i) {
     const double duration_s = i % 11 == 0 ? 0 : 3 * unit(random);
-    const RunCurve::Share share{clock_s, duration_s, unit(random), unit(random), 3000 * unit(random)};
+    const RunCurve::Share share{clock_s, duration_s, unit(random), unit(random),
+                                3000 * unit(random)};
     curve.add(share);
     clock_s += duration_s;
     removed += share.removed_mm3;

@@ -64,7 +64,7 @@ function buildMesh(mesh) {
       if (turn < kSmooth) edges.push(...places.subarray(3 * a, 3 * a + 3), ...places.subarray(3 * b, 3 * b + 3));
     }
   }
-  return { position, normal, groups, triangles, edges: new Float32Array(edges), deviations: mesh.deviations ? bytesOf(mesh.deviations) : null, index };
+  return { position, normal, groups, triangles, edges: new Float32Array(edges) };
 }
 
 // ---- colours
@@ -90,10 +90,6 @@ function colorsOf(mesh, mode) {
     const low = data.mesh.min[2], high = data.mesh.max[2], span = high - low || 1;
     for (let i = 0; i < 3 * mesh.triangles; ++i) put(i, ramp((mesh.position[3 * i + 2] - low) / span));
     for (let i = 0; i <= 4; ++i) legend.push([hex(ramp(i / 4)), "Z " + lengthText(low + span * i / 4)]);
-  } else if (mode === "deviation" && mesh.deviations) {
-    const scale = data.deviation;
-    for (let i = 0; i < 3 * mesh.triangles; ++i) put(i, rgb(scale.colors[mesh.deviations[mesh.index[i]]] || hex(kUncut)));
-    scale.colors.forEach((color, i) => legend.push([color, scale.names[i]]));
   } else {
     for (let i = 0; i < 3 * mesh.triangles; ++i) put(i, kPlain);
   }

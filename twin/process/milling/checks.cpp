@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
-#include <vector>
 
 #include "base/translate.h"
 #include "stock/way_contact.h"
@@ -16,10 +16,8 @@
 namespace kerf {
 namespace {
 
-/// Arcs are searched piece by piece; between the places where a coordinate turns round, which begin
-/// pieces of their own, it is monotone. The steps are for spirals and for arcs that climb on a
-/// slant, whose coordinates turn elsewhere by a little.
-constexpr double kArcStep_deg = 2.0;
+/// Arcs are looked at as chords that are no farther from them.
+constexpr double kChord_mm = 1e-4;
 
 /// Part of [t0, t1] where a + t * (b - a) <= limit (below) or >= limit (not below).
 bool clip(double a, double b, double limit, bool below, double& t0, double& t1) {
@@ -35,42 +33,68 @@ bool clip(double a, double b, double limit, bool below, double& t0, double& t1) 
   return t0 <= t1;
 }
 
-/// Of an arc: places in 0..1 between which X, Y and Z are monotone, ascending.
-std::vector<double> monotone_pieces(const Motion& m) {
-  const double sweep = std::abs(m.arc.sweep_rad);
-  const int steps = static_cast<int>(std::ceil(sweep * 180 / kPi / kArcStep_deg)) + 1;
-  std::vector<double> knots;
-  for (int i = 0; i <= steps; ++i) knots.push_back(static_cast<double>(i) / steps);
-  const Vec3 arm = m.from_mm - m.arc.center_mm;
-  const Vec3 u = arm - glm::dot(arm, m.arc.axis) * m.arc.axis;
-  const Vec3 v = glm::cross(m.arc.axis, u) * (m.arc.sweep_rad < 0 ? -1.0 : 1.0);
-  for (int i = 0; i < 3 && sweep > 0; ++i) {
-    if (u[i] == 0 && v[i] == 0) continue;
-    double angle = std::atan2(v[i], u[i]);
-    angle -= kPi * std::floor(angle / kPi);
-    for (; angle < sweep; angle += kPi) knots.push_back(angle / sweep);
-  }
-  std::sort(knots.begin(), knots.end());
-  return knots;
+struct UnderSpan {
+  double begin = 0, end = 1;
+};
+
+/// The part in which a straight way, seen from above, is within a circle.
+std::optional<UnderSpan> within_circle(const Vec3& from, const Vec3& to, const Vec3& center,
+                                       double radius_mm) {
+  const Vec2 way(to - from), arm(from - center);
+  const double a = glm::dot(way, way), b = glm::dot(way, arm);
+  const double c = glm::dot(arm, arm) - radius_mm * radius_mm;
+  if (a == 0) return c <= 0 ? std::optional<UnderSpan>(UnderSpan{}) : std::nullopt;
+  const double square = b * b - a * c;
+  if (square < 0) return std::nullopt;
+  const UnderSpan span{std::max(0.0, (-b - std::sqrt(square)) / a),
+                       std::min(1.0, (-b + std::sqrt(square)) / a)};
+  return span.begin <= span.end ? std::optional<UnderSpan>(span) : std::nullopt;
 }
 
-/// The part of [t0, t1], in which coordinate `axis` is monotone, where it is <= limit (below) or >=
-/// limit (not below).
-bool clip_arc(const Motion& m, int axis, double limit, bool below, double& t0, double& t1) {
-  const auto inside = [&](double t) {
-    const double place = point_at(m, t)[axis];
-    return below ? place <= limit : place >= limit;
-  };
-  const bool first = inside(t0), last = inside(t1);
-  if (first && last) return true;
-  if (!first && !last) return false;
-  double in = first ? t0 : t1, out = first ? t1 : t0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (in + out);
-    (inside(middle) ? in : out) = middle;
+/// Parts of a straight way: a tube's outline has a hole.
+struct UnderSpans {
+  std::array<UnderSpan, 2> of;
+  int count = 0;
+  void add(double begin, double end) {
+    if (begin <= end) of[static_cast<std::size_t>(count++)] = {begin, end};
   }
-  (first ? t1 : t0) = in;
-  return true;
+};
+
+/// Where it is no higher than the limit, and under the body.
+UnderSpans spans_under(const BlankBody& body, const Vec3& from, const Vec3& to, double limit_mm) {
+  UnderSpans out;
+  UnderSpan in;
+  bool inside = clip(from.z, to.z, limit_mm, true, in.begin, in.end);
+  for (int i = 0; inside && i < 2; ++i) {
+    inside = clip(from[i], to[i], body.bounds_mm.min[i], false, in.begin, in.end) &&
+             clip(from[i], to[i], body.bounds_mm.max[i], true, in.begin, in.end);
+  }
+  const bool is_tube = body.kind == BlankBody::Kind::kTube && body.axis == 'z';
+  const bool is_round = is_tube || (body.kind == BlankBody::Kind::kCylinder && body.axis == 'z');
+  if (inside && is_round) {
+    const auto round = within_circle(from, to, body.center_mm, body.diameter_mm / 2);
+    if (!round) return out;
+    in = {std::max(in.begin, round->begin), std::min(in.end, round->end)};
+  }
+  if (!inside || in.begin > in.end) return out;
+  const auto hole =
+      is_tube ? within_circle(from, to, body.center_mm, body.inner_diameter_mm / 2) : std::nullopt;
+  if (!hole) {
+    out.add(in.begin, in.end);
+    return out;
+  }
+  // A way that ends in the hole ends at its end.
+  if (in.begin < hole->begin) out.add(in.begin, std::min(in.end, hole->begin));
+  if (hole->end < in.end) out.add(std::max(in.begin, hole->end), in.end);
+  return out;
+}
+
+int chords_of(const Motion& m) {
+  if (m.kind != MotionKind::kArc) return 1;
+  const double radius =
+      std::max(glm::length(m.from_mm - m.arc.center_mm), glm::length(m.to_mm - m.arc.center_mm));
+  const double step = 2 * std::acos(std::max(0.0, 1 - kChord_mm / std::max(radius, kChord_mm)));
+  return std::max(1, static_cast<int>(std::ceil(std::abs(m.arc.sweep_rad) / step)));
 }
 
 double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
@@ -162,35 +186,32 @@ void Checks::deepen_spindle_event(double depth_mm) {
 }
 
 std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
-  const double limit = bounds_mm_.min.z - options_.below_mm - kContactTolerance_mm;
-  if (m.kind != MotionKind::kArc) {
-    if (std::min(m.from_mm.z, m.to_mm.z) >= limit) return std::nullopt;
-    double t0 = 0;
-    double t1 = 1;
-    bool inside = clip(m.from_mm.z, m.to_mm.z, limit, true, t0, t1);
-    for (int i = 0; inside && i < 2; ++i) {
-      inside = clip(m.from_mm[i], m.to_mm[i], bounds_mm_.min[i], false, t0, t1) &&
-               clip(m.from_mm[i], m.to_mm[i], bounds_mm_.max[i], true, t0, t1);
-    }
-    if (!inside) return std::nullopt;
-    const double lowest = std::min(point_at(m, t0).z, point_at(m, t1).z);
-    return Below{point_at(m, t0), t0, bounds_mm_.min.z - lowest};
-  }
+  const double floor = bounds_mm_.min.z;
+  const double limit = floor - options_.below_mm - kContactTolerance_mm;
   if (bounds_of(m).min.z >= limit) return std::nullopt;
+  BlankBody box;
+  box.bounds_mm = bounds_mm_;
+  const std::span<const BlankBody> bodies =
+      options_.blank.empty() ? std::span<const BlankBody>(&box, 1) : options_.blank;
   std::optional<Below> below;
-  const std::vector<double> knots = monotone_pieces(m);
-  for (std::size_t i = 1; i < knots.size(); ++i) {
-    double t0 = knots[i - 1], t1 = knots[i];
-    bool inside = clip_arc(m, 2, limit, true, t0, t1);
-    for (int axis = 0; inside && axis < 2; ++axis) {
-      inside = clip_arc(m, axis, bounds_mm_.min[axis], false, t0, t1) &&
-               clip_arc(m, axis, bounds_mm_.max[axis], true, t0, t1);
+  const int chords = chords_of(m);
+  Vec3 from = point_at(m, 0);
+  for (int i = 1; i <= chords; ++i) {
+    const Vec3 to = point_at(m, static_cast<double>(i) / chords);
+    for (const BlankBody& body : bodies) {
+      const UnderSpans spans = spans_under(body, from, to, limit);
+      for (const UnderSpan& span :
+           std::span(spans.of).first(static_cast<std::size_t>(spans.count))) {
+        const double fraction = (i - 1 + span.begin) / chords;
+        const double low =
+            std::min(from.z + span.begin * (to.z - from.z), from.z + span.end * (to.z - from.z));
+        const double depth = std::max(below ? below->depth_mm : 0, floor - low);
+        if (!below || fraction < below->fraction)
+          below = Below{from + span.begin * (to - from), fraction, depth};
+        below->depth_mm = depth;
+      }
     }
-    if (!inside) continue;
-    const Vec3 first = point_at(m, t0);
-    if (!below) below = Below{first, t0, 0};
-    const double lowest = std::min(first.z, point_at(m, t1).z);
-    below->depth_mm = std::max(below->depth_mm, bounds_mm_.min.z - lowest);
+    from = to;
   }
   return below;
 }

@@ -60,9 +60,9 @@ class Checks {
   void forget_events() { rapid_ = spindle_ = below_ = std::nullopt; }
 
   /// below-stock: the tip below the floor of the blank, by more than CheckOptions allow, inside the
-  /// blank's outline (its box): the tool cuts the table. An event ends with the first move that
-  /// stays above. For upright tools: of a machine that turns the workpiece nobody knows what is
-  /// below it.
+  /// blank's outline from above (round ones are, along Z; else its box): the tool cuts the table.
+  /// An event ends with the first move that stays above. For upright tools: of a machine that turns
+  /// the workpiece nobody knows what is below it.
   void check_floor(const CheckedMove& move);
 
  private:

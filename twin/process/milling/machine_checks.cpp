@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "interp_bridge/motion_kinds.h"
 #include "stock/move_reach.h"
+#include "twin/collision/mesh_depth.h"
 #include "twin/collision/solid_sweep.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/finding_at.h"
@@ -80,6 +81,7 @@ MachineChecks::MachineChecks(const StockModel& stock, FindingLog& log,
 void MachineChecks::set_options(const CheckOptions& options) {
   wishes_ = options.collisions;
   blank_guessed_ = options.blank_guessed;
+  if (!options.blank.empty()) blank_ = Solid::of_bodies(options.blank);
   if (wishes_.machine) pairs_.set(wishes_, surface_.box_mm());
 }
 
@@ -123,6 +125,38 @@ void MachineChecks::set_place(std::shared_ptr<const MachineKinematics> kinematic
   program_from_link_ = link_from_program.inverse();
   tool_chain_ = ToolChain(chain, machine.joint_letters);
   pairs_.place(link_from_program, machine.joint_letters);
+  check_beside_blank();
+}
+
+/// Fixtures that stand on links never move against a workpiece that these carry: once is enough.
+void MachineChecks::check_beside_blank() {
+  if (blank_guessed_ || std::exchange(beside_told_, true) || !wishes_.fixtures) return;
+  SolidPointer blank = blank_;
+  if (!blank) {
+    BlankBody box;
+    box.bounds_mm = surface_.box_mm();
+    if (box.bounds_mm.empty()) return;
+    blank = Solid::of_bodies({&box, 1});
+  }
+  for (const WorkingBody& body : pairs_.bodies()) {
+    if (body.kind != WorkingBody::Kind::kFixture || body.by_program) continue;
+    const auto own = std::ranges::find(*wishes_.fixtures, body.name, &Fixture::name);
+    if (own->in_blank || wishes_.rules.ignores(body.name, kWorkpieceBody)) continue;
+    const std::optional<Pose> pose = pairs_.beside_workpiece(body, program_from_link_);
+    if (!pose) continue;
+    const double depth = depth_in_blank_mm(*own->solid, *pose, *blank);
+    if (depth <= kTouching_mm) continue;
+    Finding finding;
+    finding.id = FindingId::kFixtureContact;
+    finding.severity = Severity::kError;
+    finding.text = trf("fixture '{}' on link '{}' stands in the blank", own->name, own->on);
+    finding.depth_mm = depth;
+    finding.bodies = {own->name, kWorkpieceBody};
+    finding.hint =
+        tr("machine.work_offset says where the work zero lies in the machine; what is meant to "
+           "stand in it has :in-blank");
+    log_.add(std::move(finding));
+  }
 }
 
 void MachineChecks::mount(const Cutter& cutter, int tool, bool guessed, double nose_mm) {
@@ -439,15 +473,18 @@ void MachineChecks::meet(WorkingPair& pair, const LinkWay& way, double t) {
 }
 
 void MachineChecks::deepen(WorkingPair& pair, const LinkWay& way) {
-  if (!pairs_.bodies()[pair.moving].has_depth) return;
   const double known = pair.depth_mm;
+  const bool has_depth = pairs_.bodies()[pair.moving].has_depth;
+  if (pair.with_workpiece && !has_depth) return;
   for (const SolidPointer& moving : pairs_.bodies()[pair.moving].solids) {
     if (pair.with_workpiece) {
       pair.depth_mm = surface_.touch_depth_mm(*moving, way, pair.depth_mm);
       continue;
     }
-    for (const SolidPointer& still : pairs_.bodies()[pair.still].solids)
-      pair.depth_mm = touch_depth_mm(*moving, way, *still, pair.depth_mm);
+    for (const SolidPointer& still : pairs_.bodies()[pair.still].solids) {
+      if (has_depth) pair.depth_mm = touch_depth_mm(*moving, way, *still, pair.depth_mm);
+      pair.depth_mm = mesh_depth_mm(*moving, way, *still, pair.depth_mm);
+    }
   }
   if (pair.depth_mm > known) log_.deepen(*pair.event, pair.depth_mm);
 }

@@ -60,6 +60,7 @@ class MachineChecks {
   bool knows_length(const Motion& motion);
   bool carries_the_tool(const Motion& motion);
   void give_up(const std::string& why);
+  void check_beside_blank();
   bool is_far() const;
   void renew_far();
   void look(WorkingPair& pair);
@@ -89,6 +90,8 @@ class MachineChecks {
   ToolChain tool_chain_;  ///< from the workpiece's link to the tool's
   Pose program_from_link_;
   bool given_up_ = false;
+  SolidPointer blank_;           ///< what is known of it; null: its box
+  bool beside_told_ = false;     ///< what stands in it has been told
   std::vector<int> told_tools_;  ///< of which it is not known how long they are
 
   MachineRun run_;

@@ -169,6 +169,14 @@ void MachinePairs::place(const Pose& link_from_program, std::string_view joint_l
   }
 }
 
+std::optional<Pose> MachinePairs::beside_workpiece(const WorkingBody& body,
+                                                   const Pose& program_from_link) const {
+  const std::size_t workpiece = chain().workpiece_link();
+  if (groups_[body.link] != groups_[workpiece]) return std::nullopt;
+  const ToolChain way(chain(), joint_letters_, workpiece, body.link);
+  return program_from_link * way.pose({}) * body.link_from_body;
+}
+
 void MachinePairs::mount(const Cutter& cutter, int tool, bool guessed, double nose_mm) {
   unmount();
   tool_mm_ = 0;

@@ -83,6 +83,10 @@ class MachinePairs {
   bool hang_tool(const Vec3& tip_from_nose);
 
   const std::vector<WorkingBody>& bodies() const { return bodies_; }
+  /// Of a body on a link that the workpiece's link carries without a joint between: where it stands
+  /// in the program's coordinates. None: it moves against the workpiece.
+  std::optional<Pose> beside_workpiece(const WorkingBody& body,
+                                       const Pose& program_from_link) const;
   /// Those with what is in the spindle now.
   std::vector<WorkingPair*>& active() { return active_; }
   std::vector<std::unique_ptr<WorkingPair>>& all() { return pairs_; }

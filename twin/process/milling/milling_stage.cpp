@@ -11,6 +11,7 @@
 #include "stock/cutter/cutting_shank.h"
 #include "twin/machine/planned_pieces.h"
 #include "twin/motion/motion_geometry.h"
+#include "twin/process/kept_moves.h"
 #include "twin/process/milling/probe_contact.h"
 
 namespace kerf {
@@ -376,6 +377,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
 void MillingStage::hand_over() {
   if (moves_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
+  if (site_.kept) site_.kept->add(cutting(), moves_);
   stock_.cut(cutting(), moves_, reports_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const double fits = static_cast<double>(moves_.size()) * kCut_s / std::max(took.count(), 1e-6);

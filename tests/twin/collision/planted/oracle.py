@@ -3,9 +3,9 @@
 A part of a tool is a list of pieces about its axis, Z from the tip up, mm:
     Cylinder(radius, low, high, round_mm)  a cylinder and all that is no farther from it than round_mm: discs are balls, bull noses
     Cone(radius_low, radius_high, low, high)
-An obstacle is a list of convex bodies in a frame that is turned about Z and shifted: Block, Rod, Pipe (a tube, which is not
-convex, but round). Upright tools are held against them in closed form; tilted ones against blocks by descent, coordinate by
-coordinate, of the squared distance of a point from the piece: convex and smooth, so that it ends at the least.
+An obstacle is a list of convex bodies in a frame that is turned about Z and shifted: Block, Rod, Bar, Pipe (a tube, which is
+not convex, but round). Upright tools are held against them in closed form; tilted ones by descent of the squared distance of a point
+from the piece (convex and smooth, so that it ends at the least): to and fro, with a swing.
 """
 
 import math
@@ -44,6 +44,9 @@ class Cylinder:
         """The nearest place (across, along) in the core; the distance from that is one to the piece, but for round_mm."""
         return min(across, self.radius), min(max(along, self.low), self.high)
 
+    def rims(self):
+        return (self.radius, self.low), (self.radius, self.high)
+
 
 class Cone:
     """Below a cylinder of the same width."""
@@ -73,6 +76,9 @@ class Cone:
         if top < max(low, z0):
             return False
         return r0 + (r1 - r0) * (top - z0) / (z1 - z0) >= beside
+
+    def rims(self):
+        return self.corners[1], self.corners[2]
 
     def to_point(self, across, along):
         (r0, z0), (r1, z1) = self.corners[1], self.corners[2]
@@ -113,59 +119,21 @@ class Block:
 
     def tilted(self, piece, tip, axis, memory):
         """memory: keeps the place where the last one was nearest. What is FAR_mm away may be said to be nearer, but not that near."""
-        far = self.ball_gap(piece, tip, axis)
-        if far > FAR_mm:
-            return far
-        p = memory.get((self, piece))
-        if p is None:
-            p = [(a + b) / 2 for a, b in zip(self.low, self.high)]
-        last = math.inf
-        for _ in range(400):
-            before = p.copy()
-            for k in range(3):
-                self.descend(piece, tip, axis, p, [float(i == k) for i in range(3)])
-            # Then on along the valley.
-            self.descend(piece, tip, axis, p, [b - a for a, b in zip(before, p)])
-            now = core_gap(piece, tip, axis, p)[0]
-            if now <= EPSILON or last - now < 1e-9:
-                break
-            last = now
-        memory[(self, piece)] = p
-        return now - piece.round_mm
+        far = ball_gap(piece, tip, axis, self)
+        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
 
-    def ball_gap(self, piece, tip, axis):
-        """From a ball around the piece."""
-        middle, half = (piece.low + piece.high) / 2, (piece.high - piece.low) / 2
-        center = [t + middle * a for t, a in zip(tip, axis)]
-        gap = math.sqrt(sum(max(low - x, x - high, 0.0) ** 2 for low, x, high in zip(self.low, center, self.high)))
-        return gap - math.hypot(half + piece.round_mm, width_of([piece]))
+    def middle(self):
+        return tuple((a + b) / 2 for a, b in zip(self.low, self.high))
 
-    def descend(self, piece, tip, axis, p, direction):
-        """Moves p, within the block, along a line to where it is nearest to the piece."""
-        first, last = -math.inf, math.inf
-        for k, d in enumerate(direction):
-            if d != 0:
-                ends = sorted(((self.low[k] - p[k]) / d, (self.high[k] - p[k]) / d))
-                first, last = max(first, ends[0]), min(last, ends[1])
-        if not first < last or last == math.inf:
-            return
+    def nearest(self, p):
+        return tuple(min(max(x, low), high) for x, low, high in zip(p, self.low, self.high))
 
-        def slope(t):
-            way = core_gap(piece, tip, axis, [a + t * d for a, d in zip(p, direction)])[1]
-            return sum(w * d for w, d in zip(way, direction))
 
-        if slope(first) >= 0:
-            t = first
-        elif slope(last) <= 0:
-            t = last
-        else:
-            for _ in range(34):
-                t = (first + last) / 2
-                if slope(t) > 0:
-                    last = t
-                else:
-                    first = t
-        p[:] = [min(max(a + t * d, low), high) for a, d, low, high in zip(p, direction, self.low, self.high)]
+def ball_gap(piece, tip, axis, body):
+    """From a ball around the piece."""
+    middle, half = (piece.low + piece.high) / 2, (piece.high - piece.low) / 2
+    center = [t + middle * a for t, a in zip(tip, axis)]
+    return math.dist(center, body.nearest(center)) - math.hypot(half, width_of([piece]) - piece.round_mm) - piece.round_mm
 
 
 def core_gap(piece, tip, axis, p):
@@ -181,6 +149,28 @@ def core_gap(piece, tip, axis, p):
     return math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2), way
 
 
+def nearest_gap(body, piece, tip, axis, memory):
+    """(gap of a leaning piece from a convex body, where on the body): the squared distance of its places from the piece is convex and smooth,
+    and goes down fastest by steps to the nearest place and back that keep their swing, until they would go up."""
+    p = memory.get((body, piece), body.middle())
+    before, swing, last = p, 1.0, math.inf
+    for _ in range(20000):
+        further = (1 + math.sqrt(1 + 4 * swing * swing)) / 2
+        y = tuple(a + (swing - 1) / further * (a - b) for a, b in zip(p, before))
+        _, way = core_gap(piece, tip, axis, y)
+        new = body.nearest(tuple(a - w for a, w in zip(y, way)))
+        now = core_gap(piece, tip, axis, new)[0]
+        if now > last and swing > 1:
+            swing, before = 1.0, p
+            continue
+        moved = math.dist(new, p)
+        before, p, swing, last = p, new, further, now
+        if now <= EPSILON or moved < 1e-11:
+            break
+    memory[(body, piece)] = p
+    return last - piece.round_mm, p
+
+
 class Rod:
     """A cylinder that stands."""
 
@@ -191,9 +181,25 @@ class Rod:
         beside = max(math.hypot(tip[0] - self.center[0], tip[1] - self.center[1]) - self.radius, 0.0)
         return piece.to_quadrant(beside, self.low - tip[2], self.high - tip[2])
 
+    def tilted(self, piece, tip, axis, memory):
+        far = ball_gap(piece, tip, axis, self)
+        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
+
+    def middle(self):
+        return (*self.center, (self.low + self.high) / 2)
+
+    def nearest(self, p):
+        x, y = within_circle(p[0] - self.center[0], p[1] - self.center[1], self.radius)
+        return (self.center[0] + x, self.center[1] + y, min(max(p[2], self.low), self.high))
+
+
+def within_circle(x, y, radius):
+    length = math.hypot(x, y)
+    return (x, y) if length <= radius else (x * radius / length, y * radius / length)
+
 
 class Bar:
-    """A cylinder that lies along X, longer than the tool's way."""
+    """A cylinder that lies along X; upright tools are beside its ends never."""
 
     def __init__(self, center_y, center_z, radius, low_x, high_x):
         self.center, self.radius, self.low_x, self.high_x = (center_y, center_z), radius, low_x, high_x
@@ -203,6 +209,17 @@ class Bar:
         across = max(abs(self.center[0] - tip[1]) - piece.radius, 0.0)
         along = max(tip[2] + piece.low - self.center[1], self.center[1] - tip[2] - piece.high, 0.0)
         return max(math.hypot(across, along) - self.radius, 0.0) - piece.round_mm
+
+    def tilted(self, piece, tip, axis, memory):
+        far = ball_gap(piece, tip, axis, self)
+        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
+
+    def middle(self):
+        return ((self.low_x + self.high_x) / 2, *self.center)
+
+    def nearest(self, p):
+        y, z = within_circle(p[1] - self.center[0], p[2] - self.center[1], self.radius)
+        return (min(max(p[0], self.low_x), self.high_x), self.center[0] + y, self.center[1] + z)
 
 
 class TooDeep(Exception):
@@ -221,6 +238,67 @@ class Pipe:
             raise TooDeep
         beside = self.inner - away if self.inside else max(away - self.radius, 0.0)
         return piece.to_quadrant(beside, self.low - tip[2], self.high - tip[2])
+
+
+    def tilted(self, piece, tip, axis, memory):
+        if self.inside:
+            return self.tilted_inside(piece, tip, axis)
+        far = ball_gap(piece, tip, axis, self)
+        if far > FAR_mm:
+            return far
+        gap, p = nearest_gap(self, piece, tip, axis, memory)
+        # Over its hole a tube is not what a rod is.
+        if gap < FAR_mm and math.hypot(p[0] - self.center[0], p[1] - self.center[1]) < self.inner:
+            raise TooDeep
+        return gap
+
+    def middle(self):
+        return (*self.center, (self.low + self.high) / 2)
+
+    def nearest(self, p):
+        return Rod.nearest(self, p)
+
+    def tilted_inside(self, piece, tip, axis):
+        """What is farthest from the tube's axis lies on one of the piece's rims; the tube goes on above and below them."""
+        rims = []
+        for radius, along in piece.rims():
+            x, y = (tip[k] + along * axis[k] - self.center[k] for k in range(2))
+            if not self.low + piece.round_mm + radius < tip[2] + along * axis[2] < self.high - piece.round_mm - radius:
+                raise TooDeep
+            rims.append((radius, x, y))
+        least = self.inner - piece.round_mm - max(math.hypot(x, y) + radius for radius, x, y in rims)
+        if least > FAR_mm:
+            return least
+        farthest = max(self.farthest_of(*rim, axis) for rim in rims)
+        if farthest > self.radius:
+            raise TooDeep
+        return self.inner - farthest - piece.round_mm
+
+    def farthest_of(self, radius, x, y, axis):
+        """Of a rim about (x, y), from the tube's axis."""
+        u = unit_across(axis)
+        v = (axis[1] * u[2] - axis[2] * u[1], axis[2] * u[0] - axis[0] * u[2], axis[0] * u[1] - axis[1] * u[0])
+
+        def away(angle):
+            c, s = radius * math.cos(angle), radius * math.sin(angle)
+            return math.hypot(x + c * u[0] + s * v[0], y + c * u[1] + s * v[1])
+
+        # An ellipse about another place: two maxima at most, far from each other.
+        step = math.pi / 8
+        at = max((k * step for k in range(16)), key=away)
+        low, high = at - step, at + step
+        for _ in range(32):
+            a, b = low + (high - low) / 3, high - (high - low) / 3
+            low, high = (a, high) if away(a) < away(b) else (low, b)
+        return away((low + high) / 2)
+
+
+def unit_across(axis):
+    """A unit vector square to it."""
+    other = (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0)
+    out = (axis[1] * other[2] - axis[2] * other[1], axis[2] * other[0] - axis[0] * other[2], axis[0] * other[1] - axis[1] * other[0])
+    length = math.sqrt(sum(x * x for x in out))
+    return tuple(x / length for x in out)
 
 
 class Obstacle:
@@ -275,6 +353,28 @@ class Move:
             tip = math.hypot(radius * angle, self.end[number] - self.start[number])
         swing = math.radians(abs(self.to_ac[0] - self.from_ac[0]) + abs(self.to_ac[1] - self.from_ac[1]))
         return tip + swing * reach
+
+
+class TurnedMove(Move):
+    """On a table that A turns about X, left-handed, about the line Y0 Z0: start and end are the machine's X Y Z, the spindle stands upright."""
+
+    def __init__(self, line, start, end, from_a, to_a):
+        super().__init__(line, start, end, None, (from_a, 0.0), (to_a, 0.0))
+
+    def on_table(self, p, t):
+        a = math.radians(self.from_ac[0] + t * (self.to_ac[0] - self.from_ac[0]))
+        c, s = math.cos(a), math.sin(a)
+        return (p[0], c * p[1] - s * p[2], s * p[1] + c * p[2])
+
+    def tip(self, t):
+        return self.on_table(super().tip(t), t)
+
+    def axis(self, t):
+        return self.on_table((0.0, 0.0, 1.0), t)
+
+    def speed(self, reach):
+        away = max(math.hypot(p[1], p[2]) for p in (self.start, self.end))
+        return math.dist(self.start, self.end) + math.radians(abs(self.to_ac[0] - self.from_ac[0])) * (away + reach)
 
 
 class Pair:

@@ -68,6 +68,7 @@ class Program:
 
     def __init__(self):
         self.lines, self.moves, self.at, self.ac = [], [], None, (0.0, 0.0)
+        self.make_move, self.letters = Move, "AC"
         for line in ("G21 G17 G90 G54 G40 G49", "T1 M6", "S8000 M3"):
             self.lines.append(line)
 
@@ -78,7 +79,7 @@ class Program:
         place = tuple(round(x, 4) for x in place)
         words = " ".join(f"{letter}{x:.4f}" for letter, x in zip("XYZ", place))
         if ac is not None:
-            words += f" A{ac[0]:.4f} C{ac[1]:.4f}"
+            words += "".join(f" {letter}{x:.4f}" for letter, x in zip(self.letters, ac))
         self.lines.append(f"{code} {words}{extra}")
         return place
 
@@ -91,7 +92,7 @@ class Program:
         """A move that the line makes."""
         ac = self.ac if ac is None else ac
         if self.at is not None:
-            self.moves.append(Move(line, self.at, place, turn, self.ac, ac))
+            self.moves.append(self.make_move(line, self.at, place, turn, self.ac, ac))
         self.at, self.ac = place, ac
 
 

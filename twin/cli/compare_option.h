@@ -1,0 +1,45 @@
+// twin/cli/compare_option.h - the options that name a design part, and what is done by them.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/diagnostic.h"
+#include "stock/stock_model.h"
+#include "twin/cli/option_reader.h"
+#include "twin/compare/compare_stock.h"
+#include "twin/compare/design_file.h"
+#include "twin/report/report.h"
+
+namespace kerf {
+
+/// --compare and what goes with it.
+struct CompareRequest {
+  std::string path;  ///< empty: nothing is compared
+  double tolerance_mm = 0.05;
+  double mm_per_unit = 1;
+  DesignPlacement placement;
+  bool is_fitted = false;
+  bool is_wanted() const { return !path.empty(); }
+};
+
+/// Options of it without --compare are faults.
+CompareRequest understand_compare(OptionReader& reader);
+
+/// The file, before anything is cut; null without --compare, and with an error in `diagnostics`.
+std::shared_ptr<const DesignFile> open_design(const CompareRequest& request,
+                                              Diagnostics& diagnostics);
+
+/// The same where it lies, for a window.
+std::shared_ptr<const DesignPart> placed_design(const CompareRequest& request,
+                                                Diagnostics& diagnostics);
+
+/// Compares the finished workpiece, and puts what comes of it into the report: the section and
+/// findings. `stock` null: there is none, which is told. Returns the design as it was placed; null
+/// where nothing was compared.
+std::shared_ptr<const DesignPart> compare_finished(const CompareRequest& request,
+                                                   const DesignFile& file, const StockModel* stock,
+                                                   const CutHistory& history, Report& report,
+                                                   Diagnostics& diagnostics);
+
+}  // namespace kerf

@@ -1,0 +1,158 @@
+#include "twin/compare/design_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "base/text_scan.h"
+#include "base/translate.h"
+#include "base/units.h"
+#include "twin/collision/mesh_reader.h"
+
+namespace kerf {
+namespace {
+
+Diagnostic said(Severity severity, const std::string& file, std::string message, std::string hint) {
+  Diagnostic d;
+  d.severity = severity;
+  d.file = file;
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  return d;
+}
+
+std::optional<MeshFormat> format_of(const std::string& path) {
+  const std::string ending = to_lower(std::filesystem::path(path).extension().string());
+  if (ending == ".stl") return MeshFormat::kStl;
+  if (ending == ".obj") return MeshFormat::kObj;
+  if (ending == ".3mf") return MeshFormat::k3mf;
+  return std::nullopt;
+}
+
+std::string range_text(const Box& box) {
+  return trf("X{:g}..{:g} Y{:g}..{:g} Z{:g}..{:g} mm", box.min.x, box.max.x, box.min.y, box.max.y,
+             box.min.z, box.max.z);
+}
+
+/// Rounded up to what is worth writing on a command line.
+double rounded(double mm) {
+  const double out = std::round(mm * 1e4) / 1e4;
+  return out == 0 ? 0 : out;
+}
+
+}  // namespace
+
+Vec3 DesignPlacement::placed(const Vec3& p) const {
+  Vec3 out = p;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (turn_deg[axis] == 0) continue;
+    // Quarter turns exactly.
+    const double quarters = turn_deg[axis] / 90;
+    double c = std::cos(turn_deg[axis] * kPi / 180), s = std::sin(turn_deg[axis] * kPi / 180);
+    if (quarters == std::round(quarters)) {
+      c = std::round(c);
+      s = std::round(s);
+    }
+    const int first = (axis + 1) % 3, second = (axis + 2) % 3;
+    const double a = out[first], b = out[second];
+    out[first] = c * a - s * b;
+    out[second] = s * a + c * b;
+  }
+  return out + shift_mm;
+}
+
+std::string DesignPlacement::text() const {
+  std::string out;
+  if (turn_deg != Vec3(0))
+    out = trf("turned by {:g}, {:g}, {:g} degrees about X, Y, Z", rounded(turn_deg.x),
+              rounded(turn_deg.y), rounded(turn_deg.z));
+  if (shift_mm != Vec3(0)) {
+    if (!out.empty()) out += ", ";
+    out += trf("shifted by X{:g} Y{:g} Z{:g} mm", rounded(shift_mm.x), rounded(shift_mm.y),
+               rounded(shift_mm.z));
+  }
+  return out;
+}
+
+DesignPart DesignFile::placed(const DesignPlacement& placement, Diagnostics& diagnostics) const {
+  if (placement.is_plain()) return {mesh, path, diagnostics};
+  TriangleMesh moved = mesh;
+  for (glm::vec3& p : moved.positions_mm) p = glm::vec3(placement.placed(Vec3(p)));
+  return {moved, path, diagnostics};
+}
+
+std::shared_ptr<const DesignFile> read_design(const std::string& path, double mm_per_unit,
+                                              Diagnostics& diagnostics) {
+  const std::optional<MeshFormat> format = format_of(path);
+  if (!format) {
+    Diagnostic d;
+    d.message =
+        trf("--compare: {}: designs are read as STL, OBJ or 3MF; the name must end so", path);
+    d.hint = tr("CAD programs export meshes: choose a deviation well below the tolerance");
+    diagnostics.push_back(std::move(d));
+    return nullptr;
+  }
+  Result<MeshFromFile> read = read_mesh(path, *format, mm_per_unit, kMostDesignTriangles);
+  if (!read || read->mesh.triangles.empty()) {
+    Diagnostic d;
+    d.message = "--compare: " + (read ? trf("{}: has no triangles", path) : read.error());
+    diagnostics.push_back(std::move(d));
+    return nullptr;
+  }
+  auto file = std::make_shared<DesignFile>();
+  file->path = path;
+  file->mesh = std::move(read->mesh);
+  for (const glm::vec3& p : file->mesh.positions_mm) file->box_mm.extend(Vec3(p));
+  return file;
+}
+
+void doubt_place(const DesignPart& design, const std::string& path, const Box& blank,
+                 double tolerance_mm, Diagnostics& diagnostics) {
+  const Box part = design.box_mm();
+  bool is_apart = false, is_within = true, has_room = true, is_small = true, is_large = false;
+  Vec3 shift(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size = part.size()[axis], room = blank.size()[axis];
+    is_apart |= part.min[axis] > blank.max[axis] || part.max[axis] < blank.min[axis];
+    is_within &= part.min[axis] >= blank.min[axis] - tolerance_mm &&
+                 part.max[axis] <= blank.max[axis] + tolerance_mm;
+    has_room &= size <= room + 2 * tolerance_mm;
+    is_small &= size * kMmPerInch <= 1.5 * room;
+    is_large |= size >= 0.5 * kMmPerInch * room;
+    if (part.min[axis] < blank.min[axis]) {
+      shift[axis] = rounded(blank.min[axis] - part.min[axis]);
+    } else if (part.max[axis] > blank.max[axis]) {
+      shift[axis] = rounded(blank.max[axis] - part.max[axis]);
+    }
+  }
+  const std::string where = trf("{}; the blank is {}", range_text(part), range_text(blank));
+  if (is_small) {
+    diagnostics.push_back(said(Severity::kWarning, path,
+                               trf("is so small that its unit may be the inch: {}", where),
+                               tr("--compare-unit inch reads it so")));
+    return;
+  }
+  if (is_large && !has_room) {
+    diagnostics.push_back(
+        said(Severity::kWarning, path,
+             trf("is so large that its numbers may be of another unit: {}", where),
+             tr("export it in mm")));
+    return;
+  }
+  if (is_within) return;
+  std::string hint = tr("it is taken in the coordinates that the program writes");
+  if (has_room) {
+    hint = trf("--compare-at {:g},{:g},{:g} puts it inside", shift.x, shift.y, shift.z);
+  }
+  diagnostics.push_back(said(Severity::kWarning, path,
+                             is_apart ? trf("lies beside the blank: {}", where)
+                                      : (has_room ? trf("lies partly outside the blank: {}", where)
+                                                  : trf("is larger than the blank: {}", where)),
+                             std::move(hint)));
+}
+
+}  // namespace kerf

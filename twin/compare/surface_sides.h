@@ -1,0 +1,39 @@
+// twin/compare/surface_sides.h - which side of a mesh is outside, at its faces, edges and
+// corners.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "base/triangle_mesh.h"
+
+namespace kerf {
+
+/// How the triangles of a mesh hang together.
+struct MeshFacts {
+  std::size_t edges = 0;
+  std::size_t open_edges = 0;    ///< of one triangle only: a hole, or a gap between parts
+  std::size_t turned_edges = 0;  ///< whose triangles disagree on what is outside
+  double volume_mm3 = 0;         ///< negative: turned inside out
+  bool is_closed() const { return open_edges == 0; }
+};
+
+/// Normals such that the sign of dot(p - nearest point, its normal) tells the side of p: those of
+/// faces, for edges the sum of both faces', for corners the sum weighted by the angles there.
+/// Source: J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted
+/// pseudonormal", IEEE Trans. Visualization and Computer Graphics 11(3), 2005.
+///
+/// Holds where the surface is closed and two triangles meet at each edge. Edges and corners where
+/// that is not so (holes; two parts that touch) have the normal 0: the side has to be found in
+/// another way there.
+struct SurfaceSides {
+  std::vector<std::array<glm::vec3, 3>> edge_normals;  ///< of each triangle's three edges
+  std::vector<glm::vec3> corner_normals;               ///< of each position
+  MeshFacts facts;
+};
+
+/// O(n log n).
+SurfaceSides surface_sides(const TriangleMesh& mesh);
+
+}  // namespace kerf
