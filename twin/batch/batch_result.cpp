@@ -44,19 +44,23 @@ std::uint64_t count_in(const Json& json, const char* key) {
   return at != json.end() && at->is_number_unsigned() ? at->get<std::uint64_t>() : 0;
 }
 
-/// XXH would be a library for a name: FNV-1a.
+/// FNV-1a: enough to tell names apart.
 std::uint32_t short_hash(std::string_view text) {
   std::uint32_t hash = 2166136261U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
   return hash;
 }
 
-std::string first_line(std::string_view text) {
+/// The first error of what a run has printed; else its first words.
+std::string first_fault(std::string_view text) {
+  const std::string mark = fmt::format(" {}: ", tr(to_string(Severity::kError)));
+  std::string first;
   while (!text.empty()) {
     const std::string_view line = trim(take_line(text));
-    if (!line.empty()) return std::string(line);
+    if (contains(line, mark)) return std::string(line);
+    if (first.empty()) first = line;
   }
-  return {};
+  return first;
 }
 
 void take_findings(const Json& report, BatchResult& result) {
@@ -251,7 +255,7 @@ BatchResult result_of_run(const std::string& out, const std::string& program,
       result.message = trf("ended by signal {}", end.signal);
       break;
     default:
-      if (result.message.empty()) result.message = first_line(said);
+      if (result.message.empty()) result.message = first_fault(said);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "base/exit_code.h"
 #include "twin/batch/bounded_process.h"
 

@@ -175,7 +175,7 @@ int batch_command(const Arguments& arguments) {
     std::string line = batch_counts_text(end, all);
     if (end.reused > 0) line += trf("; {} of them from before", end.reused);
     print_text(stdout, line + "\n");
-    if (was_begun) {
+    if (was_begun && !has_error(diagnostics)) {
       print_text(stdout, (std::filesystem::path(plan.out) / "index.html").string() + "\n");
     }
   }
