@@ -101,7 +101,7 @@ BoundedProcess::~BoundedProcess() {
 void BoundedProcess::ask_to_end(Clock::time_point now) {
   if (!std::exchange(asked_, true)) {
     kill(pid_, SIGTERM);
-    deadline_ = now + kGrace;
+    deadline_ = now + (end_.stopped ? kStopGrace : kGrace);
   } else {
     kill(-pid_, SIGKILL);
     deadline_ = Clock::time_point::max();

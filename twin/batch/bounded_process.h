@@ -31,11 +31,14 @@ struct ProcessEnd {
 
 /// This very executable with other arguments, in a process group of its own, with standard input
 /// empty and both outputs in a file. It ends with this process, at the latest. Asked to end by
-/// SIGTERM, upon which kerf writes what it knows; kGrace later its whole group is killed.
+/// SIGTERM, upon which kerf writes what it knows, which may take it 10 s; some time later its whole
+/// group is killed.
 class BoundedProcess {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds kGrace{3};
+  static constexpr std::chrono::seconds kGrace{12};
+  /// After stop(): nobody wants its results.
+  static constexpr std::chrono::seconds kStopGrace{3};
 
   /// Error: what the system refused.
   static Result<BoundedProcess> start(const std::vector<std::string>& words,
