@@ -56,7 +56,7 @@ class BatchCommand : public testing::Test {
   Json json(const std::string& name) const {
     return Json::parse(read_file(folder_.file(name)), nullptr, false);
   }
-  /// One motion that is cut for hours: ten thousand turns of the workpiece.
+  /// One motion that is cut for hours: a hundred thousand turns of the workpiece.
   void write_endless() const {
     folder_.write("parts/99.canon",
                   "    1 N..... USE_LENGTH_UNITS(CANON_UNITS_MM)\n"
@@ -65,7 +65,7 @@ class BatchCommand : public testing::Test {
                   "    4 N3     SET_FEED_RATE(300.0000)\n"
                   "    5 N3     STRAIGHT_TRAVERSE(0, 0, 5, 0, 0, 0)\n"
                   "    6 N4     STRAIGHT_FEED(0, 0, -1, 0, 0, 0)\n"
-                  "    7 N5     STRAIGHT_FEED(20, 5, -1, 0, 3600000, 0)\n"
+                  "    7 N5     STRAIGHT_FEED(20, 5, -1, 0, 36000000, 0)\n"
                   "    8 N6     PROGRAM_END()\n");
   }
   /// By program.
