@@ -214,7 +214,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
                                 {session->cut_labels(), nullptr}, session->report(), diagnostics);
   }
   write_pages(request.outputs, session->report(), session->stock(),
-              {session->cut_labels(), nullptr, {}, request.units}, diagnostics);
+              {session->cut_labels(), nullptr, {}, request.units, compared.get()}, diagnostics);
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
                 session->report(), diagnostics, nullptr, compared);
   const ListedProgram listed = listed_program(session->report());

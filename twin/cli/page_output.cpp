@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "twin/page/page_printer.h"
 #include "twin/page/report_page.h"
 #include "twin/scene/cut_colors.h"
+#include "viewer/deviation_colors.h"
 
 namespace kerf {
 namespace {
@@ -17,6 +19,17 @@ namespace {
 /// 0xAABBGGRR as "#rrggbb".
 std::string web_color(std::uint32_t color) {
   return fmt::format("#{:02x}{:02x}{:02x}", color & 0xff, color >> 8 & 0xff, color >> 16 & 0xff);
+}
+
+/// In the middle of each class.
+std::array<std::string, kDeviationClasses> deviation_colors(double tolerance_mm) {
+  std::array<std::string, kDeviationClasses> out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    constexpr std::array kTolerances{-3.0, -1.5, 0.0, 1.5, 3.0};
+    const auto [red, green, blue] = deviation_rgb(kTolerances[i] * tolerance_mm, tolerance_mm);
+    out[i] = fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
+  }
+  return out;
 }
 
 PageCurves curves_of(const RunCurve& curve) {
@@ -50,6 +63,10 @@ void write_pages(const OutputPaths& paths, const Report& report, const StockMode
     if (options.groups.size() == kNoGroup) break;
     options.groups.push_back(
         {legend_text({use.number, use.shape}), web_color(color_of_number(options.groups.size()))});
+  }
+  if (facts.design && report.comparison) {
+    const double tolerance_mm = report.comparison->tolerance_mm;
+    options.design = {facts.design, tolerance_mm, deviation_colors(tolerance_mm)};
   }
   if (!facts.labels.empty()) {
     options.group_of = [&](std::uint32_t label) -> std::uint8_t {

@@ -20,6 +20,7 @@ struct PageFacts {
   const RunCurve* curve = nullptr;   ///< null: not kept
   std::string command;               ///< that makes the report again; may be empty
   LengthUnit units = LengthUnit::kMm;
+  const DesignPart* design = nullptr;  ///< that the report compares with; null: with none
 };
 
 /// `html` and `pdf` of `paths`, where they are wanted, each under a temporary name that is renamed

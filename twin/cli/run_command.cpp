@@ -247,9 +247,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
         kWritingPatience);
     const std::string command = command_line(
         with_guesses(request.written, rows_in(session->report().guesses, request.units)));
-    write_pages(request.outputs, session->report(), session->stock(),
-                {labels_in(*session), curve ? &*curve : nullptr, command, request.units},
-                diagnostics);
+    write_pages(
+        request.outputs, session->report(), session->stock(),
+        {labels_in(*session), curve ? &*curve : nullptr, command, request.units, compared.get()},
+        diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {

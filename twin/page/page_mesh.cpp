@@ -13,6 +13,7 @@
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "twin/compare/patch_deviation.h"
 #include "twin/compare/triangle_tree.h"
 #include "twin/page/surface_simplifier.h"
 
@@ -72,16 +73,33 @@ class Joiner {
   std::vector<std::uint32_t> numbers_;  ///< of the part's corners in the whole
 };
 
-PageSurface surface_of(const MeshPatch& patch, const PageMeshOptions& options) {
+/// Of a corner: who cut it, and above that how far it is from the design.
+constexpr std::uint16_t group_number(std::uint8_t who, DeviationClass deviation) {
+  return static_cast<std::uint16_t>(static_cast<unsigned>(deviation) << 8 | who);
+}
+
+PageSurface surface_of(MeshPatch patch, double cell_mm, const PageMeshOptions& options) {
+  if (options.design) {
+    DeviationDetail detail;
+    detail.cell_mm = cell_mm;
+    detail.tolerance_mm = options.tolerance_mm;
+    add_deviation(*options.design, detail, &patch);
+  }
   PageSurface part;
   part.corners.reserve(patch.vertices.size());
   for (const MeshVertex& vertex : patch.vertices) part.corners.push_back(vertex.position_mm);
   const auto seen = patch.surface_indices();
   part.indices.assign(seen.begin(), seen.end());
-  if (!options.group_of) return part;
-  part.groups.assign(part.corners.size(), kNoGroup);
-  for (std::size_t i = 0; i < std::min(patch.cut_by.size(), part.groups.size()); ++i) {
-    if (patch.cut_by[i] != MeshPatch::kNotCut) part.groups[i] = options.group_of(patch.cut_by[i]);
+  if (!options.group_of && !options.design) return part;
+  part.groups.reserve(part.corners.size());
+  for (std::size_t i = 0; i < part.corners.size(); ++i) {
+    const bool is_cut =
+        options.group_of && i < patch.cut_by.size() && patch.cut_by[i] != MeshPatch::kNotCut;
+    const std::uint8_t who = is_cut ? options.group_of(patch.cut_by[i]) : kNoGroup;
+    part.groups.push_back(group_number(
+        who, options.design
+                 ? deviation_class(static_cast<double>(patch.deviation_mm[i]), options.tolerance_mm)
+                 : DeviationClass::kWithin));
   }
   return part;
 }
@@ -125,7 +143,8 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
     const auto work = [&] {
       for (std::size_t tile; (tile = next++) < end;) {
         PageSurface& part = parts[tile - begin];
-        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), options);
+        part =
+            surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), stock.cell_mm(), options);
         full[tile - begin] = part.indices.size() / 3;
         sample.take(part, samples[tile - begin]);
         PageSurface joined;
@@ -147,12 +166,28 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   return out;
 }
 
-/// Of a triangle whose corners differ, what was not cut: above and below it there are smaller ones.
-std::uint8_t group_of(const PageSurface& surface, std::size_t triangle) {
-  std::array<std::uint8_t, 3> groups;
-  for (std::size_t k = 0; k < 3; ++k) groups[k] = surface.groups[surface.indices[3 * triangle + k]];
-  if (std::ranges::find(groups, kNoGroup) != groups.end()) return kNoGroup;
-  return groups[1] == groups[2] ? groups[1] : groups[0];
+/// Who cut a triangle. Whose corners differ was not cut: above and below it there are smaller ones.
+std::uint8_t who_cut(const std::array<std::uint16_t, 3>& corners) {
+  std::array<std::uint8_t, 3> who;
+  for (std::size_t k = 0; k < 3; ++k) who[k] = static_cast<std::uint8_t>(corners[k] & 0xff);
+  if (std::ranges::find(who, kNoGroup) != who.end()) return kNoGroup;
+  return who[1] == who[2] ? who[1] : who[0];
+}
+
+/// The one in the middle.
+std::uint8_t deviation_of(std::array<std::uint16_t, 3> corners) {
+  for (std::uint16_t& corner : corners) corner = static_cast<std::uint16_t>(corner >> 8);
+  std::ranges::sort(corners);
+  return static_cast<std::uint8_t>(corners[1]);
+}
+
+void name_triangles(const PageSurface& surface, const PageMeshOptions& options, PageMesh& mesh) {
+  for (std::size_t i = 0; i + 2 < surface.indices.size(); i += 3) {
+    std::array<std::uint16_t, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.groups[surface.indices[i + k]];
+    if (options.group_of) mesh.groups.push_back(who_cut(corners));
+    if (options.design) mesh.deviations.push_back(deviation_of(corners));
+  }
 }
 
 double farthest_mm(const PageSurface& surface, const std::vector<glm::vec3>& sample) {
@@ -204,6 +239,14 @@ void pack(const PageSurface& surface, PageMesh& mesh) {
 
 }  // namespace
 
+DeviationClass deviation_class(double deviation_mm, double tolerance_mm) {
+  const double tolerances = deviation_mm / tolerance_mm;
+  if (tolerances < -2) return DeviationClass::kDeepGouge;
+  if (tolerances < -1) return DeviationClass::kGouge;
+  if (tolerances <= 1) return DeviationClass::kWithin;
+  return tolerances <= 2 ? DeviationClass::kExcess : DeviationClass::kHighExcess;
+}
+
 PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options) {
   PageMesh mesh;
   Tiles tiles = take_tiles(stock, options);
@@ -220,11 +263,7 @@ PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options) {
   mesh.deviation_mm = farthest_mm(surface, tiles.sample);
   mesh.measured = tiles.sample.size();
   pack(surface, mesh);
-  if (!surface.groups.empty()) {
-    mesh.groups.reserve(mesh.triangles.size() / 3);
-    for (std::size_t i = 0; i < surface.indices.size() / 3; ++i)
-      mesh.groups.push_back(group_of(surface, i));
-  }
+  if (!surface.groups.empty()) name_triangles(surface, options, mesh);
   // Numbers of 16 bits are off by half of one.
   constexpr double kHalfStep = 0.5 / 65535;
   if (!mesh.box_mm.empty()) mesh.deviation_mm += kHalfStep * glm::length(mesh.box_mm.size());

@@ -57,6 +57,21 @@ Json mesh_json(const PageMesh& mesh) {
   out["places"] = base64_of(mesh.places);
   out["triangles"] = base64_of(mesh.triangles);
   if (!mesh.groups.empty()) out["groups"] = base64(mesh.groups);
+  if (!mesh.deviations.empty()) out["deviations"] = base64(mesh.deviations);
+  return out;
+}
+
+/// Colours and names, by class.
+Json deviation_json(const PageOptions& options) {
+  const double once = options.design.tolerance_mm, twice = 2 * once;
+  const std::array<std::string, kDeviationClasses> names{
+      trf("gouge, beyond {:.3g} mm", twice), trf("gouge, {:.3g} to {:.3g} mm", once, twice),
+      trf("within {:.3g} mm", once), trf("excess, {:.3g} to {:.3g} mm", once, twice),
+      trf("excess, beyond {:.3g} mm", twice)};
+  Json out;
+  out["colors"] = options.design.colors;
+  out["names"] = Json::array();
+  for (const std::string& name : names) out["names"].push_back(in_unit(name, options.units));
   return out;
 }
 
@@ -133,6 +148,7 @@ std::string view_section(const PageMesh& mesh, const PageOptions& options) {
   out += "<div class=\"tools\">" + button("iso", tr("oblique")) + button("top", tr("top")) +
          button("front", tr("front")) + button("right", tr("right")) + button("reset", tr("all"));
   out += fmt::format("<label>{} <select id=\"color\">", xml_text(tr("colours")));
+  if (!mesh.deviations.empty()) out += option("deviation", tr("against the design"));
   if (!mesh.groups.empty()) out += option("tool", tr("by tool"));
   out += option("height", tr("by height")) + option("plain", tr("plain")) + "</select></label>";
   out += fmt::format("<label>{} <select id=\"section\">", xml_text(tr("cut open")));
@@ -161,6 +177,8 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
     PageMeshOptions wanted;
     wanted.most_triangles = options.most_triangles;
     wanted.group_of = options.group_of;
+    wanted.design = options.design.part;
+    wanted.tolerance_mm = options.design.tolerance_mm;
     mesh = page_mesh(*stock, wanted);
   }
   const bool has_view = !mesh.triangles.empty();
@@ -180,6 +198,7 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
     for (const PageGroup& group : options.groups)
       data["groups"].push_back(
           {{"name", in_unit(group.name, options.units)}, {"color", group.color}});
+    if (!mesh.deviations.empty()) data["deviation"] = deviation_json(options);
   } else {
     data["mesh"] = nullptr;
   }

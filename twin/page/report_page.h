@@ -2,6 +2,7 @@
 // findings that lead to their places and lines, tools, times; printed, a set-up sheet.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "base/length_unit.h"
 #include "stock/stock_model.h"
+#include "twin/page/page_mesh.h"
 #include "twin/report/report.h"
 
 namespace kerf {
@@ -27,6 +29,13 @@ struct PageGroup {
   std::string color;  ///< "#56a0d2"
 };
 
+/// The design that the part is coloured by.
+struct PageDesign {
+  const DesignPart* part = nullptr;  ///< null: it is not
+  double tolerance_mm = 0.05;
+  std::array<std::string, kDeviationClasses> colors{};  ///< by DeviationClass
+};
+
 struct PageOptions {
   LengthUnit units = LengthUnit::kMm;
   std::string command;  ///< that makes this report again; may be empty
@@ -34,6 +43,7 @@ struct PageOptions {
   std::vector<PageGroup> groups;
   /// Which of `groups` the move with this number (CutMove::id) belongs to; empty: nobody asks.
   std::function<std::uint8_t(std::uint32_t move)> group_of;
+  PageDesign design;
   PageCurves curves;
 };
 

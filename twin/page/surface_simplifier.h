@@ -13,7 +13,7 @@ namespace kerf {
 struct PageSurface {
   std::vector<glm::vec3> corners;
   std::vector<std::uint32_t> indices;  ///< three a triangle
-  std::vector<std::uint8_t> groups;    ///< one a corner; empty: all are of one
+  std::vector<std::uint16_t> groups;   ///< one a corner; empty: all are of one
 };
 
 struct SimplifyOptions {

@@ -15,7 +15,7 @@ function bytesOf(text) {
 function buildMesh(mesh) {
   const placeBytes = bytesOf(mesh.places), triangleBytes = bytesOf(mesh.triangles);
   const corners = placeBytes.length / 6, triangles = triangleBytes.length / 9;
-  const groups = mesh.groups ? bytesOf(mesh.groups) : null;
+  const groups = mesh.groups ? bytesOf(mesh.groups) : null, deviations = mesh.deviations ? bytesOf(mesh.deviations) : null;
   const places = new Float32Array(3 * corners);
   for (let i = 0; i < 3 * corners; ++i) {
     const step = placeBytes[2 * i] | placeBytes[2 * i + 1] << 8, axis = i % 3;
@@ -64,7 +64,7 @@ function buildMesh(mesh) {
       if (turn < kSmooth) edges.push(...places.subarray(3 * a, 3 * a + 3), ...places.subarray(3 * b, 3 * b + 3));
     }
   }
-  return { position, normal, groups, triangles, edges: new Float32Array(edges) };
+  return { position, normal, groups, triangles, edges: new Float32Array(edges), deviations };
 }
 
 // ---- colours
@@ -86,6 +86,11 @@ function colorsOf(mesh, mode) {
       for (let k = 0; k < 3; ++k) put(3 * t + k, table[mesh.groups[t]] || kUncut);
     data.groups.forEach((g) => legend.push([g.color, g.name]));
     legend.push([hex(kUncut), data.texts.uncut]);
+  } else if (mode === "deviation" && mesh.deviations) {
+    const table = data.deviation.colors.map(rgb);
+    for (let t = 0; t < mesh.triangles; ++t)
+      for (let k = 0; k < 3; ++k) put(3 * t + k, table[mesh.deviations[t]]);
+    data.deviation.colors.forEach((color, i) => legend.push([color, data.deviation.names[i]]));
   } else if (mode === "height") {
     const low = data.mesh.min[2], high = data.mesh.max[2], span = high - low || 1;
     for (let i = 0; i < 3 * mesh.triangles; ++i) put(i, ramp((mesh.position[3 * i + 2] - low) / span));
