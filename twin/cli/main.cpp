@@ -18,6 +18,7 @@
 #include "base/exit_code.h"
 #include "base/suggest.h"
 #include "base/translate.h"
+#include "twin/cli/batch_command.h"
 #include "twin/cli/canon_command.h"
 #include "twin/cli/cli_options.h"
 #include "twin/cli/config_command.h"
@@ -41,6 +42,7 @@ constexpr const char* kExamples =
     "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
     "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf diff old.ngc new.ngc\n"
+    "  kerf batch parts --out results\n"
     "  kerf canon part.ngc\n"
     "  kerf models\n"
     "  kerf tools\n";
@@ -60,6 +62,11 @@ constexpr const char* kDiffExample = tr_noop(
     "Examples:\n"
     "  kerf diff old.ngc new.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf diff part.ngc part.state --json -\n");
+
+constexpr const char* kBatchExample =
+    "Examples:\n"
+    "  kerf batch parts --out results --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
+    "  git ls-files '*.ngc' | kerf batch - --out results --jobs 4 --options options.txt\n";
 
 constexpr const char* kCanonExample = tr_noop(
     "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
@@ -185,6 +192,7 @@ constexpr std::array kCalls{
     CommandCall{kShadow, kShadowExample, live_command},
     CommandCall{kReplay, kReplayExample, live_command},
     CommandCall{kDiff, kDiffExample, diff_command},
+    CommandCall{kBatch, kBatchExample, batch_command},
     CommandCall{kCanon, kCanonExample, canon_command},
     CommandCall{kConfig, kConfigExample, config_command},
     // Found and started by machine_command(), before this is asked.

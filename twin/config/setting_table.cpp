@@ -15,6 +15,8 @@ constexpr std::array kCommands{
     CommandRow{kShadow, "shadow", tr_noop("follow a machine that runs")},
     CommandRow{kReplay, "replay", tr_noop("run a log of a machine again")},
     CommandRow{kDiff, "diff", tr_noop("what differs between two programs or workpieces")},
+    CommandRow{kBatch, "batch",
+               tr_noop("run many programs, each by itself; goes on where it stopped")},
     CommandRow{kCanon, "canon", tr_noop("print what a program commands as JSON lines")},
     CommandRow{kConfig, "config", tr_noop("check or print a configuration, or list every key")},
     CommandRow{kMachine, "machine", tr_noop("a simulated machine that serves its positions")},
@@ -29,15 +31,28 @@ constexpr std::array kCommands{
 std::span<const Setting> setting_table() {
   static const std::vector<Setting> table = [] {
     std::vector<Setting> all;
-    for (const auto topic :
-         {call_settings, machine_settings, workpiece_settings, sheet_settings, follow_settings,
-          output_settings, view_settings, source_settings, map_settings, simulator_settings}) {
+    for (const auto topic : {call_settings, machine_settings, workpiece_settings, sheet_settings,
+                             follow_settings, output_settings, batch_settings, view_settings,
+                             source_settings, map_settings, simulator_settings}) {
       const std::span<const Setting> rows = topic();
       all.insert(all.end(), rows.begin(), rows.end());
+    }
+    for (Setting& row : all) {
+      if (is_passed_on(row)) row.commands |= kBatch;
     }
     return all;
   }();
   return table;
+}
+
+bool is_passed_on(const Setting& setting) {
+  constexpr std::array<std::string_view, 19> kOfOneRun{
+      "--json",   "--junit", "--sarif",       "--csv",  "--png",  "--finding-png",
+      "--stl",    "--ply",   "--state",       "--dxf",  "--svg",  "--mesh-tolerance",
+      "--html",   "--pdf",   "--compare-png", "--view", "--draw", "--quiet",
+      "--verbose"};
+  return (setting.commands & kRun) != 0 && !setting.option.empty() && !setting.is_positional() &&
+         std::find(kOfOneRun.begin(), kOfOneRun.end(), setting.option) == kOfOneRun.end();
 }
 
 const Setting& setting_of(std::string_view option, Command command) {

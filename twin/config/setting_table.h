@@ -51,6 +51,7 @@ enum Command : std::uint16_t {
   kSources = 256,
   kTools = 512,
   kDiff = 1024,
+  kBatch = 2048,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
 inline constexpr std::uint16_t kCutting = kRun | kView | kBesideMachine | kDiff;
@@ -90,7 +91,8 @@ struct Setting {
   bool is_length() const { return unit == std::string_view("mm"); }
 };
 
-/// In the order of the schema (a group before its keys), and of `--help`.
+/// In the order of the schema (a group before its keys), and of `--help`. A row of kRun is one of
+/// kBatch, too, where it is passed on (is_passed_on()).
 std::span<const Setting> setting_table();
 
 /// That of the command; else that of another one (a view that a run has opened knows the run's).
@@ -99,6 +101,10 @@ const Setting& setting_of(std::string_view option, Command command);
 
 /// What `--help` says of the option, with its default.
 std::string help_of(const Setting& setting);
+
+/// What `kerf batch` hands to each `kerf run`: all options of a run but its files, its window, and
+/// what it says on the console. Those are the batch's own.
+bool is_passed_on(const Setting& setting);
 
 struct CommandRow {
   Command command;
@@ -119,6 +125,7 @@ std::span<const Setting> workpiece_settings();  ///< tools, stock
 std::span<const Setting> sheet_settings();      ///< beam, turret
 std::span<const Setting> follow_settings();     ///< the program that a machine runs, lines
 std::span<const Setting> output_settings();     ///< files
+std::span<const Setting> batch_settings();      ///< kerf batch
 std::span<const Setting> view_settings();       ///< window, pictures
 std::span<const Setting> source_settings();     ///< where positions come from, logs
 std::span<const Setting> map_settings();        ///< which number is which position

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,6 +51,11 @@ std::string sarif_text(std::span<const ListedProgram> programs, const std::strin
 /// (an error where the program was not run to its end), and one for each topic that was looked at
 /// (failed where it has findings of severity error; milder ones are its output).
 std::string junit_text(std::span<const ListedProgram> programs, const std::string& version);
+
+/// What junit_text() has made of some programs each, as one list of all. nullopt: one of them is
+/// not its work.
+std::optional<std::string> join_junit(std::span<const std::string> texts,
+                                      const std::string& version);
 
 /// As XML takes it in texts and in values: what is no character of XML, or no UTF-8, is U+FFFD.
 std::string xml_text(std::string_view text);

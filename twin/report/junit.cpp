@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "base/text_scan.h"
 #include "base/translate.h"
 #include "twin/report/finding_lists.h"
 
@@ -134,7 +135,46 @@ std::string suite_of(const ListedProgram& program, Sums& all) {
                      xml_text(program.path), sums.text(), cases, left_out);
 }
 
+constexpr std::string_view kSuitesEnd = "</testsuites>\n";
+
+std::string suites_text(const std::string& version, const Sums& all, const std::string& suites) {
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"kerf {}\" {}>\n{}{}",
+      xml_text(version), all.text(), suites, kSuitesEnd);
+}
+
+/// Of an element as Sums::text() writes it: name="VALUE".
+template <class Number>
+bool add_value(std::string_view element, std::string_view name, Number& sum) {
+  const std::size_t at = element.find(fmt::format(" {}=\"", name));
+  if (at == element.npos) return false;
+  std::string_view value = element.substr(at + name.size() + 3);
+  value = value.substr(0, value.find('"'));
+  Number number = 0;
+  if (!read_number(value, number)) return false;
+  sum += number;
+  return true;
+}
+
 }  // namespace
+
+std::optional<std::string> join_junit(std::span<const std::string> texts,
+                                      const std::string& version) {
+  Sums all;
+  std::string suites;
+  for (const std::string& text : texts) {
+    const std::size_t start = text.find("<testsuites ");
+    const std::size_t body = start == text.npos ? text.npos : text.find(">\n", start);
+    if (body == text.npos || !text.ends_with(kSuitesEnd)) return std::nullopt;
+    const std::string_view element = std::string_view(text).substr(start, body - start);
+    if (!add_value(element, "tests", all.tests) || !add_value(element, "failures", all.failures) ||
+        !add_value(element, "errors", all.errors) || !add_value(element, "time", all.time_s)) {
+      return std::nullopt;
+    }
+    suites += text.substr(body + 2, text.size() - kSuitesEnd.size() - body - 2);
+  }
+  return suites_text(version, all, suites);
+}
 
 std::string xml_text(std::string_view text) {
   std::string out;
@@ -163,10 +203,7 @@ std::string junit_text(std::span<const ListedProgram> programs, const std::strin
   Sums all;
   std::string suites;
   for (const ListedProgram& program : programs) suites += suite_of(program, all);
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"kerf {}\" {}>\n{}"
-      "</testsuites>\n",
-      xml_text(version), all.text(), suites);
+  return suites_text(version, all, suites);
 }
 
 }  // namespace kerf
