@@ -166,12 +166,31 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   return out;
 }
 
-/// Who cut a triangle. Whose corners differ was not cut: above and below it there are smaller ones.
-std::uint8_t who_cut(const std::array<std::uint16_t, 3>& corners) {
+/// Who cut a triangle. Where corners differ one of them was not cut: on a wall, whose upper ones are
+/// those of the top, it is cut all the same.
+std::uint8_t who_cut(const std::array<std::uint16_t, 3>& corners, bool is_wall) {
   std::array<std::uint8_t, 3> who;
   for (std::size_t k = 0; k < 3; ++k) who[k] = static_cast<std::uint8_t>(corners[k] & 0xff);
-  if (std::ranges::find(who, kNoGroup) != who.end()) return kNoGroup;
-  return who[1] == who[2] ? who[1] : who[0];
+  std::ranges::sort(who);
+  if (is_wall) return who[0];
+  return who[2] == kNoGroup ? kNoGroup : who[1];
+}
+
+/// Upright, and not a side of the blank.
+bool is_wall(const PageSurface& surface, std::size_t first, const Box& blank) {
+  std::array<Vec3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.corners[surface.indices[first + k]];
+  const Vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  constexpr double kUpright = 0.02, kSame_mm = 1e-4;
+  if (std::abs(across.z) > kUpright * glm::length(across)) return false;
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const double side : {blank.min[axis], blank.max[axis]}) {
+      if (std::ranges::all_of(
+              corners, [&](const Vec3& p) { return std::abs(p[axis] - side) < kSame_mm; }))
+        return false;
+    }
+  }
+  return true;
 }
 
 /// The one in the middle.
@@ -181,11 +200,12 @@ std::uint8_t deviation_of(std::array<std::uint16_t, 3> corners) {
   return static_cast<std::uint8_t>(corners[1]);
 }
 
-void name_triangles(const PageSurface& surface, const PageMeshOptions& options, PageMesh& mesh) {
+void name_triangles(const PageSurface& surface, const Box& blank, const PageMeshOptions& options,
+                    PageMesh& mesh) {
   for (std::size_t i = 0; i + 2 < surface.indices.size(); i += 3) {
     std::array<std::uint16_t, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.groups[surface.indices[i + k]];
-    if (options.group_of) mesh.groups.push_back(who_cut(corners));
+    if (options.group_of) mesh.groups.push_back(who_cut(corners, is_wall(surface, i, blank)));
     if (options.design) mesh.deviations.push_back(deviation_of(corners));
   }
 }
@@ -263,7 +283,7 @@ PageMesh page_mesh(const StockModel& stock, const PageMeshOptions& options) {
   mesh.deviation_mm = farthest_mm(surface, tiles.sample);
   mesh.measured = tiles.sample.size();
   pack(surface, mesh);
-  if (!surface.groups.empty()) name_triangles(surface, options, mesh);
+  if (!surface.groups.empty()) name_triangles(surface, stock.bounds_mm(), options, mesh);
   // Numbers of 16 bits are off by half of one.
   constexpr double kHalfStep = 0.5 / 65535;
   if (!mesh.box_mm.empty()) mesh.deviation_mm += kHalfStep * glm::length(mesh.box_mm.size());

@@ -164,6 +164,9 @@ def nearest_gap(body, piece, tip, axis, memory):
             swing, before = 1.0, p
             continue
         moved = math.dist(new, p)
+        if moved < 1e-8 and swing > 1:  # with its swing it only came back to the same rim
+            swing, before = 1.0, p
+            continue
         before, p, swing, last = p, new, further, now
         if now <= EPSILON or moved < 1e-8:
             break
@@ -384,7 +387,8 @@ class Pair:
         self.piece, self.body, self.obstacle, self.move = piece, body, obstacle, move
         self.memory = {}
         self.speed = move.speed(piece.reach())
-        self.is_convex = move.turn is None and not move.turns and not (isinstance(body, Pipe) and body.inside)
+        # Of what leans the gap of what is far is only a bound, and not convex.
+        self.is_convex = move.turn is None and not move.leans and not (isinstance(body, Pipe) and body.inside)
 
     def gap(self, t):
         """Negative: they overlap, or touch."""
