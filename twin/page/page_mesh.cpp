@@ -129,10 +129,12 @@ struct Tiles {
 
 Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   constexpr std::size_t kAtATime = 64;
+  constexpr double kOfCell = 0.1;
   Tiles out;
   Joiner joiner(out.whole);
   const std::size_t count = stock.tile_count();
   const Sample sample(count);
+  const std::size_t enough = 2 * options.most_triangles / std::max<std::size_t>(1, count);
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   for (std::size_t begin = 0; begin < count; begin += kAtATime) {
     const std::size_t end = std::min(count, begin + kAtATime);
@@ -150,7 +152,11 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
         PageSurface joined;
         Joiner(joined).add(part);
         part = std::move(joined);
-        simplify_surface(part, {.most_mm = options.free_deviation_mm, .keeps_rim = true});
+        // What would go later goes here, where all processors work: as far as a tenth of a cell.
+        for (double most_mm = options.free_deviation_mm;; most_mm *= 2) {
+          simplify_surface(part, {.most_mm = most_mm, .keeps_rim = true});
+          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * stock.cell_mm()) break;
+        }
       }
     };
     std::vector<std::jthread> helpers;
@@ -166,8 +172,8 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   return out;
 }
 
-/// Who cut a triangle. Where corners differ one of them was not cut: on a wall, whose upper ones are
-/// those of the top, it is cut all the same.
+/// Who cut a triangle. Where corners differ one of them was not cut: on a wall, whose upper ones
+/// are those of the top, it is cut all the same.
 std::uint8_t who_cut(const std::array<std::uint16_t, 3>& corners, bool is_wall) {
   std::array<std::uint8_t, 3> who;
   for (std::size_t k = 0; k < 3; ++k) who[k] = static_cast<std::uint8_t>(corners[k] & 0xff);
@@ -185,8 +191,8 @@ bool is_wall(const PageSurface& surface, std::size_t first, const Box& blank) {
   if (std::abs(across.z) > kUpright * glm::length(across)) return false;
   for (int axis = 0; axis < 2; ++axis) {
     for (const double side : {blank.min[axis], blank.max[axis]}) {
-      if (std::ranges::all_of(
-              corners, [&](const Vec3& p) { return std::abs(p[axis] - side) < kSame_mm; }))
+      if (std::ranges::all_of(corners,
+                              [&](const Vec3& p) { return std::abs(p[axis] - side) < kSame_mm; }))
         return false;
     }
   }

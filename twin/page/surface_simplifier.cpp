@@ -71,7 +71,8 @@ class Simplifier {
       for (std::size_t k = 0; k < 3 && !is_gone(t); ++k) {
         const std::uint32_t a = surface_.indices[3 * t + k],
                             b = surface_.indices[3 * t + (k + 1) % 3];
-        if (moved_[a] || moved_[b]) continue;
+        // Its other triangle has the edge the other way round.
+        if (a > b || moved_[a] || moved_[b]) continue;
         if (may_go(a, b, most2)) {
           left -= collapse(a, b);
         } else if (may_go(b, a, most2)) {
@@ -148,9 +149,9 @@ class Simplifier {
   bool may_go(std::uint32_t from, std::uint32_t to, double most2) {
     if (stays_[from]) return false;
     if (!surface_.groups.empty() && surface_.groups[from] != surface_.groups[to]) return false;
-    Quadric both = quadrics_[from];
-    both.add(quadrics_[to]);
-    return both.at(places_[to]) <= most2 && is_sound(from, to) && keeps_shape(from, to);
+    const Vec3& there = places_[to];
+    return quadrics_[from].at(there) + quadrics_[to].at(there) <= most2 && is_sound(from, to) &&
+           keeps_shape(from, to);
   }
 
   /// Around the edge there are two triangles, and no more corners that both its ends know.
@@ -234,11 +235,11 @@ class Simplifier {
 void simplify_surface(PageSurface& surface, const SimplifyOptions& options) {
   Simplifier simplifier(surface, options.keeps_rim);
   // From fine to coarse, so that what costs least goes first; each as long as it is worth it.
-  for (const double share : {0.02, 0.3, 1.0}) {
+  for (const double share : {0.2, 1.0}) {
     for (;;) {
       if (simplifier.count() <= options.least_triangles) return;
       const std::size_t before = simplifier.count();
-      if (simplifier.pass(share * options.most_mm, options.least_triangles) < before / 32 + 1)
+      if (simplifier.pass(share * options.most_mm, options.least_triangles) < before / 16 + 1)
         break;
     }
   }

@@ -27,8 +27,7 @@ struct SimplifyOptions {
 /// of squared distances as a bound of the largest). Never where triangles would turn over, become
 /// slivers, or leave a closed surface open, and not from one group onto another; where groups meet,
 /// the border may move 20 times `most_mm`. A surface that is closed stays so. meshoptimizer 0.18
-/// (Debian 12) is ten times as fast, and folds what is flat. About 1 us a triangle of what comes
-/// in.
+/// (Debian 12) folds what is flat. About 2 us a triangle of what comes in.
 void simplify_surface(PageSurface& surface, const SimplifyOptions& options);
 
 }  // namespace kerf

@@ -112,8 +112,9 @@ TEST_F(BadInput, UnknownOption) {
   expect(run({"--stcok", box_}), 2,
          "kerf: error: unknown option --stcok; did you mean --stock?\n"
          "   hint: kerf run --help lists what there is\n");
-  expect(run({"part.canon", "--html=part.html"}), 2,
-         "kerf: error: unknown option --html\n   hint: kerf run --help lists what there is\n");
+  expect(
+      run({"part.canon", "--postscript=part.ps"}), 2,
+      "kerf: error: unknown option --postscript\n   hint: kerf run --help lists what there is\n");
 }
 
 TEST_F(BadInput, UnknownCommandAndExtraArguments) {

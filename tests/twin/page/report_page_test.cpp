@@ -116,7 +116,7 @@ TEST(ReportPage, ShowsInchesToWhoReadsThem) {
   PageOptions options;
   options.units = LengthUnit::kInch;
   const std::string page = report_page(report_of("part.ngc"), nullptr, options);
-  EXPECT_TRUE(has(page, "0.030 in deep"));
+  EXPECT_TRUE(has(page, "0.03 in deep"));
   EXPECT_TRUE(data_of(page)["inch"]);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
+#include <vector>
 
 #include "base/translate.h"
 #include "stock/way_contact.h"
@@ -89,12 +90,28 @@ UnderSpans spans_under(const BlankBody& body, const Vec3& from, const Vec3& to, 
   return out;
 }
 
-int chords_of(const Motion& m) {
-  if (m.kind != MotionKind::kArc) return 1;
+/// Places in 0..1 between which the motion is taken as straight, ascending; of an arc also those
+/// where a coordinate turns round, so that its lowest place is one.
+std::vector<double> chord_ends(const Motion& m) {
+  if (m.kind != MotionKind::kArc) return {0, 1};
+  const double sweep = std::abs(m.arc.sweep_rad);
   const double radius =
       std::max(glm::length(m.from_mm - m.arc.center_mm), glm::length(m.to_mm - m.arc.center_mm));
   const double step = 2 * std::acos(std::max(0.0, 1 - kChord_mm / std::max(radius, kChord_mm)));
-  return std::max(1, static_cast<int>(std::ceil(std::abs(m.arc.sweep_rad) / step)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(sweep / step)));
+  std::vector<double> ends;
+  for (int i = 0; i <= steps; ++i) ends.push_back(static_cast<double>(i) / steps);
+  const Vec3 arm = m.from_mm - m.arc.center_mm;
+  const Vec3 u = arm - glm::dot(arm, m.arc.axis) * m.arc.axis;
+  const Vec3 v = glm::cross(m.arc.axis, u) * (m.arc.sweep_rad < 0 ? -1.0 : 1.0);
+  for (int i = 0; i < 3 && sweep > 0; ++i) {
+    if (u[i] == 0 && v[i] == 0) continue;
+    double angle = std::atan2(v[i], u[i]);
+    angle -= kPi * std::floor(angle / kPi);
+    for (; angle < sweep; angle += kPi) ends.push_back(angle / sweep);
+  }
+  std::ranges::sort(ends);
+  return ends;
 }
 
 double fraction_of(const Motion& m, const Vec3& tip, double length_mm) {
@@ -194,15 +211,15 @@ std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
   const std::span<const BlankBody> bodies =
       options_.blank.empty() ? std::span<const BlankBody>(&box, 1) : options_.blank;
   std::optional<Below> below;
-  const int chords = chords_of(m);
+  const std::vector<double> ends = chord_ends(m);
   Vec3 from = point_at(m, 0);
-  for (int i = 1; i <= chords; ++i) {
-    const Vec3 to = point_at(m, static_cast<double>(i) / chords);
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const Vec3 to = point_at(m, ends[i]);
     for (const BlankBody& body : bodies) {
       const UnderSpans spans = spans_under(body, from, to, limit);
       for (const UnderSpan& span :
            std::span(spans.of).first(static_cast<std::size_t>(spans.count))) {
-        const double fraction = (i - 1 + span.begin) / chords;
+        const double fraction = ends[i - 1] + span.begin * (ends[i] - ends[i - 1]);
         const double low =
             std::min(from.z + span.begin * (to.z - from.z), from.z + span.end * (to.z - from.z));
         const double depth = std::max(below ? below->depth_mm : 0, floor - low);

@@ -120,7 +120,7 @@ class Block:
     def tilted(self, piece, tip, axis, memory):
         """memory: keeps the place where the last one was nearest. What is FAR_mm away may be said to be nearer, but not that near."""
         far = ball_gap(piece, tip, axis, self)
-        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
+        return far if far > FAR_mm and "exact" not in memory else nearest_gap(self, piece, tip, axis, memory)[0]
 
     def middle(self):
         return tuple((a + b) / 2 for a, b in zip(self.low, self.high))
@@ -186,7 +186,7 @@ class Rod:
 
     def tilted(self, piece, tip, axis, memory):
         far = ball_gap(piece, tip, axis, self)
-        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
+        return far if far > FAR_mm and "exact" not in memory else nearest_gap(self, piece, tip, axis, memory)[0]
 
     def middle(self):
         return (*self.center, (self.low + self.high) / 2)
@@ -215,7 +215,7 @@ class Bar:
 
     def tilted(self, piece, tip, axis, memory):
         far = ball_gap(piece, tip, axis, self)
-        return far if far > FAR_mm else nearest_gap(self, piece, tip, axis, memory)[0]
+        return far if far > FAR_mm and "exact" not in memory else nearest_gap(self, piece, tip, axis, memory)[0]
 
     def middle(self):
         return ((self.low_x + self.high_x) / 2, *self.center)
@@ -247,7 +247,7 @@ class Pipe:
         if self.inside:
             return self.tilted_inside(piece, tip, axis)
         far = ball_gap(piece, tip, axis, self)
-        if far > FAR_mm:
+        if far > FAR_mm and "exact" not in memory:
             return far
         gap, p = nearest_gap(self, piece, tip, axis, memory)
         # Over its hole a tube is not what a rod is.
@@ -387,8 +387,9 @@ class Pair:
         self.piece, self.body, self.obstacle, self.move = piece, body, obstacle, move
         self.memory = {}
         self.speed = move.speed(piece.reach())
-        # Of what leans the gap of what is far is only a bound, and not convex.
-        self.is_convex = move.turn is None and not move.leans and not (isinstance(body, Pipe) and body.inside)
+        self.is_convex = move.turn is None and not move.turns and not (isinstance(body, Pipe) and body.inside)
+        if self.is_convex:  # bounds of what is far are not convex
+            self.memory["exact"] = True
 
     def gap(self, t):
         """Negative: they overlap, or touch."""
