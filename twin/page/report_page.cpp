@@ -133,7 +133,7 @@ std::string embedded(const Json& json) {
   return out;
 }
 
-std::string view_section(const PageMesh& mesh, const PageOptions& options) {
+std::string view_section(const PageMesh& mesh) {
   if (mesh.triangles.empty()) return {};
   const auto button = [](const char* look, const char* text) {
     return fmt::format("<button type=\"button\" data-look=\"{}\">{}</button>", look,
@@ -159,7 +159,6 @@ std::string view_section(const PageMesh& mesh, const PageOptions& options) {
   out += fmt::format("<p class=\"soft\">{}</p></div>\n",
                      xml_text(tr("Drag to turn, with Shift or the right button to shift, wheel "
                                  "for nearer. A mark is a finding.")));
-  static_cast<void>(options);
   return out;
 }
 
@@ -214,7 +213,7 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
       language(), xml_text(report.version), xml_text(title), page_assets::page_css);
   out += head_section(report, options);
   out += fmt::format("<section><h2>{}</h2>\n", xml_text(tr("Part and findings")));
-  out += has_view ? "<div class=\"split\">" + view_section(mesh, options) + "<div>" : "<div><div>";
+  out += has_view ? "<div class=\"split\">" + view_section(mesh) + "<div>" : "<div><div>";
   out += finding_list(report, options.units) + "<pre id=\"program\"></pre></div></div></section>\n";
   out += setup_section(report, options, has_view);
   out += tool_section(report, options.units);
