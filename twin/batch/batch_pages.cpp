@@ -28,24 +28,6 @@ std::array<std::size_t, kBatchVerdicts> counts_of(const BatchEnd& end) {
   return counts;
 }
 
-Json json_of(const BatchResult& r) {
-  Json out;
-  out["program"] = r.program;
-  out["hash"] = r.hash;
-  out["verdict"] = to_string(r.verdict);
-  out["exit_code"] = r.exit_code;
-  out["errors"] = r.errors;
-  out["warnings"] = r.warnings;
-  out["notes"] = r.notes;
-  out["findings"] = r.findings;
-  out["time_s"] = r.time_s ? Json(*r.time_s) : Json(nullptr);
-  out["removed_mm3"] = r.removed_mm3 ? Json(*r.removed_mm3) : Json(nullptr);
-  out["digest"] = r.digest.empty() ? Json(nullptr) : Json(r.digest);
-  out["message"] = r.message.empty() ? Json(nullptr) : Json(r.message);
-  out["report"] = r.report.empty() ? Json(nullptr) : Json(r.report);
-  return out;
-}
-
 /// The suite of a run that has left no list.
 std::string suite_without_run(const BatchResult& result, const std::string& version) {
   ListedProgram listed;
@@ -124,7 +106,7 @@ std::string batch_summary_json(const BatchEnd& end, std::size_t programs,
   out["errors"] = errors;
   out["warnings"] = warnings;
   out["results"] = Json::array();
-  for (const BatchResult& result : end.results) out["results"].push_back(json_of(result));
+  for (const BatchResult& result : end.results) out["results"].push_back(summary_json(result));
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

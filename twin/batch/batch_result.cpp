@@ -117,6 +117,24 @@ BatchVerdict verdict_of(const ProcessEnd& end, std::string_view said) {
   }
 }
 
+/// What does not depend on how long the run took, or where its files are.
+Json lasting_json(const BatchResult& r) {
+  Json out;
+  out["program"] = r.program;
+  out["hash"] = r.hash;
+  out["verdict"] = to_string(r.verdict);
+  out["exit_code"] = r.exit_code;
+  out["errors"] = r.errors;
+  out["warnings"] = r.warnings;
+  out["notes"] = r.notes;
+  out["findings"] = r.findings;
+  out["time_s"] = or_null(r.time_s);
+  out["removed_mm3"] = or_null(r.removed_mm3);
+  out["digest"] = or_null(r.digest);
+  out["message"] = or_null(r.message);
+  return out;
+}
+
 }  // namespace
 
 const char* to_string(BatchVerdict verdict) {
@@ -138,20 +156,14 @@ ExitCode exit_code_of(BatchVerdict verdict) {
   }
 }
 
+Json summary_json(const BatchResult& r) {
+  Json out = lasting_json(r);
+  out["report"] = or_null(r.report);
+  return out;
+}
+
 std::string line_of(const BatchResult& r) {
-  Json out;
-  out["program"] = r.program;
-  out["hash"] = r.hash;
-  out["verdict"] = to_string(r.verdict);
-  out["exit_code"] = r.exit_code;
-  out["errors"] = r.errors;
-  out["warnings"] = r.warnings;
-  out["notes"] = r.notes;
-  out["findings"] = r.findings;
-  out["time_s"] = or_null(r.time_s);
-  out["removed_mm3"] = or_null(r.removed_mm3);
-  out["digest"] = or_null(r.digest);
-  out["message"] = or_null(r.message);
+  Json out = lasting_json(r);
   out["wall_s"] = std::round(r.wall_s * 1000) / 1000;
   out["peak_rss_mb"] = std::round(r.peak_rss_mb * 10) / 10;
   out["each_seconds"] = r.bounds.seconds;

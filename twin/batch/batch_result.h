@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,6 +52,8 @@ struct BatchResult {
 
 /// One line, with its newline.
 std::string line_of(const BatchResult& result);
+/// The same for the summary: without what differs from run to run.
+nlohmann::ordered_json summary_json(const BatchResult& result);
 /// nullopt: no whole line of ours.
 std::optional<BatchResult> result_of_line(std::string_view line);
 
