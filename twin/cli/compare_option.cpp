@@ -10,6 +10,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
+#include "stock/turning/turned_surface.h"
 #include "twin/cli/program_options.h"
 #include "twin/compare/design_fit.h"
 #include "twin/report/compare_report.h"
@@ -53,6 +54,47 @@ void read_place(OptionReader& reader, DesignPlacement& placement) {
   placement = {*shift, *turn};
 }
 
+/// How much of two spans along Z is in both, of what is in either.
+double share_in_both(double low_a, double high_a, double low_b, double high_b) {
+  const double both = std::min(high_a, high_b) - std::max(low_a, low_b);
+  const double either = std::max(high_a, high_b) - std::min(low_a, low_b);
+  return either > 0 ? std::max(0.0, both) / either : 0;
+}
+
+/// The piece that has come off a workpiece that turns and is more like the design than what the
+/// chuck still holds, if there is one.
+void take_piece(const StockModel& stock, const Box& design_mm, bool anywhere, Compared& compared) {
+  const StockModel& bare = stock.bare();
+  if (!is_turned_alone(bare) || design_mm.empty()) return;
+  const auto likeness = [&](double low_z, double high_z) {
+    const double low = anywhere ? 0 : design_mm.min.z;
+    const double shift = anywhere ? -low_z : 0;
+    return share_in_both(low_z + shift, high_z + shift, low, low + design_mm.size().z);
+  };
+  const TurnedPart& left = bare.turned()->part();
+  double low_z = 0, high_z = 0;
+  bool is_first = true;
+  for (const std::vector<Vec2>& ring : left.profile()) {
+    for (const Vec2& p : ring) {  // x is along Z
+      low_z = is_first ? p.x : std::min(low_z, p.x);
+      high_z = is_first ? p.x : std::max(high_z, p.x);
+      is_first = false;
+    }
+  }
+  double most = is_first ? 0 : likeness(low_z, high_z);
+  std::size_t number = 0;
+  const TurnedPart* part = nullptr;
+  for (const TurnedPiece& piece : left.freed()) {
+    ++number;
+    const double like = piece.part ? likeness(piece.low_z_mm, piece.high_z_mm) : 0;
+    if (like <= most) continue;
+    most = like;
+    part = piece.part.get();
+    compared.piece_number = number;
+  }
+  if (part) compared.piece = std::make_shared<const TurningStock>(*part);
+}
+
 }  // namespace
 
 CompareRequest understand_compare(OptionReader& reader) {
@@ -86,23 +128,25 @@ std::shared_ptr<const DesignPart> placed_design(const CompareRequest& request,
   return std::make_shared<const DesignPart>(file->placed(request.placement, diagnostics));
 }
 
-std::shared_ptr<const DesignPart> compare_finished(const CompareRequest& request,
-                                                   const DesignFile& file, const StockModel* stock,
-                                                   const CutHistory& history, Report& report,
-                                                   Diagnostics& diagnostics) {
+Compared compare_finished(const CompareRequest& request, const DesignFile& file,
+                          const StockModel* stock, const CutHistory& history, Report& report,
+                          Diagnostics& diagnostics) {
   if (stock == nullptr) {
     Diagnostic d;
     d.message = tr("--compare: stopped before there was a workpiece; nothing is compared");
     diagnostics.push_back(std::move(d));
-    return nullptr;
+    return {};
   }
   DesignPlacement placement = request.placement;
   std::optional<double> residue_mm;
+  Diagnostics unheard;  // the same is said of it where it lies in the end
+  Compared compared;
+  take_piece(*stock, file.placed(placement, unheard).box_mm(), request.is_fitted, compared);
+  const StockModel& body = compared.piece ? *compared.piece : *stock;
   if (request.is_fitted) {
-    Diagnostics unheard;  // the same is said of it where it lies in the end
     const DesignPart as_read = file.placed({}, unheard);
     const std::optional<DesignFit> fit = fit_design_in_blank(
-        as_read, stock->bounds_mm(), fit_points(*stock, kFitPoints), request.placement);
+        as_read, body.bounds_mm(), fit_points(body, kFitPoints), request.placement);
     if (fit) {
       placement = fit->placement;
       residue_mm = fit->residue_mm;
@@ -116,9 +160,10 @@ std::shared_ptr<const DesignPart> compare_finished(const CompareRequest& request
       diagnostics.push_back(std::move(d));
     }
   }
-  auto design = std::make_shared<const DesignPart>(file.placed(placement, diagnostics));
-  doubt_place(*design, file.path, stock->bounds_mm(), request.tolerance_mm, diagnostics);
-  Comparison comparison = compare_stock(*stock, *design, {request.tolerance_mm}, history);
+  compared.design = std::make_shared<const DesignPart>(file.placed(placement, diagnostics));
+  doubt_place(*compared.design, file.path, stock->bounds_mm(), request.tolerance_mm, diagnostics);
+  Comparison comparison = compare_stock(body, *compared.design, {request.tolerance_mm}, history);
+  comparison.piece = compared.piece_number;
   comparison.design = file.path;
   comparison.placement = placement.text();
   comparison.fit_residue_mm = residue_mm;
@@ -128,7 +173,7 @@ std::shared_ptr<const DesignPart> compare_finished(const CompareRequest& request
   add_compare_findings(comparison, guessed, report.findings);
   report.timing.total_s += comparison.seconds;
   report.comparison = std::move(comparison);
-  return design;
+  return compared;
 }
 
 }  // namespace kerf

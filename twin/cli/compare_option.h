@@ -34,12 +34,23 @@ std::shared_ptr<const DesignFile> open_design(const CompareRequest& request,
 std::shared_ptr<const DesignPart> placed_design(const CompareRequest& request,
                                                 Diagnostics& diagnostics);
 
+/// What was compared with what.
+struct Compared {
+  std::shared_ptr<const DesignPart> design;  ///< as it was placed; null: nothing was compared
+  /// The piece of a workpiece that turns, where it lay, if it was that, with its number among those
+  /// that came off; null and 0: it was the workpiece itself.
+  std::shared_ptr<const StockModel> piece{};
+  std::size_t piece_number = 0;
+
+  /// For what shows the workpiece itself: null where it was a piece.
+  std::shared_ptr<const DesignPart> of_workpiece() const { return piece ? nullptr : design; }
+};
+
 /// Compares the finished workpiece, and puts what comes of it into the report: the section and
-/// findings. `stock` null: there is none, which is told. Returns the design as it was placed; null
-/// where nothing was compared.
-std::shared_ptr<const DesignPart> compare_finished(const CompareRequest& request,
-                                                   const DesignFile& file, const StockModel* stock,
-                                                   const CutHistory& history, Report& report,
-                                                   Diagnostics& diagnostics);
+/// findings. Of what is parted off, that which lies most where the design does, or with a fit is
+/// most as long as it, is what was made. `stock` null: there is none, which is told.
+Compared compare_finished(const CompareRequest& request, const DesignFile& file,
+                          const StockModel* stock, const CutHistory& history, Report& report,
+                          Diagnostics& diagnostics);
 
 }  // namespace kerf

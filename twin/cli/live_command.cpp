@@ -208,13 +208,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     diagnostics.push_back(fault(
         fmt::format("--events: {}: {}", request.events, std::strerror(console.events_error()))));
   }
-  std::shared_ptr<const DesignPart> compared;
+  Compared compared;
   if (design) {
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {session->cut_labels(), nullptr}, session->report(), diagnostics);
   }
   write_pages(request.outputs, session->report(), session->stock(),
-              {session->cut_labels(), nullptr, {}, request.units, compared.get()}, diagnostics);
+              {session->cut_labels(), nullptr, {}, request.units, compared.of_workpiece().get()},
+              diagnostics);
   write_outputs(request.outputs, request.mesh_tolerance_mm, session->stock(), session->collisions(),
                 session->report(), diagnostics, nullptr, compared);
   const ListedProgram listed = listed_program(session->report());

@@ -208,8 +208,8 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics) {
 
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
-                   std::atomic<unsigned>* dealt_with,
-                   const std::shared_ptr<const DesignPart>& design) {
+                   std::atomic<unsigned>* dealt_with, const Compared& compared) {
+  const std::shared_ptr<const DesignPart> design = compared.of_workpiece();
   const auto done_with = [&](const std::string& path) {
     if (dealt_with) *dealt_with |= paths.bit_of(path);
   };
@@ -224,9 +224,10 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     note_failure(write_picture(paths, *stock, around, name, diagnostics), diagnostics);
     done_with(paths.png);
   }
-  if (stock && design && !paths.compare_png.empty()) {
+  if (stock && compared.design && !paths.compare_png.empty()) {
     const Result<Picture> picture =
-        deviation_picture(*stock, design, *report.comparison, file_name(name));
+        deviation_picture(compared.piece ? *compared.piece : *stock, compared.design,
+                          *report.comparison, file_name(name));
     note_failure(picture ? write_png(paths.compare_png, *picture)
                          : Done{Error{trf("drawing {}: {}", paths.compare_png, picture.error())}},
                  diagnostics);

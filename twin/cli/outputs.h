@@ -11,8 +11,8 @@
 #include "base/diagnostic.h"
 #include "base/result.h"
 #include "stock/stock_model.h"
+#include "twin/cli/compare_option.h"
 #include "twin/cli/option_reader.h"
-#include "twin/compare/design_part.h"
 #include "twin/process/check_options.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report.h"
@@ -70,12 +70,10 @@ void check_output_places(const OutputPaths& paths, Diagnostics& diagnostics);
 /// written, which comes last.
 /// `stock`: null if there was none. `around`: its fixtures, chuck and tailstock are drawn in
 /// pictures. `dealt_with`, if given, gets the bit_of() each of paths.named() that is there, or has
-/// failed; another thread may look at it. `design`: what report.comparison was made with; null:
-/// none.
+/// failed; another thread may look at it. `compared`: what report.comparison was made of.
 void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const StockModel* stock,
                    const CollisionWishes& around, Report& report, Diagnostics& diagnostics,
-                   std::atomic<unsigned>* dealt_with = nullptr,
-                   const std::shared_ptr<const DesignPart>& design = nullptr);
+                   std::atomic<unsigned>* dealt_with = nullptr, const Compared& compared = {});
 
 /// `junit` and `sarif` of these programs, where they are wanted, under the same rules.
 void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,

@@ -232,7 +232,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     outcome = session->run(stop.get_token(), diagnostics);
   }
   rename_stdin(kept, session->report(), diagnostics);
-  std::shared_ptr<const DesignPart> compared;
+  Compared compared;
   if (!has_error(diagnostics) && design) {
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {labels_in(*session), session->kept_moves()}, session->report(),
@@ -247,10 +247,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
         kWritingPatience);
     const std::string command = command_line(
         with_guesses(request.written, rows_in(session->report().guesses, request.units)));
-    write_pages(
-        request.outputs, session->report(), session->stock(),
-        {labels_in(*session), curve ? &*curve : nullptr, command, request.units, compared.get()},
-        diagnostics);
+    write_pages(request.outputs, session->report(), session->stock(),
+                {labels_in(*session), curve ? &*curve : nullptr, command, request.units,
+                 compared.of_workpiece().get()},
+                diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {

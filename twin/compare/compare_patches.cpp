@@ -238,8 +238,11 @@ class VolumeCounter {
     }
     // It is not the place that counts, but what there is of it: the surface says how deep it is.
     constexpr double kJust = 1 + 1e-6;
-    if (!(worst > kJust * sums_.tolerance_mm() + doubt_mm_)) return;
     if (surface_z) place.z = *surface_z;
+    if (!(worst > kJust * sums_.tolerance_mm() + doubt_mm_)) {
+      sums_.add_beside(place, is_gouge, (high - low) * area_mm2);
+      return;
+    }
     const double told = kJust * sums_.tolerance_mm();
     SurfaceSample sample{place, is_gouge ? -told : told, 0, (high - low) * area_mm2,
                          MeshPatch::kNotCut};

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "stock/turning/turning_stock.h"
+#include "stock/turning/turned_surface.h"
 #include "twin/compare/column_lines.h"
 #include "twin/compare/compare_heights.h"
 #include "twin/compare/compare_patches.h"
@@ -25,17 +25,11 @@ constexpr double kHeights_mm = 2e-4;
 constexpr double kSharpened_cells = 1.0 / 20;
 /// Octrees hold faces and edges where they are, to this; measured by tests/twin/compare/planted.
 constexpr double kOctree_cells = 0.08;
-/// What stands for a cell where there is none.
-constexpr double kContourCell_mm = 0.1;
 /// A cutter whose end rises by more than this part of the tolerance within half a cell is pointed.
 constexpr double kPointed = 0.25;
 
 bool has_contours(const StockModel& stock) {
-  return stock.sheet() != nullptr || (stock.turned() != nullptr && stock.milling_cell_mm() == 0);
-}
-
-double cell_of(const StockModel& stock) {
-  return has_contours(stock) ? kContourCell_mm : stock.cell_mm();
+  return stock.sheet() != nullptr || is_turned_alone(stock);
 }
 
 SurfaceDoubt doubt_of(const StockModel& stock) {
@@ -143,7 +137,7 @@ Comparison compare_stock(const StockModel& shown, const DesignPart& design,
                          const CompareSettings& settings, const CutHistory& history) {
   const auto begin = std::chrono::steady_clock::now();
   const StockModel& stock = shown.bare();
-  const double cell = cell_of(stock);
+  const double cell = detail_cell_mm(stock);
   const KeptMoves* const exact =
       history.kept != nullptr && history.kept->is_exact() ? history.kept : nullptr;
   Comparison out;

@@ -52,7 +52,8 @@ struct DeviationBin {
 /// Deviations are distances from the design's surface: positive where material is left over
 /// (excess), negative where too much is gone (gouge).
 struct Comparison {
-  std::string design;  ///< the file
+  std::string design;     ///< the file
+  std::size_t piece = 0;  ///< the how manieth of what came off a turned workpiece; 0: the workpiece
   std::size_t triangles = 0;
   double tolerance_mm = 0;
   /// Error of the comparison itself: how far a deviation that is told may be off for a workpiece

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -60,6 +61,25 @@ void DeviationSums::add(const SurfaceSample& sample) {
   cube.area_mm2 += sample.is_extra ? 0 : sample.area_mm2;
   cube.volume_mm3 += sample.volume_mm3;
   volume_mm3_[kind] += sample.volume_mm3;
+}
+
+void DeviationSums::add_beside(const Vec3& at_mm, bool is_gouge, double volume_mm3) {
+  Cubes& cubes = cubes_[is_gouge ? 1 : 0];
+  Cube* nearest = nullptr;
+  int least = 4;
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const int steps = std::abs(x) + std::abs(y) + std::abs(z);
+        if (steps >= least) continue;
+        const auto found = cubes.find(key_of(at_mm + cube_mm_ * Vec3(x, y, z)));
+        if (found == cubes.end()) continue;
+        nearest = &found->second;
+        least = steps;
+      }
+  if (nearest == nullptr) return;
+  nearest->volume_mm3 += volume_mm3;
+  volume_mm3_[is_gouge ? 1 : 0] += volume_mm3;
 }
 
 std::vector<DeviationBin> DeviationSums::histogram() const {

@@ -43,6 +43,9 @@ class DeviationSums {
   DeviationSums(double tolerance_mm, double cell_mm);
 
   void add(const SurfaceSample& sample);
+  /// Volume that no deviation beyond the tolerance lies in, such as a thin layer's: it counts where
+  /// the cube of the place, or one beside it, has such a deviation of that kind already.
+  void add_beside(const Vec3& at_mm, bool is_gouge, double volume_mm3);
 
   double tolerance_mm() const { return tolerance_mm_; }
   double area_mm2() const { return area_mm2_; }

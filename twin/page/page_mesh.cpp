@@ -13,6 +13,7 @@
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "stock/turning/turned_surface.h"
 #include "twin/compare/patch_deviation.h"
 #include "twin/compare/triangle_tree.h"
 #include "twin/page/surface_simplifier.h"
@@ -145,8 +146,8 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
     const auto work = [&] {
       for (std::size_t tile; (tile = next++) < end;) {
         PageSurface& part = parts[tile - begin];
-        part =
-            surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), stock.cell_mm(), options);
+        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), detail_cell_mm(stock),
+                          options);
         full[tile - begin] = part.indices.size() / 3;
         sample.take(part, samples[tile - begin]);
         PageSurface joined;
@@ -155,7 +156,8 @@ Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
         // What would go later goes here, where all processors work: as far as a tenth of a cell.
         for (double most_mm = options.free_deviation_mm;; most_mm *= 2) {
           simplify_surface(part, {.most_mm = most_mm, .keeps_rim = true});
-          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * stock.cell_mm()) break;
+          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * detail_cell_mm(stock))
+            break;
         }
       }
     };

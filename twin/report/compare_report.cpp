@@ -94,6 +94,7 @@ Json compare_json(const Comparison& c, const std::vector<std::string>& files) {
   out["outside_mm3"] = rounded(c.outside_mm3);
   out["bound_mm"] = rounded(c.bound_mm);
   out["walls_mm"] = rounded(c.walls_mm);
+  if (c.piece > 0) out["piece"] = c.piece;
   if (!c.placement.empty()) out["placement"] = c.placement;
   if (c.fit_residue_mm) out["fit_residue_mm"] = rounded(*c.fit_residue_mm);
   out["gouge"] = worst_json(c.gouge, files);
@@ -123,6 +124,7 @@ std::string compare_text(const Comparison& c) {
   if (c.excess.mm > 0)
     out += trf("          excess {}; {:.3f} mm3 in {}\n", worst_text(c.excess), c.excess_mm3,
                places_text(c.excesses));
+  if (c.piece > 0) out += trf("          of piece {}, which was parted off\n", c.piece);
   if (!c.placement.empty()) out += trf("          the design is {}\n", c.placement);
   if (c.fit_residue_mm)
     out += trf("          fitted, {:.4f} mm off in the root mean square\n", *c.fit_residue_mm);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/translate.h"
-#include "stock/turning/turning_stock.h"
+#include "stock/turning/turned_surface.h"
 #include "twin/findings/finding_json.h"
 
 namespace kerf {
@@ -127,7 +127,7 @@ TurningReport turning_report(const StockModel& stock, const Process& process,
   const TurningStock& turned = *stock.turned();
   report.density_kg_per_m3 = density_kg_per_m3;
   // It has cells once a driven tool has cut.
-  if (stock.cell_mm() != turned.cell_mm()) report.milled_cell_mm = stock.cell_mm();
+  if (!is_turned_alone(stock)) report.milled_cell_mm = stock.cell_mm();
   report.pieces.assign(process.fallen().begin(), process.fallen().end());
   for (const FallenPiece& fallen : report.pieces) {
     report.piece_facts.push_back(fallen.piece.part ? facts_of(*fallen.piece.part) : TurnedFacts());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stock/turning/turning_stock.h"
+#include "stock/turning/turned_surface.h"
 
 namespace kerf {
 namespace {
@@ -11,14 +11,8 @@ namespace {
 /// Joined cells may be larger than a pixel by a quarter: then a workpiece that fills the picture is
 /// as fine at its near end as in its middle.
 constexpr double kCellsPerPixel = 1.6;
-/// Of a turned part: share of a pixel by which a contour may be off, and what stands for cells.
+/// Of a turned part: share of a pixel by which a contour may be off.
 constexpr double kUnseenPixels = 0.25;
-constexpr double kTurnedCell_mm = 0.1;
-
-/// Of contours; once it is milled as well it has cells.
-bool is_exact(const StockModel& stock) {
-  return stock.turned() && stock.cell_mm() == stock.turned()->cell_mm();
-}
 
 }  // namespace
 
@@ -30,12 +24,8 @@ int patch_level(double pixel_mm, double cell_mm) {
 }
 
 int patch_level(const StockModel& stock, double pixel_mm) {
-  return is_exact(stock) ? TurnedPart::level_within(kUnseenPixels * pixel_mm)
-                         : patch_level(pixel_mm, stock.cell_mm());
-}
-
-double patch_cell_mm(const StockModel& stock) {
-  return is_exact(stock) ? kTurnedCell_mm : stock.cell_mm();
+  return is_turned_alone(stock) ? TurnedPart::level_within(kUnseenPixels * pixel_mm)
+                                : patch_level(pixel_mm, stock.cell_mm());
 }
 
 PartPatches part_patches(const StockModel& stock) {

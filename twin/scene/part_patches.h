@@ -11,8 +11,6 @@ namespace kerf {
 int patch_level(double pixel_mm, double cell_mm);
 /// The same of a workpiece, which may have no cells.
 int patch_level(const StockModel& stock, double pixel_mm);
-/// Edge of a cell, for who divides patches; where there are none, of what is like one.
-double patch_cell_mm(const StockModel& stock);
 
 /// All patches of `stock` at the level that suits the picture; one for all, so that they meet
 /// without skirts. `stock` must outlive the result, and not be changed while that is drawn.

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "stock/turning/turned_surface.h"
 #include "twin/compare/patch_deviation.h"
 #include "twin/scene/part_patches.h"
 
@@ -167,7 +168,7 @@ void PatchFeeder::calm_down(Clock::time_point now) {
 std::shared_ptr<const MeshPatch> PatchFeeder::make(std::size_t tile) {
   const int level = wanted_level(tile);
   auto patch = std::make_shared<MeshPatch>(stock_->patch(static_cast<std::uint32_t>(tile), level));
-  if (design_) add_deviation(*design_, {patch_cell_mm(*stock_), tolerance_mm_}, patch.get());
+  if (design_) add_deviation(*design_, {detail_cell_mm(*stock_), tolerance_mm_}, patch.get());
   Shown& shown = shown_[tile];
   const auto triangles = static_cast<std::uint32_t>(patch->indices.size() / 3);
   triangles_ = triangles_ - shown.triangles + triangles;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/turning/turned_surface.h"
 #include "twin/machine/planned_pieces.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/contact_grounds.h"
@@ -358,7 +359,7 @@ bool TurningStage::report_unmilled(const Motion& m, const TimedStep& step) {
 /// Once, when a part has been milled and has threads.
 void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
   const TurningStock& turned = *stock_.turned();
-  const bool is_milled = stock_.cell_mm() != turned.cell_mm();
+  const bool is_milled = !is_turned_alone(stock_);
   if (threads_told_ || !is_milled || turned.part().threads().empty()) return;
   threads_told_ = true;
   Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
