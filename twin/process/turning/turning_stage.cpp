@@ -243,8 +243,11 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   const TurnedMove move = turned(m, step);
   check_bodies(move);
   if (!checks_.may_touch(move)) {
-    // One that goes on from it does so with the turn.
-    if (m.kind == MotionKind::kThread) cut(m, step);
+    // One that goes on from it does so with the turn, and is part of the same pass.
+    if (m.kind == MotionKind::kThread) {
+      if (!is_driven()) threads_.note(move);
+      cut(m, step);
+    }
     return;
   }
   if (!is_driven()) {
