@@ -44,6 +44,47 @@ void append_edge(const Vec2& a, const Vec2& b, std::vector<ProfileEdge>& edges) 
   if (a.x > b.x) edges.push_back({b.x, a.x, b.y, a.y, 1});
 }
 
+/// Whether a part of an outline, moved by `by`, lies within another outline.
+bool is_within(const ConvexChain& inner, const Vec2& by, const ThreadPass& outer) {
+  const ConvexChain& chain = outer.corners();
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const Vec2& a = chain[i == 0 ? chain.size() - 1 : i - 1];
+    const Vec2 edge = chain[i] - a;
+    const double slack = kStill_mm * glm::length(edge);
+    for (const Vec2& corner : inner) {
+      const Vec2 p = corner + by - a;
+      if (edge.x * p.y - edge.y * p.x < -slack) return false;
+    }
+  }
+  return true;
+}
+
+/// Of what lies beside the tool of `pass` for a length of its way, from `offset` on: what of it is
+/// between the heights of the tool and within another one takes nothing more. Of the passes of a
+/// thread hardly more than the deepest is left. All go straight, so what holds at both ends holds
+/// between them.
+template <class Beside>
+void drop_covered(const ThreadPass& pass, double length, std::vector<Beside>& active) {
+  for (std::size_t i = 0; i < active.size();) {
+    const Beside& inner = active[i];
+    const double to_r = inner.offset.y + length * inner.per_way.y;
+    const ConvexChain part =
+        between_heights(inner.pass->corners(), pass.low_mm().y - std::max(inner.offset.y, to_r),
+                        pass.high_mm().y - std::min(inner.offset.y, to_r));
+    // Later ones are deeper as a rule.
+    const bool is_covered = std::any_of(active.rbegin(), active.rend(), [&](const Beside& outer) {
+      const Vec2 from = inner.offset - outer.offset;
+      return &outer != &inner && is_within(part, from, *outer.pass) &&
+             is_within(part, from + length * (inner.per_way - outer.per_way), *outer.pass);
+    });
+    if (is_covered) {
+      active.erase(active.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+}
+
 }  // namespace
 
 void append_edges(std::span<const Contour> contours, double low_z_mm, double high_z_mm,
@@ -287,9 +328,11 @@ double ThreadIntegral::cell_mm3(const ThreadPass& pass, std::size_t cell,
       if (b.low_way > part.low || b.high_way < part.high) continue;
       b.offset += (part.low - ways.low) * b.per_way;
       b.low_way = part.low;
-      moves_ = moves_ || glm::length(b.per_way) * (part.high - part.low) > kStill_mm;
       active_.push_back(b);
     }
+    drop_covered(pass, part.high - part.low, active_);
+    for (const Beside& b : active_)
+      moves_ = moves_ || glm::length(b.per_way) * (part.high - part.low) > kStill_mm;
     if (!moves_) cut_free(pass, part.low);
     sum += integrate(pass, part, tolerance);
   }
@@ -307,6 +350,7 @@ ThreadIntegral::Place ThreadIntegral::look(
   find_beside(pass, {way_mm, way_mm}, before);
   active_ = beside_;
   for (Beside& b : active_) b.low_way = way_mm;
+  drop_covered(pass, 0, active_);
   cut_free(pass, way_mm);
   Place place;
   place.moment_mm3 = common_moment_mm3(free_, by, near_);

@@ -2,17 +2,17 @@
 // all threads that the window has, by the software renderer and without a window.
 //
 //   bench_view [--program FILE] [--stock SPEC] [--tool N=SHAPE] [--cells N] [--speed X]
-//              [--seconds N] [--full-redraw on|off] [--follow on|off]
+//              [--seconds N] [--from S] [--full-redraw on|off] [--follow on|off]
 //
 // Without a program: w1, LinuxCNC's 3D_Chips.ngc, where linuxcnc-uspace has it. First goes through
-// it in steps of a sixtieth of a second at `speed` times its own time and draws each: processor
-// time a frame of the threads that share the work, which depends little on what else the machine
-// does. Then plays it at that speed, drawing 1280x800 pixels at most 60 times a second: frames a
-// second, how long drawing took (p50, p99, longest), patches, memory, processor time. Afterwards
-// the picture is compared with one that is drawn anew: a wrong one ends the run. Then follows a
-// machine that goes round and round at 100 and 500 positions a second: time from a position's
-// arrival to the end of the first draw that shows it or a later one. Ends with 1 if playing missed
-// kFramesPerS or kMostStall_ms.
+// it in steps of a sixtieth of a second at `speed` times its own time, from `S` seconds of it on
+// and for at most N seconds of such film, and draws each: processor time a frame of the threads
+// that share the work, which depends little on what else the machine does. Then plays it at that
+// speed, drawing 1280x800 pixels at most 60 times a second: frames a second, how long drawing took
+// (p50, p99, longest), patches, memory, processor time. Afterwards the picture is compared with one
+// that is drawn anew: a wrong one ends the run. Then follows a machine that goes round and round at
+// 100 and 500 positions a second: time from a position's arrival to the end of the first draw that
+// shows it or a later one. Ends with 1 if playing missed kFramesPerS or kMostStall_ms.
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
@@ -64,6 +64,7 @@ struct Arguments {
   int cells = 2000;
   double speed = 50;
   double seconds = 20;
+  double from_s = 0;  ///< of the program
   bool local = true;
   bool follow = true;
 };
@@ -246,6 +247,7 @@ class Stage {
     for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
     if (!loaded || loaded->player.track->empty()) fail("nothing to play");
     loaded->player.blank->keep_cut_ids(true);
+    begin_s_ = loaded->player.track->start_s(0);
     duration_s_ = loaded->player.track->duration_s();
     ViewedProgram shown = viewed_program(*loaded, "bench");
     name_thread("player");
@@ -278,6 +280,14 @@ class Stage {
     news_come_.wait_for(lock, longest, [this] { return mailbox_.is_full(); });
   }
   const Moment* moment() const { return screen_->moment(); }
+  /// A tool change may come before the first motion: earlier than that nothing is shown.
+  bool is_at(double time_s) const {
+    return std::abs(moment()->time_s - std::max(time_s, begin_s_)) < 1e-6;
+  }
+  void seek(double time_s) {
+    send(SeekTimeCommand{time_s});
+    screen_->settle([this, time_s] { return is_at(time_s); });
+  }
   bool is_behind() { return view_->player().state()->behind; }
   double duration_s() const { return duration_s_; }
 
@@ -289,7 +299,7 @@ class Stage {
     news_come_.notify_one();
   }};
   CommandQueue commands_;
-  double duration_s_ = 0;
+  double begin_s_ = 0, duration_s_ = 0;
   std::optional<PlayerView> view_;
   std::optional<Screen> screen_;
   std::jthread thread_;
@@ -309,6 +319,9 @@ void print_work(const DrawCounters& counters, const std::string& used) {
 bool play(const Arguments& arguments) {
   Stage stage(arguments);
   Screen& screen = stage.screen();
+  if (arguments.from_s > 0) stage.seek(arguments.from_s);
+  const double from_s = stage.moment()->time_s;
+  screen.reset();
   const std::map<std::string, double> processor_before = processor_ms();
   stage.send(SpeedCommand{arguments.speed});
   stage.send(PlayCommand{});
@@ -345,7 +358,7 @@ bool play(const Arguments& arguments) {
   fmt::print(
       "  {:.0f} s of {:.0f} s of the program in {:.1f} s ({:.1f}x); {:.0f} patches/s; frames: {} "
       "full, {} local, {} still; behind in {} frames; peak {:.0f} MB; load average {}\n",
-      played_s, stage.duration_s(), seconds, played_s / seconds, patches_per_s,
+      played_s - from_s, stage.duration_s(), seconds, (played_s - from_s) / seconds, patches_per_s,
       counters.full.frames, counters.local.frames, counters.still.frames, behind, peak_rss_mb(),
       load_average());
   print_work(counters, used);
@@ -360,16 +373,18 @@ void play_in_steps(const Arguments& arguments) {
   // Checks that run ahead are done first, as they have nothing to do with drawing.
   stage.send(SeekEndCommand{});
   screen.settle([&] { return stage.moment()->state == PlayState::kEnded; });
-  stage.send(SeekTimeCommand{0});
-  screen.settle([&] { return stage.moment()->time_s == 0; });
+  stage.seek(arguments.from_s);
   screen.reset();
   const std::map<std::string, double> processor_before = processor_ms();
   const double step_s = arguments.speed / kFramesPerS;
+  const double until_s =
+      std::min(stage.duration_s(), arguments.from_s + step_s * kFramesPerS * arguments.seconds);
   std::size_t frames = 0;
-  for (double at_s = step_s; at_s < stage.duration_s(); at_s += step_s, ++frames) {
+  for (double at_s = arguments.from_s + step_s; at_s < until_s; at_s += step_s, ++frames) {
     stage.send(SeekTimeCommand{at_s});
-    screen.collect([&] { return std::abs(stage.moment()->time_s - at_s) < 1e-6; });
+    screen.collect([&] { return stage.is_at(at_s); });
   }
+  if (frames == 0) fail("the program is over by then");
   const std::string used = processor_use(processor_before, static_cast<double>(frames));
   const DrawCounters counters = screen.counters();
   const std::size_t patches = screen.patches();
@@ -531,6 +546,8 @@ Arguments understand(int argc, char** argv) {
       arguments.speed = std::max(0.1, std::atof(value));
     } else if (name == "--seconds") {
       arguments.seconds = std::max(1.0, std::atof(value));
+    } else if (name == "--from") {
+      arguments.from_s = std::max(0.0, std::atof(value));
     } else if (name == "--full-redraw") {
       arguments.local = std::string_view(value) != "on";
     } else if (name == "--follow") {

@@ -150,6 +150,12 @@ void FixtureChecks::mount(std::vector<CarriedBody> bodies, int tool, bool guesse
   }
 }
 
+double FixtureChecks::reach_mm() const {
+  double reach = 0;
+  for (const Mounted& part : mounted_) reach = std::max(reach, part.reach_mm);
+  return reach;
+}
+
 void FixtureChecks::check(const CheckedMove& move) {
   const std::size_t count = obstacles_.size();
   for (std::size_t which = 0; which < move.moves.size(); ++which) {

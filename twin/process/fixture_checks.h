@@ -48,6 +48,9 @@ class FixtureChecks {
     last_.reset();
   }
   bool is_mounted() const { return !mounted_.empty(); }
+  /// From the tip to the farthest point of what is mounted; 0: nothing is. The moves of a tool that
+  /// tilts are to be true so far up.
+  double reach_mm() const;
   void check(const CheckedMove& move);
   /// What has been found is forgotten, and how near anything came.
   void begin_reporting();

@@ -199,11 +199,6 @@ TEST_P(ShadowOfLathe, NothingIsFoundThatIsNotThere) {
     const Json report = run().report(name);
     ASSERT_TRUE(report.is_object()) << run().said();
     for (const Json& finding : report["findings"]) {
-      // Two starts by one line of a loop: beside a machine passes of the second may be taken for
-      // those of the first, where they run over each other (docs/lathe-checks.md).
-      const bool is_known = std::string(name) == "live" && finding["id"] == "thread-shallow" &&
-                            GetParam() == kThreads && finding["line"] == 18;
-      if (is_known) continue;
       EXPECT_EQ(finding["severity"], "note") << name << finding;
     }
   }

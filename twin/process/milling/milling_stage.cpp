@@ -224,16 +224,11 @@ void MillingStage::take_feed(const Motion& m, const TimedStep& step) {
 }
 
 void MillingStage::check_parts(const Motion& m, const CheckedMove& cut) {
-  if (fixtures_.active()) fixtures_.check(cut);
   const bool upright = site_.moves.is_upright(m);
-  if (!upright && !stock_.takes_tilted_tools()) {
-    parts_.pass(m);
-    return;
-  }
   // What turns is divided so that its flutes are where they should be; what is far above them needs
   // shorter pieces for that.
   CheckedMove move = cut;
-  const double reach_mm = upright ? 0 : parts_.reach_mm();
+  const double reach_mm = upright ? 0 : std::max(parts_.reach_mm(), fixtures_.reach_mm());
   if (reach_mm > MotionMoves::reach_mm(cut.cutter)) {
     finer_.clear();
     finer_ends_.clear();
@@ -242,7 +237,9 @@ void MillingStage::check_parts(const Motion& m, const CheckedMove& cut) {
       move.ends = finer_ends_;
     }
   }
-  if (!parts_.may_matter(move.moves)) {
+  if (fixtures_.active()) fixtures_.check(move);
+  const bool is_seen = upright || stock_.takes_tilted_tools();
+  if (!is_seen || !parts_.may_matter(move.moves)) {
     parts_.pass(m);
     return;
   }

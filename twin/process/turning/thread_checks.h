@@ -31,7 +31,8 @@ class ThreadChecks {
   ThreadChecks(const TurningStock& stock, FindingLog& log) : stock_(stock), log_(log) {}
 
   void mount(const Cutter& cutter);
-  /// A motion with a lead, before it is cut.
+  /// A motion with a lead, before it is cut; also one that stays beside the workpiece: where a pass
+  /// begins says which start it belongs to.
   void note(const TurnedMove& move);
   /// No more passes come: the tool is changed, the program is over.
   void end();

@@ -244,8 +244,11 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   const TurnedMove move = turned(m, step);
   check_bodies(move);
   if (!checks_.may_touch(move)) {
-    // One that goes on from it does so with the turn.
-    if (m.kind == MotionKind::kThread) cut(m, step);
+    // One that goes on from it does so with the turn, and is part of the same pass.
+    if (m.kind == MotionKind::kThread) {
+      if (!is_driven()) threads_.note(move);
+      cut(m, step);
+    }
     return;
   }
   if (!is_driven()) {
@@ -268,7 +271,23 @@ void TurningStage::check_bodies(const TurnedMove& move) {
   if (holders_.active()) holders_.check(move, checks_.options().blank_guessed);
 }
 
-void TurningStage::check_driven(const CheckedMove& move) {
+/// Where C turns the workpiece, what is far above the flutes needs shorter pieces than these.
+CheckedMove TurningStage::finer(const CheckedMove& cut) {
+  CheckedMove move = cut;
+  const double reach_mm = std::max(parts_.reach_mm(), rings_.reach_mm());
+  const ToolPath* const path = site_.moves.live_path(cut.cutter);
+  if (!path || reach_mm <= MotionMoves::reach_mm(cut.cutter)) return move;
+  finer_.clear();
+  finer_ends_.clear();
+  if (path->moves_of(cut.motion, reach_mm, 0, finer_, &finer_ends_)) {
+    move.moves = finer_;
+    move.ends = finer_ends_;
+  }
+  return move;
+}
+
+void TurningStage::check_driven(const CheckedMove& cut) {
+  const CheckedMove move = finer(cut);
   check_driven_parts(move);
   if (!rings_.active() && !fixtures_.active()) return;
   if (site_.kinematics && LivePaths::is_described(*site_.kinematics)) {
@@ -294,20 +313,8 @@ void TurningStage::check_driven(const CheckedMove& move) {
   if (fixtures_.active()) fixtures_.check(still);
 }
 
-/// Shank and holder against the workpiece. Where C turns it, what is far above the flutes needs
-/// shorter pieces than these.
-void TurningStage::check_driven_parts(const CheckedMove& cut) {
-  CheckedMove move = cut;
-  const double reach_mm = parts_.reach_mm();
-  const ToolPath* const path = site_.moves.live_path(cut.cutter);
-  if (path && reach_mm > MotionMoves::reach_mm(cut.cutter) && cut.moves.size() > 1) {
-    finer_.clear();
-    finer_ends_.clear();
-    if (path->moves_of(cut.motion, reach_mm, 0, finer_, &finer_ends_)) {
-      move.moves = finer_;
-      move.ends = finer_ends_;
-    }
-  }
+/// Shank and holder against the workpiece.
+void TurningStage::check_driven_parts(const CheckedMove& move) {
   if (parts_.may_matter(move.moves)) {
     parts_.check(move);
   } else {

@@ -57,7 +57,8 @@ class TurningStage final : public Process {
   void mount_checks();
   void unmount();
   void check_bodies(const TurnedMove& move);
-  void check_driven(const CheckedMove& move);
+  CheckedMove finer(const CheckedMove& cut);
+  void check_driven(const CheckedMove& cut);
   void check_driven_parts(const CheckedMove& move);
   bool is_driven() const { return mounted_ && mounted_->cutter && mounted_->cutter->live(); }
   bool report_unmilled(const Motion& motion, const TimedStep& step);

@@ -8,9 +8,14 @@ not convex, but round). Upright tools are held against them in closed form; tilt
 from the piece (convex and smooth, so that it ends at the least): to and fro, with a swing.
 """
 
+import heapq
 import math
 
 EPSILON = 1e-9
+# Distances of tools that lean are known to this.
+EXACT_mm = 2e-6
+# Least ones of tools that turn as they go to this.
+BENT_EXACT_mm = 5e-4
 # Farther than anything is measured.
 FAR_mm = 0.5
 
@@ -47,6 +52,10 @@ class Cylinder:
     def rims(self):
         return (self.radius, self.low), (self.radius, self.high)
 
+    def farthest(self, across, along):
+        """Of the core, in a direction with these parts."""
+        return self.radius * across + max(self.low * along, self.high * along)
+
 
 class Cone:
     """Below a cylinder of the same width."""
@@ -79,6 +88,9 @@ class Cone:
 
     def rims(self):
         return self.corners[1], self.corners[2]
+
+    def farthest(self, across, along):
+        return max(r * across + z * along for r, z in self.corners)
 
     def to_point(self, across, along):
         (r0, z0), (r1, z1) = self.corners[1], self.corners[2]
@@ -128,6 +140,10 @@ class Block:
     def nearest(self, p):
         return tuple(min(max(x, low), high) for x, low, high in zip(p, self.low, self.high))
 
+    def least_along(self, n):
+        """Of n * p over its places p."""
+        return sum(min(x * low, x * high) for x, low, high in zip(n, self.low, self.high))
+
 
 def ball_gap(piece, tip, axis, body):
     """From a ball around the piece."""
@@ -149,17 +165,26 @@ def core_gap(piece, tip, axis, p):
     return math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2), way
 
 
+def plane_gap(body, piece, tip, axis, n):
+    """How far apart they are in the direction n, from the piece to the body, both between planes square to it: their gap is no less."""
+    along = n[0] * axis[0] + n[1] * axis[1] + n[2] * axis[2]
+    across = math.sqrt(max(0.0, 1 - along * along))
+    tip_along = n[0] * tip[0] + n[1] * tip[1] + n[2] * tip[2]
+    return body.least_along(n) - tip_along - piece.farthest(across, along) - piece.round_mm
+
+
 def nearest_gap(body, piece, tip, axis, memory):
     """(gap of a leaning piece from a convex body, where on the body): the squared distance of its places from the piece is convex and smooth,
-    and goes down fastest by steps to the nearest place and back that keep their swing, until they would go up."""
+    and goes down fastest by steps to the nearest place and back that keep their swing, until they would go up. It is known when planes square
+    to it are as far apart. memory["normal"]: its direction, from the piece to the body; None: they touch."""
     p = memory.get((body, piece), body.middle())
     before, swing, last = p, 1.0, math.inf
-    for _ in range(3000):
+    for count in range(3000):
         further = (1 + math.sqrt(1 + 4 * swing * swing)) / 2
         y = tuple(a + (swing - 1) / further * (a - b) for a, b in zip(p, before))
         _, way = core_gap(piece, tip, axis, y)
         new = body.nearest(tuple(a - w for a, w in zip(y, way)))
-        now = core_gap(piece, tip, axis, new)[0]
+        now, apart = core_gap(piece, tip, axis, new)
         if now > last and swing > 1:
             swing, before = 1.0, p
             continue
@@ -170,7 +195,11 @@ def nearest_gap(body, piece, tip, axis, memory):
         before, p, swing, last = p, new, further, now
         if now <= EPSILON or moved < 1e-8:
             break
+        if count % 4 == 3 and plane_gap(body, piece, tip, axis, [w / now for w in apart]) > now - piece.round_mm - EXACT_mm:
+            break
     memory[(body, piece)] = p
+    apart = core_gap(piece, tip, axis, p)[1]
+    memory["normal"] = [w / last for w in apart] if last > EPSILON else None
     return last - piece.round_mm, p
 
 
@@ -194,6 +223,10 @@ class Rod:
     def nearest(self, p):
         x, y = within_circle(p[0] - self.center[0], p[1] - self.center[1], self.radius)
         return (self.center[0] + x, self.center[1] + y, min(max(p[2], self.low), self.high))
+
+    def least_along(self, n):
+        return (n[0] * self.center[0] + n[1] * self.center[1] - self.radius * math.hypot(n[0], n[1])
+                + min(n[2] * self.low, n[2] * self.high))
 
 
 def within_circle(x, y, radius):
@@ -223,6 +256,10 @@ class Bar:
     def nearest(self, p):
         y, z = within_circle(p[1] - self.center[0], p[2] - self.center[1], self.radius)
         return (min(max(p[0], self.low_x), self.high_x), self.center[0] + y, self.center[1] + z)
+
+    def least_along(self, n):
+        return (n[1] * self.center[0] + n[2] * self.center[1] - self.radius * math.hypot(n[1], n[2])
+                + min(n[0] * self.low_x, n[0] * self.high_x))
 
 
 class TooDeep(Exception):
@@ -260,6 +297,9 @@ class Pipe:
 
     def nearest(self, p):
         return Rod.nearest(self, p)
+
+    def least_along(self, n):
+        return Rod.least_along(self, n)
 
     def tilted_inside(self, piece, tip, axis):
         """What is farthest from the tube's axis lies on one of the piece's rims; the tube goes on above and below them."""
@@ -358,6 +398,11 @@ class Move:
         return tip + swing * reach
 
 
+    def bend(self, reach):
+        """The second derivative of no such point's place is more: the tip goes straight, A and C turn one after the other."""
+        return math.radians(abs(self.to_ac[0] - self.from_ac[0]) + abs(self.to_ac[1] - self.from_ac[1])) ** 2 * reach
+
+
 class TurnedMove(Move):
     """On a table that A turns about X, left-handed, about the line Y0 Z0: start and end are the machine's X Y Z, the spindle stands upright."""
 
@@ -379,6 +424,12 @@ class TurnedMove(Move):
         away = max(math.hypot(p[1], p[2]) for p in (self.start, self.end))
         return math.dist(self.start, self.end) + math.radians(abs(self.to_ac[0] - self.from_ac[0])) * (away + reach)
 
+    def bend(self, reach):
+        """Of a turn about a line while X Y Z go straight."""
+        away = max(math.hypot(p[1], p[2]) for p in (self.start, self.end))
+        turn = math.radians(abs(self.to_ac[0] - self.from_ac[0]))
+        return turn * turn * (away + reach) + 2 * turn * math.dist(self.start, self.end)
+
 
 class Pair:
     """One piece against one body of an obstacle, on one move."""
@@ -387,9 +438,66 @@ class Pair:
         self.piece, self.body, self.obstacle, self.move = piece, body, obstacle, move
         self.memory = {}
         self.speed = move.speed(piece.reach())
-        self.is_convex = move.turn is None and not move.turns and not (isinstance(body, Pipe) and body.inside)
-        if self.is_convex:  # bounds of what is far are not convex
+        is_straight = move.turn is None and not move.turns
+        is_inside = isinstance(body, Pipe) and body.inside
+        self.is_convex = is_straight and not is_inside
+        # In a tube that goes on above and below: what is farthest from its axis is a convex figure of the way.
+        self.is_concave = is_straight and is_inside and move.leans
+        # Where it turns, planes bound what is between two places.
+        self.is_bent = move.leans and move.turns and move.turn is None and not is_inside
+        if self.is_bent:
+            self.bend = move.bend(piece.reach())
+        if self.is_convex or self.is_bent:  # bounds of what is far are not convex
             self.memory["exact"] = True
+
+    def place(self, t):
+        """Tip and axis in the body's frame."""
+        tip = self.obstacle.direction(tuple(a - b for a, b in zip(self.move.tip(t), self.obstacle.at)))
+        return tip, self.obstacle.direction(self.move.axis(t))
+
+    def bound(self, a, b, beaten):
+        """(gap in the middle or less, no less than that from a to b); the second counts if it is not less than `beaten`. Of a body between two
+        places each point is beside their hull by an eighth of its bend, and the hull is behind a plane that both are behind."""
+        middle, part = (a + b) / 2, b - a
+        half = self.speed * part / 2
+        tip, axis = self.place(middle)
+        far = ball_gap(self.piece, tip, axis, self.body)
+        if far > FAR_mm and far - half >= beaten:
+            return far, far - half
+        gap = self.body.tilted(self.piece, tip, axis, self.memory)
+        if gap <= EPSILON:
+            return -EPSILON, gap - half
+        n = self.memory["normal"]
+        apart = min(plane_gap(self.body, self.piece, *self.place(t), n) for t in (a, b))
+        return gap, max(gap - half, min(apart - self.bend * part * part / 8, gap))
+
+    def least_of_bent(self, below):
+        """The most promising parts first."""
+        best, waiting = (below, None), [(-math.inf, 0.0, 1.0)]
+        while waiting:
+            low, a, b = heapq.heappop(waiting)
+            if low >= best[0] - BENT_EXACT_mm:
+                break
+            middle = (a + b) / 2
+            gap, low = self.bound(a, b, best[0] - BENT_EXACT_mm)
+            if gap < best[0]:
+                best = (gap, middle)
+            if best[0] <= 0:
+                break
+            if low < best[0] - BENT_EXACT_mm:
+                heapq.heappush(waiting, (low, a, middle))
+                heapq.heappush(waiting, (low, middle, b))
+        return best
+
+    def first_of_bent(self, a=0.0, b=1.0):
+        gap, low = self.bound(a, b, 0.0)
+        if low > 0:
+            return None
+        middle = (a + b) / 2
+        if self.speed * (b - a) / 2 < 1e-5:
+            return middle if gap <= 1e-5 else None
+        first = self.first_of_bent(a, middle)
+        return first if first is not None else self.first_of_bent(middle, b)
 
     def gap(self, t):
         """Negative: they overlap, or touch."""
@@ -408,8 +516,12 @@ class Pair:
             return below, None
         if self.is_convex:
             return self.least_of_convex()
+        if self.is_concave:
+            return min((below, None), (self.gap(0.0), 0.0), (self.gap(1.0), 1.0), key=lambda pair: pair[0])
+        if self.is_bent:
+            return self.least_of_bent(below)
         best = [below, None]
-        exact = 5e-4 if self.move.turns else 2e-4
+        exact = 2e-4
 
         def search(a, b):
             middle = (a + b) / 2
@@ -456,6 +568,19 @@ class Pair:
             if self.gap(0.0) <= 0:
                 return 0.0
             low, high = 0.0, t
+            while self.speed * (high - low) > 1e-6:
+                middle = (low + high) / 2
+                low, high = (low, middle) if self.gap(middle) <= 0 else (middle, high)
+            return high
+
+        if self.is_bent:
+            return self.first_of_bent()
+        if self.is_concave:
+            if self.gap(0.0) <= 0:
+                return 0.0
+            if self.gap(1.0) > 0:
+                return None
+            low, high = 0.0, 1.0
             while self.speed * (high - low) > 1e-6:
                 middle = (low + high) / 2
                 low, high = (low, middle) if self.gap(middle) <= 0 else (middle, high)

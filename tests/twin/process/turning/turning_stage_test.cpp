@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -242,6 +243,35 @@ TEST(TurningStage, PassesOfAThreadAreOneThread) {
   EXPECT_NEAR(once.stock().remaining_mm3(), shop.stock().remaining_mm3(), 1e-6);
   EXPECT_EQ(once.stock().part().threads().passes().size(),
             shop.stock().part().threads().passes().size());
+}
+
+/// A pass as a machine is seen to make it: in pieces, by the same line as all others.
+void seen_pass(MotionList& program, double start_z, double piece_mm) {
+  const double x = 18.8;
+  program.traverse({24, 0, start_z}).traverse({x, 0, start_z});
+  for (double z = start_z; z > -30;) {
+    z = std::max(z - piece_mm, -30.0);
+    program.thread({x, 0, z}, 4);
+    program.last().source.line = 18;
+  }
+  program.traverse({24, 0, -30});
+}
+
+TEST(TurningStage, StartsAreToldApartByWhatIsSeenInTheAir) {
+  // A lead of 4 in two starts asks for 0.6134 * 2 = 1.227 mm, a twentieth less is 1.166; one start
+  // asks for 2.454. The insert is 3 mm wide: what is farther from the bar cannot touch it.
+  MotionList two = start(4), one = start(4);
+  two.rpm(500);
+  one.rpm(500);
+  seen_pass(two, 8, 0.37);
+  seen_pass(two, 10, 0.29);
+  EXPECT_EQ(LatheShop(two).ids(), Ids{});
+  seen_pass(one, 8, 0.37);
+  seen_pass(one, 12, 0.29);
+  const LatheShop told(one);
+  ASSERT_EQ(told.ids(), Ids{"thread-shallow"});
+  EXPECT_EQ(told.finding(0).position_mm, Vec3(18.8, 0, 8)) << "where the pass begins";
+  EXPECT_NE(told.finding(0).text.find("ask for 2.454"), std::string::npos) << told.finding(0).text;
 }
 
 TEST(TurningStage, M4LeavesALeftHandThread) {
