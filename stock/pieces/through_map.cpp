@@ -12,8 +12,11 @@
 namespace kerf {
 namespace {
 
-/// Arcs as chords that are nowhere farther from them, in cells.
-constexpr double kChord = 0.0005;
+/// Arcs as chords that are nowhere farther from them, in cells: where each cell is asked for its
+/// distance from the arc, and where (a cone on a helix) it is not.
+constexpr double kAskedChord = 0.5, kChord = 0.02;
+/// The same of arcs that are not level.
+constexpr double kFlat = 0.0005;
 /// Of the part of a way that comes near a cell, until its lowest place there is known.
 constexpr int kThirds = 60;
 /// A search begins with so many words of 64 cells, and goes on with so many times as many.
@@ -81,8 +84,9 @@ void ThroughMap::take_row(int row, double low_x, double high_x) {
     if (word == first / 64) bits &= ~std::uint64_t{0} << (first % 64);
     if (word == last / 64) bits &= ~std::uint64_t{0} >> (63 - last % 64);
     bits &= solid_.at(row, word);
-    for (std::uint64_t left = slope_ ? bits : 0; left != 0; left &= left - 1) {
-      if (!is_under_slope(64 * word + std::countr_zero(left), row)) bits &= ~(left & (~left + 1));
+    for (std::uint64_t left = slope_ || arc_ ? bits : 0; left != 0; left &= left - 1) {
+      const int i = 64 * word + std::countr_zero(left);
+      if (slope_ ? !is_under_slope(i, row) : !is_under_arc(i, row)) bits &= ~(left & (~left + 1));
     }
     if (bits == 0) continue;
     solid_.at(row, word) &= ~bits;
@@ -94,7 +98,7 @@ void ThroughMap::take_row(int row, double low_x, double high_x) {
 /// its height there first falls along a straight way and then rises.
 bool ThroughMap::is_under_slope(int i, int j) const {
   const Vec2 cell = Vec2(bounds_mm_.min) + Vec2(i + 0.5, j + 0.5) * cell_mm_;
-  const Vec2 way(slope_to_ - slope_from_), arm = cell - Vec2(slope_from_);
+  const Vec2 way(step_to_ - step_from_), arm = cell - Vec2(step_from_);
   const double length2 = glm::dot(way, way), radius = slope_->radius_mm();
   double low = 0, high = 1;
   if (length2 > 0) {
@@ -107,7 +111,7 @@ bool ThroughMap::is_under_slope(int i, int j) const {
   if (low > high) return false;
   const auto height = [&](double t) {
     const double lift = slope_->height_mm(std::min(radius, glm::length(arm - t * way)));
-    return slope_from_.z + t * (slope_to_.z - slope_from_.z) + lift;
+    return step_from_.z + t * (step_to_.z - step_from_.z) + lift;
   };
   for (int n = 0; n < kThirds && high - low > 0; ++n) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -116,6 +120,16 @@ bool ThroughMap::is_under_slope(int i, int j) const {
     (at_a < at_b ? high : low) = at_a < at_b ? b : a;
   }
   return std::min(height(low), height(high)) <= level_mm_;
+}
+
+bool ThroughMap::is_under_arc(int i, int j) const {
+  const Vec2 cell = Vec2(bounds_mm_.min) + Vec2(i + 0.5, j + 0.5) * cell_mm_;
+  const Vec2 arm = cell - arc_->center;
+  const double off_rad = std::remainder(std::atan2(arm.y, arm.x) - arc_middle_rad_, 2 * kPi);
+  if (std::abs(off_rad) <= arc_half_rad_)
+    return std::abs(glm::length(arm) - arc_->arm) <= radius_mm_;
+  return glm::length(cell - Vec2(step_from_)) <= radius_mm_ ||
+         glm::length(cell - Vec2(step_to_)) <= radius_mm_;
 }
 
 void ThroughMap::sweep(const Vec2& from, const Vec2& to, double radius) {
@@ -152,7 +166,7 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
   removed_after_.clear();
   const double cell = std::min(cell_mm_.x, cell_mm_.y);
   const double step_mm = std::max(2 * cutter.radius_mm(), 4 * cell);
-  const std::vector<PartPiece> pieces = pieces_of(move, kChord * cell);
+  const std::vector<PartPiece> pieces = pieces_of(move, kFlat * cell);
   const std::size_t before = splits.size();
   double way_mm = 0;
   for (std::size_t n = 0; n < pieces.size(); ++n) {
@@ -172,8 +186,8 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
       const double part_mm = length * (t1 - t0);
       double steps = std::max(1.0, std::ceil(part_mm / step_mm));
       if (piece.turns) {
-        const double chord =
-            2 * std::acos(std::max(0.0, 1 - kChord * cell / std::max(piece.arm, kChord * cell)));
+        const double off_mm = cell * (radius(t0) == radius(t1) ? kAskedChord : kChord);
+        const double chord = 2 * std::acos(std::max(0.0, 1 - off_mm / std::max(piece.arm, off_mm)));
         steps = std::max(steps, std::ceil(std::abs(piece.sweep_rad) * (t1 - t0) / chord));
       }
       for (int s = 0; s < static_cast<int>(steps); ++s) {
@@ -184,9 +198,13 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
         const Vec3 begin = piece.tip(a);
         // Of a cone that goes up or down each cell is asked.
         slope_ = wide_a == wide_b ? nullptr : &cutter;
-        slope_from_ = begin;
-        slope_to_ = tip;
-        sweep(Vec2(begin), Vec2(tip), std::max(wide_a, wide_b));
+        step_from_ = begin;
+        step_to_ = tip;
+        arc_ = piece.turns && slope_ == nullptr ? &piece : nullptr;
+        arc_middle_rad_ = piece.begin_rad + (a + b) / 2 * piece.sweep_rad;
+        arc_half_rad_ = (b - a) / 2 * std::abs(piece.sweep_rad);
+        radius_mm_ = std::max(wide_a, wide_b);
+        sweep(Vec2(begin), Vec2(tip), radius_mm_ + (arc_ ? kAskedChord * cell : 0));
         if (removed_.empty()) continue;
         const double at_mm = way_mm + length * b;
         if (splits.size() > before) removed_after_.push_back({at_mm, removed_});

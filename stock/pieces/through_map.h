@@ -20,6 +20,8 @@
 
 namespace kerf {
 
+struct PartPiece;
+
 /// What a step of a move has parted, all of which was one before.
 struct ThroughSplit {
   std::vector<CellSet> bodies;  ///< as they are then; each with a square of 2 x 2 cells
@@ -64,6 +66,7 @@ class ThroughMap {
   void sweep(const Vec2& from, const Vec2& to, double radius_mm);
   void take_row(int row, double low_x, double high_x);
   bool is_under_slope(int i, int j) const;
+  bool is_under_arc(int i, int j) const;
   /// What the step that has filled removed_ has parted: one split for each body that was one.
   void find_splits(const ThroughSplit& step, std::vector<ThroughSplit>& splits);
   CellSet around_removed();
@@ -76,8 +79,12 @@ class ThroughMap {
   Vec2 cell_mm_{0};
   double level_mm_ = 0;
   BitPlane solid_, scratch_, ring_, near_;
-  const Cutter* slope_ = nullptr;  ///< a cone on its way up or down, from ..
-  Vec3 slope_from_{0}, slope_to_{0};
+  // The step that is taken.
+  Vec3 step_from_{0}, step_to_{0};
+  double radius_mm_ = 0;            ///< at the floor
+  const Cutter* slope_ = nullptr;   ///< a cone on its way up or down
+  const PartPiece* arc_ = nullptr;  ///< it is a part of this arc
+  double arc_middle_rad_ = 0, arc_half_rad_ = 0;
   CellSet removed_;
   std::vector<Removed> removed_after_;
   double cached_above_mm_ = -1, cached_radius_mm_ = 0;
