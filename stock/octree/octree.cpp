@@ -25,6 +25,7 @@
 #include "stock/octree/solid_point.h"
 #include "stock/octree/thin_films.h"
 #include "stock/octree/tool_bodies.h"
+#include "stock/octree/tree_columns.h"
 #include "stock/octree/tree_cut.h"
 #include "stock/state_bytes.h"
 
@@ -581,5 +582,26 @@ std::array<int, 3> Octree::node_counts() const {
 }
 
 std::size_t Octree::brick_count() const { return impl_->tree.brick_count(); }
+
+ColumnLayout Octree::column_layout() const {
+  ColumnLayout layout = column_layout_of(impl_->tree.lattice());
+  if (impl_->additive) layout.tiles = {0, 0, 0};
+  return layout;
+}
+
+std::uint64_t Octree::column_version(std::uint32_t tile) const {
+  // Runs at its borders end by what the tiles above and below are like.
+  constexpr std::uint64_t kSpread = 0x9e3779b97f4a7c15;
+  const Lattice& lattice = impl_->tree.lattice();
+  const auto layer = static_cast<std::uint32_t>(lattice.column_count());
+  std::uint64_t version = impl_->tree.version(tile);
+  if (tile >= layer) version = version * kSpread + impl_->tree.version(tile - layer);
+  if (tile + layer < tile_count()) version = version * kSpread + impl_->tree.version(tile + layer);
+  return version;
+}
+
+void Octree::read_columns(std::uint32_t tile, ColumnRuns& out) const {
+  octree::read_columns(impl_->tree, tile, out);
+}
 
 }  // namespace kerf

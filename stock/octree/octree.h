@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "stock/blank.h"
+#include "stock/column_runs.h"
 #include "stock/octree/hermite_grid.h"
 #include "stock/octree/revolved_cut.h"
 #include "stock/solid_points.h"
@@ -53,7 +54,10 @@ struct OctreeOptions {
 ///
 /// Sources: S. Frisken et al., "Adaptively sampled distance fields", SIGGRAPH 2000 (the field);
 /// T. Ju et al., "Dual contouring of Hermite data", SIGGRAPH 2002 (what is kept of it).
-class Octree final : public StockModel, public WaySearcher, public SolidPoints {
+class Octree final : public StockModel,
+                     public WaySearcher,
+                     public SolidPoints,
+                     public ColumnSource {
  public:
   /// Error if cell_mm is not finite or <= 0 or exceeds the blank, if more than 20 000 cells lie
   /// between the blank's floor and its top (a tool without an end cuts through them all), or if the
@@ -132,6 +136,11 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   std::vector<std::uint32_t> differing_tiles(const StockModel& other) const override;
   std::uint64_t patch_version(std::uint32_t tile) const override;
   MeshPatch patch(std::uint32_t tile, int level) const override;
+
+  /// Not of an additive model, which has no tiles for it.
+  ColumnLayout column_layout() const override;
+  std::uint64_t column_version(std::uint32_t tile) const override;
+  void read_columns(std::uint32_t tile, ColumnRuns& out) const override;
 
   /// A box of nodes for meshing. Nodes beyond the model are empty.
   HermiteGrid gather(const std::array<int, 3>& first_node, const std::array<int, 3>& nodes) const;

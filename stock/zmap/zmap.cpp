@@ -15,6 +15,7 @@
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
+#include "stock/zmap/height_columns.h"
 #include "stock/zmap/height_mesh.h"
 #include "stock/zmap/height_sweeper.h"
 #include "stock/zmap/height_view.h"
@@ -224,6 +225,15 @@ Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, Z
   auto impl = std::make_unique<Impl>(std::move(state->grid), state->blank_mm3, kernel, threads);
   impl->sweeper.forget_traces();
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
+}
+
+ColumnLayout ZMap::column_layout() const { return column_layout_of(impl_->grid()); }
+
+std::uint64_t ZMap::column_version(std::uint32_t tile) const { return impl_->grid().version(tile); }
+
+void ZMap::read_columns(std::uint32_t tile, ColumnRuns& out) const {
+  read_height_columns(
+      impl_->grid(), tile, [](std::size_t, const auto&) {}, out);
 }
 
 }  // namespace kerf

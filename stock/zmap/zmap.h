@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stock/blank.h"
+#include "stock/column_runs.h"
 #include "stock/present_heights.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/zmap_kernel.h"
@@ -27,7 +28,7 @@ struct ZMapOptions {
 /// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no
 /// undercuts. Reads no files, knows no GL. A cell whose height is the floor holds no material.
 /// Source: one-dexel case of T. Van Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
-class ZMap final : public StockModel, public PresentHeights {
+class ZMap final : public StockModel, public PresentHeights, public ColumnSource {
  public:
   /// Error if cell_mm is not finite or <= 0, exceeds the blank, or makes more than kMaxCells cells
   /// (then the message says how much memory it would take), or if a body cannot be held (cylinder
@@ -77,6 +78,10 @@ class ZMap final : public StockModel, public PresentHeights {
   MeshPatch patch(std::uint32_t tile, int level) const override;
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
+  ColumnLayout column_layout() const override;
+  bool has_heights_only() const override { return true; }
+  std::uint64_t column_version(std::uint32_t tile) const override;
+  void read_columns(std::uint32_t tile, ColumnRuns& out) const override;
 
   int nx() const;
   int ny() const;

@@ -98,6 +98,7 @@ enum class FindingId : std::uint8_t {
   kUncompensated,     ///< a nose's contour is off the programmed one
   kGouge,             ///< the workpiece is cut into the design part
   kExcess,            ///< material is left over on the design part
+  kPieceFree,         ///< a piece of what is milled comes free
 };
 
 /// "rapid-contact", ...: the `id` of the report.

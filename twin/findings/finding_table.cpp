@@ -270,6 +270,10 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
     {Id::kExcess, "excess", kWarning, Topic::kDesign,
      tr_noop("On the design part material is left over, more than the tolerance."),
      tr_noop("Another pass; a larger --tolerance; or it is another setup's.")},
+    {Id::kPieceFree, "piece-free", kWarning, Topic::kCutter,
+     tr_noop("A piece of the workpiece is cut off and nothing holds it; an error where the tool "
+             "goes on in it."),
+     tr_noop("Tabs or a skin left below hold it; a pocket is cleared from its middle outward.")},
 }};
 
 constexpr bool in_order() {

@@ -38,6 +38,7 @@ void LiveSession::conclude() {
   report_.motion.duration_s = t_s_;
   report_.tools = shift_->tools();
   report_.collisions = cutter.stage().process().collisions();
+  report_.pieces = cutter.stage().process().loose();
   report_.stock = stock_report(shift_->stock(), stock_facts_);
   if (const Sheet* const sheet = shift_->stock().sheet()) {
     report_.sheet = sheet_report(*sheet, cutter.stage().process(), options_.beam.density_kg_per_m3);

@@ -30,6 +30,7 @@
 #include "twin/process/cut_progress.h"
 #include "twin/process/fallen_piece.h"
 #include "twin/process/feed_check.h"
+#include "twin/process/loose_piece.h"
 #include "twin/process/motion_recorder.h"
 #include "twin/process/sheet_checks.h"
 
@@ -130,6 +131,9 @@ class Process {
   virtual std::span<const FreedPiece> freed() const { return {}; }
   /// The same of a workpiece that turns, in the order in which they came off.
   virtual std::span<const FallenPiece> fallen() const { return {}; }
+  /// The same of a workpiece that is milled, with what is held; empty: nothing has come free. After
+  /// finish().
+  virtual std::vector<LoosePiece> loose() const { return {}; }
   /// Null: it has no section of the report.
   virtual std::shared_ptr<const ProcessSums> sums() const { return nullptr; }
   /// Null: it cuts along ways.

@@ -57,9 +57,11 @@ struct Report {
   std::optional<Comparison> comparison;  ///< with the design part, where one was given
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>
-      collisions;                  ///< what was held against each other, and how near it came
-  std::vector<GuessRow> guesses;   ///< taken for want of better
-  bool lengths_all_zero = false;   ///< of the tool table: they are not checked
+      collisions;  ///< what was held against each other, and how near it came
+  std::vector<LoosePiece>
+      pieces;                     ///< into which milling has parted the workpiece; empty: it is one
+  std::vector<GuessRow> guesses;  ///< taken for want of better
+  bool lengths_all_zero = false;  ///< of the tool table: they are not checked
   std::optional<LiveReport> live;  ///< of shadow and replay
   FindingLog findings;
   std::string partial_reason;  ///< not empty: the program was not run to its end, and why
@@ -73,7 +75,7 @@ struct Report {
 /// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
 /// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
 /// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same), compare
-/// (compare_json(); where a design was given).
+/// (compare_json(); where a design was given), pieces (LoosePiece; where some have come free).
 std::string json_text(const Report& report);
 
 struct SummaryOptions {

@@ -100,6 +100,34 @@ Json collisions_json(const Report& report) {
   return {{"pairs", std::move(pairs)}};
 }
 
+Json body_json(const PieceBody& body) {
+  Json out;
+  out["volume_mm3"] = rounded(body.volume_mm3);
+  out["box_mm"] = Json::array({vector_json(body.box_mm.min), vector_json(body.box_mm.max)});
+  return out;
+}
+
+Json pieces_json(const Report& report) {
+  Json out = Json::array();
+  for (const LoosePiece& piece : report.pieces) {
+    Json row = body_json(piece.body);
+    row["held"] = piece.held;
+    if (!piece.held) {
+      const std::vector<std::string>& files = report.program.files;
+      row["file"] =
+          piece.source.file < files.size() ? Json(files[piece.source.file]) : Json(nullptr);
+      row["line"] = piece.source.line;
+      row["time_s"] = rounded(piece.time_s);
+      row["tool"] = piece.tool;
+      row["cut_by_line"] = piece.cut_by ? Json(piece.cut_by->line) : Json(nullptr);
+      row["left"] = Json::array();
+      for (const PieceBody& body : piece.left) row["left"].push_back(body_json(body));
+    }
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
 Json guesses_json(const std::vector<GuessRow>& rows) {
   Json out = Json::array();
   for (const GuessRow& row : rows) {
@@ -190,6 +218,7 @@ std::string json_text(const Report& report) {
   if (report.turning) out["turning"] = turning_json(*report.turning, report.program.files);
   out["tools"] = tools_json(report);
   out["collisions"] = collisions_json(report);
+  if (!report.pieces.empty()) out["pieces"] = pieces_json(report);
   if (report.comparison) {
     out["compare"] = compare_json(*report.comparison, report.program.files);
   }

@@ -250,6 +250,7 @@ void Session::complete_report(const CutStage& stage) {
   report_.time_model = stage.timeline().time_model();
   report_.tools = stage.tools();
   report_.collisions = stage.process().collisions();
+  report_.pieces = stage.process().loose();
   report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
   const auto axes = static_cast<unsigned>(options_.program.machine.length_axes);

@@ -15,6 +15,7 @@
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
 #include "stock/zmap/cutter_components.h"
+#include "stock/zmap/height_columns.h"
 #include "stock/zmap/height_mesh.h"
 #include "stock/zmap/height_sweeper.h"
 #include "stock/zmap/height_view.h"
@@ -314,6 +315,20 @@ std::shared_ptr<const HeightGrid> MMap::height_grid() const {
 std::optional<HeightGrid> MMap::present_heights() const {
   if (has_gaps()) return std::nullopt;
   return present_view(impl_->grid());
+}
+
+ColumnLayout MMap::column_layout() const { return column_layout_of(impl_->grid()); }
+
+std::uint64_t MMap::column_version(std::uint32_t tile) const { return impl_->grid().version(tile); }
+
+void MMap::read_columns(std::uint32_t tile, ColumnRuns& out) const {
+  const GapTile* const gaps = impl_->gaps.tile(tile);
+  read_height_columns(
+      impl_->grid(), tile,
+      [gaps](std::size_t cell, const auto& see) {
+        if (gaps) gaps->each(cell, [&](const Gap& gap) { see(gap.low, gap.high); });
+      },
+      out);
 }
 
 }  // namespace kerf

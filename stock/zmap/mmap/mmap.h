@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "stock/column_runs.h"
 #include "stock/present_heights.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/mmap/gap_grid.h"
@@ -35,7 +36,7 @@ namespace kerf {
 /// is_vertical() denies. Reads no files, knows no GL.
 /// Source: several intervals per cell as in T. Van Hook, "Real-time shaded NC milling display",
 /// SIGGRAPH 1986.
-class MMap final : public StockModel, public PresentHeights {
+class MMap final : public StockModel, public PresentHeights, public ColumnSource {
  public:
   /// Errors as ZMap::create(). `kernel` and `threads` change no bit of the result.
   static Result<std::unique_ptr<MMap>> create(const ZMapOptions& options);
@@ -90,6 +91,9 @@ class MMap final : public StockModel, public PresentHeights {
   /// Null while there are gaps: heights alone would not show them.
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
+  ColumnLayout column_layout() const override;
+  std::uint64_t column_version(std::uint32_t tile) const override;
+  void read_columns(std::uint32_t tile, ColumnRuns& out) const override;
 
   int nx() const;
   int ny() const;

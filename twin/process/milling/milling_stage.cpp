@@ -54,6 +54,7 @@ MillingStage::MillingStage(ProcessSite& site)
       parts_(stock_, log_),
       fixtures_(log_),
       machine_(stock_.bare(), log_, [this] { complete(); }),
+      pieces_(stock_, log_, [this] { complete(); }),
       moves_per_cut_(stock_.takes_tilted_tools() ? kLeastMovesPerCut : kFirstMovesPerCut) {
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
@@ -72,6 +73,7 @@ void MillingStage::begin_reporting() {
   parts_.begin_reporting();
   fixtures_.begin_reporting();
   machine_.forget();
+  pieces_.begin_reporting();
   changes_.forget_events();
   program_.forget_events();
   speed_unsaid_.reset();
@@ -86,6 +88,7 @@ void MillingStage::finish(bool whole) {
   parts_.finish();
   fixtures_.finish();
   machine_.finish();
+  pieces_.finish();
   changes_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
@@ -355,14 +358,18 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
   measure(m, step, flight);
+  PieceCutter by{m.source, step.start_s, step.duration_s, mounted_->number, 0, mounted_->guessed};
+  by.radius_mm = cutting().radius_mm();
   std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
+    pieces_.before(cutting(), move, by);
     moves_.push_back(move);
     if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
     const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
     flight.duration_s = step.duration_s * share;
     in_flight_.push_back(flight);
+    pieces_.after(move, by);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
     hand_over();

@@ -22,6 +22,7 @@
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
 #include "twin/process/milling/machine_checks.h"
+#include "twin/process/milling/piece_watch.h"
 #include "twin/process/milling/program_checks.h"
 #include "twin/process/part_checks.h"
 #include "twin/process/process.h"
@@ -51,6 +52,7 @@ class MillingStage final : public Process {
     parts_.set_clearance(options.collisions.clearance_mm);
     fixtures_.set_obstacles(obstacles_of(options.collisions.fixtures), options.collisions);
     machine_.set_options(options);
+    pieces_.set_options(options);
     spindle_ = options.collisions.spindle;
     cut_by_shank_ = options.collisions.cut_by_shank;
   }
@@ -61,6 +63,7 @@ class MillingStage final : public Process {
     return mounted_ && mounted_->cutter ? &*mounted_->cutter : nullptr;
   }
   ProbeAnswer answer(const ProbeQuestion& question) override;
+  std::vector<LoosePiece> loose() const override { return pieces_.pieces(); }
 
  private:
   /// What is needed when a move's report comes back.
@@ -141,6 +144,7 @@ class MillingStage final : public Process {
   PartChecks parts_;
   FixtureChecks fixtures_;
   MachineChecks machine_;
+  PieceWatch pieces_;
   std::vector<ToolSection> spindle_;
   std::vector<CutMove> finer_;  ///< the present motion, for what is far above the tip
   std::vector<double> finer_ends_;
