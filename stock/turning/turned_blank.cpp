@@ -176,6 +176,12 @@ Result<TurnedBlank> blank_of_bodies(const std::vector<BlankBody>& bodies) {
 Result<TurnedBlank> turned_blank_of(const Blank& blank) {
   if (!blank.state_file.empty() || blank.sheet)
     return Error{trf("{}: is no bar that a lathe could turn", describe(blank))};
+  if (blank.mesh) {
+    return Error{
+        trf("{}: a lathe's blank is no mesh; profile:FILE.dxf has its outline, "
+            "cylinder:0,0,Z0:Z1:DIAMETER is a bar",
+            blank.mesh->file)};
+  }
   if (blank.profile_file.empty()) return blank_of_bodies(blank.bodies);
   Result<TurnedProfile> profile = read_profile(blank.profile_file);
   if (!profile) return Error{profile.error()};

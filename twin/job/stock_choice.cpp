@@ -292,7 +292,7 @@ bool may_be_turned(const Blank& blank) {
   if (!blank.state_file.empty()) {
     return saved_kind(blank.state_file) == StockKind::kTurning || is_milled_part(blank.state_file);
   }
-  return !blank.sheet &&
+  return !blank.sheet && !blank.mesh &&
          std::none_of(blank.bodies.begin(), blank.bodies.end(), [](const BlankBody& body) {
            return body.kind == BlankBody::Kind::kBox || body.axis != 'z';
          });
@@ -302,6 +302,9 @@ std::string misfit(const StockSettings& settings, const Blank& blank) {
   const bool sheet_wanted = settings.kind == StockKind::kSheet;
   if (blank.sheet && settings.additive) {
     return tr("--additive: nothing is added to a sheet; a box can be added to");
+  }
+  if (blank.mesh && settings.additive) {
+    return tr("--additive: nothing is added to a mesh; a box can be added to");
   }
   if (blank.sheet && settings.cell_mm > 0) return tr("--cell: a sheet has no cells; leave it out");
   if (settings.kind == StockKind::kTurning && settings.cell_mm > 0) {
