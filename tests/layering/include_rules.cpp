@@ -128,6 +128,7 @@ constexpr std::array kLibraryRules{
     LibraryRule{"xxhash.h", "stock/", "twin/batch/"},
     LibraryRule{"polyclipping/", "stock/plane/"},
     LibraryRule{"clipper.hpp", "stock/plane/"},
+    LibraryRule{"STEPControl_Reader.hxx", "mesh/kerf_step/"},
     LibraryRule{"canon.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_base.hh", "interp_bridge/kerf_interp/"},
     LibraryRule{"interp_return.hh", "interp_bridge/kerf_interp/"},

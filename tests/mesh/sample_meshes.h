@@ -47,6 +47,26 @@ inline std::vector<Vec2> circle(double radius, int corners) {
                      radius * std::sin(2 * kPi * k / corners));
   return out;
 }
+/// A ring about Z whose section is this polygon of (z, r), all r above 0, clockwise.
+inline TriangleMesh ring_of(std::span<const Vec2> section, int around) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::uint32_t>(around), m = static_cast<std::uint32_t>(section.size());
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const double turn = 2 * kPi * k / n;
+    for (const Vec2& p : section)
+      mesh.positions_mm.emplace_back(
+          glm::vec3(p.y * std::cos(turn), p.y * std::sin(turn), p.x));
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    for (std::uint32_t i = 0; i < m; ++i) {
+      const std::uint32_t a = k * m + i, b = k * m + (i + 1) % m;
+      const std::uint32_t c = (k + 1) % n * m + i, d = (k + 1) % n * m + (i + 1) % m;
+      mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({a, d, b});
+    }
+  }
+  return mesh;
+}
 /// Of rings from the south pole to the north, its corners on the sphere.
 inline TriangleMesh sphere(const Vec3& center, double radius, int around) {
   TriangleMesh mesh;

@@ -292,7 +292,7 @@ bool may_be_turned(const Blank& blank) {
   if (!blank.state_file.empty()) {
     return saved_kind(blank.state_file) == StockKind::kTurning || is_milled_part(blank.state_file);
   }
-  return !blank.sheet && !blank.mesh &&
+  return !blank.sheet &&
          std::none_of(blank.bodies.begin(), blank.bodies.end(), [](const BlankBody& body) {
            return body.kind == BlankBody::Kind::kBox || body.axis != 'z';
          });
