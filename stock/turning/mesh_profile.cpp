@@ -112,9 +112,10 @@ Result<std::vector<PlaneOutline>> sections_of(const MeshBody& body, const std::s
     return Error{trf("{}: an allowance is for blanks that are milled; {}", name, else_text)};
   }
   if (const std::optional<Vec3> at = misfit_of(body)) {
-    return Error{trf("{}: does not turn about X0 Y0 along Z within {:g} mm: look at X{:.3f} "
-                     "Y{:.3f} Z{:.3f}; {}",
-                     name, kFacet_mm, at->x, at->y, at->z, else_text)};
+    return Error{
+        trf("{}: does not turn about X0 Y0 along Z within {:g} mm: look at X{:.3f} "
+            "Y{:.3f} Z{:.3f}; {}",
+            name, kFacet_mm, at->x, at->y, at->z, else_text)};
   }
   std::vector<PlaneOutline> out;
   for (int n = 0; n < kSections; ++n) {

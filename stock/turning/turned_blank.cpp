@@ -184,15 +184,17 @@ Result<TurnedProfile> profile_of_mesh(const MeshBody& body, const std::string& n
       return Error{fmt::format("{}: {}", name, fault)};
     Result<TurnedProfile> profile = profile_of_outline(section, name);
     if (!profile) {
-      return Error{trf("{}: does not turn about X0 Y0 along Z in one piece; :at=x,y,z and :rotate= "
-                       "place it on the axis",
-                       name)};
+      return Error{
+          trf("{}: does not turn about X0 Y0 along Z in one piece; :at=x,y,z and :rotate= "
+              "place it on the axis",
+              name)};
     }
     if (first.empty()) first = *profile;
     if (const auto at = difference_of(units_of(first), units_of(*profile))) {
-      return Error{trf("{}: does not turn about X0 Y0 along Z: sections through the axis differ at "
-                       "Z{} and the radius {}",
-                       name, number_of(at->x), number_of(at->y))};
+      return Error{
+          trf("{}: does not turn about X0 Y0 along Z: sections through the axis differ at "
+              "Z{} and the radius {}",
+              name, number_of(at->x), number_of(at->y))};
     }
   }
   return first;

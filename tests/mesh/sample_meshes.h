@@ -54,8 +54,7 @@ inline TriangleMesh ring_of(std::span<const Vec2> section, int around) {
   for (std::uint32_t k = 0; k < n; ++k) {
     const double turn = 2 * kPi * k / n;
     for (const Vec2& p : section)
-      mesh.positions_mm.emplace_back(
-          glm::vec3(p.y * std::cos(turn), p.y * std::sin(turn), p.x));
+      mesh.positions_mm.emplace_back(glm::vec3(p.y * std::cos(turn), p.y * std::sin(turn), p.x));
   }
   for (std::uint32_t k = 0; k < n; ++k) {
     for (std::uint32_t i = 0; i < m; ++i) {

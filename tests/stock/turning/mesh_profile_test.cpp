@@ -33,12 +33,12 @@ double turned_mm3(const TurnedProfile& profile) {
 
 TEST(TurnedMesh, corners_are_the_profile) {
   // A tube with a groove and a cone; facets do not make it smaller.
-  const Vec2 section[] = {{-40, 12}, {-40, 20}, {-25, 20}, {-25, 17}, {-20, 17},
-                          {-20, 20}, {0, 15},   {0, 12}};
+  const Vec2 section[] = {{-40, 12}, {-40, 20}, {-25, 20}, {-25, 17},
+                          {-20, 17}, {-20, 20}, {0, 15},   {0, 12}};
   const auto profile = profile_of(test::ring_of(section, 120));
   ASSERT_TRUE(profile) << profile.error();
-  const double exact = kPi * (15 * (400 - 144) + 5 * (289 - 144)) +
-                       kPi * 20 * ((400 + 300 + 225) / 3.0 - 144);
+  const double exact =
+      kPi * (15 * (400 - 144) + 5 * (289 - 144)) + kPi * 20 * ((400 + 300 + 225) / 3.0 - 144);
   EXPECT_NEAR(turned_mm3(*profile), exact, 0.02);
   TriangleMesh bar;
   test::add_prism(bar, test::circle(10, 90), -50, 0);
