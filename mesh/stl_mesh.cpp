@@ -12,7 +12,6 @@
 #include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
-#include "interp_bridge/ini_file.h"
 
 namespace kerf {
 namespace {

@@ -11,6 +11,7 @@
 #include "base/translate.h"
 #include "mesh/mesh_reader.h"
 #include "stock/cutter/scan.h"
+#include "twin/collision/mesh_depth.h"
 #include "twin/collision/sweep.h"
 #include "twin/job/blank_mesh.h"
 
@@ -274,6 +275,10 @@ double overlap_mm(const Solid& moving, const Pose& pose, const Solid& still) {
   return deepest;
 }
 
+bool is_mesh(const Solid& solid) {
+  return !solid.pieces().empty() && solid.pieces().front().kind == Convex::Kind::kHull;
+}
+
 }  // namespace
 
 Result<FixtureSpec> parse_fixture(std::string_view text, LengthUnit unit) {
@@ -338,8 +343,11 @@ FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagn
 
 double depth_in_blank_mm(const Solid& fixture, const Pose& workpiece_from_fixture,
                          const Solid& blank) {
-  return std::max(overlap_mm(blank, workpiece_from_fixture.inverse(), fixture),
-                  overlap_mm(fixture, workpiece_from_fixture, blank));
+  const double depth = std::max(overlap_mm(blank, workpiece_from_fixture.inverse(), fixture),
+                                overlap_mm(fixture, workpiece_from_fixture, blank));
+  const bool are_meshes = is_mesh(fixture) && is_mesh(blank);
+  return are_meshes ? std::max(depth, mesh_depth_at_mm(fixture, workpiece_from_fixture, blank))
+                    : depth;
 }
 
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,

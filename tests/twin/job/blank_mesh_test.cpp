@@ -104,7 +104,7 @@ TEST_F(BlankMeshFile, IsABodyForCollisionsAndHasAShadow) {
   const Blank blank = read(write(angle));
   const SolidPointer solid = solid_of(blank);
   ASSERT_TRUE(solid);
-  EXPECT_TRUE(solid->is_closed());
+  EXPECT_EQ(solid->box_mm(), (Box{{0, 0, 0}, {60, 60, 20}}));
   const BlankShadow shadow(*blank.mesh->body, 0.25);
   EXPECT_TRUE(shadow.covers(50, 10));
   EXPECT_TRUE(shadow.covers(10, 50));
