@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "base/translate.h"
 #include "mesh/surface_sides.h"
@@ -21,6 +24,28 @@ std::string places_text(const std::vector<Vec3>& places) {
   std::string text;
   for (const Vec3& p : places) text += (text.empty() ? "" : ", ") + place_text(p);
   return text;
+}
+
+/// How many parts share no corner.
+std::size_t count_parts(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.positions_mm.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&parent](std::uint32_t n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  for (const auto& triangle : mesh.triangles) {
+    parent[root(triangle[1])] = root(triangle[0]);
+    parent[root(triangle[2])] = root(triangle[0]);
+  }
+  std::vector<bool> seen(parent.size());
+  std::size_t parts = 0;
+  for (const auto& triangle : mesh.triangles) {
+    const std::uint32_t n = root(triangle[0]);
+    if (!seen[n]) ++parts;
+    seen[n] = true;
+  }
+  return parts;
 }
 
 void find_overhang(MeshBody& body) {
@@ -63,7 +88,7 @@ Result<MeshBody> mesh_body(TriangleMesh mesh, const std::string& name) {
   body.volume_mm3 = facts.volume_mm3;
   if (facts.volume_mm3 < 0) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-    body.turned = 1;
+    body.was_turned = true;
     body.volume_mm3 = -facts.volume_mm3;
   }
   for (const glm::vec3& p : mesh.positions_mm) body.box_mm.extend(Vec3(p));
@@ -76,6 +101,7 @@ Result<MeshBody> mesh_body(TriangleMesh mesh, const std::string& name) {
   }
   body.mesh = std::move(mesh);
   find_overhang(body);
+  body.parts = count_parts(body.mesh);
   return body;
 }
 

@@ -17,7 +17,8 @@ struct MeshBody {
   Box box_mm;
   /// Of the surface as it is; where parts overlap, they count twice.
   double volume_mm3 = 0;
-  std::size_t turned = 0;    ///< 1: it was inside out
+  std::size_t parts = 1;     ///< that share no corner
+  bool was_turned = false;   ///< it was inside out
   double allowance_mm = 0;   ///< by which it was grown (mesh_offset.h)
   double overhang_mm2 = 0;   ///< seen from below: what faces down above the floor
   double overhang_z_mm = 0;  ///< where the most of that begins

@@ -356,7 +356,8 @@ std::string describe(const BlankMesh& mesh) {
   text += mesh.place.text();
   if (!mesh.body) return text;
   const Box& b = mesh.body->box_mm;
-  if (mesh.allowance_mm == 0) text += trf(", {} mm3", rounded(mesh.body->volume_mm3));
+  if (mesh.allowance_mm == 0 && mesh.body->parts == 1)
+    text += trf(", {} mm3", rounded(mesh.body->volume_mm3));
   return text + trf(", {} x {} x {} mm, X{}..{} Y{}..{} Z{}..{}", rounded(b.size().x),
                     rounded(b.size().y), rounded(b.size().z), rounded(b.min.x), rounded(b.max.x),
                     rounded(b.min.y), rounded(b.max.y), rounded(b.min.z), rounded(b.max.z));

@@ -18,7 +18,8 @@ TEST(MeshBody, Box) {
   EXPECT_NEAR(body->volume_mm3, 5 * 6 * 7, 1e-9);
   EXPECT_EQ(body->box_mm, (Box{{-1, 2, 3}, {4, 8, 10}}));
   EXPECT_TRUE(body->is_height_field());
-  EXPECT_EQ(body->turned, 0u);
+  EXPECT_FALSE(body->was_turned);
+  EXPECT_EQ(body->parts, 1u);
 }
 
 TEST(MeshBody, InsideOutIsTurned) {
@@ -27,7 +28,7 @@ TEST(MeshBody, InsideOutIsTurned) {
   const Result<MeshBody> body = mesh_body(mesh, "a.stl");
   ASSERT_TRUE(body) << body.error();
   EXPECT_NEAR(body->volume_mm3, 6, 1e-9);
-  EXPECT_EQ(body->turned, 1u);
+  EXPECT_TRUE(body->was_turned);
   EXPECT_NEAR(test::volume_mm3(body->mesh), 6, 1e-9);
 }
 
@@ -41,6 +42,7 @@ TEST(MeshBody, OverhangsAreMeasured) {
   EXPECT_NEAR(body->overhang_mm2, 100, 1e-6);
   EXPECT_NEAR(body->overhang_z_mm, 5, 1e-6);
   EXPECT_FALSE(body->is_height_field());
+  EXPECT_EQ(body->parts, 2u);
   // A cone stands; on its point it does not.
   TriangleMesh cone;
   cone.positions_mm = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 5}};

@@ -83,7 +83,7 @@ bool read_blank_mesh(Blank& blank, Diagnostics& diagnostics) {
         tr("export the part as one solid, or repair the mesh (the CAD program's mesh "
            "repair, a slicer)"));
   }
-  if (body->turned > 0) {
+  if (body->was_turned) {
     tell_of_mesh(diagnostics, Severity::kNote, said.file,
                  tr("is inside out (all normals point inwards); it is turned"));
   }
