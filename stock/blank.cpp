@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "base/suggest.h"
 #include "base/translate.h"
+#include "mesh/mesh_body.h"
 #include "stock/cutter/scan.h"
 
 namespace kerf {
@@ -19,13 +21,18 @@ constexpr double kMinSize_mm = 0.001;
 constexpr std::size_t kMaxBodies = 1000;
 /// What cuts straight through is no thicker, by far.
 constexpr double kMaxThickness_mm = 1000;
+/// Castings are not given more.
+constexpr double kMostAllowance_mm = 100;
 
-constexpr std::array<std::string_view, 9> kKinds = {
-    "box", "cylinder", "tube", "hex", "square", "state", "stl", "sheet", "profile"};
+constexpr std::array<std::string_view, 12> kKinds = {"box",    "cylinder", "tube",  "hex",
+                                                     "square", "state",    "stl",   "obj",
+                                                     "3mf",    "step",     "sheet", "profile"};
+constexpr std::array<std::string_view, 4> kMeshKinds = {"stl", "obj", "3mf", "step"};
 constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
-    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, profile:FILE.dxf, "
-    "profile:FILE.svg, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, "
+    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, stl:FILE, obj:FILE, "
+    "3mf:FILE, step:FILE, profile:FILE.dxf, profile:FILE.svg, sheet:x0,y0:x1,y1:THICKNESS, "
+    "sheet:FILE.dxf:THICKNESS, "
     "sheet:FILE.svg:THICKNESS");
 
 /// `form`: x,y,z or x,y.
@@ -166,9 +173,8 @@ Result<BlankBody> parse_body(std::string_view text, LengthUnit unit) {
   if (kind == "cylinder") return parse_round(fields, false, unit);
   if (kind == "tube") return parse_round(fields, true, unit);
   if (kind == "hex" || kind == "square") return parse_bar(fields, kind == "hex" ? 6 : 4, unit);
-  if (kind == "stl") {
-    return Error{trf("{}: is not supported by this version; forms: {}", kind, tr(kForms))};
-  }
+  if (std::find(kMeshKinds.begin(), kMeshKinds.end(), kind) != kMeshKinds.end())
+    return Error{trf("{}:FILE stands alone; it cannot be added to other bodies", kind)};
   if (kind == "state")
     return Error{tr("state:FILE stands alone; it cannot be added to other bodies")};
   if (kind == "sheet") return Error{tr("a sheet stands alone; it cannot be added to other bodies")};
@@ -204,37 +210,58 @@ bool is_drawing(std::string_view file) {
   return lower.size() > 4 && (lower.ends_with(".dxf") || lower.ends_with(".svg"));
 }
 
-/// `text`: behind "state:". What follows the file's name begins with flip= or at=; the name may
-/// hold any other character, '+' and ':' too.
+/// `text`: behind "state:".
 Done parse_state(std::string_view text, LengthUnit unit, Blank& blank) {
-  bool has_flip = false, has_at = false;
-  for (std::size_t colon = text.rfind(':'); colon != std::string_view::npos;
-       colon = text.rfind(':')) {
-    const std::string_view field = trim(text.substr(colon + 1));
-    const std::string lower = to_lower(field);
-    const bool is_flip = lower.starts_with("flip="), is_at = lower.starts_with("at=");
-    if (!is_flip && !is_at) break;
-    if (is_flip ? has_flip : has_at)
-      return Error{trf("'{}': {} is given twice", shown(field), is_flip ? "flip=" : "at=")};
-    if (is_flip && trim(std::string_view(lower).substr(5)) != "x")
-      return Error{trf("'{}' is not allowed; must be flip=x", shown(field))};
-    if (is_at) {
-      const Result<Vec3> at = parse_point("at", field.substr(3), unit);
-      if (!at) return Error{at.error()};
-      if (at->x != 0 || at->y != 0) {
-        return Error{
-            trf("'{}' is not allowed; a part that turns stays at X0 Y0: at=0,0,z", shown(field))};
-      }
-      blank.saved_place.at_z_mm = at->z;
-    }
-    blank.saved_place.is_turned_about |= is_flip;
-    (is_flip ? has_flip : has_at) = true;
-    text = text.substr(0, colon);
-  }
-  const std::string_view file = trim(text);
-  if (file.empty()) return Error{tr("state:: the file name is missing; the form is state:FILE")};
-  blank.state_file = std::string(file);
+  const Result<BlankPlace> place = take_place(text, unit);
+  if (!place) return Error{place.error()};
+  if (text.empty()) return Error{tr("state:: the file name is missing; the form is state:FILE")};
+  blank.saved_place = *place;
+  blank.state_file = std::string(text);
   return std::monostate{};
+}
+
+/// The kind that the ending of a name says; empty: none.
+std::string_view mesh_kind_of(std::string_view file) {
+  const std::string lower = to_lower(file);
+  for (const std::string_view kind : kMeshKinds)
+    if (lower.ends_with(fmt::format(".{}", kind))) return kind;
+  return lower.ends_with(".stp") ? "step" : "";
+}
+
+/// `kind` empty: the name's ending says it. False: it is nothing of that kind.
+Result<bool> parse_mesh(std::string_view kind, std::string_view text, LengthUnit unit,
+                        Blank& blank) {
+  BlankMesh mesh;
+  std::string word;
+  const Result<BlankPlace> place = take_place(text, unit, {"inch", "mm"}, &word);
+  std::string_view file = text;
+  const std::size_t plus = text.rfind('+');
+  const std::string_view behind =
+      plus == std::string_view::npos ? std::string_view() : trim(text.substr(plus + 1));
+  const bool grows = !behind.empty() && parse_decimal(behind);
+  if (grows) file = trim(text.substr(0, plus));
+  const std::string_view ending = mesh_kind_of(file);
+  if (kind.empty() && ending.empty()) return false;
+  if (!place) return Error{place.error()};
+  if (file.empty())
+    return Error{trf("the file name is missing; the form is {}:FILE[+ALLOWANCE]", kind)};
+  if (!kind.empty() && kind != ending) {
+    return Error{trf("'{}' is not a name of that kind; the form is {}:FILE.{}[+ALLOWANCE]",
+                     shown(file), kind, kind)};
+  }
+  if (ending == "3mf" && !word.empty()) return Error{tr("a 3MF file says its unit itself")};
+  if (ending == "step" && !word.empty()) return Error{tr("a STEP file says its unit itself")};
+  if (grows) {
+    const Result<double> allowance =
+        parse_length(tr("allowance"), behind, kMinSize_mm, kMostAllowance_mm, unit);
+    if (!allowance) return Error{allowance.error()};
+    mesh.allowance_mm = *allowance;
+  }
+  if (!word.empty()) mesh.unit = word == "inch" ? LengthUnit::kInch : LengthUnit::kMm;
+  mesh.place = *place;
+  mesh.file = std::string(file);
+  blank.mesh = std::move(mesh);
+  return true;
 }
 
 /// `text`: behind "profile:".
@@ -323,6 +350,19 @@ std::string describe(const BlankSheet& sheet) {
              rounded(sheet.high_mm.y), thickness);
 }
 
+std::string describe(const BlankMesh& mesh) {
+  std::string text = trf("mesh from {}", shown(mesh.file));
+  if (mesh.allowance_mm > 0) text += trf(", grown by {} mm", rounded(mesh.allowance_mm));
+  text += mesh.place.text();
+  if (!mesh.body) return text;
+  const Box& b = mesh.body->box_mm;
+  if (mesh.allowance_mm == 0 && mesh.body->parts == 1)
+    text += trf(", {} mm3", rounded(mesh.body->volume_mm3));
+  return text + trf(", {} x {} x {} mm, X{}..{} Y{}..{} Z{}..{}", rounded(b.size().x),
+                    rounded(b.size().y), rounded(b.size().z), rounded(b.min.x), rounded(b.max.x),
+                    rounded(b.min.y), rounded(b.max.y), rounded(b.min.z), rounded(b.max.z));
+}
+
 }  // namespace
 
 Box Blank::bounds_mm() const {
@@ -332,6 +372,7 @@ Box Blank::bounds_mm() const {
     bounds.extend(Vec3(sheet->high_mm, 0));
   }
   for (const BlankBody& body : bodies) bounds.extend(body.bounds_mm);
+  if (mesh && mesh->body) bounds.extend(mesh->body->box_mm);
   return bounds;
 }
 
@@ -365,6 +406,15 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
     blank.profile_file = std::move(file.value());
     return blank;
   }
+  const std::string word =
+      colon == std::string_view::npos ? "" : to_lower(trim(spec.substr(0, colon)));
+  const bool is_mesh = std::find(kMeshKinds.begin(), kMeshKinds.end(), word) != kMeshKinds.end();
+  if (is_mesh || std::find(kKinds.begin(), kKinds.end(), word) == kKinds.end()) {
+    const Result<bool> mesh = is_mesh ? parse_mesh(word, spec.substr(colon + 1), unit, blank)
+                                      : parse_mesh({}, spec, unit, blank);
+    if (!mesh) return Error{fmt::format("{}: {}", shown(spec), mesh.error())};
+    if (*mesh) return blank;
+  }
   const std::vector<std::string_view> texts = split_bodies(spec);
   if (texts.size() > kMaxBodies) {
     return Error{trf("{} bodies; at most {} are allowed", texts.size(), kMaxBodies)};
@@ -381,12 +431,9 @@ Result<Blank> parse_blank(std::string_view spec, LengthUnit unit) {
 
 std::string describe(const Blank& blank) {
   if (!blank.state_file.empty()) {
-    const std::string text = trf("workpiece saved in {}", shown(blank.state_file));
-    const SavedPlace& place = blank.saved_place;
-    const std::string z = rounded(place.at_z_mm);
-    if (place.is_turned_about) return text + trf(", turned about, Z0 at Z{}", z);
-    return place.is_as_saved() ? text : text + trf(", Z0 at Z{}", z);
+    return trf("workpiece saved in {}", shown(blank.state_file)) + blank.saved_place.text();
   }
+  if (blank.mesh) return describe(*blank.mesh);
   if (blank.sheet) return describe(*blank.sheet);
   if (!blank.profile_file.empty()) return trf("profile from {}", shown(blank.profile_file));
   std::string text;

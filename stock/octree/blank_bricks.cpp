@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "stock/octree/mesh_bricks.h"
+
 namespace kerf::octree {
 namespace {
 
@@ -194,6 +196,10 @@ void fill_bodies(BrickTree& tree, const Blank& blank, WorkerPool& pool) {
 
 BrickTree blank_tree(const Lattice& lattice, const Blank& blank, WorkerPool& pool) {
   BrickTree tree(lattice);
+  if (blank.mesh && blank.mesh->body) {
+    fill_mesh(tree, *blank.mesh->body, pool);
+    return tree;
+  }
   if (blank.bodies.size() == 1 && blank.bodies[0].kind == BlankBody::Kind::kBox)
     fill_box(tree, blank);
   else

@@ -105,7 +105,9 @@ bool countable(const Box& box, double cell) {
 
 Done check(const OctreeOptions& options, const Box& box) {
   const double cell = options.cell_mm;
-  if (box.empty() || options.blank.bodies.empty()) return Error{tr("the blank is empty")};
+  const bool has_mesh = options.blank.mesh && options.blank.mesh->body;
+  if (box.empty() || (options.blank.bodies.empty() && !has_mesh))
+    return Error{tr("the blank is empty")};
   if (const std::string need = need_to_turn(options.blank); !need.empty())
     return Error{trf("{} cannot hold it: {}", "octree", need)};
   if (!std::isfinite(cell) || cell <= 0)

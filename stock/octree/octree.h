@@ -59,10 +59,11 @@ class Octree final : public StockModel,
                      public SolidPoints,
                      public ColumnSource {
  public:
-  /// Error if cell_mm is not finite or <= 0 or exceeds the blank, if more than 20 000 cells lie
-  /// between the blank's floor and its top (a tool without an end cuts through them all), or if the
-  /// workpiece would need more memory than the limit: then with what it would need and the cell
-  /// that would fit. The need is an estimate, for a part with twice the surface of the blank's box.
+  /// Of a blank from a mesh crossings and normals are those of its triangles. Error if cell_mm is
+  /// not finite or <= 0 or exceeds the blank, if more than 20 000 cells lie between the blank's
+  /// floor and its top (a tool without an end cuts through them all), or if the workpiece would
+  /// need more memory than the limit: then with what it would need and the cell that would fit. The
+  /// need is an estimate, for a part with twice the surface of the blank's box.
   static Result<std::unique_ptr<Octree>> create(const OctreeOptions& options);
   /// Error if the cutter has a hollow bottom.
   static Done can_cut(const Cutter& cutter);

@@ -10,6 +10,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/plane/outline_file.h"
+#include "stock/turning/mesh_profile.h"
 
 namespace kerf {
 namespace {
@@ -173,9 +174,40 @@ Result<TurnedBlank> blank_of_bodies(const std::vector<BlankBody>& bodies) {
   return blank;
 }
 
+/// Sections in all directions are the same.
+Result<TurnedProfile> profile_of_mesh(const MeshBody& body, const std::string& name) {
+  const Result<std::vector<PlaneOutline>> sections = sections_of(body, name);
+  if (!sections) return Error{sections.error()};
+  TurnedProfile first;
+  for (const PlaneOutline& section : *sections) {
+    if (const std::string fault = reach_fault(section.rings); !fault.empty())
+      return Error{fmt::format("{}: {}", name, fault)};
+    Result<TurnedProfile> profile = profile_of_outline(section, name);
+    if (!profile) {
+      return Error{
+          trf("{}: does not turn about X0 Y0 along Z in one piece; :at=x,y,z and :rotate= "
+              "place it on the axis",
+              name)};
+    }
+    if (first.empty()) first = *profile;
+    if (const auto at = difference_of(units_of(first), units_of(*profile))) {
+      return Error{
+          trf("{}: does not turn about X0 Y0 along Z: sections through the axis differ at "
+              "Z{} and the radius {}",
+              name, number_of(at->x), number_of(at->y))};
+    }
+  }
+  return first;
+}
+
 Result<TurnedBlank> turned_blank_of(const Blank& blank) {
   if (!blank.state_file.empty() || blank.sheet)
     return Error{trf("{}: is no bar that a lathe could turn", describe(blank))};
+  if (blank.mesh && blank.mesh->body) {
+    Result<TurnedProfile> profile = profile_of_mesh(*blank.mesh->body, blank.mesh->file);
+    if (!profile) return Error{profile.error()};
+    return TurnedBlank{std::move(profile.value()), std::nullopt};
+  }
   if (blank.profile_file.empty()) return blank_of_bodies(blank.bodies);
   Result<TurnedProfile> profile = read_profile(blank.profile_file);
   if (!profile) return Error{profile.error()};

@@ -25,10 +25,11 @@ Result<TurnedProfile> read_profile(const std::string& path);
 Result<TurnedProfile> profile_of_outline(const PlaneOutline& outline, const std::string& name);
 inline constexpr double kHalves_mm = 0.001;
 
-/// Bodies that turn about X0 Y0 along Z, united, or the profile of a drawing. Error: a box, a body
-/// beside the axis or across it, bodies that lie apart, a bar of flats together with something that
-/// reaches beyond its flats, a saved workpiece, a sheet, beyond what TurnedPart holds; with the
-/// body and what would do.
+/// Bodies that turn about X0 Y0 along Z, united, the profile of a drawing, or of a mesh
+/// that turns (mesh_profile.h; its sections are equal as halves of a drawing are). Error: a box, a
+/// body beside the axis or across it, bodies that lie apart, a bar of flats together with something
+/// that reaches beyond its flats, a saved workpiece, a sheet, beyond what TurnedPart holds; with
+/// the body and what would do.
 Result<TurnedProfile> turned_profile_of(const Blank& blank);
 
 /// The blank as a model. Error: the same.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "mesh/mesh_body.h"
 
 namespace kerf {
 namespace {
@@ -78,6 +79,21 @@ void fill_blank(TileGrid& grid, const Blank& blank) {
   }
 }
 
+/// Heights up to the top of what is over the middle of each cell.
+void fill_mesh(TileGrid& grid, const MeshBody& body) {
+  std::vector<float> row(static_cast<std::size_t>(grid.nx()));
+  each_mesh_band(body, grid, [&](int first_row, const ColumnGrid& band, const MeshLines& lines) {
+    for (int j = 0; j < band.ny; ++j) {
+      for (int i = 0; i < band.nx; ++i) {
+        const auto cell = static_cast<std::size_t>(i);
+        const auto ends = lines.ends(static_cast<std::size_t>(j) * row.size() + cell);
+        row[cell] = ends.empty() ? grid.floor_mm() : std::max(grid.floor_mm(), ends.back().at_mm);
+      }
+      grid.set_row(first_row + j, row.data());
+    }
+  });
+}
+
 std::string memory_text(double cells) {
   return fmt::format("{:.1f} GB", cells * sizeof(float) / 1e9);
 }
@@ -88,7 +104,8 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
                                  const std::string& model) {
   const double cell = cell_mm;
   const Box box = blank.bounds_mm();
-  if (box.empty() || blank.bodies.empty()) return Error{tr("the blank is empty")};
+  const MeshBody* const mesh = blank.mesh ? blank.mesh->body.get() : nullptr;
+  if (box.empty() || (blank.bodies.empty() && !mesh)) return Error{tr("the blank is empty")};
   const Vec3 size = box.size();
   if (!std::isfinite(cell) || cell <= 0)
     return Error{trf("cell size {} mm is not allowed; must be above 0", cell)};
@@ -115,9 +132,14 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
         cell, nx, ny, memory_text(nx * ny), memory_text(static_cast<double>(most_cells)))};
   }
   TileGrid grid(box, static_cast<int>(nx), static_cast<int>(ny));
-  fill_blank(grid, blank);
+  if (mesh)
+    fill_mesh(grid, *mesh);
+  else
+    fill_blank(grid, blank);
   return grid;
 }
+
+ColumnGrid columns_of(const TileGrid& grid) { return {grid.bounds_mm(), grid.nx(), grid.ny()}; }
 
 double volume_of(const TileGrid& grid) {
   std::vector<float> row(static_cast<std::size_t>(grid.nx()));

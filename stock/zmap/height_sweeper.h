@@ -70,8 +70,13 @@ class HeightSweeper {
 
   /// Of all that was cut, moves held back included.
   const TipTraces& traces() const { return traces_; }
-  /// Of a blank of these bodies, before anything is cut.
-  void follow_sides(std::span<const BlankBody> bodies) { traces_.follow_sides(bodies); }
+  /// Of a blank that is in the grid, before anything is cut.
+  void follow_sides(const Blank& blank) {
+    if (blank.mesh && blank.mesh->body)
+      traces_.follow_mesh(grid, *blank.mesh->body);
+    else
+      traces_.follow_sides(blank.bodies);
+  }
   /// Of a workpiece that was cut before by nobody knows what.
   void forget_traces() { traces_.forget(); }
   /// Moves of another cutter, the union of `tools`, that the caller cuts himself.

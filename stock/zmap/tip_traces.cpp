@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "mesh/mesh_lows.h"
 #include "stock/zmap/cutter_components.h"
 #include "stock/zmap/path_builder.h"
 
@@ -54,6 +55,19 @@ void TipTraces::follow_sides(std::span<const BlankBody> bodies) {
   for (const BlankBody& body : bodies) {
     if (body.kind == BlankBody::Kind::kBox) boxes_.push_back(body.bounds_mm);
   }
+}
+
+void TipTraces::follow_mesh(const TileGrid& grid, const MeshBody& body) {
+  /// Less is rounding.
+  constexpr double kLower_mm = 1e-4;
+  rims_ = {};
+  border_full_ = true;
+  boxes_.clear();
+  each_low_over_cells(body, {grid.bounds_mm(), nx_, ny_}, [&](std::size_t cell, double low_mm) {
+    const int i = static_cast<int>(cell % static_cast<std::size_t>(nx_));
+    const int j = static_cast<int>(cell / static_cast<std::size_t>(nx_));
+    if (low_mm < static_cast<double>(grid.height(i, j)) - kLower_mm) lower(i, j, low_mm);
+  });
 }
 
 /// How high a box was over all of the cell.

@@ -19,6 +19,8 @@
 
 namespace kerf {
 
+struct MeshBody;
+
 /// Heights are those of the cells' middles; between them a pointed tool may have cut deeper. This
 /// remembers, by cell, how deep: the tip's lowest place over each cell that its axis came over.
 /// With it the material over a whole cell has a lower bound (lower_bound_mm) that holds for all
@@ -61,6 +63,9 @@ class TipTraces {
   /// Nothing is cut yet, and these are the bodies: their round sides are exact (RimTraces), and
   /// cells at the grid's border that a box does not fill are not taken for full.
   void follow_sides(std::span<const BlankBody> bodies);
+  /// The same of a blank from a mesh: where that is lower over a cell than over its middle, no more
+  /// is taken to be there. What lies on the edge of a cell alone is not in it.
+  void follow_mesh(const TileGrid& grid, const MeshBody& body);
   const RimTraces& rims() const { return rims_; }
   /// The move is cut. Arcs are taken as chords.
   void add(const Tip& tip, const CutMove& move);

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/translate.h"
+#include "mesh/mesh_body.h"
 #include "stock/move_reach.h"
 #include "stock/zmap/blank_grid.h"
 #include "stock/zmap/contact.h"
@@ -56,11 +57,13 @@ ZMap::ZMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ZMap::~ZMap() = default;
 
 Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
+  if (const auto& mesh = options.blank.mesh; mesh && mesh->body && !mesh->body->is_height_field())
+    return Error{tr("a Z-map cannot hold it: the mesh has undercuts; models mmap and octree do")};
   Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, tr("a Z-map"));
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
   auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
-  impl->sweeper.follow_sides(options.blank.bodies);
+  impl->sweeper.follow_sides(options.blank);
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 

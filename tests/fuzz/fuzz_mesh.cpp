@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "twin/collision/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 #include "twin/collision/solid.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -76,7 +76,8 @@ TEST(Blank, Described) {
 
 constexpr const char* kForms =
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], "
-    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, profile:FILE.dxf, "
+    "hex:x,y,z0:z1:ACROSS_FLATS, square:x,y,z0:z1:ACROSS_FLATS, state:FILE, stl:FILE, obj:FILE, "
+    "3mf:FILE, step:FILE, profile:FILE.dxf, "
     "profile:FILE.svg, sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, "
     "sheet:FILE.svg:THICKNESS";
 
@@ -84,8 +85,6 @@ TEST(Blank, UnknownAndUnsupportedKinds) {
   EXPECT_EQ(error_of(""), std::string("no stock is given; forms: ") + kForms);
   EXPECT_EQ(error_of("bax:0"),
             std::string("bax:0: unknown stock 'bax'; did you mean 'box'? Forms: ") + kForms);
-  EXPECT_EQ(error_of("stl:part.stl"),
-            std::string("stl:part.stl: stl: is not supported by this version; forms: ") + kForms);
   EXPECT_EQ(error_of("box:0,0,0:1,1,1+state:x"),
             "state:x: state:FILE stands alone; it cannot be added to other bodies");
   EXPECT_EQ(error_of("state:"), "state:: the file name is missing; the form is state:FILE");
@@ -126,17 +125,56 @@ TEST(Blank, ASavedPartLiesElsewhere) {
   const Result<Blank> about = parse_blank("state:a:b.state:flip=x:at=0,0,-2.5");
   ASSERT_TRUE(about) << about.error();
   EXPECT_EQ(about->state_file, "a:b.state");
-  EXPECT_TRUE(about->saved_place.is_turned_about);
-  EXPECT_EQ(about->saved_place.at_z_mm, -2.5);
-  EXPECT_EQ(describe(*about), "workpiece saved in a:b.state, turned about, Z0 at Z-2.5");
-  EXPECT_EQ(described("state:a:at=0,0,4"), "workpiece saved in a, Z0 at Z4");
-  EXPECT_EQ(error_of("state:a:flip=y"), "'flip=y' is not allowed; must be flip=x");
-  EXPECT_EQ(error_of("state:a:at=0,1,4"),
-            "'at=0,1,4' is not allowed; a part that turns stays at X0 Y0: at=0,0,z");
+  EXPECT_EQ(about->saved_place, (BlankPlace{'x', Vec3(0), Vec3(0, 0, -2.5)}));
+  EXPECT_EQ(describe(*about),
+            "workpiece saved in a:b.state, flipped about X, its zero at X0 Y0 Z-2.5");
+  EXPECT_EQ(described("state:a:at=0,0,4"), "workpiece saved in a, its zero at X0 Y0 Z4");
+  EXPECT_EQ(described("state:a:rotate=0,90,-30.5:flip=y"),
+            "workpiece saved in a, flipped about Y, turned by 0, 90, -30.5 degrees about X, Y, Z");
+  EXPECT_EQ(error_of("state:a:flip=z"), "'flip=z' is not allowed; must be flip=x or flip=y");
+  EXPECT_EQ(error_of("state:a:rotate=1,2"), "rotate: '1,2' has 2 values; must be A,B,C");
+  EXPECT_EQ(error_of("state:a:rotate=1,2,400"),
+            "rotate C: 400 is not allowed; must be from -360 to 360 (degrees)");
   EXPECT_EQ(error_of("state:a:at=4"), "at: '4' has 1 value; must be x,y,z");
   EXPECT_EQ(error_of("state:a:flip=x:flip=x"), "'flip=x': flip= is given twice");
   EXPECT_EQ(error_of("state:flip=x"), "no error") << "that is a name";
   EXPECT_EQ(error_of("state::flip=x"), "state:: the file name is missing; the form is state:FILE");
+}
+
+TEST(Blank, PlacesTurnAboutTheZeroOfTheFile) {
+  const Vec3 p(1, 2, 3);
+  EXPECT_EQ((BlankPlace{'x', Vec3(0), Vec3(0)}.placed(p)), Vec3(1, -2, -3));
+  EXPECT_EQ((BlankPlace{'y', Vec3(0), Vec3(10, 0, 0)}.placed(p)), Vec3(9, 2, -3));
+  EXPECT_EQ((BlankPlace{0, Vec3(90, 0, 0), Vec3(0)}.placed(p)), Vec3(1, -3, 2));
+  // About X, then Y, then Z: (1, -3, 2) -> (2, -3, -1) -> (3, 2, -1).
+  EXPECT_EQ((BlankPlace{0, Vec3(90, 90, 90), Vec3(0)}.placed(p)), Vec3(3, 2, -1));
+}
+
+TEST(Blank, Mesh) {
+  const Result<Blank> blank = parse_blank("stl:a:b+c.STL+2.5:inch:flip=y:at=1,2,3");
+  ASSERT_TRUE(blank) << blank.error();
+  ASSERT_TRUE(blank->mesh);
+  EXPECT_EQ(blank->mesh->file, "a:b+c.STL");
+  EXPECT_EQ(blank->mesh->allowance_mm, 2.5);
+  EXPECT_EQ(blank->mesh->unit, LengthUnit::kInch);
+  EXPECT_EQ(blank->mesh->place, (BlankPlace{'y', Vec3(0), Vec3(1, 2, 3)}));
+  EXPECT_TRUE(blank->bounds_mm().empty()) << "nobody has read it";
+  EXPECT_EQ(describe(*blank),
+            "mesh from a:b+c.STL, grown by 2.5 mm, flipped about Y, its zero at X1 Y2 Z3");
+  EXPECT_EQ(described("part.obj:rotate=0,0,45"),
+            "mesh from part.obj, turned by 0, 0, 45 degrees about X, Y, Z");
+  EXPECT_EQ(parse_blank("dir/part.3mf + 1")->mesh->allowance_mm, 1);
+  EXPECT_EQ(parse_blank("part.stl+1", LengthUnit::kInch)->mesh->allowance_mm, 25.4);
+  EXPECT_EQ(parse_blank("a+2.stl")->mesh->allowance_mm, 0);
+  EXPECT_EQ(error_of("stl:a.stl+0"),
+            "stl:a.stl+0: allowance: 0 is not allowed; must be from 0.001 to 100 (mm)");
+  EXPECT_EQ(error_of("stl:a.obj"),
+            "stl:a.obj: 'a.obj' is not a name of that kind; the form is stl:FILE.stl[+ALLOWANCE]");
+  EXPECT_EQ(error_of("3mf:a.3mf:inch"), "3mf:a.3mf:inch: a 3MF file says its unit itself");
+  EXPECT_EQ(error_of("stl:"), "stl:: the file name is missing; the form is stl:FILE[+ALLOWANCE]");
+  EXPECT_EQ(error_of("stl:a.stl:at=1"), "stl:a.stl:at=1: at: '1' has 1 value; must be x,y,z");
+  EXPECT_EQ(error_of("box:0,0,0:1,1,1+stl:a.stl"),
+            "stl:a.stl: stl:FILE stands alone; it cannot be added to other bodies");
 }
 
 TEST(Blank, Profile) {

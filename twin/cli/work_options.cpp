@@ -10,6 +10,7 @@
 #include "base/translate.h"
 #include "stock/zmap/zmap_kernel.h"
 #include "twin/config/tool_library_reader.h"
+#include "twin/job/blank_mesh.h"
 #include "twin/machine/machine_setup.h"
 #include "twin/machines/builtin_models.h"
 #include "twin/machines/machine_bodies.h"
@@ -76,9 +77,11 @@ void read_libraries(const LiveConfig* config, OptionReader& reader, WorkRequest&
 void read_stock(const LiveConfig* config, OptionReader& reader, WorkRequest& work) {
   const ChosenValue stock = reader.choose("--stock");
   if (stock.from == ValueFrom::kConfig) work.blank = config->stock.blank;
+  if (work.blank) read_blank_mesh(*work.blank, reader.diagnostics());
   if (stock.from != ValueFrom::kCommandLine) return;
   Result<Blank> blank = parse_blank(stock.text, reader.unit());
   if (blank) {
+    read_blank_mesh(*blank, reader.diagnostics());
     work.blank = std::move(blank.value());
   } else {
     reader.fault("--stock", blank.error());

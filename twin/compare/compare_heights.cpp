@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "twin/compare/column_lines.h"
+#include "mesh/column_lines.h"
 #include "twin/compare/design_columns.h"
 #include "twin/compare/wall_finder.h"
 

@@ -9,7 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "twin/compare/column_lines.h"
+#include "mesh/column_lines.h"
 #include "twin/compare/patch_deviation.h"
 
 namespace kerf {

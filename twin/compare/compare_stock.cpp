@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/column_lines.h"
 #include "stock/turning/turned_surface.h"
-#include "twin/compare/column_lines.h"
 #include "twin/compare/compare_heights.h"
 #include "twin/compare/compare_patches.h"
 #include "twin/compare/deviation_sums.h"

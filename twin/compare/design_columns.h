@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "twin/compare/column_lines.h"
+#include "mesh/column_lines.h"
 #include "twin/compare/design_part.h"
 
 namespace kerf {

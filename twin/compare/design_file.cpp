@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
-#include "base/text_scan.h"
+#include "base/axis_turns.h"
 #include "base/translate.h"
 #include "base/units.h"
-#include "twin/collision/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 namespace kerf {
 namespace {
@@ -23,14 +22,6 @@ Diagnostic said(Severity severity, const std::string& file, std::string message,
   d.message = std::move(message);
   d.hint = std::move(hint);
   return d;
-}
-
-std::optional<MeshFormat> format_of(const std::string& path) {
-  const std::string ending = to_lower(std::filesystem::path(path).extension().string());
-  if (ending == ".stl") return MeshFormat::kStl;
-  if (ending == ".obj") return MeshFormat::kObj;
-  if (ending == ".3mf") return MeshFormat::k3mf;
-  return std::nullopt;
 }
 
 std::string range_text(const Box& box) {
@@ -47,22 +38,7 @@ double rounded(double mm) {
 }  // namespace
 
 Vec3 DesignPlacement::placed(const Vec3& p) const {
-  Vec3 out = p;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (turn_deg[axis] == 0) continue;
-    // Quarter turns exactly.
-    const double quarters = turn_deg[axis] / 90;
-    double c = std::cos(turn_deg[axis] * kPi / 180), s = std::sin(turn_deg[axis] * kPi / 180);
-    if (quarters == std::round(quarters)) {
-      c = std::round(c);
-      s = std::round(s);
-    }
-    const int first = (axis + 1) % 3, second = (axis + 2) % 3;
-    const double a = out[first], b = out[second];
-    out[first] = c * a - s * b;
-    out[second] = s * a + c * b;
-  }
-  return out + shift_mm;
+  return turned_about_axes(p, turn_deg) + shift_mm;
 }
 
 std::string DesignPlacement::text() const {
@@ -87,11 +63,11 @@ DesignPart DesignFile::placed(const DesignPlacement& placement, Diagnostics& dia
 
 std::shared_ptr<const DesignFile> read_design(const std::string& path, double mm_per_unit,
                                               Diagnostics& diagnostics) {
-  const std::optional<MeshFormat> format = format_of(path);
+  const std::optional<MeshFormat> format = mesh_format_of(path);
   if (!format) {
     Diagnostic d;
     d.message =
-        trf("--compare: {}: designs are read as STL, OBJ or 3MF; the name must end so", path);
+        trf("--compare: {}: designs are read as STL, OBJ, 3MF or STEP; the name must end so", path);
     d.hint = tr("CAD programs export meshes: choose a deviation well below the tolerance");
     diagnostics.push_back(std::move(d));
     return nullptr;

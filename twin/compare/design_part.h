@@ -8,7 +8,7 @@
 #include "base/diagnostic.h"
 #include "base/geometry.h"
 #include "base/triangle_mesh.h"
-#include "twin/compare/surface_sides.h"
+#include "mesh/surface_sides.h"
 #include "twin/compare/triangle_tree.h"
 
 namespace kerf {

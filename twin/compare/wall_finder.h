@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "twin/compare/column_lines.h"
+#include "mesh/column_lines.h"
 #include "twin/process/kept_moves.h"
 
 namespace kerf {

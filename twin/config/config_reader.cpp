@@ -153,7 +153,7 @@ void read_fixtures(const GroupReader& root, std::vector<FixtureSpec>& out) {
     ConfigNode* const shape = group.find("shape");
     if (shape == nullptr) continue;
     std::string text(trim(shape->scalar));
-    for (const std::string_view prefix : {"stl:", "obj:", "3mf:"}) {
+    for (const std::string_view prefix : {"stl:", "obj:", "3mf:", "step:"}) {
       const std::string resolved = resolved_spec(*shape, prefix, root.faults());
       if (resolved != text) text = resolved;
       if (to_lower(text.substr(0, prefix.size())) == prefix) {
@@ -225,6 +225,14 @@ void read_stock(const GroupReader& stock, ConfigStock& out) {
   Result<Blank> blank = parse_blank(spec);
   if (blank && blank->sheet && !blank->sheet->file.empty()) {
     spec = resolved_spec(*node, "sheet:", stock.faults());
+    blank = parse_blank(spec);
+  }
+  if (blank && blank->mesh) {
+    const std::size_t colon = spec.find(':');
+    const std::string word = to_lower(trim(spec.substr(0, colon)));
+    const bool has_word = colon != std::string::npos && !spec.substr(0, colon).empty() &&
+                          (word == "stl" || word == "obj" || word == "3mf" || word == "step");
+    spec = resolved_spec(*node, has_word ? word + ":" : "", stock.faults());
     blank = parse_blank(spec);
   }
   if (blank && !blank->profile_file.empty()) {

@@ -16,14 +16,16 @@ constexpr std::array kWorkpieceSettings{
         .commands = kCutting,
         .type = T::kText,
         .unit = "mm",
-        .purpose = tr_noop(
-            "blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, sheet:0,0:600,400:3, .."),
+        .purpose = tr_noop("blank, as --stock has it: box:0,0,-20:100,60,0, state:FILE, stl:FILE, "
+                           "sheet:0,0:600,400:3, .."),
         .help = tr_noop(
             "blank: box:x0,y0,z0:x1,y1,z1 | cylinder:x,y,z0:z1:d[:axis] | "
             "tube:x,y,z0:z1:d:inner[:axis] | hex:x,y,z0:z1:FLATS | square:x,y,z0:z1:FLATS (bars "
             "for "
             "a lathe, width across flats) | several of these joined by +; or state:FILE (a saved "
-            "workpiece); or profile:FILE.dxf, profile:FILE.svg (what turns about the drawing's x "
+            "workpiece); stl:FILE[+ALLOWANCE][:inch], obj:FILE, 3mf:FILE, step:FILE (a casting, an "
+            "earlier part), each file with [:flip=x|y][:rotate=A,B,C][:at=x,y,z]; or "
+            "profile:FILE.dxf, profile:FILE.svg (what turns about the drawing's x "
             "axis); or "
             "sheet:x0,y0:x1,y1:THICKNESS, sheet:FILE.dxf:THICKNESS, sheet:FILE.svg:THICKNESS "
             "(metal to be cut by a torch, laser or jet, or punched; its top is at Z0)"),
@@ -109,6 +111,7 @@ constexpr std::array kWorkpieceSettings{
             .help = tr_noop(
                 "what stands around the workpiece, repeatable: [NAME=]box:x0,y0,z0:x1,y1,z1 | "
                 "cylinder:.. | tube:.. | stl:FILE[:inch] | obj:FILE[:inch] | 3mf:FILE | "
+                "step:FILE | "
                 "vise:JAW_WIDTH:OPENING:HEIGHT | "
                 "clamp:LENGTH:WIDTH:HEIGHT | screw:D:LENGTH, with [:at=x,y,z][:turn=DEG]"
                 "[:in-blank][:on=LINK]"),

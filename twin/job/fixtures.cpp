@@ -9,9 +9,11 @@
 
 #include "base/suggest.h"
 #include "base/translate.h"
+#include "mesh/mesh_reader.h"
 #include "stock/cutter/scan.h"
-#include "twin/collision/mesh_reader.h"
+#include "twin/collision/mesh_depth.h"
 #include "twin/collision/sweep.h"
+#include "twin/job/blank_mesh.h"
 
 namespace kerf {
 namespace {
@@ -25,8 +27,8 @@ constexpr double kSmallMesh_mm = 10;
 /// Of a jaw's width: how thick it is.
 constexpr double kJawThickness = 0.25;
 
-constexpr std::array<std::string_view, 9> kShapes{"box", "cylinder", "tube",  "stl",  "obj",
-                                                  "3mf", "vise",     "clamp", "screw"};
+constexpr std::array<std::string_view, 10> kShapes{"box", "cylinder", "tube", "stl",   "obj",
+                                                   "3mf", "step",     "vise", "clamp", "screw"};
 struct MeshShape {
   std::string_view word;
   MeshFormat format;
@@ -34,12 +36,13 @@ struct MeshShape {
 };
 constexpr std::array kMeshes{MeshShape{"stl", MeshFormat::kStl, "stl:FILE[:inch]"},
                              MeshShape{"obj", MeshFormat::kObj, "obj:FILE[:inch]"},
-                             MeshShape{"3mf", MeshFormat::k3mf, "3mf:FILE"}};
+                             MeshShape{"3mf", MeshFormat::k3mf, "3mf:FILE"},
+                             MeshShape{"step", MeshFormat::kStep, "step:FILE"}};
 constexpr std::array<std::string_view, 5> kOptions{"at", "turn", "in-blank", "on", "inch"};
 constexpr const char* kForms = tr_noop(
     "box:x0,y0,z0:x1,y1,z1, cylinder:x,y,z0:z1:d[:axis], tube:x,y,z0:z1:d:inner[:axis], several "
     "of these joined by +, stl:FILE[:inch], obj:FILE[:inch], 3mf:FILE, "
-    "vise:JAW_WIDTH:OPENING:HEIGHT, "
+    "step:FILE, vise:JAW_WIDTH:OPENING:HEIGHT, "
     "clamp:LENGTH:WIDTH:HEIGHT, screw:D:LENGTH[:HEAD_D:HEAD_H]; each with [:at=x,y,z][:turn=DEG]"
     "[:in-blank][:on=LINK]");
 
@@ -155,6 +158,7 @@ Done take_options(std::vector<std::string_view>& fields, LengthUnit unit, Fixtur
   if (!inch) return Done{std::monostate{}};
   const std::string shape = to_lower(trim(fields[0]));
   if (shape == "3mf") return Error{tr("a 3MF file says its unit itself")};
+  if (shape == "step") return Error{tr("a STEP file says its unit itself")};
   if (shape != "stl" && shape != "obj")
     return Error{tr("inch is of stl:FILE and obj:FILE; all other numbers are in --units")};
   out.mm_per_unit = kMmPerInch;
@@ -236,8 +240,8 @@ SolidPointer load_mesh(const FixtureSpec& spec, Diagnostics& diagnostics) {
     tell(diagnostics, Severity::kNote,
          trf("fixture '{}': {} is {:.0f} mm large; is it drawn in other units?", spec.name,
              spec.mesh_path, largest));
-  } else if (spec.mesh_format != MeshFormat::k3mf && spec.mm_per_unit == 1 &&
-             largest < kSmallMesh_mm) {
+  } else if (spec.mesh_format != MeshFormat::k3mf && spec.mesh_format != MeshFormat::kStep &&
+             spec.mm_per_unit == 1 && largest < kSmallMesh_mm) {
     tell(diagnostics, Severity::kNote,
          trf("fixture '{}': {} is {:.1f} mm large; in inches?", spec.name, spec.mesh_path, largest),
          tr(":inch behind the file takes its numbers for inches"));
@@ -269,6 +273,10 @@ double overlap_mm(const Solid& moving, const Pose& pose, const Solid& still) {
     deepest = std::max(deepest, touch_depth_mm(piece, way, still));
   }
   return deepest;
+}
+
+bool is_mesh(const Solid& solid) {
+  return !solid.pieces().empty() && solid.pieces().front().kind == Convex::Kind::kHull;
 }
 
 }  // namespace
@@ -335,8 +343,11 @@ FixtureList load_fixtures(std::span<const FixtureSpec> specs, Diagnostics& diagn
 
 double depth_in_blank_mm(const Solid& fixture, const Pose& workpiece_from_fixture,
                          const Solid& blank) {
-  return std::max(overlap_mm(blank, workpiece_from_fixture.inverse(), fixture),
-                  overlap_mm(fixture, workpiece_from_fixture, blank));
+  const double depth = std::max(overlap_mm(blank, workpiece_from_fixture.inverse(), fixture),
+                                overlap_mm(fixture, workpiece_from_fixture, blank));
+  const bool are_meshes = is_mesh(fixture) && is_mesh(blank);
+  return are_meshes ? std::max(depth, mesh_depth_at_mm(fixture, workpiece_from_fixture, blank))
+                    : depth;
 }
 
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& blank,
@@ -346,8 +357,9 @@ bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Blank& bl
          tr("--fixture: a sheet is cut by a beam or punched; fixtures are held against mills"));
     return false;
   }
-  if (blank.bodies.empty()) return true;
-  return check_fixtures_beside(fixtures, *Solid::of_bodies(blank.bodies), diagnostics);
+  if (fixtures.empty()) return true;
+  const SolidPointer solid = solid_of(blank);
+  return !solid || check_fixtures_beside(fixtures, *solid, diagnostics);
 }
 
 bool check_fixtures_beside(const std::vector<Fixture>& fixtures, const Solid& blank,

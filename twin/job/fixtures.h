@@ -12,8 +12,8 @@
 #include "base/diagnostic.h"
 #include "base/length_unit.h"
 #include "base/result.h"
+#include "mesh/mesh_reader.h"
 #include "stock/blank.h"
-#include "twin/collision/mesh_reader.h"
 #include "twin/collision/solid.h"
 
 namespace kerf {
@@ -37,7 +37,7 @@ struct FixtureSpec {
 ///
 ///     box:.. | cylinder:.. | tube:..    as parse_blank() has them, several joined by +
 ///     stl:FILE[:inch], obj:FILE[:inch]  a mesh, in mm or inches
-///     3mf:FILE                          a mesh, in the unit that the file says
+///     3mf:FILE, step:FILE               a mesh, in the unit that the file says
 ///     vise:JAW_WIDTH:OPENING:HEIGHT     two jaws along X, OPENING apart in Y, HEIGHT above the
 ///     bed;
 ///                                       0,0,0 lies on the bed, in the middle between them

@@ -303,6 +303,9 @@ std::string misfit(const StockSettings& settings, const Blank& blank) {
   if (blank.sheet && settings.additive) {
     return tr("--additive: nothing is added to a sheet; a box can be added to");
   }
+  if (blank.mesh && settings.additive) {
+    return tr("--additive: nothing is added to a mesh; a box can be added to");
+  }
   if (blank.sheet && settings.cell_mm > 0) return tr("--cell: a sheet has no cells; leave it out");
   if (settings.kind == StockKind::kTurning && settings.cell_mm > 0) {
     return tr("--cell: a workpiece that is turned has no cells; leave it out");

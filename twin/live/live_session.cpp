@@ -125,7 +125,7 @@ bool LiveSession::set_up(Diagnostics& diagnostics, Outcome& outcome) {
   choice_ = choose_stock(options_.stock, needs);
   if (!found.blank && !guess_blank(survey, diagnostics, outcome)) return false;
   options_.cutting.checks.blank_guessed = !found.blank;
-  if (found.blank) options_.cutting.checks.blank = found.blank->bodies;
+  if (found.blank) options_.cutting.checks.blank = *found.blank;
   const FixtureList& fixtures = options_.cutting.checks.collisions.fixtures;
   const bool turns = choice_.kind == StockKind::kTurning;
   if (found.blank && fixtures && !turns &&

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/translate.h"
-#include "twin/collision/stl_mesh.h"
+#include "mesh/stl_mesh.h"
 #include "twin/machines/mesh_builder.h"
 
 namespace kerf {

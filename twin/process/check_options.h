@@ -43,8 +43,8 @@ struct CheckOptions {
   bool is_drawn = false;
   CollisionWishes collisions{};
   double spindle_max_rpm = 0;  ///< of a spindle that turns the workpiece; 0: not known
-  /// The blank's; none: nobody knows more of it than the stock's box.
-  std::vector<BlankBody> blank{};
+  /// Without bodies or a mesh nobody knows more of it than the stock's box.
+  Blank blank{};
 };
 
 /// Where the blank of a run comes from, and so what it means that nothing of it is cut.

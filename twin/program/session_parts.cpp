@@ -20,6 +20,7 @@
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
+#include "twin/job/blank_mesh.h"
 #include "twin/job/turning_row.h"
 #include "twin/program/library_tools.h"
 
@@ -29,16 +30,19 @@ namespace {
 /// Bytes that models of heights need at least for each cell. A surface (picture, mesh) takes as
 /// much again and more.
 constexpr double kBytesPerCell = 4.0;
+/// And so many at least for each cell over a mesh that has undercuts: a gap.
+constexpr double kBytesPerGap = 24.0;
 
 double machine_memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 /// Cells that the model itself refuses are left to its own message.
-bool refuse_memory(const Blank& blank, double cell_mm, Diagnostics& diagnostics) {
+bool refuse_memory(const Blank& blank, StockKind kind, double cell_mm, Diagnostics& diagnostics) {
   const Vec3 size = blank.bounds_mm().size();
   const double cells = std::ceil(size.x / cell_mm) * std::ceil(size.y / cell_mm);
-  const double bytes = cells * kBytesPerCell;
+  const bool hollow = kind == StockKind::kMmap && !need_of_mesh(blank).empty();
+  const double bytes = cells * (kBytesPerCell + (hollow ? kBytesPerGap : 0));
   if (cells > static_cast<double>(ZMap::kMaxCells) || bytes <= machine_memory_bytes()) return false;
   diagnostics.push_back(
       general_error(trf("--cell: {:g} mm makes {:.0f} million cells, which take {:.1f} GB "
@@ -68,7 +72,7 @@ Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string
 /// As it lies now; null, with an error: only what turns is turned about, and not beyond a lathe.
 std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blank& blank,
                                    const StockSettings& settings, Diagnostics& diagnostics) {
-  const SavedPlace& place = blank.saved_place;
+  const BlankPlace& place = blank.saved_place;
   if (place.is_as_saved()) return stock;
   const TurningStock* const turned = stock->turned();
   if (turned == nullptr) {
@@ -84,9 +88,15 @@ std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blan
             blank.state_file)));
     return nullptr;
   }
-  std::optional<TurnedPart> part = place.is_turned_about
-                                       ? turned->part().turned_about(place.at_z_mm)
-                                       : turned->part().moved(place.at_z_mm);
+  if (place.rotate_deg != Vec3(0) || place.flip == 'y' || place.at_mm.x != 0 ||
+      place.at_mm.y != 0) {
+    diagnostics.push_back(general_error(
+        trf("{}: a part that turns stays on its axis; allowed are flip=x and at=0,0,z",
+            blank.state_file)));
+    return nullptr;
+  }
+  std::optional<TurnedPart> part = place.flip == 'x' ? turned->part().turned_about(place.at_mm.z)
+                                                     : turned->part().moved(place.at_mm.z);
   if (part) {
     auto lies = with_milling(std::make_unique<TurningStock>(std::move(*part)), settings);
     if (lies) return std::move(lies.value());
@@ -94,7 +104,7 @@ std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blan
     return nullptr;
   }
   diagnostics.push_back(general_error(trf("{}: at Z{:g} it would lie beyond {} mm from Z0",
-                                          blank.state_file, place.at_z_mm, kMaxTurnedZ_mm)));
+                                          blank.state_file, place.at_mm.z, kMaxTurnedZ_mm)));
   return nullptr;
 }
 
@@ -148,13 +158,14 @@ std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& ch
   }
   if (choice.kind != StockKind::kOctree) {
     if (fitting.cell_mm <= 0) fitting.cell_mm = suited_cell_mm(blank.bounds_mm(), choice.finest_mm);
-    if (refuse_memory(blank, fitting.cell_mm, diagnostics)) return nullptr;
+    if (refuse_memory(blank, choice.kind, fitting.cell_mm, diagnostics)) return nullptr;
   }
   auto created = stock_model(choice.kind).create(blank, fitting);
   if (created) return std::move(created.value());
   // Of a blank that the model can hold nothing but the cells can be refused.
-  const bool empty = blank.bodies.empty() || blank.bounds_mm().empty();
-  const bool held = choice.kind == StockKind::kOctree || need_of_blank(blank).empty();
+  const bool empty = (blank.bodies.empty() && !blank.mesh) || blank.bounds_mm().empty();
+  const bool flat = choice.kind != StockKind::kZmap || need_of_mesh(blank).empty();
+  const bool held = choice.kind == StockKind::kOctree || (need_of_blank(blank).empty() && flat);
   const bool by_cell = held && !empty;
   diagnostics.push_back(
       general_error(fmt::format("{}: {}", by_cell ? "--cell" : origin, created.error())));
@@ -179,6 +190,9 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
              choice.kind != StockKind::kTurning) {
     const std::string need = need_of_blank(blank);
     if (!need.empty()) fitting = {StockKind::kOctree, need, 0};
+    const std::string undercut = need_of_mesh(blank);
+    if (!undercut.empty() && choice.kind == StockKind::kZmap)
+      fitting = {StockKind::kMmap, undercut, choice.finest_mm};
   }
   outcome = Outcome::kUsageError;
   StockSetup setup;
@@ -210,6 +224,7 @@ bool find_comment_blank(const Program& program, const std::string& path, Comment
     diagnostics.push_back(std::move(d));
     return false;
   }
+  if (!read_blank_mesh(*blank, diagnostics)) return false;
   found.blank = std::move(blank.value());
   found.origin = trf("comment in line {} ({})", hint->line, hint->dialect);
   return true;

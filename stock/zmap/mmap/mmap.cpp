@@ -81,6 +81,38 @@ std::uint64_t MMap::Impl::hash_of_tile(std::uint32_t tile) const {
   return hollow != nullptr ? heights ^ hollow->hash() : heights;
 }
 
+namespace {
+
+/// Makes gaps of what is below the heights and not in the body; their volume, mm3.
+double hollow_out(const MeshBody& body, TileGrid& grid, GapGrid& gaps) {
+  double sum = 0;
+  std::vector<Gap> column;
+  const auto add = [&](float low, float high) {
+    if (high - low <= kThinnest_mm) return;
+    column.push_back({low, high, MeshPatch::kNotCut, MeshPatch::kNotCut});
+    sum += static_cast<double>(high) - static_cast<double>(low);
+  };
+  each_mesh_band(body, grid, [&](int first_row, const ColumnGrid& band, const MeshLines& lines) {
+    for (std::size_t cell = 0; cell < band.size(); ++cell) {
+      const auto ends = lines.ends(cell);
+      if (ends.empty()) continue;
+      column.clear();
+      for (std::size_t n = ends.size() - 2; n > 0; n -= 2) add(ends[n - 1].at_mm, ends[n].at_mm);
+      add(grid.floor_mm(), ends.front().at_mm);
+      if (column.empty()) continue;
+      const auto width = static_cast<std::size_t>(band.nx);
+      const int i = static_cast<int>(cell % width), j = first_row + static_cast<int>(cell / width);
+      const auto tile =
+          static_cast<std::size_t>(j / kTileCells) * static_cast<std::size_t>(grid.tiles_x()) +
+          static_cast<std::size_t>(i / kTileCells);
+      gaps.make_writable(tile).write(TileGrid::offset(i, j), column);
+    }
+  });
+  return sum * grid.cell_x_mm() * grid.cell_y_mm();
+}
+
+}  // namespace
+
 MMap::MMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MMap::~MMap() = default;
 
@@ -88,9 +120,11 @@ Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
   Result<TileGrid> grid =
       make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, tr("an M-map"));
   if (!grid) return Error{grid.error()};
-  const double blank_mm3 = volume_of(*grid);
-  auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
-  impl->sweeper.follow_sides(options.blank.bodies);
+  const double solid_mm3 = volume_of(*grid);
+  auto impl = std::make_unique<Impl>(std::move(*grid), solid_mm3, options.kernel, options.threads);
+  if (options.blank.mesh && options.blank.mesh->body)
+    impl->blank_mm3 -= hollow_out(*options.blank.mesh->body, impl->grid(), impl->gaps);
+  impl->sweeper.follow_sides(options.blank);
   return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }
 

@@ -38,7 +38,8 @@ namespace kerf {
 /// SIGGRAPH 1986.
 class MMap final : public StockModel, public PresentHeights, public ColumnSource {
  public:
-  /// Errors as ZMap::create(). `kernel` and `threads` change no bit of the result.
+  /// Errors as ZMap::create(), but that a mesh may have undercuts. `kernel` and `threads` change no
+  /// bit of the result.
   static Result<std::unique_ptr<MMap>> create(const ZMapOptions& options);
   /// Error if the cutter has a hollow bottom (its lower side falls outward).
   static Done can_cut(const Cutter& cutter);

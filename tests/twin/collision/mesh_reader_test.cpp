@@ -1,4 +1,4 @@
-#include "twin/collision/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "twin/collision/stl_mesh.h"
+#include "mesh/stl_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -12,6 +12,7 @@
 #include "base/translate.h"
 #include "stock/way_contact.h"
 #include "twin/collision/tool_bodies.h"
+#include "twin/job/blank_mesh.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -34,6 +35,9 @@ bool clip(double a, double b, double limit, bool below, double& t0, double& t1) 
   return t0 <= t1;
 }
 
+/// Along the longer side of a blank from a mesh, where its outline is asked for.
+constexpr double kShadowCells = 1024;
+
 struct UnderSpan {
   double begin = 0, end = 1;
 };
@@ -53,6 +57,24 @@ std::optional<UnderSpan> within_circle(const Vec3& from, const Vec3& to, const V
 }
 
 /// Parts of a straight way: a tube's outline has a hole.
+/// Makes of a span what of it comes under the blank, from its first place to its last; false: none
+/// does. Looked at cell by cell.
+bool enter_shadow(const BlankShadow& shadow, const Vec3& from, const Vec3& to, UnderSpan& span) {
+  const Vec3 way = to - from;
+  const double length = (span.end - span.begin) * std::hypot(way.x, way.y);
+  const int steps = static_cast<int>(std::ceil(length / shadow.cell_mm())) + 1;
+  std::optional<UnderSpan> under;
+  for (int n = 0; n <= steps; ++n) {
+    const double t = span.begin + (span.end - span.begin) * n / steps;
+    const Vec3 at = from + t * way;
+    if (!shadow.covers(at.x, at.y)) continue;
+    if (!under) under = UnderSpan{t, t};
+    under->end = t;
+  }
+  if (under) span = *under;
+  return under.has_value();
+}
+
 struct UnderSpans {
   std::array<UnderSpan, 2> of;
   int count = 0;
@@ -202,6 +224,15 @@ void Checks::deepen_spindle_event(double depth_mm) {
   if (spindle_) log_.deepen(*spindle_, depth_mm);
 }
 
+void Checks::set_options(const CheckOptions& options) {
+  options_ = options;
+  shadow_ = nullptr;
+  if (!options.blank.mesh || !options.blank.mesh->body) return;
+  const Vec3 size = bounds_mm_.size();
+  shadow_ = std::make_shared<const BlankShadow>(*options.blank.mesh->body,
+                                                std::max(size.x, size.y) / kShadowCells);
+}
+
 std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
   const double floor = bounds_mm_.min.z;
   const double limit = floor - options_.below_mm - kContactTolerance_mm;
@@ -209,7 +240,7 @@ std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
   BlankBody box;
   box.bounds_mm = bounds_mm_;
   const std::span<const BlankBody> bodies =
-      options_.blank.empty() ? std::span<const BlankBody>(&box, 1) : options_.blank;
+      options_.blank.bodies.empty() ? std::span<const BlankBody>(&box, 1) : options_.blank.bodies;
   std::optional<Below> below;
   const std::vector<double> ends = chord_ends(m);
   Vec3 from = point_at(m, 0);
@@ -217,8 +248,8 @@ std::optional<Checks::Below> Checks::below_floor(const Motion& m) const {
     const Vec3 to = point_at(m, ends[i]);
     for (const BlankBody& body : bodies) {
       const UnderSpans spans = spans_under(body, from, to, limit);
-      for (const UnderSpan& span :
-           std::span(spans.of).first(static_cast<std::size_t>(spans.count))) {
+      for (UnderSpan span : std::span(spans.of).first(static_cast<std::size_t>(spans.count))) {
+        if (shadow_ && !enter_shadow(*shadow_, from, to, span)) continue;
         const double fraction = ends[i - 1] + span.begin * (ends[i] - ends[i - 1]);
         const double low =
             std::min(from.z + span.begin * (to.z - from.z), from.z + span.end * (to.z - from.z));

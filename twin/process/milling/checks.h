@@ -2,6 +2,7 @@
 // first move that shows a trouble to the last one in a row.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,8 @@
 
 namespace kerf {
 
+class BlankShadow;
+
 /// Watches the moves of one program against one workpiece. The caller calls before it cuts the
 /// move; wherever a `first_contact` is asked, the model must have been finished
 /// (StockModel::finish).
@@ -27,7 +30,7 @@ class Checks {
   Checks(const StockModel& stock, FindingLog& log)
       : stock_(stock), bounds_mm_(stock.bounds_mm()), log_(log) {}
 
-  void set_options(const CheckOptions& options) { options_ = options; }
+  void set_options(const CheckOptions& options);
   const CheckOptions& options() const { return options_; }
   /// Whom a search for the contacts of a traverse tells how far it is; and once a stop is
   /// requested, it ends with nothing.
@@ -85,6 +88,7 @@ class Checks {
   Box bounds_mm_;
   FindingLog& log_;
   CheckOptions options_;
+  std::shared_ptr<const BlankShadow> shadow_;  ///< of a blank from a mesh
   WayWatch watch_;
   std::optional<FindingLog::Handle> rapid_;
   std::optional<FindingLog::Handle> spindle_;

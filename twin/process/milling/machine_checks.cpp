@@ -11,6 +11,7 @@
 #include "stock/move_reach.h"
 #include "twin/collision/mesh_depth.h"
 #include "twin/collision/solid_sweep.h"
+#include "twin/job/blank_mesh.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/milling/checks.h"
@@ -81,7 +82,7 @@ MachineChecks::MachineChecks(const StockModel& stock, FindingLog& log,
 void MachineChecks::set_options(const CheckOptions& options) {
   wishes_ = options.collisions;
   blank_guessed_ = options.blank_guessed;
-  if (!options.blank.empty()) blank_ = Solid::of_bodies(options.blank);
+  blank_ = options.blank;
   if (wishes_.machine) pairs_.set(wishes_, surface_.box_mm());
 }
 
@@ -131,7 +132,7 @@ void MachineChecks::set_place(std::shared_ptr<const MachineKinematics> kinematic
 /// Fixtures that stand on links never move against a workpiece that these carry: once is enough.
 void MachineChecks::check_beside_blank() {
   if (blank_guessed_ || std::exchange(beside_told_, true) || !wishes_.fixtures) return;
-  SolidPointer blank = blank_;
+  SolidPointer blank = solid_of(blank_);
   if (!blank) {
     BlankBody box;
     box.bounds_mm = surface_.box_mm();

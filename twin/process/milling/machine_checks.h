@@ -90,7 +90,7 @@ class MachineChecks {
   ToolChain tool_chain_;  ///< from the workpiece's link to the tool's
   Pose program_from_link_;
   bool given_up_ = false;
-  SolidPointer blank_;           ///< what is known of it; null: its box
+  Blank blank_;                  ///< what is known of it
   bool beside_told_ = false;     ///< what stands in it has been told
   std::vector<int> told_tools_;  ///< of which it is not known how long they are
 

@@ -1,4 +1,4 @@
-// twin/collision/threemf_model.h - one .model of a 3MF file: objects, as meshes and as components.
+// mesh/threemf_model.h - one .model of a 3MF file: objects, as meshes and as components.
 #pragma once
 
 #include <array>

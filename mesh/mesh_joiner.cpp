@@ -1,4 +1,4 @@
-#include "twin/collision/mesh_joiner.h"
+#include "mesh/mesh_joiner.h"
 
 #include <bit>
 #include <cmath>

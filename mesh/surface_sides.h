@@ -1,21 +1,38 @@
-// twin/compare/surface_sides.h - which side of a mesh is outside, at its faces, edges and
+// mesh/surface_sides.h - which side of a mesh is outside, at its faces, edges and
 // corners.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "base/geometry.h"
 #include "base/triangle_mesh.h"
 
 namespace kerf {
 
+/// One triangle's share of an edge; number / 3 is the triangle, number % 3 the corner it begins at.
+struct HalfEdge {
+  std::uint64_t ends;  ///< both positions, the lower number first: equal for all at one edge
+  std::uint32_t number;
+  bool is_rising;  ///< runs from the lower number to the higher
+};
+
+/// Of all triangles; those of one edge follow one another, in the order of their numbers.
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh);
+
+/// Of what is wrong with a mesh so many places are told.
+inline constexpr std::size_t kFewPlaces = 3;
+
 /// How the triangles of a mesh hang together.
 struct MeshFacts {
   std::size_t edges = 0;
-  std::size_t open_edges = 0;    ///< of one triangle only: a hole, or a gap between parts
-  std::size_t turned_edges = 0;  ///< whose triangles disagree on what is outside
-  double volume_mm3 = 0;         ///< negative: turned inside out
+  std::size_t open_edges = 0;           ///< of one triangle only: a hole, or a gap between parts
+  std::size_t turned_edges = 0;         ///< whose triangles disagree on what is outside
+  std::vector<Vec3> first_open_mm{};    ///< middles of such, at most kFewPlaces
+  std::vector<Vec3> first_turned_mm{};  ///< the same
+  double volume_mm3 = 0;                ///< negative: turned inside out
   bool is_closed() const { return open_edges == 0; }
 };
 

@@ -1,4 +1,4 @@
-// twin/collision/mesh_joiner.h - triangles of mesh files, joined where their corners are equal.
+// mesh/mesh_joiner.h - triangles of mesh files, joined where their corners are equal.
 #pragma once
 
 #include <array>

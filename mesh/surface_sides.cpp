@@ -1,4 +1,4 @@
-#include "twin/compare/surface_sides.h"
+#include "mesh/surface_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,29 +10,6 @@
 
 namespace kerf {
 namespace {
-
-/// One triangle's share of an edge; number / 3 is the triangle, number % 3 the corner it begins at.
-struct HalfEdge {
-  std::uint64_t ends;  ///< both positions, the lower number first: equal for all at one edge
-  std::uint32_t number;
-  bool is_rising;  ///< runs from the lower number to the higher
-};
-
-std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
-  std::vector<HalfEdge> halves;
-  halves.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      const std::uint64_t low = std::min(from, to), high = std::max(from, to);
-      halves.push_back({low << 32U | high, static_cast<std::uint32_t>(3 * t + k), from < to});
-    }
-  }
-  std::sort(halves.begin(), halves.end(), [](const HalfEdge& x, const HalfEdge& y) {
-    return x.ends != y.ends ? x.ends < y.ends : x.number < y.number;
-  });
-  return halves;
-}
 
 /// Which corners of triangles are joined around a position without leaving the surface. Where two
 /// parts touch in a point there are several such groups.
@@ -53,6 +30,14 @@ class CornerGroups {
 
 std::uint32_t next_corner(std::uint32_t number) {
   return number % 3 == 2 ? number - 2 : number + 1;
+}
+
+/// The middle of the edge that begins at this corner.
+void note_place(const TriangleMesh& mesh, std::uint32_t number, std::vector<Vec3>& places) {
+  if (places.size() >= kFewPlaces) return;
+  const auto& triangle = mesh.triangles[number / 3];
+  places.push_back(0.5 * (Vec3(mesh.positions_mm[triangle[number % 3]]) +
+                          Vec3(mesh.positions_mm[triangle[(number + 1) % 3]])));
 }
 
 struct Faces {
@@ -84,6 +69,22 @@ Faces faces_of(const TriangleMesh& mesh, MeshFacts& facts) {
 
 }  // namespace
 
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
+  std::vector<HalfEdge> halves;
+  halves.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+      const std::uint64_t low = std::min(from, to), high = std::max(from, to);
+      halves.push_back({low << 32U | high, static_cast<std::uint32_t>(3 * t + k), from < to});
+    }
+  }
+  std::sort(halves.begin(), halves.end(), [](const HalfEdge& x, const HalfEdge& y) {
+    return x.ends != y.ends ? x.ends < y.ends : x.number < y.number;
+  });
+  return halves;
+}
+
 SurfaceSides surface_sides(const TriangleMesh& mesh) {
   SurfaceSides sides;
   const Faces faces = faces_of(mesh, sides.facts);
@@ -109,8 +110,10 @@ SurfaceSides surface_sides(const TriangleMesh& mesh) {
     }
     if (end - begin == 1) {
       ++sides.facts.open_edges;
+      note_place(mesh, a, sides.facts.first_open_mm);
     } else if (2 * rising != end - begin) {
       ++sides.facts.turned_edges;
+      note_place(mesh, a, sides.facts.first_turned_mm);
     }
     is_doubtful[mesh.triangles[a / 3][a % 3]] = true;
     is_doubtful[mesh.triangles[a / 3][(a + 1) % 3]] = true;

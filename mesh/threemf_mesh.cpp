@@ -1,4 +1,4 @@
-#include "twin/collision/threemf_mesh.h"
+#include "mesh/threemf_mesh.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/zip_file.h"
-#include "twin/collision/threemf_model.h"
+#include "mesh/threemf_model.h"
 
 namespace kerf {
 namespace {

@@ -1,4 +1,4 @@
-// twin/collision/stl_mesh.h - meshes of links from STL files, as vismach users have them.
+// mesh/stl_mesh.h - meshes of links from STL files, as vismach users have them.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 #include "base/triangle_mesh.h"
-#include "twin/collision/mesh_joiner.h"
+#include "mesh/mesh_joiner.h"
 
 namespace kerf {
 

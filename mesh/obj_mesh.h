@@ -1,11 +1,11 @@
-// twin/collision/obj_mesh.h - meshes from Wavefront's OBJ files.
+// mesh/obj_mesh.h - meshes from Wavefront's OBJ files.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
-#include "twin/collision/mesh_joiner.h"
+#include "mesh/mesh_joiner.h"
 
 namespace kerf {
 

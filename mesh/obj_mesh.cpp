@@ -1,4 +1,4 @@
-#include "twin/collision/obj_mesh.h"
+#include "mesh/obj_mesh.h"
 
 #include <fmt/format.h>
 

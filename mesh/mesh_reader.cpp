@@ -1,14 +1,17 @@
-#include "twin/collision/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include "base/small_file.h"
-#include "twin/collision/mesh_joiner.h"
-#include "twin/collision/obj_mesh.h"
-#include "twin/collision/stl_mesh.h"
-#include "twin/collision/threemf_mesh.h"
+#include "base/text_scan.h"
+#include "mesh/mesh_joiner.h"
+#include "mesh/obj_mesh.h"
+#include "mesh/step_file.h"
+#include "mesh/stl_mesh.h"
+#include "mesh/threemf_mesh.h"
 
 namespace kerf {
 namespace {
@@ -33,12 +36,22 @@ Done parse(std::string_view bytes, const std::string& path, MeshFormat format, d
     case MeshFormat::kObj:
       return parse_obj(bytes, path, mm_per_unit, joiner);
     case MeshFormat::k3mf:
+    case MeshFormat::kStep:
       break;
   }
   return parse_3mf(bytes, path, joiner);
 }
 
 }  // namespace
+
+std::optional<MeshFormat> mesh_format_of(const std::string& path) {
+  const std::string ending = to_lower(std::filesystem::path(path).extension().string());
+  if (ending == ".stl") return MeshFormat::kStl;
+  if (ending == ".obj") return MeshFormat::kObj;
+  if (ending == ".3mf") return MeshFormat::k3mf;
+  if (ending == ".step" || ending == ".stp") return MeshFormat::kStep;
+  return std::nullopt;
+}
 
 Result<MeshFromFile> parse_mesh(std::string_view bytes, const std::string& path, MeshFormat format,
                                 double mm_per_unit, std::size_t most_triangles) {
@@ -57,6 +70,11 @@ Result<MeshFromFile> read_mesh(const std::string& path, MeshFormat format, doubl
                                std::size_t most_triangles) {
   if (format == MeshFormat::kStl) {
     if (const Done fits = check_head(path, most_triangles); !fits) return Error{fits.error()};
+  }
+  if (format == MeshFormat::kStep) {
+    const Result<std::string> stl = step_as_stl(path, kMaxStl_bytes);
+    if (!stl) return Error{stl.error()};
+    return parse_mesh(*stl, path, MeshFormat::kStl, 1, most_triangles);
   }
   const Result<std::string> bytes = read_small_file(path, kMaxStl_bytes);
   if (!bytes) return Error{bytes.error()};

@@ -1,4 +1,4 @@
-#include "twin/collision/stl_mesh.h"
+#include "mesh/stl_mesh.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
-#include "interp_bridge/ini_file.h"
 
 namespace kerf {
 namespace {

@@ -1,11 +1,11 @@
-// twin/collision/threemf_mesh.h - meshes from 3MF files. The only user of expat.
+// mesh/threemf_mesh.h - meshes from 3MF files. The only user of expat.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
-#include "twin/collision/mesh_joiner.h"
+#include "mesh/mesh_joiner.h"
 
 namespace kerf {
 

@@ -1,4 +1,4 @@
-#include "twin/collision/threemf_model.h"
+#include "mesh/threemf_model.h"
 
 #include <expat.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// twin/compare/column_lines.h - where the vertical lines through the cells of a grid meet
+// mesh/column_lines.h - where the vertical lines through the cells of a grid meet
 // triangles.
 #pragma once
 
