@@ -42,7 +42,8 @@ class LineFamily {
       : lattice_(lattice), surface_(surface), axis_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3) {
     count_u_ = nodes(u_);
     count_v_ = nodes(v_);
-    const std::size_t lines = static_cast<std::size_t>(count_u_) * static_cast<std::size_t>(count_v_);
+    const std::size_t lines =
+        static_cast<std::size_t>(count_u_) * static_cast<std::size_t>(count_v_);
     begins_.assign(lines + 1, 0);
     each([&](std::size_t line, const LineCrossing&) { ++begins_[line + 1]; });
     for (std::size_t n = 0; n < lines; ++n) begins_[n + 1] += begins_[n];
@@ -212,8 +213,7 @@ BrickTree mesh_tree(const Lattice& lattice, const PlacedSurface& surface, Worker
   std::atomic<int> next_axis{0};
   pool.run([&](int) {
     for (int axis = next_axis++; axis < 3; axis = next_axis++)
-      lines[static_cast<std::size_t>(axis)] =
-          std::make_unique<LineFamily>(lattice, surface, axis);
+      lines[static_cast<std::size_t>(axis)] = std::make_unique<LineFamily>(lattice, surface, axis);
   });
   BrickTree tree(lattice);
   const std::uint64_t version = next_version();

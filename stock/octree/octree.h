@@ -113,9 +113,9 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   Done save_with(const std::string& path, std::string beside) const;
   static Result<std::unique_ptr<Octree>> load_with(const std::string& path, int threads,
                                                    std::string& beside);
-  /// As it lies elsewhere, its axes on axes: nodes, crossings and normals change places, and none is
-  /// looked for anew. Exact, but that a crossing at an edge's very end is a 65536th of it off. Not
-  /// of an additive model.
+  /// As it lies elsewhere, its axes on axes: nodes, crossings and normals change places, and none
+  /// is looked for anew. Exact, but that a crossing at an edge's very end is a 65536th of it off.
+  /// Not of an additive model.
   std::unique_ptr<Octree> placed(const AxisTurn& turn, const Vec3& at_mm) const;
   /// What this closed surface holds, as it is placed: crossings and normals are those of its
   /// triangles (mesh_tree.h). `blank_mm3`: what there was before anything was cut, and blank_mm3()

@@ -38,9 +38,8 @@ class TreeTurner {
     std::array<int, 3> out{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t from = at(turn_.from[axis]);
-      out[from] = turn_.sign[axis] > 0
-                      ? first[axis]
-                      : was_.lattice().cells[from] + 1 - (first[axis] + count - 1);
+      out[from] = turn_.sign[axis] > 0 ? first[axis]
+                                       : was_.lattice().cells[from] + 1 - (first[axis] + count - 1);
     }
     return out;
   }
@@ -57,8 +56,7 @@ class TreeTurner {
         tile[a] = node < 0 ? -1 : node / kTileNodes;
         if (tile[a] < 0 || tile[a] >= lattice.tiles[a]) return nullptr;
       }
-      const TileRef& ref =
-          was_.tile(tile[1] * lattice.tiles[0] + tile[0], tile[2]);
+      const TileRef& ref = was_.tile(tile[1] * lattice.tiles[0] + tile[0], tile[2]);
       if (ref.get() || (found && ref.is_solid() != found->is_solid())) return nullptr;
       found = &ref;
     }
@@ -75,12 +73,12 @@ class TreeTurner {
     for (int j = 0; j < kSide; ++j) {
       for (int i = 0; i < kSide; ++i) {
         unsigned column = 0;
-        for (int k = 0; k < kSide; ++k)
-          column |= unsigned{grid_.solid[number_was({i, j, k})]} << k;
+        for (int k = 0; k < kSide; ++k) column |= unsigned{grid_.solid[number_was({i, j, k})]} << k;
         open_->columns[j * kSide + i] = static_cast<std::uint16_t>(column);
       }
     }
-    for_each_crossed(open_->columns, [&](int axis, int i, int j, int k) { turn_edge(axis, i, j, k); });
+    for_each_crossed(open_->columns,
+                     [&](int axis, int i, int j, int k) { turn_edge(axis, i, j, k); });
     for (int j = 0; j < kBrick; ++j)
       for (int i = 0; i < kBrick; ++i) open_->update_volume(i, j, 0xff);
     return open_->close(false);
@@ -144,8 +142,7 @@ BrickTree turned_tree(const BrickTree& tree, const AxisTurn& turn, const Vec3& a
     for (int column = next++; column < lattice.column_count(); column = next++) {
       for (int level = 0; level < lattice.tiles[2]; ++level) {
         const std::array<int, 3> first{column % lattice.tiles[0] * kTileNodes,
-                                       column / lattice.tiles[0] * kTileNodes,
-                                       level * kTileNodes};
+                                       column / lattice.tiles[0] * kTileNodes, level * kTileNodes};
         const TileRef* const alike = turner.uniform(first);
         out.set_tile(column, level, alike ? *alike : make_tile(turner, first, version));
         out.settle_tile(column, level);

@@ -30,6 +30,8 @@ struct RunRequest {
   CompareRequest compare;        ///< the finished part with its design
   bool quiet = false;
   bool verbose = false;
+  bool is_of_job = false;              ///< one of several setups: no command line says all of it
+  bool summary_on_stderr = false;      ///< standard output is that of a file
   LengthUnit units = LengthUnit::kMm;  ///< of what is shown
   Arguments written;                   ///< what all this was understood from
 };

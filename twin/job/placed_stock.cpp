@@ -31,9 +31,9 @@ Result<std::unique_ptr<StockModel>> placed_part(const StockModel& stock, const P
   const bool is_about = turn && *turn == AxisTurn{{0, 1, 2}, {1, -1, -1}};
   if (!turn || (!is_about && *turn != AxisTurn{}) || placement.at_mm.x != 0 ||
       placement.at_mm.y != 0) {
-    return Error{
-        tr("a part that is turned stays at X0 Y0 for a lathe: flip=x turns it about, at=0,0,z moves "
-           "it")};
+    return Error{tr(
+        "a part that is turned stays at X0 Y0 for a lathe: flip=x turns it about, at=0,0,z moves "
+        "it")};
   }
   if (const auto* const both = dynamic_cast<const MillTurn*>(&stock); both && both->is_milled())
     return Error{
@@ -52,8 +52,7 @@ Result<PlacedStock> by_surface(const StockModel& stock, const Placement& placeme
                                const StockSettings& settings) {
   const TriangleMesh mesh = stock.mesh(0);
   if (mesh.triangles.empty()) return Error{tr("nothing of the workpiece is left")};
-  auto tree =
-      Octree::of_surface(mesh, placement, cell_mm, settings.threads, stock.blank_mm3());
+  auto tree = Octree::of_surface(mesh, placement, cell_mm, settings.threads, stock.blank_mm3());
   if (!tree) return Error{tree.error()};
   PlacedStock out;
   // Faces keep their places; edges and corners are known to half a cell.
@@ -74,9 +73,8 @@ Result<PlacedStock> placed_profile(const StockModel& stock, const Placement& pla
   const auto* const both = dynamic_cast<const MillTurn*>(&stock);
   std::unique_ptr<MillTurn> fresh;
   if (both == nullptr || (!both->is_milled() && settings.cell_mm > 0)) {
-    auto made = MillTurn::create(
-        TurningStock(stock.turned()->part()),
-        {cell_for(stock, settings), settings.threads});
+    auto made = MillTurn::create(TurningStock(stock.turned()->part()),
+                                 {cell_for(stock, settings), settings.threads});
     if (!made) return Error{made.error()};
     fresh = std::move(made.value());
   }
@@ -107,8 +105,7 @@ Result<PlacedStock> placed_solid(const StockModel& stock, const Placement& place
     return out;
   }
   if (turn && turn->keeps_z() && !needs_octree) {
-    auto columns =
-        placed_columns(stock, *turn, placement.at_mm, settings.threads, settings.kernel);
+    auto columns = placed_columns(stock, *turn, placement.at_mm, settings.threads, settings.kernel);
     if (!columns) return Error{columns.error()};
     PlacedStock out;
     out.stock = std::move(columns->stock);

@@ -135,8 +135,8 @@ Result<PlacedColumns> placed_columns(const StockModel& heights, const AxisTurn& 
   }
   if (!(lowest < highest)) return Error{tr("nothing of the workpiece is left")};
   // Floors are heights: the box has the very float.
-  bounds.min.z = turn.sign[2] < 0 ? lowest : placer.height(static_cast<float>(
-                                                 heights.bounds_mm().min.z));
+  bounds.min.z =
+      turn.sign[2] < 0 ? lowest : placer.height(static_cast<float>(heights.bounds_mm().min.z));
   bounds.max.z = std::max<double>(bounds.max.z, highest);
 
   TileGrid grid(bounds, nx, ny);
