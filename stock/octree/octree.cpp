@@ -285,6 +285,8 @@ Result<std::unique_ptr<Octree>> Octree::load_with(const std::string& path, int t
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }
 
+bool Octree::is_additive() const { return impl_->additive; }
+
 std::unique_ptr<Octree> Octree::placed(const AxisTurn& turn, const Vec3& at_mm) const {
   assert(!impl_->additive);
   auto impl = std::make_unique<Impl>(turned_tree(impl_->tree, turn, at_mm, *impl_->pool));

@@ -113,6 +113,7 @@ class Octree final : public StockModel, public WaySearcher, public SolidPoints {
   Done save_with(const std::string& path, std::string beside) const;
   static Result<std::unique_ptr<Octree>> load_with(const std::string& path, int threads,
                                                    std::string& beside);
+  bool is_additive() const;
   /// As it lies elsewhere, its axes on axes: nodes, crossings and normals change places, and none
   /// is looked for anew. Exact, but that a crossing at an edge's very end is a 65536th of it off.
   /// Not of an additive model.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -96,12 +97,52 @@ int job_command(const Arguments& arguments) {
     kerf::print(wishes.run.on_stderr ? stderr : stdout, "{}", job_text(result, shown_unit()));
   flush_console();
   if (!result.not_run.empty()) {
-    diagnostics.push_back(
-        general_error(trf("{} did not come to its end; not run: {}", result.setups.back().name,
-                          fmt::format("{}", fmt::join(result.not_run, ", ")))));
+    const std::string left = fmt::format("{}", fmt::join(result.not_run, ", "));
+    diagnostics.push_back(general_error(
+        result.stopped_between
+            ? trf("the workpiece does not go on; not run: {}", left)
+            : trf("{} did not come to its end; not run: {}", result.setups.back().name, left)));
   }
   print_diagnostics(diagnostics, wishes.quiet);
+  if (result.stopped_between) return result.code;
   return has_error(diagnostics) ? std::max<int>(result.code, kExitFailure) : result.code;
+}
+
+std::optional<Arguments> view_of_job(const Arguments& arguments, std::unique_ptr<JobRun>& run,
+                                     int& code) {
+  Diagnostics diagnostics;
+  OptionReader reader(diagnostics, layers_of(arguments, nullptr));
+  const auto setup = static_cast<std::size_t>(reader.whole_number("--setup", 1)) - 1;
+  if (arguments.options.has("--units"))
+    reader.fault("--units", tr("is not for jobs in a window; kerf job shows lengths in inches"));
+  Arguments before = arguments;
+  before.options.set_flag("--quiet");
+  std::optional<JobRun> opened;
+  if (!has_error(diagnostics))
+    opened = JobRun::open(before, arguments.options.text("PROGRAM"), diagnostics);
+  if (opened) opened->check(diagnostics);
+  if (opened && setup >= opened->count())
+    reader.fault("--setup",
+                 trf("{} is not allowed; the job has {} setups", setup + 1, opened->count()));
+  code = kExitUsage;
+  print_diagnostics(diagnostics, false);
+  if (!opened || has_error(diagnostics)) return std::nullopt;
+  run = std::make_unique<JobRun>(std::move(*opened));
+  JobRun::Wishes wishes;
+  wishes.compares = false;
+  run->run(0, setup, wishes);
+  code = std::max<int>(run->result().code, kExitFailure);
+  if (!run->is_ready(setup)) return std::nullopt;
+  code = kExitGood;
+  Arguments out = run->view_arguments(setup);
+  if (!arguments.options.has("--quiet")) {
+    out.options.clear("--quiet");
+    if (setup + 1 < run->count()) {
+      print_text(stderr, trf("setup {} of {}; the next one: kerf view {} --setup {}\n", setup + 1,
+                             run->count(), arguments.options.text("PROGRAM"), setup + 2));
+    }
+  }
+  return out;
 }
 
 }  // namespace kerf

@@ -143,6 +143,7 @@ RunRequest JobRun::request_of(std::size_t setup, const Wishes& wishes, const Arg
   }
   request.session.stock.later_need = need_of_octree(setup + 1);
   request.is_of_job = true;
+  request.keeps_moves = wishes.compares && job_.compare.has("--compare") && setup + 1 < count();
   request.summary_on_stderr = wishes.on_stderr;
   request.units = shown_unit();
   if (setup == 0) return request;
@@ -159,11 +160,29 @@ void JobRun::check(Diagnostics& diagnostics) const {
 }
 
 Arguments JobRun::view_arguments(std::size_t setup) const {
-  Arguments out = arguments_of(setup, {});
+  const Arguments own = arguments_of(setup, {});
+  Arguments out = asked_;
   out.command = kView;
-  for (const char* const option : {"--from-line", "--verbose"}) out.options.clear(option);
-  if (!need_of_octree(setup + 1).empty() && setup == 0 && !out.options.has("--model"))
-    out.options.set("--model", "octree");
+  out.options.clear("--setup");
+  out.options.set("PROGRAM", own.options.text("PROGRAM"));
+  for (const Setting& setting : setting_table()) {
+    const std::string_view option = setting.option;
+    if ((setting.commands & kView) == 0 || option.empty() || !own.options.has(option) ||
+        out.options.has(option)) {
+      continue;
+    }
+    if (!setting.flag.empty()) {
+      out.options.set_flag(option);
+    } else if (setting.repeatable) {
+      out.options.set_all(option, own.options.texts(option));
+    } else {
+      out.options.set(option, own.options.text(option));
+    }
+  }
+  if (setup == 0 && !need_of_octree(1).empty() && !out.options.has("--model")) {
+    Diagnostics unheard;  // check() has told it
+    if (!is_for_lathe(request_of(0, {}, own, unheard))) out.options.set("--model", "octree");
+  }
   return out;
 }
 
@@ -205,6 +224,7 @@ bool JobRun::carry_over(std::size_t next, const StockModel& stock, Diagnostics& 
     diagnostics.push_back(general_error(saved.error()));
     return false;
   }
+  if (past_.size() == next) past_.back().to_next = placement;
   carried_[next] = placed->carried;
   ready_ = next;
   return true;
@@ -223,8 +243,50 @@ void JobRun::take(std::size_t setup, const FinishedRun& run, Diagnostics& diagno
   out.notes = report.findings.count(Severity::kNote);
   const bool finished = run.outcome == Outcome::kFinished || run.outcome == Outcome::kLossy;
   out.is_whole = finished && report.partial_reason.empty() && run.session.stock() != nullptr;
-  if (out.is_whole && setup + 1 < count())
-    out.is_whole = carry_over(setup + 1, *run.session.stock(), diagnostics);
+  if (out.comparison) {
+    for (std::size_t n = 0; n < out.comparison->regions.size(); ++n) {
+      const DeviationRegion& region = out.comparison->regions[n];
+      if (!region.is_gouge || region.worst.by.source.line > 0) continue;
+      auto found = made_before(region.worst.at_mm, run.session.stock()->cell_mm());
+      if (!found) continue;
+      found->region = n;
+      out.made_before.push_back(std::move(*found));
+    }
+  }
+  if (!out.is_whole || setup + 1 == count()) return;
+  if (run.session.kept_moves()) {
+    const std::span<const CutLabel> labels = run.session.cut_labels()->all();
+    past_.push_back({*run.session.kept_moves(), {labels.begin(), labels.end()}, out.files, {}});
+  }
+  result_.stopped_between = !carry_over(setup + 1, *run.session.stock(), diagnostics);
+}
+
+/// The last of the setups before one that removed what lies at the point or within a cell of it:
+/// the point is on the surface that it left.
+std::optional<JobResult::Setup::MadeBefore> JobRun::made_before(Vec3 point_mm,
+                                                                double cell_mm) const {
+  for (std::size_t n = past_.size(); n-- > 0;) {
+    const Past& past = past_[n];
+    point_mm = past.to_next.before(point_mm);
+    std::optional<std::uint32_t> label = past.moves.cut_by(point_mm);
+    for (int axis = 0; axis < 3 && !label; ++axis) {
+      for (const double way_mm : {cell_mm, -cell_mm}) {
+        Vec3 beside = point_mm;
+        beside[axis] += way_mm;
+        if (!label) label = past.moves.cut_by(beside);
+      }
+    }
+    if (!label || *label >= past.labels.size()) continue;
+    const CutLabel& by = past.labels[*label];
+    JobResult::Setup::MadeBefore out;
+    out.setup = n + 1;
+    out.name = job_.setups[n].name;
+    out.file = by.source.file < past.files.size() ? past.files[by.source.file] : std::string();
+    out.line = by.source.line;
+    out.tool = by.tool;
+    return out;
+  }
+  return std::nullopt;
 }
 
 void JobRun::run(std::size_t first, std::size_t end, const Wishes& wishes) {
@@ -245,15 +307,13 @@ void JobRun::run(std::size_t first, std::size_t end, const Wishes& wishes) {
       request.session.stock.kind.reset();  // it is in the model that was asked for, or in more
       request.session.stock.cell_mm = 0;
     }
-    RunVerdict verdict = run_one(arguments, std::move(request),
-                                 [&](const FinishedRun& run, Diagnostics& diagnostics) {
-                                   take(setup, run, diagnostics);
-                                   if (has_error(diagnostics) && !result_.setups.back().is_whole)
-                                     result_.code = std::max<int>(result_.code, kExitUsage);
-                                 });
+    RunVerdict verdict = run_one(
+        arguments, std::move(request),
+        [&](const FinishedRun& run, Diagnostics& diagnostics) { take(setup, run, diagnostics); });
     result_.code = std::max(result_.code, verdict.code);
     result_.listed.push_back(std::move(verdict.listed));
-    if (result_.setups.back().is_whole) continue;
+    if (result_.stopped_between) result_.code = std::max<int>(result_.code, kExitUsage);
+    if (result_.setups.back().is_whole && !result_.stopped_between) continue;
     for (std::size_t later = setup + 1; later < count(); ++later)
       result_.not_run.push_back(job_.setups[later].name);
     return;

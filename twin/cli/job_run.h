@@ -15,6 +15,8 @@
 #include "twin/cli/run_command.h"
 #include "twin/config/job_file.h"
 #include "twin/job/placed_stock.h"
+#include "twin/process/cut_labels.h"
+#include "twin/process/kept_moves.h"
 
 namespace kerf {
 
@@ -30,10 +32,20 @@ struct JobResult {
     std::optional<Comparison> comparison;
     std::vector<std::string> files;  ///< of the program: what SourceRef::file means
     std::size_t errors = 0, warnings = 0, notes = 0;
+    /// Who of the setups before made gouges of `comparison` that this one did not: by the number of
+    /// their region.
+    struct MadeBefore {
+      std::size_t region = 0, setup = 0;  ///< `setup` from 1
+      std::string name, file;             ///< of the setup; of its program
+      std::uint32_t line = 0;
+      int tool = 0;
+    };
+    std::vector<MadeBefore> made_before;
     bool is_whole = false;  ///< its program was run to its end
   };
   std::vector<Setup> setups;  ///< those that have been run
   std::vector<std::string> not_run;
+  bool stopped_between = false;  ///< the workpiece could not go on, for a reason of the job file
   std::vector<ListedProgram> listed;
   int code = kExitGood;
 
@@ -69,7 +81,7 @@ class JobRun {
   const JobResult& result() const { return result_; }
   /// The workpiece for this setup is there.
   bool is_ready(std::size_t setup) const { return setup == 0 || ready_ >= setup; }
-  /// For a window: the command line of `kerf view` of that setup.
+  /// For a window: the command line of `kerf view` of that setup, with what was asked for.
   Arguments view_arguments(std::size_t setup) const;
 
  private:
@@ -84,6 +96,16 @@ class JobRun {
   void take(std::size_t setup, const FinishedRun& run, Diagnostics& diagnostics);
   bool carry_over(std::size_t next, const StockModel& stock, Diagnostics& diagnostics);
 
+  /// What a setup did, for who asks after later ones.
+  struct Past {
+    KeptMoves moves;
+    std::vector<CutLabel> labels;
+    std::vector<std::string> files;
+    Placement to_next;
+  };
+  std::optional<JobResult::Setup::MadeBefore> made_before(Vec3 point_mm, double cell_mm) const;
+
+  std::vector<Past> past_;
   Arguments asked_;
   JobFile job_;
   std::string text_;

@@ -133,6 +133,13 @@ std::string job_json(const JobResult& result, const std::string& path, const std
   if (!result.setups.empty() && result.setups.back().comparison) {
     const JobResult::Setup& last = result.setups.back();
     out["compare"] = compare_json(*last.comparison, last.files);
+    for (const auto& made : last.made_before) {
+      out["compare"]["regions"][made.region]["made_before"] = {{"setup", made.setup},
+                                                               {"name", made.name},
+                                                               {"file", made.file},
+                                                               {"line", made.line},
+                                                               {"tool", made.tool}};
+    }
   }
   out["findings"] = Json::array();
   Json setups = Json::array();
@@ -170,6 +177,15 @@ std::string job_text(const JobResult& result, LengthUnit units) {
   }
   if (!result.setups.empty() && result.setups.back().comparison)
     out += compare_text(*result.setups.back().comparison);
+  if (result.setups.empty()) return in_unit(out, units);
+  for (const auto& made : result.setups.back().made_before) {
+    const DeviationPlace& worst = result.setups.back().comparison->regions[made.region].worst;
+    out +=
+        trf("          the gouge at X{:.2f} Y{:.2f} Z{:.2f} mm was made in setup {} ({}), "
+            "{}:{} (tool {})\n",
+            worst.at_mm.x, worst.at_mm.y, worst.at_mm.z, made.setup, made.name, made.file,
+            made.line, made.tool);
+  }
   return in_unit(out, units);
 }
 

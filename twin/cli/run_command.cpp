@@ -212,7 +212,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     table = begin_table(request.outputs.csv, kept, *session, diagnostics);
     if (!table) session.reset();
   }
-  if (session && request.compare.is_wanted()) session->keep_moves();
+  if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();
   std::optional<RunCurve> curve;
   if (session && request.outputs.wants_page()) {
     session->keep_cut_labels();

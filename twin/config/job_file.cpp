@@ -442,6 +442,8 @@ std::optional<JobFile> parse_job(std::string_view text, const std::string& path,
     JobReader(faults, job).read(*root);
   }
   const bool good = root != nullptr && !has_error(said);
+  std::ranges::stable_sort(said, {},
+                           [](const Diagnostic& d) { return std::pair(d.line, d.column); });
   std::move(said.begin(), said.end(), std::back_inserter(diagnostics));
   if (!good) return std::nullopt;
   return job;

@@ -37,8 +37,8 @@ constexpr std::array kJobSettings{
             .least = 1,
             .most = 1000,
             .fallback = "1",
-            .help = tr_noop("of a job: those before it are cut unseen; the next one follows when "
-                            "the window is closed at the end of the program (default {})"),
+            .help = tr_noop("of a job (a YAML file with setups): this one; those before it are "
+                            "run unseen (default {})"),
             .value_name = "N"},
     Setting{.option = "--units",
             .commands = kJob,

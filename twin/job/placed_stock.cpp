@@ -136,6 +136,10 @@ Result<PlacedStock> place_stock(std::unique_ptr<StockModel> stock, const Placeme
   if (kind == StockKind::kSheet && !placement.is_as_is()) {
     return Error{tr("a sheet is cut as it lies; it is not turned or moved")};
   }
+  const auto* const tree = dynamic_cast<const Octree*>(stock.get());
+  if (tree != nullptr && tree->is_additive() && !placement.is_as_is()) {
+    return Error{tr("material was added to it; such a workpiece stays as it lies")};
+  }
   const bool is_held = !needs_octree || kind == StockKind::kOctree;
   const bool goes_on = kind != StockKind::kTurning || lathe;
   if (placement.is_as_is() && is_held && goes_on) {
