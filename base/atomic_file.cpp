@@ -146,6 +146,13 @@ void remove_uncommitted_files() {
   }
 }
 
+Done write_text(const std::string& path, const std::string& text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return Error{file.error()};
+  file->write(text.data(), text.size());
+  return file->commit();
+}
+
 bool written_as_it_comes(const std::string& path) {
   return named_descriptor(path) >= 0 || is_device(path);
 }

@@ -47,6 +47,9 @@ class AtomicFile {
   std::string buffer_;
 };
 
+/// A file of text that appears whole or not at all. Error: what could not be written.
+Done write_text(const std::string& path, const std::string& text);
+
 /// True for what cannot be replaced under its name: "-" (stdout), what this process has open
 /// already
 /// (/dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N: whatever they lead to, a file too),

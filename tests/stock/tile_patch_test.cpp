@@ -145,7 +145,9 @@ TEST(TilePatch, StaysBetweenTheHeightsAboutACellAndNearItsCentre) {
 }
 
 TEST(TilePatch, APlaneIsExactAndHasOneNormal) {
-  for (const auto& [sx, sy] : {std::pair{0.1, -0.05}, {0.2, 0.2}, {-1.0, 0.3}, {1.5, -2.0}}) {
+  for (const std::pair<double, double>& slopes :
+       {std::pair{0.1, -0.05}, {0.2, 0.2}, {-1.0, 0.3}, {1.5, -2.0}}) {
+    const double sx = slopes.first, sy = slopes.second;
     SCOPED_TRACE(testing::Message() << sx << " " << sy);
     const TileGrid grid = make_grid(100, 90, 0.05, [&](double x, double y) {
       return -5 + sx * (x - 2.5) * 0.5 + sy * (y - 2.25) * 0.5;

@@ -1,6 +1,7 @@
 #include "twin/batch/batch_run.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -12,11 +13,14 @@
 #include <list>
 #include <map>
 #include <optional>
+#include <thread>
 
+#include "base/atomic_file.h"
 #include "base/small_file.h"
 #include "base/translate.h"
 #include "twin/batch/content_hash.h"
 #include "twin/batch/result_log.h"
+#include "twin/batch/work_unit.h"
 
 namespace kerf {
 namespace {
@@ -27,6 +31,8 @@ using Clock = BoundedProcess::Clock;
 constexpr std::size_t kMaxResultBytes = 1U << 30U;
 /// How long a stop request may stay unseen.
 constexpr int kLookMs = 50;
+constexpr std::chrono::milliseconds kResultsLook{200};
+constexpr std::chrono::seconds kLateResults{5};
 
 /// The folder is this batch's alone as long as this lives.
 class FolderLock {
@@ -57,7 +63,7 @@ class BatchRunner {
 
   BatchEnd run(const std::stop_token& stop) {
     FolderLock lock;
-    if (prepare(lock)) work(stop);
+    if (prepare(lock)) plan_.engine == BatchEngine::kLocal ? work(stop) : hand_over(stop);
     for (std::optional<BatchResult>& result : results_) {
       if (result) end_.results.push_back(std::move(*result));
     }
@@ -124,7 +130,7 @@ class BatchRunner {
     while (true) {
       const bool goes_on = !stop.stop_requested() && end_.fault.empty();
       while (goes_on && end_.fault.empty() &&
-             running_.size() < static_cast<std::size_t>(plan_.jobs)) {
+             running_.size() < static_cast<std::size_t>(std::max(plan_.jobs, 1))) {
         while (next < results_.size() && results_[next]) ++next;
         if (next == results_.size()) break;
         start(next++);
@@ -136,31 +142,129 @@ class BatchRunner {
       wait();
       take_ended();
     }
+    note_interruption(stop);
+  }
+
+  void note_interruption(const std::stop_token& stop) {
     // Between the last end and here nothing was left to interrupt.
     end_.interrupted = stop.stop_requested() && done_ < results_.size();
   }
 
-  void start(std::size_t at) {
-    const BatchUnit& unit = plan_.units[at];
-    const fs::path folder = fs::path(plan_.out) / folder_of(unit.program);
+  /// By another's hands: files of units out, files of results back.
+  void hand_over(const std::stop_token& stop) {
+    if (done_ == results_.size()) return;
     std::error_code error;
-    fs::remove_all(folder, error);  // what is there is of another run
+    const fs::path folder = fs::absolute(plan_.out, error) / "work";
+    EngineWork work;
+    if (!error && write_units(folder, work)) watch(work, stop);
+    if (error) fail(trf("{}: {}", plan_.out, error.message()));
+    note_interruption(stop);
+    const bool is_whole = end_.fault.empty() && !end_.interrupted && !has_silent_;
+    if (is_whole) fs::remove_all(folder, error);
+  }
+
+  bool write_units(const fs::path& folder, EngineWork& work) {
+    std::error_code error;
+    fs::remove_all(folder, error);  // of a batch that was killed
     if (!error) fs::create_directories(folder, error);
-    if (error) {
-      fail(trf("{}: {}", folder.string(), error.message()));
+    const std::string here = fs::current_path(error).string();
+    if (error) return fail(trf("{}: {}", folder.string(), error.message()));
+    work.folder = folder.string();
+    work.jobs = plan_.jobs;
+    for (std::size_t at = 0; at < results_.size(); ++at) {
+      if (results_[at]) continue;
+      WorkUnit unit = unit_of(at);
+      unit.folder = here;
+      work.units.push_back((folder / fmt::format("{:05}.unit", at)).string());
+      waiting_.emplace(result_name(work.units.back()), at);
+      if (const Done done = write_text(work.units.back(), text_of(unit)); !done) {
+        return fail(done.error());
+      }
+    }
+    return true;
+  }
+
+  void watch(const EngineWork& work, const std::stop_token& stop) {
+    Result<EngineCall> call = EngineCall::start(plan_.engine, work);
+    if (!call) {
+      fail(call.error());
       return;
     }
-    std::vector<std::string> words{
-        "run", unit.program.front() == '-' ? "./" + unit.program : unit.program};
-    words.insert(words.end(), unit.words.begin(), unit.words.end());
-    const auto says_threads = [](const std::string& w) { return w.starts_with("--threads="); };
-    if (std::none_of(words.begin(), words.end(), says_threads)) {
-      words.push_back("--threads=" + std::to_string(plan_.threads_each));
+    while (end_.fault.empty()) {
+      const bool ended = call->has_ended();  // first: what it has left then is there
+      take_results();
+      if (waiting_.empty()) {
+        call->finish();
+        break;
+      }
+      if (ended) {
+        take_silent(call->refusal());
+        break;
+      }
+      if (stop.stop_requested()) break;
+      std::this_thread::sleep_for(kResultsLook);
     }
-    for (std::string& word : output_words(plan_.out, unit.program))
-      words.push_back(std::move(word));
-    Result<BoundedProcess> process =
-        BoundedProcess::start(words, (folder / "said.txt").string(), plan_.bounds);
+    call->stop();
+  }
+
+  /// Results that are there.
+  void take_results() {
+    for (auto one = waiting_.begin(); one != waiting_.end() && end_.fault.empty();) {
+      std::error_code none;
+      if (!fs::exists(one->first, none)) {
+        ++one;
+        continue;
+      }
+      const Result<std::string> line = read_small_file(one->first, kMaxResultBytes);
+      std::optional<BatchResult> result = line ? result_of_line(*line) : std::nullopt;
+      if (!result || result->program != plan_.units[one->second].program) {
+        fail(line ? trf("{}: this is no result of a batch", one->first) : line.error());
+        return;
+      }
+      keep(one->second, std::move(*result));
+      one = waiting_.erase(one);
+    }
+  }
+
+  /// The engine has ended. What a file server is slow to show has some seconds more; what has no
+  /// result then has failed, by no fault of its program: it is done again the next time.
+  void take_silent(const std::string& refusal) {
+    if (!refusal.empty() && done_ == end_.reused) {
+      fail(trf("--engine {}: {}", to_string(plan_.engine), refusal));
+      return;
+    }
+    const Clock::time_point end = Clock::now() + kLateResults;
+    while (!waiting_.empty() && end_.fault.empty() && Clock::now() < end) {
+      std::this_thread::sleep_for(kResultsLook);
+      take_results();
+    }
+    for (const auto& [path, at] : waiting_) {
+      has_silent_ = true;
+      BatchResult result;
+      result.program = plan_.units[at].program;
+      result.hash = hashes_[at];
+      result.bounds = plan_.bounds;
+      result.message = trf("{} has left no result of it: see {}", to_string(plan_.engine),
+                           (fs::path(plan_.out) / "work").string());
+      keep(at, std::move(result));
+    }
+    waiting_.clear();
+  }
+
+  WorkUnit unit_of(std::size_t at) const {
+    const BatchUnit& unit = plan_.units[at];
+    WorkUnit work;
+    work.out = plan_.out;
+    work.program = unit.program;
+    work.hash = hashes_[at];
+    work.words = unit.words;
+    work.bounds = plan_.bounds;
+    work.threads = plan_.threads_each;
+    return work;
+  }
+
+  void start(std::size_t at) {
+    Result<BoundedProcess> process = start_unit(unit_of(at));
     if (!process) {
       fail(process.error());
       return;
@@ -187,14 +291,12 @@ class BatchRunner {
         ++one;
         continue;
       }
-      if (!end->stopped) keep(one->unit, *end);
+      if (!end->stopped) keep(one->unit, result_of_unit(unit_of(one->unit), *end));
       one = running_.erase(one);
     }
   }
 
-  void keep(std::size_t at, const ProcessEnd& end) {
-    BatchResult result =
-        result_of_run(plan_.out, plan_.units[at].program, hashes_[at], plan_.bounds, end);
+  void keep(std::size_t at, BatchResult result) {
     if (const Done done = log_->append(result); !done) {
       fail(done.error());
       return;
@@ -209,6 +311,8 @@ class BatchRunner {
   std::vector<std::optional<BatchResult>> results_;
   std::optional<ResultLog> log_;
   std::list<Running> running_;
+  std::map<std::string, std::size_t> waiting_;  // files of results that an engine owes, with unit
+  bool has_silent_ = false;                     // an engine has left no result of some
   std::size_t done_ = 0;
   BatchEnd end_;
 };

@@ -1,4 +1,4 @@
-// twin/batch/batch_run.h - runs the programs of a batch on this computer.
+// twin/batch/batch_run.h - runs the programs of a batch, here or by an engine.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/batch/batch_engine.h"
 #include "twin/batch/batch_result.h"
 
 namespace kerf {
@@ -20,7 +21,8 @@ struct BatchUnit {
 struct BatchPlan {
   std::string out;  ///< the folder; it is made
   std::vector<BatchUnit> units;
-  int jobs = 1;
+  BatchEngine engine = BatchEngine::kLocal;
+  int jobs = 0;  ///< at most so many at a time; 0: as many as the engine likes, here one a core
   ProcessBounds bounds;
   /// Of each run whose words do not say --threads. No part of what a result depends on.
   int threads_each = 1;
@@ -35,12 +37,13 @@ struct BatchEnd {
   std::string fault;         ///< why it ended before all were run; empty: it did not
 };
 
-/// Runs all units that have no result that still_holds(), at most `jobs` at a time, in their order.
-/// Each result is appended to out/results.jsonl as it comes, and told to `told` with the number of
-/// those that are done. Results of other programs, of another batch into the same folder, are kept
-/// there. A unit that fails is a result. What cannot be written, or not be started, ends the batch,
-/// and so does a stop request: runs that have not ended are ended, and have no result. Only one
-/// batch at a time may have the folder.
+/// Runs all units that have no result that still_holds(), in their order. An engine has its files
+/// in out/work, which goes away again where each unit has left a result. Each result is appended to
+/// out/results.jsonl as it comes, and told to `told` with the number of those that are done.
+/// Results of other programs, of another batch into the same folder, are kept there. A unit that
+/// fails is a result. What cannot be written, or not be started, ends the batch, and so does a stop
+/// request: runs that have not ended are ended, and have no result. Only one batch at a time may
+/// have the folder.
 BatchEnd run_batch(const BatchPlan& plan, const std::stop_token& stop,
                    const std::function<void(const BatchResult&, std::size_t done)>& told);
 

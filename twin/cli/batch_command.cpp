@@ -18,6 +18,7 @@
 #include "twin/batch/batch_run.h"
 #include "twin/batch/option_table.h"
 #include "twin/batch/work_list.h"
+#include "twin/batch/work_unit.h"
 #include "twin/cli/console.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/run_options.h"
@@ -104,9 +105,14 @@ BatchPlan understand_batch(const Arguments& arguments, Diagnostics& diagnostics)
   plan.again = reader.is_yes("--again");
   plan.bounds.seconds = reader.number("--each-seconds");
   plan.bounds.memory_mb = reader.number("--each-memory");
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  plan.jobs = std::max(1, static_cast<int>(reader.whole_number("--jobs", cores)));
-  plan.threads_each = std::clamp(static_cast<int>(cores) / plan.jobs, 1, 8);
+  reader.word("--engine", {BatchEngine::kLocal, BatchEngine::kParallel, BatchEngine::kSlurm},
+              plan.engine);
+  plan.jobs = static_cast<int>(reader.whole_number("--jobs", 0));
+  if (plan.engine == BatchEngine::kLocal) {
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    if (plan.jobs == 0) plan.jobs = cores;
+    plan.threads_each = std::clamp(cores / plan.jobs, 1, 8);
+  }
   const std::vector<std::string> programs =
       programs_of(arguments.options.texts("WHAT"), diagnostics);
   plan.units = units_of(arguments, programs, reader);
@@ -147,6 +153,15 @@ int worst_code(const BatchEnd& end) {
 }
 
 }  // namespace
+
+int batch_unit_command(const std::string& path) {
+  std::stop_source stop;
+  const StopSignals signals(stop, [] { remove_uncommitted_files(); });
+  const Done done = run_unit_file(path, stop.get_token());
+  if (done) return kExitGood;
+  print_diagnostics({fault_of(done.error())}, false);
+  return kExitFailure;
+}
 
 int batch_command(const Arguments& arguments) {
   const bool quiet = arguments.options.has("--quiet");

@@ -259,6 +259,7 @@ int refuse(const CLI::ParseError& error, const Commands& commands) {
 int run(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "machine")
     return machine_command(argc - 1, argv + 1);
+  if (argc == 3 && std::string_view(argv[1]) == "batch-unit") return batch_unit_command(argv[2]);
   CLI::App app(
       tr("kerf: a twin of a machine under LinuxCNC: runs NC programs through a model of the "
          "workpiece, beside the machine or without it"),

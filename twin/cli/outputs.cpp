@@ -287,13 +287,6 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
   if (!paths.json.empty()) note_failure(write_text(paths.json, json_text(report)), diagnostics);
 }
 
-Done write_text(const std::string& path, const std::string& text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return Error{file.error()};
-  file->write(text.data(), text.size());
-  return file->commit();
-}
-
 void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,
                          Diagnostics& diagnostics) {
   if (!paths.junit.empty()) {

@@ -77,9 +77,6 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
                    std::atomic<unsigned>* dealt_with = nullptr,
                    const std::shared_ptr<const DesignPart>& design = nullptr);
 
-/// A file of text that appears whole or not at all. Error: what could not be written.
-Done write_text(const std::string& path, const std::string& text);
-
 /// `junit` and `sarif` of these programs, where they are wanted, under the same rules.
 void write_finding_lists(const OutputPaths& paths, std::span<const ListedProgram> programs,
                          Diagnostics& diagnostics);

@@ -1,8 +1,6 @@
 #include "twin/page/page_printer.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,10 +16,9 @@
 
 #include "base/atomic_file.h"
 #include "base/small_file.h"
+#include "base/spawn.h"
 #include "base/translate.h"
 #include "interp_bridge/private_folder.h"
-
-extern char** environ;
 
 namespace kerf {
 namespace {
@@ -55,30 +52,6 @@ int wait_for(pid_t child) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return status;
-}
-
-/// Into `said`, in a process group of its own.
-pid_t start(const std::vector<std::string>& words, const std::string& said) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 1, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&files, 1, 2);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  pid_t child = -1;
-  const int error =
-      posix_spawn(&child, words[0].c_str(), &files, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (error == 0) return child;
-  errno = error;
-  return -1;
 }
 
 }  // namespace
@@ -129,7 +102,7 @@ Done print_page(const std::string& page, const std::string& path) {
                                  "--print-to-pdf=" + pdf};
   if (geteuid() == 0) words.push_back("--no-sandbox");  // it does not start as root otherwise
   words.push_back("file://" + html);
-  const pid_t child = start(words, said);
+  const pid_t child = spawn_apart(words, said);
   if (child < 0) return Error{trf("printing {}: {}: {}", path, browser, std::strerror(errno))};
   const int status = wait_for(child);
   if (status == -1)

@@ -308,9 +308,9 @@ void Window::Impl::act_on_view(Action action) {
       break;
     }
     case Action::kNextDrawMode: {
-      constexpr int kDrawModes = static_cast<int>(DrawMode::kCsg) + 1;
+      constexpr int kModes = static_cast<int>(DrawMode::kCsg) + 1;
       DrawMode& draw_mode = settings_.drawing.draw_mode;
-      draw_mode = static_cast<DrawMode>((static_cast<int>(draw_mode) + 1) % kDrawModes);
+      draw_mode = static_cast<DrawMode>((static_cast<int>(draw_mode) + 1) % kModes);
       commands_.push(DrawModeCommand{draw_mode});
       break;
     }

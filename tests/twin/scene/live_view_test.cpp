@@ -241,8 +241,9 @@ TEST_F(LiveViewTest, StatesReachTheMomentInWords) {
     status.state = state;
     status.age_s = 0.75;
     view_->on_status(status);
-    ASSERT_TRUE(
-        moment([&](const Moment& m) { return m.source == shown && m.source_age_s >= 0.75; }));
+    ASSERT_TRUE(moment([&, shown = shown](const Moment& m) {
+      return m.source == shown && m.source_age_s >= 0.75;
+    }));
     known_.moment.reset();
   }
   EXPECT_EQ(behind_.statuses, 4) << "all are passed on";
