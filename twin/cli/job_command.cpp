@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/atomic_file.h"
 #include "base/exit_code.h"
 #include "base/translate.h"
 #include "twin/cli/console.h"

@@ -207,10 +207,13 @@ bool JobRun::carry_over(std::size_t next, const StockModel& stock, Diagnostics& 
   if (wish.kind && *wish.kind != kind && model != setup.option_places.end()) {
     const bool holds_less = kind == StockKind::kZmap && *wish.kind == StockKind::kMmap;
     if (!holds_less) {
-      diagnostics.push_back(fault_at(model->second,
-                                     trf("the workpiece comes as {} here; {} cannot take it over",
-                                         placed->carried.to, stock_model(*wish.kind).name),
-                                     trf("{} or octree, or leave it out", placed->carried.to)));
+      diagnostics.push_back(
+          fault_at(model->second,
+                   trf("the workpiece comes as {} here; {} cannot take it over", placed->carried.to,
+                       stock_model(*wish.kind).name),
+                   placed->carried.to == stock_model(StockKind::kOctree).name
+                       ? std::string(tr("leave it out"))
+                       : trf("{} or octree, or leave it out", placed->carried.to)));
       return false;
     }
   }

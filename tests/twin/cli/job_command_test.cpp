@@ -232,7 +232,7 @@ TEST_F(Job, options_are_faulted_by_their_keys) {
           "  - {program: good.ngc, model: mmapp}\n");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(
-      result.err.find("job.yaml:2:31: error: setups[1].tools: tool 1: flatt:6: unknown shape"),
+      result.err.find("job.yaml:2:32: error: setups[1].tools: tool 1: flatt:6: unknown shape"),
       std::string::npos)
       << result.err;
   EXPECT_NE(result.err.find("setups[1].cell_mm: 0 is not allowed"), std::string::npos);
@@ -247,7 +247,7 @@ TEST_F(Job, a_model_that_cannot_take_it_over_is_named) {
           "  - {program: good.ngc, tools: 1=flat:8, model: zmap}\n",
           {"--quiet"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("job.yaml:3:48: error: setups[2].model: the workpiece comes as octree "
+  EXPECT_NE(result.err.find("job.yaml:3:49: error: setups[2].model: the workpiece comes as octree "
                             "here; zmap cannot take it over"),
             std::string::npos)
       << result.err;

@@ -276,6 +276,7 @@ bool LoadMeter::Impl::is_hollow() {
   if (stock_.name() == "mmap") {
     const std::unique_ptr<StockModel> whole = stock_.snapshot();
     const std::shared_ptr<const HeightGrid> grid = whole->height_grid();
+    if (!grid) return *(hollow_ = true);  // gaps are known from the beginning
     const HeightGrid& heights = *grid;
     const double floor = static_cast<double>(heights.floor_mm());
     for (int j = 0; j < heights.ny(); ++j) {
