@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/axis_turns.h"
 #include "base/translate.h"
 #include "stock/cutter/scan.h"
 
@@ -38,10 +37,11 @@ std::string number(double value) { return fmt::format("{:.10g}", value + 0.0); }
 
 }  // namespace
 
-Vec3 BlankPlace::placed(const Vec3& p) const {
-  Vec3 out = p;
-  if (flip != 0) out = turned_about_axes(out, flip == 'x' ? Vec3(180, 0, 0) : Vec3(0, 180, 0));
-  return turned_about_axes(out, rotate_deg) + at_mm;
+Placement BlankPlace::placement() const {
+  Placement out = flip != 0 ? Placement::flipped(flip) : Placement();
+  out = out.then(Placement::turned(rotate_deg));
+  out.at_mm += at_mm;
+  return out;
 }
 
 std::string BlankPlace::text() const {

@@ -7,6 +7,7 @@
 
 #include "base/geometry.h"
 #include "base/length_unit.h"
+#include "base/placement.h"
 #include "base/result.h"
 
 namespace kerf {
@@ -18,7 +19,7 @@ struct BlankPlace {
   Vec3 at_mm{0};       ///< there its zero lies in the end
 
   bool is_as_saved() const { return flip == 0 && rotate_deg == Vec3(0) && at_mm == Vec3(0); }
-  Vec3 placed(const Vec3& p) const;
+  Placement placement() const;
   /// ", flipped about X, turned by 90, 0, 0 degrees about X, Y, Z, Z0 at .."; empty as it was
   /// saved.
   std::string text() const;

@@ -211,6 +211,10 @@ Done MillTurn::save(const std::string& path) const {
   return tree().save_with(path, beside + turning::bytes_of_part(turned_.part().saved()));
 }
 
+std::unique_ptr<Octree> MillTurn::as_octree() const {
+  return std::unique_ptr<Octree>(static_cast<Octree*>(tree().snapshot().release()));
+}
+
 Result<std::unique_ptr<MillTurn>> MillTurn::load(const std::string& path,
                                                  const MillTurnOptions& options) {
   std::string beside;

@@ -84,6 +84,9 @@ class MillTurn final : public StockModel, public WaySearcher {
   static Result<std::unique_ptr<MillTurn>> load(const std::string& path,
                                                 const MillTurnOptions& options);
 
+  /// The workpiece as an octree alone, for a mill: threads are plain in it.
+  std::unique_ptr<Octree> as_octree() const;
+
   /// Driven tools as an octree takes them, others as a TurningStock.
   static Done can_cut(const Cutter& cutter);
   Done accepts(const Cutter& cutter) const override { return can_cut(cutter); }

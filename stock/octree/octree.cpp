@@ -19,6 +19,7 @@
 #include "stock/octree/dual_contour_mesh.h"
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
+#include "stock/octree/mesh_tree.h"
 #include "stock/octree/octree_state.h"
 #include "stock/octree/part_bodies.h"
 #include "stock/octree/part_contact.h"
@@ -27,6 +28,7 @@
 #include "stock/octree/tool_bodies.h"
 #include "stock/octree/tree_columns.h"
 #include "stock/octree/tree_cut.h"
+#include "stock/octree/turned_tree.h"
 #include "stock/state_bytes.h"
 
 namespace kerf {
@@ -283,6 +285,38 @@ Result<std::unique_ptr<Octree>> Octree::load_with(const std::string& path, int t
   impl->removed = saved->removed;
   beside = std::move(saved->beside);
   impl->pool = std::make_shared<WorkerPool>(std::max(1, threads));
+  return std::unique_ptr<Octree>(new Octree(std::move(impl)));
+}
+
+bool Octree::is_additive() const { return impl_->additive; }
+
+std::unique_ptr<Octree> Octree::placed(const AxisTurn& turn, const Vec3& at_mm) const {
+  assert(!impl_->additive);
+  auto impl = std::make_unique<Impl>(turned_tree(impl_->tree, turn, at_mm, *impl_->pool));
+  impl->blank_mm3 = impl_->blank_mm3;
+  impl->removed = impl_->removed;
+  impl->pool = impl_->pool;
+  return std::unique_ptr<Octree>(new Octree(std::move(impl)));
+}
+
+Result<std::unique_ptr<Octree>> Octree::of_surface(const TriangleMesh& surface,
+                                                   const Placement& placement, double cell_mm,
+                                                   int threads, double blank_mm3) {
+  const PlacedSurface placed(surface, placement);
+  OctreeOptions options;
+  BlankBody box;
+  box.bounds_mm = placed.bounds_mm();
+  options.blank.bodies.push_back(box);
+  options.cell_mm = cell_mm;
+  const Done checked = check(options, box.bounds_mm);
+  if (!checked) return Error{checked.error()};
+  const auto pool = std::make_shared<WorkerPool>(std::max(1, threads));
+  auto impl =
+      std::make_unique<Impl>(mesh_tree(Lattice::over(box.bounds_mm, cell_mm), placed, *pool));
+  impl->pool = pool;
+  impl->blank_mm3 = blank_mm3;
+  const double gone_mm3 = blank_mm3 - impl->mm3(volume_of(impl->tree));
+  impl->removed = std::llround(gone_mm3 / impl->tree.lattice().node_mm3() * kNodeVolume);
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }
 

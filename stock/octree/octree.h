@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/placement.h"
 #include "stock/blank.h"
 #include "stock/column_runs.h"
 #include "stock/octree/hermite_grid.h"
@@ -117,6 +118,17 @@ class Octree final : public StockModel,
   Done save_with(const std::string& path, std::string beside) const;
   static Result<std::unique_ptr<Octree>> load_with(const std::string& path, int threads,
                                                    std::string& beside);
+  bool is_additive() const;
+  /// As it lies elsewhere, its axes on axes: nodes, crossings and normals change places, and none
+  /// is looked for anew. Exact, but that a crossing at an edge's very end is a 65536th of it off.
+  /// Not of an additive model.
+  std::unique_ptr<Octree> placed(const AxisTurn& turn, const Vec3& at_mm) const;
+  /// What this closed surface holds, as it is placed: crossings and normals are those of its
+  /// triangles (mesh_tree.h). `blank_mm3`: what there was before anything was cut, and blank_mm3()
+  /// from then on. Errors as create() has them for the box of what is placed; an empty surface.
+  static Result<std::unique_ptr<Octree>> of_surface(const TriangleMesh& surface,
+                                                    const Placement& placement, double cell_mm,
+                                                    int threads, double blank_mm3);
   std::string name() const override { return "octree"; }
   Box bounds_mm() const override;
   double cell_mm() const override;

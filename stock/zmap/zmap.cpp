@@ -225,7 +225,11 @@ Done ZMap::save(const std::string& path) const {
 Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, ZMapKernel kernel) {
   Result<SavedState> state = read_state(path);
   if (!state) return Error{state.error()};
-  auto impl = std::make_unique<Impl>(std::move(state->grid), state->blank_mm3, kernel, threads);
+  return of_heights(std::move(state.value()), threads, kernel);
+}
+
+std::unique_ptr<ZMap> ZMap::of_heights(SavedState heights, int threads, ZMapKernel kernel) {
+  auto impl = std::make_unique<Impl>(std::move(heights.grid), heights.blank_mm3, kernel, threads);
   impl->sweeper.forget_traces();
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }

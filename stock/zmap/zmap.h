@@ -17,6 +17,8 @@
 
 namespace kerf {
 
+struct SavedState;
+
 struct ZMapOptions {
   Blank blank;           ///< bodies, workpiece frame
   double cell_mm = 0.1;  ///< greatest edge of a cell: the true edges divide the blank evenly. Sets
@@ -96,6 +98,9 @@ class ZMap final : public StockModel, public PresentHeights, public ColumnSource
   Done save(const std::string& path) const override;
   static Result<std::unique_ptr<ZMap>> load(const std::string& path, int threads = 1,
                                             ZMapKernel kernel = ZMapKernel::kAuto);
+
+  /// Of heights that are there already, as load() has them.
+  static std::unique_ptr<ZMap> of_heights(SavedState heights, int threads, ZMapKernel kernel);
 
   static constexpr std::size_t kMaxCells = std::size_t{1} << 30;
 

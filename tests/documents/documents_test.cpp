@@ -98,7 +98,7 @@ std::size_t characters(const std::string& utf8) {
 
 constexpr const char* kLongOption = R"((?:^|[\s,\[`(])(--[a-z][a-z0-9-]+))";
 const char* const kCommands[] = {"run",   "view",   "shadow",  "replay", "canon", "config",
-                                 "tools", "models", "sources", "diff",   "batch"};
+                                 "tools", "models", "sources", "diff",   "batch", "job"};
 
 Words options_of(const std::string& command) {
   const CommandResult help = run_kerf(command + " --help");
@@ -354,6 +354,7 @@ TEST(Documents, VersionsOfFormatsAreThoseOfTheSources) {
   const std::pair<const char*, const char*> sources[] = {
       {"twin/report/report_json.cpp", R"re("(kerf-report/\d+)")re"},
       {"twin/batch/batch_pages.cpp", R"re("(kerf-batch/\d+)")re"},
+      {"twin/cli/job_text.cpp", R"re("(kerf-job/\d+)")re"},
       {"machine_io/recording_format.h", R"re("# (kerf-recording/\d+)")re"},
       {"stock/state_bytes.h", R"re("(kerf-state/\d+)\\n")re"}};
   for (const auto& [source, pattern] : sources) {

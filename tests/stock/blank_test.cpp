@@ -143,11 +143,11 @@ TEST(Blank, ASavedPartLiesElsewhere) {
 
 TEST(Blank, PlacesTurnAboutTheZeroOfTheFile) {
   const Vec3 p(1, 2, 3);
-  EXPECT_EQ((BlankPlace{'x', Vec3(0), Vec3(0)}.placed(p)), Vec3(1, -2, -3));
-  EXPECT_EQ((BlankPlace{'y', Vec3(0), Vec3(10, 0, 0)}.placed(p)), Vec3(9, 2, -3));
-  EXPECT_EQ((BlankPlace{0, Vec3(90, 0, 0), Vec3(0)}.placed(p)), Vec3(1, -3, 2));
+  EXPECT_EQ((BlankPlace{'x', Vec3(0), Vec3(0)}.placement().placed(p)), Vec3(1, -2, -3));
+  EXPECT_EQ((BlankPlace{'y', Vec3(0), Vec3(10, 0, 0)}.placement().placed(p)), Vec3(9, 2, -3));
+  EXPECT_EQ((BlankPlace{0, Vec3(90, 0, 0), Vec3(0)}.placement().placed(p)), Vec3(1, -3, 2));
   // About X, then Y, then Z: (1, -3, 2) -> (2, -3, -1) -> (3, 2, -1).
-  EXPECT_EQ((BlankPlace{0, Vec3(90, 90, 90), Vec3(0)}.placed(p)), Vec3(3, 2, -1));
+  EXPECT_EQ((BlankPlace{0, Vec3(90, 90, 90), Vec3(0)}.placement().placed(p)), Vec3(3, 2, -1));
 }
 
 TEST(Blank, Mesh) {

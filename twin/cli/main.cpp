@@ -24,6 +24,7 @@
 #include "twin/cli/config_command.h"
 #include "twin/cli/console.h"
 #include "twin/cli/diff_command.h"
+#include "twin/cli/job_command.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/machine_command.h"
 #include "twin/cli/run_command.h"
@@ -62,6 +63,10 @@ constexpr const char* kDiffExample = tr_noop(
     "Examples:\n"
     "  kerf diff old.ngc new.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf diff part.ngc part.state --json -\n");
+
+constexpr const char* kJobExample =
+    "Example:\n"
+    "  kerf job examples/job/housing.yaml --png pictures --json job.json\n";
 
 constexpr const char* kBatchExample =
     "Examples:\n"
@@ -193,6 +198,7 @@ constexpr std::array kCalls{
     CommandCall{kReplay, kReplayExample, live_command},
     CommandCall{kDiff, kDiffExample, diff_command},
     CommandCall{kBatch, kBatchExample, batch_command},
+    CommandCall{kJob, kJobExample, job_command},
     CommandCall{kCanon, kCanonExample, canon_command},
     CommandCall{kConfig, kConfigExample, config_command},
     // Found and started by machine_command(), before this is asked.

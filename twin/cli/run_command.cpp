@@ -94,8 +94,11 @@ void print_results(const RunRequest& request, const Report& report) {
   print_findings(report, request.quiet);
   if (request.quiet) return;
   const std::string command =
-      command_line(with_guesses(request.written, rows_in(report.guesses, request.units)));
-  kerf::print(request.outputs.uses_stdout() ? stderr : stdout, "{}",
+      request.is_of_job
+          ? std::string()
+          : command_line(with_guesses(request.written, rows_in(report.guesses, request.units)));
+  const bool on_stderr = request.summary_on_stderr || request.outputs.uses_stdout();
+  kerf::print(on_stderr ? stderr : stdout, "{}",
               summary_text(report, {request.verbose, command, request.units}));
 }
 
@@ -132,13 +135,6 @@ Report report_of_nothing(const RunRequest& request) {
   report.lines = request.session.lines;
   return report;
 }
-
-/// How one of the programs ended.
-struct RunVerdict {
-  int code = kExitGood;
-  bool interrupted = false;
-  ListedProgram listed;  ///< for --junit and --sarif
-};
 
 /// Of one that has not come to a report.
 ListedProgram listed_fault(const RunRequest& request, const Diagnostics& diagnostics) {
@@ -179,7 +175,9 @@ void end_table(MotionTable& table, Diagnostics& diagnostics) {
     diagnostics.push_back(general_error(written.error()));
 }
 
-RunVerdict run_one(const Arguments& arguments, RunRequest request) {
+}  // namespace
+
+RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunListener& finished) {
   Diagnostics diagnostics;
   check_output_places(request.outputs, diagnostics);
   make_finding_folder(request.finding_png, diagnostics);
@@ -214,7 +212,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     table = begin_table(request.outputs.csv, kept, *session, diagnostics);
     if (!table) session.reset();
   }
-  if (session && request.compare.is_wanted()) session->keep_moves();
+  if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();
   std::optional<RunCurve> curve;
   if (session && request.outputs.wants_page()) {
     session->keep_cut_labels();
@@ -269,9 +267,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
     deadline->set_last_words({}, kWritingPatience);
     print_results(request, session->report());
   }
+  const int code = exit_code(outcome, session->report(), diagnostics);
+  if (finished && !has_error(diagnostics)) finished({*session, outcome, code}, diagnostics);
   flush_console();
   print(diagnostics);
-  const int code = exit_code(outcome, session->report(), diagnostics);
   ListedProgram listed = listed_program(session->report());
   listed.faults = diagnostics;
   if (!request.view || stop.stop_requested() || !session->stock()) {
@@ -283,6 +282,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request) {
   const int shown = show_program(arguments, request, stop);
   return {shown == kExitGood ? code : shown, stop.stop_requested(), std::move(listed)};
 }
+
+namespace {
 
 /// What one file or one window cannot take of several programs.
 void refuse_shared_outputs(const RunRequest& request, std::size_t programs,

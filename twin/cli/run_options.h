@@ -30,6 +30,9 @@ struct RunRequest {
   CompareRequest compare;        ///< the finished part with its design
   bool quiet = false;
   bool verbose = false;
+  bool keeps_moves = false;            ///< for a comparison that comes after another setup
+  bool is_of_job = false;              ///< one of several setups: no command line says all of it
+  bool summary_on_stderr = false;      ///< standard output is that of a file
   LengthUnit units = LengthUnit::kMm;  ///< of what is shown
   Arguments written;                   ///< what all this was understood from
 };

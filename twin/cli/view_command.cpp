@@ -19,6 +19,7 @@
 #include "base/translate.h"
 #include "machine_io/logs/log_source.h"
 #include "twin/cli/console.h"
+#include "twin/cli/job_command.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/progress_bar.h"
@@ -191,8 +192,18 @@ int show_program(const Arguments& arguments, const RunRequest& run, std::stop_so
   return in_window(again_in_window(arguments), request, stop);
 }
 
-int view_command(const Arguments& arguments) {
+int view_command(const Arguments& asked) {
   Diagnostics diagnostics;
+  std::unique_ptr<JobRun> job;
+  Arguments arguments = asked;
+  if (is_job_file(asked.options.text("PROGRAM"))) {
+    int code = kExitGood;
+    std::optional<Arguments> own = view_of_job(asked, job, code);
+    if (!own) return code;
+    arguments = std::move(*own);
+  } else if (asked.options.has("--setup")) {
+    add_fault("--setup", tr("is for jobs, YAML files with setups"), {}, diagnostics);
+  }
   ViewRequest request = understand_view(arguments, diagnostics);
   check_sheet_options(request.run.session.blank, arguments, diagnostics);
   if (has_error(diagnostics)) {

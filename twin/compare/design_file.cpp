@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/axis_turns.h"
+#include "base/placement.h"
 #include "base/translate.h"
 #include "base/units.h"
 #include "mesh/mesh_reader.h"
@@ -38,7 +38,7 @@ double rounded(double mm) {
 }  // namespace
 
 Vec3 DesignPlacement::placed(const Vec3& p) const {
-  return turned_about_axes(p, turn_deg) + shift_mm;
+  return Placement::turned(turn_deg).placed(p) + shift_mm;
 }
 
 std::string DesignPlacement::text() const {
@@ -57,7 +57,9 @@ std::string DesignPlacement::text() const {
 DesignPart DesignFile::placed(const DesignPlacement& placement, Diagnostics& diagnostics) const {
   if (placement.is_plain()) return {mesh, path, diagnostics};
   TriangleMesh moved = mesh;
-  for (glm::vec3& p : moved.positions_mm) p = glm::vec3(placement.placed(Vec3(p)));
+  Placement to = Placement::turned(placement.turn_deg);
+  to.at_mm = placement.shift_mm;
+  for (glm::vec3& p : moved.positions_mm) p = glm::vec3(to.placed(Vec3(p)));
   return {moved, path, diagnostics};
 }
 

@@ -17,6 +17,7 @@ constexpr std::array kCommands{
     CommandRow{kDiff, "diff", tr_noop("what differs between two programs or workpieces")},
     CommandRow{kBatch, "batch",
                tr_noop("run many programs, each by itself; goes on where it stopped")},
+    CommandRow{kJob, "job", tr_noop("a part in several setups, one after the other")},
     CommandRow{kCanon, "canon", tr_noop("print what a program commands as JSON lines")},
     CommandRow{kConfig, "config", tr_noop("check or print a configuration, or list every key")},
     CommandRow{kMachine, "machine", tr_noop("a simulated machine that serves its positions")},
@@ -32,8 +33,8 @@ std::span<const Setting> setting_table() {
   static const std::vector<Setting> table = [] {
     std::vector<Setting> all;
     for (const auto topic : {call_settings, machine_settings, workpiece_settings, sheet_settings,
-                             follow_settings, output_settings, batch_settings, view_settings,
-                             source_settings, map_settings, simulator_settings}) {
+                             follow_settings, output_settings, batch_settings, job_settings,
+                             view_settings, source_settings, map_settings, simulator_settings}) {
       const std::span<const Setting> rows = topic();
       all.insert(all.end(), rows.begin(), rows.end());
     }

@@ -52,6 +52,7 @@ enum Command : std::uint16_t {
   kTools = 512,
   kDiff = 1024,
   kBatch = 2048,
+  kJob = 4096,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
 inline constexpr std::uint16_t kCutting = kRun | kView | kBesideMachine | kDiff;
@@ -126,6 +127,7 @@ std::span<const Setting> sheet_settings();      ///< beam, turret
 std::span<const Setting> follow_settings();     ///< the program that a machine runs, lines
 std::span<const Setting> output_settings();     ///< files
 std::span<const Setting> batch_settings();      ///< kerf batch
+std::span<const Setting> job_settings();        ///< kerf job
 std::span<const Setting> view_settings();       ///< window, pictures
 std::span<const Setting> source_settings();     ///< where positions come from, logs
 std::span<const Setting> map_settings();        ///< which number is which position

@@ -308,7 +308,7 @@ constexpr std::array kMachineSettings{
             .purpose = tr_noop("pairs that may touch: links and fixtures by their names, tool (or "
                                "cutter, shank, holder), spindle, workpiece")},
     Setting{.option = "--interp",
-            .commands = kCutting | kCanon,
+            .commands = kCutting | kCanon | kJob,
             .type = T::kWord,
             .words = "bridge|text",
             .help = tr_noop("interpreter: bridge (kerf-interp) | text (LinuxCNC's rs274) (default "

@@ -86,7 +86,7 @@ constexpr std::array kViewSettings{
                 "of pictures: iso | top | bottom | front | back | left | right (default {})"),
             .value_name = "NAME"},
     Setting{.option = "--section",
-            .commands = kRun,
+            .commands = kRun | kJob,
             .type = T::kWord,
             .words = "none|half|quarter",
             .fallback = "none",
@@ -153,7 +153,7 @@ constexpr std::array kViewSettings{
             .help = tr_noop("no line for each program, no summary, no warnings"),
             .flag = "yes"},
     Setting{.option = "--verbose",
-            .commands = kRun,
+            .commands = kRun | kJob,
             .type = T::kYesNo,
             .fallback = "no",
             .help = tr_noop(

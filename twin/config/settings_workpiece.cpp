@@ -190,7 +190,7 @@ constexpr std::array kWorkpieceSettings{
             .value_name = "FILE",
             .repeatable = true},
     Setting{.option = "--threads",
-            .commands = kCutting,
+            .commands = kCutting | kJob,
             .type = T::kWhole,
             .unit = "threads",
             .least = 1,

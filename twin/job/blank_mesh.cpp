@@ -72,9 +72,10 @@ bool read_blank_mesh(Blank& blank, Diagnostics& diagnostics) {
                  trf("has triangles without area; they are left out: {}", read->flat));
   }
   Box as_read;
+  const Placement place = said.place.placement();
   for (glm::vec3& p : read->mesh.positions_mm) {
     as_read.extend(Vec3(p));
-    p = glm::vec3(said.place.placed(Vec3(p)));
+    p = glm::vec3(place.placed(Vec3(p)));
   }
   Result<MeshBody> body = mesh_body(std::move(read->mesh), said.file);
   if (!body) {

@@ -27,10 +27,25 @@
 namespace kerf {
 namespace {
 
-/// Bodies that begin as much above the floor of the blank stand on it all the same.
-constexpr double kFloor_mm = 1e-9;
 constexpr double kMostOctreeCells = 1e6;
 
+}  // namespace
+
+double octree_cell_mm(const Box& box) {
+  const Vec3 size = box.size();
+  const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+  double cell = 0.01;
+  for (const double step : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
+    if (area / (cell * cell) <= kMostOctreeCells) break;
+    cell = step;
+  }
+  return std::min({cell, size.x, size.y, size.z});
+}
+
+namespace {
+
+/// Bodies that begin as much above the floor of the blank stand on it all the same.
+constexpr double kFloor_mm = 1e-9;
 using Created = Result<std::unique_ptr<StockModel>>;
 
 double cell_of(const Blank& blank, const StockSettings& settings) {
@@ -59,18 +74,6 @@ Created create_mmap(const Blank& blank, const StockSettings& settings) {
   options.threads = settings.threads;
   options.kernel = settings.kernel;
   return as_model(MMap::create(options));
-}
-
-/// Least of the usual cells that gives the surface of the blank's box at most a million of them.
-double octree_cell_mm(const Box& box) {
-  const Vec3 size = box.size();
-  const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
-  double cell = 0.01;
-  for (const double step : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
-    if (area / (cell * cell) <= kMostOctreeCells) break;
-    cell = step;
-  }
-  return std::min({cell, size.x, size.y, size.z});
 }
 
 /// What this process may have: the machine's memory, or less (ulimit -v, a container's limit).
@@ -339,6 +342,7 @@ StockChoice choose_stock(const StockSettings& settings, const StockNeeds& needs)
   if (settings.kind) return {*settings.kind, {}, finest};
   if (!needs.turning.empty()) return {StockKind::kTurning, needs.turning, 0};
   if (settings.additive) return {StockKind::kOctree, tr("material is added"), finest};
+  if (!settings.later_need.empty()) return {StockKind::kOctree, settings.later_need, finest};
   if (!needs.tilt.empty()) return {StockKind::kOctree, needs.tilt, finest};
   if (!needs.blank.empty()) return {StockKind::kOctree, needs.blank, finest};
   if (!needs.undercut.empty()) return {StockKind::kMmap, needs.undercut, finest};

@@ -24,6 +24,9 @@ struct StockSettings {
   double cell_mm = 0;             ///< 0: what suits the blank (and of heights, the finest tool)
   int threads = 1;                ///< cutting threads
   ZMapKernel kernel = ZMapKernel::kAuto;
+  /// What comes after the program needs an octree: "setup 3 lays it on its side". Counts where
+  /// nothing else is asked for and nothing turns; empty: nothing does.
+  std::string later_need;
   bool additive = false;  ///< material is added along the path, within the blank's box; octree only
 };
 
@@ -42,6 +45,8 @@ struct StockModelRow {
 /// the sheet is for sheets alone, and sheets are for it alone; turning is for what turns.
 std::span<const StockModelRow> stock_models();
 const StockModelRow& stock_model(StockKind kind);
+/// Least of the usual cells that gives the surface of a box at most a million of them.
+double octree_cell_mm(const Box& box);
 /// A workpiece that turns, as the model turning has it: driven tools may mill it. `settings`: its
 /// threads. Error: that of `turned`, or why it cannot be milled.
 Result<std::unique_ptr<StockModel>> with_milling(Result<std::unique_ptr<TurningStock>> turned,

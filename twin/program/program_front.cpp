@@ -62,7 +62,8 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
                         Diagnostics& diagnostics, Outcome& outcome) {
   CommentBlank found;
   if (options.blank) {
-    found = {options.blank, options.blank_is_guess ? tr("guessed") : "--stock"};
+    const char* const origin = options.blank_words.empty() ? "--stock" : tr("the job");
+    found = {options.blank, options.blank_is_guess ? tr("guessed") : origin};
   } else if (!find_comment_blank(*front.program, options.program.path, found, diagnostics)) {
     return false;
   }
@@ -113,6 +114,7 @@ bool fill_front(const SessionOptions& options, ProgramFront& front, Diagnostics&
   front.stock = make_stock(*front.blank, front.choice, options.stock, front.blank_origin,
                            diagnostics, outcome);
   if (!front.stock.stock) return false;
+  if (!options.blank_words.empty()) front.stock.facts.description = options.blank_words;
   const CollisionWishes& wishes = options.collisions;
   if (hold_workpiece(wishes.holding, wishes.fixtures, *front.stock.stock, !front.blank_guessed,
                      front.held_by, diagnostics)) {

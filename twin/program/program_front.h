@@ -42,6 +42,8 @@ struct SessionOptions {
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
   bool guess = true;         ///< what nobody has said; false: that is an error
+  /// What a blank is called that no option has given; empty: by its shape or its file.
+  std::string blank_words;
   /// What has been guessed of the program already: `blank` is such a one, and why.
   bool blank_is_guess = false;
   std::string guess_reason;

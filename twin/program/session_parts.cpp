@@ -13,7 +13,6 @@
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/turning_hints.h"
-#include "stock/millturn/mill_turn.h"
 #include "stock/octree/octree.h"
 #include "stock/sheet/sheet.h"
 #include "stock/turning/turning_stock.h"
@@ -21,6 +20,7 @@
 #include "stock/zmap/zmap.h"
 #include "twin/job/blank_choice.h"
 #include "twin/job/blank_mesh.h"
+#include "twin/job/placed_stock.h"
 #include "twin/job/turning_row.h"
 #include "twin/program/library_tools.h"
 
@@ -69,58 +69,23 @@ Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string
   return as_stock(ZMap::load(path, settings.threads, settings.kernel));
 }
 
-/// As it lies now; null, with an error: only what turns is turned about, and not beyond a lathe.
-std::unique_ptr<StockModel> placed(std::unique_ptr<StockModel> stock, const Blank& blank,
-                                   const StockSettings& settings, Diagnostics& diagnostics) {
-  const BlankPlace& place = blank.saved_place;
-  if (place.is_as_saved()) return stock;
-  const TurningStock* const turned = stock->turned();
-  if (turned == nullptr) {
-    diagnostics.push_back(general_error(
-        trf("{}: flip= and at= are for parts that are turned; this one was saved as {}",
-            blank.state_file, stock->name())));
-    return nullptr;
-  }
-  if (const auto* const both = dynamic_cast<const MillTurn*>(stock.get());
-      both && both->is_milled()) {
-    diagnostics.push_back(general_error(
-        trf("{}: flip= and at= are for parts that are turned; this one has been milled as well",
-            blank.state_file)));
-    return nullptr;
-  }
-  if (place.rotate_deg != Vec3(0) || place.flip == 'y' || place.at_mm.x != 0 ||
-      place.at_mm.y != 0) {
-    diagnostics.push_back(general_error(
-        trf("{}: a part that turns stays on its axis; allowed are flip=x and at=0,0,z",
-            blank.state_file)));
-    return nullptr;
-  }
-  std::optional<TurnedPart> part = place.flip == 'x' ? turned->part().turned_about(place.at_mm.z)
-                                                     : turned->part().moved(place.at_mm.z);
-  if (part) {
-    auto lies = with_milling(std::make_unique<TurningStock>(std::move(*part)), settings);
-    if (lies) return std::move(lies.value());
-    diagnostics.push_back(general_error(lies.error()));
-    return nullptr;
-  }
-  diagnostics.push_back(general_error(trf("{}: at Z{:g} it would lie beyond {} mm from Z0",
-                                          blank.state_file, place.at_mm.z, kMaxTurnedZ_mm)));
-  return nullptr;
-}
-
 std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& choice,
-                                       const StockSettings& settings, Diagnostics& diagnostics,
-                                       Outcome& outcome) {
-  if (settings.cell_mm > 0) {
+                                       const StockSettings& settings, CarriedOver& carried,
+                                       Diagnostics& diagnostics, Outcome& outcome) {
+  StockKind saved = saved_kind(blank.state_file);
+  if (choice.kind == StockKind::kTurning && is_milled_part(blank.state_file))
+    saved = StockKind::kTurning;
+  // A mill goes on with a turned part as an octree, and so do tilted tools with heights.
+  const bool becomes_octree = choice.kind == StockKind::kOctree && saved != StockKind::kOctree &&
+                              saved != StockKind::kSheet;
+  const bool is_mill = choice.kind != StockKind::kTurning;
+  if (settings.cell_mm > 0 && !becomes_octree) {
     diagnostics.push_back(
         general_error(tr("--cell: a saved workpiece keeps its own cells; leave --cell out")));
     return nullptr;
   }
-  StockKind saved = saved_kind(blank.state_file);
-  if (choice.kind == StockKind::kTurning && is_milled_part(blank.state_file))
-    saved = StockKind::kTurning;
   const bool is_other = settings.kind && *settings.kind != saved;
-  if (is_other || choice.kind > saved) {
+  if (!becomes_octree && (is_other || choice.kind > saved)) {
     const std::string why = choice.reason.empty() ? "" : fmt::format(" ({})", choice.reason);
     diagnostics.push_back(general_error(
         trf("{}: a workpiece saved as {}; the model {} is {}{}", blank.state_file,
@@ -130,10 +95,19 @@ std::unique_ptr<StockModel> load_stock(const Blank& blank, const StockChoice& ch
     return nullptr;
   }
   auto loaded = load_saved(saved, blank.state_file, settings);
-  if (loaded) return placed(std::move(loaded.value()), blank, settings, diagnostics);
-  diagnostics.push_back(general_error(loaded.error()));
-  outcome = Outcome::kFailed;
-  return nullptr;
+  if (!loaded) {
+    diagnostics.push_back(general_error(loaded.error()));
+    outcome = Outcome::kFailed;
+    return nullptr;
+  }
+  auto placed = place_stock(std::move(loaded.value()), blank.saved_place.placement(),
+                            becomes_octree, !is_mill, settings);
+  if (!placed) {
+    diagnostics.push_back(general_error(fmt::format("{}: {}", blank.state_file, placed.error())));
+    return nullptr;
+  }
+  carried = placed->carried;
+  return std::move(placed->stock);
 }
 
 std::unique_ptr<StockModel> fill_stock(const Blank& blank, const StockChoice& choice,
@@ -204,9 +178,11 @@ StockSetup make_stock(const Blank& blank, const StockChoice& choice, const Stock
     diagnostics.push_back(general_error(trouble));
     return setup;
   }
+  CarriedOver carried;
   setup.stock = blank.state_file.empty()
                     ? fill_stock(blank, fitting, settings, origin, diagnostics)
-                    : load_stock(blank, fitting, settings, diagnostics, outcome);
+                    : load_stock(blank, fitting, settings, carried, diagnostics, outcome);
+  if (carried.from != carried.to) setup.facts.carried = carried;
   const bool is_drawn = (blank.sheet && !blank.sheet->file.empty()) || !blank.profile_file.empty();
   if (!setup.stock && is_drawn) outcome = Outcome::kFailed;
   return setup;

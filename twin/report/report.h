@@ -10,6 +10,7 @@
 #include "interp_bridge/program.h"
 #include "twin/compare/comparison.h"
 #include "twin/findings/finding.h"
+#include "twin/job/placed_stock.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/cut_stage.h"
 #include "twin/report/guess_row.h"
@@ -32,6 +33,7 @@ struct StockReport {
   Box bounds_mm;
   std::size_t cells = 0;
   std::string digest;
+  std::optional<CarriedOver> carried;  ///< it was saved by another model
 };
 
 /// Where the time of the run went. Interpreting and cutting overlap: they do not add up to the

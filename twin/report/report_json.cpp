@@ -46,6 +46,15 @@ Json motion_json(const Report& report) {
   return out;
 }
 
+Json carried_json(const CarriedOver& carried) {
+  Json out;
+  out["from"] = carried.from;
+  out["to"] = carried.to;
+  out["bound_mm"] = rounded(carried.bound_mm);
+  if (!carried.note.empty()) out["note"] = carried.note;
+  return out;
+}
+
 Json stock_json(const Report& report) {
   if (!report.stock) return nullptr;
   const StockReport& s = *report.stock;
@@ -60,6 +69,7 @@ Json stock_json(const Report& report) {
   out["bounds_mm"] = Json::array({vector_json(s.bounds_mm.min), vector_json(s.bounds_mm.max)});
   out["cells"] = s.cells;
   out["digest"] = s.digest;
+  if (s.carried) out["carried"] = carried_json(*s.carried);
   return out;
 }
 

@@ -80,6 +80,10 @@ void add_stock(std::string& out, const StockReport& s) {
   if (!s.model_reason.empty()) {
     out += trf("          {} because {}\n", s.model, s.model_reason);
   }
+  if (s.carried) {
+    out += trf("          was {}; surfaces may lie {:.4f} mm elsewhere for it\n", s.carried->from,
+               s.carried->bound_mm);
+  }
 }
 
 void add_removed(std::string& out, const StockReport& s) {

@@ -137,8 +137,13 @@ Result<std::unique_ptr<MMap>> MMap::load(const std::string& path, int threads, Z
   if (!bytes) return Error{bytes.error()};
   Result<SavedColumns> saved = parse_columns(*bytes, path);
   if (!saved) return Error{saved.error()};
-  auto impl = std::make_unique<Impl>(std::move(saved->heights), saved->blank_mm3, kernel, threads);
-  impl->gaps = std::move(saved->gaps);
+  return of_columns(std::move(saved.value()), threads, kernel);
+}
+
+std::unique_ptr<MMap> MMap::of_columns(SavedColumns columns, int threads, ZMapKernel kernel) {
+  auto impl =
+      std::make_unique<Impl>(std::move(columns.heights), columns.blank_mm3, kernel, threads);
+  impl->gaps = std::move(columns.gaps);
   impl->sweeper.forget_traces();
   return std::unique_ptr<MMap>(new MMap(std::move(impl)));
 }

@@ -15,6 +15,8 @@
 
 namespace kerf {
 
+struct SavedColumns;
+
 /// Workpiece that in each cell is solid from the floor of the blank up to a height, but for gaps
 /// below it: what a Z-map holds, and the undercuts of T-slot cutters, lollipops and dovetails.
 ///
@@ -70,6 +72,8 @@ class MMap final : public StockModel, public PresentHeights, public ColumnSource
   Done save(const std::string& path) const override;
   static Result<std::unique_ptr<MMap>> load(const std::string& path, int threads = 1,
                                             ZMapKernel kernel = ZMapKernel::kAuto);
+  /// Of columns that are there already, as load() has them.
+  static std::unique_ptr<MMap> of_columns(SavedColumns columns, int threads, ZMapKernel kernel);
   std::string name() const override { return "mmap"; }
   Box bounds_mm() const override;
   double cell_mm() const override;
