@@ -186,7 +186,7 @@ void PieceMap::join(std::uint32_t number, std::size_t side) {
     }
   }
   std::ranges::sort(joints);
-  joints.erase(std::ranges::unique(joints).begin(), joints.end());
+  joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
 }
 
 std::vector<PieceMap::Parting> PieceMap::update(const ColumnSource& source) {

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (kerf::describe(*blank).empty()) std::abort();
   // What a file holds is not known before it is read.
   const bool in_a_file =
-      !blank->state_file.empty() || (blank->sheet && !blank->sheet->file.empty());
+      !blank->state_file.empty() || blank->mesh || (blank->sheet && !blank->sheet->file.empty());
   if (!in_a_file && !(blank->bounds_mm().volume_mm3() > 0)) std::abort();
   return 0;
 }

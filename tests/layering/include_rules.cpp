@@ -224,9 +224,12 @@ std::string check_project_include(std::string_view path, bool is_test, std::stri
   }
   const std::string_view own_model = stock_model_of(path);
   const std::string_view other_model = stock_model_of(target);
-  // One stands on two others: a part that is turned and milled.
-  const bool stands_on_it = own_model == "stock/millturn/" &&
-                            (other_model == "stock/turning/" || other_model == "stock/octree/");
+  // One stands on two others: a part that is turned and milled. And what looks for loose pieces is
+  // none, but goes through heights as their sweeps do.
+  const bool stands_on_it =
+      (own_model == "stock/millturn/" &&
+       (other_model == "stock/turning/" || other_model == "stock/octree/")) ||
+      (own_model == "stock/pieces/" && (is_test || other_model == "stock/zmap/"));
   if (!own_model.empty() && !other_model.empty() && own_model != other_model && !stands_on_it) {
     return fmt::format("the model {} may not include the model header \"{}\"", own_model, target);
   }

@@ -72,7 +72,7 @@ class ColumnPieces final : public PieceFinder {
   struct Found {
     std::uint32_t id = 0;
     Vec3 inside_mm{0};
-    std::vector<Vec3> others_mm;  ///< inside what it was one with
+    std::vector<Vec3> held_mm;  ///< inside what is held of all that it was one with
   };
 
   /// All that there is now is held.
@@ -141,13 +141,11 @@ class ColumnPieces final : public PieceFinder {
         gripped.push_back(*id);
     }
     if (gripped.empty()) gripped.push_back(real.front()->id);
+    std::vector<Vec3> held_mm;
+    for (const std::uint32_t id : gripped) held_mm.push_back(map_.find(id)->inside_mm);
     for (const PieceMap::Piece* const piece : real) {
       if (std::ranges::find(gripped, piece->id) != gripped.end()) continue;
-      Found one{piece->id, piece->inside_mm, {}};
-      for (const PieceMap::Piece* const other : real) {
-        if (other != piece) one.others_mm.push_back(other->inside_mm);
-      }
-      found.push_back(std::move(one));
+      found.push_back({piece->id, piece->inside_mm, held_mm});
     }
   }
 
@@ -197,8 +195,14 @@ class ColumnPieces final : public PieceFinder {
       std::erase_if(found, [&](const Found& one) {
         const auto at = map.piece_at(one.inside_mm);
         if (!at) return false;
-        for (const Vec3& other : one.others_mm) {
-          if (map.piece_at(other) == at) return false;
+        for (const Vec3& held : one.held_mm) {
+          if (map.piece_at(held) == at) return false;
+        }
+        // What has come free as one, and was cut up then, is one piece.
+        for (const auto& [number, ids] : loose) {
+          if (std::ranges::find(ids, *at) == ids.end()) continue;
+          loose_[number].ids.push_back(one.id);
+          return true;
         }
         const PieceMap::Piece& piece = *map.find(*at);
         LoosePiece row;
