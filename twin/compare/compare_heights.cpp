@@ -30,7 +30,6 @@ class HeightComparer {
   HeightComparer(const StockModel& stock, const HeightGrid& grid, const DesignPart& design,
                  const KeptMoves* kept, DeviationSums& sums)
       : stock_(stock),
-        design_(design),
         sums_(sums),
         tolerance_mm_(sums.tolerance_mm()),
         grid_{grid.bounds_mm(), grid.nx(), grid.ny()},
@@ -309,7 +308,6 @@ class HeightComparer {
   }
 
   const StockModel& stock_;
-  const DesignPart& design_;
   DeviationSums& sums_;
   double tolerance_mm_;
   ColumnGrid grid_;

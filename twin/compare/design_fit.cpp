@@ -8,6 +8,9 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <utility>
+#include <vector>
+
+#include "base/placement.h"
 
 namespace kerf {
 namespace {
@@ -234,29 +237,82 @@ std::optional<DesignFit> fit_design(const DesignPart& design, const std::vector<
   return Fitter(design, points).run(start);
 }
 
+namespace {
+
+/// A close fit of few points is none.
+double badness(const DesignFit& fit) { return (fit.residue_mm + 1e-3) / (fit.share * fit.share); }
+
+void keep_better(const std::optional<DesignFit>& fit, std::optional<DesignFit>& best) {
+  if (fit && (!best || badness(*fit) < badness(*best))) best = fit;
+}
+
+Box turned_box(const Box& own, const Vec3& turn_deg) {
+  Placement turn = Placement::turned(turn_deg);
+  return turn.placed(own);
+}
+
+/// In its middle with the tops level, and corner on corner.
+std::array<Vec3, 2> guessed_shifts(const Box& blank, const Box& box) {
+  Vec3 centered = 0.5 * (blank.min + blank.max - box.min - box.max);
+  centered.z = blank.max.z - box.max.z;
+  return {centered, blank.min - box.min};
+}
+
+/// All ways to lay it on its sides from how it lies, itself left out, as turns about X, Y, Z.
+std::vector<Vec3> quarter_turns(const Vec3& start_deg) {
+  const Mat3 start = matrix_of({Vec3(0), start_deg});
+  std::vector<Mat3> known{start};
+  std::vector<Vec3> out;
+  for (const double x : {0.0, 90.0, 180.0, 270.0})
+    for (const double y : {0.0, 90.0, 270.0})
+      for (const double z : {0.0, 90.0, 180.0, 270.0}) {
+        const Mat3 turn = matrix_of({Vec3(0), Vec3(x, y, z)}) * start;
+        const bool is_known = std::ranges::any_of(known, [&](const Mat3& other) {
+          double off = 0;
+          for (int k = 0; k < 3; ++k) off = std::max(off, glm::length(turn[k] - other[k]));
+          return off < 1e-6;
+        });
+        if (is_known) continue;
+        known.push_back(turn);
+        out.push_back(placement_of(turn, Vec3(0)).turn_deg);
+      }
+  return out;
+}
+
+bool goes_into(const Box& box, const Box& blank) {
+  constexpr double kShare = 1.02, kSpare_mm = 1;
+  const Vec3 size = box.size(), most = blank.size();
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] > kShare * most[axis] + kSpare_mm) return false;
+  return true;
+}
+
+}  // namespace
+
 std::optional<DesignFit> fit_design_in_blank(const DesignPart& design, const Box& blank,
                                              const std::vector<FitPoint>& points,
                                              const DesignPlacement& start) {
-  // The box of the design as it is turned at the start.
-  Box box;
-  const DesignPlacement turn{Vec3(0), start.turn_deg};
-  for (int corner = 0; corner < 8; ++corner) {
-    const Box& own = design.box_mm();
-    box.extend(turn.placed({corner & 1 ? own.max.x : own.min.x, corner & 2 ? own.max.y : own.min.y,
-                            corner & 4 ? own.max.z : own.min.z}));
+  std::optional<DesignFit> best = fit_design(design, points, start);
+  for (const Vec3& shift : guessed_shifts(blank, turned_box(design.box_mm(), start.turn_deg)))
+    keep_better(fit_design(design, points, {shift, start.turn_deg}), best);
+  constexpr double kGood_mm = 0.02;
+  if (best && badness(*best) < kGood_mm) return best;
+  // It may lie on another side. Few points tell which; then all say where.
+  constexpr std::size_t kEach = 10, kClosest = 3;
+  std::vector<FitPoint> some;
+  for (std::size_t n = 0; n < points.size(); n += kEach) some.push_back(points[n]);
+  std::vector<DesignFit> found;
+  for (const Vec3& turn_deg : quarter_turns(start.turn_deg)) {
+    const Box box = turned_box(design.box_mm(), turn_deg);
+    if (!goes_into(box, blank)) continue;
+    for (const Vec3& shift : guessed_shifts(blank, box)) {
+      if (const auto fit = fit_design(design, some, {shift, turn_deg})) found.push_back(*fit);
+    }
   }
-  Vec3 centered = 0.5 * (blank.min + blank.max - box.min - box.max);
-  centered.z = blank.max.z - box.max.z;
-  std::optional<DesignFit> best;
-  for (const Vec3& shift : {start.shift_mm, centered, blank.min - box.min}) {
-    const std::optional<DesignFit> fit = fit_design(design, points, {shift, start.turn_deg});
-    if (!fit) continue;
-    // A close fit of few points is none.
-    const auto badness = [](const DesignFit& f) {
-      return (f.residue_mm + 1e-3) / (f.share * f.share);
-    };
-    if (!best || badness(*fit) < badness(*best)) best = fit;
-  }
+  std::ranges::stable_sort(
+      found, [](const DesignFit& a, const DesignFit& b) { return badness(a) < badness(b); });
+  for (std::size_t n = 0; n < std::min(kClosest, found.size()); ++n)
+    keep_better(fit_design(design, points, found[n].placement), best);
   return best;
 }
 

@@ -80,7 +80,8 @@ void add_stock(std::string& out, const StockReport& s) {
   if (!s.model_reason.empty()) {
     out += trf("          {} because {}\n", s.model, s.model_reason);
   }
-  if (s.carried) {
+  constexpr double kNothing_mm = 5e-5;  // four places are shown
+  if (s.carried && s.carried->bound_mm >= kNothing_mm) {
     out += trf("          was {}; surfaces may lie {:.4f} mm elsewhere for it\n", s.carried->from,
                s.carried->bound_mm);
   }

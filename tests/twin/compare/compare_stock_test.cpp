@@ -441,6 +441,28 @@ TEST(DesignFit, FindsBackWhatWasMovedAndTurned) {
   EXPECT_LT(worst, 0.05);
 }
 
+TEST(DesignFit, FindsWhatLiesOnAnotherSide) {
+  Cut cut = zmap_cut();
+  cut.along("flat:6", {{11, 10.03, 1}, {11, 10.03, -4}, {25.13, 10.03, -4}, {25.13, 20, -4}});
+  cut.along("flat:4", {{6, 25, -2}, {12, 26, -2}});
+  const TriangleMesh own = cut.stock->mesh(0.001);
+  const std::vector<FitPoint> points = fit_points(*cut.stock, 3000);
+  // As CAD programs have it: Y up, or turned round, its zero elsewhere.
+  for (const DesignPlacement& moved :
+       {DesignPlacement{{3, 40, 7}, {90, 0, 0}}, DesignPlacement{{-5, 2, 0}, {0, 0, 90}},
+        DesignPlacement{{0, 0, 30}, {180, 0, 90}}, DesignPlacement{{1, 2, 3}, {0, 90, 180}}}) {
+    TriangleMesh mesh = own;
+    for (glm::vec3& p : mesh.positions_mm) p = glm::vec3(moved.placed(Vec3(p)));
+    const std::optional<DesignFit> fit =
+        fit_design_in_blank(design_of(mesh), kBlank, points, DesignPlacement{});
+    ASSERT_TRUE(fit);
+    double worst = 0;
+    for (const Vec3& corner : {Vec3(0, 0, -10), Vec3(40, 30, 0), Vec3(40, 0, -10), Vec3(0, 30, 0)})
+      worst = std::max(worst, glm::distance(fit->placement.placed(moved.placed(corner)), corner));
+    EXPECT_LT(worst, 0.05) << moved.text();
+  }
+}
+
 TEST(DesignFit, WhatNothingHoldsStaysWhereItWas) {
   Cut cut = zmap_cut();
   cut.along("flat:10", {{-5, 15, -4}, {45, 15, -4}});
