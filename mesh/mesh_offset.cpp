@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "mesh/smooth_skin.h"
 #include "mesh/surface_sides.h"
 
 namespace kerf {
@@ -24,11 +25,20 @@ class Grower {
       : body_(body),
         allowance_(allowance_mm),
         step_rad_(2 * std::acos(1 - std::min(1.0, kRounding_mm / allowance_mm))),
-        out_(body.mesh) {}
+        out_{body.mesh.positions_mm, {}} {}
 
   bool add_all() {
     find_normals();
-    for (std::size_t t = 0; t < normals_.size(); ++t) add_face(t);
+    skin_ = smooth_skin(body_.mesh, normals_, halves_, allowance_, kRounding_mm);
+    const auto base = static_cast<std::uint32_t>(out_.positions_mm.size());
+    out_.positions_mm.insert(out_.positions_mm.end(), skin_.outer_mm.begin(), skin_.outer_mm.end());
+    for (std::size_t t = 0; t < normals_.size(); ++t) {
+      const auto& c = body_.mesh.triangles[t];
+      // A prism's lower side is where the body ends: neither is left.
+      out_.triangles.push_back(
+          skin_.has_prism(t) ? std::array{base + c[0], base + c[1], base + c[2]} : c);
+      if (skin_.faces[t] != SmoothSkin::Face::kSkin) add_face(t);
+    }
     return add_edges() && add_corners();
   }
   TriangleMesh take() { return std::move(out_); }
@@ -116,13 +126,35 @@ class Grower {
     for (std::size_t begin = 0, end = 0; begin < halves_.size(); begin = end) {
       for (end = begin; end < halves_.size() && halves_[end].ends == halves_[begin].ends; ++end) {
       }
-      for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t k = i + 1; k < end; ++k)
-          if (halves_[i].is_rising != halves_[k].is_rising)
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t k = i + 1; k < end; ++k) {
+          if (halves_[i].is_rising == halves_[k].is_rising) continue;
+          add_walls(halves_[i].number, halves_[k].number);
+          if (!is_skin(halves_[i].number) || !is_skin(halves_[k].number))
             add_edge(halves_[i].number, halves_[k].number);
+        }
+      }
       if (!has_room()) return false;
     }
     return true;
+  }
+  bool is_skin(std::uint32_t half) const {
+    return skin_.faces[half / 3] == SmoothSkin::Face::kSkin;
+  }
+  /// Where of two triangles at an edge one has a prism.
+  void add_walls(std::uint32_t one, std::uint32_t other) {
+    if (skin_.has_prism(one / 3) == skin_.has_prism(other / 3)) return;
+    const std::uint32_t half = skin_.has_prism(one / 3) ? one : other;
+    const auto& c = body_.mesh.triangles[half / 3];
+    const auto base = static_cast<std::uint32_t>(body_.mesh.positions_mm.size());
+    const std::uint32_t a = c[half % 3], b = c[(half + 1) % 3];
+    if (a < b) {
+      out_.triangles.push_back({a, b, base + b});
+      out_.triangles.push_back({a, base + b, base + a});
+    } else {
+      out_.triangles.push_back({a, b, base + a});
+      out_.triangles.push_back({b, base + b, base + a});
+    }
   }
   void add_edge(std::uint32_t one, std::uint32_t other) {
     const auto& c = body_.mesh.triangles[one / 3];
@@ -204,6 +236,7 @@ class Grower {
   const MeshBody& body_;
   double allowance_, step_rad_;
   TriangleMesh out_;
+  SmoothSkin skin_;
   std::vector<Vec3> normals_;
   std::vector<HalfEdge> halves_;
   std::vector<Fan> fans_;
@@ -223,7 +256,8 @@ Result<MeshBody> grown(const MeshBody& body, double allowance_mm, const std::str
   out.mesh = grower.take();
   out.allowance_mm = allowance_mm;
   out.box_mm = {};
-  for (const glm::vec3& p : out.mesh.positions_mm) out.box_mm.extend(Vec3(p));
+  for (const auto& triangle : out.mesh.triangles)
+    for (const std::uint32_t n : triangle) out.box_mm.extend(Vec3(out.mesh.positions_mm[n]));
   return out;
 }
 
