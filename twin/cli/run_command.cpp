@@ -214,7 +214,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   }
   if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();
   std::optional<RunCurve> curve;
-  if (session && request.outputs.wants_page()) {
+  if (session && (request.outputs.wants_page() || request.keeps_page)) {
     session->keep_cut_labels();
     session->record_by(curve.emplace());
   }
@@ -231,6 +231,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   }
   rename_stdin(kept, session->report(), diagnostics);
   Compared compared;
+  PageFacts page;
   if (!has_error(diagnostics) && design) {
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {labels_in(*session), session->kept_moves()}, session->report(),
@@ -243,12 +244,13 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
-    const std::string command = command_line(
-        with_guesses(request.written, rows_in(session->report().guesses, request.units)));
-    write_pages(request.outputs, session->report(), session->stock(),
-                {labels_in(*session), curve ? &*curve : nullptr, command, request.units,
-                 compared.of_workpiece().get()},
-                diagnostics);
+    page = {labels_in(*session), curve ? &*curve : nullptr,
+            request.is_of_job
+                ? std::string()
+                : command_line(with_guesses(request.written,
+                                            rows_in(session->report().guesses, request.units))),
+            request.units, compared.of_workpiece().get()};
+    write_pages(request.outputs, session->report(), session->stock(), page, diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {
@@ -268,7 +270,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     print_results(request, session->report());
   }
   const int code = exit_code(outcome, session->report(), diagnostics);
-  if (finished && !has_error(diagnostics)) finished({*session, outcome, code}, diagnostics);
+  if (finished && !has_error(diagnostics)) finished({*session, outcome, code, page}, diagnostics);
   flush_console();
   print(diagnostics);
   ListedProgram listed = listed_program(session->report());

@@ -73,7 +73,8 @@ struct Report {
 
 /// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
 /// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
-/// program.from_line, program.until_line (where asked for), tools[].origin, guessed (what, option,
+/// program.from_line, program.until_line (where asked for), tools[].origin,
+/// tools[].offset_mm (of the tool table), guessed (what, option,
 /// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
 /// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
 /// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same), compare

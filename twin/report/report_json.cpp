@@ -82,6 +82,10 @@ Json tools_json(const Report& report) {
     tool["origin"] = use.origin;
     tool["guessed"] = use.guessed;
     if (use.teeth) tool["teeth"] = *use.teeth;
+    if (use.offset_mm) {
+      const auto& [x, y, z] = *use.offset_mm;
+      tool["offset_mm"] = {rounded(x), rounded(y), rounded(z)};
+    }
     tool["shank_checked"] = use.shank_checked;
     tool["holder_checked"] = use.holder_checked;
     tool["cut_s"] = rounded(use.cut_s);

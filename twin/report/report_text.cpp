@@ -82,7 +82,7 @@ void add_stock(std::string& out, const StockReport& s) {
   }
   constexpr double kNothing_mm = 5e-5;  // four places are shown
   if (s.carried && s.carried->bound_mm >= kNothing_mm) {
-    out += trf("          was {}; surfaces may lie {:.4f} mm elsewhere for it\n", s.carried->from,
+    out += trf("          was {}; sure but within {:.4f} mm of its surface\n", s.carried->from,
                s.carried->bound_mm);
   }
 }
