@@ -64,7 +64,7 @@ int ViewWork::run() {
   publish_job();
   while (!stop_.stop_requested()) {
     std::optional<ViewerCommand> asked;
-    bool has_changed = false;
+    bool has_changed = false, plays_on = false;
     if (view_) {
       const auto is_over = [&] {
         tell_changed_setup();
@@ -73,7 +73,11 @@ int ViewWork::run() {
       };
       view_->run(stop_.get_token(), std::exchange(speed_, std::nullopt), is_over);
       asked = view_->asked();
-      if (!asked && !has_changed && goes_on_to_next()) asked = SetupCommand{setups_->shown() + 1};
+      plays_on = is_setup_shown_ && view_->is_playing();
+      if (!asked && !has_changed && goes_on_to_next()) {
+        asked = SetupCommand{setups_->shown() + 1};
+        plays_on = true;
+      }
     } else {
       asked = wait_without_program();
       has_changed = !asked;
@@ -85,7 +89,7 @@ int ViewWork::run() {
       if (!asked) continue;
     }
     if (const auto* const other = asked ? std::get_if<SetupCommand>(&*asked) : nullptr) {
-      if (!go_to_setup(other->setup) && !stop_.stop_requested()) tell_faults();
+      if (!go_to_setup(other->setup, plays_on) && !stop_.stop_requested()) tell_faults();
       publish_job();
       continue;
     }

@@ -58,7 +58,7 @@ class ViewWork {
   std::optional<ViewerCommand> replay_logs(ViewerCommand asked);
   void tell_faults();
   bool goes_on_to_next() const;
-  bool go_to_setup(std::size_t setup);
+  bool go_to_setup(std::size_t setup, bool plays_on);
   bool show_setup(std::size_t setup);
   bool cut_to_end();
   void tell_changed_setup();

@@ -29,12 +29,11 @@ bool ViewWork::goes_on_to_next() const {
 }
 
 /// False: what is wrong is in the diagnostics; a setup is shown all the same.
-bool ViewWork::go_to_setup(std::size_t setup) {
+bool ViewWork::go_to_setup(std::size_t setup, bool plays_on) {
   diagnostics_.clear();
   job_.faults.clear();
   if (!setups_ || setup >= setups_->count()) return true;
-  // It plays on if it was playing, in whichever setup.
-  if (is_setup_shown_ && view_->is_playing()) speed_ = view_->speed();
+  if (plays_on) speed_ = view_->speed();
   while (!stop_.stop_requested()) {
     const std::size_t ready = setups_->last_ready(setup);
     const bool is_there = is_setup_shown_ && ready == setups_->shown();

@@ -39,7 +39,7 @@ class PlayerView {
   /// What was played has come to the end of the program by itself: nobody has stopped it, or jumped
   /// there.
   bool has_played_out() const;
-  bool is_playing() const { return plays_.has_value(); }
+  bool is_playing() const { return plays_ && !has_played_out(); }
   /// What the window was told to be shown how, and the breakpoints: for whatever is shown next.
   std::vector<ViewerCommand> lasting() const;
   /// That was shown last; never null.

@@ -82,6 +82,24 @@ class ViewSetupsTest : public testing::Test {
              program_name() == program;
     });
   }
+  /// What the program that is shown takes from where it begins, mm3.
+  double removed_by(const std::string& program) {
+    EXPECT_TRUE(waits([&] { return program_ && program_name() == program; }));
+    moment_.reset();
+    commands_.push(SeekEndCommand{});
+    EXPECT_TRUE(ends(program));
+    settle();
+    const double after_mm3 = moment_ ? moment_->removed_mm3 : 0;
+    commands_.push(StopCommand{});
+    EXPECT_TRUE(waits([&] { return moment_ && moment_->state == PlayState::kPaused; }));
+    settle();
+    return moment_ ? after_mm3 - moment_->removed_mm3 : 0;
+  }
+  /// The volume is told half a second later.
+  void settle() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(900);
+    waits([&] { return std::chrono::steady_clock::now() > end; });
+  }
   std::string program_name() const {
     return std::filesystem::path(program_->files[0].path()).filename().string();
   }
@@ -101,9 +119,13 @@ class ViewSetupsTest : public testing::Test {
 TEST_F(ViewSetupsTest, AllSetupsPlayOneAfterTheOther) {
   start(1000);
   ASSERT_TRUE(shows(2));
-  ASSERT_TRUE(ends("end.ngc"));
-  // 3 mm deep, 4 mm wide, where nothing was cut before: cells of 0.5 mm.
-  EXPECT_NEAR(moment_->removed_mm3, 4 * kPi * 3, 1.5);
+  // Holes of 8, 6 and 4 mm, of all that has been taken; in cells of 0.5 mm.
+  const double all_mm3 = kPi * (16 * 5 + 9 * 8 + 4 * 3);
+  ASSERT_TRUE(waits([&] {
+    return moment_ && moment_->state == PlayState::kEnded && moment_->removed_mm3 > all_mm3 - 15;
+  }));
+  EXPECT_LT(moment_->removed_mm3, all_mm3 + 15);
+  EXPECT_EQ(program_name(), "end.ngc");
   EXPECT_EQ(title_, "job.yaml, setup 3 of 3");
   EXPECT_EQ(job_->setups, (std::vector<std::string>{"1  top", "setup 2", "setup 3"}));
   EXPECT_EQ(job_->stock, "");
@@ -111,10 +133,15 @@ TEST_F(ViewSetupsTest, AllSetupsPlayOneAfterTheOther) {
   EXPECT_EQ(job_->model_in_use, "mmap");
   EXPECT_EQ(job_->command, "kerf view " + folder_.path() + "/job.yaml --setup 3 --speed 1000");
   // It is the last, and does not begin anew.
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  waits([] { return true; });
+  settle();
   EXPECT_EQ(job_->setup, 2u);
   EXPECT_EQ(moment_->state, PlayState::kEnded);
+  // Whoever goes back from there looks at it.
+  commands_.push(SetupCommand{1});
+  ASSERT_TRUE(shows(1));
+  settle();
+  EXPECT_EQ(job_->setup, 1u);
+  EXPECT_EQ(moment_->state, PlayState::kPaused);
 }
 
 TEST_F(ViewSetupsTest, WhereItIsSentToTheEndItStays) {
@@ -122,8 +149,7 @@ TEST_F(ViewSetupsTest, WhereItIsSentToTheEndItStays) {
   ASSERT_TRUE(shows(0));
   commands_.push(SeekEndCommand{});
   ASSERT_TRUE(ends("top.ngc"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  waits([] { return true; });
+  settle();
   EXPECT_EQ(job_->setup, 0u);
   commands_.push(PlayCommand{});
   ASSERT_TRUE(shows(1)) << "there is no more of it to be played";
@@ -143,9 +169,7 @@ TEST_F(ViewSetupsTest, OneIsChosenAndWhatIsBeforeItIsCutFirst) {
   ASSERT_TRUE(waits([&] { return program_name() == "top.ngc"; }));
   commands_.push(SetupCommand{1});
   ASSERT_TRUE(shows(1));
-  commands_.push(SeekEndCommand{});
-  ASSERT_TRUE(ends("bottom.ngc"));
-  EXPECT_NEAR(moment_->removed_mm3, 9 * kPi * 8, 6);
+  EXPECT_NEAR(removed_by("bottom.ngc"), 9 * kPi * 8, 8);
 }
 
 TEST_F(ViewSetupsTest, WhatIsCutOtherwiseGoesOnToTheNext) {
@@ -156,18 +180,16 @@ TEST_F(ViewSetupsTest, WhatIsCutOtherwiseGoesOnToTheNext) {
   commands_.push(JobCommand{"", "", "", {{1, "flat:20"}}});
   ASSERT_TRUE(waits([&] { return !job_->tools.empty() && job_->tools[0].given == "flat:20"; }));
   EXPECT_EQ(job_->stock_in_use, left);
-  EXPECT_EQ(job_->command, "kerf view " + folder_.path() + "/job.yaml --setup 2 --tool 1=flat:20");
+  EXPECT_EQ(job_->command, "kerf view " + folder_.path() + "/job.yaml --tool 1=flat:20 --setup 2");
   commands_.push(SetupCommand{2});
   ASSERT_TRUE(shows(2));
-  commands_.push(SeekEndCommand{});
-  ASSERT_TRUE(ends("end.ngc"));
   // X20 Y15 is 11.2 mm from where 20 mm have been bored now: of a circle of radius 2 the part
   // beyond one of radius 10.
   const double d = std::sqrt(125.0), r = 2, big = 10;
   const double a = r * r * std::acos((d * d + r * r - big * big) / (2 * d * r)),
                b = big * big * std::acos((d * d + big * big - r * r) / (2 * d * big)),
                c = 0.5 * std::sqrt((-d + r + big) * (d + r - big) * (d - r + big) * (d + r + big));
-  EXPECT_NEAR(moment_->removed_mm3, 3 * (4 * kPi - (a + b - c)), 1.5);
+  EXPECT_NEAR(removed_by("end.ngc"), 3 * (4 * kPi - (a + b - c)), 2.5);
 }
 
 TEST_F(ViewSetupsTest, AChangedProgramOfAnEarlierSetupIsToldAndCutAnew) {
@@ -184,9 +206,7 @@ TEST_F(ViewSetupsTest, AChangedProgramOfAnEarlierSetupIsToldAndCutAnew) {
   job_.reset();
   commands_.push(SetupCommand{1});
   ASSERT_TRUE(shows(1));
-  commands_.push(SeekEndCommand{});
-  ASSERT_TRUE(ends("bottom.ngc"));
-  EXPECT_NEAR(moment_->removed_mm3, 9 * kPi * 5, 4);
+  EXPECT_NEAR(removed_by("bottom.ngc"), 9 * kPi * 5, 5);
 }
 
 /// Going to and fro costs no cutting, until something is cut otherwise.
