@@ -14,13 +14,6 @@
 namespace kerf {
 namespace {
 
-std::string count_text(std::size_t errors, std::size_t warnings) {
-  if (errors + warnings == 0) return tr("none");
-  if (errors == 0) return trf("{} warnings", warnings);
-  if (warnings == 0) return trf("{} errors", errors);
-  return trf("{} errors, {} warnings", errors, warnings);
-}
-
 std::string head_text(const JobPage& job) {
   double machining_s = 0, setup_s = 0;
   std::size_t errors = 0, warnings = 0;
@@ -35,7 +28,7 @@ std::string head_text(const JobPage& job) {
                                              : "verdict";
   std::string out =
       fmt::format("<header><h1>{}</h1>\n<p><span class=\"{}\">{}</span></p>\n", xml_text(job.path),
-                  verdict, xml_text(trf("Findings: {}", count_text(errors, warnings))));
+                  verdict, xml_text(verdict_text(errors, warnings)));
   if (!job.not_run.empty()) {
     out += fmt::format("<p><b>{}</b></p>\n",
                        xml_text(trf("Partial. Not run: {}", fmt::join(job.not_run, ", "))));
@@ -65,7 +58,8 @@ std::string setup_list(const JobPage& job) {
     out += setup.article.empty()
                ? fmt::format("<tr><td>{}</td>", heading)
                : fmt::format("<tr><td><a href=\"#{}\">{}</a></td>", JobPage::anchor(n), heading);
-    for (const std::string& cell : {setup.program, lies, count_text(setup.errors, setup.warnings)})
+    for (const std::string& cell :
+         {setup.program, lies, verdict_text(setup.errors, setup.warnings)})
       out += fmt::format("<td>{}</td>", xml_text(cell));
     for (const double time_s : {setup.setup_s, setup.machining_s})
       out += fmt::format("<td class=\"n\">{}</td>", xml_text(duration_text(time_s)));
