@@ -9,7 +9,7 @@
 
 #include "base/length_unit.h"
 #include "twin/compare/comparison.h"
-#include "twin/job/tool_use.h"
+#include "twin/report/report.h"
 
 namespace kerf {
 
