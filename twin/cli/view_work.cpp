@@ -89,7 +89,11 @@ int ViewWork::run() {
       if (!asked) continue;
     }
     if (const auto* const other = asked ? std::get_if<SetupCommand>(&*asked) : nullptr) {
-      if (!go_to_setup(other->setup, plays_on) && !stop_.stop_requested()) tell_faults();
+      if (view_) view_->stay();
+      if (!go_to_setup(other->setup, plays_on)) {
+        speed_.reset();
+        if (!stop_.stop_requested()) tell_faults();
+      }
       publish_job();
       continue;
     }

@@ -40,6 +40,8 @@ class PlayerView {
   /// there.
   bool has_played_out() const;
   bool is_playing() const { return plays_ && !has_played_out(); }
+  /// That it has_played_out() was taken note of: not so again before it is played anew.
+  void stay() { plays_.reset(); }
   /// What the window was told to be shown how, and the breakpoints: for whatever is shown next.
   std::vector<ViewerCommand> lasting() const;
   /// That was shown last; never null.

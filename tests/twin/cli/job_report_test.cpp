@@ -19,76 +19,66 @@ std::string plunge_with_offset(int tool, double x, double y, double z) {
       tool, x, y, z);
 }
 
-/// Its two setups are run once, with all that can be written.
 class JobReport : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = new TestFolder;
-    folder_->write("top.ngc", plunge_with_offset(1, 10, 10, -5));
-    folder_->write("bottom.ngc", plunge_with_offset(7, 10, 20, -8));
-    folder_->write("tool.tbl", "T1 P1 D8 Z52.5 ;flat:8\nT7 P7 D6 Z40.125 ;flat:6\n");
-    folder_->write(
-        "job.yaml",
-        "setups:\n"
-        "  - {program: top.ngc, stock: 'box:0,0,-20:40,30,0', tools: 1=flat:8, name: top,"
-        " tool_table: tool.tbl, time_s: 600}\n"
-        "  - {program: bottom.ngc, tools: 7=flat:6, flip: x, zero: top, tool_table: "
-        "tool.tbl}\n");
+  void SetUp() override {
+    folder_.write("top.ngc", plunge_with_offset(1, 10, 10, -5));
+    folder_.write("bottom.ngc", plunge_with_offset(7, 10, 20, -8));
+    folder_.write("tool.tbl", "T1 P1 D8 Z52.5 ;flat:8\nT7 P7 D6 Z40.125 ;flat:6\n");
+    folder_.write("job.yaml",
+                  "setups:\n"
+                  "  - {program: top.ngc, stock: 'box:0,0,-20:40,30,0', tools: 1=flat:8, name: top,"
+                  " tool_table: tool.tbl, time_s: 600}\n"
+                  "  - {program: bottom.ngc, tools: 7=flat:6, flip: x, zero: top, tool_table: "
+                  "tool.tbl}\n");
+  }
+  KerfResult job(std::vector<std::string> arguments) const {
     KerfCall call;
-    call.arguments = {"job",   "job.yaml", "--quiet", "--html",  "job.html",
-                      "--csv", "job.csv",  "--json",  "job.json"};
-    call.folder = folder_->path();
-    done_ = run_kerf(call);
-    page_ = read_file(folder_->file("job.html"));
+    call.arguments = std::move(arguments);
+    call.arguments.insert(call.arguments.begin(), "job");
+    call.folder = folder_.path();
+    return run_kerf(call);
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static bool has(const std::string& text) { return page_.find(text) != std::string::npos; }
+  void check_page(const std::string& page) const;
+  void check_table() const;
 
-  static TestFolder* folder_;
-  static KerfResult done_;
-  static std::string page_;
+  TestFolder folder_;
 };
-TestFolder* JobReport::folder_ = nullptr;
-KerfResult JobReport::done_;
-std::string JobReport::page_;
 
-TEST_F(JobReport, the_page_has_all_setups_one_after_the_other) {
-  ASSERT_EQ(done_.exit_code, 0) << done_.err;
+/// All setups one after the other.
+void JobReport::check_page(const std::string& page) const {
+  const auto has = [&page](const std::string& text) {
+    return page.find(text) != std::string::npos;
+  };
   EXPECT_TRUE(has("<a href=\"#setup-1\">setup 1 of 2: top</a>"));
   EXPECT_TRUE(has("<a href=\"#setup-2\">setup 2 of 2</a>"));
-  const std::size_t first = page_.find("<article id=\"setup-1\">");
-  const std::size_t second = page_.find("<article id=\"setup-2\">");
+  const std::size_t first = page.find("<article id=\"setup-1\">");
+  const std::size_t second = page.find("<article id=\"setup-2\">");
   ASSERT_NE(first, std::string::npos);
   ASSERT_NE(second, std::string::npos);
   EXPECT_LT(first, second);
-  EXPECT_NE(page_.find("<h1>setup 1 of 2: top</h1>"), std::string::npos);
+  EXPECT_NE(page.find("<h1>setup 1 of 2: top</h1>"), std::string::npos);
   EXPECT_TRUE(has("<td>flipped about X, Z0 on top</td>"));
   EXPECT_TRUE(has("what setup 1 (top) has left, flipped about X, Z0 on top (the job)"));
   EXPECT_TRUE(has("<dt>setting up</dt><dd>10 min 00 s</dd>"));
   // Of each setup its own part.
   const std::string begin = "<script class=\"kerf-data\" type=\"application/json\">";
   std::vector<nlohmann::json> parts;
-  for (std::size_t at = 0; (at = page_.find(begin, at)) != std::string::npos;) {
+  for (std::size_t at = 0; (at = page.find(begin, at)) != std::string::npos;) {
     at += begin.size();
-    parts.push_back(nlohmann::json::parse(page_.substr(at, page_.find("</script>", at) - at)));
+    parts.push_back(nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at)));
   }
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_NE(parts[0]["mesh"]["places"], parts[1]["mesh"]["places"]);
   EXPECT_EQ(parts[1]["groups"][0]["name"], "T7 flat:6");
-}
-
-TEST_F(JobReport, tools_have_the_lengths_of_the_tool_table) {
+  // Lengths are those of the tool table.
   EXPECT_TRUE(has("<td>T1</td><td>flat:8</td><td class=\"n\">52.500 mm</td>"));
   EXPECT_TRUE(has("<td>T7</td><td>flat:6</td><td class=\"n\">40.125 mm</td>"));
-  const auto report = nlohmann::json::parse(read_file(folder_->file("job.json")));
-  EXPECT_EQ(report["setups"][1]["tools"][0]["offset_mm"], nlohmann::json({0.0, 0.0, 40.125}));
 }
 
-TEST_F(JobReport, the_table_has_the_motions_of_all_setups) {
-  std::istringstream in(read_file(folder_->file("job.csv")));
+/// The motions of all setups.
+void JobReport::check_table() const {
+  std::istringstream in(read_file(folder_.file("job.csv")));
   std::string line;
   ASSERT_TRUE(std::getline(in, line));
   EXPECT_TRUE(line.starts_with("line,file,type,")) << line;
@@ -106,13 +96,21 @@ TEST_F(JobReport, the_table_has_the_motions_of_all_setups) {
   EXPECT_EQ(rows[1], rows[2]);
 }
 
+TEST_F(JobReport, there_is_one_page_and_one_table_of_all_setups) {
+  const KerfResult done =
+      job({"job.yaml", "--quiet", "--html", "job.html", "--csv", "job.csv", "--json", "job.json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  check_page(read_file(folder_.file("job.html")));
+  check_table();
+  const auto report = nlohmann::json::parse(read_file(folder_.file("job.json")));
+  EXPECT_EQ(report["setups"][1]["tools"][0]["offset_mm"], nlohmann::json({0.0, 0.0, 40.125}));
+}
+
 TEST_F(JobReport, outputs_of_one_run_are_refused) {
   for (const char* const option : {"--dxf", "--svg", "--finding-png", "--view", "--draw"}) {
-    KerfCall call;
-    call.arguments = {"job", "job.yaml", option};
-    if (std::string(option) != "--view") call.arguments.emplace_back("x");
-    call.folder = folder_->path();
-    const KerfResult result = run_kerf(call);
+    std::vector<std::string> arguments{"job.yaml", option};
+    if (std::string(option) != "--view") arguments.emplace_back("x");
+    const KerfResult result = job(std::move(arguments));
     EXPECT_EQ(result.exit_code, 2) << option;
     EXPECT_NE(result.err.find(
                   fmt::format("unknown option {}; kerf run has it, for a single program", option)),
@@ -135,11 +133,8 @@ TEST_F(JobReport, outputs_of_one_run_are_refused) {
       {"compare", "is for what the last setup leaves"},
       {"htmll", "unknown key"}};
   for (const auto& [key, said] : keys) {
-    folder_->write("bad.yaml", fmt::format("setups:\n  - {{program: top.ngc, {}: x}}\n", key));
-    KerfCall call;
-    call.arguments = {"job", "bad.yaml"};
-    call.folder = folder_->path();
-    const KerfResult result = run_kerf(call);
+    folder_.write("bad.yaml", fmt::format("setups:\n  - {{program: top.ngc, {}: x}}\n", key));
+    const KerfResult result = job({"bad.yaml"});
     EXPECT_EQ(result.exit_code, 2) << key;
     EXPECT_NE(result.err.find(fmt::format("bad.yaml:2:24: error: setups[1].{}: {}", key, said)),
               std::string::npos)
@@ -148,12 +143,9 @@ TEST_F(JobReport, outputs_of_one_run_are_refused) {
 }
 
 TEST_F(JobReport, two_outputs_to_one_file_are_a_fault) {
-  KerfCall call;
-  call.arguments = {"job", "job.yaml", "--html", "x", "--stl", "x"};
-  call.folder = folder_->path();
-  const KerfResult result = run_kerf(call);
+  const KerfResult result = job({"job.yaml", "--html", "x", "--stl", "x"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_FALSE(file_exists(folder_->file("x")));
+  EXPECT_FALSE(file_exists(folder_.file("x")));
 }
 
 }  // namespace

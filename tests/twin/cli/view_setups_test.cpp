@@ -63,7 +63,10 @@ class ViewSetupsTest : public testing::Test {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < end) {
       if (const auto update = mailbox_.take()) {
-        if (update->job) job_ = update->job;
+        if (update->job) {
+          job_ = update->job;
+          ++jobs_;
+        }
         if (update->moment) moment_ = update->moment;
         if (update->setup) title_ = update->setup->title;
         if (update->program) program_ = update->program;
@@ -114,6 +117,7 @@ class ViewSetupsTest : public testing::Test {
   std::shared_ptr<const Moment> moment_;
   std::shared_ptr<const ProgramText> program_;
   std::string title_;
+  int jobs_ = 0;  ///< how often it was told
 };
 
 TEST_F(ViewSetupsTest, AllSetupsPlayOneAfterTheOther) {
@@ -248,6 +252,14 @@ TEST_F(ViewSetupsTest, AProgramThatDoesNotComeToItsEndIsTheLast) {
   EXPECT_NE(job_->faults[0].find("job.yaml, setup 1 of 3: top does not come to its end"),
             std::string::npos)
       << job_->faults[0];
+  EXPECT_EQ(job_->setup, 0u);
+  // Played to where it ends, it says so once.
+  job_.reset();
+  commands_.push(PlayCommand{});
+  ASSERT_TRUE(waits([&] { return job_ && !job_->faults.empty(); }));
+  jobs_ = 0;
+  settle();
+  EXPECT_EQ(jobs_, 0);
   EXPECT_EQ(job_->setup, 0u);
 }
 
