@@ -116,6 +116,24 @@ TEST(MeshOffset, ASmoothSurfaceGrowsByItsOwnTriangles) {
   }
 }
 
+/// A disc whose rim is sharp and round: its corners lie close together, and narrow pieces do.
+TEST(MeshOffset, ASharpRimOfManyCornersTakesFewTriangles) {
+  TriangleMesh mesh;
+  const double radius = 10, height = 4, r = 2;
+  test::add_prism(mesh, test::circle(radius, 240), 0, height);
+  const Result<MeshBody> out = grown(test::body_of(mesh), r, "a.stl");
+  ASSERT_TRUE(out) << out.error();
+  EXPECT_LT(out->mesh.triangles.size(), 800u * 240u);
+  // The disc, and around it half a circle about its rim (Pappus).
+  const double volume = kPi * radius * radius * (height + 2 * r) + 2 * kPi * radius * r * height +
+                        kPi * r * r * height +
+                        2 * (kPi * kPi * r * r * radius / 2 + 2.0 / 3 * kPi * r * r * r);
+  const double measured = volume_of(*out, 400);
+  EXPECT_LT(measured, volume + 0.5);
+  EXPECT_GT(measured, volume - kRounding_mm * 2 * (2 * kPi * (radius + r) * kPi * r) - 1);
+  EXPECT_GT(compare_with_distances(mesh, r, *out, 15), 700);
+}
+
 /// The hole is 1.5 mm wide: grown by 2 mm nothing of it is left, and its triangles would be turned
 /// inside out. The same where a fillet is narrower than the allowance.
 TEST(MeshOffset, HollowsNarrowerThanTheAllowanceClose) {
