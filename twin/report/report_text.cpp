@@ -163,7 +163,9 @@ void add_unchecked(std::string& out, const Report& report) {
     return;
   }
   const std::string first = (holders.empty() ? shanks : holders).substr(1);
-  const std::string number = first.substr(0, first.find(','));
+  std::string number = first.substr(0, first.find(','));
+  // --tool has no 0: a program that changes no tool cuts with what --tool 1 says.
+  if (number == "0") number = "1";
   if (shanks.empty()) {
     out += trf("unchecked {}: no holder known (--tool {}=SHAPE:holder=er20:stickout=L)\n", holders,
                number);

@@ -157,6 +157,14 @@ TEST(ReportText, WhatIsUnknownOfToolsIsOneLine) {
   EXPECT_EQ(line_of({{false, false}, {true, false}}),
             "unchecked T1, T2: no holder known; T1: no length of flutes "
             "(--tool 1=SHAPE:flute=L:holder=er20:stickout=L)");
+
+  Report spindle = sample();
+  spindle.tools.resize(1);
+  spindle.tools.front().number = 0;  // --tool 0 there is none
+  spindle.tools.front().holder_checked = spindle.tools.front().shank_checked = false;
+  EXPECT_NE(summary_text(spindle).find("unchecked T0: no holder and no length of flutes known "
+                                       "(--tool 1=SHAPE:"),
+            std::string::npos);
 }
 
 TEST(ReportText, TellsFindingsBySeverityAndKind) {

@@ -274,8 +274,8 @@ ProbeAnswer MillingStage::answer(const ProbeQuestion& question) {
   ProbeAnswer unknown;
   const Motion& m = question.motion;
   if (!mount_for(m)) {
-    unknown.why =
-        trf("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does", m.tool, m.tool);
+    unknown.why = trf("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does", m.tool,
+                      std::max(1, m.tool));
     return unknown;
   }
   divide(m, {});
