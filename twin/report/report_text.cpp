@@ -104,6 +104,13 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
       out += trf("\n              removed {}, cutting {}, deepest cut {:.2f} mm, peak {:.1f} mm3/s",
                  volume_text(use.removed_mm3), duration_text(use.cut_s), use.max_depth_mm,
                  use.peak_mm3_per_s);
+      if (use.chip.is_known()) {
+        out +=
+            trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} at most (line {}), "
+                "cutting speed {:.3g} m/min",
+                *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
+                use.chip.speed_m_per_min);
+      }
     }
     out += "\n";
     head = "          ";
