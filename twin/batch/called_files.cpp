@@ -7,53 +7,12 @@
 
 #include "base/text_scan.h"
 #include "interp_bridge/ini_file.h"
+#include "interp_bridge/o_word.h"
 
 namespace kerf {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A line without blanks and without comments in brackets.
-std::string bare(std::string_view line) {
-  std::string out;
-  bool in_comment = false;
-  for (const char c : line) {
-    if (c == ';' && !in_comment) break;
-    if (c == '(') in_comment = true;
-    if (!in_comment && !is_line_blank(c) && c != '\r') out += c;
-    if (c == ')') in_comment = false;
-  }
-  return out;
-}
-
-std::string_view digits_at(std::string_view text, std::size_t at) {
-  const std::size_t end = text.find_first_not_of("0123456789", at);
-  return text.substr(at, end == text.npos ? text.npos : end - at);
-}
-
-/// Behind the block number and a '/', an O word comes first.
-std::optional<std::string> called_by_o_word(std::string_view line, std::string_view small) {
-  std::size_t at = small.starts_with('/') ? 1 : 0;
-  if (at < small.size() && small[at] == 'n') at += 1 + digits_at(small, at + 1).size();
-  if (at >= small.size() || small[at] != 'o') return std::nullopt;
-  ++at;
-  if (at < small.size() && small[at] == '<') {
-    const std::size_t end = small.find('>', at);
-    if (end == small.npos || !small.substr(end + 1).starts_with("call")) return std::nullopt;
-    return std::string(line.substr(at + 1, end - at - 1));
-  }
-  const std::string_view number = digits_at(small, at);
-  if (number.empty() || !small.substr(at + number.size()).starts_with("call")) return std::nullopt;
-  return std::string(number);
-}
-
-std::optional<std::string> called_by_m98(std::string_view small) {
-  if (!contains(small, "m98")) return std::nullopt;
-  const std::size_t at = small.find('p');
-  if (at == small.npos) return std::nullopt;
-  const std::string_view number = digits_at(small, at + 1);
-  return number.empty() ? std::nullopt : std::optional<std::string>(number);
-}
 
 void add_name(const std::string& name, std::vector<std::string>& names) {
   for (const std::string& form : {name, to_lower(name)}) {
@@ -62,10 +21,8 @@ void add_name(const std::string& name, std::vector<std::string>& names) {
 }
 
 void add_called(std::string_view line, std::vector<std::string>& names) {
-  const std::string plain = bare(line), small = to_lower(plain);
-  std::optional<std::string> called = called_by_o_word(plain, small);
-  if (!called) called = called_by_m98(small);
-  if (called) add_name(*called, names);
+  const std::optional<OWord> word = o_word(line);
+  if (word && word->kind == OWord::Kind::kCall) add_name(word->name, names);
 }
 
 /// "M6 modalgroup=6 prolog=change_prolog ngc=change": change.
