@@ -79,6 +79,7 @@ class HeightPieces final : public PieceFinder {
   /// Has come free on this move.
   struct Freed {
     CellSet cells;
+    PieceBody body;  ///< as it was then
     Vec3 tip_mm{0};
     double share = 0;         ///< of the move, until then
     double way_after_mm = 0;  ///< of the same move
@@ -167,10 +168,11 @@ class HeightPieces final : public PieceFinder {
       std::size_t largest = 0;
       double most = -1;
       bool any_gripped = false;
+      std::vector<PieceBody> bodies;
       for (std::size_t n = 0; n < split.bodies.size(); ++n) {
-        const double volume = measured(*heights, split.bodies[n]).volume_mm3;
-        if (volume > most) {
-          most = volume;
+        bodies.push_back(measured(*heights, split.bodies[n]));
+        if (bodies[n].volume_mm3 > most) {
+          most = bodies[n].volume_mm3;
           largest = n;
         }
         any_gripped = any_gripped || grips_.meets(split.bodies[n]);
@@ -179,6 +181,7 @@ class HeightPieces final : public PieceFinder {
         const bool is_held = any_gripped ? grips_.meets(split.bodies[n]) : n == largest;
         if (is_held) continue;
         Freed piece;
+        piece.body = bodies[n];
         piece.tip_mm = split.tip_mm;
         piece.share = split.share;
         piece.way_after_mm = move_mm - split.way_mm;
@@ -210,6 +213,8 @@ class HeightPieces final : public PieceFinder {
     LoosePiece piece;
     piece.body = measured(heights, freed.cells);
     if (piece.body.volume_mm3 + freed.cut_after_mm3 < kLeastPiece_mm3) return;
+    // Of one that the same move has cut up there is nothing to show but what it was.
+    if (piece.body.volume_mm3 < kLeastPiece_mm3) piece.body = freed.body;
     piece.source = by.source;
     piece.time_s = by.start_s + freed.share * by.duration_s;
     piece.tool = by.tool;
