@@ -151,38 +151,41 @@ std::unique_ptr<SparseSurface> sparse_surface_of(const StockModel& stock,
 Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   constexpr std::size_t kAtATime = 64;
   constexpr double kOfCell = 0.1;
+  const double cell_mm = detail_cell_mm(stock);
   Tiles out;
   Joiner joiner(out.whole);
   const std::size_t count = stock.tile_count();
   const Sample sample(count);
   const std::size_t enough = 2 * options.most_triangles / std::max<std::size_t>(1, count);
   const std::unique_ptr<SparseSurface> sparse = sparse_surface_of(stock, options);
+  // A model is read by one thread: some work things out when they are first asked.
+  std::vector<std::unique_ptr<StockModel>> copies;
+  for (unsigned i = 1; i < processors(); ++i) copies.push_back(stock.snapshot());
   for (std::size_t begin = 0; begin < count; begin += kAtATime) {
     const std::size_t end = std::min(count, begin + kAtATime);
     std::vector<PageSurface> parts(end - begin);
     std::vector<std::vector<glm::vec3>> samples(end - begin);
     std::vector<std::size_t> full(end - begin);
     std::atomic<std::size_t> next{begin};
-    const auto work = [&] {
+    const auto work = [&](const StockModel& model) {
       for (std::size_t at; (at = next++) < end;) {
         const auto tile = static_cast<std::uint32_t>(at);
-        MeshPatch patch = stock.patch(tile, 0);
+        MeshPatch patch = model.patch(tile, 0);
         full[at - begin] = patch.surface_indices().size() / 3;
         sample.take(patch, samples[at - begin]);
         if (sparse) patch = sparse->patch(tile);
         PageSurface& part = parts[at - begin];
-        Joiner(part).add(surface_of(std::move(patch), detail_cell_mm(stock), options));
+        Joiner(part).add(surface_of(std::move(patch), cell_mm, options));
         // What would go later goes here, where all processors work: as far as a tenth of a cell.
         for (double most_mm = options.free_deviation_mm;; most_mm *= 2) {
           simplify_surface(part, {.most_mm = most_mm, .keeps_rim = true});
-          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * detail_cell_mm(stock))
-            break;
+          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * cell_mm) break;
         }
       }
     };
     std::vector<std::jthread> helpers;
-    for (unsigned i = 1; i < processors(); ++i) helpers.emplace_back(work);
-    work();
+    for (const auto& copy : copies) helpers.emplace_back([&] { work(*copy); });
+    work(stock);
     helpers.clear();
     for (std::size_t i = 0; i < parts.size(); ++i) {
       joiner.add(parts[i]);
