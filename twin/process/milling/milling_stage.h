@@ -18,6 +18,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/process/fixture_checks.h"
 #include "twin/process/milling/checks.h"
+#include "twin/process/milling/engagement_meter.h"
 #include "twin/process/milling/film_events.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
@@ -75,6 +76,7 @@ class MillingStage final : public Process {
     std::uint64_t motion = 0;  ///< ProcessSite::motion
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
+    std::uint32_t pass = EngagementLog::kNoPass;
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
@@ -116,6 +118,7 @@ class MillingStage final : public Process {
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
+  void engage(const Motion& motion, const TimedStep& step, InFlight& flight);
   void collect_reports();
   double front_mm_of(const FeedPart& part, const CutReport& report) const;
   void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
@@ -139,6 +142,7 @@ class MillingStage final : public Process {
   std::optional<FindingLog::Handle> speed_unsaid_;
   bool drawn_told_ = false;  ///< CheckOptions::is_drawn
   LoadMeter load_meter_;
+  std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
   LengthCheck lengths_;
   FilmEvents films_;
   PartChecks parts_;
