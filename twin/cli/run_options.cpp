@@ -104,7 +104,8 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
     reader.fault("--finding-png",
                  tr("the program comes from standard input, which cannot be read again"));
   }
-  request.compare = understand_compare(reader);
+  request.compare = understand_compare(reader, request.session.tools);
+  request.engagement = reader.is_yes("--engagement") || !request.outputs.engagement_png.empty();
   request.view = reader.is_yes("--view");
   if (request.view && request.compare.is_fitted) {
     reader.fault("--compare-fit",

@@ -10,6 +10,8 @@
 namespace kerf {
 namespace {
 
+/// Cut out of the map at once.
+constexpr std::size_t kMapMoves = 512;
 /// Names of cuts that a map can tell apart.
 constexpr std::size_t kMostCuts = 0xffff'fff0;
 
@@ -20,6 +22,8 @@ void EngagementLog::begin(const StockModel& stock) {
   tools_.clear();
   tool_of_pass_.clear();
   angles_.assign(1, 0.0f);
+  moves_.clear();
+  cutter_.reset();
   is_open_ = false;
   unmeasured_mm_ = unmeasured_mm3_ = 0;
   heights_.reset();
@@ -37,7 +41,18 @@ void EngagementLog::begin(const StockModel& stock) {
   heights_->keep_cut_ids(true);
 }
 
+void EngagementLog::cut_map() {
+  if (moves_.empty()) return;
+  reports_.clear();
+  heights_->cut(*cutter_, moves_, reports_);
+  heights_->finish(reports_);
+  moves_.clear();
+}
+
 void EngagementLog::mount(int tool, const Cutter& cutter) {
+  cut_map();
+  cutter_.reset();
+  if (heights_ && heights_->accepts(cutter)) cutter_ = cutter;
   const auto found = std::find_if(tools_.begin(), tools_.end(), [&](const EngagementOfTool& other) {
     return other.tool == tool && other.shape == cutter.spec();
   });
@@ -48,7 +63,7 @@ void EngagementLog::mount(int tool, const Cutter& cutter) {
 
 void EngagementLog::end_pass() { is_open_ = false; }
 
-std::uint32_t EngagementLog::add(const Cutter& cutter, const Part& part) {
+std::uint32_t EngagementLog::add(const Part& part) {
   if (!part.look.is_engaged()) {
     gap_mm_ += part.length_mm;
     if (gap_mm_ > tools_[tool_].diameter_mm) is_open_ = false;
@@ -68,12 +83,11 @@ std::uint32_t EngagementLog::add(const Cutter& cutter, const Part& part) {
   EngagementPass& pass = passes_.back();
   pass.to = part.source;
   pass.sums.add(part.look, part.length_mm);
-  if (heights_ && angles_.size() < kMostCuts) {
-    CutMove move = *part.move;
-    move.id = angles_.size();
+  if (cutter_ && angles_.size() < kMostCuts) {
+    moves_.push_back(*part.move);
+    moves_.back().id = angles_.size();
     angles_.push_back(static_cast<float>(part.look.angle_rad));
-    reports_.clear();
-    heights_->cut(cutter, {&move, 1}, reports_);
+    if (moves_.size() == kMapMoves) cut_map();
   }
   return static_cast<std::uint32_t>(passes_.size() - 1);
 }
@@ -105,7 +119,8 @@ EngagementMap EngagementLog::map() const {
   return out;
 }
 
-Engagement EngagementLog::result() const {
+Engagement EngagementLog::result() {
+  cut_map();
   Engagement out;
   out.tools = tools_;
   for (std::size_t n = 0; n < passes_.size(); ++n)

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace kerf {
 /// with a map 4. One thread.
 class EngagementLog {
  public:
-  static constexpr int kMostMapCells = 1000;
+  static constexpr int kMostMapCells = 500;
   static constexpr std::uint32_t kNoPass = ~std::uint32_t{0};
 
   explicit EngagementLog(bool with_map) : with_map_(with_map) {}
@@ -38,20 +39,24 @@ class EngagementLog {
     double start_s = 0;
   };
   /// Returns the pass that it belongs to; kNoPass: none.
-  std::uint32_t add(const Cutter& cutter, const Part& part);
+  std::uint32_t add(const Part& part);
   /// A feed move whose engagement nobody knows.
   void add_unmeasured(double length_mm) { unmeasured_mm_ += length_mm; }
   /// What a move of that pass has removed.
   void add_removed(std::uint32_t pass, double mm3);
 
-  Engagement result() const;
+  /// The run is over.
+  Engagement result();
 
  private:
+  void cut_map();
   EngagementMap map() const;
 
   bool with_map_;
   std::unique_ptr<StockModel> heights_;  ///< of the map
-  std::vector<float> angles_;            ///< by the numbers of its cuts
+  std::vector<CutMove> moves_;           ///< of the tool, that are still to be cut out of it
+  std::optional<Cutter> cutter_;
+  std::vector<float> angles_;  ///< by the numbers of its cuts
   std::vector<CutReport> reports_;
   std::vector<EngagementPass> passes_;
   std::vector<EngagementOfTool> tools_;

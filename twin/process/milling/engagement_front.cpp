@@ -13,11 +13,13 @@ namespace {
 constexpr double kThinnestFront_mm = 0.002;
 /// Directions to begin with, from one side to the other; where material begins and ends they are
 /// halved.
-constexpr int kRays = 18, kRayHalvings = 5;
+constexpr int kRays = 18, kRaysOfRound = 12, kRayHalvings = 5;
 /// The outermost two are so near to the sides.
 constexpr double kRim_rad = 1.0 * kPi / 180;
 /// Radii along a ray, of cutters that are not flat, and halvings between two of them.
-constexpr int kRadii = 12, kRadiusHalvings = 4;
+constexpr int kRadii = 6, kRadiusHalvings = 4;
+/// A move of fewer cells is one of many.
+constexpr double kShort_cells = 8;
 /// Rounding of the cutter's own radius.
 constexpr double kSameRadius = 1e-9;
 /// A direction counts where the cutter is in material out to this part of the farthest it is: near
@@ -27,6 +29,16 @@ constexpr double kOuterPart = 0.5;
 constexpr int kDiscPlaces = 24;
 
 }  // namespace
+
+/// It is going to be cut by the rest of the move; of one that is short, as others will follow, by
+/// about a cell more.
+bool EngagementScan::is_on_way(const Station& station, const Vec2& point) const {
+  if (!station.is_near_end) return true;
+  const double most = radius_ + (length_ < kShort_cells * cell_ ? 0.5 * cell_ : 0);
+  const Vec2 arm = point - station.end;
+  if (glm::dot(arm, arm) < most * most) return true;
+  return arc_ ? place_of(point).along <= sweep_ : glm::dot(arm, direction_) <= 0;
+}
 
 /// The material of the cell in which `point` is, above the lowest the cutter comes there with its
 /// middle beside it; 0: there is none, or the cutter passes the cell's middle by.
@@ -42,19 +54,19 @@ double EngagementScan::material_at(const Station& station, const Vec2& point, do
   const double ahead = glm::dot(arm, station.ahead);
   const double beside = arc_ ? glm::length(middle - center_) - arc_radius_
                              : station.ahead.x * arm.y - station.ahead.y * arm.x;
-  if (std::abs(beside) >= radius_) return 0;
+  if (std::abs(beside) >= radius_ || !is_on_way(station, middle)) return 0;
   const auto lift = [&](double radius) {
     return lift_[static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts}))];
   };
   double height = static_cast<double>(heights_->height(static_cast<int>(i), static_cast<int>(j)));
   const double tip = std::max(station.tip_z, box.min.z);
   const double lowest = tip + lift(std::abs(beside));
-  if (height <= lowest + kThinnestFront_mm) return 0;
+  const double meets =
+      kThinnestFront_mm + tip +
+      lift(at_rim ? least_radius * (1 - 1e-9) : std::min(glm::length(arm), radius_));
+  if (height <= meets || ahead < -cell_) return 0;
   height = behind_held(middle, height);
-  const double meets = at_rim ? tip + lift(least_radius * (1 - 1e-9))
-                              : tip + lift(std::min(glm::length(arm), radius_));
-  if (height <= meets + kThinnestFront_mm || ahead < -cell_) return 0;
-  return height - lowest;
+  return height > meets ? height - lowest : 0;
 }
 
 /// What stands right before the rim. Near the sides the rim is steep: as far ahead, and as far
@@ -118,12 +130,9 @@ EngagementScan::Contact EngagementScan::contact_at(const Station& station, doubl
     }
     found.radius_mm = 0.5 * (inside + outside);
     // Deepest nearer to the middle.
-    for (double near : {0.25, 0.5, 0.75}) {
-      const double radius_mm = found.radius_mm;
-      look(near * inside);
-      found.radius_mm = radius_mm;
-    }
-    return found;
+    const double radius_mm = found.radius_mm;
+    look(0.5 * inside);
+    return {radius_mm, found.deep_mm};
   }
   return found;
 }
@@ -154,14 +163,16 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   engaged_ = engaged_radius();
   Station station;
   station.tip_z = z_ + rise_ * at;
+  const auto place = [this](double part) {
+    return point_of(arc_ ? Place{part * sweep_, arc_radius_} : Place{part * length_, 0});
+  };
+  station.center = place(at);
+  station.end = place(1);
+  station.is_near_end = length_ > 0 && (1 - at) * length_ < 2 * radius_ + kShort_cells * cell_;
+  station.ahead = direction_;
   if (arc_) {
-    const double angle = start_angle_ + turn_ * at * sweep_;
-    const Vec2 arm(std::cos(angle), std::sin(angle));
-    station.center = center_ + arc_radius_ * arm;
-    station.ahead = turn_ * Vec2(-arm.y, arm.x);
-  } else {
-    station.center = start_ + at * length_ * direction_;
-    station.ahead = direction_;
+    const Vec2 out = (station.center - center_) / arc_radius_;
+    station.ahead = turn_ * Vec2(-out.y, out.x);
   }
   if (engaged_ <= 0) return {};
   if (length_ == 0) return plunge_at(station);
@@ -173,15 +184,16 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
     low_mm = std::min(low_mm, contact.radius_mm * std::sin(angle));
     high_mm = std::max(high_mm, contact.radius_mm * std::sin(angle));
   };
-  const auto direction = [](int k) {
+  const int rays = is_flat() ? kRays : kRaysOfRound;
+  const auto direction = [rays](int k) {
     if (k == 0) return kRim_rad - kPi / 2;
-    if (k == kRays) return kPi / 2 - kRim_rad;
-    return kPi * (static_cast<double>(k) / kRays - 0.5);
+    if (k == rays) return kPi / 2 - kRim_rad;
+    return kPi * (static_cast<double>(k) / rays - 0.5);
   };
   // Flat cutters are in material at their rim or not at all.
   std::array<Contact, kRays + 1> contacts;
   double farthest_mm = 0;
-  for (int k = 0; k <= kRays; ++k) {
+  for (int k = 0; k <= rays; ++k) {
     contacts[static_cast<std::size_t>(k)] = contact_at(station, direction(k));
     note(contacts[static_cast<std::size_t>(k)], direction(k));
     farthest_mm = std::max(farthest_mm, contacts[static_cast<std::size_t>(k)].radius_mm);
@@ -190,9 +202,9 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   const auto counts = [&](const Contact& contact) {
     return contact.radius_mm >= kOuterPart * farthest_mm;
   };
-  for (int k = 1; k <= kRays; ++k) {
+  for (int k = 1; k <= rays; ++k) {
     const double from = k == 1 ? -kPi / 2 : direction(k - 1);
-    const double to = k == kRays ? kPi / 2 : direction(k);
+    const double to = k == rays ? kPi / 2 : direction(k);
     const bool was = counts(contacts[static_cast<std::size_t>(k - 1)]);
     const bool is = counts(contacts[static_cast<std::size_t>(k)]);
     if (is == was) {

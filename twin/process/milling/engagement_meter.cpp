@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "stock/present_heights.h"
@@ -12,13 +13,27 @@ namespace kerf {
 namespace {
 
 constexpr double kFarthestOfDiameter = 0.5, kFarthestCells = 8;
-constexpr double kClosestOfDiameter = 1.0 / 16, kClosestCells = 2;
-constexpr int kMostHalvings = 4;
+constexpr double kClosestOfDiameter = 1.0 / 8, kClosestCells = 2;
+constexpr int kMostHalvings = 3;
 constexpr double kSameOfDiameter = 0.05, kSameOfDepth = 0.05, kSameDepth_mm = 0.02;
-/// Looks at the ends of a move are so far within it, as part of it.
-constexpr double kWithin = 1e-6;
+/// The last look at a move is so many cells before its end: at the end nothing is ahead of it.
+constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
+/// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
+/// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
+/// pass begins, is so many looks at most.
+constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 12'000, kShareOfCells = 0.5;
+constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
+/// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
+constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
 /// Looks along one move at most.
 constexpr double kMostNodes = 4096;
+
+/// Seen from above; 0 where it goes up or down.
+Vec2 way_of_short(const CutMove& move) {
+  const Vec2 way(move.to_mm - move.from_mm);
+  const double length = glm::length(way);
+  return length > 0 ? way / length : Vec2(0);
+}
 
 }  // namespace
 
@@ -64,8 +79,8 @@ void EngagementMeter::flush() {
   mean.wide_mm = sum_.wide_mm / (to_ - from_);
   mean.deep_mm = sum_.deep_mm / (to_ - from_);
   const CutMove part = part_of(*move_, from_, to_);
-  const std::uint32_t pass = log_.add(
-      *cutter_, {mean, &part, (to_ - from_) * length_mm_, source_, start_s_ + from_ * duration_s_});
+  const std::uint32_t pass =
+      log_.add({mean, &part, (to_ - from_) * length_mm_, source_, start_s_ + from_ * duration_s_});
   if (pass != EngagementLog::kNoPass) pass_ = pass;
   from_ = to_;
 }
@@ -98,6 +113,21 @@ void EngagementMeter::refine(const Node& from, const Node& to, int halvings) {
   refine(between, to, halvings - 1);
 }
 
+/// What the last look has said is taken for this short move, too.
+bool EngagementMeter::counts_still(const CutMove& move) {
+  const double cell_mm = stock_.cell_mm();
+  look_cells_ =
+      cutter_->height_mm(0.9 * cutter_->radius_mm()) <= 0 ? kCellsOfLook : kCellsOfRoundLook;
+  saved_cells_ += kShareOfCells * (kCellsOfMove + length_mm_ * diameter_mm_ / (cell_mm * cell_mm));
+  saved_cells_ = std::min(saved_cells_, kMostSaved * look_cells_);
+  if (since_mm_ < 0 || last_.is_plunge) return false;
+  const double way_mm = since_mm_ + length_mm_;
+  if (way_mm > kFarthestSpacing * diameter_mm_) return false;
+  if (glm::dot(way_of_short(move), last_ahead_) < kSameWay)
+    return saved_cells_ < -kMostBorrowed * look_cells_;
+  return way_mm <= spacing_mm_ || saved_cells_ < 0;
+}
+
 std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, bool near,
                                     const SourceRef& source, double start_s, double duration_s) {
   cutter_ = &cutter, move_ = &move;
@@ -116,8 +146,7 @@ std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, b
   const bool is_steep = !move.arc && glm::length(Vec2(move.to_mm - move.from_mm)) < 1e-9;
   const double farthest =
       std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  if (length_mm_ < farthest && !is_steep && since_mm_ >= 0 && !last_.is_plunge &&
-      since_mm_ + length_mm_ <= farthest) {
+  if (length_mm_ < farthest && !is_steep && counts_still(move)) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
@@ -141,21 +170,29 @@ std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, b
     if (part > 0) add(1 - part, 1, down);
     since_mm_ = -1;
   } else if (length_mm_ < farthest) {
+    const EngagementLook before = last_;
     last_ = look(0.5);
+    saved_cells_ -= look_cells_;
+    const bool alike = since_mm_ >= 0 && is_same(before, last_);
+    spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;
+    spacing_mm_ = std::max(spacing_mm_, farthest);
     since_mm_ = 0.5 * length_mm_;
+    last_ahead_ = way_of_short(move);
     add(0, 1, last_);
   } else {
     const double nodes = std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes);
-    Node before{0, look(kWithin)};
+    const double last_at =
+        1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
+    Node before{0, look(0)};
     for (int k = 1; k <= static_cast<int>(nodes); ++k) {
       const bool is_last = k == static_cast<int>(nodes);
       Node node{is_last ? 1 : k / nodes, {}};
-      node.look = look(is_last ? 1 - kWithin : node.at);
+      node.look = look(std::min(node.at, last_at));
       refine(before, node, kMostHalvings);
       before = node;
     }
     last_ = before.look;
-    since_mm_ = 0;
+    since_mm_ = -1;
   }
   flush();
   heights_ = nullptr;

@@ -13,9 +13,11 @@
 namespace kerf {
 
 /// Looks ahead of the tool (EngagementScan::look_ahead) before each move is cut, at most half a
-/// diameter of its way (and eight cells) apart, and closer to a sixteenth (two cells) where two
+/// diameter of its way (and eight cells) apart, and closer to an eighth (two cells) where two
 /// looks differ by more than kSameAngle_rad, or a twentieth of the depth or the diameter. Moves
-/// that are shorter are taken together: each look counts until the way from it on is that long.
+/// that are shorter are taken together: each look counts until the way from it on is that long, or
+/// turns by 30 degrees; where looks one after the other are alike, for up to two diameters. Where
+/// moves are cut so quickly that looks would take more than half of that time, for up to four.
 /// Needs heights as they are (PresentHeights), upright tools without an undercut, moves that are
 /// straight or arcs about Z of up to one turn; others are told as unmeasured. One thread.
 class EngagementMeter {
@@ -48,6 +50,7 @@ class EngagementMeter {
   void refine(const Node& from, const Node& to, int halvings);
   void flush();
   EngagementLook look(double at);
+  bool counts_still(const CutMove& move);
 
   const StockModel& stock_;
   EngagementLog& log_;
@@ -58,6 +61,9 @@ class EngagementMeter {
   CutMove held_;
   EngagementLook last_;
   double since_mm_ = 0;  ///< way since last_ was looked at; negative: it counts for nothing
+  double saved_cells_ = 0, look_cells_ = 0;
+  double spacing_mm_ = 0;  ///< as far as it counts
+  Vec2 last_ahead_{0};     ///< the way of the move that it was looked at on
   // The present move.
   const Cutter* cutter_ = nullptr;
   const CutMove* move_ = nullptr;

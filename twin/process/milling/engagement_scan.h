@@ -161,6 +161,8 @@ class EngagementScan {
   /// The cutter at one place.
   struct Station {
     Vec2 center{0}, ahead{1, 0};
+    Vec2 end{0};  ///< of the move
+    bool is_near_end = false;
     double tip_z = 0;
   };
   struct Contact {
@@ -170,6 +172,7 @@ class EngagementScan {
   void set_held(const CutMove* held);
   double material_at(const Station& station, const Vec2& point, double least_radius,
                      bool at_rim) const;
+  bool is_on_way(const Station& station, const Vec2& point) const;
   Vec2 before_rim(const Station& station, double angle) const;
   Contact contact_at(const Station& station, double angle) const;
   EngagementLook plunge_at(const Station& station) const;

@@ -238,6 +238,13 @@ TEST_F(EngagementMeterTest, OneSlotIsOnePass) {
             0);
 }
 
+TEST_F(EngagementMeterTest, TheWallAtAWaysEndIsNotCut) {
+  cut("flat:8", way({-10, 20, -2}, {40, 20, -2}));
+  run("flat:8", {way({-10, 20, -4}, {40, 20, -4})});
+  // 2 mm on the floor of the first; not the 4 mm that stand at its end.
+  EXPECT_NEAR(log_.result().passes.at(0).sums.deep_most_mm, 2, 1e-3);
+}
+
 TEST_F(EngagementMeterTest, WhatIsCutLastHasThePlace) {
   run("flat:8",
       {way({-10, 20, -2}, {70, 20, -2}), way({70, 20, 5}, {-10, 22, 5}),
