@@ -12,6 +12,8 @@ namespace {
 constexpr float kNoDesign = -std::numeric_limits<float>::infinity();
 /// What rises by so much of its length is a wall: steeper slopes than 80 degrees.
 constexpr float kWallRise = 6;
+/// And what rises by so much of it is steep: 63 degrees.
+constexpr float kSteepRise = 2;
 
 std::vector<float> tops(const DesignPart& design, const ColumnGrid& grid) {
   std::vector<float> top(grid.size(), kNoDesign);
@@ -46,6 +48,14 @@ void find_walls(std::span<const float> fine, float step_mm, const Point& point, 
   }
 }
 
+/// Of the four fine heights of a cell: as low as it is a quarter of a cell to either side, if they
+/// are steep; else `z`.
+float relaxed(float z, float a, float b, float c, float d, float cell_mm) {
+  static_assert(kFinePerCell == 4);
+  if (!(std::abs(d - a) > kSteepRise * 0.75f * cell_mm)) return z;
+  return std::min({z, 0.5f * (a + b), 0.5f * (c + d)});
+}
+
 }  // namespace
 
 DesignFromAbove with_walls(const ColumnGrid& grid, std::vector<float> middles,
@@ -56,6 +66,16 @@ DesignFromAbove with_walls(const ColumnGrid& grid, std::vector<float> middles,
   out.whole_mm = std::move(middles);
   const std::vector<float>& whole = out.whole_mm;
   const auto nx = static_cast<std::size_t>(grid.nx), ny = static_cast<std::size_t>(grid.ny);
+  const auto cell_x = static_cast<float>(cell.x), cell_y = static_cast<float>(cell.y);
+  for (std::size_t j = 0, at = 0; j < ny; ++j) {
+    for (std::size_t i = 0; i < nx; ++i, ++at) {
+      const float* const x = &along_x[(j * nx + i) * kFinePerCell];
+      const float* const y = &along_y[j * kFinePerCell * nx + i];
+      float& top = out.top_mm[at];
+      top = relaxed(top, x[0], x[1], x[2], x[3], cell_x);
+      top = relaxed(top, y[0], y[nx], y[2 * nx], y[3 * nx], cell_y);
+    }
+  }
   // A middle that is on a wall's high side, near it; others are as low as the wall's foot.
   const auto drop_at = [&](std::size_t index, float least_mm) {
     if (whole[index] >= least_mm) out.top_mm[index] = kNoDesign;

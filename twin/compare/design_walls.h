@@ -25,8 +25,9 @@ inline constexpr std::size_t kMostCellsWithWalls = std::size_t{8} << 20;
 /// a cell, and their points laid a quarter to half a cell into the design: between two walls as far
 /// apart as a tool is wide ToolReach then always finds a place for it, and of where a wall leaves
 /// off what is told is an eighth of a cell on average in the tool's favour. Middles of cells that
-/// are nearer to a wall than that are taken out of `top_mm`.
-/// 4 bytes for each fine cell, some 5 ns.
+/// are nearer to a wall than that are taken out of `top_mm`. Where the design is steep, but no
+/// wall, heights are those a quarter of a cell away, in the tool's favour, too: in a slot as wide
+/// as it is a ball would else hang on its own flanks. 4 bytes for each fine cell, some 5 ns.
 DesignFromAbove design_from_above(const DesignPart& design, const ColumnGrid& grid);
 
 /// The same from heights: `along_x`: kFinePerCell for each cell of a row, `along_y`: rows of them

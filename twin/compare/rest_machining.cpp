@@ -119,6 +119,12 @@ class RestFinder {
     return thickness(cell, z, 2 * most) > most;
   }
 
+  /// By a tool that leaves that. A rim, which is thin as it is, by who takes most of it.
+  bool is_cleared(std::size_t cell, float z) {
+    if (rest_[cell] == kThick) return !is_thicker(cell, z);
+    return above_.top_mm[cell] - z >= 0.5f * (above_.top_mm[cell] - bottom(cell));
+  }
+
   void find_cells(Rest& out) {
     out.map.bounds_mm = grid_.bounds_mm;
     out.map.nx = grid_.nx, out.map.ny = grid_.ny;
@@ -127,7 +133,44 @@ class RestFinder {
     for (std::size_t cell = 0; cell < rest_.size(); ++cell) {
       const float top = above_.top_mm[cell];
       if (top > floor_mm_ || design_mm_[cell] > floor_mm_) out.map.cells[cell] = RestMap::kDone;
-      if (is_thicker(cell, top)) rest_[cell] = 1, out.map.cells[cell] = RestMap::kByNone;
+      if (is_thicker(cell, top)) rest_[cell] = kThick, out.map.cells[cell] = RestMap::kByNone;
+    }
+    add_rims();
+  }
+
+  /// What is thick is so in its middle; at walls it is near the design, and belongs to it as far as
+  /// the thickness. By steps of a cell that go to four and eight neighbours in turn: octagons.
+  void add_rims() {
+    const double cell_mm = std::min(grid_.cell_mm().x, grid_.cell_mm().y);
+    const double most_steps = std::max(grid_.nx, grid_.ny);
+    const int steps = static_cast<int>(std::min(std::ceil(thickness_mm_ / cell_mm), most_steps));
+    std::vector<std::uint32_t> front, next;
+    for (std::size_t cell = 0; cell < rest_.size(); ++cell)
+      if (rest_[cell] != 0) front.push_back(static_cast<std::uint32_t>(cell));
+    for (int step = 0; step < steps && !front.empty(); ++step) {
+      next.clear();
+      for (const std::uint32_t cell : front) {
+        each_neighbour(cell, step % 2 == 1, [&](std::size_t other) {
+          const double above =
+              static_cast<double>(above_.top_mm[other]) - static_cast<double>(bottom(other));
+          if (rest_[other] != 0 || above <= kRounding_mm) return;
+          rest_[other] = kRim;
+          next.push_back(static_cast<std::uint32_t>(other));
+        });
+      }
+      front.swap(next);
+    }
+  }
+
+  template <class Visit>
+  void each_neighbour(std::uint32_t cell, bool at_corners, const Visit& visit) const {
+    const int i = static_cast<int>(cell) % grid_.nx, j = static_cast<int>(cell) / grid_.nx;
+    for (int y = std::max(0, j - 1); y <= std::min(grid_.ny - 1, j + 1); ++y) {
+      for (int x = std::max(0, i - 1); x <= std::min(grid_.nx - 1, i + 1); ++x) {
+        if (!at_corners && x != i && y != j) continue;
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.nx) +
+              static_cast<std::size_t>(x));
+      }
     }
   }
 
@@ -139,18 +182,11 @@ class RestFinder {
       open[seed] = 0;
       region.cells.push_back(static_cast<std::uint32_t>(seed));
       for (std::size_t k = 0; k < region.cells.size(); ++k) {
-        const int i = static_cast<int>(region.cells[k]) % grid_.nx;
-        const int j = static_cast<int>(region.cells[k]) / grid_.nx;
-        for (int y = std::max(0, j - 1); y <= std::min(grid_.ny - 1, j + 1); ++y) {
-          for (int x = std::max(0, i - 1); x <= std::min(grid_.nx - 1, i + 1); ++x) {
-            const std::size_t next =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.nx) +
-                static_cast<std::size_t>(x);
-            if (open[next] == 0) continue;
-            open[next] = 0;
-            region.cells.push_back(static_cast<std::uint32_t>(next));
-          }
-        }
+        each_neighbour(region.cells[k], true, [&](std::size_t next) {
+          if (open[next] == 0) return;
+          open[next] = 0;
+          region.cells.push_back(static_cast<std::uint32_t>(next));
+        });
       }
       std::sort(region.cells.begin(), region.cells.end());
       measure(region);
@@ -211,7 +247,7 @@ class RestFinder {
             by.leaves_mm =
                 std::max(by.leaves_mm, thickness(cell, z, std::numeric_limits<double>::infinity()));
           const double width = cutter->radius_mm();
-          if (width <= widths[cell] || is_thicker(cell, z)) continue;
+          if (width <= widths[cell] || !is_cleared(cell, z)) continue;
           widths[cell] = width;
           out.map.cells[cell] = static_cast<std::uint8_t>(std::min<std::size_t>(
               RestMap::kByTool + n, std::numeric_limits<std::uint8_t>::max()));
@@ -242,7 +278,8 @@ class RestFinder {
   DesignProbe probe_;
   std::vector<float> design_mm_, free_mm_;
   std::vector<WallPoint> walls_;
-  std::vector<std::uint8_t> rest_;
+  static constexpr std::uint8_t kThick = 1, kRim = 2;
+  std::vector<std::uint8_t> rest_;  ///< 0: neither
   std::vector<Region> regions_;
 };
 

@@ -19,7 +19,8 @@ const char* why_no_rest(const StockModel& stock);
 
 /// Where the workpiece, seen from above, is thicker above the design than `thickness_mm`: in each
 /// cell the nearest way from its surface to the design, or straight down if that is less. What is
-/// under a roof does not count. Regions are cells that touch, at a corner at least.
+/// under a roof does not count. With it goes what is thinner beside it, at its walls, as far as the
+/// thickness. Regions are cells that touch, at a corner at least.
 /// `tools`: number, shape, guessed and used are given. How far each would come is ToolReach; so
 /// nothing is said of lengths, shanks and holders.
 /// Any model with columns (Z-map, M-map, octree); why_no_rest() is null. O(cells) and about 1 us

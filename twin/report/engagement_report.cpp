@@ -66,8 +66,8 @@ std::string engagement_text(const Engagement& engagement) {
     out += trf("T{} in {}", tool.tool, trnf("{} pass", "{} passes", tool.passes));
     if (sums.cut_mm > 0)
       out +=
-          trf(": {:.0f} degrees of its edge on average, {:.0f} at most; {:.0f} % of its width; "
-              "{:.2f} mm deep at most",
+          trf(": {:.0f} degrees of its edge on average, {:.0f} at most; {:.0f} % of its "
+              "diameter; {:.2f} mm deep at most",
               kDegrees * sums.mean(sums.angle_sum), kDegrees * sums.angle_most_rad,
               share * sums.mean(sums.wide_sum_mm2), sums.deep_most_mm);
     if (sums.full_mm > 0) out += trf("; {:.0f} % in full slots", 100 * sums.full_mm / sums.cut_mm);

@@ -11,7 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Tools that are named in the page of text.
-constexpr std::size_t kMostToolsShown = 6;
+constexpr std::size_t kMostToolsShown = 5;
+/// What is less is 0 in the page of text.
+constexpr double kShown_mm3 = 0.0005;
 
 Json rest_tool_json(const RestTool& tool) {
   Json out{
@@ -42,14 +44,13 @@ Json rest_region_json(const RestRegion& region, const std::vector<RestTool>& too
   return out;
 }
 
-/// Of the greatest region: what each tool would leave.
+/// Lines of the greatest region: what each tool would leave.
 std::string reach_text(const RestRegion& region, const std::vector<RestTool>& tools) {
   std::string out;
   std::size_t shown = 0;
   for (const RestReach& reach : region.by_tool) {
     if (shown++ == kMostToolsShown) break;
-    out += out.empty() ? "" : "; ";
-    out += trf("T{} ({}) would leave {:.3f} mm and take {:.3f} of {:.3f} mm3",
+    out += trf("          T{} ({}) would leave {:.3f} mm there, and take {:.3f} of {:.3f} mm3\n",
                tools[reach.tool].number, tools[reach.tool].shape, reach.leaves_mm, reach.takes_mm3,
                region.volume_mm3);
   }
@@ -80,16 +81,14 @@ std::string rest_text(const Rest& rest) {
     return trf("rest      nothing is thicker than {:g} mm above the design\n", rest.thickness_mm);
   std::string out = trf("rest      {:.3f} mm3 thicker than {:g} mm in {}", rest.volume_mm3,
                         rest.thickness_mm, trnf("{} place", "{} places", rest.regions_in_all));
-  out += rest.by_none_mm3 > 0
+  out += rest.by_none_mm3 >= kShown_mm3
              ? trf("; {:.3f} mm3 of it is out of reach of all tools\n", rest.by_none_mm3)
              : "\n";
   const RestRegion& greatest = rest.regions.front();
   const Vec3& at = greatest.at_mm;
   out += trf("          the greatest is {:.3f} mm thick at X{:.2f} Y{:.2f} Z{:.2f}\n",
              greatest.thickness_mm, at.x, at.y, at.z);
-  if (const std::string reach = reach_text(greatest, rest.tools); !reach.empty())
-    out += "          " + reach + "\n";
-  return out;
+  return out + reach_text(greatest, rest.tools);
 }
 
 }  // namespace kerf

@@ -90,8 +90,8 @@ TEST(RestMachining, CornersAreLeftByTheWideToolAndTakenByNarrowOnes) {
                                  tool(4, "drill:5:118"), tool(5, "bull:2:0.5")});
     ASSERT_EQ(rest.regions_in_all, 4u) << model;
     const double each = (1 - kPi / 4) * 16 * 4, of_three = (1 - kPi / 4) * 2.25 * 4;
-    // Cells within 0.1 mm of the design do not count.
-    const double thin = 4 * 0.1 * 2 * 4;
+    // Where it runs out at either end it is thinner than 0.1 mm.
+    const double thin = 2 * 0.25;
     for (const RestRegion& region : rest.regions) {
       EXPECT_LT(region.volume_mm3, each + 0.2) << model;
       EXPECT_GT(region.volume_mm3, each - thin) << model;
@@ -102,10 +102,7 @@ TEST(RestMachining, CornersAreLeftByTheWideToolAndTakenByNarrowOnes) {
       ASSERT_EQ(region.by_tool.size(), 4u);
       EXPECT_LT(region.by_tool[0].takes_mm3, 0.03 * each) << model;
       EXPECT_NEAR(region.by_tool[0].leaves_mm, region.thickness_mm, 0.12) << model;
-      // What it leaves is in the region but for what is thin.
-      const double left = region.volume_mm3 - region.by_tool[1].takes_mm3;
-      EXPECT_LT(left, of_three + 0.15) << model;
-      EXPECT_GT(left, of_three - 1.5 * 0.1 * 2 * 4) << model;
+      EXPECT_NEAR(region.volume_mm3 - region.by_tool[1].takes_mm3, of_three, 0.25) << model;
       EXPECT_NEAR(region.by_tool[1].leaves_mm, 1.5 - 1.5 / std::sqrt(2.0), 0.1) << model;
       // A ball leaves its round along the floor, besides.
       EXPECT_LT(region.by_tool[2].takes_mm3, region.by_tool[1].takes_mm3 - 0.3) << model;
@@ -126,9 +123,9 @@ TEST(RestMachining, AToolAsNarrowAsTheCornersClearsThem) {
   // R - R / sqrt 2 of R = 0.75 is 0.22.
   EXPECT_EQ(rest.tools[0].clears, 4u);
   EXPECT_EQ(rest.tools[1].clears, 4u);
-  // The widest that clears a place has it.
-  EXPECT_EQ(std::count(rest.map.cells.begin(), rest.map.cells.end(), RestMap::kByTool + 1), 0);
-  EXPECT_GT(std::count(rest.map.cells.begin(), rest.map.cells.end(), RestMap::kByTool), 4 * 160);
+  // The widest that clears a place has it; the other one some of the rims.
+  EXPECT_LT(std::count(rest.map.cells.begin(), rest.map.cells.end(), RestMap::kByTool + 1), 4 * 10);
+  EXPECT_GT(std::count(rest.map.cells.begin(), rest.map.cells.end(), RestMap::kByTool), 4 * 300);
   EXPECT_EQ(std::count(rest.map.cells.begin(), rest.map.cells.end(), RestMap::kByNone), 0);
 }
 
