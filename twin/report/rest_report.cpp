@@ -50,9 +50,10 @@ std::string reach_text(const RestRegion& region, const std::vector<RestTool>& to
   std::size_t shown = 0;
   for (const RestReach& reach : region.by_tool) {
     if (shown++ == kMostToolsShown) break;
-    out += trf("          T{} ({}) would leave {:.3f} mm there, and take {:.3f} of {:.3f} mm3\n",
-               tools[reach.tool].number, tools[reach.tool].shape, reach.leaves_mm, reach.takes_mm3,
-               region.volume_mm3);
+    out +=
+        trf("          T{} ({}) would leave {:.3f} mm there, and take {:.3f} mm3 of {:.3f} mm3\n",
+            tools[reach.tool].number, tools[reach.tool].shape, reach.leaves_mm, reach.takes_mm3,
+            region.volume_mm3);
   }
   return out;
 }
