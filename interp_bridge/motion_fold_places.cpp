@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "interp_bridge/held_feed.h"
 #include "interp_bridge/motion_fold.h"
+#include "interp_bridge/motion_fold_math.h"
 
 namespace kerf {
 namespace {
@@ -30,11 +31,6 @@ std::uint8_t without(std::uint8_t axes, std::uint8_t others) {
 /// Whether a motion of this kind can be that of a block that says G0, or G1.
 bool agrees(Speed said, MotionKind kind) {
   return said == Speed::kUnsaid || (said == Speed::kRapid) == (kind == MotionKind::kTraverse);
-}
-
-/// About Z, by an angle whose sine and cosine they are.
-Vec3 turned_by(const Vec3& p, double cosine, double sine) {
-  return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, p.z};
 }
 
 }  // namespace
@@ -410,15 +406,15 @@ void MotionFold::touch_off(std::uint8_t axes, std::uint8_t doubtful, bool by_shi
 /// The workpiece frame is that in which the program first writes: of an axis that no block has
 /// placed yet it follows the offsets.
 void MotionFold::adopt_frame() {
-  const bool turned = work_.rotation_deg != 0 || frame_.rotation_deg != 0;
+  const bool is_turned = work_.rotation_deg != 0 || frame_.rotation_deg != 0;
   std::uint8_t free = without(kXyz, placed_);
-  if (turned && (free & kXy) != kXy) free &= kZ;
+  if (is_turned && (free & kXy) != kXy) free &= kZ;
   if (free == 0) return;
   const auto cosine = [](double degrees) { return std::cos(degrees * kRadPerDeg); };
   const auto sine = [](double degrees) { return std::sin(degrees * kRadPerDeg); };
   double degrees = work_.rotation_deg;
   const Vec3 machine_mm =
-      turned_by(position_mm_ + work_.g92_mm, cosine(degrees), sine(degrees)) + work_.g5x_mm;
+      turned(position_mm_ + work_.g92_mm, cosine(degrees), sine(degrees)) + work_.g5x_mm;
   for (int i = 0; i < 3; ++i) {
     if ((free & kX << i) == 0) continue;
     work_.g5x_mm[i] = frame_.g5x_mm[i];
@@ -427,7 +423,7 @@ void MotionFold::adopt_frame() {
   if ((free & kXy) == kXy) work_.rotation_deg = frame_.rotation_deg;
   degrees = work_.rotation_deg;
   const Vec3 here_mm =
-      turned_by(machine_mm - work_.g5x_mm, cosine(degrees), -sine(degrees)) - work_.g92_mm;
+      turned(machine_mm - work_.g5x_mm, cosine(degrees), -sine(degrees)) - work_.g92_mm;
   for (int i = 0; i < 3; ++i) {
     if ((free & kX << i) != 0) position_mm_[i] = here_mm[i];
   }

@@ -83,6 +83,9 @@ std::string hint_for(const std::string& message) {
   if (has("Unknown m code used: M190")) {
     return tr("kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material");
   }
+  if (has("Unknown m code used") || has("Unknown g code used") || has("M-code greater than 199")) {
+    return tr("LinuxCNC has no such code and stops here, too, but where an INI remaps it (--ini)");
+  }
   if (has("Start point too close to probe point")) {
     return tr(
         "where the machine stands then (G28, G30, G53, or at the start) is not known; an INI "

@@ -147,7 +147,8 @@ std::optional<TurnedPart> TurnedPart::create(const TurnedProfile& blank, ChuckSi
 
 /// How the tool was in material, over the move: calls each(chord, met) for every part of the tool
 /// on every chord, above the axis and below, that meets material, which is then in scratch_.cut.
-/// The side that the tool comes from is first: beyond the axis it finds what it has left.
+/// The side that the tool comes from is first: beyond the axis it finds what it has left. From the
+/// axis itself, the side that it goes to.
 template <class Each>
 turning::Engagement TurnedPart::each_swept(const TurningTool& tool, const TurnMove& move,
                                            Each&& each) const {
@@ -157,9 +158,10 @@ turning::Engagement TurnedPart::each_swept(const TurningTool& tool, const TurnMo
   turning::Engagement whole;
   for (const turning::WayChord& chord : s.chords) {
     const Point from = turning::to_units(chord.from.at_mm), to = turning::to_units(chord.to.at_mm);
+    const bool begins_below = from.Y < 0 || (from.Y == 0 && to.Y < 0);
     turning::Engagement on_chord;
     for (std::size_t i = 0; i < tool.parts_.size(); ++i) {
-      for (const bool is_below : {from.Y < 0, from.Y >= 0}) {
+      for (const bool is_below : {begins_below, !begins_below}) {
         const Point a = is_below ? mirrored(from) : from, b = is_below ? mirrored(to) : to;
         const turning::GridPart& part = is_below ? tool.below_[i] : tool.parts_[i];
         if (std::max(a.Y, b.Y) + turning::to_units(part.reach_mm()) <= 0) continue;

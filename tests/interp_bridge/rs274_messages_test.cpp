@@ -50,6 +50,14 @@ TEST(InterpreterDiagnostic, MessageThatNamesItsLine) {
             "a subroutine that the program calls must be in it, or in NAME.ngc beside it");
 }
 
+TEST(InterpreterDiagnostic, CodesOfOtherControls) {
+  for (const char* said :
+       {"Unknown m code used: M31\nN8M31\n", "M-code greater than 199: M429\nN8M429\n"}) {
+    EXPECT_EQ(interpreter_diagnostic(said, {"a.ngc"}, {0, 7}, 9).hint,
+              "LinuxCNC has no such code and stops here, too, but where an INI remaps it (--ini)");
+  }
+}
+
 TEST(InterpreterDiagnostic, MissingEndIsAWarning) {
   const Diagnostic said = interpreter_diagnostic(
       "executing\nFile ended with no percent sign or program end\nN4G0 X1\n", {"a.ngc"}, {0, 4}, 4);

@@ -137,8 +137,9 @@ class WindowPictures : public WindowTest {
   bool turn_until_names(std::size_t count) {
     return turn_until([&] {
       const std::vector<std::string> names = names_in(folder_.path());
+      // AtomicFile writes to ".NAME.XXXXXX" before it renames.
       const bool is_whole = std::none_of(names.begin(), names.end(), [](const std::string& name) {
-        return name.find(".part") != std::string::npos || name.find(".tmp") != std::string::npos;
+        return name.starts_with('.') || name.ends_with(".part");
       });
       return names.size() == count && is_whole;
     });

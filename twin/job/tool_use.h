@@ -6,7 +6,29 @@
 #include <optional>
 #include <string>
 
+#include "interp_bridge/motion.h"
+
 namespace kerf {
+
+/// What the teeth of a tool have to do, where their number is known: of its feed moves that removed
+/// material, with the speed that the planner reaches.
+struct ChipLoad {
+  double most_mm = 0;  ///< feed per tooth
+  SourceRef most_at;
+  double sum_mm_s = 0, seconds = 0;  ///< for the mean, by time
+  /// Greatest cutting speed, at the widest place of the tool in what a move removes.
+  double speed_m_per_min = 0;
+
+  bool is_known() const { return seconds > 0; }
+  double mean_mm() const { return is_known() ? sum_mm_s / seconds : 0; }
+  void add(double feed_per_tooth_mm, double duration_s, const SourceRef& source) {
+    sum_mm_s += feed_per_tooth_mm * duration_s;
+    seconds += duration_s;
+    if (feed_per_tooth_mm <= most_mm) return;
+    most_mm = feed_per_tooth_mm;
+    most_at = source;
+  }
+};
 
 struct ToolUse {
   int number = 0;
@@ -14,6 +36,7 @@ struct ToolUse {
   std::string origin;
   bool guessed = false;
   std::optional<int> teeth;  ///< where its shape says it
+  ChipLoad chip;
   /// Its shank, its holder against the workpiece; false: nobody described them, or the model does
   /// not look.
   bool shank_checked = false, holder_checked = false;

@@ -91,6 +91,12 @@ Json tools_json(const Report& report) {
     tool["removed_mm3"] = rounded(use.removed_mm3);
     tool["max_depth_mm"] = rounded(use.max_depth_mm);
     tool["peak_mm3_per_s"] = rounded(use.peak_mm3_per_s);
+    if (use.chip.is_known()) {
+      tool["engagement"] = {{"feed_per_tooth_mm", rounded(use.chip.most_mm)},
+                            {"feed_per_tooth_mean_mm", rounded(use.chip.mean_mm())},
+                            {"line", use.chip.most_at.line},
+                            {"cutting_speed_m_min", rounded(use.chip.speed_m_per_min)}};
+    }
     out.push_back(std::move(tool));
   }
   return out;

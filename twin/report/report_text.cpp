@@ -106,6 +106,13 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
       out += trf("\n              removed {}, cutting {}, deepest cut {:.2f} mm, peak {:.1f} mm3/s",
                  volume_text(use.removed_mm3), duration_text(use.cut_s), use.max_depth_mm,
                  use.peak_mm3_per_s);
+      if (use.chip.is_known()) {
+        out +=
+            trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} at most (line {}), "
+                "cutting speed {:.3g} m/min",
+                *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
+                use.chip.speed_m_per_min);
+      }
     }
     out += "\n";
     head = "          ";
@@ -165,7 +172,9 @@ void add_unchecked(std::string& out, const Report& report) {
     return;
   }
   const std::string first = (holders.empty() ? shanks : holders).substr(1);
-  const std::string number = first.substr(0, first.find(','));
+  std::string number = first.substr(0, first.find(','));
+  // --tool has no 0: a program that changes no tool cuts with what --tool 1 says.
+  if (number == "0") number = "1";
   if (shanks.empty()) {
     out += trf("unchecked {}: no holder known (--tool {}=SHAPE:holder=er20:stickout=L)\n", holders,
                number);

@@ -136,14 +136,14 @@ inline std::vector<TurnMove> random_moves(std::mt19937& random, int count) {
   std::vector<TurnMove> moves;
   Vec2 at(2, 24);
   for (int i = 0; i < count; ++i) {
-    Vec2 to(z(random), x(random));
+    Vec2 to{z(random), x(random)};  // braces: in this order by every compiler
     const unsigned kind = random() % 8;
     if (kind < 4) to = glm::round(to);
     if (kind == 1) to.x = at.x;
     if (kind == 2) to.y = at.y;
     const auto id = static_cast<std::uint64_t>(i);
     if (kind >= 6) {
-      const Vec2 center = at + Vec2(6 * unit(random) - 3, 6 * unit(random) - 3);
+      const Vec2 center = at + Vec2{6 * unit(random) - 3, 6 * unit(random) - 3};
       moves.push_back(arc(at, center, unit(random) - 0.5, id));
     } else {
       moves.push_back(line(at, to, id));

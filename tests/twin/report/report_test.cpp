@@ -134,6 +134,26 @@ TEST(ReportText, IsAPageThatReadsInTenSeconds) {
       "          zmap, cells of 0.05 mm, 2.40 million\n");
 }
 
+TEST(ReportText, WhatEachToothHasToDo) {
+  Report r = sample();
+  ToolUse& use = r.tools.front();
+  use.teeth = 2;
+  const auto has = [&](const char* text) {
+    return summary_text(r).find(text) != std::string::npos;
+  };
+  EXPECT_FALSE(has("feed per tooth")) << "nothing was cut while the spindle turned";
+  use.chip.add(0.05, 3, {0, 7});
+  use.chip.add(0.1, 1, {0, 9});
+  use.chip.add(0.02, 1, {0, 11});
+  use.chip.speed_m_per_min = 125.66;
+  EXPECT_TRUE(
+      has("2 teeth: feed per tooth 0.054 mm, 0.1 at most (line 9), cutting speed 126 m/min"));
+  const Json tool = Json::parse(json_text(r))["tools"][0];
+  EXPECT_EQ(tool["engagement"]["feed_per_tooth_mm"], 0.1);
+  EXPECT_EQ(tool["engagement"]["feed_per_tooth_mean_mm"], 0.054);
+  EXPECT_EQ(tool["engagement"]["line"], 9);
+}
+
 TEST(ReportText, WhatIsUnknownOfToolsIsOneLine) {
   const auto line_of = [](std::initializer_list<std::pair<bool, bool>> shank_and_holder) {
     Report r = sample();
@@ -157,6 +177,14 @@ TEST(ReportText, WhatIsUnknownOfToolsIsOneLine) {
   EXPECT_EQ(line_of({{false, false}, {true, false}}),
             "unchecked T1, T2: no holder known; T1: no length of flutes "
             "(--tool 1=SHAPE:flute=L:holder=er20:stickout=L)");
+
+  Report spindle = sample();
+  spindle.tools.resize(1);
+  spindle.tools.front().number = 0;  // --tool 0 there is none
+  spindle.tools.front().holder_checked = spindle.tools.front().shank_checked = false;
+  EXPECT_NE(summary_text(spindle).find("unchecked T0: no holder and no length of flutes known "
+                                       "(--tool 1=SHAPE:"),
+            std::string::npos);
 }
 
 TEST(ReportText, TellsFindingsBySeverityAndKind) {

@@ -93,4 +93,17 @@ void MillingStage::count_feed(ToolUse& use, const InFlight& move, const CutRepor
   use.peak_mm3_per_s = std::max(use.peak_mm3_per_s, std::min(mean, bound));
 }
 
+void MillingStage::note_teeth(const Motion& m, const TimedStep& step, InFlight& flight) const {
+  const std::optional<int> teeth = cutting().teeth();
+  if (!teeth || !flight.feed || m.spindle == SpindleState::kStopped || m.spindle_rpm <= 0) return;
+  flight.rpm = m.spindle_rpm;
+  flight.feed_per_tooth_mm = step.peak_mm_per_min / (m.spindle_rpm * *teeth);
+}
+
+void MillingStage::count_chip(ChipLoad& chip, const InFlight& move, const CutReport& report) const {
+  chip.add(move.feed_per_tooth_mm, move.cut_part * move.duration_s, move.source);
+  const double wide_mm = 2 * half_width_mm(cutting(), report.depth_mm);
+  chip.speed_m_per_min = std::max(chip.speed_m_per_min, kPi * wide_mm * move.rpm / 1000);
+}
+
 }  // namespace kerf

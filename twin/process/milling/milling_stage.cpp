@@ -279,8 +279,8 @@ ProbeAnswer MillingStage::answer(const ProbeQuestion& question) {
   ProbeAnswer unknown;
   const Motion& m = question.motion;
   if (!mount_for(m)) {
-    unknown.why =
-        trf("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does", m.tool, m.tool);
+    unknown.why = trf("nothing tells the shape of tool {}, the probe: --tool {}=SHAPE does", m.tool,
+                      std::max(1, m.tool));
     return unknown;
   }
   divide(m, {});
@@ -362,6 +362,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.use = use_;
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
+  note_teeth(m, step, flight);
   measure(m, step, flight);
   if (engagement_) engage(m, step, flight);
   PieceCutter by{m.source, step.start_s, step.duration_s, mounted_->number, 0, mounted_->guessed};
@@ -426,6 +427,7 @@ void MillingStage::collect_reports() {
     if (report.removed_mm3 <= 0) continue;
     if (engagement_) site_.engagement->add_removed(move.pass, report.removed_mm3);
     use.removed_mm3 += report.removed_mm3;
+    if (move.feed_per_tooth_mm > 0) count_chip(use.chip, move, report);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);
     }

@@ -77,6 +77,8 @@ class MillingStage final : public Process {
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     std::uint32_t pass = EngagementLog::kNoPass;
+    double rpm = 0;                ///< of a spindle that turns
+    double feed_per_tooth_mm = 0;  ///< 0: not known
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
@@ -122,6 +124,8 @@ class MillingStage final : public Process {
   void collect_reports();
   double front_mm_of(const FeedPart& part, const CutReport& report) const;
   void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
+  void note_teeth(const Motion& motion, const TimedStep& step, InFlight& flight) const;
+  void count_chip(ChipLoad& chip, const InFlight& move, const CutReport& report) const;
 
   ProcessSite& site_;
   StockModel& stock_;
