@@ -173,7 +173,7 @@ std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, b
     const EngagementLook before = last_;
     last_ = look(0.5);
     saved_cells_ -= look_cells_;
-    const bool alike = since_mm_ >= 0 && is_same(before, last_);
+    const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
     spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;
     spacing_mm_ = std::max(spacing_mm_, farthest);
     since_mm_ = 0.5 * length_mm_;
