@@ -15,6 +15,7 @@
 #include "twin/report/compare_report.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -208,6 +209,7 @@ std::string collision_section(const Report& report, LengthUnit units) {
 std::string compare_section(const Report& report, LengthUnit units) {
   SectionText out(tr("Against the design"), units);
   if (report.comparison) out.pre(compare_text(*report.comparison));
+  if (report.rest) out.pre(rest_text(*report.rest));
   return std::move(out).done();
 }
 
