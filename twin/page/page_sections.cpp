@@ -194,10 +194,11 @@ std::string collision_section(const Report& report, LengthUnit units) {
   for (const CollisionPair& pair : report.collisions) {
     const std::string what =
         pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
-    const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
-                                  : pair.least_clearance_mm
-                                      ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
-                                      : std::string(tr("not measured"));
+    const std::string clearance =
+        pair.contacts > 0         ? std::string(tr("touches"))
+        : pair.least_clearance_mm ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
+        : pair.clearance_above_mm ? trf("above {:.2f} mm", *pair.clearance_above_mm)
+                                  : std::string(tr("not measured"));
     out.row({what, pair.other.empty() ? std::string(tr("workpiece")) : pair.other,
              fmt::format("{}", pair.contacts), clearance,
              pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});

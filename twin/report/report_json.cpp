@@ -116,6 +116,9 @@ Json collisions_json(const Report& report) {
     pair["contacts"] = row.contacts;
     pair["least_clearance_mm"] =
         row.least_clearance_mm ? Json(rounded(*row.least_clearance_mm)) : Json(nullptr);
+    if (!row.least_clearance_mm)
+      pair["clearance_above_mm"] =
+          row.clearance_above_mm ? Json(rounded(*row.clearance_above_mm)) : Json(nullptr);
     pair["line"] = row.source.line;
     pairs.push_back(std::move(pair));
   }
