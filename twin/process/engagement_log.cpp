@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numeric>
 #include <utility>
 
@@ -61,6 +62,13 @@ void EngagementLog::mount(int tool, const Cutter& cutter) {
   tools_.push_back({tool, cutter.spec(), 2 * cutter.radius_mm(), 0, {}});
 }
 
+/// Moves that are shorter than half a cell of the map are put together: chords, which it would not
+/// tell from them.
+bool EngagementLog::goes_on(const CutMove& last, const CutMove& next) const {
+  return !last.arc && !next.arc && last.to_mm == next.from_mm &&
+         glm::length(next.to_mm - last.from_mm) < 0.5 * heights_->cell_mm();
+}
+
 void EngagementLog::end_pass() { is_open_ = false; }
 
 std::uint32_t EngagementLog::add(const Part& part) {
@@ -83,10 +91,13 @@ std::uint32_t EngagementLog::add(const Part& part) {
   EngagementPass& pass = passes_.back();
   pass.to = part.source;
   pass.sums.add(part.look, part.length_mm);
-  if (cutter_ && angles_.size() < kMostCuts) {
+  const auto angle = static_cast<float>(part.look.angle_rad);
+  if (!moves_.empty() && angles_.back() == angle && goes_on(moves_.back(), *part.move)) {
+    moves_.back().to_mm = part.move->to_mm;
+  } else if (cutter_ && angles_.size() < kMostCuts) {
     moves_.push_back(*part.move);
     moves_.back().id = angles_.size();
-    angles_.push_back(static_cast<float>(part.look.angle_rad));
+    angles_.push_back(angle);
     if (moves_.size() == kMapMoves) cut_map();
   }
   return static_cast<std::uint32_t>(passes_.size() - 1);

@@ -49,6 +49,7 @@ class EngagementLog {
   Engagement result();
 
  private:
+  bool goes_on(const CutMove& last, const CutMove& next) const;
   void cut_map();
   EngagementMap map() const;
 
