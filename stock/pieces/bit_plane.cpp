@@ -36,8 +36,8 @@ CellSet BitPlane::all() const {
 }
 
 bool flood(const BitPlane& within, BitPlane& mark, const CellSet& seeds, std::size_t most_words,
-           CellSet& found) {
-  CellSet open;
+           CellSet& found, CellSet& open) {
+  open.clear();
   const auto visit = [&](int row, int word, std::uint64_t bits) {
     if (!within.has(row, word)) return;
     const std::uint64_t fresh = bits & within.at(row, word) & ~mark.at(row, word);

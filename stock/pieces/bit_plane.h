@@ -68,9 +68,14 @@ class BitPlane {
 
 /// Appends to `found` what hangs together with `seeds` among the bits of `within`: cells that share
 /// a side or a corner. Marks it in `mark`, and takes for done what is marked there. False: it is
-/// more than `most_words`, and not all of it has been found.
+/// more than `most_words`, and not all of it has been found. `open` is room that is used again.
 bool flood(const BitPlane& within, BitPlane& mark, const CellSet& seeds, std::size_t most_words,
-           CellSet& found);
+           CellSet& found, CellSet& open);
+inline bool flood(const BitPlane& within, BitPlane& mark, const CellSet& seeds,
+                  std::size_t most_words, CellSet& found) {
+  CellSet open;
+  return flood(within, mark, seeds, most_words, found, open);
+}
 
 /// Whether a square of 2 x 2 cells is in it. What is thinner than a cell never has one, what is
 /// thicker than 3 cells always. `scratch`: all 0, and left so.

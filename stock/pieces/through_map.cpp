@@ -74,22 +74,27 @@ double ThroughMap::radius_at(const Cutter& cutter, double above_tip_mm) {
   return cached_radius_mm_ = low;
 }
 
-void ThroughMap::take_row(int row, double low_x, double high_x) {
-  const auto cell = [&](double x) { return (x - bounds_mm_.min.x) / cell_mm_.x - 0.5; };
-  const int first = static_cast<int>(std::ceil(std::max(0.0, cell(low_x))));
-  const int last = static_cast<int>(std::floor(std::min(solid_.nx() - 1.0, cell(high_x))));
+/// From and to in cells: 0 is the middle of the first.
+void ThroughMap::take_row(int row, double low_cell, double high_cell) {
+  low_cell = std::max(0.0, low_cell);
+  high_cell = std::min(solid_.nx() - 1.0, high_cell);
+  if (!(high_cell >= 0) || low_cell > high_cell) return;
+  int first = static_cast<int>(low_cell);  // rounded up
+  first += static_cast<double>(first) < low_cell ? 1 : 0;
+  const int last = static_cast<int>(high_cell);
   if (first > last) return;
   for (int word = first / 64; word <= last / 64; ++word) {
-    std::uint64_t bits = ~std::uint64_t{0};
+    std::uint64_t& solid = solid_.at(row, word);
+    if (solid == 0) continue;
+    std::uint64_t bits = solid;
     if (word == first / 64) bits &= ~std::uint64_t{0} << (first % 64);
     if (word == last / 64) bits &= ~std::uint64_t{0} >> (63 - last % 64);
-    bits &= solid_.at(row, word);
     for (std::uint64_t left = slope_ || arc_ ? bits : 0; left != 0; left &= left - 1) {
       const int i = 64 * word + std::countr_zero(left);
       if (slope_ ? !is_under_slope(i, row) : !is_under_arc(i, row)) bits &= ~(left & (~left + 1));
     }
     if (bits == 0) continue;
-    solid_.at(row, word) &= ~bits;
+    solid &= ~bits;
     removed_.push_back({row, word, bits});
   }
 }
@@ -125,11 +130,48 @@ bool ThroughMap::is_under_slope(int i, int j) const {
 bool ThroughMap::is_under_arc(int i, int j) const {
   const Vec2 cell = Vec2(bounds_mm_.min) + Vec2(i + 0.5, j + 0.5) * cell_mm_;
   const Vec2 arm = cell - arc_->center;
-  const double off_rad = std::remainder(std::atan2(arm.y, arm.x) - arc_middle_rad_, 2 * kPi);
-  if (std::abs(off_rad) <= arc_half_rad_)
-    return std::abs(glm::length(arm) - arc_->arm) <= radius_mm_;
+  const double far = glm::length(arm);
+  if (glm::dot(arm, arc_middle_) >= far * arc_cosine_)
+    return std::abs(far - arc_->arm) <= radius_mm_;
   return glm::length(cell - Vec2(step_from_)) <= radius_mm_ ||
          glm::length(cell - Vec2(step_to_)) <= radius_mm_;
+}
+
+void ThroughMap::widen_by_disk(const Vec2& middle, int first_row, double radius) {
+  double* const low = low_x_.data();
+  double* const high = high_x_.data();
+  const int rows = static_cast<int>(low_x_.size());
+  const double begin = bounds_mm_.min.y, step = cell_mm_.y;
+  for (int k = 0; k < rows; ++k) {  // without a way out of the loop: several rows at a time
+    const double away = begin + (first_row + k + 0.5) * step - middle.y;
+    const double square = radius * radius - away * away;
+    const double half = std::sqrt(std::max(0.0, square));
+    const double at_low = square >= 0 ? middle.x - half : low[k];
+    const double at_high = square >= 0 ? middle.x + half : high[k];
+    low[k] = std::min(low[k], at_low);
+    high[k] = std::max(high[k], at_high);
+  }
+}
+
+void ThroughMap::widen_by_side(const Vec2& from, const Vec2& to, int first_row) {
+  if (from.y == to.y) return;
+  const double begin = bounds_mm_.min.y, step = cell_mm_.y;
+  const auto row_of = [&](double y) {
+    return std::clamp((y - begin) / step - 0.5 - first_row, -1.0,
+                      static_cast<double>(low_x_.size()));
+  };
+  const double low_y = std::min(from.y, to.y), high_y = std::max(from.y, to.y);
+  const int k0 = std::max(0, static_cast<int>(row_of(low_y)));
+  const int k1 =
+      std::min(static_cast<int>(low_x_.size()) - 1, static_cast<int>(row_of(high_y)) + 1);
+  for (int k = k0; k <= k1; ++k) {
+    const double y = begin + (first_row + k + 0.5) * step;
+    if (y < low_y || y > high_y) continue;
+    const double x = from.x + (y - from.y) / (to.y - from.y) * (to.x - from.x);
+    const auto at = static_cast<std::size_t>(k);
+    low_x_[at] = std::min(low_x_[at], x);
+    high_x_[at] = std::max(high_x_[at], x);
+  }
 }
 
 void ThroughMap::sweep(const Vec2& from, const Vec2& to, double radius) {
@@ -137,28 +179,20 @@ void ThroughMap::sweep(const Vec2& from, const Vec2& to, double radius) {
   const double low_y = std::min(from.y, to.y) - radius, high_y = std::max(from.y, to.y) + radius;
   const int first = static_cast<int>(std::ceil(std::max(0.0, row_of(low_y))));
   const int last = static_cast<int>(std::floor(std::min(solid_.ny() - 1.0, row_of(high_y))));
-  const double length = glm::length(to - from);
-  const Vec2 side = length > 0 ? Vec2(from.y - to.y, to.x - from.x) * (radius / length) : Vec2(0);
-  for (int row = first; row <= last; ++row) {
-    const double y = bounds_mm_.min.y + (row + 0.5) * cell_mm_.y;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    const auto see = [&](double x) {
-      low = std::min(low, x);
-      high = std::max(high, x);
-    };
-    for (const Vec2& end : {from, to}) {
-      const double away = y - end.y;
-      if (std::abs(away) > radius) continue;
-      const double half = std::sqrt(radius * radius - away * away);
-      see(end.x - half);
-      see(end.x + half);
-    }
-    for (const double sign : {-1.0, 1.0}) {
-      const Vec2 a = from + sign * side, b = to + sign * side;
-      if (a.y == b.y || y < std::min(a.y, b.y) || y > std::max(a.y, b.y)) continue;
-      see(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-    }
-    if (low <= high) take_row(row, low, high);
+  if (first > last) return;
+  const auto rows = static_cast<std::size_t>(last - first + 1);
+  low_x_.assign(rows, std::numeric_limits<double>::infinity());
+  high_x_.assign(rows, -std::numeric_limits<double>::infinity());
+  widen_by_disk(from, first, radius);
+  widen_by_disk(to, first, radius);
+  if (const double length = glm::length(to - from); length > 0) {
+    const Vec2 side = Vec2(from.y - to.y, to.x - from.x) * (radius / length);
+    widen_by_side(from + side, to + side, first);
+    widen_by_side(from - side, to - side, first);
+  }
+  for (std::size_t k = 0; k < rows; ++k) {
+    take_row(first + static_cast<int>(k), (low_x_[k] - bounds_mm_.min.x) / cell_mm_.x - 0.5,
+             (high_x_[k] - bounds_mm_.min.x) / cell_mm_.x - 0.5);
   }
 }
 
@@ -201,8 +235,11 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
         step_from_ = begin;
         step_to_ = tip;
         arc_ = piece.turns && slope_ == nullptr ? &piece : nullptr;
-        arc_middle_rad_ = piece.begin_rad + (a + b) / 2 * piece.sweep_rad;
-        arc_half_rad_ = (b - a) / 2 * std::abs(piece.sweep_rad);
+        if (arc_) {
+          const double middle = piece.begin_rad + (a + b) / 2 * piece.sweep_rad;
+          arc_middle_ = {std::cos(middle), std::sin(middle)};
+          arc_cosine_ = std::cos(std::min(kPi, (b - a) / 2 * std::abs(piece.sweep_rad)));
+        }
         radius_mm_ = std::max(wide_a, wide_b);
         sweep(Vec2(begin), Vec2(tip), radius_mm_ + (arc_ ? kAskedChord * cell : 0));
         if (removed_.empty()) continue;
@@ -219,27 +256,37 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
   }
 }
 
-/// Material beside what has been removed.
-CellSet ThroughMap::around_removed() {
-  CellSet ring;
+/// Material beside what has been removed, marked in ring_.
+void ThroughMap::find_ring() {
+  ring_cells_.clear();
   const auto take = [&](int row, int word, std::uint64_t bits) {
     if (!solid_.has(row, word)) return;
-    const std::uint64_t fresh = bits & solid_.at(row, word) & ~ring_.at(row, word);
+    std::uint64_t& mark = ring_.at(row, word);
+    const std::uint64_t fresh = bits & solid_.at(row, word) & ~mark;
     if (fresh == 0) return;
-    ring_.at(row, word) |= fresh;
-    ring.push_back({row, word, fresh});
+    mark |= fresh;
+    ring_cells_.push_back({row, word, fresh});
   };
   for (const CellWord& c : removed_) each_beside(c, take);
-  ring_.remove(ring);
-  return ring;
+}
+
+/// Most steps part nothing, and this tells it for the least.
+bool ThroughMap::hangs_together(const CellSet& ring) {
+  if (ring.empty()) return true;
+  const CellWord& c = ring.front();
+  found_.clear();
+  flood(ring_, scratch_, {{c.row, c.word, c.bits & (~c.bits + 1)}}, ~std::size_t{0}, found_, open_);
+  const bool all = std::ranges::all_of(
+      ring, [this](const CellWord& at) { return (at.bits & ~scratch_.at(at.row, at.word)) == 0; });
+  scratch_.remove(found_);
+  return all;
 }
 
 void ThroughMap::part(const BitPlane& within, const CellSet& cells, std::vector<CellSet>& parts) {
   const std::size_t before = parts.size();
   for (const CellWord& c : cells) {
-    for (std::uint64_t bits = c.bits; bits != 0; bits &= bits - 1) {
+    while (const std::uint64_t bits = c.bits & ~scratch_.at(c.row, c.word)) {
       const std::uint64_t one = bits & (~bits + 1);
-      if (scratch_.at(c.row, c.word) & one) continue;
       flood(within, scratch_, {{c.row, c.word, one}}, ~std::size_t{0}, parts.emplace_back());
     }
   }
@@ -276,11 +323,10 @@ std::vector<std::size_t> ThroughMap::former_bodies(const std::vector<CellSet>& p
 }
 
 void ThroughMap::find_splits(const ThroughSplit& step, std::vector<ThroughSplit>& splits) {
-  const CellSet ring = around_removed();
+  find_ring();
   std::vector<CellSet> parts;
-  ring_.add(ring);
-  part(ring_, ring, parts);
-  ring_.remove(ring);
+  if (!hangs_together(ring_cells_)) part(ring_, ring_cells_, parts);
+  ring_.remove(ring_cells_);
   if (parts.size() < 2) return;
   std::vector<std::size_t> former = former_bodies(parts);
   const auto is_alone = [&](std::size_t n) { return std::ranges::count(former, former[n]) < 2; };

@@ -64,12 +64,15 @@ class ThroughMap {
  private:
   double radius_at(const Cutter& cutter, double above_tip_mm);
   void sweep(const Vec2& from, const Vec2& to, double radius_mm);
-  void take_row(int row, double low_x, double high_x);
+  void widen_by_disk(const Vec2& middle, int first_row, double radius_mm);
+  void widen_by_side(const Vec2& from, const Vec2& to, int first_row);
+  void take_row(int row, double low_cell, double high_cell);
   bool is_under_slope(int i, int j) const;
   bool is_under_arc(int i, int j) const;
   /// What the step that has filled removed_ has parted: one split for each body that was one.
   void find_splits(const ThroughSplit& step, std::vector<ThroughSplit>& splits);
-  CellSet around_removed();
+  void find_ring();
+  bool hangs_together(const CellSet& ring);
   /// Appends to `parts` what hangs together in `within`, of these cells of it.
   void part(const BitPlane& within, const CellSet& cells, std::vector<CellSet>& parts);
   /// Which of the parts were one before: a number for each.
@@ -81,11 +84,15 @@ class ThroughMap {
   BitPlane solid_, scratch_, ring_, near_;
   // The step that is taken.
   Vec3 step_from_{0}, step_to_{0};
-  double radius_mm_ = 0;            ///< at the floor
-  const Cutter* slope_ = nullptr;   ///< a cone on its way up or down
-  const PartPiece* arc_ = nullptr;  ///< it is a part of this arc
-  double arc_middle_rad_ = 0, arc_half_rad_ = 0;
+  double radius_mm_ = 0;                ///< at the floor
+  const Cutter* slope_ = nullptr;       ///< a cone on its way up or down
+  const PartPiece* arc_ = nullptr;      ///< it is a part of this arc
+  Vec2 arc_middle_{1, 0};               ///< direction from the arc's centre to the part's middle
+  double arc_cosine_ = 0;               ///< of half the angle of the part
+  std::vector<double> low_x_, high_x_;  ///< of what is swept, by row from the first
   CellSet removed_;
+  CellSet ring_cells_;    ///< material beside them
+  CellSet open_, found_;  ///< of a search
   std::vector<Removed> removed_after_;
   double cached_above_mm_ = -1, cached_radius_mm_ = 0;
   std::string cached_spec_;

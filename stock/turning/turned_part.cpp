@@ -432,12 +432,14 @@ MeshPatch TurnedPart::patch(std::size_t band, int level) const {
   const bool is_last = band + 1 == kBands;
   const Rect wound = threads_.box();
   const bool is_wound = !threads_.empty() && wound.min_x <= high && wound.max_x >= low;
-  if (is_wound && sections_ == nullptr) {
-    sections_ = std::make_shared<const turning::WoundSections>(
-        turning::wound_sections(shown(), threads_, turning::kPatchSegments, flats_));
+  std::shared_ptr<const turning::WoundSections> sections;
+  if (is_wound) {
+    sections = sections_.get([&] {
+      return turning::wound_sections(shown(), threads_, turning::kPatchSegments, flats_);
+    });
   }
   MeshPatch patch =
-      is_wound ? turning::wind_band(*sections_, shown(), low, high, is_last, tolerance_mm, flats())
+      is_wound ? turning::wind_band(*sections, shown(), low, high, is_last, tolerance_mm, flats())
                : turning::revolve_band(shown(), low, high, is_last, tolerance_mm, flats());
   patch.tile = static_cast<std::uint32_t>(band);
   patch.version = versions_[band];

@@ -26,9 +26,9 @@
 #include "stock/turning/convex_cut.h"
 #include "stock/turning/engagement.h"
 #include "stock/turning/insert_sweep.h"
+#include "stock/turning/kept_sections.h"
 #include "stock/turning/thread_set.h"
 #include "stock/turning/turn_move.h"
-#include "stock/turning/wound_surface.h"
 
 namespace kerf {
 
@@ -299,7 +299,7 @@ class TurnedPart {
   std::vector<TurnedPiece> freed_;
   std::array<std::uint64_t, kBands> versions_{};
   mutable Scratch scratch_;
-  mutable std::shared_ptr<const turning::WoundSections> sections_;  // for patches, until it is cut
+  turning::KeptSections sections_;  ///< for patches, until it is cut
 };
 
 }  // namespace kerf

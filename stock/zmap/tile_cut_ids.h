@@ -21,6 +21,21 @@ class TileCutIds {
 
   /// `cell` is a TileRelief::slot() of the tile or next to it.
   std::uint32_t of(int cell) const { return ids_[static_cast<std::size_t>(cell)]; }
+  /// Of the cells about a corner (by quadrant) that are in the group, the lowest one's: as with
+  /// walls and levels, and the same from either side of a border between tiles.
+  template <class InGroup>
+  std::uint32_t at_corner(const TileRelief& relief, int corner, const InGroup& in_group) const {
+    const std::array<int, 4> cells = TileRelief::cells_about(corner);
+    int lowest = -1;
+    for (std::size_t q = 0; q < 4; ++q) {
+      if (!in_group(q)) continue;
+      if (lowest < 0 || relief.height(cells[q]) < relief.height(lowest)) lowest = cells[q];
+    }
+    return of(lowest);
+  }
+  std::uint32_t at_corner(const TileRelief& relief, int corner) const {
+    return at_corner(relief, corner, [](std::size_t) { return true; });
+  }
 
  private:
   std::array<std::uint32_t, TileRelief::kSlots> ids_;

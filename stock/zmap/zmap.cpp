@@ -22,6 +22,7 @@
 #include "stock/zmap/height_view.h"
 #include "stock/zmap/part_contact.h"
 #include "stock/zmap/part_gap.h"
+#include "stock/zmap/sparse_tiles.h"
 #include "stock/zmap/state_file.h"
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
@@ -216,6 +217,10 @@ MeshPatch ZMap::patch(std::uint32_t tile, int level) const {
   MeshPatch patch = make_tile_patch(impl_->grid(), tile, level);
   patch.version = patch_version(tile);
   return patch;
+}
+
+std::unique_ptr<SparseSurface> ZMap::sparse_surface(const SparseOptions& options) const {
+  return std::make_unique<SparseTiles>(impl_->grid(), options);
 }
 
 Done ZMap::save(const std::string& path) const {

@@ -12,6 +12,7 @@
 #include "stock/blank.h"
 #include "stock/column_runs.h"
 #include "stock/present_heights.h"
+#include "stock/sparse_surface.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/zmap_kernel.h"
 
@@ -30,7 +31,10 @@ struct ZMapOptions {
 /// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no
 /// undercuts. Reads no files, knows no GL. A cell whose height is the floor holds no material.
 /// Source: one-dexel case of T. Van Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
-class ZMap final : public StockModel, public PresentHeights, public ColumnSource {
+class ZMap final : public StockModel,
+                   public PresentHeights,
+                   public ColumnSource,
+                   public SparseSource {
  public:
   /// Error if cell_mm is not finite or <= 0, exceeds the blank, or makes more than kMaxCells cells
   /// (then the message says how much memory it would take), or if a body cannot be held (cylinder
@@ -78,6 +82,7 @@ class ZMap final : public StockModel, public PresentHeights, public ColumnSource
   std::uint64_t patch_version(std::uint32_t tile) const override;
   /// How it is made: stock/zmap/tile_patch.h.
   MeshPatch patch(std::uint32_t tile, int level) const override;
+  std::unique_ptr<SparseSurface> sparse_surface(const SparseOptions& options) const override;
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
   ColumnLayout column_layout() const override;

@@ -49,20 +49,30 @@ std::string link(const std::string& path, const std::string& inner) {
   return path.empty() ? inner : fmt::format("<a href=\"{}\">{}</a>", xml_text(path), inner);
 }
 
+/// The name, and above it in small print the folder.
+std::string program_cell(const BatchResult& r) {
+  const std::size_t at = r.program.rfind('/');
+  const std::string folder = at == r.program.npos ? "" : r.program.substr(0, at + 1);
+  const std::string name = r.program.substr(folder.size());
+  const std::string above =
+      folder.empty() ? "" : fmt::format("<span class=f>{}</span>", xml_text(folder));
+  return above + link(r.page, xml_text(name));
+}
+
 std::string row_of(const BatchResult& r) {
   const std::string picture =
       r.picture.empty()
           ? std::string()
           : fmt::format("<img src=\"{}\" alt=\"\" loading=\"lazy\">", xml_text(r.picture));
-  std::string row = fmt::format("<tr class=\"{}\"><td>{}</td><td>{}</td><td class=v>{}</td>",
-                                to_string(r.verdict), link(r.page, picture),
-                                link(r.page, xml_text(r.program)), shown_verdict(r.verdict));
+  std::string row = fmt::format(
+      "<tr class=\"{}\"><td>{}</td><td class=p>{}</td><td class=v>{}</td>", to_string(r.verdict),
+      link(r.page, picture), program_cell(r), xml_text(shown_verdict(r.verdict)));
   row += fmt::format("<td class=n>{}</td><td class=n>{}</td>", r.errors, r.warnings);
   row += fmt::format("<td class=n>{}</td>", r.time_s ? clock_text(*r.time_s) : "");
   row += fmt::format("<td class=n>{}</td>",
                      r.removed_mm3 ? fmt::format("{:.1f}", *r.removed_mm3 / 1000) : "");
   row += fmt::format("<td class=n>{:.1f}</td><td class=n>{:.0f}</td>", r.wall_s, r.peak_rss_mb);
-  row += fmt::format("<td>{}</td><td>{} {}</td></tr>\n", xml_text(r.message),
+  row += fmt::format("<td class=m>{}</td><td>{} {}</td></tr>\n", xml_text(r.message),
                      link(r.report, "JSON"), link(r.said, xml_text(tr("output"))));
   return row;
 }
@@ -74,6 +84,11 @@ constexpr const char* kStyle =
     "th{position:sticky;top:0;background:#fff}\n"
     ".n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}\n"
     "img{width:9em;display:block}\n"
+    // Names and folders are long, and have no blanks.
+    "td{overflow-wrap:anywhere}.f{display:block;color:#666;font-size:.85em}\n"
+    ".p{min-width:15em}.m{min-width:12em}\n"
+    "@media(max-width:60em){body{margin:.5em;font-size:13px}img{width:6em}.p,.m{min-width:9em}\n"
+    "th,td{padding:.3em .3em}}\n"
     ".v{white-space:nowrap;font-weight:bold}\n"
     ".good .v{color:#17692f}.findings .v{color:#b3261e}\n"
     ".lossy .v,.usage .v{color:#8a5a00}\n"

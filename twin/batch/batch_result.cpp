@@ -66,6 +66,9 @@ std::string first_fault(std::string_view text) {
 void take_findings(const Json& report, BatchResult& result) {
   const auto findings = report.find("findings");
   if (findings == report.end() || !findings->is_array()) return;
+  const auto program = report.find("program");
+  const std::string path =
+      program != report.end() && program->is_object() ? text_in(*program, "path") : "";
   for (const Json& finding : *findings) {
     if (!finding.is_object()) continue;
     const std::string severity = text_in(finding, "severity");
@@ -75,7 +78,13 @@ void take_findings(const Json& report, BatchResult& result) {
     if (severity != "error" || !result.message.empty()) continue;
     const std::uint64_t line = count_in(finding, "line");
     const std::string message = text_in(finding, "message");
-    result.message = line > 0 ? trf("line {}: {}", line, message) : message;
+    const std::string file = text_in(finding, "file");
+    if (line == 0)
+      result.message = message;
+    else if (file.empty() || file == path)
+      result.message = trf("line {}: {}", line, message);
+    else  // a subroutine's
+      result.message = fmt::format("{}:{}: {}", file, line, message);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/small_file.h"
 #include "base/text_scan.h"
+#include "twin/batch/called_files.h"
 
 namespace kerf {
 namespace {
@@ -61,8 +62,23 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// Files that "key = value" and "key: value" lines of a configuration or an INI name.
-void add_named_files(const std::string& text, const fs::path& folder, ContentHasher& hasher) {
+/// Where subroutines may stand, and those that something else than the program calls.
+struct Subroutines {
+  std::vector<fs::path> folders;
+  std::vector<std::string> names;
+};
+
+void add_ini(const fs::path& path, ContentHasher& hasher, Subroutines& subroutines) {
+  SubroutinePlaces places = subroutine_places(path.string());
+  for (const std::string& file : places.files) hasher.file(file);
+  subroutines.folders.insert(subroutines.folders.end(), places.folders.begin(),
+                             places.folders.end());
+  subroutines.names.insert(subroutines.names.end(), places.names.begin(), places.names.end());
+}
+
+/// Files that "key: value" lines of a configuration name.
+void add_named_files(const std::string& text, const fs::path& folder, ContentHasher& hasher,
+                     Subroutines& subroutines) {
   if (text.size() > kMostSettingBytes) return;
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trim(take_line(rest));
@@ -71,37 +87,41 @@ void add_named_files(const std::string& text, const fs::path& folder, ContentHas
     std::string_view value = trim(line.substr(at + 1));
     value = value.substr(0, value.find('#'));
     value = trim(value, [](char c) { return is_line_blank(c) || c == '"' || c == '\''; });
-    if (!value.empty() && value.size() < 4096 && is_file(folder / value)) {
+    if (value.empty() || value.size() >= 4096 || !is_file(folder / value)) continue;
+    if (to_lower(fs::path(value).extension().string()) == ".ini")
+      add_ini(folder / value, hasher, subroutines);
+    else
       hasher.file(folder / value);
+  }
+}
+
+/// One that is in several of the folders counts with all of them.
+void add_subroutines(const std::vector<std::string>& names, const Subroutines& subroutines,
+                     ContentHasher& hasher) {
+  for (const std::string& name : names) {
+    for (const fs::path& folder : subroutines.folders) {
+      const fs::path called = folder / (name + ".ngc");
+      if (!is_file(called)) continue;
+      const std::string more = hasher.file(called);
+      if (!more.empty()) add_subroutines(called_names(more), subroutines, hasher);
     }
   }
 }
 
-/// O<name> CALL
-void add_called_files(const std::string& text, const fs::path& folder, ContentHasher& hasher) {
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::string line = to_lower(take_line(rest));
-    const std::size_t start = line.find("o<");
-    const std::size_t end = start == line.npos ? line.npos : line.find('>', start);
-    if (end == line.npos || line.find("call", end) == line.npos) continue;
-    const fs::path called = folder / (line.substr(start + 2, end - start - 2) + ".ngc");
-    if (!is_file(called)) continue;
-    const std::string more = hasher.file(called);
-    if (!more.empty()) add_called_files(more, folder, hasher);
-  }
+void add_setting(const fs::path& path, ContentHasher& hasher, Subroutines& subroutines) {
+  if (path.empty() || !is_file(path)) return;
+  const std::string end = to_lower(path.extension().string());
+  if (end == ".ini") return add_ini(path, hasher, subroutines);
+  const std::string text = hasher.file(path);
+  if (end == ".yaml" || end == ".yml")
+    add_named_files(text, path.parent_path(), hasher, subroutines);
 }
 
-void add_word(const std::string& word, ContentHasher& hasher) {
+void add_word(const std::string& word, ContentHasher& hasher, Subroutines& subroutines) {
+  add_setting(word, hasher, subroutines);
   for (std::size_t at = word.find_first_of("=:"); at != word.npos;
-       at = word.find_first_of("=:", at + 1)) {
-    const fs::path path = word.substr(at + 1);
-    if (path.empty() || !is_file(path)) continue;
-    const std::string text = hasher.file(path);
-    const std::string end = to_lower(path.extension().string());
-    if (end == ".ini" || end == ".yaml" || end == ".yml") {
-      add_named_files(text, path.parent_path(), hasher);
-    }
-  }
+       at = word.find_first_of("=:", at + 1))
+    add_setting(word.substr(at + 1), hasher, subroutines);
 }
 
 const std::string& hash_of_kerf() {
@@ -118,12 +138,15 @@ const std::string& hash_of_kerf() {
 std::string content_hash(const std::string& program, const std::vector<std::string>& words) {
   ContentHasher hasher;
   hasher.text(hash_of_kerf());
+  const fs::path path = program;
+  // Without an INI they may stand where kerf was started, too.
+  Subroutines subroutines{{path.parent_path(), fs::path(".")}, {}};
   for (const std::string& word : words) {
     hasher.text(word);
-    add_word(word, hasher);
+    add_word(word, hasher, subroutines);
   }
-  const fs::path path = program;
-  add_called_files(hasher.file(path), path.parent_path(), hasher);
+  add_subroutines(called_names(hasher.file(path)), subroutines, hasher);
+  add_subroutines(subroutines.names, subroutines, hasher);
   return hasher.digest();
 }
 

@@ -166,6 +166,17 @@ std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinPro
   return std::move(begun.value());
 }
 
+/// Where there is none to be measured.
+void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
+  if (!stock.sheet() && !stock.turned()) return;
+  Diagnostic d;
+  d.severity = Severity::kWarning;
+  d.message = stock.sheet()
+                  ? tr("--engagement: a sheet is cut by no milling tool; nothing is measured")
+                  : tr("--engagement: the workpiece turns; it is measured of milling tools alone");
+  diagnostics.push_back(std::move(d));
+}
+
 std::span<const CutLabel> labels_in(const Session& session) {
   return session.cut_labels() ? session.cut_labels()->all() : std::span<const CutLabel>();
 }
@@ -213,6 +224,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     if (!table) session.reset();
   }
   if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();
+  if (session && request.engagement)
+    session->log_engagement(!request.outputs.engagement_png.empty());
   std::optional<RunCurve> curve;
   if (session && (request.outputs.wants_page() || request.keeps_page)) {
     session->keep_cut_labels();
@@ -230,6 +243,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     outcome = session->run(stop.get_token(), diagnostics);
   }
   rename_stdin(kept, session->report(), diagnostics);
+  if (request.engagement && session->stock()) doubt_engagement(*session->stock(), diagnostics);
   Compared compared;
   PageFacts page;
   if (!has_error(diagnostics) && design) {

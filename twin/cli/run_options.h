@@ -28,6 +28,7 @@ struct RunRequest {
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
   CompareRequest compare;        ///< the finished part with its design
+  bool engagement = false;       ///< how tools are engaged is measured
   bool quiet = false;
   bool verbose = false;
   bool keeps_moves = false;            ///< for a comparison that comes after another setup

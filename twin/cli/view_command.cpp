@@ -171,7 +171,8 @@ Arguments again_in_window(Arguments arguments) {
   arguments.command = kView;
   WrittenOptions& options = arguments.options;
   for (const auto& [output, path] : OutputPaths{}.named()) options.clear(output);
-  for (const char* const option : {"--mesh-tolerance", "--view", "--verbose", "--finding-png"}) {
+  for (const char* const option :
+       {"--mesh-tolerance", "--view", "--verbose", "--finding-png", "--rest", "--engagement"}) {
     options.clear(option);
   }
   options.set_flag("--quiet");

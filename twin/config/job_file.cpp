@@ -36,9 +36,9 @@ constexpr std::string_view kOwnKeys[] = {"program", "name",   "flip",   "rotate"
                                          "zero",    "points", "time_s", "work_offset"};
 /// What the job says for all of its setups, or a command line for itself.
 constexpr std::string_view kNotOfSetups[] = {
-    "--compare", "--compare-at", "--compare-fit", "--compare-unit", "--tolerance",
-    "--units",   "--section",    "--stock",       "--config",       "--tool",
-    "--tools",   "--fixture",    "--cell",        "--work-offset",  "--set"};
+    "--compare", "--compare-at", "--compare-fit", "--compare-unit", "--tolerance", "--rest",
+    "--units",   "--section",    "--stock",       "--config",       "--tool",      "--tools",
+    "--fixture", "--cell",       "--work-offset", "--set"};
 
 std::string key_of(std::string_view option) {
   std::string key(option.substr(2));

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <mutex>
+#include <memory>
 #include <thread>
 #include <unordered_map>
 #include <utility>
 
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
+#include "stock/sparse_surface.h"
 #include "stock/turning/turned_surface.h"
 #include "twin/compare/patch_deviation.h"
 #include "twin/compare/triangle_tree.h"
@@ -111,10 +112,11 @@ class Sample {
   explicit Sample(std::size_t tiles)
       : each_(std::max<std::size_t>(1, kMeasured / std::max<std::size_t>(1, tiles))) {}
 
-  void take(const PageSurface& part, std::vector<glm::vec3>& into) const {
-    const std::size_t step = std::max<std::size_t>(1, part.indices.size() / each_);
-    for (std::size_t i = 0; i < part.indices.size(); i += step)
-      into.push_back(part.corners[part.indices[i]]);
+  void take(const MeshPatch& patch, std::vector<glm::vec3>& into) const {
+    const auto seen = patch.surface_indices();
+    const std::size_t step = std::max<std::size_t>(1, seen.size() / each_);
+    for (std::size_t i = 0; i < seen.size(); i += step)
+      into.push_back(patch.vertices[seen[i]].position_mm);
   }
 
  private:
@@ -128,42 +130,62 @@ struct Tiles {
   std::size_t full_triangles = 0;
 };
 
+unsigned processors() { return std::clamp(std::thread::hardware_concurrency(), 1u, 16u); }
+
+/// Null: the model has none.
+std::unique_ptr<SparseSurface> sparse_surface_of(const StockModel& stock,
+                                                 const PageMeshOptions& options) {
+  const auto* const source = dynamic_cast<const SparseSource*>(&stock.bare());
+  if (source == nullptr) return nullptr;
+  SparseOptions wanted;
+  wanted.most_mm = options.free_deviation_mm;
+  wanted.threads = static_cast<int>(processors());
+  if (options.group_of) {
+    wanted.group_of = [&options](std::uint32_t move) -> std::uint32_t {
+      return move == MeshPatch::kNotCut ? kNoGroup : options.group_of(move);
+    };
+  }
+  return source->sparse_surface(wanted);
+}
+
 Tiles take_tiles(const StockModel& stock, const PageMeshOptions& options) {
   constexpr std::size_t kAtATime = 64;
   constexpr double kOfCell = 0.1;
+  const double cell_mm = detail_cell_mm(stock);
   Tiles out;
   Joiner joiner(out.whole);
   const std::size_t count = stock.tile_count();
   const Sample sample(count);
   const std::size_t enough = 2 * options.most_triangles / std::max<std::size_t>(1, count);
-  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+  const std::unique_ptr<SparseSurface> sparse = sparse_surface_of(stock, options);
+  // A model is read by one thread: some work things out when they are first asked.
+  std::vector<std::unique_ptr<StockModel>> copies;
+  for (unsigned i = 1; i < processors(); ++i) copies.push_back(stock.snapshot());
   for (std::size_t begin = 0; begin < count; begin += kAtATime) {
     const std::size_t end = std::min(count, begin + kAtATime);
     std::vector<PageSurface> parts(end - begin);
     std::vector<std::vector<glm::vec3>> samples(end - begin);
     std::vector<std::size_t> full(end - begin);
     std::atomic<std::size_t> next{begin};
-    const auto work = [&] {
-      for (std::size_t tile; (tile = next++) < end;) {
-        PageSurface& part = parts[tile - begin];
-        part = surface_of(stock.patch(static_cast<std::uint32_t>(tile), 0), detail_cell_mm(stock),
-                          options);
-        full[tile - begin] = part.indices.size() / 3;
-        sample.take(part, samples[tile - begin]);
-        PageSurface joined;
-        Joiner(joined).add(part);
-        part = std::move(joined);
+    const auto work = [&](const StockModel& model) {
+      for (std::size_t at; (at = next++) < end;) {
+        const auto tile = static_cast<std::uint32_t>(at);
+        MeshPatch patch = model.patch(tile, 0);
+        full[at - begin] = patch.surface_indices().size() / 3;
+        sample.take(patch, samples[at - begin]);
+        if (sparse) patch = sparse->patch(tile);
+        PageSurface& part = parts[at - begin];
+        Joiner(part).add(surface_of(std::move(patch), cell_mm, options));
         // What would go later goes here, where all processors work: as far as a tenth of a cell.
         for (double most_mm = options.free_deviation_mm;; most_mm *= 2) {
           simplify_surface(part, {.most_mm = most_mm, .keeps_rim = true});
-          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * detail_cell_mm(stock))
-            break;
+          if (part.indices.size() / 3 <= enough || 2 * most_mm > kOfCell * cell_mm) break;
         }
       }
     };
     std::vector<std::jthread> helpers;
-    for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work);
-    work();
+    for (const auto& copy : copies) helpers.emplace_back([&] { work(*copy); });
+    work(stock);
     helpers.clear();
     for (std::size_t i = 0; i < parts.size(); ++i) {
       joiner.add(parts[i]);

@@ -15,6 +15,7 @@
 #include "twin/report/compare_report.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -193,10 +194,11 @@ std::string collision_section(const Report& report, LengthUnit units) {
   for (const CollisionPair& pair : report.collisions) {
     const std::string what =
         pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
-    const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
-                                  : pair.least_clearance_mm
-                                      ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
-                                      : std::string(tr("not measured"));
+    const std::string clearance =
+        pair.contacts > 0         ? std::string(tr("touches"))
+        : pair.least_clearance_mm ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
+        : pair.clearance_above_mm ? trf("above {:.2f} mm", *pair.clearance_above_mm)
+                                  : std::string(tr("not measured"));
     out.row({what, pair.other.empty() ? std::string(tr("workpiece")) : pair.other,
              fmt::format("{}", pair.contacts), clearance,
              pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});
@@ -208,6 +210,7 @@ std::string collision_section(const Report& report, LengthUnit units) {
 std::string compare_section(const Report& report, LengthUnit units) {
   SectionText out(tr("Against the design"), units);
   if (report.comparison) out.pre(compare_text(*report.comparison));
+  if (report.rest) out.pre(rest_text(*report.rest));
   return std::move(out).done();
 }
 

@@ -38,7 +38,7 @@ class Simplifier {
       : surface_(surface),
         places_(surface.corners.begin(), surface.corners.end()),
         quadrics_(surface.corners.size()),
-        stays_(surface.corners.size(), false),
+        stays_(surface.corners.size(), 0),
         stamps_(surface.corners.size(), 0) {
     // Near the origin sums of squares keep their digits.
     Box box;
@@ -61,18 +61,24 @@ class Simplifier {
 
   std::size_t count() const { return surface_.indices.size() / 3; }
 
-  /// Draws together what it can, once over all edges; how many triangles went.
-  std::size_t pass(double most_mm, std::size_t least_triangles) {
+  /// Draws together what it can, once over all edges; how many triangles went. `again`: as far as
+  /// the pass before, so that only what has changed since may go now.
+  std::size_t pass(double most_mm, std::size_t least_triangles, bool again) {
     const std::size_t before = count();
     std::size_t left = before;
     const double most2 = most_mm * most_mm;
-    moved_.assign(places_.size(), false);
+    moved_.assign(places_.size(), 0);
+    if (again)
+      std::swap(changed_, looked_at_);
+    else
+      looked_at_.assign(places_.size(), 1);
+    changed_.assign(places_.size(), 0);
     for (std::size_t t = 0; t < before && left > least_triangles; ++t) {
       for (std::size_t k = 0; k < 3 && !is_gone(t); ++k) {
         const std::uint32_t a = surface_.indices[3 * t + k],
                             b = surface_.indices[3 * t + (k + 1) % 3];
         // Its other triangle has the edge the other way round.
-        if (a > b || moved_[a] || moved_[b]) continue;
+        if (a > b || moved_[a] || moved_[b] || !(looked_at_[a] | looked_at_[b])) continue;
         if (may_go(a, b, most2)) {
           left -= collapse(a, b);
         } else if (may_go(b, a, most2)) {
@@ -140,7 +146,7 @@ class Simplifier {
             const auto corners = corners_of(other);
             return std::ranges::find(corners, b) != corners.end();
           });
-          if (shared != 2) stays_[a] = stays_[b] = true;
+          if (shared != 2) stays_[a] = stays_[b] = 1;
         }
       }
     }
@@ -199,6 +205,7 @@ class Simplifier {
     for (const std::uint32_t t : around(from)) {
       if (is_gone(t)) continue;
       const auto corners = std::span(surface_.indices).subspan(3 * std::size_t{t}, 3);
+      for (const std::uint32_t corner : corners) changed_[corner] = 1;
       if (std::ranges::find(corners, to) != corners.end()) {
         corners[0] = kGone;
         ++gone;
@@ -207,7 +214,7 @@ class Simplifier {
       }
     }
     quadrics_[to].add(quadrics_[from]);
-    moved_[from] = moved_[to] = true;
+    moved_[from] = moved_[to] = changed_[to] = 1;
     return gone;
   }
 
@@ -225,7 +232,10 @@ class Simplifier {
   PageSurface& surface_;
   std::vector<Vec3> places_;
   std::vector<Quadric> quadrics_;
-  std::vector<bool> stays_, moved_;
+  // By corner, yes or no: a byte each, which is quicker to read than a bit.
+  std::vector<char> stays_, moved_;
+  std::vector<char> changed_;    ///< what lies about it, in this pass
+  std::vector<char> looked_at_;  ///< in this pass: it has changed in the one before
   std::vector<std::uint32_t> first_, around_, stamps_;
   std::uint32_t stamp_ = 0;
 };
@@ -236,10 +246,11 @@ void simplify_surface(PageSurface& surface, const SimplifyOptions& options) {
   Simplifier simplifier(surface, options.keeps_rim);
   // From fine to coarse, so that what costs least goes first; each as long as it is worth it.
   for (const double share : {0.2, 1.0}) {
-    for (;;) {
+    for (bool again = false;; again = true) {
       if (simplifier.count() <= options.least_triangles) return;
       const std::size_t before = simplifier.count();
-      if (simplifier.pass(share * options.most_mm, options.least_triangles) < before / 16 + 1)
+      if (simplifier.pass(share * options.most_mm, options.least_triangles, again) <
+          before / 16 + 1)
         break;
     }
   }

@@ -41,6 +41,7 @@ inline constexpr std::size_t kShownResults = 5'000;
 /// left out, here or beyond FindingLog::kMaxKept, is told as a notification. Each with its file
 /// (relative to `folder` where it lies below it, else absolute), its line (the first, of what is
 /// about the program as a whole), and properties position_mm, depth_mm, tool, time_s, bodies.
+/// One in a subroutine has the lines that call it as relatedLocations (call_sites.h).
 /// partialFingerprints "kerf/v1" depend on id, file, tool and the words of the line, not on its
 /// number: they stay where lines move or are numbered anew. Reads the programs for that.
 /// `folder`: absolute; what %SRCROOT% stands for.

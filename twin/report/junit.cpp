@@ -39,12 +39,18 @@ struct Check {
   std::size_t errors = 0;
 };
 
-void add(Check& check, const Finding& finding, const Diagnostic& said) {
+/// `program`: of which the lines are; of another file it is named.
+void add(Check& check, const Finding& finding, const Diagnostic& said, const std::string& program) {
   std::string& text = finding.severity == Severity::kError ? check.failure : check.output;
   text += to_string(said);
   if (finding.severity != Severity::kError) return;
   if (check.errors++ > 0) return;
-  check.headline = said.line > 0 ? trf("line {}: {}", said.line, said.message) : said.message;
+  if (said.line <= 0)
+    check.headline = said.message;
+  else if (said.file.empty() || said.file == program)
+    check.headline = trf("line {}: {}", said.line, said.message);
+  else
+    check.headline = fmt::format("{}:{}: {}", said.file, said.line, said.message);
   check.type = to_string(finding.id);
 }
 
@@ -105,7 +111,7 @@ std::string suite_of(const ListedProgram& program, Sums& all) {
   std::array<Check, kFindingTopics> checks;
   for (const Finding& finding : program.findings.kept()) {
     add(checks[static_cast<std::size_t>(row_of(finding.id).topic)], finding,
-        diagnostic_of(finding, program.files));
+        diagnostic_of(finding, program.files), program.path);
   }
   Sums sums;
   sums.time_s = program.total_s;

@@ -7,8 +7,10 @@
 
 #include "base/translate.h"
 #include "twin/report/compare_report.h"
+#include "twin/report/engagement_report.h"
 #include "twin/report/report.h"
 #include "twin/report/report_words.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -295,6 +297,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
+  if (report.rest) out += rest_text(*report.rest);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);
@@ -332,7 +335,9 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
+  if (report.rest) out += rest_text(*report.rest);
   add_tools(out, report.tools);
+  if (report.engagement) out += engagement_text(*report.engagement);
   add_clearances(out, report);
   add_unchecked(out, report);
   if (report.lengths_all_zero) {

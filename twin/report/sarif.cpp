@@ -13,6 +13,7 @@
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
+#include "twin/report/call_sites.h"
 #include "twin/report/finding_lists.h"
 
 namespace kerf {
@@ -117,6 +118,7 @@ class NamedLines {
 struct Listed {
   const Finding* finding;
   Diagnostic said;
+  const ListedProgram* program;
 };
 
 /// All of them, or as many of the worst as may be, in their order.
@@ -124,7 +126,7 @@ std::vector<Listed> worst_of(std::span<const ListedProgram> programs, std::size_
   std::vector<Listed> all;
   for (const ListedProgram& program : programs) {
     for (const Finding& finding : program.findings.kept()) {
-      all.push_back({&finding, diagnostic_of(finding, program.files)});
+      all.push_back({&finding, diagnostic_of(finding, program.files), &program});
       if (all.back().said.file.empty()) all.back().said.file = program.path;
     }
   }
@@ -155,6 +157,18 @@ Json properties_of(const Finding& finding) {
   if (finding.tool) out["tool"] = *finding.tool;
   if (finding.time_s) out["time_s"] = rounded(*finding.time_s);
   if (finding.has_bodies()) out["bodies"] = finding.bodies;
+  return out;
+}
+
+/// Lines of subroutines are little without those that call them.
+Json related_locations(const std::vector<CallSite>& callers, const std::string& folder) {
+  Json out = Json::array();
+  for (const CallSite& caller : callers) {
+    Json place{{"artifactLocation", artifact_of(caller.file, folder)},
+               {"region", {{"startLine", caller.line}}}};
+    out.push_back({{"physicalLocation", std::move(place)},
+                   {"message", {{"text", trf("o<{}> is called here", caller.name)}}}});
+  }
   return out;
 }
 
@@ -232,11 +246,15 @@ std::string sarif_text(std::span<const ListedProgram> programs, const std::strin
   std::map<FindingId, std::size_t> rules;
   Json rule_list = Json::array(), results = Json::array();
   std::map<std::string, int> seen;
+  CallSites call_sites;
   for (const Listed& one : listed) {
     const auto [rule, is_new] = rules.try_emplace(one.finding->id, rules.size());
     if (is_new) rule_list.push_back(rule_of(row_of(one.finding->id)));
     results.push_back(
         result_of(one, rule->second, folder, lines.at(one.said.file, one.said.line), seen));
+    const std::vector<CallSite> callers =
+        call_sites.of(one.program->files, one.said.file, one.said.line);
+    if (!callers.empty()) results.back()["relatedLocations"] = related_locations(callers, folder);
   }
   Json driver;
   driver["name"] = "kerf";

@@ -207,6 +207,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   stage.stop_by(stop);
   if (!recorders_.empty()) stage.record_by(recorders_);
   if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
+  if (engagement_) stage.log_engagement(*engagement_);
   if (labels_ && !front_.is_sheet()) {
     front_.stock.stock->keep_cut_ids(true);
     stage.label_by(*labels_);
@@ -251,6 +252,7 @@ void Session::complete_report(const CutStage& stage) {
   report_.tools = stage.tools();
   report_.collisions = stage.process().collisions();
   report_.pieces = stage.process().loose();
+  if (engagement_) report_.engagement = engagement_->result();
   report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
   const auto axes = static_cast<unsigned>(options_.program.machine.length_axes);

@@ -7,6 +7,7 @@
 #include "tests/base/temporary_folder.h"
 #include "twin/batch/batch_pages.h"
 #include "twin/batch/batch_result.h"
+#include "twin/batch/called_files.h"
 #include "twin/batch/content_hash.h"
 #include "twin/batch/option_table.h"
 #include "twin/batch/result_log.h"
@@ -171,6 +172,41 @@ TEST_F(BatchParts, TheHashKnowsWhatARunDependsOn) {
   }
   write("bystander.ngc");
   EXPECT_EQ(content_hash(program, words), seen.back());
+}
+
+TEST_F(BatchParts, SubroutinesOfOtherFoldersAndRemapsChangeTheHash) {
+  const std::string program = write("parts/a.ngc", "N10 o <Drill> call [1]\nm98 p100\nM2\n");
+  write("subs/drill.ngc", "o<drill> sub\n/ o<deep> call\no<drill> endsub\n");
+  write("more/deep.ngc", "o<deep> sub\no<deep> endsub\n");
+  write("more/100.ngc", "o100 sub\no100 endsub\n");
+  write("more/change.ngc", "o<change> sub\no<change> endsub\n");
+  write("more/other.ngc", "o<other> sub\no<other> endsub\n");
+  write("common.inc", "[EMCIO]\nTOOL_TABLE = tool.tbl\n");
+  write("tool.tbl", "T1 P1 D6\n");
+  write("mill.ini",
+        "#INCLUDE common.inc\n[RS274NGC]\nSUBROUTINE_PATH = subs:more\n"
+        "REMAP = M6 modalgroup=6 ngc=change\n");
+  const Texts words{"--config=" + write("kerf.yaml", "machine:\n  ini: mill.ini\n")};
+  Texts seen{content_hash(program, words)};
+  EXPECT_EQ(content_hash(program, {"--ini=" + at("mill.ini")}).size(), 32U);
+  for (const char* name : {"subs/drill.ngc", "more/deep.ngc", "more/100.ngc", "more/change.ngc",
+                           "common.inc", "tool.tbl", "mill.ini"}) {
+    std::ofstream(at(name), std::ios::app) << "(another)\n";
+    const std::string now = content_hash(program, words);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), now), 0) << name;
+    seen.push_back(now);
+  }
+  // What nobody calls does not count; what is called and was not there yet does.
+  write("more/other.ngc", "o<other> sub\nG4 P1\no<other> endsub\n");
+  EXPECT_EQ(content_hash(program, words), seen.back());
+  write("subs/100.ngc", "o100 sub\no100 endsub\n");
+  EXPECT_NE(content_hash(program, words), seen.back());
+}
+
+TEST_F(BatchParts, CallsAreFoundAsLinuxCncReadsThem) {
+  EXPECT_EQ(called_names("o<a> call\nO <Big One> CALL [1] [2]\n(o<b> call) ; o<c> call\n"
+                         "o<d> sub\n/N5 o7 call\nG1 M98 P1001 L2\no[#1] call\nM98\n"),
+            (Texts{"a", "BigOne", "bigone", "7", "1001"}));
 }
 
 TEST_F(BatchParts, ListsOfRunsAreJoinedToTheListOfAll) {

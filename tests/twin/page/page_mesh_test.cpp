@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "stock/blank.h"
+#include "stock/cutter/insert_shape.h"
 #include "stock/cutter/shape_spec.h"
+#include "stock/turning/turning_stock.h"
 #include "stock/zmap/zmap.h"
 
 namespace kerf {
@@ -144,6 +146,27 @@ TEST(PageMesh, SaysWhoCut) {
   EXPECT_NEAR(area[1], 20 * 6 + kPi * 9 + 2 * (40 + kPi * 6), 60);
   // The rest of the top, the sides and the underside are the blank's own.
   EXPECT_GT(area[kNoGroup], 2400);
+}
+
+/// The sections of a thread are worked out when the first patch asks for them: in no two threads of
+/// one model.
+TEST(PageMesh, AThreadOnABarIsTheSameEachTime) {
+  PageMesh first;
+  for (int round = 0; round < 12; ++round) {
+    TurningStock bar(*TurnedPart::create(bar_profile(-64, 0, 40)));
+    const Cutter tool = Cutter::from_insert("thread:60", *thread_insert({kPi / 3, 0.2, 3, 6}));
+    CutMove move;
+    move.from_mm = {18.8, 0, 5};
+    move.to_mm = {18.8, 0, -60};
+    move.lead_mm = 2.5;
+    std::vector<CutReport> reports;
+    bar.cut(tool, std::array{move}, reports);
+    const PageMesh mesh = page_mesh(bar);
+    ASSERT_GT(mesh.triangles.size(), 3000u);
+    if (round == 0) first = mesh;
+    ASSERT_EQ(mesh.triangles, first.triangles) << round;
+    ASSERT_EQ(mesh.places, first.places) << round;
+  }
 }
 
 TEST(PageMesh, HasNothingOfWhatIsGone) {

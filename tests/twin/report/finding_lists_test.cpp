@@ -103,6 +103,60 @@ TEST(Sarif, FingerprintsGoByTheWordsOfTheLine) {
   EXPECT_NE(run["results"][0]["partialFingerprints"], run["results"][1]["partialFingerprints"]);
 }
 
+/// main.ngc calls drill.ngc in its lines 2 and 4, which calls deep.ngc, which a subroutine in
+/// main.ngc itself calls as well.
+TEST(Sarif, WhatIsInASubroutineHasTheLinesThatCallIt) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder.path() + "/" + name) << text;
+    return folder.path() + "/" + name;
+  };
+  const std::string program = write("main.ngc",
+                                    "o<own> sub\nN2 O<Drill> call\no<own> endsub\n"
+                                    "o<drill> call (twice)\no<own> call\n(o<drill> call)\nM2\n");
+  const std::string drill =
+      write("drill.ngc", "o<drill> sub\nG1 Z-1\no<deep> call\no<drill> endsub\n");
+  const std::string deep = write("deep.ngc", "o<deep> sub\nG1 Z-2\no<deep> endsub\n");
+  ListedProgram listed;
+  listed.path = program;
+  listed.files = {program, drill, deep};
+  for (const auto& [file, line] : {std::pair(0u, 5u), std::pair(1u, 2u), std::pair(2u, 2u)}) {
+    Finding f = finding(FindingId::kRapidContact, Severity::kError, line);
+    f.source.file = file;
+    listed.findings.add(f);
+  }
+  const Json log = Json::parse(sarif_text({&listed, 1}, "1", folder.path()));
+  const Json& results = log["runs"][0]["results"];
+  ASSERT_EQ(results.size(), 3u);
+  const auto callers = [&](std::size_t n) {
+    std::vector<std::string> out;
+    if (!results[n].contains("relatedLocations")) return out;
+    for (const Json& at : results[n]["relatedLocations"]) {
+      const Json& place = at["physicalLocation"];
+      out.push_back(place["artifactLocation"]["uri"].get<std::string>() + ":" +
+                    std::to_string(place["region"]["startLine"].get<int>()) + " " +
+                    at["message"]["text"].get<std::string>());
+    }
+    return out;
+  };
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(callers(0), Texts{});  // in the program itself
+  EXPECT_EQ(callers(1),
+            (Texts{"main.ngc:2 o<Drill> is called here", "main.ngc:4 o<drill> is called here",
+                   "main.ngc:5 o<own> is called here"}));
+  EXPECT_EQ(callers(2),
+            (Texts{"drill.ngc:3 o<deep> is called here", "main.ngc:2 o<Drill> is called here",
+                   "main.ngc:4 o<drill> is called here", "main.ngc:5 o<own> is called here"}));
+  // Of another file a headline says which.
+  for (bool& looked : listed.looked_at) looked = true;
+  ListedProgram in_drill = listed;
+  in_drill.findings = {};
+  Finding f = finding(FindingId::kRapidContact, Severity::kError, 2);
+  f.source.file = 1;
+  in_drill.findings.add(f);
+  EXPECT_NE(junit_text({&in_drill, 1}, "1").find("message=\"" + drill + ":2: "), std::string::npos);
+}
+
 TEST(Junit, TextIsWhatXmlTakes) {
   EXPECT_EQ(xml_text("a<b>&\"c\""), "a&lt;b&gt;&amp;&quot;c&quot;");
   EXPECT_EQ(xml_text("\xC3\xA4 \xE2\x82\xAC \xF0\x9F\x98\x80"),

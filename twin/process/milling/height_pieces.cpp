@@ -14,11 +14,13 @@
 namespace kerf {
 namespace {
 
+constexpr float kNowhere = -std::numeric_limits<float>::infinity();
+
 /// A piece that is loose, with its heights as they were when it was looked at last.
 struct LooseCells {
   std::size_t number = 0;  ///< in the ledger
   int i0 = 0, j0 = 0, nx = 0, ny = 0;
-  std::vector<float> heights_mm;  ///< of its box; the floor where it is not
+  std::vector<float> heights_mm;  ///< of its box; kNowhere where it is not
   double top_mm = 0;
   double way_mm = 0;  ///< the tool has gone since it came free
 
@@ -67,7 +69,7 @@ class HeightPieces final : public PieceFinder {
       }
       const int i = 64 * cells[0].word + std::countr_zero(cells[0].bits), j = cells[0].row;
       for (LooseCells& piece : loose_) {
-        if (piece.has(i, j) && above_floor(at(piece, i, j)) > 0)
+        if (piece.has(i, j) && at(piece, i, j) != kNowhere)
           site_.ledger.add_left(piece.number, body);
       }
     }
@@ -79,6 +81,7 @@ class HeightPieces final : public PieceFinder {
   /// Has come free on this move.
   struct Freed {
     CellSet cells;
+    PieceBody body;  ///< as it was then
     Vec3 tip_mm{0};
     double share = 0;         ///< of the move, until then
     double way_after_mm = 0;  ///< of the same move
@@ -167,10 +170,11 @@ class HeightPieces final : public PieceFinder {
       std::size_t largest = 0;
       double most = -1;
       bool any_gripped = false;
+      std::vector<PieceBody> bodies;
       for (std::size_t n = 0; n < split.bodies.size(); ++n) {
-        const double volume = measured(*heights, split.bodies[n]).volume_mm3;
-        if (volume > most) {
-          most = volume;
+        bodies.push_back(measured(*heights, split.bodies[n]));
+        if (bodies[n].volume_mm3 > most) {
+          most = bodies[n].volume_mm3;
           largest = n;
         }
         any_gripped = any_gripped || grips_.meets(split.bodies[n]);
@@ -179,6 +183,7 @@ class HeightPieces final : public PieceFinder {
         const bool is_held = any_gripped ? grips_.meets(split.bodies[n]) : n == largest;
         if (is_held) continue;
         Freed piece;
+        piece.body = bodies[n];
         piece.tip_mm = split.tip_mm;
         piece.share = split.share;
         piece.way_after_mm = move_mm - split.way_mm;
@@ -210,6 +215,8 @@ class HeightPieces final : public PieceFinder {
     LoosePiece piece;
     piece.body = measured(heights, freed.cells);
     if (piece.body.volume_mm3 + freed.cut_after_mm3 < kLeastPiece_mm3) return;
+    // Of one that the same move has cut up there is nothing to show but what it was.
+    if (piece.body.volume_mm3 < kLeastPiece_mm3) piece.body = freed.body;
     piece.source = by.source;
     piece.time_s = by.start_s + freed.share * by.duration_s;
     piece.tool = by.tool;
@@ -226,7 +233,7 @@ class HeightPieces final : public PieceFinder {
       cells.ny = static_cast<int>(std::lround(piece.body.box_mm.size().y / cell_.y));
     }
     cells.heights_mm.assign(static_cast<std::size_t>(cells.nx) * static_cast<std::size_t>(cells.ny),
-                            heights.floor_mm());
+                            kNowhere);
     each_cell(freed.cells, [&](int i, int j) { at(cells, i, j) = heights.height(i, j); });
     loose_.push_back(std::move(cells));
     if (freed.cut_after_mm3 > 0)
@@ -281,7 +288,7 @@ class HeightPieces final : public PieceFinder {
       for (int j = j0; j <= j1; ++j) {
         for (int i = i0; i <= i1; ++i) {
           float& before = at(piece, i, j);
-          if (above_floor(before) <= 0) continue;
+          if (before == kNowhere) continue;
           const float now = heights.height(i, j);
           if (now >= before) continue;
           sum += static_cast<double>(before - now);
