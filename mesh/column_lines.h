@@ -25,13 +25,27 @@ struct ColumnGrid {
   }
 };
 
+/// Beside where they are all lines count by so little that it only tells where one meets an edge:
+/// towards `x` and `y` (1 or -1), and by far more along the one than along the other (simulation of
+/// simplicity, H. Edelsbrunner, E. Muecke, 1990).
+struct LineNudge {
+  int x = -1, y = 1;
+  bool is_more_along_y = true;
+
+  /// Whether a line that meets an edge of this way counts as left of it.
+  bool is_left_of(double way_x, double way_y) const {
+    const bool by_y = is_more_along_y ? way_x != 0 : way_y == 0;
+    return by_y ? way_x * y > 0 : way_y * x < 0;
+  }
+};
+
 /// An edge of a triangle seen from above, from the lesser end to the greater one whatever triangle
 /// it is of.
 struct ColumnEdge {
   double x, y, way_x, way_y;
-  bool is_turned;
+  bool is_turned, is_left_if_met;
 
-  ColumnEdge(const glm::vec3& a, const glm::vec3& b) {
+  ColumnEdge(const glm::vec3& a, const glm::vec3& b, const LineNudge& nudge) {
     is_turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
     const glm::vec3& from = is_turned ? b : a;
     const glm::vec3& to = is_turned ? a : b;
@@ -39,21 +53,23 @@ struct ColumnEdge {
     y = static_cast<double>(from.y);
     way_x = static_cast<double>(to.x) - x;
     way_y = static_cast<double>(to.y) - y;
+    is_left_if_met = nudge.is_left_of(way_x, way_y);
   }
   /// The point lies left of the way from a to b.
   bool has_left(double px, double py) const {
-    return (way_x * (py - y) - way_y * (px - x) >= 0) != is_turned;
+    const double side = way_x * (py - y) - way_y * (px - x);
+    return (side != 0 ? side > 0 : is_left_if_met) != is_turned;
   }
 };
 
 /// Calls take(cell, z, up) for each line that meets the triangle: `up` is 1 where the triangle,
 /// counter-clockwise, is seen from above, and -1 from below. A line through an edge or a corner of
-/// triangles meets each surface once: points on the line between two triangles count as a little to
-/// its left (simulation of simplicity, H. Edelsbrunner, E. Muecke, 1990), by products that come out
-/// the same for both. So crossings are those of a closed mesh, however it lies on the grid.
+/// triangles meets each surface once: it counts as a little beside where it is (`nudge`), by
+/// products that come out the same for both triangles of an edge. So crossings are those of a
+/// closed mesh, however it lies on the grid.
 template <class Take>
 void each_column_line(const std::array<glm::vec3, 3>& corners, const ColumnGrid& grid,
-                      const Take& take) {
+                      const Take& take, const LineNudge& nudge = {}) {
   const Vec3 a(corners[0]), b(corners[1]), c(corners[2]);
   const double turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (turn == 0) return;  // seen from its side: lines run along it or past it
@@ -64,9 +80,9 @@ void each_column_line(const std::array<glm::vec3, 3>& corners, const ColumnGrid&
   const int first_row = static_cast<int>(std::clamp<double>(std::floor(row_of(low_y)), 0, grid.ny));
   const int last_row =
       static_cast<int>(std::clamp<double>(std::ceil(row_of(high_y)), -1, grid.ny - 1));
-  const std::array<ColumnEdge, 3> edges{ColumnEdge(corners[0], corners[1]),
-                                        ColumnEdge(corners[1], corners[2]),
-                                        ColumnEdge(corners[2], corners[0])};
+  const std::array<ColumnEdge, 3> edges{ColumnEdge(corners[0], corners[1], nudge),
+                                        ColumnEdge(corners[1], corners[2], nudge),
+                                        ColumnEdge(corners[2], corners[0], nudge)};
   const bool is_left_in = turn > 0;
   const double slope_x = ((b.z - a.z) * (c.y - a.y) - (c.z - a.z) * (b.y - a.y)) / turn;
   const double slope_y = ((c.z - a.z) * (b.x - a.x) - (b.z - a.z) * (c.x - a.x)) / turn;

@@ -12,21 +12,28 @@ struct Crossing {
   int turn;  ///< 1: the line enters, -1: it leaves
 };
 
+/// Towards -X, far more towards +Y, and far more than that towards +Z, as each axis sees it: y z,
+/// z x, x y.
+constexpr LineNudge kNudges[3] = {{1, 1, true}, {1, -1, false}, {-1, 1, true}};
+
 }  // namespace
 
-MeshLines::MeshLines(const MeshBody& body, int axis, const ColumnGrid& grid)
+MeshLines::MeshLines(const TriangleMesh& mesh, int axis, const ColumnGrid& grid)
     : first_(grid.size() + 1, 0) {
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   std::vector<Crossing> found;
-  for (std::uint32_t t = 0; t < body.mesh.triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<glm::vec3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      const glm::vec3& p = body.mesh.positions_mm[body.mesh.triangles[t][k]];
+      const glm::vec3& p = mesh.positions_mm[mesh.triangles[t][k]];
       corners[k] = glm::vec3(p[x], p[y], p[axis]);
     }
-    each_column_line(corners, grid, [&](std::size_t line, float at, int up) {
-      found.push_back({static_cast<std::uint32_t>(line), t, at, -up});
-    });
+    each_column_line(
+        corners, grid,
+        [&](std::size_t line, float at, int up) {
+          found.push_back({static_cast<std::uint32_t>(line), t, at, -up});
+        },
+        kNudges[axis]);
   }
   std::vector<std::size_t> begin(grid.size() + 1, 0);
   for (const Crossing& c : found) ++begin[c.line + 1];

@@ -7,14 +7,19 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "mesh/smooth_skin.h"
 #include "mesh/surface_sides.h"
 
 namespace kerf {
 namespace {
 
-/// Triangles on a sphere are divided by the directions of their corners: some pieces come out that
-/// much larger than the mean.
-constexpr double kUneven = 1.8;
+/// Of a step, the sides of a triangle on a sphere: no point of it is farther from a corner than
+/// half a step then, by the circle that holds it.
+constexpr double kSide = 0.866;
+/// Cosines: normals at a corner that are farther from their middle, or two at an edge that are
+/// farther apart, span no triangles on a sphere that are sure to cover what lies between them; the
+/// whole sphere does.
+constexpr double kNearMiddle = 0.1, kMostTurn = -0.5;
 /// Directions that differ by less are one.
 constexpr double kSame = 1e-12;
 
@@ -24,11 +29,21 @@ class Grower {
       : body_(body),
         allowance_(allowance_mm),
         step_rad_(2 * std::acos(1 - std::min(1.0, kRounding_mm / allowance_mm))),
-        out_(body.mesh) {}
+        least_cosine_(std::cos(kSide * step_rad_)),
+        out_{body.mesh.positions_mm, {}} {}
 
   bool add_all() {
     find_normals();
-    for (std::size_t t = 0; t < normals_.size(); ++t) add_face(t);
+    skin_ = smooth_skin(body_.mesh, normals_, halves_, allowance_, kRounding_mm);
+    const auto base = static_cast<std::uint32_t>(out_.positions_mm.size());
+    out_.positions_mm.insert(out_.positions_mm.end(), skin_.outer_mm.begin(), skin_.outer_mm.end());
+    for (std::size_t t = 0; t < normals_.size(); ++t) {
+      const auto& c = body_.mesh.triangles[t];
+      // A prism's lower side is where the body ends: neither is left.
+      out_.triangles.push_back(
+          skin_.has_prism(t) ? std::array{base + c[0], base + c[1], base + c[2]} : c);
+      if (skin_.faces[t] != SmoothSkin::Face::kSkin) add_face(t);
+    }
     return add_edges() && add_corners();
   }
   TriangleMesh take() { return std::move(out_); }
@@ -116,13 +131,35 @@ class Grower {
     for (std::size_t begin = 0, end = 0; begin < halves_.size(); begin = end) {
       for (end = begin; end < halves_.size() && halves_[end].ends == halves_[begin].ends; ++end) {
       }
-      for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t k = i + 1; k < end; ++k)
-          if (halves_[i].is_rising != halves_[k].is_rising)
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t k = i + 1; k < end; ++k) {
+          if (halves_[i].is_rising == halves_[k].is_rising) continue;
+          add_walls(halves_[i].number, halves_[k].number);
+          if (!is_skin(halves_[i].number) || !is_skin(halves_[k].number))
             add_edge(halves_[i].number, halves_[k].number);
+        }
+      }
       if (!has_room()) return false;
     }
     return true;
+  }
+  bool is_skin(std::uint32_t half) const {
+    return skin_.faces[half / 3] == SmoothSkin::Face::kSkin;
+  }
+  /// Where of two triangles at an edge one has a prism.
+  void add_walls(std::uint32_t one, std::uint32_t other) {
+    if (skin_.has_prism(one / 3) == skin_.has_prism(other / 3)) return;
+    const std::uint32_t half = skin_.has_prism(one / 3) ? one : other;
+    const auto& c = body_.mesh.triangles[half / 3];
+    const auto base = static_cast<std::uint32_t>(body_.mesh.positions_mm.size());
+    const std::uint32_t a = c[half % 3], b = c[(half + 1) % 3];
+    if (a < b) {
+      out_.triangles.push_back({a, b, base + b});
+      out_.triangles.push_back({a, base + b, base + a});
+    } else {
+      out_.triangles.push_back({a, b, base + a});
+      out_.triangles.push_back({b, base + b, base + a});
+    }
   }
   void add_edge(std::uint32_t one, std::uint32_t other) {
     const auto& c = body_.mesh.triangles[one / 3];
@@ -163,47 +200,53 @@ class Grower {
   void add_corner(std::span<const Fan> fans, const Vec3& sum) {
     const double length = glm::length(sum);
     const Vec3 middle = length > kSame ? sum / length : Vec3(0, 0, 1);
-    double least = 1;
-    for (const Fan& fan : fans)
-      least = std::min({least, glm::dot(middle, fan.first), glm::dot(middle, fan.second),
-                        glm::dot(fan.first, fan.second)});
-    if (least < 0.1) return add_sphere(fans[0].corner);
-    const int parts = parts_of(std::acos(least));
-    for (const Fan& fan : fans) add_cap(fan.corner, {middle, fan.first, fan.second}, parts);
-  }
-  int parts_of(double angle) const {
-    return std::max(1, static_cast<int>(std::ceil(kUneven * angle / step_rad_)));
+    bool is_open = false;
+    for (const Fan& fan : fans) {
+      is_open = is_open || glm::dot(middle, fan.first) < kNearMiddle ||
+                glm::dot(middle, fan.second) < kNearMiddle ||
+                glm::dot(fan.first, fan.second) < kMostTurn;
+    }
+    if (is_open) return add_sphere(fans[0].corner);
+    for (const Fan& fan : fans) add_cap(fan.corner, {middle, fan.first, fan.second});
   }
   void add_sphere(std::uint32_t corner) {
-    const int parts = parts_of(kPi / 2);
     for (const double x : {-1.0, 1.0})
       for (const double y : {-1.0, 1.0})
         for (const double z : {-1.0, 1.0})
-          add_cap(corner, {Vec3(x, 0, 0), Vec3(0, y, 0), Vec3(0, 0, z)}, parts);
+          add_cap(corner, {Vec3(x, 0, 0), Vec3(0, y, 0), Vec3(0, 0, z)});
   }
-  /// The cone from a corner to a triangle on the sphere about it.
-  void add_cap(std::uint32_t corner, const std::array<Vec3, 3>& directions, int parts) {
-    const auto at = [&](int i, int j) {
-      const Vec3 d = static_cast<double>(parts - i - j) * directions[0] +
-                     static_cast<double>(i) * directions[1] +
-                     static_cast<double>(j) * directions[2];
-      return glm::vec3(out(corner, glm::normalize(d)));
-    };
-    const auto add = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-      add_piece({glm::vec3(position(corner)), a, b, c},
-                {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
-    };
-    for (int i = 0; i < parts; ++i) {
-      for (int j = 0; i + j < parts; ++j) {
-        add(at(i, j), at(i + 1, j), at(i, j + 1));
-        if (i + j + 1 < parts) add(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-      }
+  /// The cone from a corner to a triangle on the sphere about it, whose longest side is halved
+  /// until none is too long. Triangles that share a side halve it in the same places; of narrow
+  /// ones there are few.
+  void add_cap(std::uint32_t corner, const std::array<Vec3, 3>& directions) {
+    std::size_t longest = 0;
+    double least = 2;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double cosine = glm::dot(directions[k], directions[(k + 1) % 3]);
+      if (cosine >= least) continue;
+      least = cosine;
+      longest = k;
     }
+    if (least >= least_cosine_) {
+      add_piece({glm::vec3(position(corner)), glm::vec3(out(corner, directions[0])),
+                 glm::vec3(out(corner, directions[1])), glm::vec3(out(corner, directions[2]))},
+                {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+      return;
+    }
+    const std::size_t next = (longest + 1) % 3;
+    const Vec3 middle = glm::normalize(directions[longest] + directions[next]);
+    std::array<Vec3, 3> half = directions;
+    half[next] = middle;
+    add_cap(corner, half);
+    half = directions;
+    half[longest] = middle;
+    add_cap(corner, half);
   }
 
   const MeshBody& body_;
-  double allowance_, step_rad_;
+  double allowance_, step_rad_, least_cosine_;
   TriangleMesh out_;
+  SmoothSkin skin_;
   std::vector<Vec3> normals_;
   std::vector<HalfEdge> halves_;
   std::vector<Fan> fans_;
@@ -223,7 +266,8 @@ Result<MeshBody> grown(const MeshBody& body, double allowance_mm, const std::str
   out.mesh = grower.take();
   out.allowance_mm = allowance_mm;
   out.box_mm = {};
-  for (const glm::vec3& p : out.mesh.positions_mm) out.box_mm.extend(Vec3(p));
+  for (const auto& triangle : out.mesh.triangles)
+    for (const std::uint32_t n : triangle) out.box_mm.extend(Vec3(out.mesh.positions_mm[n]));
   return out;
 }
 

@@ -13,10 +13,11 @@ namespace kerf {
 /// and corners that stand out become round, those that lie deep stay sharp. Nowhere more, and at
 /// the round ones less by no more than kRounding_mm.
 ///
-/// Made of the body and of a convex piece on each face, edge and corner, which overlap: some 30
-/// triangles for each of a smooth mesh, more at edges. What the body says of its volume and of what
-/// leans over stays that of what was grown. Error, in the name of `name`: there would be more than
-/// `kMostGrown` triangles.
+/// Where the surface is smooth its triangles move outward (smooth_skin.h): as many as there were.
+/// Elsewhere there is a convex piece on each face, edge and corner, which overlap: some 30
+/// triangles for each, some hundreds at a corner that stands out. What the body says of its volume
+/// and of what leans over stays that of what was grown. Error, in the name of `name`: there would
+/// be more than `kMostGrown` triangles.
 Result<MeshBody> grown(const MeshBody& body, double allowance_mm, const std::string& name);
 inline constexpr double kRounding_mm = 0.01;
 inline constexpr std::size_t kMostGrown = 20'000'000;

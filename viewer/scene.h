@@ -330,6 +330,9 @@ struct ViewedJob {
   std::vector<std::string> faults;
   bool is_fixed = false;  ///< A log or a machine: the command is there, the fields are not.
   bool can_open = true;   ///< OpenCommand is obeyed.
+  /// Of a part that is made in several setups: their names, in order. Empty: it is one program.
+  std::vector<std::string> setups;
+  std::size_t setup = 0;  ///< The one that is shown, from 0.
 };
 
 /// Everything that changes from frame to frame, other than the workpiece.

@@ -85,6 +85,11 @@ struct JobCommand {
   std::string stock, cell, model;
   std::vector<std::pair<int, std::string>> tools;  ///< number and SHAPE text, those that are given
 };
+/// Another setup of the part: ViewedJob::setups. To a later one, what those before it leave is cut
+/// first.
+struct SetupCommand {
+  std::size_t setup = 0;
+};
 /// The same program once more: its findings are to be told in another language.
 struct ReadAgainCommand {};
 struct CloseCommand {};  ///< The window was closed; the last command that comes.
@@ -94,7 +99,7 @@ using ViewerCommand =
                  SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
                  NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
                  DetailCommand, ColorCommand, DrawModeCommand, PickCommand, OpenCommand, JobCommand,
-                 ReadAgainCommand, CloseCommand>;
+                 SetupCommand, ReadAgainCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "mesh/mesh_body.h"
 #include "stock/octree/mesh_bricks.h"
 
 namespace kerf::octree {
@@ -197,7 +198,7 @@ void fill_bodies(BrickTree& tree, const Blank& blank, WorkerPool& pool) {
 BrickTree blank_tree(const Lattice& lattice, const Blank& blank, WorkerPool& pool) {
   BrickTree tree(lattice);
   if (blank.mesh && blank.mesh->body) {
-    fill_mesh(tree, *blank.mesh->body, pool);
+    fill_mesh(tree, blank.mesh->body->mesh, pool);
     return tree;
   }
   if (blank.bodies.size() == 1 && blank.bodies[0].kind == BlankBody::Kind::kBox)

@@ -18,10 +18,10 @@ struct NodeLines {
   int axis, width;
   MeshLines lines;
 
-  NodeLines(const MeshBody& body, const Lattice& lattice, int along)
+  NodeLines(const TriangleMesh& mesh, const Lattice& lattice, int along)
       : axis(along),
         width(grid_of(lattice, along).nx),
-        lines(body, along, grid_of(lattice, along)) {}
+        lines(mesh, along, grid_of(lattice, along)) {}
 
   /// Nodes are the middles of its cells.
   static ColumnGrid grid_of(const Lattice& lattice, int axis) {
@@ -46,14 +46,12 @@ struct NodeLines {
   }
 };
 
+using LinesOfAxes = std::array<std::unique_ptr<const NodeLines>, 3>;
+
 class MeshBricks {
  public:
-  MeshBricks(const Lattice& lattice, const MeshBody& body)
-      : lattice_(lattice),
-        body_(body),
-        lines_(std::make_shared<const std::array<NodeLines, 3>>(
-            std::array<NodeLines, 3>{NodeLines(body, lattice, 0), NodeLines(body, lattice, 1),
-                                     NodeLines(body, lattice, 2)})) {}
+  MeshBricks(const Lattice& lattice, const TriangleMesh& mesh, const LinesOfAxes& lines)
+      : lattice_(lattice), mesh_(mesh), lines_(lines) {}
 
   /// The nodes of a column of tiles, one that lies beyond them included: bits by k.
   void load(int column) {
@@ -64,7 +62,7 @@ class MeshBricks {
     for (int j = 0; j < kTileSide; ++j) {
       for (int i = 0; i < kTileSide; ++i) {
         if (!is_within(tile_x_ + i, tile_y_ + j)) continue;
-        const auto ends = (*lines_)[2].through({tile_x_ + i, tile_y_ + j, 0});
+        const auto ends = lines_[2]->through({tile_x_ + i, tile_y_ + j, 0});
         for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
           const int first = node_at_or_above(ends[n].at_mm),
                     last = node_at_or_above(ends[n + 1].at_mm);
@@ -137,7 +135,7 @@ class MeshBricks {
   void set_crossing(int axis, const std::array<int, 3>& node, bool from_solid, std::size_t e) {
     const double begin = lattice_.place_mm(axis, node[static_cast<std::size_t>(axis)]);
     const double cell = lattice_.cell_mm[axis];
-    const auto ends = (*lines_)[static_cast<std::size_t>(axis)].through(node);
+    const auto ends = lines_[static_cast<std::size_t>(axis)]->through(node);
     const LineEnd* best = nullptr;
     double least = 0;
     for (std::size_t n = from_solid ? 1 : 0; n < ends.size(); n += 2) {
@@ -153,10 +151,10 @@ class MeshBricks {
     normal[axis] = from_solid ? 1 : -1;
     if (best != nullptr && least < 1) {
       t = (static_cast<double>(best->at_mm) - begin) / cell;
-      const auto& c = body_.mesh.triangles[best->triangle];
-      const Vec3 a(body_.mesh.positions_mm[c[0]]);
-      const Vec3 across = glm::cross(Vec3(body_.mesh.positions_mm[c[1]]) - a,
-                                     Vec3(body_.mesh.positions_mm[c[2]]) - a);
+      const auto& c = mesh_.triangles[best->triangle];
+      const Vec3 a(mesh_.positions_mm[c[0]]);
+      const Vec3 across =
+          glm::cross(Vec3(mesh_.positions_mm[c[1]]) - a, Vec3(mesh_.positions_mm[c[2]]) - a);
       const double length = glm::length(across);
       if (length > 0) normal = across / length;
     }
@@ -166,8 +164,8 @@ class MeshBricks {
   }
 
   const Lattice& lattice_;
-  const MeshBody& body_;
-  std::shared_ptr<const std::array<NodeLines, 3>> lines_;  ///< of all threads
+  const TriangleMesh& mesh_;
+  const LinesOfAxes& lines_;
   int tile_x_ = 0, tile_y_ = 0;
   std::vector<std::uint8_t> solid_;
   OpenBrick open_;
@@ -175,13 +173,19 @@ class MeshBricks {
 
 }  // namespace
 
-void fill_mesh(BrickTree& tree, const MeshBody& body, WorkerPool& pool) {
+void fill_mesh(BrickTree& tree, const TriangleMesh& mesh, WorkerPool& pool) {
   const Lattice& lattice = tree.lattice();
   const std::uint64_t version = next_version();
-  const MeshBricks lines(lattice, body);
+  LinesOfAxes lines;
+  std::atomic<int> next_axis{0};
+  pool.run([&](int) {
+    for (int axis = next_axis++; axis < 3; axis = next_axis++)
+      lines[static_cast<std::size_t>(axis)] =
+          std::make_unique<const NodeLines>(mesh, lattice, axis);
+  });
   std::atomic<int> next{0};
   pool.run([&](int) {
-    MeshBricks maker = lines;
+    MeshBricks maker(lattice, mesh, lines);
     for (int column = next++; column < lattice.column_count(); column = next++) {
       maker.load(column);
       for (int level = 0; level < lattice.tiles[2]; ++level) {

@@ -19,7 +19,7 @@
 #include "stock/octree/dual_contour_mesh.h"
 #include "stock/octree/dual_contour_patch.h"
 #include "stock/octree/hermite_gather.h"
-#include "stock/octree/mesh_tree.h"
+#include "stock/octree/mesh_bricks.h"
 #include "stock/octree/octree_state.h"
 #include "stock/octree/part_bodies.h"
 #include "stock/octree/part_contact.h"
@@ -302,23 +302,30 @@ std::unique_ptr<Octree> Octree::placed(const AxisTurn& turn, const Vec3& at_mm) 
 Result<std::unique_ptr<Octree>> Octree::of_surface(const TriangleMesh& surface,
                                                    const Placement& placement, double cell_mm,
                                                    int threads, double blank_mm3) {
-  const PlacedSurface placed(surface, placement);
+  TriangleMesh placed = surface;
   OctreeOptions options;
   BlankBody box;
-  box.bounds_mm = placed.bounds_mm();
+  for (glm::vec3& p : placed.positions_mm) {
+    const Vec3 lies = placement.placed(Vec3(p));
+    box.bounds_mm.extend(lies);
+    p = glm::vec3(lies);
+  }
   options.blank.bodies.push_back(box);
   options.cell_mm = cell_mm;
   const Done checked = check(options, box.bounds_mm);
   if (!checked) return Error{checked.error()};
   const auto pool = std::make_shared<WorkerPool>(std::max(1, threads));
-  auto impl =
-      std::make_unique<Impl>(mesh_tree(Lattice::over(box.bounds_mm, cell_mm), placed, *pool));
+  BrickTree tree(Lattice::over(box.bounds_mm, cell_mm));
+  fill_mesh(tree, placed, *pool);
+  auto impl = std::make_unique<Impl>(std::move(tree));
   impl->pool = pool;
   impl->blank_mm3 = blank_mm3;
   const double gone_mm3 = blank_mm3 - impl->mm3(volume_of(impl->tree));
   impl->removed = std::llround(gone_mm3 / impl->tree.lattice().node_mm3() * kNodeVolume);
   return std::unique_ptr<Octree>(new Octree(std::move(impl)));
 }
+
+double Octree::surface_bound_mm(double cell_mm) { return std::sqrt(3.0) * cell_mm; }
 
 Done Octree::can_cut(const Cutter& cutter) {
   const Result<std::vector<ToolBody>> bodies = tool_bodies(cutter);

@@ -124,11 +124,15 @@ class Octree final : public StockModel,
   /// Not of an additive model.
   std::unique_ptr<Octree> placed(const AxisTurn& turn, const Vec3& at_mm) const;
   /// What this closed surface holds, as it is placed: crossings and normals are those of its
-  /// triangles (mesh_tree.h). `blank_mm3`: what there was before anything was cut, and blank_mm3()
-  /// from then on. Errors as create() has them for the box of what is placed; an empty surface.
+  /// triangles (mesh_bricks.h). `blank_mm3`: what there was before anything was cut, and
+  /// blank_mm3() from then on. Errors as create() has them for the box of what is placed; an empty
+  /// surface.
   static Result<std::unique_ptr<Octree>> of_surface(const TriangleMesh& surface,
                                                     const Placement& placement, double cell_mm,
                                                     int threads, double blank_mm3);
+  /// What of_surface() tells wrongly is no farther from the surface than this, a cell's diagonal:
+  /// mesh_bricks.h has the proof.
+  static double surface_bound_mm(double cell_mm);
   std::string name() const override { return "octree"; }
   Box bounds_mm() const override;
   double cell_mm() const override;

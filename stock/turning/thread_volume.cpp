@@ -15,10 +15,13 @@ constexpr double kLeastCell_mm = 0.02;
 /// off. Ten times less than what volumes are promised to, for all intervals of a cell.
 constexpr double kShare = 1e-8;
 constexpr int kDeepest = 24;
-/// So many corners of the material in one cell are taken as places where something changes.
-constexpr std::size_t kMostCorners = 48;
-/// Outlines that move by less beside each other stand still, mm.
-constexpr double kStill_mm = 1e-9;
+/// So many corners of the material in one cell are taken as places where something changes. Of
+/// more, as rings beside a run-out leave them, each changes little: to halve where it matters takes
+/// a third of the looks that a part between each two of them would.
+constexpr std::size_t kMostCorners = 16;
+/// Places where something changes that are nearer to each other, mm, are one: of the moment of a
+/// whole outline that is off by as little a part as this is of a cell, squared.
+constexpr double kSamePlace_mm = 1e-7;
 /// Units of the grid on which outlines are cut: as fine as turn() allows.
 constexpr double kFinest = 1 << 27;
 
@@ -42,47 +45,6 @@ double lesser_square(double width, double a0, double a1, double b0, double b1) {
 void append_edge(const Vec2& a, const Vec2& b, std::vector<ProfileEdge>& edges) {
   if (a.x < b.x) edges.push_back({a.x, b.x, a.y, b.y, -1});
   if (a.x > b.x) edges.push_back({b.x, a.x, b.y, a.y, 1});
-}
-
-/// Whether a part of an outline, moved by `by`, lies within another outline.
-bool is_within(const ConvexChain& inner, const Vec2& by, const ThreadPass& outer) {
-  const ConvexChain& chain = outer.corners();
-  for (std::size_t i = 0; i < chain.size(); ++i) {
-    const Vec2& a = chain[i == 0 ? chain.size() - 1 : i - 1];
-    const Vec2 edge = chain[i] - a;
-    const double slack = kStill_mm * glm::length(edge);
-    for (const Vec2& corner : inner) {
-      const Vec2 p = corner + by - a;
-      if (edge.x * p.y - edge.y * p.x < -slack) return false;
-    }
-  }
-  return true;
-}
-
-/// Of what lies beside the tool of `pass` for a length of its way, from `offset` on: what of it is
-/// between the heights of the tool and within another one takes nothing more. Of the passes of a
-/// thread hardly more than the deepest is left. All go straight, so what holds at both ends holds
-/// between them.
-template <class Beside>
-void drop_covered(const ThreadPass& pass, double length, std::vector<Beside>& active) {
-  for (std::size_t i = 0; i < active.size();) {
-    const Beside& inner = active[i];
-    const double to_r = inner.offset.y + length * inner.per_way.y;
-    const ConvexChain part =
-        between_heights(inner.pass->corners(), pass.low_mm().y - std::max(inner.offset.y, to_r),
-                        pass.high_mm().y - std::min(inner.offset.y, to_r));
-    // Later ones are deeper as a rule.
-    const bool is_covered = std::any_of(active.rbegin(), active.rend(), [&](const Beside& outer) {
-      const Vec2 from = inner.offset - outer.offset;
-      return &outer != &inner && is_within(part, from, *outer.pass) &&
-             is_within(part, from + length * (inner.per_way - outer.per_way), *outer.pass);
-    });
-    if (is_covered) {
-      active.erase(active.begin() + static_cast<std::ptrdiff_t>(i));
-    } else {
-      ++i;
-    }
-  }
 }
 
 }  // namespace
@@ -136,7 +98,7 @@ std::size_t ThreadIntegral::cell_count(const ThreadPass& pass) {
 
 void ThreadIntegral::add_beside(const ThreadPass& pass, const ThreadPass& other, double n,
                                 const Range& ways) {
-  Beside beside;
+  PassBeside beside;
   beside.pass = &other;
   const double share = other.lead_mm() / pass.lead_mm();
   const double way = other.way_at(pass.turns_at(ways.low), n);
@@ -166,7 +128,7 @@ void ThreadIntegral::find_beside(const ThreadPass& pass, const Range& ways,
   const double lead = std::abs(pass.lead_mm());
   // One turn back: what lies farther back and meets the tool lies there as well.
   if (ways.high >= lead) {
-    Beside back;
+    PassBeside back;
     back.pass = &pass;
     back.offset = -lead * pass.direction();
     back.low_way = std::max(ways.low, lead);
@@ -211,7 +173,7 @@ void ThreadIntegral::cut_free(const ThreadPass& pass, double way_mm) {
   };
   // Overlapping, none is farther away than this.
   double reach = farthest(pass);
-  for (const Beside& b : active_) reach = std::max(reach, farthest(*b.pass));
+  for (const PassBeside& b : active_) reach = std::max(reach, farthest(*b.pass));
   const double scale = kFinest / (5 * reach);
   const auto fine = [&](const Vec2& p) {
     return Point{std::llround(p.x * scale), std::llround(p.y * scale)};
@@ -221,7 +183,7 @@ void ThreadIntegral::cut_free(const ThreadPass& pass, double way_mm) {
   region_.clear();
   region_.push_back(builder.close());
   if (region_[0].runs().empty()) return;
-  for (const Beside& b : active_) {
+  for (const PassBeside& b : active_) {
     const Vec2 offset = b.offset + (way_mm - b.low_way) * b.per_way;
     corners_.clear();
     for (const Vec2& p : b.pass->corners()) corners_.push_back(fine(p + offset));
@@ -290,11 +252,13 @@ double ThreadIntegral::cell_mm3(const ThreadPass& pass, std::size_t cell,
   }
   if (near_.empty()) return 0;
   find_beside(pass, ways, before);
+  // Where passes begin and end that other ones cover all along is of no interest.
+  drop_covered(pass, ways.low, ways.low, ways.high, beside_);
   breaks_.assign({ways.low, ways.high});
   const auto add_break = [&](double way) {
     if (way > ways.low && way < ways.high) breaks_.push_back(way);
   };
-  for (const Beside& b : beside_) {
+  for (const PassBeside& b : beside_) {
     add_break(b.low_way);
     add_break(b.high_way);
   }
@@ -314,6 +278,7 @@ double ThreadIntegral::cell_mm3(const ThreadPass& pass, std::size_t cell,
     }
   }
   std::sort(breaks_.begin(), breaks_.end());
+  merge_near(ways);
   double whole = 0;
   for (const Vec2& p : pass.corners()) whole = std::max(whole, std::abs(p.y + pass.from_mm().y));
   const Vec2 size = pass.high_mm() - pass.low_mm();
@@ -321,22 +286,35 @@ double ThreadIntegral::cell_mm3(const ThreadPass& pass, std::size_t cell,
   double sum = 0;
   for (std::size_t i = 1; i < breaks_.size(); ++i) {
     const Range part{breaks_[i - 1], breaks_[i]};
-    if (!(part.low < part.high)) continue;
     active_.clear();
     moves_ = false;
-    for (Beside b : beside_) {
-      if (b.low_way > part.low || b.high_way < part.high) continue;
+    for (PassBeside b : beside_) {
+      if (b.low_way > part.low + kSamePlace_mm || b.high_way < part.high - kSamePlace_mm) continue;
       b.offset += (part.low - ways.low) * b.per_way;
       b.low_way = part.low;
       active_.push_back(b);
     }
-    drop_covered(pass, part.high - part.low, active_);
-    for (const Beside& b : active_)
+    drop_covered(pass, part.low, part.low, part.high, active_);
+    for (const PassBeside& b : active_)
       moves_ = moves_ || glm::length(b.per_way) * (part.high - part.low) > kStill_mm;
     if (!moves_) cut_free(pass, part.low);
     sum += integrate(pass, part, tolerance);
   }
   return 2 * kPi / std::abs(pass.lead_mm()) * sum;
+}
+
+/// Keeps both ends of the cell.
+void ThreadIntegral::merge_near(const Range& ways) {
+  std::size_t kept = 1;
+  for (const double way : breaks_) {
+    const bool is_end = way == ways.high;
+    if (way - breaks_[kept - 1] > kSamePlace_mm) {
+      breaks_[kept++] = way;
+    } else if (is_end && kept > 1) {
+      breaks_[kept - 1] = way;
+    }
+  }
+  breaks_.resize(kept);
 }
 
 ThreadIntegral::Place ThreadIntegral::look(
@@ -349,8 +327,8 @@ ThreadIntegral::Place ThreadIntegral::look(
   }
   find_beside(pass, {way_mm, way_mm}, before);
   active_ = beside_;
-  for (Beside& b : active_) b.low_way = way_mm;
-  drop_covered(pass, 0, active_);
+  for (PassBeside& b : active_) b.low_way = way_mm;
+  drop_covered(pass, way_mm, way_mm, way_mm, active_);
   cut_free(pass, way_mm);
   Place place;
   place.moment_mm3 = common_moment_mm3(free_, by, near_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stock/turning/convex_cut.h"
+#include "stock/turning/covered_passes.h"
 #include "stock/turning/thread_pass.h"
 
 namespace kerf::turning {
@@ -54,13 +55,6 @@ class ThreadIntegral {
              std::span<const ProfileEdge> edges);
 
  private:
-  /// Another turn, of this pass or of one before, as it lies beside the tool.
-  struct Beside {
-    const ThreadPass* pass = nullptr;
-    Vec2 offset{0};  // at the way `at`
-    Vec2 per_way{0};
-    double low_way = 0, high_way = 0;  // of the tool, as long as it is there
-  };
   struct Range {
     double low = 0, high = 0;
   };
@@ -68,12 +62,13 @@ class ThreadIntegral {
   void find_beside(const ThreadPass& pass, const Range& ways,
                    std::span<const std::shared_ptr<const ThreadPass>> before);
   void add_beside(const ThreadPass& pass, const ThreadPass& other, double n, const Range& ways);
+  void merge_near(const Range& ways);
   /// What is left of the outline at a place, as edges about the controlled point.
   void cut_free(const ThreadPass& pass, double way_mm);
   double moment(const ThreadPass& pass, double way_mm);
   double integrate(const ThreadPass& pass, const Range& ways, double tolerance);
 
-  std::vector<Beside> beside_, active_;
+  std::vector<PassBeside> beside_, active_;
   std::vector<ProfileEdge> near_, free_;
   std::vector<double> breaks_;
   std::vector<Contour> region_;

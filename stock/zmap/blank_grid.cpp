@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/translate.h"
-#include "mesh/mesh_body.h"
 
 namespace kerf {
 namespace {

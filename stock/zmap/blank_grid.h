@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "mesh/mesh_body.h"
 #include "mesh/mesh_lines.h"
 #include "stock/blank.h"
 #include "stock/zmap/tile_grid.h"
@@ -31,7 +32,7 @@ void each_mesh_band(const MeshBody& body, const TileGrid& grid, const Take& take
     band.ny = std::min(kBandRows, grid.ny() - first);
     band.bounds_mm.min.y += first * grid.cell_y_mm();
     band.bounds_mm.max.y = band.bounds_mm.min.y + band.ny * grid.cell_y_mm();
-    take(first, band, MeshLines(body, 2, band));
+    take(first, band, MeshLines(body.mesh, 2, band));
   }
 }
 

@@ -125,10 +125,10 @@ TEST(Documents, TheWindowsOptionsAreThoseOfHelp) {
 TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
   Words known{"--version"}, told;
   for (const char* command : kCommands) known.merge(options_of(command));
-  std::string of_others = read_file(kRoot / "scripts/format_check") +
-                          read_file(kRoot / "tests/truth/run_truth") + read_file(kRoot / "check") +
-                          read_file(kRoot / "examples/ci/kerf.yml") +
-                          read_file(kRoot / "examples/ci/pre-commit");
+  std::string of_others =
+      read_file(kRoot / "scripts/format_check") + read_file(kRoot / "tests/truth/run_truth") +
+      read_file(kRoot / "check") + read_file(kRoot / "examples/ci/kerf.yml") +
+      read_file(kRoot / "examples/ci/pre-commit") + read_file(kRoot / "configs/vismach_links");
   of_others += run_kerf("machine --help").output + " --build --preset --workflow --install ";
   const Words foreign = find_all(of_others, R"((--[a-z][a-z-]+))");
   for (const std::string& document : documents()) {

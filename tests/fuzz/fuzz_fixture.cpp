@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   move.to_mm = {100, 7, -30};
   kerf::Vec3 guess{0};
   const auto least =
-      kerf::least_gap(tool->pieces()[0], kerf::ToolWay(move), *(*list)[0].solid, 1e9, guess);
+      kerf::least_gap(tool->pieces()[0], kerf::ToolWay(move), *(*list)[0].solid, 1e9, 1e9, guess);
   if (!least || !(least->mm >= 0) || !std::isfinite(least->mm)) std::abort();
   return 0;
 }

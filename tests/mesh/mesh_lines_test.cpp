@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
+#include <memory>
 
 #include "mesh/mesh_lows.h"
 #include "tests/mesh/sample_meshes.h"
@@ -21,7 +23,7 @@ TEST(MeshLines, PartsThatTouchAreOne) {
   test::add_box(mesh, {0, 0, 2}, {4, 4, 5});    // on it
   test::add_box(mesh, {1, 1, 4}, {3, 3, 9});    // into it
   test::add_box(mesh, {0, 0, 12}, {4, 4, 13});  // above
-  const MeshLines lines(test::body_of(mesh), 2, {{{0, 0, 0}, {4, 4, 0}}, 4, 4});
+  const MeshLines lines(mesh, 2, {{{0, 0, 0}, {4, 4, 0}}, 4, 4});
   ASSERT_EQ(lines.ends(0).size(), 4u);
   EXPECT_EQ(lines.ends(0)[1].at_mm, 5);
   EXPECT_EQ(lines.ends(5)[0].at_mm, 0);
@@ -29,15 +31,35 @@ TEST(MeshLines, PartsThatTouchAreOne) {
   EXPECT_EQ(lines.ends(5)[2].at_mm, 12);
 }
 
+/// Of a box whose edges lie on lines of all axes: where a line of one axis runs in a face, those of
+/// the others, through the same point, have it on the same side.
+TEST(MeshLines, LinesOfAllAxesAgreeOnFaces) {
+  const TriangleMesh mesh = test::box_of({2, 2, 2}, {6, 6, 6});
+  const ColumnGrid grid{{{-0.5, -0.5, 0}, {8.5, 8.5, 0}}, 9, 9};  // lines at 0, 1 .. 8
+  std::array<std::unique_ptr<MeshLines>, 3> lines;
+  for (int axis = 0; axis < 3; ++axis)
+    lines[static_cast<std::size_t>(axis)] = std::make_unique<MeshLines>(mesh, axis, grid);
+  // Towards -X, +Y and +Z: the low face of X is outside, the high one inside; of Y, Z as is.
+  const bool inside[3][9] = {{false, false, false, true, true, true, true, false, false},
+                             {false, false, true, true, true, true, false, false, false},
+                             {false, false, true, true, true, true, false, false, false}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (std::size_t j = 0; j < 9; ++j)
+      for (std::size_t i = 0; i < 9; ++i)
+        EXPECT_EQ(lines[axis]->ends(j * 9 + i).size(), inside[u][i] && inside[v][j] ? 2u : 0u)
+            << "axis " << axis << ": " << i << " " << j;
+  }
+}
+
 /// Against winding numbers, along each axis.
 TEST(MeshLines, RandomLumps) {
   std::mt19937 random(7);
   for (int round = 0; round < 12; ++round) {
     const TriangleMesh mesh = test::random_lumps(random, 1 + round % 5);
-    const MeshBody body = test::body_of(mesh);
     for (int axis = 0; axis < 3; ++axis) {
       const ColumnGrid grid{{{-15, -15, 0}, {15, 15, 0}}, 23, 19};
-      const MeshLines lines(body, axis, grid);
+      const MeshLines lines(mesh, axis, grid);
       for (std::size_t cell = 0; cell < grid.size(); ++cell) {
         const Vec2 middle = grid.center(static_cast<int>(cell % 23), static_cast<int>(cell / 23));
         for (double at = -14.37; at < 15; at += 2.9) {

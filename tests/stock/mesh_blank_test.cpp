@@ -1,6 +1,8 @@
 // Blanks from meshes in the models of heights, of columns, and in space.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
 
@@ -72,6 +74,76 @@ TEST(MeshBlank, ABoxIsMetLikeTheBox) {
     EXPECT_NEAR(a->depth_mm, b->depth_mm, 1e-6);
   }
   EXPECT_GT(met, 1000);
+}
+
+double distance_mm(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto to_edge = [&](const Vec3& from, const Vec3& to) {
+    const Vec3 way = to - from;
+    const double t = std::clamp(glm::dot(p - from, way) / glm::dot(way, way), 0.0, 1.0);
+    return glm::length(p - from - t * way);
+  };
+  double least = std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+  const Vec3 n = glm::normalize(glm::cross(b - a, c - a));
+  const Vec3 foot = p - glm::dot(p - a, n) * n;
+  const bool is_over = glm::dot(glm::cross(b - a, foot - a), n) >= 0 &&
+                       glm::dot(glm::cross(c - b, foot - b), n) >= 0 &&
+                       glm::dot(glm::cross(a - c, foot - c), n) >= 0;
+  return is_over ? std::min(least, std::abs(glm::dot(p - a, n))) : least;
+}
+
+/// What mesh_bricks.h proves, against winding numbers and distances to each triangle.
+TEST(MeshBlank, WhatAnOctreeTellsWronglyIsNearerThanACellsDiagonal) {
+  std::mt19937 random(21);
+  int wrong = 0;
+  for (int round = 0; round < 4; ++round) {
+    const TriangleMesh mesh = test::random_lumps(random, 2 + round);
+    const Blank blank = blank_of(mesh);
+    const double cell = 0.9;
+    const auto stock = octree(blank, cell);
+    const Box box = stock->bounds_mm();
+    std::uniform_real_distribution<double> part(-0.02, 1.02);
+    for (int n = 0; n < 6000; ++n) {
+      Vec3 p;
+      for (int a = 0; a < 3; ++a) p[a] = box.min[a] + part(random) * box.size()[a];
+      const double winding = test::winding_number(mesh, p);
+      if (std::abs(winding - std::round(winding)) > 0.01) continue;
+      if (stock->solid_at(p, 0) == (winding > 0.5)) continue;
+      ++wrong;
+      double nearest = 1e9;
+      for (const auto& t : mesh.triangles)
+        nearest = std::min(
+            nearest, distance_mm(p, Vec3(mesh.positions_mm[t[0]]), Vec3(mesh.positions_mm[t[1]]),
+                                 Vec3(mesh.positions_mm[t[2]])));
+      EXPECT_LE(nearest, Octree::surface_bound_mm(cell) + 1e-5);
+    }
+  }
+  EXPECT_GT(wrong, 0) << "else this shows nothing";
+}
+
+/// Faces that hold nodes, from all sides: lines of the three axes agree on which side they are.
+TEST(MeshBlank, FacesThroughNodesKeepTheirEdges) {
+  // Nodes are at halves.
+  TriangleMesh mesh = test::box_of({0, 0, 0}, {12, 12, 4.5});
+  test::add_box(mesh, {2.5, 3.5, 4.5}, {6.5, 8.5, 10});
+  test::add_box(mesh, {8, 1, 4}, {10.5, 9.5, 8.5});
+  const auto stock = octree(blank_of(mesh), 1);
+  EXPECT_NEAR(stock->bounds_mm().max.z, 10, 1e-6);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> x(-0.5, 12.5), z(-0.5, 10.5);
+  for (int n = 0; n < 60'000; ++n) {
+    Vec3 p;
+    for (int a = 0; a < 3; ++a) p[a] = a == 2 ? z(random) : x(random);
+    const auto depth = [&p](const Vec3& low, const Vec3& high) {  // > 0 inside
+      double d = 1e9;
+      for (int a = 0; a < 3; ++a) d = std::min({d, p[a] - low[a], high[a] - p[a]});
+      return d;
+    };
+    const double d =
+        std::max({depth({0, 0, 0}, {12, 12, 4.5}), depth({2.5, 3.5, 4}, {6.5, 8.5, 10}),
+                  depth({8, 1, 4}, {10.5, 9.5, 8.5})});
+    if (std::abs(d) < 0.01) continue;
+    ASSERT_EQ(stock->solid_at(p, 0), d > 0) << p.x << " " << p.y << " " << p.z;
+  }
 }
 
 /// A pyramid of facets: nothing is told of a vee whose tip stays above them, however they lie

@@ -1,4 +1,5 @@
-// tests/stock/stock_samples.h - workpieces and moves for tests of what the Z-map shows and shares.
+// tests/stock/stock_samples.h - workpieces and moves for tests of what the Z-map shows and shares,
+// and of pieces.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,6 +24,8 @@ inline std::unique_ptr<ZMap> make_map(const std::string& blank, double cell, int
   EXPECT_TRUE(map) << map.error();
   return std::move(*map);
 }
+
+inline Cutter tool(const char* shape) { return *parse_shape(shape); }
 
 inline CutMove line(const Vec3& from, const Vec3& to) {
   CutMove move;

@@ -4,8 +4,10 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/viewer/window_fixture.h"
 
@@ -102,6 +104,51 @@ TEST_F(WindowJobTest, AFileOfTheFolderIsOpenedByItsName) {
   EXPECT_EQ(asked->path, folder_ / "other.ngc");
   settle();
   EXPECT_EQ(mean_difference(before, window_->read(), kScene), 0.0);
+}
+
+TEST_F(WindowJobTest, SetupsAreChosenByKeyAndInTheirList) {
+  open();
+  publish_job("/somewhere/job.yaml");
+  const Picture without = window_->read();
+  key("Next");
+  settle();
+  const auto asks_for_none = [&] {
+    const std::vector<ViewerCommand> commands = commands_.take();
+    return std::ranges::none_of(commands, [](const ViewerCommand& command) {
+      return std::holds_alternative<SetupCommand>(command);
+    });
+  };
+  EXPECT_TRUE(asks_for_none()) << "there is one program";
+  const auto publish_setups = [&](std::size_t shown) {
+    ViewedJob job;
+    job.program = "/somewhere/job.yaml";
+    job.setups = {"1  top", "2  bottom", "3  end"};
+    job.setup = shown;
+    SceneUpdate update;
+    update.job = std::make_shared<const ViewedJob>(job);
+    mailbox_.publish(std::move(update));
+    settle();
+  };
+  publish_setups(1);
+  EXPECT_GT(mean_difference(without, window_->read(), kCode), 0.1) << "the list is there";
+  key("Next");
+  auto asked = next<SetupCommand>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->setup, 2u);
+  key("Prior");
+  asked = next<SetupCommand>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->setup, 0u);
+  publish_setups(2);
+  key("Next");
+  settle();
+  EXPECT_TRUE(asks_for_none()) << "it is the last";
+  click(140, 18);
+  settle();
+  click(140, 40);  // the first of the list that opens beneath
+  asked = next<SetupCommand>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->setup, 0u);
 }
 
 TEST_F(WindowJobTest, AnEmptyWindowSaysSo) {

@@ -32,9 +32,11 @@ void append(const Setting& setting, const WrittenOptions& options, std::string& 
 
 std::string command_line(const Arguments& arguments) {
   std::string line = fmt::format("{} {}", shell_word(arguments.kerf()), name_of(arguments.command));
-  for (const Setting& setting : setting_table()) {
-    if ((setting.commands & arguments.command) == 0) continue;
-    append(setting, arguments.options, line);
+  for (const bool positional : {true, false}) {
+    for (const Setting& setting : setting_table()) {
+      if ((setting.commands & arguments.command) == 0) continue;
+      if (setting.is_positional() == positional) append(setting, arguments.options, line);
+    }
   }
   return line;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "stock/turning/turned_surface.h"
 #include "twin/cli/program_options.h"
 #include "twin/compare/design_fit.h"
+#include "twin/compare/rest_machining.h"
 #include "twin/report/compare_report.h"
 
 namespace kerf {
@@ -61,6 +63,41 @@ double share_in_both(double low_a, double high_a, double low_b, double high_b) {
   return either > 0 ? std::max(0.0, both) / either : 0;
 }
 
+/// The tools of the program, and others that were described.
+std::vector<RestTool> rest_tools(const CompareRequest& request, const Report& report) {
+  std::vector<RestTool> tools;
+  const auto add = [&](RestTool tool) {
+    const auto is_same = [&](const RestTool& other) {
+      return other.number == tool.number && other.shape == tool.shape;
+    };
+    if (tool.shape.empty() || std::ranges::any_of(tools, is_same)) return;
+    tools.push_back(std::move(tool));
+  };
+  for (const ToolUse& use : report.tools) {
+    RestTool tool;
+    tool.number = use.number;
+    tool.shape = use.shape;
+    tool.guessed = use.guessed;
+    tool.used = true;
+    add(std::move(tool));
+  }
+  for (const RestTool& tool : request.described) add(tool);
+  return tools;
+}
+
+void add_rest(const CompareRequest& request, const StockModel& body, const DesignPart& design,
+              Report& report, Diagnostics& diagnostics) {
+  if (const char* const why = why_no_rest(body)) {
+    Diagnostic d;
+    d.severity = Severity::kWarning;
+    d.message = trf("--rest: {}; nothing is looked for", tr(why));
+    diagnostics.push_back(std::move(d));
+    return;
+  }
+  report.rest = find_rest(body, design, request.rest_mm, rest_tools(request, report));
+  report.timing.total_s += report.rest->seconds;
+}
+
 /// The piece that has come off a workpiece that turns and is more like the design than what the
 /// chuck still holds, if there is one.
 void take_piece(const StockModel& stock, const Box& design_mm, bool anywhere, Compared& compared) {
@@ -97,17 +134,30 @@ void take_piece(const StockModel& stock, const Box& design_mm, bool anywhere, Co
 
 }  // namespace
 
-CompareRequest understand_compare(OptionReader& reader) {
+CompareRequest understand_compare(OptionReader& reader,
+                                  const std::vector<ToolShapeArgument>& described) {
   CompareRequest request;
   request.path = reader.text("--compare");
   request.tolerance_mm = reader.length_mm("--tolerance", request.tolerance_mm);
   read_place(reader, request.placement);
   if (reader.word("--compare-unit") == 1) request.mm_per_unit = kMmPerInch;
   const bool can_fit = reader.command() != kView;
-  if (can_fit) request.is_fitted = reader.is_yes("--compare-fit");
+  if (can_fit) {
+    request.is_fitted = reader.is_yes("--compare-fit");
+    request.rest_mm = reader.length_mm("--rest");
+    for (const ToolShapeArgument& tool : described) {
+      RestTool known;
+      known.number = tool.tool;
+      known.shape = tool.cutter.spec();
+      request.described.push_back(std::move(known));
+    }
+    if (request.is_wanted() && !reader.choose("--rest").is_said() &&
+        reader.choose("--rest-png").is_said())
+      reader.fault("--rest-png", tr("there is no --rest LENGTH, how thick it has to be"));
+  }
   if (request.is_wanted()) return request;
-  for (const char* option :
-       {"--tolerance", "--compare-at", "--compare-unit", "--compare-fit", "--compare-png"}) {
+  for (const char* option : {"--tolerance", "--compare-at", "--compare-unit", "--compare-fit",
+                             "--compare-png", "--rest", "--rest-png"}) {
     if (!can_fit && std::string_view(option).ends_with("-fit")) break;
     if (reader.choose(option).from == ValueFrom::kCommandLine)
       reader.fault(option, tr("there is no --compare DESIGN.stl"));
@@ -173,6 +223,7 @@ Compared compare_finished(const CompareRequest& request, const DesignFile& file,
   add_compare_findings(comparison, guessed, report.findings);
   report.timing.total_s += comparison.seconds;
   report.comparison = std::move(comparison);
+  if (request.rest_mm > 0) add_rest(request, body, *compared.design, report, diagnostics);
   return compared;
 }
 

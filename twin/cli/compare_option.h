@@ -3,12 +3,15 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/diagnostic.h"
+#include "stock/cutter/shape_spec.h"
 #include "stock/stock_model.h"
 #include "twin/cli/option_reader.h"
 #include "twin/compare/compare_stock.h"
 #include "twin/compare/design_file.h"
+#include "twin/compare/rest.h"
 #include "twin/report/report.h"
 
 namespace kerf {
@@ -20,11 +23,15 @@ struct CompareRequest {
   double mm_per_unit = 1;
   DesignPlacement placement;
   bool is_fitted = false;
+  double rest_mm = 0;  ///< --rest; 0: nobody asks for it
+  /// Of --tool: held against what is left, also those that the program does not use.
+  std::vector<RestTool> described;
   bool is_wanted() const { return !path.empty(); }
 };
 
-/// Options of it without --compare are faults.
-CompareRequest understand_compare(OptionReader& reader);
+/// Options of it without --compare are faults. `described`: the tools of --tool.
+CompareRequest understand_compare(OptionReader& reader,
+                                  const std::vector<ToolShapeArgument>& described = {});
 
 /// The file, before anything is cut; null without --compare, and with an error in `diagnostics`.
 std::shared_ptr<const DesignFile> open_design(const CompareRequest& request,

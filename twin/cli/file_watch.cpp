@@ -25,6 +25,13 @@ void FileWatch::add(const std::string& path) {
   files_.push_back({path, now, now});
 }
 
+bool FileWatch::differs() const {
+  return std::any_of(files_.begin(), files_.end(), [](const File& file) {
+    const Stamp stamp = stamp_of(file.path);
+    return stamp.is_there && stamp != file.first;
+  });
+}
+
 bool FileWatch::has_changed() {
   const Clock::time_point now = Clock::now();
   if (now < next_look_) return false;

@@ -22,6 +22,8 @@ class FileWatch {
   /// are empty or "-" are not watched.
   void add(const std::string& path);
 
+  /// One of the files is another one now than when it was added, whoever writes to it.
+  bool differs() const;
   /// One of the files is another one than when it was added, and nobody has written to it since the
   /// last look. Costs nothing between the looks, some microseconds a file at each.
   bool has_changed();

@@ -10,22 +10,71 @@
 #include "base/atomic_file.h"
 #include "base/exit_code.h"
 #include "base/translate.h"
+#include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
 #include "twin/cli/job_run.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/outputs.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/run_options.h"
+#include "twin/page/job_page.h"
 #include "twin/program/session_parts.h"
+#include "twin/report/motion_table.h"
 
 namespace kerf {
 namespace {
 
 struct JobWishes {
   JobRun::Wishes run;
-  OutputPaths own;  ///< json, junit, sarif
+  OutputPaths own;  ///< json, junit, sarif, csv, html, pdf
   bool quiet = false;
   bool check_only = false;
 };
+
+/// The job's own and the last setup's: no two of them are the same file.
+OutputPaths all_outputs(const JobWishes& wishes) {
+  OutputPaths all = wishes.own;
+  all.stl = wishes.run.last.stl;
+  all.ply = wishes.run.last.ply;
+  all.state = wishes.run.last.state;
+  all.compare_png = wishes.run.last.compare_png;
+  return all;
+}
+
+/// The page over all setups.
+std::string page_of_job(const JobResult& result, const JobRun& run, const Arguments& arguments) {
+  JobPage page;
+  page.path = run.job().path;
+  page.command = command_line(arguments);
+  page.version = KERF_VERSION;
+  page.units = shown_unit();
+  page.not_run = result.not_run;
+  for (std::size_t n = 0; n < result.setups.size(); ++n) {
+    const JobResult::Setup& setup = result.setups[n];
+    page.setups.push_back({run.title_of(n), run.job().setups[n].options.text("PROGRAM"), setup.lies,
+                           setup.machining_s, setup.setup_s, setup.errors, setup.warnings,
+                           setup.article});
+  }
+  for (const ToolOfSetups& tool : tools_of(result)) page.tools.push_back({tool.use, tool.setups});
+  if (!result.setups.empty()) page.comparison = result.setups.back().comparison;
+  return job_page(page);
+}
+
+void write_job_outputs(const OutputPaths& own, const JobRun& run, const Arguments& arguments,
+                       Diagnostics& diagnostics) {
+  const JobResult& result = run.result();
+  const auto note = [&diagnostics](const Done& written) {
+    if (!written) diagnostics.push_back(general_error(written.error()));
+  };
+  if (own.wants_page()) write_page(own, page_of_job(result, run, arguments), diagnostics);
+  if (!own.csv.empty()) {
+    std::vector<std::string> tables;
+    for (const JobResult::Setup& setup : result.setups) tables.push_back(setup.table);
+    note(join_motion_tables(own.csv, tables));
+  }
+  if (!own.json.empty()) note(write_text(own.json, job_json(result, run.job().path, KERF_VERSION)));
+  write_finding_lists(own, result.listed, diagnostics);
+}
 
 JobWishes understand_job(const Arguments& arguments, Diagnostics& diagnostics) {
   OptionReader reader(diagnostics, layers_of(arguments, nullptr));
@@ -40,8 +89,12 @@ JobWishes understand_job(const Arguments& arguments, Diagnostics& diagnostics) {
   wishes.own.json = reader.text("--json");
   wishes.own.junit = reader.text("--junit");
   wishes.own.sarif = reader.text("--sarif");
-  check_output_arguments(wishes.run.last, diagnostics);
-  check_output_arguments(wishes.own, diagnostics);
+  wishes.own.csv = reader.text("--csv");
+  wishes.own.html = reader.text("--html");
+  wishes.own.pdf = reader.text("--pdf");
+  wishes.run.keeps_tables = !wishes.own.csv.empty();
+  wishes.run.keeps_pages = wishes.own.wants_page();
+  check_output_arguments(all_outputs(wishes), diagnostics);
   wishes.run.on_stderr = wishes.own.uses_stdout() || wishes.run.last.uses_stdout();
   if (arguments.options.has("--section") && wishes.run.folder.empty())
     reader.fault("--section", tr("is for --png, and there is none"));
@@ -88,12 +141,7 @@ int job_command(const Arguments& arguments) {
 
   run->run(0, run->count(), wishes.run);
   const JobResult& result = run->result();
-  if (!wishes.own.json.empty()) {
-    const Done written =
-        write_text(wishes.own.json, job_json(result, run->job().path, KERF_VERSION));
-    if (!written) diagnostics.push_back(general_error(written.error()));
-  }
-  write_finding_lists(wishes.own, result.listed, diagnostics);
+  write_job_outputs(wishes.own, *run, arguments, diagnostics);
   if (!wishes.quiet)
     kerf::print(wishes.run.on_stderr ? stderr : stdout, "{}", job_text(result, shown_unit()));
   flush_console();
@@ -109,41 +157,23 @@ int job_command(const Arguments& arguments) {
   return has_error(diagnostics) ? std::max<int>(result.code, kExitFailure) : result.code;
 }
 
-std::optional<Arguments> view_of_job(const Arguments& arguments, std::unique_ptr<JobRun>& run,
-                                     int& code) {
+std::unique_ptr<ViewSetups> view_of_job(const Arguments& arguments, int& code) {
   Diagnostics diagnostics;
   OptionReader reader(diagnostics, layers_of(arguments, nullptr));
   const auto setup = static_cast<std::size_t>(reader.whole_number("--setup", 1)) - 1;
   if (arguments.options.has("--units"))
     reader.fault("--units", tr("is not for jobs in a window; kerf job shows lengths in inches"));
-  Arguments before = arguments;
-  before.options.set_flag("--quiet");
-  std::optional<JobRun> opened;
-  if (!has_error(diagnostics))
-    opened = JobRun::open(before, arguments.options.text("PROGRAM"), diagnostics);
-  if (opened) opened->check(diagnostics);
-  if (opened && setup >= opened->count())
+  std::unique_ptr<ViewSetups> setups;
+  if (!has_error(diagnostics)) setups = ViewSetups::open(arguments, diagnostics);
+  if (setups && setup >= setups->count())
     reader.fault("--setup",
-                 trf("{} is not allowed; the job has {} setups", setup + 1, opened->count()));
-  code = kExitUsage;
+                 trf("{} is not allowed; the job has {} setups", setup + 1, setups->count()));
   print_diagnostics(diagnostics, false);
-  if (!opened || has_error(diagnostics)) return std::nullopt;
-  run = std::make_unique<JobRun>(std::move(*opened));
-  JobRun::Wishes wishes;
-  wishes.compares = false;
-  run->run(0, setup, wishes);
-  code = std::max<int>(run->result().code, kExitFailure);
-  if (!run->is_ready(setup)) return std::nullopt;
-  code = kExitGood;
-  Arguments out = run->view_arguments(setup);
-  if (!arguments.options.has("--quiet")) {
-    out.options.clear("--quiet");
-    if (setup + 1 < run->count()) {
-      print_text(stderr, trf("setup {} of {}; the next one: kerf view {} --setup {}\n", setup + 1,
-                             run->count(), arguments.options.text("PROGRAM"), setup + 2));
-    }
-  }
-  return out;
+  code = kExitUsage;
+  if (!setups || has_error(diagnostics)) return nullptr;
+  const std::optional<int> failed = setups->begin(setup);
+  code = failed.value_or(kExitGood);
+  return failed ? nullptr : std::move(setups);
 }
 
 }  // namespace kerf

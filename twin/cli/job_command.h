@@ -2,9 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
-#include "twin/cli/job_run.h"
+#include "twin/cli/view_setups.h"
 #include "twin/config/written_options.h"
 
 namespace kerf {
@@ -12,9 +11,8 @@ namespace kerf {
 /// Runs the setups of a job file. The exit code is the worst of them.
 int job_command(const Arguments& arguments);
 
-/// `kerf view JOB --setup N`: those before it have been run, unseen; the command line that shows
-/// it, while `run` lives. Nothing: what is wrong has been said, and `code` is the exit code.
-std::optional<Arguments> view_of_job(const Arguments& arguments, std::unique_ptr<JobRun>& run,
-                                     int& code);
+/// `kerf view JOB --setup N`: those before it have been run, unseen. Null: what is wrong has been
+/// said, and `code` is the exit code.
+std::unique_ptr<ViewSetups> view_of_job(const Arguments& arguments, int& code);
 
 }  // namespace kerf

@@ -9,8 +9,10 @@
 #include "base/small_file.h"
 #include "base/translate.h"
 #include "twin/cli/console.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/torch_options.h"
 #include "twin/config/config_tree.h"
+#include "twin/page/job_page.h"
 #include "twin/program/session_parts.h"
 #include "twin/program/turning.h"
 
@@ -80,8 +82,14 @@ std::string JobRun::state_of(std::size_t setup) const {
   return fmt::format("{}/setup-{}.state", folder_.path(), setup + 1);
 }
 
+std::string JobRun::table_of(std::size_t setup) const {
+  return fmt::format("{}/setup-{}.csv", folder_.path(), setup + 1);
+}
+
 std::string JobRun::title_of(std::size_t setup) const {
-  return trf("setup {} of {}: {}", setup + 1, count(), job_.setups[setup].name);
+  const std::string& name = job_.setups[setup].name;
+  return name.empty() ? trf("setup {} of {}", setup + 1, count())
+                      : trf("setup {} of {}: {}", setup + 1, count(), name);
 }
 
 Diagnostic JobRun::fault_at(const JobPlace& place, std::string message, std::string hint) const {
@@ -94,7 +102,7 @@ Diagnostic JobRun::fault_at(const JobPlace& place, std::string message, std::str
 std::string JobRun::need_of_octree(std::size_t after) const {
   for (std::size_t n = after; n < count(); ++n) {
     if (keeps_z(job_.setups[n].turn)) continue;
-    return trf("setup {} ({}) lays it otherwise than flat", n + 1, job_.setups[n].name);
+    return trf("{} lays it otherwise than flat", job_.words_of(n));
   }
   return {};
 }
@@ -117,6 +125,7 @@ Arguments JobRun::arguments_of(std::size_t setup, const Wishes& wishes) const {
     const std::string section = asked_.options.text("--section");
     if (!section.empty()) out.options.set("--section", section);
   }
+  if (wishes.keeps_tables) out.options.set("--csv", table_of(setup));
   if (setup + 1 < count()) return out;
   if (wishes.compares) {
     for (const char* const option : {"--compare", "--tolerance", "--compare-at", "--compare-unit"})
@@ -146,12 +155,15 @@ RunRequest JobRun::request_of(std::size_t setup, const Wishes& wishes, const Arg
   request.keeps_moves = wishes.compares && job_.compare.has("--compare") && setup + 1 < count();
   request.summary_on_stderr = wishes.on_stderr;
   request.units = shown_unit();
-  if (setup == 0) return request;
-  const std::string lies = words_of(job_.setups[setup].turn);
-  request.session.blank_words =
-      trf("what setup {} ({}) has left", setup, job_.setups[setup - 1].name);
-  if (!lies.empty()) request.session.blank_words += ", " + lies;
+  request.session.blank_words = blank_words(setup);
   return request;
+}
+
+std::string JobRun::blank_words(std::size_t setup) const {
+  if (setup == 0) return {};
+  const std::string lies = words_of(job_.setups[setup].turn);
+  const std::string words = trf("what {} has left", job_.words_of(setup - 1));
+  return lies.empty() ? words : words + ", " + lies;
 }
 
 void JobRun::check(Diagnostics& diagnostics) const {
@@ -159,11 +171,16 @@ void JobRun::check(Diagnostics& diagnostics) const {
     request_of(setup, {}, arguments_of(setup, {}), diagnostics);
 }
 
-Arguments JobRun::view_arguments(std::size_t setup) const {
+Arguments JobRun::view_arguments(std::size_t setup, bool is_asked) const {
   const Arguments own = arguments_of(setup, {});
   Arguments out = asked_;
   out.command = kView;
   out.options.clear("--setup");
+  if (!is_asked) {
+    out.options.clear("--at-line");
+    for (const Setting& setting : setting_table())
+      if (is_passed_on(setting)) out.options.clear(setting.option);
+  }
   out.options.set("PROGRAM", own.options.text("PROGRAM"));
   for (const Setting& setting : setting_table()) {
     const std::string_view option = setting.option;
@@ -171,6 +188,8 @@ Arguments JobRun::view_arguments(std::size_t setup) const {
         out.options.has(option)) {
       continue;
     }
+    // It is in the model that was asked for, or in more (carry_over()).
+    if (setup > 0 && (option == "--model" || option == "--cell")) continue;
     if (!setting.flag.empty()) {
       out.options.set_flag(option);
     } else if (setting.repeatable) {
@@ -233,7 +252,8 @@ bool JobRun::carry_over(std::size_t next, const StockModel& stock, Diagnostics& 
   return true;
 }
 
-void JobRun::take(std::size_t setup, const FinishedRun& run, Diagnostics& diagnostics) {
+void JobRun::take(std::size_t setup, const Wishes& wishes, const FinishedRun& run,
+                  Diagnostics& diagnostics) {
   const Report& report = run.session.report();
   JobResult::Setup& out = result_.setups.back();
   out.report = json_text(report);
@@ -245,6 +265,10 @@ void JobRun::take(std::size_t setup, const FinishedRun& run, Diagnostics& diagno
   out.warnings = report.findings.count(Severity::kWarning);
   out.notes = report.findings.count(Severity::kNote);
   const bool finished = run.outcome == Outcome::kFinished || run.outcome == Outcome::kLossy;
+  if (wishes.keeps_pages)
+    out.article =
+        article_of(report, run.session.stock(), run.page, title_of(setup), JobPage::anchor(setup));
+  if (wishes.keeps_tables) out.table = table_of(setup);
   out.is_whole = finished && report.partial_reason.empty() && run.session.stock() != nullptr;
   if (out.comparison) {
     for (std::size_t n = 0; n < out.comparison->regions.size(); ++n) {
@@ -283,7 +307,8 @@ std::optional<JobResult::Setup::MadeBefore> JobRun::made_before(Vec3 point_mm,
     const CutLabel& by = past.labels[*label];
     JobResult::Setup::MadeBefore out;
     out.setup = n + 1;
-    out.name = job_.setups[n].name;
+    out.name = job_.name_of(n);
+    out.words = job_.words_of(n);
     out.file = by.source.file < past.files.size() ? past.files[by.source.file] : std::string();
     out.line = by.source.line;
     out.tool = by.tool;
@@ -300,8 +325,10 @@ void JobRun::run(std::size_t first, std::size_t end, const Wishes& wishes) {
     const Arguments arguments = arguments_of(setup, wishes);
     Diagnostics said;
     RunRequest request = request_of(setup, wishes, arguments, said);
+    request.keeps_page = wishes.keeps_pages;
     JobResult::Setup& row = result_.setups.emplace_back();
-    row.name = job_.setups[setup].name;
+    row.name = job_.name_of(setup);
+    row.words = job_.words_of(setup);
     row.setup_s = job_.setups[setup].time_s;
     row.lies = words_of(job_.setups[setup].turn);
     if (const auto carried = carried_.find(setup); carried != carried_.end())
@@ -310,15 +337,16 @@ void JobRun::run(std::size_t first, std::size_t end, const Wishes& wishes) {
       request.session.stock.kind.reset();  // it is in the model that was asked for, or in more
       request.session.stock.cell_mm = 0;
     }
-    RunVerdict verdict = run_one(
-        arguments, std::move(request),
-        [&](const FinishedRun& run, Diagnostics& diagnostics) { take(setup, run, diagnostics); });
+    RunVerdict verdict = run_one(arguments, std::move(request),
+                                 [&](const FinishedRun& run, Diagnostics& diagnostics) {
+                                   take(setup, wishes, run, diagnostics);
+                                 });
     result_.code = std::max(result_.code, verdict.code);
     result_.listed.push_back(std::move(verdict.listed));
     if (result_.stopped_between) result_.code = std::max<int>(result_.code, kExitUsage);
     if (result_.setups.back().is_whole && !result_.stopped_between) continue;
     for (std::size_t later = setup + 1; later < count(); ++later)
-      result_.not_run.push_back(job_.setups[later].name);
+      result_.not_run.push_back(job_.name_of(later));
     return;
   }
 }

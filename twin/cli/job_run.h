@@ -2,6 +2,7 @@
 // next.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,7 +24,8 @@ namespace kerf {
 /// What a job came to.
 struct JobResult {
   struct Setup {
-    std::string name;
+    std::string name;    ///< "bottom", "setup 2"
+    std::string words;   ///< "setup 2 (bottom)", "setup 2"
     std::string report;  ///< kerf-report/1; empty: it came to none
     double machining_s = 0, setup_s = 0;
     std::optional<CarriedOver> carried;  ///< how the workpiece came to it; of the first one none
@@ -31,12 +33,14 @@ struct JobResult {
     std::vector<ToolUse> tools;
     std::optional<Comparison> comparison;
     std::vector<std::string> files;  ///< of the program: what SourceRef::file means
+    std::string article;             ///< of the page over all; empty: none was asked for
+    std::string table;               ///< its motions, a file of the job's; empty: none, or not run
     std::size_t errors = 0, warnings = 0, notes = 0;
     /// Who of the setups before made gouges of `comparison` that this one did not: by the number of
     /// their region.
     struct MadeBefore {
       std::size_t region = 0, setup = 0;  ///< `setup` from 1
-      std::string name, file;             ///< of the setup; of its program
+      std::string name, words, file;      ///< of the setup; of its program
       std::uint32_t line = 0;
       int tool = 0;
     };
@@ -70,9 +74,10 @@ class JobRun {
 
   /// Which files the last setup is to leave, and what else is asked of it.
   struct Wishes {
-    OutputPaths last;        ///< of the last setup; json, junit and sarif are the job's own
-    std::string folder;      ///< of pictures; empty: none
-    bool on_stderr = false;  ///< summaries: standard output is a file's
+    OutputPaths last;    ///< of the last setup; json, junit and sarif are the job's own
+    std::string folder;  ///< of pictures; empty: none
+    bool keeps_pages = false, keeps_tables = false;  ///< Setup::article and ::table
+    bool on_stderr = false;                          ///< summaries: standard output is a file's
     bool compares = true;
   };
   /// Setups `first` (0-based) up to before `end`, each after the one before has left its workpiece.
@@ -81,8 +86,20 @@ class JobRun {
   const JobResult& result() const { return result_; }
   /// The workpiece for this setup is there.
   bool is_ready(std::size_t setup) const { return setup == 0 || ready_ >= setup; }
-  /// For a window: the command line of `kerf view` of that setup, with what was asked for.
-  Arguments view_arguments(std::size_t setup) const;
+  /// For a window: the command line of `kerf view` of that setup. `is_asked`: it is the one that
+  /// the command line is about, and what that says of blank and tools goes before the file.
+  Arguments view_arguments(std::size_t setup, bool is_asked = true) const;
+  /// "setup 2 of 3: bottom"
+  std::string title_of(std::size_t setup) const;
+  /// "what setup 1 (top) has left, flipped about X"; of the first one nothing.
+  std::string blank_words(std::size_t setup) const;
+  /// The workpiece that setup `next` begins with, as --stock has it.
+  std::string carried_blank(std::size_t next) const { return "state:" + state_of(next); }
+  /// What a setup has left goes on to the next one, as run() does it: is_ready() of that one from
+  /// then on, of no later one. False: why not.
+  bool carry_over(std::size_t next, const StockModel& stock, Diagnostics& diagnostics);
+  /// What this setup leaves is not known any more.
+  void forget_after(std::size_t setup) { ready_ = std::min(ready_, setup); }
 
  private:
   JobRun(const Arguments& asked, JobFile job, std::string text, PrivateFolder folder);
@@ -90,11 +107,11 @@ class JobRun {
   RunRequest request_of(std::size_t setup, const Wishes& wishes, const Arguments& arguments,
                         Diagnostics& diagnostics) const;
   std::string state_of(std::size_t setup) const;
-  std::string title_of(std::size_t setup) const;
+  std::string table_of(std::size_t setup) const;
   std::string need_of_octree(std::size_t after) const;
   Diagnostic fault_at(const JobPlace& place, std::string message, std::string hint = {}) const;
-  void take(std::size_t setup, const FinishedRun& run, Diagnostics& diagnostics);
-  bool carry_over(std::size_t next, const StockModel& stock, Diagnostics& diagnostics);
+  void take(std::size_t setup, const Wishes& wishes, const FinishedRun& run,
+            Diagnostics& diagnostics);
 
   /// What a setup did, for who asks after later ones.
   struct Past {
@@ -114,6 +131,13 @@ class JobRun {
   std::size_t ready_ = 0;
   std::map<std::size_t, CarriedOver> carried_;
 };
+
+/// A tool over all setups that have it with that shape.
+struct ToolOfSetups {
+  ToolUse use;
+  std::vector<std::size_t> setups;  ///< from 1
+};
+std::vector<ToolOfSetups> tools_of(const JobResult& result);
 
 /// kerf-job/1.
 std::string job_json(const JobResult& result, const std::string& path, const std::string& version);

@@ -17,34 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A tool over all setups that have it with that shape.
-struct ToolOfSetups {
-  ToolUse use;
-  std::vector<std::size_t> setups;  ///< 1-based
-};
-
-std::vector<ToolOfSetups> tools_of(const JobResult& result) {
-  std::vector<ToolOfSetups> tools;
-  for (std::size_t n = 0; n < result.setups.size(); ++n) {
-    for (const ToolUse& use : result.setups[n].tools) {
-      auto row = std::ranges::find_if(tools, [&](const ToolOfSetups& tool) {
-        return tool.use.number == use.number && tool.use.shape == use.shape;
-      });
-      if (row == tools.end()) {
-        tools.push_back({use, {n + 1}});
-        continue;
-      }
-      row->use.cut_s += use.cut_s;
-      row->use.feed_mm += use.feed_mm;
-      row->use.removed_mm3 += use.removed_mm3;
-      row->use.max_depth_mm = std::max(row->use.max_depth_mm, use.max_depth_mm);
-      row->use.peak_mm3_per_s = std::max(row->use.peak_mm3_per_s, use.peak_mm3_per_s);
-      row->setups.push_back(n + 1);
-    }
-  }
-  return tools;
-}
-
 Json setup_json(const JobResult::Setup& setup, std::size_t number) {
   Json out = setup.report.empty() ? Json::object() : Json::parse(setup.report);
   Json own;
@@ -81,6 +53,28 @@ std::string bound_text(double bound_mm) {
 }
 
 }  // namespace
+
+std::vector<ToolOfSetups> tools_of(const JobResult& result) {
+  std::vector<ToolOfSetups> tools;
+  for (std::size_t n = 0; n < result.setups.size(); ++n) {
+    for (const ToolUse& use : result.setups[n].tools) {
+      auto row = std::ranges::find_if(tools, [&](const ToolOfSetups& tool) {
+        return tool.use.number == use.number && tool.use.shape == use.shape;
+      });
+      if (row == tools.end()) {
+        tools.push_back({use, {n + 1}});
+        continue;
+      }
+      row->use.cut_s += use.cut_s;
+      row->use.feed_mm += use.feed_mm;
+      row->use.removed_mm3 += use.removed_mm3;
+      row->use.max_depth_mm = std::max(row->use.max_depth_mm, use.max_depth_mm);
+      row->use.peak_mm3_per_s = std::max(row->use.peak_mm3_per_s, use.peak_mm3_per_s);
+      row->setups.push_back(n + 1);
+    }
+  }
+  return tools;
+}
 
 std::string words_of(const JobTurn& turn) {
   if (turn.touched) return tr("as three points were touched");
@@ -164,7 +158,7 @@ std::string job_text(const JobResult& result, LengthUnit units) {
   for (const JobResult::Setup& setup : result.setups) {
     if (!setup.carried || setup.carried->from == setup.carried->to) continue;
     out += trf("carried   from {} to {} for {}, {}\n", setup.carried->from, setup.carried->to,
-               setup.name, bound_text(setup.carried->bound_mm));
+               setup.words, bound_text(setup.carried->bound_mm));
     if (!setup.carried->note.empty()) out += fmt::format("          {}\n", setup.carried->note);
   }
   const char* head = tr("tools     ");
@@ -180,11 +174,9 @@ std::string job_text(const JobResult& result, LengthUnit units) {
   if (result.setups.empty()) return in_unit(out, units);
   for (const auto& made : result.setups.back().made_before) {
     const DeviationPlace& worst = result.setups.back().comparison->regions[made.region].worst;
-    out +=
-        trf("          the gouge at X{:.2f} Y{:.2f} Z{:.2f} mm was made in setup {} ({}), "
-            "{}:{} (tool {})\n",
-            worst.at_mm.x, worst.at_mm.y, worst.at_mm.z, made.setup, made.name, made.file,
-            made.line, made.tool);
+    out += trf(
+        "          the gouge at X{:.2f} Y{:.2f} Z{:.2f} mm was made in {}, {}:{} (tool {})\n",
+        worst.at_mm.x, worst.at_mm.y, worst.at_mm.z, made.words, made.file, made.line, made.tool);
   }
   return in_unit(out, units);
 }

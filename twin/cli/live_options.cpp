@@ -170,7 +170,7 @@ void understand_outlets(OptionReader& reader, LiveRequest& request) {
   request.record = reader.text("--record");
   request.events = reader.text("--events");
   request.outputs = understand_outputs(reader);
-  request.compare = understand_compare(reader);
+  request.compare = understand_compare(reader, options.tools);
   check_outline_wishes(options.blank, request.outputs, reader);
   request.quiet = reader.is_yes("--quiet");
   request.draw = understand_draw(reader);

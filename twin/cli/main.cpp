@@ -125,6 +125,12 @@ std::string model_list() {
             "motions need; the report says why\n");
 }
 
+bool has_option(Command command, const std::string& option) {
+  return std::ranges::any_of(setting_table(), [&](const Setting& setting) {
+    return (setting.commands & command) != 0 && setting.option == option;
+  });
+}
+
 std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
 
 /// An argument that no command knows: exit code 2, with the nearest known one.
@@ -142,8 +148,11 @@ int refuse_argument(const std::string& argument, const CLI::App& app, bool comma
   } else {
     d.message = trf("{}: one argument too many", in_quotes(argument));
   }
-  const std::string near = nearest_word(argument.substr(0, argument.find('=')), allowed);
-  if (!near.empty()) d.message += trf("; did you mean {}?", near);
+  const std::string written = argument.substr(0, argument.find('='));
+  const std::string near = nearest_word(written, allowed);
+  const bool is_of_run = app.get_name() == "job" && has_option(kRun, written);
+  if (is_of_run) d.message += tr("; kerf run has it, for a single program");
+  if (!is_of_run && !near.empty()) d.message += trf("; did you mean {}?", near);
   const std::string name = app.get_parent() ? "kerf " + app.get_name() : "kerf";
   d.hint = trf("{} --help lists what there is", name);
   kerf::print(stderr, "{}", to_string(d));

@@ -26,6 +26,7 @@
 #include "twin/scene/fixture_bodies.h"
 #include "twin/scene/frame_tool.h"
 #include "twin/scene/held_bodies.h"
+#include "twin/scene/map_picture.h"
 #include "twin/scene/part_patches.h"
 #include "twin/scene/turned_look.h"
 #include "viewer/deviation_colors.h"
@@ -38,7 +39,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using NamedPath = std::pair<const char*, const std::string*>;
 
-constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 13> kPaths{
+constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 15> kPaths{
     {{"--json", &OutputPaths::json},
      {"--png", &OutputPaths::png},
      {"--stl", &OutputPaths::stl},
@@ -51,7 +52,9 @@ constexpr std::array<std::pair<const char*, std::string OutputPaths::*>, 13> kPa
      {"--sarif", &OutputPaths::sarif},
      {"--csv", &OutputPaths::csv},
      {"--html", &OutputPaths::html},
-     {"--pdf", &OutputPaths::pdf}}};
+     {"--pdf", &OutputPaths::pdf},
+     {"--rest-png", &OutputPaths::rest_png},
+     {"--engagement-png", &OutputPaths::engagement_png}}};
 
 void fault(Diagnostics& diagnostics, std::string message) {
   Diagnostic d;
@@ -138,8 +141,8 @@ VertexMarks vertex_deviations(const TriangleMesh& mesh, const DesignPart& design
 
 }  // namespace
 
-std::array<std::pair<const char*, const std::string*>, 13> OutputPaths::named() const {
-  std::array<NamedPath, 13> all;
+std::array<std::pair<const char*, const std::string*>, 15> OutputPaths::named() const {
+  std::array<NamedPath, 15> all;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = {kPaths[i].first, &(this->*kPaths[i].second)};
   return all;
@@ -177,6 +180,8 @@ void check_picture_name(const char* option, const std::string& path, Diagnostics
 void check_output_arguments(const OutputPaths& paths, Diagnostics& diagnostics) {
   check_picture_name("--png", paths.png, diagnostics);
   check_picture_name("--compare-png", paths.compare_png, diagnostics);
+  check_picture_name("--rest-png", paths.rest_png, diagnostics);
+  check_picture_name("--engagement-png", paths.engagement_png, diagnostics);
   const auto all = paths.named();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -233,6 +238,16 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
                  diagnostics);
     done_with(paths.compare_png);
   }
+  if (report.rest && !paths.rest_png.empty()) {
+    note_failure(write_png(paths.rest_png, rest_picture(*report.rest, file_name(name))),
+                 diagnostics);
+    done_with(paths.rest_png);
+  }
+  if (report.engagement && report.engagement->map && !paths.engagement_png.empty()) {
+    const Picture picture = engagement_picture(*report.engagement, file_name(name));
+    note_failure(write_png(paths.engagement_png, picture), diagnostics);
+    done_with(paths.engagement_png);
+  }
   if (stock && wants_mesh) {
     const Clock::time_point mesh_start = Clock::now();
     const TriangleMesh mesh = stock->mesh(mesh_tolerance_mm);
@@ -279,7 +294,8 @@ void write_outputs(const OutputPaths& paths, double mesh_tolerance_mm, const Sto
     done_with(paths.dxf);
     done_with(paths.svg);
   }
-  if (!stock && (wants_mesh || !paths.png.empty() || !paths.state.empty())) {
+  if (!stock && (wants_mesh || !paths.png.empty() || !paths.state.empty() ||
+                 !paths.rest_png.empty() || !paths.engagement_png.empty())) {
     fault(diagnostics,
           tr("stopped before there was a workpiece; no picture, mesh or state is written"));
   }

@@ -30,17 +30,19 @@ struct OutputPaths {
   /// What is left of a sheet, and parts beside it (write_outlines); the contour of a turned part.
   std::string dxf;
   std::string svg;
-  std::string compare_png;  ///< coloured by deviations; of a comparison alone
-  std::string junit;        ///< findings, as build servers read them: write_finding_lists()
-  std::string sarif;        ///< and as code hosts and editors do
-  std::string csv;          ///< motions, written as they are cut: MotionTable
-  std::string html;         ///< the report as a page: write_pages()
-  std::string pdf;          ///< and printed
+  std::string compare_png;     ///< coloured by deviations; of a comparison alone
+  std::string junit;           ///< findings, as build servers read them: write_finding_lists()
+  std::string sarif;           ///< and as code hosts and editors do
+  std::string csv;             ///< motions, written as they are cut: MotionTable
+  std::string html;            ///< the report as a page: write_pages()
+  std::string pdf;             ///< and printed
+  std::string rest_png;        ///< Report::rest from above
+  std::string engagement_png;  ///< Report::engagement from above
   bool wants_page() const { return !html.empty() || !pdf.empty(); }
   SectionKind section = SectionKind::kNone;  ///< of `png`
 
   /// With the options that give them.
-  std::array<std::pair<const char*, const std::string*>, 13> named() const;
+  std::array<std::pair<const char*, const std::string*>, 15> named() const;
   /// Of one of them (`path` is a member of this), its bit where what is done is noted.
   unsigned bit_of(const std::string& path) const;
   bool uses_stdout() const {

@@ -50,11 +50,8 @@ void note(const Done& done, Diagnostics& diagnostics) {
   diagnostics.push_back(std::move(d));
 }
 
-}  // namespace
-
-void write_pages(const OutputPaths& paths, const Report& report, const StockModel* stock,
-                 const PageFacts& facts, Diagnostics& diagnostics) {
-  if (!paths.wants_page()) return;
+/// `group_of` reads `facts` and `report`, which must live as long.
+PageOptions options_of(const Report& report, const PageFacts& facts) {
   PageOptions options;
   options.units = facts.units;
   options.command = facts.command;
@@ -68,18 +65,36 @@ void write_pages(const OutputPaths& paths, const Report& report, const StockMode
     const double tolerance_mm = report.comparison->tolerance_mm;
     options.design = {facts.design, tolerance_mm, deviation_colors(tolerance_mm)};
   }
-  if (!facts.labels.empty()) {
-    options.group_of = [&](std::uint32_t label) -> std::uint8_t {
-      if (label >= facts.labels.size()) return kNoGroup;
-      for (std::size_t i = 0; i < options.groups.size(); ++i) {
-        if (report.tools[i].number == facts.labels[label].tool) return static_cast<std::uint8_t>(i);
-      }
-      return kNoGroup;
-    };
-  }
-  const std::string page = report_page(report, stock, options);
+  if (facts.labels.empty()) return options;
+  options.group_of = [&facts, &report, groups = options.groups.size()](std::uint32_t label) {
+    if (label >= facts.labels.size()) return kNoGroup;
+    for (std::size_t i = 0; i < groups; ++i) {
+      if (report.tools[i].number == facts.labels[label].tool) return static_cast<std::uint8_t>(i);
+    }
+    return kNoGroup;
+  };
+  return options;
+}
+
+}  // namespace
+
+std::string article_of(const Report& report, const StockModel* stock, const PageFacts& facts,
+                       const std::string& heading, const std::string& anchor) {
+  PageOptions options = options_of(report, facts);
+  options.heading = heading;
+  options.anchor = anchor;
+  return page_article(report, stock, options);
+}
+
+void write_page(const OutputPaths& paths, const std::string& page, Diagnostics& diagnostics) {
   if (!paths.html.empty()) note(write_text(paths.html, page), diagnostics);
   if (!paths.pdf.empty()) note(print_page(page, paths.pdf), diagnostics);
+}
+
+void write_pages(const OutputPaths& paths, const Report& report, const StockModel* stock,
+                 const PageFacts& facts, Diagnostics& diagnostics) {
+  if (!paths.wants_page()) return;
+  write_page(paths, report_page(report, stock, options_of(report, facts)), diagnostics);
 }
 
 }  // namespace kerf

@@ -23,6 +23,13 @@ struct PageFacts {
   const DesignPart* design = nullptr;  ///< that the report compares with; null: with none
 };
 
+/// The article of a run that is one of several, under its own heading (report_page.h).
+std::string article_of(const Report& report, const StockModel* stock, const PageFacts& facts,
+                       const std::string& heading, const std::string& anchor);
+
+/// A page that is made, to `html` and `pdf` of `paths`.
+void write_page(const OutputPaths& paths, const std::string& page, Diagnostics& diagnostics);
+
 /// `html` and `pdf` of `paths`, where they are wanted, each under a temporary name that is renamed
 /// when it is whole; "-" is standard output. What fails is a diagnostic. `stock`: null if there was
 /// none.

@@ -166,6 +166,17 @@ std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinPro
   return std::move(begun.value());
 }
 
+/// Where there is none to be measured.
+void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
+  if (!stock.sheet() && !stock.turned()) return;
+  Diagnostic d;
+  d.severity = Severity::kWarning;
+  d.message = stock.sheet()
+                  ? tr("--engagement: a sheet is cut by no milling tool; nothing is measured")
+                  : tr("--engagement: the workpiece turns; it is measured of milling tools alone");
+  diagnostics.push_back(std::move(d));
+}
+
 std::span<const CutLabel> labels_in(const Session& session) {
   return session.cut_labels() ? session.cut_labels()->all() : std::span<const CutLabel>();
 }
@@ -213,8 +224,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     if (!table) session.reset();
   }
   if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();
+  if (session && request.engagement)
+    session->log_engagement(!request.outputs.engagement_png.empty());
   std::optional<RunCurve> curve;
-  if (session && request.outputs.wants_page()) {
+  if (session && (request.outputs.wants_page() || request.keeps_page)) {
     session->keep_cut_labels();
     session->record_by(curve.emplace());
   }
@@ -230,7 +243,9 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     outcome = session->run(stop.get_token(), diagnostics);
   }
   rename_stdin(kept, session->report(), diagnostics);
+  if (request.engagement && session->stock()) doubt_engagement(*session->stock(), diagnostics);
   Compared compared;
+  PageFacts page;
   if (!has_error(diagnostics) && design) {
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {labels_in(*session), session->kept_moves()}, session->report(),
@@ -243,12 +258,13 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
-    const std::string command = command_line(
-        with_guesses(request.written, rows_in(session->report().guesses, request.units)));
-    write_pages(request.outputs, session->report(), session->stock(),
-                {labels_in(*session), curve ? &*curve : nullptr, command, request.units,
-                 compared.of_workpiece().get()},
-                diagnostics);
+    page = {labels_in(*session), curve ? &*curve : nullptr,
+            request.is_of_job
+                ? std::string()
+                : command_line(with_guesses(request.written,
+                                            rows_in(session->report().guesses, request.units))),
+            request.units, compared.of_workpiece().get()};
+    write_pages(request.outputs, session->report(), session->stock(), page, diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {
@@ -268,7 +284,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     print_results(request, session->report());
   }
   const int code = exit_code(outcome, session->report(), diagnostics);
-  if (finished && !has_error(diagnostics)) finished({*session, outcome, code}, diagnostics);
+  if (finished && !has_error(diagnostics)) finished({*session, outcome, code, page}, diagnostics);
   flush_console();
   print(diagnostics);
   ListedProgram listed = listed_program(session->report());

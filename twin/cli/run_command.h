@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/exit_code.h"
+#include "twin/cli/page_output.h"
 #include "twin/cli/run_options.h"
 #include "twin/report/finding_lists.h"
 
@@ -21,6 +22,7 @@ struct FinishedRun {
   Session& session;
   Outcome outcome;
   int code;
+  const PageFacts& page;  ///< whole with RunRequest::keeps_page alone
 };
 using RunListener = std::function<void(const FinishedRun&, Diagnostics&)>;
 

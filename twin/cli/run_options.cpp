@@ -104,7 +104,10 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
     reader.fault("--finding-png",
                  tr("the program comes from standard input, which cannot be read again"));
   }
-  request.compare = understand_compare(reader);
+  request.compare = understand_compare(reader, request.session.tools);
+  // Tools may be named for what is left alone.
+  if (request.compare.rest_mm > 0) request.session.tools_named = false;
+  request.engagement = reader.is_yes("--engagement") || !request.outputs.engagement_png.empty();
   request.view = reader.is_yes("--view");
   if (request.view && request.compare.is_fitted) {
     reader.fault("--compare-fit",

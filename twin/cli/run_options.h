@@ -28,9 +28,11 @@ struct RunRequest {
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
   CompareRequest compare;        ///< the finished part with its design
+  bool engagement = false;       ///< how tools are engaged is measured
   bool quiet = false;
   bool verbose = false;
   bool keeps_moves = false;            ///< for a comparison that comes after another setup
+  bool keeps_page = false;             ///< what a page tells is kept: FinishedRun::page
   bool is_of_job = false;              ///< one of several setups: no command line says all of it
   bool summary_on_stderr = false;      ///< standard output is that of a file
   LengthUnit units = LengthUnit::kMm;  ///< of what is shown

@@ -52,7 +52,7 @@ Arguments replay_arguments(Arguments arguments) {
 }
 
 int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
-              std::stop_source& stop) {
+              std::stop_source& stop, std::unique_ptr<ViewSetups> setups = nullptr) {
   SceneMailbox mailbox(Window::wake);
   CommandQueue commands;
   WindowOptions options;
@@ -66,7 +66,7 @@ int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
     live.words = {"kerf", "view", live.options.text("LOG")};
     return show_log(live, mailbox, commands, stop, std::move(on_start));
   };
-  ViewWork work(std::move(arguments), request, mailbox, commands, stop, replay);
+  ViewWork work(std::move(arguments), request, mailbox, commands, stop, replay, std::move(setups));
   const StopDeadline deadline(stop.get_token(), kExitGood);
   const Result<int> code =
       work_beside_window(options, mailbox, commands, stop, [&work] { return work.run(); });
@@ -171,7 +171,8 @@ Arguments again_in_window(Arguments arguments) {
   arguments.command = kView;
   WrittenOptions& options = arguments.options;
   for (const auto& [output, path] : OutputPaths{}.named()) options.clear(output);
-  for (const char* const option : {"--mesh-tolerance", "--view", "--verbose", "--finding-png"}) {
+  for (const char* const option :
+       {"--mesh-tolerance", "--view", "--verbose", "--finding-png", "--rest", "--engagement"}) {
     options.clear(option);
   }
   options.set_flag("--quiet");
@@ -194,17 +195,18 @@ int show_program(const Arguments& arguments, const RunRequest& run, std::stop_so
 
 int view_command(const Arguments& asked) {
   Diagnostics diagnostics;
-  std::unique_ptr<JobRun> job;
+  std::unique_ptr<ViewSetups> setups;
   Arguments arguments = asked;
   if (is_job_file(asked.options.text("PROGRAM"))) {
     int code = kExitGood;
-    std::optional<Arguments> own = view_of_job(asked, job, code);
-    if (!own) return code;
-    arguments = std::move(*own);
+    setups = view_of_job(asked, code);
+    if (!setups) return code;
+    arguments = setups->arguments();
   } else if (asked.options.has("--setup")) {
     add_fault("--setup", tr("is for jobs, YAML files with setups"), {}, diagnostics);
   }
   ViewRequest request = understand_view(arguments, diagnostics);
+  if (setups) request.run.session.blank_words = setups->blank_words(arguments);
   check_sheet_options(request.run.session.blank, arguments, diagnostics);
   if (has_error(diagnostics)) {
     print_diagnostics(diagnostics, false);
@@ -234,7 +236,7 @@ int view_command(const Arguments& asked) {
   if (has_error(diagnostics)) return kExitFailure;
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
-  if (request.wants_window()) return in_window(arguments, request, stop);
+  if (request.wants_window()) return in_window(arguments, request, stop, std::move(setups));
   StopDeadline deadline(stop.get_token(), kExitFailure);
   deadline.set_last_words([] { print_text(stderr, trf("kerf: interrupted\n")); }, kViewPatience);
   return into_files(request, kind, stop);

@@ -40,13 +40,15 @@ std::string first_line(const Diagnostic& diagnostic) {
 }  // namespace
 
 ViewWork::ViewWork(std::optional<Arguments> arguments, ViewRequest request, SceneMailbox& mailbox,
-                   CommandQueue& commands, std::stop_source& stop, Replay replay)
+                   CommandQueue& commands, std::stop_source& stop, Replay replay,
+                   std::unique_ptr<ViewSetups> setups)
     : arguments_(std::move(arguments)),
       request_(std::move(request)),
       mailbox_(mailbox),
       commands_(commands),
       stop_(stop),
       replay_(std::move(replay)),
+      setups_(std::move(setups)),
       speed_(request_.speed) {}
 
 int ViewWork::run() {
@@ -62,11 +64,20 @@ int ViewWork::run() {
   publish_job();
   while (!stop_.stop_requested()) {
     std::optional<ViewerCommand> asked;
-    bool has_changed = false;
+    bool has_changed = false, plays_on = false;
     if (view_) {
-      const auto is_over = [&] { return has_changed = arguments_ && watch_.has_changed(); };
+      const auto is_over = [&] {
+        tell_changed_setup();
+        has_changed = arguments_ && watch_.has_changed();
+        return has_changed || goes_on_to_next();
+      };
       view_->run(stop_.get_token(), std::exchange(speed_, std::nullopt), is_over);
       asked = view_->asked();
+      plays_on = is_setup_shown_ && view_->is_playing();
+      if (!asked && !has_changed && goes_on_to_next()) {
+        asked = SetupCommand{setups_->shown() + 1};
+        plays_on = true;
+      }
     } else {
       asked = wait_without_program();
       has_changed = !asked;
@@ -77,8 +88,22 @@ int ViewWork::run() {
       asked = replay_logs(std::move(*asked));
       if (!asked) continue;
     }
+    if (const auto* const other = asked ? std::get_if<SetupCommand>(&*asked) : nullptr) {
+      if (view_) view_->stay();
+      if (!go_to_setup(other->setup, plays_on)) {
+        speed_.reset();
+        if (!stop_.stop_requested()) tell_faults();
+      }
+      publish_job();
+      continue;
+    }
     is_same_program_ = true;
-    if (asked) take(*asked);
+    if (setups_) setups_->forget_next();
+    if (asked && !take(*asked)) {
+      tell_faults();
+      publish_job();
+      continue;
+    }
     if (!arguments_->options.has("PROGRAM")) {
       publish_job();
       continue;
@@ -141,8 +166,10 @@ std::optional<ViewerCommand> ViewWork::replay_logs(ViewerCommand asked) {
   return asked;
 }
 
-void ViewWork::take(const ViewerCommand& asked) {
+/// False: what is wrong is in the diagnostics.
+bool ViewWork::take(const ViewerCommand& asked) {
   if (const auto* open = std::get_if<OpenCommand>(&asked)) {
+    setups_.reset();
     // Blank and tools were those of the other program; the machine stays.
     for (const char* const option : {"--stock", "--tool", "--cell", "--model", "--until-line",
                                      "--at-line", "--compare", "--tolerance"}) {
@@ -152,9 +179,10 @@ void ViewWork::take(const ViewerCommand& asked) {
     is_same_program_ = false;
     // A fault is to be read beside what was asked for.
     job_ = ViewedJob{};
+    if (is_job_file(open->path)) return open_setups();
   } else if (const auto* job = std::get_if<JobCommand>(&asked)) {
     WrittenOptions& options = arguments_->options;
-    options.set("--stock", job->stock);
+    options.set("--stock", job->stock.empty() && setups_ ? setups_->carried_blank() : job->stock);
     options.set("--cell", job->cell);
     options.set("--model", job->model);
     options.clear("--tool");
@@ -162,6 +190,7 @@ void ViewWork::take(const ViewerCommand& asked) {
       options.add("--tool", fmt::format("{}={}", number, shape));
     }
   }
+  return true;
 }
 
 /// False: what is wrong is in the diagnostics.
@@ -186,6 +215,7 @@ bool ViewWork::understand_again() {
     return false;
   }
   request_ = std::move(request);
+  if (setups_) request_.run.session.blank_words = setups_->blank_words(*arguments_);
   return true;
 }
 
@@ -202,7 +232,9 @@ bool ViewWork::load() {
   print_diagnostics(diagnostics_, request_.run.quiet);
   if (!loaded || stop_.stop_requested()) return false;
   print_faults(*loaded);
-  print_guesses(request_, *loaded);
+  if (!setups_) print_guesses(request_, *loaded);
+  partial_reason_ = loaded->partial_reason;
+  is_setup_shown_ = setups_ != nullptr;
   for (const std::string& file : loaded->files) watch_.add(file);
   describe(*loaded);
   replace_view(std::move(loaded));
@@ -217,6 +249,7 @@ void ViewWork::replace_view(std::unique_ptr<LoadedProgram> loaded) {
     commands_.push(SpeedCommand{view_->speed()});
   }
   ViewedProgram shown = viewed(request_, *loaded);
+  if (setups_) shown.title = setups_->title();
   shown.keeps_eye = before.has_value();
   if (has_machine_ && !shown.machine) {
     SceneUpdate update;
@@ -296,12 +329,15 @@ void ViewWork::describe(const LoadedProgram& loaded) {
 void ViewWork::publish_job() {
   if (!arguments_) return;
   const WrittenOptions& options = arguments_->options;
-  job_.program = options.text("PROGRAM");
+  job_.program = setups_ ? setups_->path() : options.text("PROGRAM");
+  job_.setups = setups_ ? setups_->names() : std::vector<std::string>();
+  job_.setup = setups_ ? setups_->shown() : 0;
   job_.unit = request_.run.units;
   job_.stock = options.text("--stock");
+  if (setups_ && job_.stock == setups_->carried_blank()) job_.stock.clear();
   job_.cell = options.text("--cell");
   job_.model = options.text("--model");
-  job_.command = command_line(*arguments_);
+  job_.command = command_line(setups_ ? setups_->job_arguments(*arguments_) : *arguments_);
   job_.models = {"auto"};
   for (const StockModelRow& row : stock_models()) job_.models.emplace_back(row.name);
   for (JobTool& tool : job_.tools) tool.given.clear();
@@ -335,6 +371,7 @@ std::optional<ViewerCommand> ViewWork::wait_without_program() {
     for (ViewerCommand& command : commands_.wait_for(kWorkPatience)) {
       if (std::holds_alternative<OpenCommand>(command) ||
           std::holds_alternative<JobCommand>(command) ||
+          std::holds_alternative<SetupCommand>(command) ||
           std::holds_alternative<ReadAgainCommand>(command)) {
         return std::move(command);
       }
@@ -355,19 +392,25 @@ void ViewWork::keep(ViewerCommand command) {
                      std::holds_alternative<SpeedCommand>(command) ||
                      std::holds_alternative<OpenCommand>(command) ||
                      std::holds_alternative<JobCommand>(command) ||
+                     std::holds_alternative<SetupCommand>(command) ||
                      std::holds_alternative<ReadAgainCommand>(command);
   if (lasts) waiting_.push_back(std::move(command));
 }
 
-/// What the window says while something is read; and whether it is closed already.
-void ViewWork::announce(const LoadProgress& progress) {
-  const auto now = Clock::now();
-  if (progress.motions > 0 && now - announced_ < kAnnouncePeriod) return;
-  announced_ = now;
+/// Whether the window is closed already; the rest is for what is shown next.
+void ViewWork::watch_commands() {
   for (ViewerCommand& command : commands_.take()) {
     if (std::holds_alternative<CloseCommand>(command)) stop_.request_stop();
     keep(std::move(command));
   }
+}
+
+/// What the window says while something is read.
+void ViewWork::announce(const LoadProgress& progress) {
+  const auto now = Clock::now();
+  if (progress.motions > 0 && now - announced_ < kAnnouncePeriod) return;
+  announced_ = now;
+  watch_commands();
   tell(tr("reading: ") + (progress.fraction >= 0 ? fmt::format("{:.0f} %", 100 * progress.fraction)
                                                  : trf("{} motions", progress.motions)));
 }

@@ -12,6 +12,7 @@
 #include "twin/cli/file_watch.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/view_load.h"
+#include "twin/cli/view_setups.h"
 #include "twin/scene/player_view.h"
 #include "viewer/scene_mailbox.h"
 #include "viewer/viewer_command.h"
@@ -25,10 +26,12 @@ class ViewWork {
  public:
   /// `arguments`: from which the request can be understood again; none: what was asked for is shown
   /// and nothing else. The others must outlive it.
-  /// `replay` shows the log that is the arguments' program, where logs can be shown.
+  /// `replay` shows the log that is the arguments' program, where logs can be shown. `setups`: of
+  /// the part whose setup is shown; when that has been played to its end, the next one plays on.
   using Replay = std::function<ShownLog(const Arguments&, std::function<void()> on_start)>;
   ViewWork(std::optional<Arguments> arguments, ViewRequest request, SceneMailbox& mailbox,
-           CommandQueue& commands, std::stop_source& stop, Replay replay = {});
+           CommandQueue& commands, std::stop_source& stop, Replay replay = {},
+           std::unique_ptr<ViewSetups> setups = nullptr);
 
   /// Until the window is closed; what the program is to end with.
   int run();
@@ -48,11 +51,17 @@ class ViewWork {
   bool has_program() const { return !request_.run.session.program.path.empty(); }
   bool load();
   bool understand_again();
-  void take(const ViewerCommand& asked);
+  bool take(const ViewerCommand& asked);
+  bool open_setups();
   std::optional<ViewerCommand> wait_without_program();
   bool is_log(const ViewerCommand& asked) const;
   std::optional<ViewerCommand> replay_logs(ViewerCommand asked);
   void tell_faults();
+  bool goes_on_to_next() const;
+  bool go_to_setup(std::size_t setup, bool plays_on);
+  bool show_setup(std::size_t setup);
+  bool cut_to_end();
+  void tell_changed_setup();
   void replace_view(std::unique_ptr<LoadedProgram> loaded);
   Place place() const;
   void go_to(const Place& place);
@@ -61,6 +70,7 @@ class ViewWork {
   void publish_job();
   void tell(const std::string& notice);
   void announce(const LoadProgress& progress);
+  void watch_commands();
   void keep(ViewerCommand command);
 
   std::optional<Arguments> arguments_;
@@ -69,6 +79,10 @@ class ViewWork {
   CommandQueue& commands_;
   std::stop_source& stop_;
   Replay replay_;
+  std::unique_ptr<ViewSetups> setups_;  ///< null: it is one program
+  std::string partial_reason_;          ///< of what is shown; empty: it was read to its end
+  bool is_setup_shown_ = false;         ///< by view_, and not what was there before the job
+  std::optional<std::size_t> told_changed_;
   std::unique_ptr<PlayerView> view_;  ///< null: there is no program
   bool has_machine_ = false;          ///< in the window
   bool is_same_program_ = false;      ///< as the one that is shown

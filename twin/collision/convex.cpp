@@ -13,14 +13,10 @@ constexpr double kTouching_mm = 1e-7;
 constexpr double kThinnest_mm = 1e-3;
 constexpr double kAlongAxis = 1e-9;
 
-struct Axis {
-  Vec3 origin;
-  Vec3 along;
-};
-
-Vec3 support_of(std::span<const RoundedDisc> discs, const Axis& axis, const Vec3& d) {
-  const double along = glm::dot(d, axis.along);
-  const Vec3 across = d - along * axis.along;
+Vec3 support_of(std::span<const RoundedDisc> discs, const Vec3& origin, const Vec3& axis,
+                const Vec3& d) {
+  const double along = glm::dot(d, axis);
+  const Vec3 across = d - along * axis;
   const double length = glm::length(d);
   // What is left of a direction along the axis is rounding, and points anywhere.
   double across_length = glm::length(across);
@@ -34,65 +30,11 @@ Vec3 support_of(std::span<const RoundedDisc> discs, const Axis& axis, const Vec3
     most = reach;
     best = &disc;
   }
-  Vec3 point = axis.origin + best->along_mm * axis.along;
+  Vec3 point = origin + best->along_mm * axis;
   if (across_length > 0) point += (best->radius_mm / across_length) * across;
   if (length > 0) point += (best->round_mm / length) * d;
   return point;
 }
-
-/// In the solid's own frame.
-Vec3 support_of(const Convex& solid, const Vec3& d) {
-  switch (solid.kind) {
-    case Convex::Kind::kRevolved:
-      return support_of(solid.discs, {solid.origin_mm, solid.axis}, d);
-    case Convex::Kind::kBox: {
-      const Vec3 &low = solid.corners[0], &high = solid.corners[1];
-      return {d.x > 0 ? high.x : low.x, d.y > 0 ? high.y : low.y, d.z > 0 ? high.z : low.z};
-    }
-    case Convex::Kind::kHull:
-      break;
-  }
-  const Vec3* best = solid.corners.data();
-  for (const Vec3& corner : solid.corners)
-    if (glm::dot(corner, d) > glm::dot(*best, d)) best = &corner;
-  return *best;
-}
-
-/// Support points of a solid on its way.
-class Sweep {
- public:
-  explicit Sweep(const MovingConvex& moving)
-      : moving_(moving), slides_(moving.from.rotation == moving.to.rotation) {
-    const Convex& solid = moving.solid;
-    if (solid.kind != Convex::Kind::kRevolved) return;
-    from_ = {moving.from.point(solid.origin_mm), moving.from.direction(solid.axis)};
-    to_ = {moving.to.point(solid.origin_mm), moving.to.direction(solid.axis)};
-    slides_ = from_.along == to_.along;
-  }
-
-  Vec3 support(const Vec3& d) const {
-    const Vec3 first = support_at(moving_.from, from_, d);
-    if (slides_) {
-      const Vec3 way = moving_.solid.kind == Convex::Kind::kRevolved
-                           ? to_.origin - from_.origin
-                           : moving_.to.origin_mm - moving_.from.origin_mm;
-      return glm::dot(way, d) > 0 ? first + way : first;
-    }
-    const Vec3 last = support_at(moving_.to, to_, d);
-    return glm::dot(last, d) > glm::dot(first, d) ? last : first;
-  }
-
- private:
-  Vec3 support_at(const Pose& pose, const Axis& axis, const Vec3& d) const {
-    if (moving_.solid.kind == Convex::Kind::kRevolved)
-      return support_of(moving_.solid.discs, axis, d);
-    return pose.point(support_of(moving_.solid, glm::transpose(pose.rotation) * d));
-  }
-
-  const MovingConvex& moving_;
-  Axis from_{}, to_{};
-  bool slides_;
-};
 
 /// A simplex of up to four points, and of it the point nearest to the origin.
 class Simplex {
@@ -223,6 +165,51 @@ class Simplex {
 
 }  // namespace
 
+Vec3 Convex::support(const Vec3& direction) const {
+  switch (kind) {
+    case Convex::Kind::kRevolved:
+      return support_of(discs, origin_mm, axis, direction);
+    case Convex::Kind::kBox: {
+      const Vec3 &low = corners[0], &high = corners[1];
+      return {direction.x > 0 ? high.x : low.x, direction.y > 0 ? high.y : low.y,
+              direction.z > 0 ? high.z : low.z};
+    }
+    case Convex::Kind::kHull:
+      break;
+  }
+  const Vec3* best = corners.data();
+  for (const Vec3& corner : corners)
+    if (glm::dot(corner, direction) > glm::dot(*best, direction)) best = &corner;
+  return *best;
+}
+
+ConvexSweep::ConvexSweep(const MovingConvex& moving)
+    : moving_(moving), slides_(moving.from.rotation == moving.to.rotation) {
+  const Convex& solid = moving.solid;
+  if (solid.kind != Convex::Kind::kRevolved) return;
+  from_ = {moving.from.point(solid.origin_mm), moving.from.direction(solid.axis)};
+  to_ = {moving.to.point(solid.origin_mm), moving.to.direction(solid.axis)};
+  slides_ = from_.along == to_.along;
+}
+
+Vec3 ConvexSweep::support(const Vec3& direction) const {
+  const Vec3 first = support_at(moving_.from, from_, direction);
+  if (slides_) {
+    const Vec3 way = moving_.solid.kind == Convex::Kind::kRevolved
+                         ? to_.origin_mm - from_.origin_mm
+                         : moving_.to.origin_mm - moving_.from.origin_mm;
+    return glm::dot(way, direction) > 0 ? first + way : first;
+  }
+  const Vec3 last = support_at(moving_.to, to_, direction);
+  return glm::dot(last, direction) > glm::dot(first, direction) ? last : first;
+}
+
+Vec3 ConvexSweep::support_at(const Pose& pose, const Axis& axis, const Vec3& direction) const {
+  if (moving_.solid.kind == Convex::Kind::kRevolved)
+    return support_of(moving_.solid.discs, axis.origin_mm, axis.along, direction);
+  return pose.point(moving_.solid.support(glm::transpose(pose.rotation) * direction));
+}
+
 Box Convex::box_mm() const {
   Box box;
   if (kind == Kind::kBox) return {corners[0], corners[1]};
@@ -233,8 +220,8 @@ Box Convex::box_mm() const {
   for (int axis_number = 0; axis_number < 3; ++axis_number) {
     Vec3 d{0};
     d[axis_number] = 1;
-    box.max[axis_number] = support_of(*this, d)[axis_number];
-    box.min[axis_number] = support_of(*this, -d)[axis_number];
+    box.max[axis_number] = support(d)[axis_number];
+    box.min[axis_number] = support(-d)[axis_number];
   }
   return box;
 }
@@ -286,10 +273,9 @@ double half_thickness_mm(const Convex& solid) {
   return std::min(radius, (high - low) / 2);
 }
 
-ConvexGap gap_of(const MovingConvex& moving, const Convex& still, double cutoff_mm, double exact_mm,
+ConvexGap gap_of(const ConvexSweep& moving, const Convex& still, double cutoff_mm, double exact_mm,
                  const Vec3& guess) {
-  const Sweep sweep(moving);
-  const auto support = [&](const Vec3& d) { return sweep.support(-d) - support_of(still, d); };
+  const auto support = [&](const Vec3& d) { return moving.support(-d) - still.support(d); };
   Vec3 v = guess;
   if (v == Vec3{0}) v = {0, 0, 1};
   ConvexGap gap;

@@ -33,6 +33,8 @@ struct Convex {
 
   /// About it, in the body's frame.
   Box box_mm() const;
+  /// A point that is farthest in a direction, of any length.
+  Vec3 support(const Vec3& direction) const;
 };
 
 /// The same solid, thinner by `depth_mm` all around: discs and boxes lose it at every face (a cone
@@ -51,6 +53,25 @@ struct MovingConvex {
   Pose to;
 };
 
+/// Support points of a solid on its way: what is farthest in a direction, of any length, in the
+/// frame of what stands still. `moving` outlives it.
+class ConvexSweep {
+ public:
+  explicit ConvexSweep(const MovingConvex& moving);
+  Vec3 support(const Vec3& direction) const;
+
+ private:
+  struct Axis {
+    Vec3 origin_mm{0};
+    Vec3 along{0};
+  };
+  Vec3 support_at(const Pose& pose, const Axis& axis, const Vec3& direction) const;
+
+  const MovingConvex& moving_;
+  Axis from_, to_;  ///< of what is revolved
+  bool slides_;     ///< without turning
+};
+
 /// What is known of the distance of two solids.
 struct ConvexGap {
   double low_mm = 0;   ///< it is no less ..
@@ -62,7 +83,11 @@ struct ConvexGap {
 /// with the bound that each of its steps gives. Ends when the bounds are within `exact_mm` of each
 /// other, or `low_mm` is above `cutoff_mm`. `guess`: a direction to begin with, that of a query
 /// nearby; 0,0,0: none. Allocates nothing.
-ConvexGap gap_of(const MovingConvex& moving, const Convex& still, double cutoff_mm, double exact_mm,
+ConvexGap gap_of(const ConvexSweep& moving, const Convex& still, double cutoff_mm, double exact_mm,
                  const Vec3& guess = Vec3{0});
+inline ConvexGap gap_of(const MovingConvex& moving, const Convex& still, double cutoff_mm,
+                        double exact_mm, const Vec3& guess = Vec3{0}) {
+  return gap_of(ConvexSweep(moving), still, cutoff_mm, exact_mm, guess);
+}
 
 }  // namespace kerf

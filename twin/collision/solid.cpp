@@ -98,6 +98,32 @@ bool closed(const TriangleMesh& mesh) {
   return true;
 }
 
+/// What lies on the far side of a plane, seen from a solid on its way, across `direction`. Where
+/// the two lie slanted beside each other, boxes overlap and this tells them apart.
+class Slab {
+ public:
+  Slab(const ConvexSweep& sweep, const Vec3& direction) {
+    const double length = glm::length(direction);
+    if (!(length > 0)) return;
+    normal_ = direction / length;
+    from_mm_ = glm::dot(normal_, sweep.support(-normal_));
+  }
+  double gap_mm(const Convex& piece) const {
+    return from_mm_ - glm::dot(normal_, piece.support(normal_));
+  }
+  /// Nothing in the box is nearer to the solid.
+  double gap_mm(const Box& box) const {
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      reach += std::max(normal_[axis] * box.min[axis], normal_[axis] * box.max[axis]);
+    return from_mm_ - reach;
+  }
+
+ private:
+  Vec3 normal_{0};
+  double from_mm_ = 0;  ///< without a direction: 0 of all boxes
+};
+
 }  // namespace
 
 double box_gap_mm(const Box& a, const Box& b) {
@@ -151,6 +177,7 @@ SolidPointer Solid::of_bodies(std::span<const BlankBody> bodies) {
       }
     }
   }
+  solid->is_closed_ = bodies.size() == 1 && bodies[0].kind == BlankBody::Kind::kTube;
   solid->finish();
   return solid;
 }
@@ -311,25 +338,28 @@ ConvexGap Solid::gap_to(const MovingConvex& moving, double cutoff_mm, double exa
   ConvexGap best{cutoff_mm, std::numeric_limits<double>::infinity(), guess};
   if (nodes_.empty()) return best;
   const Box box = box_of(moving);
+  const double whole_mm = box_gap_mm(box, nodes_[0].box_mm);
+  if (whole_mm > cutoff_mm) return {whole_mm, best.high_mm, guess};
+  const ConvexSweep sweep(moving);
+  Slab slab(sweep, guess);
   struct Open {
     std::uint32_t node;
     double gap_mm;
   };
   std::array<Open, 64> stack{};
   int open = 0;
+  stack[static_cast<std::size_t>(open++)] = {0, whole_mm};
   // What is not looked at is no nearer than this.
   double nearest = cutoff_mm;
-  const double whole_mm = box_gap_mm(box, nodes_[0].box_mm);
-  if (whole_mm > cutoff_mm) return {whole_mm, best.high_mm, guess};
-  stack[static_cast<std::size_t>(open++)] = {0, whole_mm};
   double low_mm = std::numeric_limits<double>::infinity();
   while (open > 0) {
     const Open next = stack[static_cast<std::size_t>(--open)];
-    if (next.gap_mm > nearest) {
-      low_mm = std::min(low_mm, next.gap_mm);
+    const Node& node = nodes_[next.node];
+    const double gap_mm = next.gap_mm > nearest ? next.gap_mm : slab.gap_mm(node.box_mm);
+    if (gap_mm > nearest) {
+      low_mm = std::min(low_mm, gap_mm);
       continue;
     }
-    const Node& node = nodes_[next.node];
     if (node.count == 0) {
       Open left{next.node + 1, box_gap_mm(box, nodes_[next.node + 1].box_mm)};
       Open right{node.first, box_gap_mm(box, nodes_[node.first].box_mm)};
@@ -339,10 +369,16 @@ ConvexGap Solid::gap_to(const MovingConvex& moving, double cutoff_mm, double exa
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const ConvexGap gap = gap_of(moving, pieces_[i], nearest, exact_mm, best.direction);
+      const double apart_mm = slab.gap_mm(pieces_[i]);
+      if (apart_mm > nearest) {
+        low_mm = std::min(low_mm, apart_mm);
+        continue;
+      }
+      const ConvexGap gap = gap_of(sweep, pieces_[i], nearest, exact_mm, best.direction);
       if (gap.low_mm < low_mm) {
         low_mm = gap.low_mm;
         best.direction = gap.direction;
+        slab = Slab(sweep, gap.direction);
       }
       best.high_mm = std::min(best.high_mm, gap.high_mm);
       nearest = std::min(nearest, best.high_mm);

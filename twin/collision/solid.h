@@ -21,7 +21,7 @@ namespace kerf {
 class Solid {
  public:
   /// Boxes and cylinders exactly; a tube by flat facets that are nowhere farther than half a
-  /// micrometre from it.
+  /// micrometre from it, closed if it is the only body.
   static std::shared_ptr<const Solid> of_bodies(std::span<const BlankBody> bodies);
   /// The surface; and what it encloses, if it is closed().
   static std::shared_ptr<const Solid> of_mesh(const TriangleMesh& mesh);
@@ -33,7 +33,7 @@ class Solid {
 
   std::span<const Convex> pieces() const { return pieces_; }
   const Box& box_mm() const { return box_mm_; }
-  /// Of a mesh: each edge has two triangles, which run along it in opposite directions.
+  /// Of a mesh, or a tube: each edge has two triangles, which run along it in opposite directions.
   bool is_closed() const { return is_closed_; }
   /// A point of a closed mesh's inside; else false. Inside out counts as the right way round.
   bool encloses(const Vec3& point) const;

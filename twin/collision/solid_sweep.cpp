@@ -113,7 +113,7 @@ struct LeastLeaf {
   double cutoff_mm() const { return least.mm; }
   void look(const Convex& piece, const PartOfWay& part) {
     if (least.mm <= 0) return;
-    if (const auto gap = least_gap(piece, part, still, least.mm, guess))
+    if (const auto gap = least_gap(piece, part, still, least.mm, least.mm, guess))
       least = {gap->mm, part.at(gap->t)};
   }
 };

@@ -14,6 +14,8 @@ constexpr double kGapExact_mm = 1e-4;
 constexpr double kSlack_mm = kWayExact_mm / 2;
 constexpr double kTouchSlack_mm = 1e-4;
 constexpr double kDepthExact_mm = 0.005;
+/// Of distances that nobody asks to be exact.
+constexpr double kCoarse_mm = 0.1;
 /// Halvings of a way at most: of 100 m to a tenth of a micrometre.
 constexpr int kMostHalvings = 30;
 
@@ -29,9 +31,10 @@ class WaySearch {
   WaySearch(const Convex& piece, const RigidWay& way, const Solid& still, Vec3& guess)
       : piece_(piece), way_(way), still_(still), guess_(guess), reach_mm_(reach_of(piece)) {}
 
-  std::optional<LeastGap> least(double below_mm) {
+  std::optional<LeastGap> least(double below_mm, double exact_to_mm) {
     least_ = {below_mm, -1};
-    search_least(0, way_.pose(0), 1, way_.pose(1), 0);
+    exact_to_mm_ = exact_to_mm;
+    search_least(part_of(0, way_.pose(0), 1, way_.pose(1)), 0);
     if (least_.t < 0) return std::nullopt;
     return least_;
   }
@@ -45,20 +48,41 @@ class WaySearch {
     return gap;
   }
 
-  void search_least(double t0, const Pose& from, double t1, const Pose& to, int depth) {
+  /// Of a way from t0 to t1.
+  struct Part {
+    double t0, t1;
+    Pose from, to;
+    double slack_mm;
+    double hull_mm;  ///< its hull is no nearer, if that is less than what is looked for
+  };
+  Part part_of(double t0, const Pose& from, double t1, const Pose& to) {
     const double slack = way_.slack_mm(t0, t1, reach_mm_);
-    const ConvexGap near = gap(from, to, least_.mm + slack);
-    if (near.low_mm - slack >= least_.mm) return;
-    const double middle = (t0 + t1) / 2;
-    const Pose there = way_.pose(middle);
-    const bool is_close = slack <= kSlack_mm && is_exact(t0, t1, there, near.low_mm);
-    if (is_close || depth >= kMostHalvings) {
-      const double least_mm = std::max(near.low_mm, 0.0);
-      if (least_mm < least_.mm) least_ = {least_mm, place_of(t0, from, t1, to, least_mm, depth)};
+    return {t0, t1, from, to, slack, gap(from, to, least_.mm + slack).low_mm};
+  }
+
+  void search_least(const Part& part, int depth) {
+    const double slack = part.slack_mm, low_mm = part.hull_mm - slack;
+    if (low_mm >= least_.mm) return;
+    if (low_mm > exact_to_mm_ &&
+        2 * slack + way_.turning_mm(part.t0, part.t1, reach_mm_) <= kCoarse_mm) {
+      least_ = {low_mm, part.t0};
       return;
     }
-    search_least(t0, from, middle, there, depth + 1);
-    search_least(middle, there, t1, to, depth + 1);
+    const double middle = (part.t0 + part.t1) / 2;
+    const Pose there = way_.pose(middle);
+    const bool is_close = slack <= kSlack_mm && is_exact(part.t0, part.t1, there, part.hull_mm);
+    if (is_close || depth >= kMostHalvings) {
+      const double least_mm = std::max(part.hull_mm, 0.0);
+      if (least_mm < least_.mm)
+        least_ = {least_mm, place_of(part.t0, part.from, part.t1, part.to, least_mm, depth)};
+      return;
+    }
+    // The nearer half first: where a body comes nearer all the way, the other one is done then.
+    const Part first = part_of(part.t0, part.from, middle, there);
+    const Part last = part_of(middle, there, part.t1, part.to);
+    const bool in_order = first.hull_mm - first.slack_mm <= last.hull_mm - last.slack_mm;
+    search_least(in_order ? first : last, depth + 1);
+    search_least(in_order ? last : first, depth + 1);
   }
 
   /// The hull comes no nearer than the body does.
@@ -105,6 +129,7 @@ class WaySearch {
   Vec3& guess_;
   double reach_mm_;
   LeastGap least_;
+  double exact_to_mm_ = 0;
 };
 
 /// A point of it, where it is then.
@@ -197,9 +222,9 @@ double reach_of(const Convex& piece) {
 }
 
 std::optional<LeastGap> least_gap(const Convex& piece, const RigidWay& way, const Solid& still,
-                                  double below_mm, Vec3& guess) {
+                                  double below_mm, double exact_to_mm, Vec3& guess) {
   if (below_mm > 0 && still.encloses(middle_of(piece, way.pose(0)))) return LeastGap{0, 0};
-  return WaySearch(piece, way, still, guess).least(below_mm);
+  return WaySearch(piece, way, still, guess).least(below_mm, exact_to_mm);
 }
 
 std::optional<double> first_touch(const Convex& piece, const RigidWay& way, const Solid& still,

@@ -54,8 +54,9 @@ struct LeastGap {
 };
 /// The least distance of `piece` on `way` from `still`, over all t, if it is below `below_mm`:
 /// to kWayExact_mm. 0: they touch. `guess`: of the query before, is kept up to date.
+/// What is more than `exact_to_mm` may be told up to 0.1 mm less than it is.
 std::optional<LeastGap> least_gap(const Convex& piece, const RigidWay& way, const Solid& still,
-                                  double below_mm, Vec3& guess);
+                                  double below_mm, double exact_to_mm, Vec3& guess);
 
 /// The first t at which `piece` touches `still`, to kWayExact_mm of its way. What a closed mesh
 /// encloses touches it.

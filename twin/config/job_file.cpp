@@ -1,25 +1,24 @@
 #include "twin/config/job_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <glm/geometric.hpp>
 #include <iterator>
 #include <utility>
 
 #include "base/small_file.h"
-#include "base/suggest.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "twin/config/config_reader.h"
+#include "twin/config/job_nodes.h"
 #include "twin/config/setting_table.h"
 
 namespace kerf {
 namespace {
 
-constexpr double kMostTime_s = 1e7, kMostTurn_deg = 360, kMostCoordinate_mm = 100'000;
+constexpr double kMostTime_s = 1e7;
 constexpr std::size_t kMostJobBytes = 1U << 20U;
 /// Of what has no file, stl:FILE and the like.
 constexpr std::string_view kFileSpecs[] = {
@@ -37,9 +36,9 @@ constexpr std::string_view kOwnKeys[] = {"program", "name",   "flip",   "rotate"
                                          "zero",    "points", "time_s", "work_offset"};
 /// What the job says for all of its setups, or a command line for itself.
 constexpr std::string_view kNotOfSetups[] = {
-    "--compare", "--compare-at", "--compare-fit", "--compare-unit", "--tolerance",
-    "--units",   "--section",    "--stock",       "--config",       "--tool",
-    "--tools",   "--fixture",    "--cell",        "--work-offset",  "--set"};
+    "--compare", "--compare-at", "--compare-fit", "--compare-unit", "--tolerance", "--rest",
+    "--units",   "--section",    "--stock",       "--config",       "--tool",      "--tools",
+    "--fixture", "--cell",       "--work-offset", "--set"};
 
 std::string key_of(std::string_view option) {
   std::string key(option.substr(2));
@@ -74,7 +73,7 @@ class JobReader {
   JobReader(ConfigFaults& faults, JobFile& out) : faults_(faults), out_(out) {}
 
   void read(ConfigNode& root) {
-    check_names(root, {"setups", "compare"}, true);
+    check_job_names(root, {"setups", "compare"}, {}, faults_);
     if (ConfigNode* const compare = root.child("compare")) read_compare(*compare);
     ConfigNode* const setups = root.child("setups");
     if (setups == nullptr) {
@@ -95,33 +94,7 @@ class JobReader {
       "setups: [{program: top.ngc, stock: \"box:0,0,-20:80,60,0\"}, {program: bottom.ngc, flip: "
       "x}]";
 
-  void check_names(ConfigNode& node, const std::vector<std::string>& known, bool list_all) {
-    for (const auto& child : node.children) {
-      if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
-      const std::string near = nearest_word(child->key, known);
-      std::string hint;
-      if (!near.empty()) {
-        hint = trf("did you mean {}?", near);
-      } else if (list_all) {
-        hint = trf("here may be: {}", fmt::join(known, ", "));
-      } else {
-        hint =
-            trf("here may be: {}, and options of kerf run with _ for -", fmt::join(kOwnKeys, ", "));
-      }
-      faults_.at_key(*child, tr("unknown key"), std::move(hint));
-    }
-  }
-
   static JobPlace place_of(const ConfigNode& node) { return {node.path, node.line, node.column}; }
-
-  /// Null: it is not there, or is no plain value, which is said.
-  ConfigNode* value(ConfigNode& node, std::string_view name) {
-    ConfigNode* const child = node.child(name);
-    if (child == nullptr || child->faulty) return nullptr;
-    if (child->kind == NodeKind::kScalar && !trim(child->scalar).empty()) return child;
-    faults_.at_value(*child, trf("{} is not allowed; must be a value", to_string(child->kind)));
-    return nullptr;
-  }
 
   std::string path_of(const ConfigNode& node, const std::string& file) const {
     return resolved_path(node, file, faults_);
@@ -195,7 +168,7 @@ class JobReader {
                                      {"at", "--compare-at"},
                                      {"fit", "--compare-fit"},
                                      {"unit", "--compare-unit"}};
-    check_names(node, {"design", "tolerance_mm", "at", "fit", "unit"}, true);
+    check_job_names(node, {"design", "tolerance_mm", "at", "fit", "unit"}, {}, faults_);
     for (const KeyOfOption& key : kKeys) {
       if (ConfigNode* const child = node.child(key.key))
         read_option(*child, setting_of(key.option, kRun), out_.compare, out_.compare_places);
@@ -210,13 +183,18 @@ class JobReader {
       faults_.at_value(node, tr("must be a group of keys, program first"), kExample);
       return;
     }
-    static const std::vector<std::string> kKeys = setup_keys();
-    check_names(node, kKeys, false);
+    std::vector<std::string> known = setup_keys();
+    for (const auto& child : node.children)
+      if (refuse_option(*child, known)) known.push_back(child->key);
+    check_job_names(
+        node, known,
+        trf("here may be: {}, and options of kerf run with _ for -", fmt::join(kOwnKeys, ", ")),
+        faults_);
     JobSetup setup;
     const std::size_t number = out_.setups.size() + 1;
     setup.place = place_of(node);
-    setup.name = trf("setup {}", number);
-    if (const ConfigNode* const name = value(node, "name")) setup.name = trim(name->scalar);
+    if (const ConfigNode* const name = job_value(node, "name", faults_))
+      setup.name = trim(name->scalar);
     read_program(node, setup);
     for (const auto& child : node.children) {
       if (std::ranges::find(kOwnKeys, child->key) != std::end(kOwnKeys)) continue;
@@ -224,19 +202,47 @@ class JobReader {
         read_option(*child, *setting, setup.options, setup.option_places);
     }
     if (ConfigNode* const offset = node.child("work_offset")) {
-      if (const std::optional<Vec3> at = three(*offset, kMostCoordinate_mm, "mm")) {
+      if (const std::optional<Vec3> at = job_three(*offset, kMostJobCoordinate_mm, "mm", faults_)) {
         setup.options.set("--work-offset", fmt::format("{},{},{}", at->x, at->y, at->z));
         setup.option_places["--work-offset"] = place_of(*offset);
       }
     }
     read_time(node, setup);
-    read_turn(node, setup.turn);
+    read_job_turn(node, setup.turn, faults_);
     check_place(node, number, setup);
     out_.setups.push_back(std::move(setup));
   }
 
+  /// Of `kerf run`, and not for a setup of a job. False: it is none.
+  bool refuse_option(ConfigNode& node, const std::vector<std::string>& known) {
+    if (std::ranges::find(known, node.key) != known.end()) return false;
+    const auto has_key = [&](const Setting& setting) {
+      return !setting.option.empty() && !setting.is_positional() &&
+             key_of(setting.option) == node.key;
+    };
+    const std::span<const Setting> table = setting_table();
+    const auto of_run = std::ranges::find_if(
+        table, [&](const Setting& s) { return (s.commands & kRun) != 0 && has_key(s); });
+    if (of_run == table.end()) return false;
+    const bool is_of_job = std::ranges::any_of(
+        table, [&](const Setting& s) { return (s.commands & kJob) != 0 && has_key(s); });
+    const bool is_compared =
+        of_run->option.starts_with("--compare") || of_run->option == "--tolerance";
+    if (is_of_job && of_run->option != "--compare-png") {
+      faults_.at_key(node, tr("is for all setups, not for one"),
+                     trf("kerf job {} {} says it", out_.path, of_run->option));
+    } else if (is_compared) {
+      faults_.at_key(node, tr("is for what the last setup leaves, not for one of them"),
+                     tr("beside setups: compare: {design: part.stl, tolerance_mm: 0.05}"));
+    } else {
+      faults_.at_key(node, tr("is for a single program, not for a part in several setups"),
+                     trf("kerf run has {}", of_run->option));
+    }
+    return true;
+  }
+
   void read_program(ConfigNode& node, JobSetup& setup) {
-    ConfigNode* const program = value(node, "program");
+    ConfigNode* const program = job_value(node, "program", faults_);
     if (program == nullptr) {
       if (node.child("program") == nullptr)
         faults_.at_value(node, tr("program is missing; must be an NC file or a listing"), kExample);
@@ -254,7 +260,7 @@ class JobReader {
   }
 
   void read_time(ConfigNode& node, JobSetup& setup) {
-    ConfigNode* const time = value(node, "time_s");
+    ConfigNode* const time = job_value(node, "time_s", faults_);
     if (time == nullptr) return;
     const std::optional<double> seconds = parse_decimal(trim(time->scalar));
     if (seconds && *seconds >= 0 && *seconds <= kMostTime_s) {
@@ -263,116 +269,6 @@ class JobReader {
       faults_.at_value(*time, trf("'{}' is not allowed; must be 0 to {:.0f} (s)",
                                   shown(time->scalar), kMostTime_s));
     }
-  }
-
-  /// [x, y, z], or "x,y,z".
-  std::optional<Vec3> three(ConfigNode& node, double most, const char* unit) {
-    if (node.faulty) return std::nullopt;
-    std::vector<std::string> texts;
-    if (node.kind == NodeKind::kScalar) {
-      for (const std::string_view part : split(node.scalar, ',')) texts.emplace_back(trim(part));
-    } else {
-      for (const auto& child : node.children) texts.push_back(child->scalar);
-    }
-    Vec3 out(0);
-    bool good = texts.size() == 3 && node.kind != NodeKind::kMap;
-    for (std::size_t n = 0; good && n < 3; ++n) {
-      const std::optional<double> number = parse_decimal(trim(texts[n]));
-      good = number && std::abs(*number) <= most;
-      if (good) out[static_cast<int>(n)] = *number;
-    }
-    if (good) return out;
-    faults_.at_value(node,
-                     trf("'{}' is not allowed; must be three numbers from {:g} to {:g} ({}), "
-                         "[x, y, z]",
-                         shown(fmt::format("{}", fmt::join(texts, ", "))), -most, most, unit));
-    return std::nullopt;
-  }
-
-  void read_turn(ConfigNode& node, JobTurn& turn) {
-    if (ConfigNode* const flip = value(node, "flip")) {
-      const std::string word = to_lower(trim(flip->scalar));
-      if (word == "x" || word == "y") {
-        turn.flip = word[0];
-      } else {
-        faults_.at_value(*flip, trf("'{}' is not allowed; must be x or y", shown(flip->scalar)),
-                         tr("half a turn about that axis; rotate: [0, 0, A] turns about Z"));
-      }
-    }
-    if (ConfigNode* const rotate = node.child("rotate")) {
-      if (const auto degrees = three(*rotate, kMostTurn_deg, "degrees")) turn.rotate_deg = *degrees;
-    }
-    if (ConfigNode* const zero = node.child("zero")) read_zero(*zero, turn);
-    if (ConfigNode* const points = node.child("points")) read_points(node, *points, turn);
-  }
-
-  void read_zero(ConfigNode& node, JobTurn& turn) {
-    const std::string word = to_lower(trim(node.scalar));
-    if (node.kind == NodeKind::kScalar && word.find(',') == word.npos) {
-      if (word == "top") turn.zero = JobTurn::Zero::kTop;
-      if (word == "corner") turn.zero = JobTurn::Zero::kCorner;
-      if (word == "middle") turn.zero = JobTurn::Zero::kMiddle;
-      if (turn.zero == JobTurn::Zero::kStays) {
-        faults_.at_value(node, trf("'{}' is not allowed; must be top, corner, middle or [x, y, z]",
-                                   shown(node.scalar)));
-      }
-      return;
-    }
-    const std::optional<Vec3> point = three(node, kMostCoordinate_mm, "mm");
-    if (!point) return;
-    turn.zero = JobTurn::Zero::kPoint;
-    turn.point_mm = *point;
-  }
-
-  void read_points(ConfigNode& setup, ConfigNode& node, JobTurn& turn) {
-    constexpr const char* kForm = "points: [{was: [0, 0, 0], is: [0.2, -0.1, 0]}, .., ..]";
-    if (node.faulty) return;
-    for (const char* const other : {"flip", "rotate", "zero"}) {
-      if (ConfigNode* const beside = setup.child(other)) {
-        faults_.at_key(*beside,
-                       tr("three touched points say how the workpiece lies; leave it out"));
-        return;
-      }
-    }
-    if (node.kind != NodeKind::kList || node.children.size() != 3) {
-      faults_.at_value(node, tr("must be a list of three points, each with was and is"), kForm);
-      return;
-    }
-    JobTurn::Touched touched;
-    for (std::size_t n = 0; n < 3; ++n) {
-      ConfigNode& point = *node.children[n];
-      check_names(point, {"was", "is"}, true);
-      ConfigNode* const was = point.child("was");
-      ConfigNode* const is = point.child("is");
-      if (was == nullptr || is == nullptr) {
-        faults_.at_value(point, tr("must have was and is, [x, y, z] each"), kForm);
-        return;
-      }
-      const auto before = three(*was, kMostCoordinate_mm, "mm");
-      const auto now = three(*is, kMostCoordinate_mm, "mm");
-      if (!before || !now) return;
-      touched.was_mm[n] = *before;
-      touched.is_mm[n] = *now;
-    }
-    if (!Placement::by_points(touched.was_mm, touched.is_mm)) {
-      faults_.at_value(node,
-                       tr("the three points lie on one line; they do not say how it is turned"));
-      return;
-    }
-    for (std::size_t n = 0; n < 3; ++n) {
-      const std::size_t m = (n + 1) % 3;
-      const double was_mm = glm::distance(touched.was_mm[n], touched.was_mm[m]);
-      const double is_mm = glm::distance(touched.is_mm[n], touched.is_mm[m]);
-      if (std::abs(was_mm - is_mm) <= kTouchSlack_mm) continue;
-      faults_.at_value(node,
-                       trf("points {} and {} were {:.3f} mm apart and are {:.3f} mm; at most "
-                           "{:g} mm of difference are allowed",
-                           n + 1, m + 1, was_mm, is_mm, kTouchSlack_mm),
-                       tr("a rigid part keeps its distances: one of them was touched or written "
-                          "wrong"));
-      return;
-    }
-    turn.touched = touched;
   }
 
   void check_place(ConfigNode& node, std::size_t number, const JobSetup& setup) {
@@ -395,39 +291,14 @@ class JobReader {
 
 }  // namespace
 
-Placement JobTurn::turn() const {
-  if (touched) {
-    Placement all = *Placement::by_points(touched->was_mm, touched->is_mm);
-    all.at_mm = Vec3(0);
-    return all;
-  }
-  const Placement first = flip != 0 ? Placement::flipped(flip) : Placement();
-  return first.then(Placement::turned(rotate_deg));
+std::string JobFile::name_of(std::size_t setup) const {
+  const std::string& name = setups[setup].name;
+  return name.empty() ? trf("setup {}", setup + 1) : name;
 }
 
-Placement JobTurn::placement(const Box& solid_mm) const {
-  if (touched) return *Placement::by_points(touched->was_mm, touched->is_mm);
-  Placement out = turn().about((solid_mm.min + solid_mm.max) / 2.0);
-  const Box box = out.placed(solid_mm);
-  Vec3 origin(0);
-  switch (zero) {
-    case Zero::kStays:
-      break;
-    case Zero::kTop:
-      origin.z = box.max.z;
-      break;
-    case Zero::kCorner:
-      origin = Vec3(box.min.x, box.min.y, box.max.z);
-      break;
-    case Zero::kMiddle:
-      origin = Vec3((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, box.max.z);
-      break;
-    case Zero::kPoint:
-      origin = point_mm;
-      break;
-  }
-  out.at_mm -= origin;
-  return out;
+std::string JobFile::words_of(std::size_t setup) const {
+  const std::string& name = setups[setup].name;
+  return name.empty() ? trf("setup {}", setup + 1) : trf("setup {} ({})", setup + 1, name);
 }
 
 std::optional<JobFile> parse_job(std::string_view text, const std::string& path,

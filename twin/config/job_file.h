@@ -1,7 +1,6 @@
 // twin/config/job_file.h - a part that is made in several setups, as a YAML file says it.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "base/placement.h"
+#include "twin/config/job_turn.h"
 #include "twin/config/written_options.h"
 
 namespace kerf {
@@ -20,33 +19,8 @@ struct JobPlace {
   int line = 0, column = 0;
 };
 
-/// How the workpiece lies in a setup, seen from how it lay in the one before.
-struct JobTurn {
-  enum class Zero : std::uint8_t { kStays, kTop, kCorner, kMiddle, kPoint };
-
-  char flip = 0;       ///< 'x', 'y': half a turn about that axis, through the middle of its box
-  Vec3 rotate_deg{0};  ///< then about X, Y and Z through that middle
-  Zero zero = Zero::kStays;
-  Vec3 point_mm{0};  ///< kPoint: what becomes the origin, as it lies once it is turned
-  /// Three points of it, as they lay and as they were touched: they say all there is to say.
-  struct Touched {
-    std::array<Vec3, 3> was_mm{}, is_mm{};
-  };
-  std::optional<Touched> touched;
-
-  /// It only goes on: nobody has moved it.
-  bool is_none() const {
-    return flip == 0 && rotate_deg == Vec3(0) && zero == Zero::kStays && !touched;
-  }
-  /// `solid_mm`: the box of what the setup before has left. Where Z0 is to be on top, it is on top
-  /// of what is there once it is turned.
-  Placement placement(const Box& solid_mm) const;
-  /// The turn alone, which is known before anything is cut.
-  Placement turn() const;
-};
-
 struct JobSetup {
-  std::string name;        ///< of the file, or "setup 2"
+  std::string name;        ///< of the file; empty: it has none
   WrittenOptions options;  ///< of `kerf run`, the program as well; of the first one with --stock
   JobTurn turn;            ///< of the first one none
   double time_s = 0;       ///< to set it up
@@ -59,10 +33,12 @@ struct JobFile {
   std::vector<JobSetup> setups;
   WrittenOptions compare;  ///< --compare and what goes with it, of the last one; empty: none
   std::map<std::string, JobPlace, std::less<>> compare_places;
-};
 
-/// Points that were touched may lie so much otherwise to each other than they did.
-inline constexpr double kTouchSlack_mm = 0.1;
+  /// "bottom", or "setup 2" of one without a name. Setups count from 0 here.
+  std::string name_of(std::size_t setup) const;
+  /// "setup 2 (bottom)", or "setup 2".
+  std::string words_of(std::size_t setup) const;
+};
 
 /// All faults at once, each at its place, with what is allowed. Nothing if there is one. Files are
 /// relative to `path`; programs must be there.

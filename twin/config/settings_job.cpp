@@ -37,8 +37,8 @@ constexpr std::array kJobSettings{
             .least = 1,
             .most = 1000,
             .fallback = "1",
-            .help = tr_noop("of a job (a YAML file with setups): this one; those before it are "
-                            "run unseen (default {})"),
+            .help = tr_noop("of a job (a YAML file with setups): begin with this one; those "
+                            "before it are run unseen (default {})"),
             .value_name = "N"},
     Setting{.option = "--units",
             .commands = kJob,

@@ -112,7 +112,7 @@ BlankShadow::BlankShadow(const MeshBody& body, double cell_mm) : bounds_mm_(body
   const Vec3 size = bounds_mm_.size();
   nx_ = static_cast<int>(std::ceil(size.x / cell_mm));
   ny_ = static_cast<int>(std::ceil(size.y / cell_mm));
-  const MeshLines lines(body, 2, {bounds_mm_, nx_, ny_});
+  const MeshLines lines(body.mesh, 2, {bounds_mm_, nx_, ny_});
   covered_.resize(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_));
   for (std::size_t cell = 0; cell < covered_.size(); ++cell)
     covered_[cell] = !lines.ends(cell).empty();

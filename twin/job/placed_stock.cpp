@@ -19,11 +19,6 @@ constexpr double kEdgeParts = 65536;
 /// Surfaces of octrees are whole up to less than that; boxes are rounded to it.
 constexpr double kBoxStep_mm = 1e-4;
 
-bool is_of_heights(const StockModel& stock) {
-  const StockKind kind = row_of(stock).kind;
-  return kind == StockKind::kZmap || kind == StockKind::kMmap;
-}
-
 /// A lathe takes it as it was, or turned about, or farther along its axis.
 Result<std::unique_ptr<StockModel>> placed_part(const StockModel& stock, const Placement& placement,
                                                 const StockSettings& settings) {
@@ -55,8 +50,7 @@ Result<PlacedStock> by_surface(const StockModel& stock, const Placement& placeme
   auto tree = Octree::of_surface(mesh, placement, cell_mm, settings.threads, stock.blank_mm3());
   if (!tree) return Error{tree.error()};
   PlacedStock out;
-  // Faces keep their places; edges and corners are known to half a cell.
-  out.carried.bound_mm = std::max(cell_mm, is_of_heights(stock) ? stock.cell_mm() : 0.0) / 2;
+  out.carried.bound_mm = Octree::surface_bound_mm(cell_mm);
   out.stock = std::move(tree.value());
   return out;
 }
@@ -83,7 +77,7 @@ Result<PlacedStock> placed_profile(const StockModel& stock, const Placement& pla
   PlacedStock out;
   if (const std::optional<AxisTurn> turn = placement.by_axes()) {
     out.stock = tree->placed(*turn, placement.at_mm);
-    out.carried.bound_mm = cell_mm / 2;
+    out.carried.bound_mm = Octree::surface_bound_mm(cell_mm);  // nodes are exact here, too
   } else {
     Result<PlacedStock> anew = by_surface(*tree, placement, cell_mm, settings);
     if (!anew) return anew;

@@ -14,7 +14,7 @@ namespace kerf {
 /// How a workpiece has come from one model into another.
 struct CarriedOver {
   std::string from, to;  ///< models: "zmap", "octree"
-  double bound_mm = 0;   ///< by how much a surface may lie elsewhere for it
+  double bound_mm = 0;   ///< what is solid now and was not, or was, is no farther from the surface
   std::string note;      ///< what was left behind; empty: nothing
 };
 

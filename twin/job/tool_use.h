@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -36,6 +37,8 @@ struct ToolUse {
   std::string origin;
   bool guessed = false;
   std::optional<int> teeth;  ///< where its shape says it
+  /// Its length offsets along X Y Z, of the tool table; none: no row has any.
+  std::optional<std::array<double, 3>> offset_mm;
   ChipLoad chip;
   /// Its shank, its holder against the workpiece; false: nobody described them, or the model does
   /// not look.

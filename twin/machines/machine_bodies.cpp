@@ -37,6 +37,19 @@ bool add_stl(const LinkSpec& link, std::size_t most_triangles, LinkBody& body,
   return true;
 }
 
+/// Tubes by themselves: of a closed surface it is known what lies in it.
+void add_bodies(std::span<const BlankBody> bodies, std::vector<SolidPointer>& out) {
+  std::vector<BlankBody> full;
+  for (const BlankBody& one : bodies) {
+    if (one.kind == BlankBody::Kind::kTube) {
+      out.push_back(Solid::of_bodies({&one, 1}));
+    } else {
+      full.push_back(one);
+    }
+  }
+  if (!full.empty()) out.push_back(Solid::of_bodies(full));
+}
+
 }  // namespace
 
 MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& diagnostics,
@@ -52,7 +65,7 @@ MachineBodiesPointer bodies_of(const LinkedMachine& description, Diagnostics& di
   for (std::size_t i = 0; i < description.links.size(); ++i) {
     const LinkSpec& link = description.links[i];
     LinkBody body{link.chain.name, i, {}};
-    if (!link.bodies.empty()) body.solids.push_back(Solid::of_bodies(link.bodies));
+    add_bodies(link.bodies, body.solids);
     if (!link.stl_path.empty())
       complete = add_stl(link, most_triangles, body, diagnostics) && complete;
     if (!body.solids.empty()) machine->bodies.push_back(std::move(body));

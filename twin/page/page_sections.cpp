@@ -3,83 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/translate.h"
 #include "twin/page/page_curve.h"
+#include "twin/page/section_text.h"
 #include "twin/report/compare_report.h"
 #include "twin/report/finding_lists.h"
 #include "twin/report/report_words.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
 namespace {
-
-struct PageColumn {
-  const char* heading;
-  bool has_numbers = false;
-};
-
-/// A section of its own, with cells whose lengths are in the reader's unit.
-class SectionText {
- public:
-  SectionText(std::string heading, LengthUnit units) : units_(units) {
-    html_ = fmt::format("<section><h2>{}</h2>\n", xml_text(heading));
-  }
-
-  void paragraph(std::string_view text) {
-    html_ += fmt::format("<p>{}</p>\n", shown(text));
-    is_empty_ = false;
-  }
-  void pre(std::string_view text) {
-    html_ += fmt::format("<pre>{}</pre>\n", shown(text));
-    is_empty_ = false;
-  }
-  void table(std::initializer_list<PageColumn> columns) {
-    html_ += "<table><thead><tr>";
-    numbers_.clear();
-    for (const PageColumn& column : columns) {
-      numbers_.push_back(column.has_numbers);
-      html_ += fmt::format("<th{}>{}</th>", column.has_numbers ? " class=\"n\"" : "",
-                           xml_text(column.heading));
-    }
-    html_ += "</tr></thead><tbody>\n";
-  }
-  void row(std::initializer_list<std::string> cells) {
-    html_ += "<tr>";
-    std::size_t column = 0;
-    for (const std::string& cell : cells) {
-      const bool is_number = column < numbers_.size() && numbers_[column++];
-      html_ += fmt::format("<td{}>{}</td>", is_number ? " class=\"n\"" : "", shown(cell));
-    }
-    html_ += "</tr>\n";
-    is_empty_ = false;
-  }
-  void end_table() { html_ += "</tbody></table>\n"; }
-  void facts(std::span<const std::pair<std::string, std::string>> facts) {
-    html_ += "<dl class=\"facts\">\n";
-    for (const auto& [name, value] : facts)
-      html_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", xml_text(name), shown(value));
-    html_ += "</dl>\n";
-    is_empty_ = is_empty_ && facts.empty();
-  }
-  void raw(std::string_view html) {
-    html_ += html;
-    is_empty_ = is_empty_ && html.empty();
-  }
-
-  std::string done() && { return is_empty_ ? std::string() : std::move(html_) + "</section>\n"; }
-
- private:
-  std::string shown(std::string_view text) const { return xml_text(in_unit(text, units_)); }
-
-  LengthUnit units_;
-  std::string html_;
-  std::vector<bool> numbers_;
-  bool is_empty_ = true;
-};
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
@@ -112,12 +52,22 @@ std::string zero_text(const Box& box) {
 
 std::string name_of_tool(const ToolUse& use) { return fmt::format("T{}", use.number); }
 
+/// As the tool table has it: along Z, and along all axes where others count as well (a lathe).
+std::string length_text(const ToolUse& use) {
+  if (!use.offset_mm) return {};
+  const auto& [x, y, z] = *use.offset_mm;
+  if (x == 0 && y == 0) return fmt::format("{:.3f} mm", z);
+  return y == 0 ? fmt::format("X{:.3f} Z{:.3f} mm", x, z)
+                : fmt::format("X{:.3f} Y{:.3f} Z{:.3f} mm", x, y, z);
+}
+
 }  // namespace
 
 std::string head_section(const Report& report, const PageOptions& options) {
   const std::string name =
       report.program_path.empty() && report.live ? report.live->source : report.program_path;
-  std::string out = fmt::format("<header><h1>{}</h1>\n", xml_text(name));
+  std::string out = fmt::format("<header><h1>{}</h1>\n",
+                                xml_text(options.heading.empty() ? name : options.heading));
   out += fmt::format("<p><span class=\"{}\">{}</span></p>\n", class_of(report.findings),
                      xml_text(verdict_text(report.findings)));
   if (!report.partial_reason.empty()) {
@@ -126,6 +76,7 @@ std::string head_section(const Report& report, const PageOptions& options) {
         xml_text(trf("Partial: {}. All here is of the part that was run.", report.partial_reason)));
   }
   Facts facts;
+  if (!options.heading.empty()) facts.emplace_back(tr("Program"), name);
   const MotionTotals& m = report.motion;
   facts.emplace_back(tr("Time"), duration_text(m.duration_s));
   facts.emplace_back(tr("Way"), trf("feed {}, traverse {}", distance_text(m.feed_mm),
@@ -152,7 +103,7 @@ std::string head_section(const Report& report, const PageOptions& options) {
 }
 
 std::string finding_list(const Report& report, LengthUnit units) {
-  std::string out = "<div id=\"findings\">\n";
+  std::string out = "<div class=\"findings\">\n";
   const auto& kept = report.findings.kept();
   for (std::size_t i = 0; i < std::min(kept.size(), kMostOnPage); ++i) {
     const Finding& finding = kept[i];
@@ -190,7 +141,7 @@ std::string setup_section(const Report& report, const PageOptions& options, bool
   if (!order.empty()) facts.emplace_back(tr("Tools"), order);
   out.facts(facts);
   if (has_view) {
-    std::string pictures = "<div id=\"sheet\">";
+    std::string pictures = "<div class=\"sheet\">";
     for (const char* view : {"iso", "top", "front"})
       pictures += fmt::format("<img alt=\"\" data-view=\"{}\">", view);
     out.raw(pictures + "</div>\n");
@@ -201,24 +152,32 @@ std::string setup_section(const Report& report, const PageOptions& options, bool
 std::string tool_section(const Report& report, LengthUnit units) {
   if (report.tools.empty()) return {};
   SectionText out(tr("Tools, in their order"), units);
-  out.table({{tr("Tool")},
-             {tr("Shape")},
-             {tr("Known from")},
-             {tr("Cutting"), true},
-             {tr("Way"), true},
-             {tr("Removed"), true},
-             {tr("Deepest"), true},
-             {tr("Peak rate"), true}});
+  const bool has_lengths = std::ranges::any_of(
+      report.tools, [](const ToolUse& use) { return use.offset_mm.has_value(); });
+  std::vector<PageColumn> columns{{tr("Tool")}, {tr("Shape")}};
+  if (has_lengths) columns.push_back({tr("Length"), true});
+  for (const PageColumn& column : {PageColumn{tr("Known from")},
+                                   {tr("Cutting"), true},
+                                   {tr("Way"), true},
+                                   {tr("Removed"), true},
+                                   {tr("Deepest"), true},
+                                   {tr("Peak rate"), true}})
+    columns.push_back(column);
+  out.table(columns);
   for (const ToolUse& use : report.tools) {
-    if (use.shape.empty()) {
-      out.row({name_of_tool(use), tr("undefined, did not cut"), use.origin});
-      continue;
+    const bool is_known = !use.shape.empty();
+    std::vector<std::string> cells{
+        name_of_tool(use), is_known ? use.shape : std::string(tr("undefined, did not cut"))};
+    if (has_lengths) cells.push_back(length_text(use));
+    cells.push_back(use.guessed ? tr("guessed from ") + use.origin : use.origin);
+    if (is_known) {
+      for (std::string& cell :
+           std::array{duration_text(use.cut_s), distance_text(use.feed_mm),
+                      volume_text(use.removed_mm3), fmt::format("{:.2f} mm", use.max_depth_mm),
+                      fmt::format("{:.1f} mm3/s", use.peak_mm3_per_s)})
+        cells.push_back(std::move(cell));
     }
-    out.row({name_of_tool(use), use.shape,
-             use.guessed ? tr("guessed from ") + use.origin : use.origin, duration_text(use.cut_s),
-             distance_text(use.feed_mm), volume_text(use.removed_mm3),
-             fmt::format("{:.2f} mm", use.max_depth_mm),
-             fmt::format("{:.1f} mm3/s", use.peak_mm3_per_s)});
+    out.row(cells);
   }
   out.end_table();
   return std::move(out).done();
@@ -235,10 +194,11 @@ std::string collision_section(const Report& report, LengthUnit units) {
   for (const CollisionPair& pair : report.collisions) {
     const std::string what =
         pair.first.empty() ? trf("{} of tool {}", name_of(pair.part), pair.tool) : pair.first;
-    const std::string clearance = pair.contacts > 0 ? std::string(tr("touches"))
-                                  : pair.least_clearance_mm
-                                      ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
-                                      : std::string(tr("not measured"));
+    const std::string clearance =
+        pair.contacts > 0         ? std::string(tr("touches"))
+        : pair.least_clearance_mm ? fmt::format("{:.2f} mm", *pair.least_clearance_mm)
+        : pair.clearance_above_mm ? trf("above {:.2f} mm", *pair.clearance_above_mm)
+                                  : std::string(tr("not measured"));
     out.row({what, pair.other.empty() ? std::string(tr("workpiece")) : pair.other,
              fmt::format("{}", pair.contacts), clearance,
              pair.source.line > 0 ? fmt::format("{}", pair.source.line) : std::string()});
@@ -250,6 +210,7 @@ std::string collision_section(const Report& report, LengthUnit units) {
 std::string compare_section(const Report& report, LengthUnit units) {
   SectionText out(tr("Against the design"), units);
   if (report.comparison) out.pre(compare_text(*report.comparison));
+  if (report.rest) out.pre(rest_text(*report.rest));
   return std::move(out).done();
 }
 

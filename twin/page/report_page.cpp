@@ -143,19 +143,19 @@ std::string view_section(const PageMesh& mesh) {
     return fmt::format("<option value=\"{}\">{}</option>", value, xml_text(text));
   };
   std::string out =
-      fmt::format("<div><div id=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
+      fmt::format("<div><div class=\"view\"><noscript><p class=\"none\">{}</p></noscript></div>\n",
                   xml_text(tr("The part is drawn by a script, which this browser does not run.")));
   out += "<div class=\"tools\">" + button("iso", tr("oblique")) + button("top", tr("top")) +
          button("front", tr("front")) + button("right", tr("right")) + button("reset", tr("all"));
-  out += fmt::format("<label>{} <select id=\"color\">", xml_text(tr("colours")));
+  out += fmt::format("<label>{} <select class=\"color\">", xml_text(tr("colours")));
   if (!mesh.deviations.empty()) out += option("deviation", tr("against the design"));
   if (!mesh.groups.empty()) out += option("tool", tr("by tool"));
   out += option("height", tr("by height")) + option("plain", tr("plain")) + "</select></label>";
-  out += fmt::format("<label>{} <select id=\"section\">", xml_text(tr("cut open")));
+  out += fmt::format("<label>{} <select class=\"section\">", xml_text(tr("cut open")));
   out += option("-1", tr("no")) + option("0", "X") + option("1", "Y") + option("2", "Z");
   out +=
-      "</select><input id=\"share\" type=\"range\" min=\"0\" max=\"1000\" value=\"500\" "
-      "disabled></label></div>\n<div id=\"legend\"></div>";
+      "</select><input class=\"share\" type=\"range\" min=\"0\" max=\"1000\" value=\"500\" "
+      "disabled></label></div>\n<div class=\"legend\"></div>";
   out += fmt::format("<p class=\"soft\">{}</p></div>\n",
                      xml_text(tr("Drag to turn, with Shift or the right button to shift, wheel "
                                  "for nearer. A mark is a finding.")));
@@ -171,6 +171,27 @@ std::string mesh_text(const PageMesh& mesh) {
 }  // namespace
 
 std::string report_page(const Report& report, const StockModel* stock, const PageOptions& options) {
+  return page_of(report.program_path.empty() ? "kerf" : report.program_path, report.version,
+                 page_article(report, stock, options));
+}
+
+std::string page_of(const std::string& title, const std::string& version, const std::string& body) {
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"kerf "
+      "{}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
+      "<body><main>\n",
+      language(), xml_text(version), xml_text(title), page_assets::page_css);
+  out += body;
+  out += fmt::format("</main>\n<script>\n{}</script>\n</body></html>\n", page_assets::page_js);
+  return out;
+}
+
+std::string page_article(const Report& report, const StockModel* stock,
+                         const PageOptions& options) {
   PageMesh mesh;
   if (stock) {
     PageMeshOptions wanted;
@@ -201,20 +222,14 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
   } else {
     data["mesh"] = nullptr;
   }
-  const std::string title = std::string(report.program_path.empty() ? "kerf" : report.program_path);
-  std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"kerf "
-      "{}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
-      "<body><main>\n",
-      language(), xml_text(report.version), xml_text(title), page_assets::page_css);
+  std::string out = options.anchor.empty()
+                        ? std::string("<article>\n")
+                        : fmt::format("<article id=\"{}\">\n", xml_text(options.anchor));
   out += head_section(report, options);
   out += fmt::format("<section><h2>{}</h2>\n", xml_text(tr("Part and findings")));
   out += has_view ? "<div class=\"split\">" + view_section(mesh) + "<div>" : "<div><div>";
-  out += finding_list(report, options.units) + "<pre id=\"program\"></pre></div></div></section>\n";
+  out +=
+      finding_list(report, options.units) + "<pre class=\"program\"></pre></div></div></section>\n";
   out += setup_section(report, options, has_view);
   out += tool_section(report, options.units);
   out += collision_section(report, options.units);
@@ -222,10 +237,9 @@ std::string report_page(const Report& report, const StockModel* stock, const Pag
   out += part_section(report, options.units);
   out += curve_section(options.curves, options.units);
   out += exactness_section(report, options, mesh_text(mesh));
-  out += fmt::format(
-      "</main>\n<script id=\"kerf-data\" type=\"application/json\">{}</script>\n"
-      "<script>\n{}</script>\n</body></html>\n",
-      embedded(data), page_assets::page_js);
+  out +=
+      fmt::format("<script class=\"kerf-data\" type=\"application/json\">{}</script>\n</article>\n",
+                  embedded(data));
   return out;
 }
 

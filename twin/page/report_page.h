@@ -1,5 +1,5 @@
-// twin/page/report_page.h - a report as one HTML file that needs no network: the part in 3D,
-// findings that lead to their places and lines, tools, times; printed, a set-up sheet.
+// twin/page/report_page.h - a report, or several, as one HTML file that needs no network: the part
+// in 3D, findings that lead to their places and lines, tools, times; printed, a set-up sheet.
 #pragma once
 
 #include <array>
@@ -38,6 +38,8 @@ struct PageDesign {
 
 struct PageOptions {
   LengthUnit units = LengthUnit::kMm;
+  std::string heading;  ///< the program's name is told beneath it; empty: that is the heading
+  std::string anchor;   ///< by which links find the article; may be empty
   std::string command;  ///< that makes this report again; may be empty
   std::size_t most_triangles = 120'000;
   std::vector<PageGroup> groups;
@@ -47,12 +49,19 @@ struct PageOptions {
   PageCurves curves;
 };
 
-/// The whole file, UTF-8, in the language of the process. `stock`: null if the run ended before
-/// there was one. Files of the program are read for the lines that findings name; one that is not
-/// there any more is left out. Findings beyond kMostOnPage are counted. The 3D view takes about
-/// 18 bytes a triangle.
+/// The whole file, UTF-8, in the language of the process: page_of() one article.
 std::string report_page(const Report& report, const StockModel* stock,
                         const PageOptions& options = {});
+
+/// An article about one run, with a 3D view of its own. `stock`: null if the run ended before there
+/// was one. Files of the program are read for the lines that findings name; one that is not there
+/// any more is left out. Findings beyond kMostOnPage are counted. The 3D view takes about 18 bytes
+/// a triangle.
+std::string page_article(const Report& report, const StockModel* stock,
+                         const PageOptions& options = {});
+/// A page of articles, each on paper of its own when it is printed. Browsers draw some 16 of them
+/// in 3D; of more the first ones go still.
+std::string page_of(const std::string& title, const std::string& version, const std::string& body);
 
 inline constexpr std::size_t kMostOnPage = 500;
 

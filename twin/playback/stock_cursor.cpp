@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "twin/motion/floating_tap.h"
 #include "twin/playback/recording_stock.h"
 
 namespace kerf {
@@ -11,6 +12,8 @@ constexpr std::size_t kMotionsAtOnce = 1024;
 constexpr double kCellsAtOnce = 2e6;
 /// Keyframes are not thought of more often than this.
 constexpr std::size_t kMotionsAnOffer = 256;
+/// From the traverse to its R to its way out a tapping cycle has no more motions: a dwell, signals.
+constexpr std::size_t kLongestTap = 16;
 
 }  // namespace
 
@@ -59,6 +62,7 @@ bool StockCursor::approach(std::size_t goal) {
     }
     const std::size_t first_move = moves_.size();
     track_.append_moves(motion, motion_moves_, *cutter, moves_);
+    lead_taps(motion, *cutter, std::span(moves_).subspan(first_move));
     for (const CutMove& move : std::span(moves_).subspan(first_move)) {
       cells += cells_under(move, *cutter, stock_->cell_mm());
     }
@@ -71,12 +75,26 @@ bool StockCursor::approach(std::size_t goal) {
   return motion_ == goal;
 }
 
+/// What a lathe's process makes of G84 and G74.
+void StockCursor::lead_taps(std::size_t motion, const Cutter& cutter,
+                            std::span<CutMove> moves) const {
+  if (stock_->turned() == nullptr || cutter.insert() || cutter.live()) return;
+  std::size_t first = motion;
+  while (first > 0 && motion - first < kLongestTap && !track_.is_traverse(first)) --first;
+  FloatingTap tap;
+  double lead_mm = 0;
+  for (std::size_t n = first; n <= motion; ++n) lead_mm = tap.lead_mm(track_.motion(n));
+  if (lead_mm == 0) return;
+  for (CutMove& move : moves) move.lead_mm = lead_mm;
+}
+
 std::unique_ptr<StockModel> StockCursor::picture(double fraction) const {
   std::unique_ptr<StockModel> copy = stock_->snapshot();
   if (fraction <= 0 || motion_ >= track_.size() || !record_.cuts(motion_)) return copy;
   const std::shared_ptr<const Cutter> cutter = record_.cutter(motion_);
   std::vector<CutMove> part;
   track_.append_part(motion_, fraction, motion_moves_, *cutter, part);
+  lead_taps(motion_, *cutter, part);
   std::vector<CutReport> reports;
   copy->cut(*cutter, part, reports);
   copy->finish(reports);

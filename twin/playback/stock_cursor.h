@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "stock/stock_model.h"
@@ -36,6 +37,7 @@ class StockCursor {
  private:
   void jump_near(std::size_t goal);
   void offer_keyframe();
+  void lead_taps(std::size_t motion, const Cutter& cutter, std::span<CutMove> moves) const;
 
   const ProgramTrack& track_;
   const MotionMoves& motion_moves_;

@@ -20,6 +20,8 @@ struct CollisionPair {
   std::uint32_t contacts = 0;  ///< events, each a finding
   /// 0: they touched. Nothing: it is not known, as nothing but contacts was looked for.
   std::optional<double> least_clearance_mm;
+  /// Where that is nothing: it is no less than this. Nothing: nobody has measured.
+  std::optional<double> clearance_above_mm;
   SourceRef source;  ///< of the move with the least clearance, or the first contact
 };
 

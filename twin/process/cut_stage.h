@@ -46,6 +46,9 @@ class CutStage : private StepSink {
   void label_by(CutLabels& labels) { site_.labels = &labels; }
   /// From now on milling moves are kept as the model gets them. Outlives the stage.
   void keep_moves(KeptMoves& kept) { site_.kept = &kept; }
+  /// From now on it is told how milling tools are engaged. Before the first motion; outlives the
+  /// stage.
+  void log_engagement(EngagementLog& log) { site_.engagement = &log; }
   /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
   /// outlives the stage.
   void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }

@@ -124,9 +124,7 @@ std::size_t FixtureChecks::pair_of(int tool, const CarriedBody& body, std::size_
   pair.obstacle = obstacle;
   pair.width_mm = body.width_mm;
   pair.from_z_mm = body.from_z_mm;
-  pair.ignored = rules_.ignores(to_string(body.part), other.name);
-  pair.near_mm = rules_.clearance_mm(to_string(body.part), other.name)
-                     .value_or(other.clearance_mm.value_or(clearance_mm_));
+  pair.set_rules(rules_, other.clearance_mm.value_or(clearance_mm_));
   pairs_.push_back(std::move(pair));
   return pairs_.size() - 1;
 }
@@ -208,13 +206,15 @@ void FixtureChecks::check_pair(Mounted& part, std::size_t obstacle, const Checke
     // A little more is looked for than counts, so that what comes next need not be looked at.
     double below = counts + kObstacleAhead_mm;
     for (const Convex& piece : part.body.whole.pieces) {
-      const auto gap = least_gap(piece, way, still, below, guess);
+      const auto gap = least_gap(piece, way, still, below, counts, guess);
       if (!gap) continue;
       least = gap;
       below = gap->mm;
     }
     spare = below;
-    if (least && least->mm < counts) note_least(pair, move, which, way, *least);
+    if (least && least->mm < counts)
+      pair.note(least->mm, move.motion.source, move.time_s(which, least->t),
+                way.tool_way.pose(least->t).origin_mm);
     if (spare > kContactGap_mm) return;
   }
   spare = -1;
@@ -226,18 +226,6 @@ void FixtureChecks::check_pair(Mounted& part, std::size_t obstacle, const Checke
   meet(part, pair, move, which, way, *first);
 }
 
-void FixtureChecks::note_least(Pair& pair, const CheckedMove& move, std::size_t which,
-                               const Way& way, const LeastGap& gap) {
-  pair.least_mm = gap.mm;
-  pair.row.source = move.motion.source;
-  if (gap.mm >= pair.near_mm) return;
-  Finding& near = pair.nearest;
-  near.source = move.motion.source;
-  near.time_s = move.time_s(which, gap.t);
-  near.position_mm = way.tool_way.pose(gap.t).origin_mm;
-  near.tool = tool_;
-}
-
 void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std::size_t which,
                          const Way& way, double t) {
   if (!pair.event) {
@@ -247,7 +235,7 @@ void FixtureChecks::meet(Mounted& part, Pair& pair, const CheckedMove& move, std
     finding.position_mm = way.tool_way.pose(t).origin_mm;
     pair.event = log_.add(std::move(finding));
     pair.depth_mm = 0;
-    if (pair.row.contacts++ == 0) pair.row.source = move.motion.source;
+    pair.count_contact(move.motion.source);
   }
   pair.least_mm = 0;
   // Only what is deeper than known is measured.
@@ -278,29 +266,17 @@ void FixtureChecks::begin_reporting() {
 }
 
 void FixtureChecks::finish() {
-  for (Pair& pair : pairs_) {
-    if (pair.row.contacts > 0 || pair.least_mm >= pair.near_mm) continue;
-    Finding near = pair.nearest;
-    near.id = FindingId::kNearMiss;
-    near.severity = Severity::kNote;
-    near.bodies = {to_string(pair.row.part), pair.row.other};
+  for (const Pair& pair : pairs_) {
+    std::optional<Finding> near = pair.near_miss();
+    if (!near) continue;
     const std::optional<HoldingBody::Kind> kind = obstacles_[pair.obstacle].kind;
-    near.text = kind ? holding_near_text(pair.row.part, *kind, pair.least_mm)
-                     : trf("{} comes as near as {:.2f} mm to fixture '{}'", name_of(pair.row.part),
-                           pair.least_mm, pair.row.other);
-    log_.add(std::move(near));
+    near->text = kind ? holding_near_text(pair.row.part, *kind, pair.least_mm)
+                      : trf("{} comes as near as {:.2f} mm to fixture '{}'", name_of(pair.row.part),
+                            pair.least_mm, pair.row.other);
+    log_.add(std::move(*near));
   }
 }
 
-std::vector<CollisionPair> FixtureChecks::table() const {
-  std::vector<CollisionPair> out;
-  for (const Pair& pair : pairs_) {
-    if (pair.ignored) continue;
-    out.push_back(pair.row);
-    if (std::isfinite(pair.least_mm))
-      out.back().least_clearance_mm = pair.row.contacts > 0 ? 0 : pair.least_mm;
-  }
-  return out;
-}
+std::vector<CollisionPair> FixtureChecks::table() const { return rows_of(pairs_); }
 
 }  // namespace kerf

@@ -2,7 +2,6 @@
 // fixture-contact, near-miss.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +13,7 @@
 #include "twin/process/carried_bodies.h"
 #include "twin/process/check_options.h"
 #include "twin/process/checked_move.h"
-#include "twin/process/collision_table.h"
+#include "twin/process/near_pair.h"
 
 namespace kerf {
 
@@ -61,16 +60,10 @@ class FixtureChecks {
 
  private:
   /// One part of one tool and one obstacle.
-  struct Pair {
-    CollisionPair row;
+  struct Pair : NearPair {
     std::size_t obstacle = 0;
     double width_mm = 0, from_z_mm = 0;  ///< of the part
-    double least_mm = std::numeric_limits<double>::infinity();
-    std::optional<FindingLog::Handle> event;
-    double depth_mm = 0;   ///< of the event
-    Finding nearest;       ///< text and place of the least clearance
-    double near_mm = 0;    ///< what counts as near
-    bool ignored = false;  ///< PairRules
+    double depth_mm = 0;                 ///< of the event
   };
   /// A part of the tool in use.
   struct Mounted {
@@ -85,8 +78,6 @@ class FixtureChecks {
   /// `tip`: around the tip's way in the obstacle's frame; nullopt: boxes say nothing.
   void check_pair(Mounted& part, std::size_t obstacle, const CheckedMove& move, std::size_t which,
                   const Way& way, const std::optional<Box>& tip, bool& touched);
-  void note_least(Pair& pair, const CheckedMove& move, std::size_t which, const Way& way,
-                  const LeastGap& gap);
   void meet(Mounted& part, Pair& pair, const CheckedMove& move, std::size_t which, const Way& way,
             double t);
   Finding contact_of(const Pair& pair) const;

@@ -92,6 +92,7 @@ void PartChecks::set_clearance(double clearance_mm) { clearance_mm_ = clearance_
 
 void PartChecks::add(Part part) {
   part.row = row_of(part.id);
+  if (part.measured) table_[part.row].clearance_above_mm = most_mm();
   parts_.push_back(std::move(part));
 }
 
@@ -168,11 +169,14 @@ std::size_t PartChecks::row_of(FindingId id) {
   return table_.size() - 1;
 }
 
+/// What is farther away is not measured.
+double PartChecks::most_mm() const { return std::max(kMeasured_mm, 2 * clearance_mm_); }
+
 /// What would be a new least clearance; 0: only a contact counts.
 double PartChecks::counts_mm(const Part& part) const {
   if (!part.measured) return 0;
-  const double most = std::max(kMeasured_mm, 2 * clearance_mm_);
-  return std::max(0.0, table_[part.row].least_clearance_mm.value_or(most) - kGrain_mm);
+  const std::optional<double> least = table_[part.row].least_clearance_mm;
+  return least ? std::max(0.0, *least - kGrain_mm) : most_mm();
 }
 
 bool PartChecks::comes_near(Part& part, const CutMove& move) const {

@@ -85,6 +85,7 @@ class PartChecks {
   Part* open_event(FindingId id);
   /// How deep it is known to be on feeds; a traverse is looked at by itself.
   double known_mm(const Part& part, const Motion& motion) const;
+  double most_mm() const;
   double counts_mm(const Part& part) const;
   bool comes_near(Part& part, const CutMove& move) const;
   void meet(std::size_t index, const CheckedMove& move, const PartContact& contact,

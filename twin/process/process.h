@@ -36,6 +36,7 @@
 
 namespace kerf {
 
+class EngagementLog;
 class KeptMoves;
 
 /// What CutStage holds for its process, and keeps up to date. It outlives the process.
@@ -45,10 +46,11 @@ struct ProcessSite {
   FindingLog& log;
   FeedCheck feeds;
   CutProgress progress;
-  MotionMoves moves;            ///< as the model cuts
-  bool limits_known = false;    ///< TimelineOptions
-  CutLabels* labels = nullptr;  ///< CutStage::label_by()
-  KeptMoves* kept = nullptr;    ///< CutStage::keep_moves()
+  MotionMoves moves;                    ///< as the model cuts
+  bool limits_known = false;            ///< TimelineOptions
+  CutLabels* labels = nullptr;          ///< CutStage::label_by()
+  KeptMoves* kept = nullptr;            ///< CutStage::keep_moves()
+  EngagementLog* engagement = nullptr;  ///< CutStage::log_engagement()
   BlankKind blank = BlankKind::kUnjudged;
   bool timed = false;    ///< motions come with their times: CutStage::take_timed()
   bool watched = false;  ///< CutStage::watch_machine()

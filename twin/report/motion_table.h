@@ -60,4 +60,9 @@ class MotionTable final : public MotionRecorder {
   std::deque<Row> waiting_;
 };
 
+/// Tables of the setups of a part as one, setup after setup, with a last column `setup`: 1, 2 ..;
+/// of one whose name is empty there are no rows. Appears whole or not at all. Error: what cannot be
+/// read or written.
+Done join_motion_tables(const std::string& path, const std::vector<std::string>& tables);
+
 }  // namespace kerf

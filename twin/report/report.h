@@ -9,10 +9,12 @@
 
 #include "interp_bridge/program.h"
 #include "twin/compare/comparison.h"
+#include "twin/compare/rest.h"
 #include "twin/findings/finding.h"
 #include "twin/job/placed_stock.h"
 #include "twin/machine/timeline.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/engagement.h"
 #include "twin/report/guess_row.h"
 #include "twin/report/line_window.h"
 #include "twin/report/live_report.h"
@@ -57,6 +59,8 @@ struct Report {
   std::optional<SheetReport> sheet;      ///< of a workpiece that is one
   std::optional<TurningReport> turning;  ///< of one that turns
   std::optional<Comparison> comparison;  ///< with the design part, where one was given
+  std::optional<Rest> rest;              ///< above it, where that was asked for
+  std::optional<Engagement> engagement;  ///< of milling tools, where that was asked for
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>
       collisions;  ///< what was held against each other, and how near it came
@@ -73,11 +77,13 @@ struct Report {
 
 /// kerf-report/1, indented by two blanks, with a newline at the end. Lengths, times and volumes are
 /// rounded to 1e-6. Additions to the published schema: partial, partial_reason, stock.origin,
-/// program.from_line, program.until_line (where asked for), tools[].origin, guessed (what, option,
+/// program.from_line, program.until_line (where asked for), tools[].origin,
+/// tools[].offset_mm (of the tool table), guessed (what, option,
 /// value, reason), findings_total, timing_s.cut_cpu, motion.moves_without_feed, motion.held_s (of
 /// sheets: strokes, turret, regrip, pierces, pauses; part of duration_s), live (shadow and replay),
 /// sheet (SheetReport; for a workpiece that is one), turning (TurningReport; the same), compare
-/// (compare_json(); where a design was given), pieces (LoosePiece; where some have come free).
+/// (compare_json(); where a design was given), rest and engagement (rest_json(),
+/// engagement_json(); where they were asked for), pieces (LoosePiece; where some have come free).
 std::string json_text(const Report& report);
 
 struct SummaryOptions {

@@ -3,7 +3,9 @@
 
 #include "twin/findings/finding_json.h"
 #include "twin/report/compare_report.h"
+#include "twin/report/engagement_report.h"
 #include "twin/report/report.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/run_json.h"
 
 namespace kerf {
@@ -82,6 +84,10 @@ Json tools_json(const Report& report) {
     tool["origin"] = use.origin;
     tool["guessed"] = use.guessed;
     if (use.teeth) tool["teeth"] = *use.teeth;
+    if (use.offset_mm) {
+      const auto& [x, y, z] = *use.offset_mm;
+      tool["offset_mm"] = {rounded(x), rounded(y), rounded(z)};
+    }
     tool["shank_checked"] = use.shank_checked;
     tool["holder_checked"] = use.holder_checked;
     tool["cut_s"] = rounded(use.cut_s);
@@ -110,6 +116,9 @@ Json collisions_json(const Report& report) {
     pair["contacts"] = row.contacts;
     pair["least_clearance_mm"] =
         row.least_clearance_mm ? Json(rounded(*row.least_clearance_mm)) : Json(nullptr);
+    if (!row.least_clearance_mm)
+      pair["clearance_above_mm"] =
+          row.clearance_above_mm ? Json(rounded(*row.clearance_above_mm)) : Json(nullptr);
     pair["line"] = row.source.line;
     pairs.push_back(std::move(pair));
   }
@@ -238,6 +247,9 @@ std::string json_text(const Report& report) {
   if (report.comparison) {
     out["compare"] = compare_json(*report.comparison, report.program.files);
   }
+  if (report.rest) out["rest"] = rest_json(*report.rest);
+  if (report.engagement)
+    out["engagement"] = engagement_json(*report.engagement, report.program.files);
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);
   if (report.live) out["live"] = live_json(*report.live);
   out["findings"] = findings_json(report);

@@ -7,8 +7,10 @@
 
 #include "base/translate.h"
 #include "twin/report/compare_report.h"
+#include "twin/report/engagement_report.h"
 #include "twin/report/report.h"
 #include "twin/report/report_words.h"
+#include "twin/report/rest_report.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -82,7 +84,7 @@ void add_stock(std::string& out, const StockReport& s) {
   }
   constexpr double kNothing_mm = 5e-5;  // four places are shown
   if (s.carried && s.carried->bound_mm >= kNothing_mm) {
-    out += trf("          was {}; surfaces may lie {:.4f} mm elsewhere for it\n", s.carried->from,
+    out += trf("          was {}; sure but within {:.4f} mm of its surface\n", s.carried->from,
                s.carried->bound_mm);
   }
 }
@@ -295,6 +297,7 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
+  if (report.rest) out += rest_text(*report.rest);
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);
@@ -332,7 +335,9 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.sheet) out += sheet_text(*report.sheet);
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
+  if (report.rest) out += rest_text(*report.rest);
   add_tools(out, report.tools);
+  if (report.engagement) out += engagement_text(*report.engagement);
   add_clearances(out, report);
   add_unchecked(out, report);
   if (report.lengths_all_zero) {

@@ -23,9 +23,11 @@ std::string distance_text(double mm) {
 std::string volume_text(double mm3) { return fmt::format("{:.3f} cm3", mm3 / 1000); }
 
 std::string verdict_text(const FindingLog& log) {
-  const std::uint64_t errors = log.count(Severity::kError);
-  const std::uint64_t warnings = log.count(Severity::kWarning);
   if (log.total() == 0) return tr("no findings");
+  return verdict_text(log.count(Severity::kError), log.count(Severity::kWarning));
+}
+
+std::string verdict_text(std::uint64_t errors, std::uint64_t warnings) {
   std::string out =
       errors == 0 ? std::string(tr("no errors")) : trnf("{} error", "{} errors", errors);
   if (warnings > 0) out += ", " + trnf("{} warning", "{} warnings", warnings);

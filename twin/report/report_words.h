@@ -1,6 +1,7 @@
 // twin/report/report_words.h - figures of a report as people read them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "twin/findings/finding.h"
@@ -15,5 +16,7 @@ std::string distance_text(double mm);
 std::string volume_text(double mm3);
 /// "2 errors, 1 warning"; "no findings". Notes are no verdict.
 std::string verdict_text(const FindingLog& log);
+/// Of so many: "no errors, 1 warning".
+std::string verdict_text(std::uint64_t errors, std::uint64_t warnings);
 
 }  // namespace kerf

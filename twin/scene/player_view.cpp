@@ -41,7 +41,7 @@ void PlayerView::run(std::stop_token stop, std::optional<double> speed,
   if (!std::exchange(is_started_, true)) mailbox_.publish(scene_.start(*player_.state()));
   if (speed) {
     speed_ = *speed;
-    player_.play(speed_);
+    play();
     scene_.set_controls(speed_, breakpoints_);
   }
   quick_until_ = Clock::now() + kQuickAfterCommand;
@@ -70,6 +70,13 @@ void PlayerView::remember(const ViewerCommand& command) {
   lasting_.push_back(command);
 }
 
+void PlayerView::play() { plays_ = player_.play(speed_); }
+
+bool PlayerView::has_played_out() const {
+  return plays_ && state_ && state_->commands_done >= *plays_ &&
+         state_->mode == PlayerMode::kPaused && state_->stop == PlayerStop::kProgramEnd;
+}
+
 std::vector<ViewerCommand> PlayerView::lasting() const {
   std::vector<ViewerCommand> all = lasting_;
   for (const SourceRef& line : breakpoints_) {
@@ -83,7 +90,16 @@ bool PlayerView::obey(const ViewerCommand& command) {
   std::visit(
       [&](const auto& c) {
         using Command = std::decay_t<decltype(c)>;
-        if constexpr (std::is_same_v<Command, PlayCommand>) player_.play(speed_);
+        if constexpr (std::is_same_v<Command, PauseCommand> ||
+                      std::is_same_v<Command, StopCommand> ||
+                      std::is_same_v<Command, StepBlockCommand> ||
+                      std::is_same_v<Command, SeekEndCommand> ||
+                      std::is_same_v<Command, RunToLineCommand>)
+          plays_.reset();
+        if constexpr (std::is_same_v<Command, SeekTimeCommand>) {
+          if (c.time_s >= track_->duration_s()) plays_.reset();
+        }
+        if constexpr (std::is_same_v<Command, PlayCommand>) play();
         if constexpr (std::is_same_v<Command, PauseCommand>) player_.pause();
         if constexpr (std::is_same_v<Command, StopCommand>) player_.stop();
         if constexpr (std::is_same_v<Command, SpeedCommand>) {
@@ -91,7 +107,7 @@ bool PlayerView::obey(const ViewerCommand& command) {
           speed_ = c.factor > kMaxSpeed ? std::numeric_limits<double>::infinity()
                                         : std::max(c.factor, kMinSpeed);
           scene_.set_controls(speed_, breakpoints_);
-          if (player_.state()->mode == PlayerMode::kPlaying) player_.play(speed_);
+          if (player_.state()->mode == PlayerMode::kPlaying) play();
         }
         if constexpr (std::is_same_v<Command, StepBlockCommand>) player_.step_block(c.blocks);
         if constexpr (std::is_same_v<Command, SeekLineCommand>) seek_line(c.file, c.line);
@@ -112,6 +128,7 @@ bool PlayerView::obey(const ViewerCommand& command) {
         if constexpr (std::is_same_v<Command, PickCommand>)
           scene_.pick(c.point_mm, *player_.state());
         if constexpr (std::is_same_v<Command, OpenCommand> || std::is_same_v<Command, JobCommand> ||
+                      std::is_same_v<Command, SetupCommand> ||
                       std::is_same_v<Command, ReadAgainCommand>) {
           asked_ = c;
           goes_on = false;
@@ -144,6 +161,10 @@ void PlayerView::set_breakpoint(const BreakpointCommand& command) {
 void PlayerView::show() {
   if (mailbox_.is_full()) return;
   state_ = player_.state();
+  const bool is_halted = plays_ && state_->commands_done >= *plays_ &&
+                         state_->mode == PlayerMode::kPaused &&
+                         state_->stop != PlayerStop::kProgramEnd;
+  if (is_halted) plays_.reset();
   SceneUpdate update = scene_.update(state_, Clock::now() + kPlayerSlice);
   if (update.moment) moment_ = update.moment;
   if (!PlayerScene::is_empty(update)) mailbox_.publish(std::move(update));

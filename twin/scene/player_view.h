@@ -33,8 +33,15 @@ class PlayerView {
            const std::function<bool()>& is_over = {});
 
   Player& player() { return player_; }
-  /// The OpenCommand, JobCommand or ReadAgainCommand that ended run(); none: another reason did.
+  /// The OpenCommand, JobCommand, SetupCommand or ReadAgainCommand that ended run(); none: another
+  /// reason did.
   const std::optional<ViewerCommand>& asked() const { return asked_; }
+  /// What was played has come to the end of the program by itself: nobody has stopped it, or jumped
+  /// there.
+  bool has_played_out() const;
+  bool is_playing() const { return plays_ && !has_played_out(); }
+  /// That it has_played_out() was taken note of: not so again before it is played anew.
+  void stay() { plays_.reset(); }
   /// What the window was told to be shown how, and the breakpoints: for whatever is shown next.
   std::vector<ViewerCommand> lasting() const;
   /// That was shown last; never null.
@@ -44,6 +51,7 @@ class PlayerView {
  private:
   using Clock = std::chrono::steady_clock;
   bool obey(const ViewerCommand& command);
+  void play();
   void seek_line(const std::string& file, int line);
   void run_to_line(const std::string& file, int line);
   void set_breakpoint(const BreakpointCommand& command);
@@ -57,6 +65,7 @@ class PlayerView {
   Player player_;
   PlayerScene scene_;
   double speed_ = 1;
+  std::optional<Player::Ticket> plays_;  ///< since this command; none: it stands, or was stopped
   std::vector<SourceRef> breakpoints_;
   std::shared_ptr<const PlayerState> state_;
   std::optional<ViewerCommand> asked_;

@@ -207,6 +207,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   stage.stop_by(stop);
   if (!recorders_.empty()) stage.record_by(recorders_);
   if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
+  if (engagement_) stage.log_engagement(*engagement_);
   if (labels_ && !front_.is_sheet()) {
     front_.stock.stock->keep_cut_ids(true);
     stage.label_by(*labels_);
@@ -251,11 +252,17 @@ void Session::complete_report(const CutStage& stage) {
   report_.tools = stage.tools();
   report_.collisions = stage.process().collisions();
   report_.pieces = stage.process().loose();
+  if (engagement_) report_.engagement = engagement_->result();
   report_.guesses = guess_rows(options_, front_, report_.tools);
   const std::vector<ToolTableRow>& table = front_.tools.table;
   const auto axes = static_cast<unsigned>(options_.program.machine.length_axes);
-  report_.lengths_all_zero =
-      !table.empty() && known_lengths(table, axes).empty() && !front_.is_sheet();
+  const std::map<int, ToolOffset> lengths = known_lengths(table, axes);
+  report_.lengths_all_zero = !table.empty() && lengths.empty() && !front_.is_sheet();
+  for (ToolUse& use : report_.tools) {
+    const auto row = lengths.find(use.number);
+    if (row != lengths.end() && !front_.is_sheet())
+      use.offset_mm = {row->second[0], row->second[1], row->second[2]};
+  }
   report_.stock = stock_report(*stock(), front_.stock.facts);
   if (const Sheet* const sheet = stock()->sheet()) {
     report_.sheet = sheet_report(*sheet, stage.process(), options_.beam.density_kg_per_m3);

@@ -19,6 +19,7 @@
 #include "twin/machine/kinematics/switched_motions.h"
 #include "twin/process/cut_labels.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/engagement_log.h"
 #include "twin/process/kept_moves.h"
 #include "twin/program/material_handover.h"
 #include "twin/program/program_front.h"
@@ -71,6 +72,8 @@ class Session {
     keep_cut_labels();
     kept_moves_.emplace();
   }
+  /// Before run(): how the tools are engaged is measured, for Report::engagement.
+  void log_engagement(bool with_map) { engagement_.emplace(with_map); }
   const KeptMoves* kept_moves() const { return kept_moves_ ? &*kept_moves_ : nullptr; }
 
   /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that
@@ -138,6 +141,7 @@ class Session {
   MotionRecorders recorders_;
   std::optional<CutLabels> labels_;
   std::optional<KeptMoves> kept_moves_;
+  std::optional<EngagementLog> engagement_;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;

@@ -345,6 +345,20 @@ void draw_files(const PanelContext& context) {
   ImGui::EndTabBar();
 }
 
+/// Those of a part that is made in several; another one is chosen in the list.
+void draw_setups(const PanelContext& context) {
+  if (!context.shown.job || context.shown.job->setups.empty()) return;
+  const ViewedJob& job = *context.shown.job;
+  ImGui::SetNextItemWidth(-1.0f);
+  if (!ImGui::BeginCombo("##setup", job.setups[job.setup].c_str())) return;
+  for (std::size_t i = 0; i < job.setups.size(); ++i) {
+    const bool is_shown = i == job.setup;
+    if (ImGui::Selectable(fmt::format("{}##{}", job.setups[i], i).c_str(), is_shown) && !is_shown)
+      context.commands->push(SetupCommand{i});
+  }
+  ImGui::EndCombo();
+}
+
 void draw_head(const PanelContext& context) {
   const auto& files = context.shown.program->files;
   CodeScroll& scroll = context.state->code;
@@ -379,6 +393,7 @@ void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const Pan
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  draw_setups(context);
   draw_head(context);
   draw_search(context);
   const auto& files = context.shown.program->files;

@@ -24,6 +24,8 @@ constexpr std::array kShortcuts{
     Shortcut{"T", U'T', 0, Action::kPreviousTool, Text::kPreviousTool},
     Shortcut{"b", U'b', 0, Action::kBreakpoint, Text::kBreakpoint},
     Shortcut{"g", U'g', 0, Action::kGoToLine, Text::kGoToLine},
+    Shortcut{"Page Down", 0, GLFW_KEY_PAGE_DOWN, Action::kNextSetup, Text::kNextSetup},
+    Shortcut{"Page Up", 0, GLFW_KEY_PAGE_UP, Action::kPreviousSetup, Text::kPreviousSetup},
     Shortcut{"f", U'f', 0, Action::kFit, Text::kFit},
     Shortcut{"1", U'1', 0, Action::kFront, Text::kFront},
     Shortcut{"2", U'2', 0, Action::kBack, Text::kBack},

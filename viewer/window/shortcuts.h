@@ -24,6 +24,8 @@ enum class Action {
   kNextTool,
   kPreviousTool,
   kBreakpoint,
+  kNextSetup,
+  kPreviousSetup,
   kGoToLine,
   kFit,
   kFront,

@@ -235,6 +235,12 @@ void Window::Impl::act_on_player(Action action) {
     case Action::kBreakpoint:
       set_breakpoint();
       break;
+    case Action::kNextSetup:
+      go_to_setup(1);
+      break;
+    case Action::kPreviousSetup:
+      go_to_setup(-1);
+      break;
     default:
       break;
   }
@@ -245,6 +251,16 @@ void Window::Impl::open_program(const std::string& path) {
     commands_.push(OpenCommand{path});
   } else {
     state_.notice = Text::kCannotOpen;
+  }
+}
+
+void Window::Impl::go_to_setup(int step) {
+  const std::size_t count = shown_.job ? shown_.job->setups.size() : 0;
+  const std::size_t setup = shown_.job ? shown_.job->setup : 0;
+  if (step > 0 ? setup + 1 >= count : setup == 0) {
+    state_.notice = Text::kNoOtherSetup;
+  } else {
+    commands_.push(SetupCommand{step > 0 ? setup + 1 : setup - 1});
   }
 }
 

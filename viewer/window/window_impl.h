@@ -121,6 +121,8 @@ class Window::Impl {
   void act_on_player(Action action);
   void act_on_view(Action action);
   void act_on_panels(Action action);
+  /// One on (1) or back (-1).
+  void go_to_setup(int step);
   void set_breakpoint();
   void open_program(const std::string& path);
   void toggle_workpiece();

@@ -12,18 +12,13 @@
 #include "stock/octree/octree.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
+#include "tests/stock/stock_samples.h"
 
 namespace kerf {
 namespace {
 
-Cutter tool(const char* shape) { return *parse_shape(shape); }
-
-CutMove line(const Vec3& from, const Vec3& to) {
-  CutMove move;
-  move.from_mm = from;
-  move.to_mm = to;
-  return move;
-}
+using test::line;
+using test::tool;
 
 std::unique_ptr<StockModel> model(const std::string& name, const char* blank, double cell_mm) {
   if (name == "octree") {

@@ -9,27 +9,13 @@
 
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
+#include "tests/stock/stock_samples.h"
 
 namespace kerf {
 namespace {
 
-std::unique_ptr<ZMap> block(const char* blank, double cell_mm) {
-  ZMapOptions options;
-  options.blank = *parse_blank(blank);
-  options.cell_mm = cell_mm;
-  auto map = ZMap::create(options);
-  EXPECT_TRUE(map) << map.error();
-  return std::move(*map);
-}
-
-Cutter tool(const char* shape) { return *parse_shape(shape); }
-
-CutMove line(const Vec3& from, const Vec3& to) {
-  CutMove move;
-  move.from_mm = from;
-  move.to_mm = to;
-  return move;
-}
+using test::line;
+using test::tool;
 
 CutMove turn(const Vec3& from, const Vec3& center, double sweep_rad) {
   CutMove move;
@@ -69,7 +55,7 @@ std::vector<ThroughSplit> cut(ThroughMap& through, const Cutter& cutter, const C
 }
 
 TEST(ThroughMap, TellsASquareIslandWithTheMoveThatClosesItsSlot) {
-  const auto map = block("box:0,0,-10:60,60,0", 0.25);
+  const auto map = test::make_map("box:0,0,-10:60,60,0", 0.25);
   ThroughMap through(*map->height_grid());
   const Cutter cutter = tool("flat:6");
   const Vec3 corners[] = {{10, 10, -10}, {40, 10, -10}, {40, 40, -10}, {10, 40, -10}};
@@ -89,7 +75,7 @@ TEST(ThroughMap, TellsASquareIslandWithTheMoveThatClosesItsSlot) {
 TEST(ThroughMap, ASkinOrATabOfOneCellHolds) {
   const Vec3 corners[] = {{10, 10, 0}, {40, 10, 0}, {40, 40, 0}, {10, 40, 0}, {10, 10, 0}};
   const Cutter cutter = tool("flat:6");
-  const auto map = block("box:0,0,-10:60,60,0", 0.25);
+  const auto map = test::make_map("box:0,0,-10:60,60,0", 0.25);
   ThroughMap skin(*map->height_grid());
   for (int n = 0; n < 4; ++n) {
     const CutMove move = line(corners[n] - Vec3(0, 0, 9.98), corners[n + 1] - Vec3(0, 0, 9.98));
@@ -113,7 +99,7 @@ TEST(ThroughMap, ASkinOrATabOfOneCellHolds) {
 }
 
 TEST(ThroughMap, ARoundSlugOfABallHasTheRadiusAtTheFloor) {
-  const auto map = block("box:-30,-30,-4:30,30,0", 0.1);
+  const auto map = test::make_map("box:-30,-30,-4:30,30,0", 0.1);
   ThroughMap through(*map->height_grid());
   // 1 mm below the floor a ball of 6 mm is as wide as 2 sqrt(9 - 2^2) there, and 0.01 mm above.
   const auto splits = cut(through, tool("ball:6"), turn({15, 0, -5}, {0, 0, -5}, 2 * kPi));
@@ -125,7 +111,7 @@ TEST(ThroughMap, ARoundSlugOfABallHasTheRadiusAtTheFloor) {
 }
 
 TEST(ThroughMap, CuttingOnInWhatIsPartedAlreadyTellsNothing) {
-  const auto map = block("box:0,0,-10:60,60,0", 0.25);
+  const auto map = test::make_map("box:0,0,-10:60,60,0", 0.25);
   ThroughMap through(*map->height_grid());
   const Cutter cutter = tool("flat:6");
   EXPECT_EQ(cut(through, cutter, line({30, -5, -11}, {30, 65, -11})).size(), 1u);
@@ -189,7 +175,7 @@ TEST(ThroughMap, AgreesWithAFloodFillAfterEveryMove) {
     const auto uniform = [&](double low, double high) {
       return std::uniform_real_distribution<>(low, high)(random);
     };
-    const auto map = block("box:0,0,-3:24,20,0", 0.2137);
+    const auto map = test::make_map("box:0,0,-3:24,20,0", 0.2137);
     ThroughMap through(*map->height_grid());
     const Cutter cutter = tool(shapes[seed % std::size(shapes)]);
     Vec3 at(uniform(0, 24), uniform(0, 20), -3.7);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/twin/cli/kerf_process.h"
+#include "tests/twin/cli/stl_text.h"
 
 namespace kerf {
 namespace {
@@ -78,6 +79,27 @@ class BatchCommand : public testing::Test {
   }
   TestFolder folder_;
 };
+
+/// All of its programs begin with the mesh; where that changes, they are run again.
+TEST_F(BatchCommand, ABlankFromAMeshIsThatOfEachProgram) {
+  write_slots(1);
+  folder_.write("parts/05.canon", slot_text(5, false));
+  for (const double top : {0.0, -0.5}) {
+    folder_.write("block.stl", stl_box({-5, -5, -5}, {25, 15, top}));
+    KerfCall mesh = call({"parts", "--out", "out"});
+    for (std::string& word : mesh.arguments)
+      if (word.starts_with("box:")) word = "stl:block.stl";
+    const KerfResult result = run_kerf(mesh);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::map<std::string, Json> done = lines("out/results.jsonl");
+    EXPECT_EQ(done.size(), 2U);
+    for (const auto& [program, line] : done) {
+      // 20 mm and two half circles of 6 mm, 1 mm deep or 0.5.
+      EXPECT_NEAR(line["removed_mm3"].get<double>(), (20 * 6 + 9 * 3.14159265) * (1 + top), 4.5)
+          << program;
+    }
+  }
+}
 
 TEST_F(BatchCommand, EachProgramHasAResultAndAPage) {
   write_slots(3);

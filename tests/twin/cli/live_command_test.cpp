@@ -7,6 +7,7 @@
 
 #include "tests/machine_io/simulator/machine_process.h"
 #include "tests/twin/cli/kerf_process.h"
+#include "tests/twin/cli/stl_text.h"
 #include "tests/twin/cli/watched_program.h"
 
 namespace kerf {
@@ -33,10 +34,11 @@ std::string with_port(std::string text, const std::string& listening) {
   return text.replace(text.find("PORT"), 4, port);
 }
 
-std::vector<std::string> work_of(const std::string& program) {
-  return {"--program", program,    "--stock", "box:-10,-10,-6:40,30,0",
-          "--tool",    "1=flat:6", "--tool",  "2=drill:5:118",
-          "--cell",    "0.1"};
+constexpr const char* kBlock = "box:-10,-10,-6:40,30,0";
+
+std::vector<std::string> work_of(const std::string& program, const std::string& stock = kBlock) {
+  return {"--program", program,  "--stock",       stock,    "--tool",
+          "1=flat:6",  "--tool", "2=drill:5:118", "--cell", "0.1"};
 }
 
 std::vector<Json> events_of(const std::string& path) {
@@ -64,7 +66,8 @@ class Shadow : public ::testing::Test {
  protected:
   /// Both run; the machine has been seen.
   void start(const std::string& program_text, const std::vector<std::string>& more = {},
-             const std::vector<std::string>& machine_options = {}) {
+             const std::vector<std::string>& machine_options = {},
+             const std::string& stock = kBlock) {
     program_ = folder_.write("part.ngc", program_text);
     std::vector<std::string> arguments = {
         program_, "--modbus-tcp",      "127.0.0.1:0",   "--frame", "workpiece",
@@ -84,7 +87,7 @@ class Shadow : public ::testing::Test {
                       folder_.file("run.csv"),
                       "--json",
                       folder_.file("live.json")};
-    const std::vector<std::string> work = work_of(program_);
+    const std::vector<std::string> work = work_of(program_, stock);
     call.arguments.insert(call.arguments.end(), work.begin(), work.end());
     call.arguments.insert(call.arguments.end(), more.begin(), more.end());
     kerf_ = std::make_unique<RunningKerf>(call);
@@ -106,11 +109,11 @@ class Shadow : public ::testing::Test {
     EXPECT_EQ(result_.exit_code, expected_exit) << result_.err;
     return Json::parse(read_file(folder_.file("live.json")), nullptr, false);
   }
-  KerfResult replay(const std::vector<std::string>& more) {
+  KerfResult replay(const std::vector<std::string>& more, const std::string& stock = kBlock) {
     KerfCall call;
     call.arguments = {"replay", folder_.file("run.csv"),   "--speed", "max",
                       "--json", folder_.file("again.json")};
-    const std::vector<std::string> work = work_of(program_);
+    const std::vector<std::string> work = work_of(program_, stock);
     call.arguments.insert(call.arguments.end(), work.begin(), work.end());
     call.arguments.insert(call.arguments.end(), more.begin(), more.end());
     return run_kerf(call);
@@ -152,6 +155,26 @@ TEST_F(Shadow, TheWorkpieceIsThatOfTheDryRunAndTheRecordingGivesItAgain) {
   const Json second = Json::parse(read_file(folder_.file("again.json")));
   EXPECT_NEAR(second["stock"]["removed_mm3"], removed, 0.001 * removed);
   EXPECT_EQ(second["live"]["samples"], live["samples"]);
+}
+
+/// Beside the machine, in a replay of it, and as a box: the same workpiece of the same positions.
+TEST_F(Shadow, ABlankFromAMeshIsCutLikeAnyOther) {
+  const std::string mesh =
+      "stl:" + folder_.write("block.stl", stl_box({-10, -10, -6}, {40, 30, 0}));
+  start(kWatchedProgram, {}, {}, mesh);
+  wait_for_end();
+  const Json report = finish(0);
+  const double wanted = removed_by_dry_run(folder_, program_);
+  EXPECT_NEAR(report["stock"]["removed_mm3"], wanted, 0.005 * wanted);
+  EXPECT_EQ(report["findings"].size(), 0U) << report["findings"];
+  std::string digest;
+  for (const std::string& stock : {mesh, std::string(kBlock)}) {
+    const KerfResult again = replay({}, stock);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    const std::string now = Json::parse(read_file(folder_.file("again.json")))["stock"]["digest"];
+    if (digest.empty()) digest = now;
+    EXPECT_EQ(now, digest) << stock;
+  }
 }
 
 TEST_F(Shadow, ACollisionIsToldBeforeItHappens) {

@@ -79,6 +79,27 @@ TEST_F(WindowWays, AfterADryRunAChangedProgramIsReadAgain) {
   close(0);
 }
 
+TEST_F(WindowWays, AJobPlaysThroughItsSetups) {
+  folder_.write("bottom.ngc", kProgram);
+  folder_.write("job.yaml",
+                "setups:\n"
+                "  - {program: part.ngc, stock: 'box:-10,-10,-6:40,30,0', tools: 1=flat:6, "
+                "cell_mm: 0.2}\n"
+                "  - {program: bottom.ngc, tools: 1=flat:6, flip: x, zero: top, name: below}\n");
+  KerfCall call;
+  call.arguments = {"view", folder_.file("job.yaml"), "--speed", "max"};
+  kerf_ = std::make_unique<WindowedKerf>(std::move(call));
+  ASSERT_TRUE(kerf_->opens()) << (kerf_->has_ended() ? kerf_->finish().err : "");
+  EXPECT_TRUE(kerf_->is_titled("kerf - job.yaml, setup 2 of 2: below"));
+  const Picture second = kerf_->settled();
+  kerf_->key("Prior");
+  EXPECT_TRUE(kerf_->is_titled("kerf - job.yaml, setup 1 of 2"));
+  EXPECT_TRUE(kerf_->changes_from(second));
+  close(0);
+  const std::string recent = read_file(kerf_->home() + "/kerf/view.conf");
+  EXPECT_NE(recent.find("recent.1 = " + folder_.file("job.yaml")), std::string::npos) << recent;
+}
+
 TEST_F(WindowWays, AChangedLogIsReplayedAgain) {
   const std::string log = folder_.write("run.csv", log_text(0));
   open({"replay", log, "--json", folder_.file("report.json"), "--quiet"});

@@ -53,6 +53,18 @@ TEST(MeshDepth, CornersInEachOther) {
   EXPECT_NEAR(depth_of(a, shifted({29.5, 5, 5}), b), 0.5, 0.05) << "face upon face";
 }
 
+/// A tube counts as a closed mesh: 10 to 15 mm from its axis, its end at Z0.
+TEST(MeshDepth, TheEndOfATubeInAPlate) {
+  const SolidPointer tube = Solid::of_bodies(parse_blank("tube:0,0,0:40:30:20")->bodies);
+  EXPECT_TRUE(tube->encloses({12.5, 0, 1}));
+  EXPECT_FALSE(tube->encloses({5, 0, 1})) << "in its bore";
+  const BoxBody plate{{-50, -50, -10}, {50, 50, 0}};
+  EXPECT_NEAR(mesh_depth_at_mm(*tube, shifted({0, 0, -2}), *plate.solid), 2, 0.1);
+  // A wall of 5 mm need not be thinner by more than half of that.
+  EXPECT_NEAR(mesh_depth_at_mm(*tube, shifted({0, 0, -4}), *plate.solid), 2.5, 0.1);
+  EXPECT_EQ(mesh_depth_at_mm(*tube, shifted({0, 0, 0.5}), *plate.solid), 0);
+}
+
 TEST(MeshDepth, OneWithinTheOther) {
   const BoxBody small{{-2, -3, -4}, {2, 3, 4}}, large{{-20, -20, -20}, {20, 20, 20}};
   EXPECT_NEAR(depth_of(small, Pose{}, large), 18, 0.05) << "the middle of its face at X2";

@@ -27,7 +27,7 @@ std::optional<double> touch(const SolidPointer& tool, const CutMove& move,
 std::optional<LeastGap> least(const SolidPointer& tool, const CutMove& move,
                               const SolidPointer& still, double below = 1e9) {
   Vec3 guess{0};
-  return least_gap(tool->pieces()[0], ToolWay(move), *still, below, guess);
+  return least_gap(tool->pieces()[0], ToolWay(move), *still, below, below, guess);
 }
 
 CutMove straight(const Vec3& from, const Vec3& to) {
@@ -163,6 +163,14 @@ TEST(Sweep, RandomMovesAreAsNearAsTheirSteps) {
     ASSERT_TRUE(near) << i;
     EXPECT_LE(near->mm, brute + 1e-3) << i;
     EXPECT_GE(near->mm, brute - step_mm - 1e-3) << i;
+    // Nobody asks to know more than 0 exactly: up to a tenth less. As exactly as before, up to
+    // more.
+    Vec3 guess{0};
+    const auto coarse = least_gap(tool->pieces()[0], way, *still, 1e9, 0, guess);
+    EXPECT_LE(coarse->mm, near->mm + 1e-3) << i;
+    EXPECT_GE(coarse->mm, near->mm - 0.1 - 1e-3) << i;
+    const auto exact = least_gap(tool->pieces()[0], way, *still, 1e9, near->mm + 0.5, guess);
+    EXPECT_NEAR(exact->mm, near->mm, kWayExact_mm) << i;
     const auto met = touch(tool, move, still);
     if (first >= 0) {
       ASSERT_TRUE(met) << i;

@@ -37,30 +37,8 @@ DesignPart design_of(const TriangleMesh& mesh) {
   return part;
 }
 
-/// The blank with a pocket in its top, which stands along X and Y.
 TriangleMesh pocketed(const Vec2& low, const Vec2& high, double floor) {
-  TriangleMesh mesh;
-  const auto add = [&](double x, double y, double z) { mesh.positions_mm.emplace_back(x, y, z); };
-  for (const double z : {kBlank.min.z, kBlank.max.z}) {
-    add(kBlank.min.x, kBlank.min.y, z), add(kBlank.max.x, kBlank.min.y, z);
-    add(kBlank.max.x, kBlank.max.y, z), add(kBlank.min.x, kBlank.max.y, z);
-  }
-  for (const double z : {floor, kBlank.max.z}) {
-    add(low.x, low.y, z), add(high.x, low.y, z), add(high.x, high.y, z), add(low.x, high.y, z);
-  }
-  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a, c, d});
-  };
-  quad(3, 2, 1, 0);
-  quad(8, 9, 10, 11);
-  for (std::uint32_t n = 0; n < 4; ++n) {
-    const std::uint32_t m = (n + 1) % 4;
-    quad(n, m, m + 4, n + 4);
-    quad(m + 8, n + 8, n + 12, m + 12);
-    quad(n + 4, m + 4, m + 12, n + 12);
-  }
-  return mesh;
+  return test::pocketed_mesh(kBlank, low, high, floor);
 }
 
 /// A workpiece, the moves that cut it, and their labels: a line of the program for each.

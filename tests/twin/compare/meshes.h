@@ -21,6 +21,33 @@ inline TriangleMesh box_mesh(const Vec3& low, const Vec3& high) {
   return mesh;
 }
 
+/// A block with a pocket in its top, which stands along X and Y.
+inline TriangleMesh pocketed_mesh(const Box& block, const Vec2& low, const Vec2& high,
+                                  double floor) {
+  TriangleMesh mesh;
+  const auto add = [&](double x, double y, double z) { mesh.positions_mm.emplace_back(x, y, z); };
+  for (const double z : {block.min.z, block.max.z}) {
+    add(block.min.x, block.min.y, z), add(block.max.x, block.min.y, z);
+    add(block.max.x, block.max.y, z), add(block.min.x, block.max.y, z);
+  }
+  for (const double z : {floor, block.max.z}) {
+    add(low.x, low.y, z), add(high.x, low.y, z), add(high.x, high.y, z), add(low.x, high.y, z);
+  }
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  quad(3, 2, 1, 0);
+  quad(8, 9, 10, 11);
+  for (std::uint32_t n = 0; n < 4; ++n) {
+    const std::uint32_t m = (n + 1) % 4;
+    quad(n, m, m + 4, n + 4);
+    quad(m + 8, n + 8, n + 12, m + 12);
+    quad(n + 4, m + 4, m + 12, n + 12);
+  }
+  return mesh;
+}
+
 /// A surface of revolution about z: `radius(v)` and `height(v)` of v in 0 .. 1, closed at both ends
 /// (where the radius must be 0).
 template <class Radius, class Height>

@@ -52,7 +52,7 @@ Report report_of(const std::string& program) {
 
 /// What the script of the page is given.
 nlohmann::json data_of(const std::string& page) {
-  const std::string begin = "<script id=\"kerf-data\" type=\"application/json\">";
+  const std::string begin = "<script class=\"kerf-data\" type=\"application/json\">";
   const std::size_t from = page.find(begin) + begin.size();
   return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
 }

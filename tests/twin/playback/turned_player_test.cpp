@@ -3,9 +3,11 @@
 
 #include <array>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "stock/cutter/insert_shape.h"
+#include "stock/cutter/shape_spec.h"
 #include "stock/turning/turning_stock.h"
 #include "tests/twin/playback/tracks.h"
 #include "twin/process/process_table.h"
@@ -48,11 +50,11 @@ std::vector<Motion> roughing(unsigned seed, int passes) {
   return program.list();
 }
 
-PlayerProgram program_of(const std::vector<Motion>& motions) {
+PlayerProgram program_of(const std::vector<Motion>& motions, const Cutter& cutter = nose()) {
   PlayerProgram program;
   program.track = test::track_of(motions);
   program.blank = bar_40();
-  program.tools.arguments.push_back({1, nose()});
+  program.tools.arguments.push_back({1, cutter});
   program.tools.turning = true;
   ProcessWish wish;
   wish.is_turned = true;
@@ -96,6 +98,38 @@ TEST(TurnedPlayer, AnyOrderOfSeeksGivesTheSameWorkpiece) {
       EXPECT_EQ(player.state()->stock->digest(), wanted[n]) << "place " << places[n];
     }
   }
+}
+
+/// G84: to its R, in with overrides off, out with the spindle reversed, all in one block.
+TEST(TurnedPlayer, ATapInAFloatingChuckLeavesItsThreadWhereverItIsSought) {
+  MotionList program;
+  program.at({0, 0, 5}).tool(1).spindle(true);
+  program.traverse({0, 0, 2}).feed({0, 0, -10}).feed({0, 0, 2}).traverse({0, 0, 5});
+  std::vector<Motion> motions = program.list();
+  Motion& out = motions[motions.size() - 2];
+  Motion& in = motions[motions.size() - 3];
+  for (std::size_t i = motions.size() - 4; i + 1 < motions.size(); ++i) {
+    motions[i].source.line = 7;
+    motions[i].spindle_rpm = 400;
+  }
+  in.feed_mm_per_min = out.feed_mm_per_min = 500;
+  in.chain_end = ChainEnd::kEnds;
+  in.spindle = SpindleState::kClockwise;
+  out.spindle = SpindleState::kCounterclockwise;
+  PlayerOptions options;
+  options.keyframe_bytes = 0;
+  Player player(program_of(motions, parse_shape("flat:8").value()), options);
+  const auto at = [&](std::size_t motion) {
+    EXPECT_TRUE(player.wait(player.seek_motion(motion), kLong));
+    const auto stock = player.state()->stock;
+    return std::pair(stock->digest(), stock->turned()->part().threads().passes().size());
+  };
+  const std::size_t count = motions.size();
+  const auto tapped = at(count);
+  EXPECT_EQ(tapped.second, 1U);
+  EXPECT_EQ(at(count - 3).second, 0U);
+  EXPECT_EQ(at(count - 2), tapped);
+  EXPECT_EQ(at(count), tapped);
 }
 
 TEST(TurnedPlayer, ASnapshotStaysAsItWas) {

@@ -1,8 +1,9 @@
 "use strict";
-// The part in 3D, and findings that lead to their places. No network, no library; WebGL 1.
+// The part in 3D, and findings that lead to their places; in each article of its own. No network, no library; WebGL 1.
 (() => {
-const data = JSON.parse(document.getElementById("kerf-data").textContent);
-const byId = (id) => document.getElementById(id);
+function beginArticle(root) {
+const data = JSON.parse(root.querySelector(".kerf-data").textContent);
+const part = (name) => root.querySelector("." + name);
 
 // ---- data: base64 of little-endian numbers
 function bytesOf(text) {
@@ -251,7 +252,7 @@ function makeView(canvas) {
       const made = colorsOf(mesh, mode);
       if (colors) gl.deleteBuffer(colors);
       colors = buffer(made.colors);
-      byId("legend").replaceChildren(...made.legend.map(([color, name]) => {
+      part("legend").replaceChildren(...made.legend.map(([color, name]) => {
         const item = document.createElement("span"), patch = document.createElement("i");
         patch.style.background = color;
         item.append(patch, name);
@@ -303,10 +304,10 @@ function makeView(canvas) {
 let view = null;
 function choose(number) {
   const finding = data.findings[number];
-  document.querySelectorAll("#findings button").forEach((b, i) => b.setAttribute("aria-current", String(i === number)));
-  const button = document.querySelectorAll("#findings button")[number];
+  root.querySelectorAll(".findings button").forEach((b, i) => b.setAttribute("aria-current", String(i === number)));
+  const button = root.querySelectorAll(".findings button")[number];
   if (button) button.scrollIntoView({ block: "nearest" });
-  const program = byId("program");
+  const program = part("program");
   program.replaceChildren();
   const source = finding.line > 0 && data.sources[finding.file];
   if (source) {
@@ -326,9 +327,9 @@ function choose(number) {
 }
 
 function begin() {
-  document.querySelectorAll("#findings button").forEach((button, i) => button.addEventListener("click", () => choose(i)));
+  root.querySelectorAll(".findings button").forEach((button, i) => button.addEventListener("click", () => choose(i)));
   if (!data.mesh) return;
-  const canvas = document.createElement("canvas"), holder = byId("view");
+  const canvas = document.createElement("canvas"), holder = part("view");
   canvas.tabIndex = 0;
   canvas.setAttribute("aria-label", data.texts.view);
   holder.append(canvas);
@@ -379,17 +380,20 @@ function begin() {
     else return;
     e.preventDefault();
   });
-  for (const button of document.querySelectorAll("[data-look]"))
+  for (const button of root.querySelectorAll("[data-look]"))
     button.addEventListener("click", () => button.dataset.look === "reset" ? view.reset() : view.look(button.dataset.look));
-  const colors = byId("color");
+  const colors = part("color");
   colors.addEventListener("change", () => view.color(colors.value));
-  const axis = byId("section"), share = byId("share");
+  const axis = part("section"), share = part("share");
   const cut = () => { view.state.axis = Number(axis.value); view.state.share = Number(share.value) / 1000; share.disabled = view.state.axis < 0; view.redraw(); };
   axis.addEventListener("change", cut);
   share.addEventListener("input", cut);
   view.color(colors.value);
-  document.querySelectorAll("#sheet img").forEach((image) => { image.src = view.picture(image.dataset.view, 960, 720); });
-  document.body.dataset.drawn = "yes";
+  root.querySelectorAll(".sheet img").forEach((image) => { image.src = view.picture(image.dataset.view, 960, 720); });
+  root.dataset.drawn = "yes";
 }
 begin();
+}
+document.querySelectorAll("article").forEach(beginArticle);
+if (!document.querySelector("article:not([data-drawn])")) document.body.dataset.drawn = "yes";
 })();

@@ -357,20 +357,19 @@ void EngagementScan::walk(const Lane& lane, double phase, double step) {
   if (before.removed) close(high);
 }
 
+void EngagementScan::set_held(const CutMove* held) {
+  held_ = {};
+  if (held == nullptr) return;
+  const Vec3 way = held->to_mm - held->from_mm;
+  held_ = {Vec2(held->from_mm), {1, 0}, glm::length(Vec2(way)), held->from_mm.z, way.z};
+  if (held_.length > 0) held_.direction = Vec2(way) / held_.length;
+}
+
 EngagementScan::Cost EngagementScan::run_lanes(const HeightGrid& heights, const Cutter& cutter,
                                                const CutMove& move, double from, double to,
                                                const Lanes& lanes) {
   set(heights, cutter, move);
-  held_ = {};
-  if (lanes.held != nullptr) {
-    const Vec2 way = Vec2(lanes.held->to_mm - lanes.held->from_mm);
-    held_ = {Vec2(lanes.held->from_mm),
-             {1, 0},
-             glm::length(way),
-             lanes.held->from_mm.z,
-             lanes.held->to_mm.z - lanes.held->from_mm.z};
-    if (held_.length > 0) held_.direction = way / held_.length;
-  }
+  set_held(lanes.held);
   cost_ = {};
   from_ = from, to_ = to;
   set_bins(lanes.bin_mm);

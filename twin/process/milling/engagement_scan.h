@@ -12,6 +12,7 @@
 #include "interp_bridge/motion.h"
 #include "stock/stock_model.h"
 #include "surface/height_grid.h"
+#include "twin/process/engagement.h"
 #include "twin/process/milling/way_spans.h"
 
 namespace kerf {
@@ -60,6 +61,14 @@ class EngagementScan {
   /// many every n-th; of few, where the material is level about them, several places of each). The
   /// first bin has what the cutter stands in there, too.
   Cost run_part(double from, double to, int bins);
+
+  /// What the cutter's side has in it where it is at the part `at` of its way, by a ring of looks
+  /// ahead of it: angle and width to a cell (of what is not flat to a fiftieth of the radius),
+  /// the depth to the heights. Straight down: at the end of the way, whether there is anything.
+  /// On slopes the bottom's share does not count. `held`: as in Lanes. 1 us, 5 us of what is not
+  /// flat.
+  EngagementLook look_ahead(const HeightGrid& heights, const Cutter& cutter, const CutMove& move,
+                            double at, const CutMove* held);
 
   std::span<const WaySpan> spans() const { return spans_; }
   /// What is removed on each of equal parts of the way from `from` to `to`.
@@ -148,6 +157,25 @@ class EngagementScan {
   void find_edge(const Lane& lane, double removed, double free, Look& last);
   double begin_of(const Place& place, double height, double from, double to, double best);
   double end_of(const Place& place, double height, double from, double to, double best);
+
+  /// The cutter at one place.
+  struct Station {
+    Vec2 center{0}, ahead{1, 0};
+    Vec2 end{0};  ///< of the move
+    bool is_near_end = false;
+    double tip_z = 0;
+  };
+  struct Contact {
+    double radius_mm = 0;  ///< 0: there is none
+    double deep_mm = 0;
+  };
+  void set_held(const CutMove* held);
+  double material_at(const Station& station, const Vec2& point, double least_radius,
+                     bool at_rim) const;
+  bool is_on_way(const Station& station, const Vec2& point) const;
+  Vec2 before_rim(const Station& station, double angle) const;
+  Contact contact_at(const Station& station, double angle) const;
+  EngagementLook plunge_at(const Station& station) const;
 
   const HeightGrid* heights_ = nullptr;
   Motion motion_;  ///< of arcs

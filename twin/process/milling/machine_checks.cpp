@@ -464,6 +464,7 @@ void MachineChecks::meet(WorkingPair& pair, const LinkWay& way, double t) {
     doubt(wishes_.machine->guessed, tr(" (the machine's shape is a guess)"));
     doubt(pair.guessed_tool, tr(" (of a guessed tool)"));
     doubt(pair.with_workpiece && blank_guessed_, tr(" (of a guessed blank)"));
+    if (!pairs_.knows_depth(pair)) finding.text += tr(" (how deep is not measured)");
     pair.event = log_.add(std::move(finding));
     ++open_events_;
     pair.depth_mm = 0;
@@ -527,7 +528,11 @@ std::vector<CollisionPair> MachineChecks::table() const {
   for (const auto& pair : pairs_.all()) {
     if (!pair->stood || pair->dead) continue;
     out.push_back(pair->row);
-    if (std::isfinite(pair->least_mm)) out.back().least_clearance_mm = pair->least_mm;
+    if (std::isfinite(pair->least_mm)) {
+      out.back().least_clearance_mm = pair->least_mm;
+    } else if (!pair->with_workpiece) {
+      out.back().clearance_above_mm = std::max(kFollowed_mm, pair->near_mm);
+    }
   }
   return out;
 }

@@ -14,6 +14,7 @@ using Kind = WorkingBody::Kind;
 void measure(WorkingBody& body) {
   for (const SolidPointer& solid : body.solids) {
     body.has_triangles = body.has_triangles || has_triangles(*solid);
+    body.has_closed = body.has_closed || solid->is_closed();
     body.pieces += solid->pieces().size();
     for (const Convex& piece : solid->pieces()) {
       body.reach_mm = std::max(body.reach_mm, reach_of(piece));
@@ -120,6 +121,11 @@ void MachinePairs::describe(WorkingPair& pair, const WorkingBody& a, const Worki
   const std::optional<double> own = first.clearance_mm ? first.clearance_mm : second.clearance_mm;
   pair.near_mm =
       wishes_.rules.clearance_mm(a.name, b.name).value_or(own.value_or(wishes_.clearance_mm));
+}
+
+bool MachinePairs::knows_depth(const WorkingPair& pair) const {
+  const WorkingBody &moving = bodies_[pair.moving], &still = bodies_[pair.still];
+  return moving.has_depth || (!pair.with_workpiece && moving.has_closed && still.has_closed);
 }
 
 WorkingPair* MachinePairs::known(int tool, const WorkingBody& a, const WorkingBody& b) const {

@@ -36,7 +36,8 @@ struct WorkingBody {
   std::optional<double> clearance_mm;  ///< of a fixture
   double reach_mm = 0;                 ///< from its origin
   bool has_triangles = false;
-  bool has_depth = false;  ///< some of it is no mesh: it can be measured how deep it goes
+  bool has_depth = false;   ///< some of it is no mesh: it can be measured how deep it goes
+  bool has_closed = false;  ///< some of it is a closed surface
   std::size_t pieces = 0;
 
   /// For sentences.
@@ -91,6 +92,9 @@ class MachinePairs {
   std::vector<WorkingPair*>& active() { return active_; }
   std::vector<std::unique_ptr<WorkingPair>>& all() { return pairs_; }
   const std::vector<std::unique_ptr<WorkingPair>>& all() const { return pairs_; }
+  /// How deep they go into each other is measured: one of them has boxes or bodies of revolution,
+  /// or both closed surfaces.
+  bool knows_depth(const WorkingPair& pair) const;
   /// From the tip to the top of what is known of the tool; 0: nothing says where it ends.
   double tool_mm() const { return tool_mm_; }
   bool has_tool() const { return bodies_.size() > lasting_; }

@@ -43,6 +43,19 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
   flight.measured = true;
 }
 
+/// Of a feed move, how the tool is engaged in what stands before it is cut.
+void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
+  if (!flight.feed || site_.holding || divided_.empty()) return;
+  if (divided_.size() > 1 || !LoadMeter::is_one_piece(divided_[0])) {
+    if (comes_near(m)) engagement_->take_unmeasured(step.length_mm);
+    engagement_->lift();
+    return;
+  }
+  flight.pass = engagement_->take(cutting(), divided_[0], comes_near(m), m.source, step.start_s,
+                                  step.duration_s);
+  engagement_->note(divided_[0]);
+}
+
 /// How far before its middle the cutter meets material of that depth, and of the width that this
 /// removal has. Octrees tell what the front takes with the move that takes it.
 double MillingStage::front_mm_of(const FeedPart& part, const CutReport& report) const {

@@ -108,6 +108,7 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
     parts_.unmount();
     fixtures_.unmount();
     machine_.unmount();
+    if (engagement_) engagement_->lift();
   }
   if (!stands(m) && checks_.spindle_event_open()) {
     complete();  // the depths still to come belong to the event
@@ -162,6 +163,9 @@ bool MillingStage::mount_for(const Motion& m) {
   announce(*mounted_, m);
   mount_shank(m);
   if (mounted_->cutter) mount_parts(m);
+  if (site_.engagement && !engagement_)
+    engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
+  if (engagement_ && mounted_->cutter) engagement_->mount(mounted_->number, cutting());
   uses_[use_].shank_checked = parts_.checks_shank();
   uses_[use_].holder_checked = parts_.checks_holder();
   return mounted_->cutter.has_value();
@@ -174,6 +178,7 @@ void MillingStage::take_traverse(const Motion& m, const TimedStep& step) {
     check_machine(m, step);
     return;
   }
+  if (engagement_) engagement_->lift();
   // Nor does a move to where nobody knows say which tool is in the spindle: many programs begin so.
   if (m.to_machine_place || m.unknown_to == kAllUnknown) return;
   const bool known = mount_for(m);
@@ -359,6 +364,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.spindle_off = spindle_off;
   note_teeth(m, step, flight);
   measure(m, step, flight);
+  if (engagement_) engage(m, step, flight);
   PieceCutter by{m.source, step.start_s, step.duration_s, mounted_->number, 0, mounted_->guessed};
   by.radius_mm = cutting().radius_mm();
   std::size_t pushed = 0;
@@ -419,6 +425,7 @@ void MillingStage::collect_reports() {
     if (report.film.area_mm2 > 0 && !site_.holding)
       films_.take(report.film, {move.source, move.start_s, use.number});
     if (report.removed_mm3 <= 0) continue;
+    if (engagement_) site_.engagement->add_removed(move.pass, report.removed_mm3);
     use.removed_mm3 += report.removed_mm3;
     if (move.feed_per_tooth_mm > 0) count_chip(use.chip, move, report);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {

@@ -18,6 +18,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/process/fixture_checks.h"
 #include "twin/process/milling/checks.h"
+#include "twin/process/milling/engagement_meter.h"
 #include "twin/process/milling/film_events.h"
 #include "twin/process/milling/length_check.h"
 #include "twin/process/milling/load_meter.h"
@@ -74,7 +75,8 @@ class MillingStage final : public Process {
     SourceRef source;
     std::uint64_t motion = 0;  ///< ProcessSite::motion
     MotionReach reach;
-    std::uint32_t use = 0;         ///< index of ToolUse
+    std::uint32_t use = 0;  ///< index of ToolUse
+    std::uint32_t pass = EngagementLog::kNoPass;
     double rpm = 0;                ///< of a spindle that turns
     double feed_per_tooth_mm = 0;  ///< 0: not known
     bool feed = false;
@@ -118,6 +120,7 @@ class MillingStage final : public Process {
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
+  void engage(const Motion& motion, const TimedStep& step, InFlight& flight);
   void collect_reports();
   double front_mm_of(const FeedPart& part, const CutReport& report) const;
   void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
@@ -143,6 +146,7 @@ class MillingStage final : public Process {
   std::optional<FindingLog::Handle> speed_unsaid_;
   bool drawn_told_ = false;  ///< CheckOptions::is_drawn
   LoadMeter load_meter_;
+  std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
   LengthCheck lengths_;
   FilmEvents films_;
   PartChecks parts_;

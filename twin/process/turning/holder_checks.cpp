@@ -61,8 +61,9 @@ void HolderChecks::measure(const TurnedMove& move) {
 void HolderChecks::measure_to(const TurnedMove& move, std::span<const TurnMove> turns) {
   CollisionPair& row = table_[holder_->row];
   const double most = std::max(kMeasured_mm, 2 * clearance_mm_);
+  row.clearance_above_mm = most;
   for (std::size_t i = 0; i < turns.size(); ++i) {
-    const double below = row.least_clearance_mm.value_or(most) - kGrain_mm;
+    const double below = row.least_clearance_mm ? *row.least_clearance_mm - kGrain_mm : most;
     if (below <= 0) return;
     const auto gap = least_gap(stock_.part(), holder_->whole, turns[i], below);
     if (!gap) continue;

@@ -46,8 +46,7 @@ std::size_t HoldingChecks::pair_of(int tool, ToolPart part, std::size_t body) {
   pair.row.part = part;
   pair.row.other = other;
   pair.body = body;
-  pair.ignored = wishes_.rules.ignores(to_string(part), other);
-  pair.near_mm = wishes_.rules.clearance_mm(to_string(part), other).value_or(wishes_.clearance_mm);
+  pair.set_rules(wishes_.rules, wishes_.clearance_mm);
   pairs_.push_back(std::move(pair));
   return pairs_.size() - 1;
 }
@@ -102,7 +101,9 @@ void HoldingChecks::check_pair(const Mounted& part, Pair& pair, const TurnedMove
       const double below = std::max(pair.least_mm - kHoldGrain_mm, 0.0);
       const auto gap = least_gap(body, part.whole, turns[i], below);
       if (!gap) continue;
-      note_least(pair, move, (static_cast<double>(i) + gap->t) / count, gap->at_mm, gap->mm);
+      pair.note(gap->mm, move.motion.source,
+                move.step.time_at((static_cast<double>(i) + gap->t) / count),
+                Vec3(gap->at_mm.y, move.motion.from_mm.y, gap->at_mm.x));
     }
     if (pair.least_mm > kHoldGrain_mm) {
       if (is_traverse(move.motion)) pair.event.reset();
@@ -110,18 +111,6 @@ void HoldingChecks::check_pair(const Mounted& part, Pair& pair, const TurnedMove
     }
   }
   if (apart_mm == 0) meet(part, pair, move, turns);
-}
-
-void HoldingChecks::note_least(Pair& pair, const TurnedMove& move, double share, const Vec2& at_mm,
-                               double mm) {
-  pair.least_mm = mm;
-  if (pair.row.contacts > 0) return;
-  pair.row.source = move.motion.source;
-  Finding& near = pair.nearest;
-  near.source = move.motion.source;
-  near.time_s = move.step.time_at(share);
-  near.position_mm = Vec3(at_mm.y, move.motion.from_mm.y, at_mm.x);
-  near.tool = tool_;
 }
 
 void HoldingChecks::meet(const Mounted& part, Pair& pair, const TurnedMove& move,
@@ -157,7 +146,7 @@ void HoldingChecks::meet(const Mounted& part, Pair& pair, const TurnedMove& move
     finding.tool = tool_;
     finding.bodies = {to_string(part.part), pair.row.other};
     pair.event = log_.add(std::move(finding));
-    if (pair.row.contacts++ == 0) pair.row.source = move.motion.source;
+    pair.count_contact(move.motion.source);
   }
   log_.deepen(*pair.event, depth_mm);
 }
@@ -168,26 +157,14 @@ void HoldingChecks::begin_reporting() {
 }
 
 void HoldingChecks::finish() {
-  for (Pair& pair : pairs_) {
-    if (pair.ignored || pair.row.contacts > 0 || pair.least_mm >= pair.near_mm) continue;
-    Finding near = pair.nearest;
-    near.id = FindingId::kNearMiss;
-    near.severity = Severity::kNote;
-    near.bodies = {to_string(pair.row.part), pair.row.other};
-    near.text = holding_near_text(pair.row.part, bodies_[pair.body].kind, pair.least_mm);
-    log_.add(std::move(near));
+  for (const Pair& pair : pairs_) {
+    std::optional<Finding> near = pair.near_miss();
+    if (!near) continue;
+    near->text = holding_near_text(pair.row.part, bodies_[pair.body].kind, pair.least_mm);
+    log_.add(std::move(*near));
   }
 }
 
-std::vector<CollisionPair> HoldingChecks::table() const {
-  std::vector<CollisionPair> out;
-  for (const Pair& pair : pairs_) {
-    if (pair.ignored) continue;
-    out.push_back(pair.row);
-    if (std::isfinite(pair.least_mm))
-      out.back().least_clearance_mm = pair.row.contacts > 0 ? 0 : pair.least_mm;
-  }
-  return out;
-}
+std::vector<CollisionPair> HoldingChecks::table() const { return rows_of(pairs_); }
 
 }  // namespace kerf

@@ -2,7 +2,6 @@
 // chuck-contact, jaw-contact, fixture-contact of a tailstock, near-miss.
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,7 +11,7 @@
 #include "twin/collision/pair_rules.h"
 #include "twin/findings/finding.h"
 #include "twin/job/work_holding.h"
-#include "twin/process/collision_table.h"
+#include "twin/process/near_pair.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
@@ -40,14 +39,8 @@ class HoldingChecks {
   std::vector<CollisionPair> table() const;
 
  private:
-  struct Pair {
-    CollisionPair row;
+  struct Pair : NearPair {
     std::size_t body = 0;
-    double least_mm = std::numeric_limits<double>::infinity();
-    double near_mm = 0;    ///< what counts as near
-    bool ignored = false;  ///< PairRules
-    std::optional<FindingLog::Handle> event;
-    Finding nearest;  ///< place of the least clearance
   };
   /// A part of the tool that is in use.
   struct Mounted {
@@ -61,7 +54,6 @@ class HoldingChecks {
   std::size_t pair_of(int tool, ToolPart part, std::size_t body);
   void check_pair(const Mounted& part, Pair& pair, const TurnedMove& move,
                   std::span<const TurnMove> turns, double apart_mm);
-  void note_least(Pair& pair, const TurnedMove& move, double share, const Vec2& at_mm, double mm);
   void meet(const Mounted& part, Pair& pair, const TurnedMove& move,
             std::span<const TurnMove> turns);
 

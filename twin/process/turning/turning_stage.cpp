@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/turning/tap.h"
 #include "stock/turning/turned_surface.h"
 #include "twin/machine/planned_pieces.h"
 #include "twin/motion/motion_geometry.h"
@@ -100,6 +101,7 @@ void TurningStage::finish(bool whole) {
 
 void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   path_ = path;
+  tap_lead_mm_ = site_.watched ? 0 : floating_.lead_mm(m);
   if (!site_.watched && cutter()) stops_.check_stop(m, step, *edges_, mounted_->number);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     spindle_tool_ = m.tool;
@@ -377,19 +379,26 @@ void TurningStage::report_lost_threads(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
-/// Once, of a tool on the axis that is fed into a hole, and out of it with the spindle reversed.
+/// Once, of a tool on the axis that is fed into a hole, and out of it with the spindle reversed,
+/// and leaves no thread.
 void TurningStage::report_floating_tap(const Motion& m, const TimedStep& step) {
   if (m.kind != MotionKind::kFeed || mounted_->cutter->insert()) return;
   const double way_mm = m.to_mm.z - m.from_mm.z;
   const bool reversed = m.spindle != SpindleState::kStopped && in_by_ != SpindleState::kStopped &&
                         m.spindle != in_by_;
-  if (way_mm > 0 && reversed && m.from_mm == in_to_mm_ && !std::exchange(floating_told_, true)) {
+  const bool is_tapped =
+      tap_lead_mm_ != 0 &&
+      tap_tools(2 * mounted_->cutter->radius_mm(), std::abs(tap_lead_mm_), way_mm).has_value();
+  if (way_mm > 0 && reversed && !is_tapped && m.from_mm == in_to_mm_ &&
+      !std::exchange(floating_told_, true)) {
     Finding finding = finding_at(FindingId::kNotSimulated, Severity::kNote, m, step);
     finding.tool = m.tool;
     finding.text =
-        tr("a tap in a chuck that floats (G84): its feed is in step with nothing, and the part has "
-           "the hole that its diameter sweeps, without a thread");
-    finding.hint = tr("G33.1 taps in step with the spindle");
+        tr("a tap in a chuck that floats (G84): the part has the hole that its diameter sweeps, "
+           "without a thread");
+    finding.hint =
+        tr("its pitch is the feed divided by the speed of the spindle, or G95's F; G33.1 taps in "
+           "step with the spindle");
     log_.add(std::move(finding));
   }
   in_by_ = way_mm < 0 ? m.spindle : SpindleState::kStopped;
@@ -419,7 +428,7 @@ void TurningStage::report_undefined(const Motion& m, const TimedStep& step) {
 void TurningStage::cut(const Motion& m, const TimedStep& step) {
   if (site_.progress.stop_now()) return;
   TurnCut whole;
-  if (m.kind == MotionKind::kThread) {
+  if (m.kind == MotionKind::kThread || tap_lead_mm_ != 0) {
     cut_piece(m, step, whole);
   } else {
     for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
@@ -442,7 +451,10 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
   if (!divide(m, pieces_)) return;
   const std::uint64_t id =
       site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
-  for (CutMove& move : pieces_) move.id = id;
+  for (CutMove& move : pieces_) {
+    move.id = id;
+    if (tap_lead_mm_ != 0) move.lead_mm = tap_lead_mm_;
+  }
   reports_.clear();
   stock_.cut(*mounted_->cutter, pieces_, reports_);
   ToolUse& use = uses_[use_];

@@ -14,6 +14,7 @@
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
 #include "twin/machine/timeline.h"
+#include "twin/motion/floating_tap.h"
 #include "twin/process/fixture_checks.h"
 #include "twin/process/part_checks.h"
 #include "twin/process/process.h"
@@ -117,6 +118,8 @@ class TurningStage final : public Process {
   bool floating_told_ = false;
   SpindleState in_by_ = SpindleState::kStopped;  ///< of the last feed into a hole
   Vec3 in_to_mm_{0};                             ///< where it ended
+  FloatingTap floating_;
+  double tap_lead_mm_ = 0;  ///< of the present motion, if the tool is a tap; else 0
   bool touched_ = false;
   bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
 };

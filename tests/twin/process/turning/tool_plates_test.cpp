@@ -134,7 +134,7 @@ TEST(ToolPlates, DistancesAgreeWithPoints) {
                                                            at.y + kBarePlate_mm, low.y, high.y)));
     }
     Vec3 guess{0};
-    const auto gap = least_gap(plate.pieces[0], Slide(from, to), *still, 100, guess);
+    const auto gap = least_gap(plate.pieces[0], Slide(from, to), *still, 100, 100, guess);
     ASSERT_TRUE(gap);
     // Points are no nearer than the bodies, and by no more than their steps farther.
     EXPECT_LT(gap->mm, expected + 0.003) << n;

@@ -1,0 +1,304 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
+#include "twin/process/engagement_log.h"
+#include "twin/process/milling/engagement_meter.h"
+#include "twin/process/milling/engagement_scan.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kFrontCell_mm = 0.1;
+constexpr double kDegree = kPi / 180;
+
+CutMove way(Vec3 from, Vec3 to) {
+  CutMove move;
+  move.from_mm = from, move.to_mm = to;
+  return move;
+}
+
+/// A block 60 x 40 x 10 mm with its top at Z0.
+class EngagementFrontTest : public testing::Test {
+ protected:
+  EngagementFrontTest() {
+    ZMapOptions options;
+    options.blank = parse_blank("box:0,0,-10:60,40,0").value();
+    options.cell_mm = kFrontCell_mm;
+    stock_ = std::move(ZMap::create(options).value());
+  }
+  void cut(const std::string& shape, const CutMove& move) {
+    std::vector<CutReport> reports;
+    stock_->cut(parse_shape(shape).value(), {&move, 1}, reports);
+    stock_->finish(reports);
+  }
+  EngagementLook look(const std::string& shape, const CutMove& move, double at = 0.5,
+                      const CutMove* held = nullptr) {
+    const std::optional<HeightGrid> heights = stock_->present_heights();
+    return scan_.look_ahead(*heights, parse_shape(shape).value(), move, at, held);
+  }
+
+  std::unique_ptr<ZMap> stock_;
+  EngagementScan scan_;
+};
+
+TEST_F(EngagementFrontTest, ASlotIsHalfOfTheEdgeAndAllOfTheWidth) {
+  for (const Vec2 ahead : {Vec2(1, 0), Vec2(0, 1), Vec2(-0.6, 0.8)}) {
+    const Vec3 from(Vec2(30, 20) - 5.0 * ahead, -2), to(Vec2(30, 20) + 5.0 * ahead, -2);
+    for (const std::string shape : {"flat:8", "bull:8:1"}) {
+      const EngagementLook slot = look(shape, way(from, to));
+      EXPECT_NEAR(slot.angle_rad, kPi, 2 * kDegree) << shape;
+      EXPECT_NEAR(slot.wide_mm, 8, 0.05) << shape;
+      EXPECT_NEAR(slot.deep_mm, 2, 1e-3) << shape;
+    }
+    // A ball of R4 in material 2 mm deep is sqrt(16 - 4) mm wide on either side.
+    const EngagementLook ball = look("ball:8", way(from, to));
+    EXPECT_NEAR(ball.angle_rad, kPi, 4 * kDegree);
+    EXPECT_NEAR(ball.wide_mm, 2 * std::sqrt(12.0), 0.15);
+    EXPECT_NEAR(ball.deep_mm, 2, 0.02);
+    EXPECT_NEAR(look("vee:8:90", way(from, to)).wide_mm, 4, 0.15);
+  }
+}
+
+/// The angle of a side cut of width a with a diameter D is acos(1 - 2 a / D).
+TEST_F(EngagementFrontTest, SideCutsByTheirWidth) {
+  for (const double wide : {0.3, 1.0, 2.5, 4.0, 6.0, 7.5}) {
+    // Along the side of the block, from outside; and the other way round.
+    const double y = 40 + 4 - wide;
+    for (const bool back : {false, true}) {
+      const EngagementLook side =
+          look("flat:8", back ? way({40, y, -3}, {20, y, -3}) : way({20, y, -3}, {40, y, -3}));
+      const double expected = std::acos(1 - wide / 4);
+      // To a cell of the width.
+      const double cell = expected - std::acos(1 - (wide - kFrontCell_mm) / 4);
+      EXPECT_NEAR(side.angle_rad, expected, cell + kDegree) << wide;
+      EXPECT_NEAR(side.wide_mm, wide, kFrontCell_mm) << wide;
+      EXPECT_NEAR(side.deep_mm, 3, 1e-3) << wide;
+    }
+  }
+}
+
+TEST_F(EngagementFrontTest, BesideAPassOnlyTheStepIsLeft) {
+  cut("flat:8", way({-10, 20, -2}, {70, 20, -2}));
+  const EngagementLook second = look("flat:8", way({-10, 23, -2}, {70, 23, -2}));
+  EXPECT_NEAR(second.wide_mm, 3, kFrontCell_mm);
+  EXPECT_NEAR(second.angle_rad, std::acos(1 - 3.0 / 4), 2 * kDegree);
+  // The same pass again is in nothing, deeper it is a slot of what lies below.
+  EXPECT_FALSE(look("flat:8", way({-10, 20, -2}, {70, 20, -2})).is_engaged());
+  const EngagementLook deeper = look("flat:8", way({-10, 20, -5}, {70, 20, -5}));
+  EXPECT_NEAR(deeper.angle_rad, kPi, 2 * kDegree);
+  EXPECT_NEAR(deeper.deep_mm, 3, 1e-3);
+  // Along its wall it touches, and cuts nothing.
+  cut("flat:8", way({-10, 23, -2}, {70, 23, -2}));
+  EXPECT_FALSE(look("flat:6", way({-10, 24, -2}, {70, 24, -2})).is_engaged());
+}
+
+TEST_F(EngagementFrontTest, ABallBesideItsPassIsInTheCrest) {
+  cut("ball:8", way({-10, 20, -2}, {70, 20, -2}));
+  const EngagementLook second = look("ball:8", way({-10, 21, -2}, {70, 21, -2}));
+  // From the crest, half a step before its middle, to where the ball leaves the top.
+  EXPECT_NEAR(second.wide_mm, std::sqrt(12.0) + 0.5, 0.3);
+  // Spheres side by side meet at the radius r = 1 / (1 - sin a): half of sqrt(12) at 25 degrees.
+  EXPECT_NEAR(second.angle_rad, kPi / 2 - std::asin(1 - 1 / std::sqrt(3.0)), 4 * kDegree);
+  EXPECT_LT(second.deep_mm, 2);
+}
+
+TEST_F(EngagementFrontTest, AnArcInsideAndAroundABlock) {
+  CutMove turn = way({40, 20, -2}, {40, 20, -2});
+  turn.arc = CutArc{{30, 20, -2}, {0, 0, 1}, 2 * kPi};
+  EXPECT_NEAR(look("flat:8", turn, 0.3).angle_rad, kPi, 2 * kDegree);
+  cut("flat:8", turn);
+  EXPECT_FALSE(look("flat:8", turn, 0.3).is_engaged());
+  // 2 mm farther out: that much is left beside the wall.
+  CutMove wider = way({42, 20, -2}, {42, 20, -2});
+  wider.arc = CutArc{{30, 20, -2}, {0, 0, 1}, 2 * kPi};
+  const EngagementLook wall = look("flat:8", wider, 0.4);
+  // On an arc it meets the wall of radius 14 where |R e + 12| = 14.
+  const double cosine = (14.0 * 14 - 12 * 12 - 16) / (2 * 12 * 4);
+  EXPECT_NEAR(wall.angle_rad, std::acos(cosine), 3 * kDegree);
+  EXPECT_NEAR(wall.deep_mm, 2, 1e-3);
+}
+
+TEST_F(EngagementFrontTest, StraightDownAndDownASlope) {
+  const EngagementLook down = look("flat:6", way({30, 20, 2}, {30, 20, -3}), 1);
+  EXPECT_TRUE(down.is_plunge);
+  EXPECT_NEAR(down.deep_mm, 3, 1e-3);
+  EXPECT_NEAR(down.wide_mm, 6, 0.3);
+  EXPECT_FALSE(look("flat:6", way({30, 20, -3}, {30, 20, 2}), 1).is_engaged());
+  EXPECT_FALSE(look("flat:6", way({30, 20, 5}, {30, 20, 1}), 1).is_engaged());
+  const EngagementLook slope = look("flat:6", way({20, 20, 0}, {40, 20, -2}), 0.5);
+  EXPECT_NEAR(slope.angle_rad, kPi, 2 * kDegree);
+  EXPECT_NEAR(slope.deep_mm, 1, 0.02);
+}
+
+TEST_F(EngagementFrontTest, AMoveThatIsHeldBackCountsAsCut) {
+  const CutMove held = way({10, 20, -2}, {40, 20, -2});
+  EXPECT_FALSE(look("flat:8", way({40, 20, -2}, {10, 20, -2}), 0.5, &held).is_engaged());
+  EXPECT_TRUE(look("flat:8", way({40, 20, -2}, {10, 20, -2}), 0.5).is_engaged());
+}
+
+/// Heights at random: each point of the rim is asked for, one by one, without rays and halvings.
+TEST_F(EngagementFrontTest, IsWhatAThousandPointsOfTheRimSay) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr int kRounds = 60;
+  double sum_of_off = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round % 20 == 0) {
+      for (int k = 0; k < 4; ++k)
+        cut("flat:5", way({60 * unit(random), 40 * unit(random), -1 - 3 * unit(random)},
+                          {60 * unit(random), 40 * unit(random), -4}));
+    }
+    const double turned = 2 * kPi * unit(random), z = -1 - 4 * unit(random);
+    const Vec2 ahead(std::cos(turned), std::sin(turned));
+    const Vec2 at(10 + 40 * unit(random), 10 + 20 * unit(random));
+    const double radius = 1.5 + 2 * unit(random);
+    const EngagementLook found =
+        look("flat:" + std::to_string(2 * radius), way(Vec3(at - ahead, z), Vec3(at + ahead, z)));
+    int in = 0;
+    bool in_before = false;
+    constexpr int kPoints = 1000;
+    for (int k = 0; k < kPoints; ++k) {
+      const double angle = kPi * ((k + 0.5) / kPoints - 0.5);
+      const Vec2 point =
+          at + radius * (std::cos(angle) * ahead + std::sin(angle) * Vec2(-ahead.y, ahead.x)) +
+          kFrontCell_mm * ahead;
+      const int i = static_cast<int>(point.x / kFrontCell_mm);
+      const int j = static_cast<int>(point.y / kFrontCell_mm);
+      const Vec2 arm = (Vec2(i, j) + 0.5) * kFrontCell_mm - at;
+      // Beside its way, by the cell that is within it.
+      if (std::abs(ahead.x * arm.y - ahead.y * arm.x) >= radius) {
+        in += in_before ? 1 : 0;
+        continue;
+      }
+      in_before = static_cast<double>(stock_->height_mm(i, j)) > z + 0.002;
+      in += in_before ? 1 : 0;
+    }
+    // What lies between two rays and is less than 10 degrees may be missed, or taken for more.
+    const double off = std::abs(found.angle_rad - kPi * in / kPoints);
+    EXPECT_LT(off, 15 * kDegree) << round;
+    sum_of_off += off;
+  }
+  EXPECT_LT(sum_of_off / kRounds, 2 * kDegree);
+}
+
+/// Along moves, by the meter: what is cut, in passes.
+class EngagementMeterTest : public EngagementFrontTest {
+ protected:
+  void run(const std::string& shape, const std::vector<CutMove>& moves, int lift_before = -1) {
+    const Cutter cutter = parse_shape(shape).value();
+    meter_.mount(4, cutter);
+    std::vector<CutReport> reports;
+    for (std::size_t n = 0; n < moves.size(); ++n) {
+      if (static_cast<int>(n) == lift_before) meter_.lift();
+      const std::uint32_t pass =
+          meter_.take(cutter, moves[n], true, {0, static_cast<std::uint32_t>(n + 1)}, 0, 1);
+      meter_.note(moves[n]);
+      const double before = stock_->remaining_mm3();
+      stock_->cut(cutter, {&moves[n], 1}, reports);
+      stock_->finish(reports);
+      log_.add_removed(pass, before - stock_->remaining_mm3());
+    }
+  }
+  EngagementLog log_{true};
+  EngagementMeter meter_{*stock_, log_, [] {}};
+};
+
+TEST_F(EngagementMeterTest, OneSlotIsOnePass) {
+  run("flat:8", {way({-10, 20, -2}, {70, 20, -2})});
+  const Engagement found = log_.result();
+  ASSERT_EQ(found.passes.size(), 1u);
+  const EngagementSums& sums = found.passes[0].sums;
+  // From where its edge comes to the block until its middle leaves it; in all of its width until
+  // its edge does.
+  EXPECT_NEAR(sums.cut_mm, 64, 0.6);
+  EXPECT_NEAR(sums.full_mm, 56, 2);
+  EXPECT_NEAR(sums.wide_most_mm, 8, 0.05);
+  EXPECT_NEAR(sums.mean(sums.deep_sum_mm2), 2, 0.01);
+  EXPECT_NEAR(sums.removed_mm3, 60 * 8 * 2, 2);
+  ASSERT_TRUE(found.map.has_value());
+  const EngagementMap& map = *found.map;
+  const double cell = 60.0 / map.nx;
+  for (const double x : {10.0, 30.0, 50.0})
+    for (const double y : {17.0, 20.0, 23.5})
+      EXPECT_NEAR(
+          map.angle_rad[static_cast<std::size_t>(y / cell) * static_cast<std::size_t>(map.nx) +
+                        static_cast<std::size_t>(x / cell)],
+          kPi, 3 * kDegree);
+  EXPECT_EQ(map.angle_rad[static_cast<std::size_t>(10 / cell) * static_cast<std::size_t>(map.nx)],
+            0);
+}
+
+TEST_F(EngagementMeterTest, TheWallAtAWaysEndIsNotCut) {
+  cut("flat:8", way({-10, 20, -2}, {40, 20, -2}));
+  run("flat:8", {way({-10, 20, -4}, {40, 20, -4})});
+  // 2 mm on the floor of the first; not the 4 mm that stand at its end.
+  EXPECT_NEAR(log_.result().passes.at(0).sums.deep_most_mm, 2, 1e-3);
+}
+
+TEST_F(EngagementMeterTest, WhatIsCutLastHasThePlace) {
+  run("flat:8",
+      {way({-10, 20, -2}, {70, 20, -2}), way({70, 20, 5}, {-10, 22, 5}),
+       way({-10, 22, -2}, {70, 22, -2})},
+      2);
+  const Engagement found = log_.result();
+  ASSERT_EQ(found.passes.size(), 2u);
+  EXPECT_NEAR(found.passes[1].sums.mean(found.passes[1].sums.wide_sum_mm2), 2, 0.15);
+  EXPECT_EQ(found.passes[1].sums.full_mm, 0);
+  const EngagementMap& map = *found.map;
+  const double cell = 60.0 / map.nx;
+  const auto at = [&](double x, double y) {
+    return map.angle_rad[static_cast<std::size_t>(y / cell) * static_cast<std::size_t>(map.nx) +
+                         static_cast<std::size_t>(x / cell)];
+  };
+  EXPECT_NEAR(at(30, 20), kPi, 3 * kDegree);
+  EXPECT_NEAR(at(30, 25), std::acos(1 - 2.0 / 4), 3 * kDegree);
+  // All is as if it had been one tool.
+  ASSERT_EQ(found.tools.size(), 1u);
+  EXPECT_EQ(found.tools[0].passes, 2u);
+  EXPECT_NEAR(found.tools[0].sums.removed_mm3, 60 * 10 * 2, 3);
+}
+
+TEST_F(EngagementMeterTest, ShortMovesAreAsGoodAsALongOne) {
+  std::vector<CutMove> moves;
+  for (int n = 0; n < 400; ++n)
+    moves.push_back(way({-10 + 0.2 * n, 38, -2}, {-10 + 0.2 * (n + 1), 38, -2}));
+  run("flat:8", moves);
+  const Engagement found = log_.result();
+  ASSERT_EQ(found.passes.size(), 1u);
+  const EngagementSums& sums = found.passes[0].sums;
+  EXPECT_NEAR(sums.cut_mm, 61, 5);
+  EXPECT_NEAR(sums.wide_most_mm, 6, 0.1);
+  EXPECT_NEAR(sums.angle_most_rad, kPi - std::acos(0.5), 2 * kDegree);
+}
+
+TEST_F(EngagementMeterTest, AirLongerThanTheToolEndsAPass) {
+  // Two islands 5 and 20 mm apart from each other.
+  cut("flat:5", way({20, -5, -6}, {20, 45, -6}));
+  for (const double x : {35.0, 39.0, 43.0, 47.0, 50.0})
+    cut("flat:5", way({x, -5, -6}, {x, 45, -6}));
+  run("flat:8", {way({-10, 20, -2}, {70, 20, -2})});
+  EXPECT_EQ(log_.result().passes.size(), 2u);
+}
+
+TEST_F(EngagementMeterTest, WhatIsNotMeasuredIsTold) {
+  const Cutter cutter = parse_shape("tslot:10:3:4").value();
+  const CutMove move = way({-10, 20, -5}, {70, 20, -5});
+  meter_.mount(4, cutter);
+  EXPECT_EQ(meter_.take(cutter, move, true, {0, 1}, 0, 1), EngagementLog::kNoPass);
+  const Engagement found = log_.result();
+  EXPECT_TRUE(found.passes.empty());
+  EXPECT_NEAR(found.unmeasured_mm, 80, 1e-9);
+}
+
+}  // namespace
+}  // namespace kerf

@@ -1,0 +1,71 @@
+// twin/process/engagement_log.h - adds up how tools were engaged, pass by pass.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stock/stock_model.h"
+#include "twin/process/engagement.h"
+
+namespace kerf {
+
+/// Is told of each part of a feed move how the tool was engaged on it. For the map it cuts the
+/// parts that were engaged out of heights of its own, kMostMapCells each way at most, whatever the
+/// model of the workpiece is: who cut a place last is then known. A pass takes 200 bytes, a part
+/// with a map 4. One thread.
+class EngagementLog {
+ public:
+  static constexpr int kMostMapCells = 500;
+  static constexpr std::uint32_t kNoPass = ~std::uint32_t{0};
+
+  explicit EngagementLog(bool with_map) : with_map_(with_map) {}
+
+  /// Forgets all, for another run over `stock`, which has not been cut.
+  void begin(const StockModel& stock);
+  /// What is told from now on is of this tool.
+  void mount(int tool, const Cutter& cutter);
+  /// A traverse, or a change of the tool.
+  void end_pass();
+
+  /// A part of a feed move that begins at `start_s` of the program.
+  struct Part {
+    EngagementLook look;
+    const CutMove* move = nullptr;  ///< the part alone
+    double length_mm = 0;
+    SourceRef source;
+    double start_s = 0;
+  };
+  /// Returns the pass that it belongs to; kNoPass: none.
+  std::uint32_t add(const Part& part);
+  /// A feed move whose engagement nobody knows.
+  void add_unmeasured(double length_mm) { unmeasured_mm_ += length_mm; }
+  /// What a move of that pass has removed.
+  void add_removed(std::uint32_t pass, double mm3);
+
+  /// The run is over.
+  Engagement result();
+
+ private:
+  bool goes_on(const CutMove& last, const CutMove& next) const;
+  void cut_map();
+  EngagementMap map() const;
+
+  bool with_map_;
+  std::unique_ptr<StockModel> heights_;  ///< of the map
+  std::vector<CutMove> moves_;           ///< of the tool, that are still to be cut out of it
+  std::optional<Cutter> cutter_;
+  std::vector<float> angles_;  ///< by the numbers of its cuts
+  std::vector<CutReport> reports_;
+  std::vector<EngagementPass> passes_;
+  std::vector<EngagementOfTool> tools_;
+  std::vector<std::uint32_t> tool_of_pass_;
+  std::uint32_t tool_ = 0;
+  bool is_open_ = false;
+  double gap_mm_ = 0;  ///< since the pass was last in material
+  double unmeasured_mm_ = 0, unmeasured_mm3_ = 0;
+};
+
+}  // namespace kerf

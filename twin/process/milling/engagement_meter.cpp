@@ -1,0 +1,202 @@
+#include "twin/process/milling/engagement_meter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "stock/present_heights.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/way_profile.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kFarthestOfDiameter = 0.5, kFarthestCells = 8;
+constexpr double kClosestOfDiameter = 1.0 / 8, kClosestCells = 2;
+constexpr int kMostHalvings = 3;
+constexpr double kSameOfDiameter = 0.05, kSameOfDepth = 0.05, kSameDepth_mm = 0.02;
+/// The last look at a move is so many cells before its end: at the end nothing is ahead of it.
+constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
+/// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
+/// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
+/// pass begins, is so many looks at most.
+constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 12'000, kShareOfCells = 0.5;
+constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
+/// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
+constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
+/// Looks along one move at most.
+constexpr double kMostNodes = 4096;
+
+/// Seen from above; 0 where it goes up or down.
+Vec2 way_of_short(const CutMove& move) {
+  const Vec2 way(move.to_mm - move.from_mm);
+  const double length = glm::length(way);
+  return length > 0 ? way / length : Vec2(0);
+}
+
+}  // namespace
+
+EngagementMeter::EngagementMeter(const StockModel& stock, EngagementLog& log,
+                                 std::function<void()> hand_over)
+    : stock_(stock), log_(log), hand_over_(std::move(hand_over)) {
+  log_.begin(stock);
+}
+
+void EngagementMeter::mount(int tool, const Cutter& cutter) {
+  log_.mount(tool, cutter);
+  diameter_mm_ = 2 * cutter.radius_mm();
+  lift();
+  has_held_ = false;
+}
+
+void EngagementMeter::lift() {
+  log_.end_pass();
+  since_mm_ = -1;
+}
+
+void EngagementMeter::note(const CutMove& move) {
+  has_held_ = !move.arc;
+  held_ = move;
+}
+
+bool EngagementMeter::is_same(const EngagementLook& a, const EngagementLook& b) const {
+  const double deep = std::max(a.deep_mm, b.deep_mm);
+  return a.is_plunge == b.is_plunge && a.is_engaged() == b.is_engaged() &&
+         std::abs(a.angle_rad - b.angle_rad) <= kSameAngle_rad &&
+         std::abs(a.wide_mm - b.wide_mm) <= kSameOfDiameter * diameter_mm_ &&
+         std::abs(a.deep_mm - b.deep_mm) <= std::max(kSameDepth_mm, kSameOfDepth * deep);
+}
+
+EngagementLook EngagementMeter::look(double at) {
+  return scan_.look_ahead(*heights_, *cutter_, *move_, at, has_held_ ? &held_ : nullptr);
+}
+
+void EngagementMeter::flush() {
+  if (to_ <= from_) return;
+  EngagementLook mean = first_;
+  mean.angle_rad = sum_.angle_rad / (to_ - from_);
+  mean.wide_mm = sum_.wide_mm / (to_ - from_);
+  mean.deep_mm = sum_.deep_mm / (to_ - from_);
+  const CutMove part = part_of(*move_, from_, to_);
+  const std::uint32_t pass =
+      log_.add({mean, &part, (to_ - from_) * length_mm_, source_, start_s_ + from_ * duration_s_});
+  if (pass != EngagementLog::kNoPass) pass_ = pass;
+  from_ = to_;
+}
+
+void EngagementMeter::add(double from, double to, const EngagementLook& look) {
+  if (to_ <= from_ || !is_same(first_, look)) {
+    flush();
+    from_ = to_ = from;
+    first_ = look;
+    sum_ = {};
+  }
+  sum_.angle_rad += look.angle_rad * (to - from);
+  sum_.wide_mm += look.wide_mm * (to - from);
+  sum_.deep_mm += look.deep_mm * (to - from);
+  to_ = to;
+}
+
+void EngagementMeter::refine(const Node& from, const Node& to, int halvings) {
+  const double middle = 0.5 * (from.at + to.at);
+  const double closest =
+      std::max(kClosestOfDiameter * diameter_mm_, kClosestCells * stock_.cell_mm());
+  if (is_same(from.look, to.look) || halvings == 0 ||
+      (to.at - from.at) * length_mm_ < 2 * closest) {
+    add(from.at, middle, from.look);
+    add(middle, to.at, to.look);
+    return;
+  }
+  const Node between{middle, look(middle)};
+  refine(from, between, halvings - 1);
+  refine(between, to, halvings - 1);
+}
+
+/// What the last look has said is taken for this short move, too.
+bool EngagementMeter::counts_still(const CutMove& move) {
+  const double cell_mm = stock_.cell_mm();
+  look_cells_ =
+      cutter_->height_mm(0.9 * cutter_->radius_mm()) <= 0 ? kCellsOfLook : kCellsOfRoundLook;
+  saved_cells_ += kShareOfCells * (kCellsOfMove + length_mm_ * diameter_mm_ / (cell_mm * cell_mm));
+  saved_cells_ = std::min(saved_cells_, kMostSaved * look_cells_);
+  if (since_mm_ < 0 || last_.is_plunge) return false;
+  const double way_mm = since_mm_ + length_mm_;
+  if (way_mm > kFarthestSpacing * diameter_mm_) return false;
+  if (glm::dot(way_of_short(move), last_ahead_) < kSameWay)
+    return saved_cells_ < -kMostBorrowed * look_cells_;
+  return way_mm <= spacing_mm_ || saved_cells_ < 0;
+}
+
+std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, bool near,
+                                    const SourceRef& source, double start_s, double duration_s) {
+  cutter_ = &cutter, move_ = &move;
+  source_ = source;
+  start_s_ = start_s, duration_s_ = duration_s;
+  length_mm_ = way_length_mm(move);
+  pass_ = EngagementLog::kNoPass;
+  if (length_mm_ <= 0) return pass_;
+  from_ = to_ = 0;
+  if (!near) {
+    add(0, 1, {});
+    flush();
+    since_mm_ = -1;
+    return pass_;
+  }
+  const bool is_steep = !move.arc && glm::length(Vec2(move.to_mm - move.from_mm)) < 1e-9;
+  const double farthest =
+      std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
+  if (length_mm_ < farthest && !is_steep && counts_still(move)) {
+    since_mm_ += length_mm_;
+    add(0, 1, last_);
+    flush();
+    return pass_;
+  }
+  hand_over_();
+  const auto* const model = dynamic_cast<const PresentHeights*>(&stock_.bare());
+  const std::optional<HeightGrid> heights =
+      model != nullptr ? model->present_heights() : std::nullopt;
+  if (!heights || !EngagementScan::takes(cutter, move)) {
+    log_.add_unmeasured(length_mm_);
+    lift();
+    return EngagementLog::kNoPass;
+  }
+  heights_ = &*heights;
+  if (is_steep) {
+    // Straight down it is in material for as long as that is high there.
+    const EngagementLook down = look(1);
+    const double part = down.is_engaged() ? std::min(1.0, down.deep_mm / length_mm_) : 0;
+    add(0, 1 - part, {});
+    if (part > 0) add(1 - part, 1, down);
+    since_mm_ = -1;
+  } else if (length_mm_ < farthest) {
+    const EngagementLook before = last_;
+    last_ = look(0.5);
+    saved_cells_ -= look_cells_;
+    const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
+    spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;
+    spacing_mm_ = std::max(spacing_mm_, farthest);
+    since_mm_ = 0.5 * length_mm_;
+    last_ahead_ = way_of_short(move);
+    add(0, 1, last_);
+  } else {
+    const double nodes = std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes);
+    const double last_at =
+        1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
+    Node before{0, look(0)};
+    for (int k = 1; k <= static_cast<int>(nodes); ++k) {
+      const bool is_last = k == static_cast<int>(nodes);
+      Node node{is_last ? 1 : k / nodes, {}};
+      node.look = look(std::min(node.at, last_at));
+      refine(before, node, kMostHalvings);
+      before = node;
+    }
+    last_ = before.look;
+    since_mm_ = -1;
+  }
+  flush();
+  heights_ = nullptr;
+  return pass_;
+}
+
+}  // namespace kerf

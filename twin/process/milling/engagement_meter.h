@@ -1,0 +1,80 @@
+// twin/process/milling/engagement_meter.h - how a tool is engaged along its feed moves: where to
+// look, and what of the way each look stands for.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "stock/stock_model.h"
+#include "twin/process/engagement_log.h"
+#include "twin/process/milling/engagement_scan.h"
+
+namespace kerf {
+
+/// Looks ahead of the tool (EngagementScan::look_ahead) before each move is cut, at most half a
+/// diameter of its way (and eight cells) apart, and closer to an eighth (two cells) where two
+/// looks differ by more than kSameAngle_rad, or a twentieth of the depth or the diameter. Moves
+/// that are shorter are taken together: each look counts until the way from it on is that long, or
+/// turns by 30 degrees; where looks one after the other are alike, for up to two diameters. Where
+/// moves are cut so quickly that looks would take more than half of that time, for up to four.
+/// Needs heights as they are (PresentHeights), upright tools without an undercut, moves that are
+/// straight or arcs about Z of up to one turn; others are told as unmeasured. One thread.
+class EngagementMeter {
+ public:
+  /// `hand_over`: gives all moves before to the model. Both outlive this.
+  EngagementMeter(const StockModel& stock, EngagementLog& log, std::function<void()> hand_over);
+
+  void mount(int tool, const Cutter& cutter);
+  /// The tool has gone through the air, to where nobody looks.
+  void lift();
+
+  /// A feed move that is going to be cut, as one piece; `near`: it may touch material. Returns the
+  /// pass that it belongs to last.
+  std::uint32_t take(const Cutter& cutter, const CutMove& move, bool near, const SourceRef& source,
+                     double start_s, double duration_s);
+  /// One that is cut as several, or turns.
+  void take_unmeasured(double length_mm) { log_.add_unmeasured(length_mm); }
+  /// The move before, if it was straight.
+  void note(const CutMove& move);
+
+  static constexpr double kSameAngle_rad = 8 * kPi / 180;
+
+ private:
+  struct Node {
+    double at = 0;
+    EngagementLook look;
+  };
+  bool is_same(const EngagementLook& a, const EngagementLook& b) const;
+  void add(double from, double to, const EngagementLook& look);
+  void refine(const Node& from, const Node& to, int halvings);
+  void flush();
+  EngagementLook look(double at);
+  bool counts_still(const CutMove& move);
+
+  const StockModel& stock_;
+  EngagementLog& log_;
+  std::function<void()> hand_over_;
+  EngagementScan scan_;
+  double diameter_mm_ = 0;
+  bool has_held_ = false;
+  CutMove held_;
+  EngagementLook last_;
+  double since_mm_ = 0;  ///< way since last_ was looked at; negative: it counts for nothing
+  double saved_cells_ = 0, look_cells_ = 0;
+  double spacing_mm_ = 0;  ///< as far as it counts
+  Vec2 last_ahead_{0};     ///< the way of the move that it was looked at on
+  // The present move.
+  const Cutter* cutter_ = nullptr;
+  const CutMove* move_ = nullptr;
+  const HeightGrid* heights_ = nullptr;
+  double length_mm_ = 0, start_s_ = 0, duration_s_ = 0;
+  SourceRef source_;
+  std::uint32_t pass_ = EngagementLog::kNoPass;
+  /// The part that is being put together, of parts that are alike.
+  double from_ = 0, to_ = 0;
+  EngagementLook sum_;  ///< times length
+  EngagementLook first_;
+};
+
+}  // namespace kerf
