@@ -90,11 +90,14 @@ TEST_F(NcProgram, FanucSubroutineInAnotherFile) {
   EXPECT_EQ(run.motions[0].source, (SourceRef{1, 2}));
 }
 
+constexpr const char* kNoSuchCode =
+    "   hint: LinuxCNC has no such code and stops here, too, but where an INI remaps it (--ini)\n";
+
 TEST_F(NcProgram, ErrorsNameFileAndLine) {
   EXPECT_EQ(run("G21\nN70 G0 X1\n  N80 G0 X1 X2 (twice)\nM2\n").messages(),
             part() + ":3: error: Multiple x words on one line\n     3 |   N80 G0 X1 X2 (twice)\n");
   EXPECT_EQ(run("G21\nG0 X1\nM77\nM2\n").messages(),
-            part() + ":3: error: Unknown m code used: M77\n     3 | M77\n");
+            part() + ":3: error: Unknown m code used: M77\n     3 | M77\n" + kNoSuchCode);
   EXPECT_EQ(run("G21\r\n\r\nG1 X1\r\nM2\r\n").messages(),
             part() + ":3: error: Cannot do g1 with zero feed rate\n     3 | G1 X1\n");
 }
@@ -102,7 +105,7 @@ TEST_F(NcProgram, ErrorsNameFileAndLine) {
 TEST_F(NcProgram, ErrorInASubroutineNamesItsFile) {
   const std::string sub = folder_.write("bad.ngc", "o<bad> sub\nG0 X1\nG99.9\no<bad> endsub\n");
   const ProgramRun run = this->run("G21\no<bad> call\nM2\n");
-  EXPECT_EQ(run.messages(), sub + ":3: error: Unknown g code used\n     3 | G99.9\n");
+  EXPECT_EQ(run.messages(), sub + ":3: error: Unknown g code used\n     3 | G99.9\n" + kNoSuchCode);
   EXPECT_EQ(run.motions.size(), 1u) << "what came before the error";
 }
 
