@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "stock/cutter/mill_forms.h"
+
 namespace kerf {
 namespace {
 
@@ -20,15 +22,6 @@ std::vector<ToolSection> carried(const Cutter& cutter) {
   if (cutter.shank_diameter_mm())
     sections.push_back({*cutter.shank_diameter_mm(), from_mm, from_mm});
   return sections;
-}
-
-ProfilePiece line(double r0, double z0, double r1, double z1) {
-  ProfilePiece piece;
-  piece.r0 = r0;
-  piece.z0 = z0;
-  piece.r1 = r1;
-  piece.z1 = z1;
-  return piece;
 }
 
 }  // namespace
@@ -48,10 +41,10 @@ std::optional<Cutter> with_cutting_shank(const Cutter& cutter) {
     const double radius = section.diameter_mm / 2;
     if (radius <= r + kWider_mm) continue;
     if (section.from_z_mm > z) {
-      pieces.push_back(line(r, z, r, section.from_z_mm));
+      pieces.push_back(line_piece(r, z, r, section.from_z_mm));
       z = section.from_z_mm;
     }
-    pieces.push_back(line(r, z, radius, z));
+    pieces.push_back(line_piece(r, z, radius, z));
     r = radius;
   }
   Result<Cutter> made = Cutter::from_profile(cutter.spec() + "+shank", std::move(pieces));

@@ -10,6 +10,16 @@
 #include "stock/cutter/shape_limits.h"
 
 namespace kerf {
+
+ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
+  ProfilePiece piece;
+  piece.r0 = r0;
+  piece.z0 = z0;
+  piece.r1 = r1;
+  piece.z1 = z1;
+  return piece;
+}
+
 namespace {
 
 /// Corner radii and tip diameters: 0 or at least this.
@@ -21,15 +31,6 @@ constexpr double kMaxHalfAngle_deg = 80;
 constexpr double kMaxDovetailAngle_deg = 89;
 /// Height of a tapered cutter's cone where the flute length is not given.
 constexpr double kTaperHeightPerTip = 3;
-
-ProfilePiece line_piece(double r0, double z0, double r1, double z1) {
-  ProfilePiece piece;
-  piece.r0 = r0;
-  piece.z0 = z0;
-  piece.r1 = r1;
-  piece.z1 = z1;
-  return piece;
-}
 
 /// Lower right part of a circle, from its lowest point to the given end.
 ProfilePiece corner_piece(double center_r, double radius, double r1, double z1) {

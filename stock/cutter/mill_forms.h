@@ -68,6 +68,9 @@ struct MillBody {
   std::optional<double> shank_mm;  ///< diameter above it unless shank= says so
 };
 
+/// A straight piece of an outline, mm.
+ProfilePiece line_piece(double r0, double z0, double r1, double z1);
+
 /// Of any form but profile. `texts`: its parameters, as many as it requires at least. Error: which
 /// one is wrong, what was found and what is allowed.
 Result<MillBody> make_mill_body(const MillForm& form, std::span<const std::string_view> texts,

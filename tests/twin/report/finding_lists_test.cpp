@@ -45,7 +45,7 @@ TEST(FindingTable, EachFindingHasAnIdOfItsOwnAndSaysWhatItMeans) {
 
 TEST(Sarif, WhereThereAreTooManyTheWorstAreKept) {
   const ListedProgram listed[] = {program("a.ngc", 2, 5), program("b.ngc", 3, 4)};
-  const Json run = Json::parse(sarif_text(listed, "1", "/work", 6))["runs"][0];
+  const Json run = Json::parse(sarif_text(listed, "1", "/parts", 6))["runs"][0];
   ASSERT_EQ(run["results"].size(), 6u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(run["results"][i]["level"], "error") << i;
   EXPECT_EQ(run["results"][5]["level"], "note");
@@ -54,7 +54,7 @@ TEST(Sarif, WhereThereAreTooManyTheWorstAreKept) {
   EXPECT_NE(told.find("14"), std::string::npos) << told;
   EXPECT_NE(told.find("8"), std::string::npos) << told;
   // All of them: in the order in which they were found, and nothing to tell.
-  const Json whole = Json::parse(sarif_text(listed, "1", "/work", 14))["runs"][0];
+  const Json whole = Json::parse(sarif_text(listed, "1", "/parts", 14))["runs"][0];
   EXPECT_EQ(whole["results"].size(), 14u);
   EXPECT_EQ(whole["results"][0]["level"], "note");
   EXPECT_FALSE(whole["invocations"][0].contains("toolExecutionNotifications"));
@@ -64,11 +64,11 @@ TEST(Sarif, PathsAreUrisBelowTheFolderOrElsewhere) {
   for (const auto& [path, uri] : std::vector<std::pair<std::string, std::string>>{
            {"part 1.ngc", "part%201.ngc"},
            {"./sub/../a#b.ngc", "a%23b.ngc"},
-           {"/work/x/deep.ngc", "x/deep.ngc"},
+           {"/parts/x/deep.ngc", "x/deep.ngc"},
            {"../out.ngc", "file:///out.ngc"},
            {"/else/where.ngc", "file:///else/where.ngc"}}) {
     const ListedProgram listed = program(path, 1, 0);
-    const Json run = Json::parse(sarif_text({&listed, 1}, "1", "/work"))["runs"][0];
+    const Json run = Json::parse(sarif_text({&listed, 1}, "1", "/parts"))["runs"][0];
     const Json place = run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"];
     EXPECT_EQ(place["uri"], uri);
     EXPECT_EQ(place.contains("uriBaseId"), !uri.starts_with("file:")) << path;
@@ -79,7 +79,7 @@ TEST(Sarif, PathsAreUrisBelowTheFolderOrElsewhere) {
 TEST(Sarif, WhatHasNoLineIsAtTheFirst) {
   ListedProgram listed = program("a.ngc", 0, 0);
   listed.findings.add(finding(FindingId::kToolUnused, Severity::kNote, 0));
-  const Json run = Json::parse(sarif_text({&listed, 1}, "1", "/work"))["runs"][0];
+  const Json run = Json::parse(sarif_text({&listed, 1}, "1", "/parts"))["runs"][0];
   EXPECT_EQ(run["results"][0]["locations"][0]["physicalLocation"]["region"]["startLine"], 1);
 }
 
