@@ -7,12 +7,10 @@
 // made heights in 0.1 mm cells. First each volume is held against the ball's, and 20,000 points of
 // the octree against the sphere. Then best of RUNS (3) on one thread, and the memory it took.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <memory>
@@ -24,25 +22,13 @@
 #include "stock/octree/octree.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/zmap.h"
+#include "tests/bench/process_usage.h"
 #include "tests/twin/compare/meshes.h"
 
 namespace kerf {
 namespace {
 
 constexpr double kRadius_mm = 40, kAllowance_mm = 2, kCell_mm = 0.1, kOctreeCell_mm = 0.25;
-
-/// Of this process's one thread.
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double peak_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 [[noreturn]] void fail(const std::string& why) {
   fmt::print(stderr, "bench_blank_mesh: {}\n", why);

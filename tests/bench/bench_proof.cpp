@@ -7,16 +7,15 @@
 // against all triangles one by one, and what is told against what was planted. Then: the design
 // made ready and the comparison, on one thread; best of RUNS (3), and the memory it took.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
+#include "tests/bench/process_usage.h"
 #include "tests/twin/compare/meshes.h"
 #include "twin/compare/compare_stock.h"
 #include "twin/process/kept_moves.h"
@@ -25,19 +24,6 @@ namespace kerf {
 namespace {
 
 constexpr double kRadius_mm = 40, kBall_mm = 3, kCell_mm = 0.025, kDepth_mm = 0.2;
-
-/// Of this process's one thread.
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double peak_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 [[noreturn]] void fail(const std::string& why) {
   fmt::print(stderr, "bench_proof: {}\n", why);

@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
+#include "tests/bench/process_usage.h"
 #include "twin/compare/tool_reach.h"
 
 namespace kerf {
@@ -22,12 +22,6 @@ namespace {
 
 constexpr int kCells = 1000;
 constexpr double kCell_mm = 0.1;
-
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double height(double x, double y) {
   return 3 * std::sin(0.35 * x) * std::cos(0.3 * y) + 0.2 * std::sin(3 * x + y);
