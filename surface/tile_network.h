@@ -65,7 +65,7 @@ class TileNetwork {
   template <class IsVoid, class OfCell, class OfTriangle>
   void each(const IsVoid& is_void, const OfCell& cell, const OfTriangle& triangle) const {
     constexpr int n = kCells;
-    const Emitter emit{is_void, cell, triangle};
+    const Emitter<IsVoid, OfCell, OfTriangle> emit{is_void, cell, triangle};
     walk(emit, {n, n}, {0, 0}, {n, 0});
     walk(emit, {0, 0}, {n, n}, {0, n});
   }

@@ -162,6 +162,7 @@ TEST_F(ViewSetupsTest, WhereItIsSentToTheEndItStays) {
 TEST_F(ViewSetupsTest, OneIsChosenAndWhatIsBeforeItIsCutFirst) {
   start({});
   ASSERT_TRUE(shows(0));
+  ASSERT_TRUE(waits([&] { return !title_.empty(); }));
   EXPECT_EQ(title_, "job.yaml, setup 1 of 3: top");
   commands_.push(SetupCommand{2});
   ASSERT_TRUE(shows(2));
