@@ -51,6 +51,7 @@ void EngagementLog::cut_map() {
 }
 
 void EngagementLog::mount(int tool, const Cutter& cutter) {
+  if (listener_ != nullptr) listener_->on_mount(tool, cutter);
   cut_map();
   cutter_.reset();
   if (heights_ && heights_->accepts(cutter)) cutter_ = cutter;
@@ -72,6 +73,7 @@ bool EngagementLog::goes_on(const CutMove& last, const CutMove& next) const {
 void EngagementLog::end_pass() { is_open_ = false; }
 
 std::uint32_t EngagementLog::add(const Part& part) {
+  if (listener_ != nullptr) listener_->on_part(part.look, part.length_mm);
   if (!part.look.is_engaged()) {
     gap_mm_ += part.length_mm;
     if (gap_mm_ > tools_[tool_].diameter_mm) is_open_ = false;
