@@ -46,8 +46,8 @@ void ask_for(OptionReader& reader, std::string_view option, std::optional<double
 }
 
 void understand_aims(OptionReader& reader, FeedAims& aims) {
-  ask_for(reader, "--chip", aims.most[static_cast<std::size_t>(CutLimit::kChip)]);
-  ask_for(reader, "--max-rate", aims.most[static_cast<std::size_t>(CutLimit::kRate)]);
+  ask_for(reader, "--chip", aims.most[CutLimit::kChip]);
+  ask_for(reader, "--max-rate", aims.most[CutLimit::kRate]);
   ask_for(reader, "--max-feed", aims.most_feed_mm_per_min);
   ask_for(reader, "--air-feed", aims.air_feed_mm_per_min);
   aims.splits = reader.is_yes("--split");
@@ -169,7 +169,7 @@ void check_subject(const OptimizeRequest& request, const CutRun& run, const Feed
   if (run.report().program.interpreter == "canon")
     diagnostics.push_back(
         error_of(trf("{} is a listing, without F words to change", run.report().program_path)));
-  if (!request.aims.of(CutLimit::kChip)) return;
+  if (!request.aims.most[CutLimit::kChip]) return;
   for (const auto& [tool, shape] : survey.toothless()) {
     diagnostics.push_back(
         error_of(trf("--chip: how many teeth tool {} ({}) has is not known", tool, shape),
@@ -193,7 +193,7 @@ void check_out(const OptimizeRequest& request, Diagnostics& diagnostics) {
 
 /// Feeds are limited by nothing that a thin cut has.
 void doubt_aims(const FeedAims& aims, Diagnostics& diagnostics) {
-  if (!aims.limits_cutting() || aims.of(CutLimit::kChip) || aims.most_feed_mm_per_min) return;
+  if (!aims.limits_cutting() || aims.most[CutLimit::kChip] || aims.most_feed_mm_per_min) return;
   Diagnostic d;
   d.severity = Severity::kWarning;
   d.message =

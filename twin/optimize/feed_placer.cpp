@@ -42,7 +42,7 @@ class Lessons {
       lessons_.turned.insert(line);
     } else if (is_ours && !has_word && !lessons_.said.contains(line)) {
       lessons_.said.insert(line);
-    } else {
+    } else if (!has_word || !lessons_.frozen.insert(line).second) {
       freeze(line, last_said);
     }
   }

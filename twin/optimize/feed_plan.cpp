@@ -192,6 +192,9 @@ class Planner {
 
   /// A line with moves at the feed that is in force.
   void take_plain(std::uint32_t number, const FeedBlock& block) {
+    const NcLine& line = lines_[number - 1];
+    // Nowhere for a word.
+    if (line.is_control || line.words_end == 0) return leave(number, block, block.left);
     const bool is_one = is_same(block.least_feed, block.most_feed);
     const bool is_said = lessons_.said.contains(number);
     if (stays(number, block)) {

@@ -27,9 +27,10 @@ void FeedSurvey::restart() { *this = FeedSurvey(aims_); }
 void FeedSurvey::on_step(std::uint64_t number, const Motion& m, const TimedStep& step) {
   seconds_[m.tool] += step.duration_s;
   in_feed_ = is_feed(m) || m.kind == MotionKind::kProbe;
-  if (!in_feed_ || stands_still(m)) {
-    // Words that move nothing do not take the tool out of the material.
-    if (is_move(m) && !stands_still(m)) is_fresh_ = true;
+  // Words that move nothing (G1 F300) do not take the tool out of the material, either.
+  const bool goes = !stands_still(m) || !m.start_known;
+  if (!in_feed_ || !goes) {
+    if (is_move(m) && goes) is_fresh_ = true;
     in_feed_ = false;
     return;
   }
@@ -55,7 +56,7 @@ void FeedSurvey::on_cut(std::uint64_t number, double removed_mm3, double /*depth
 }
 
 void FeedSurvey::on_mount(int tool, const Cutter& cutter) {
-  limits_.emplace(cutter);
+  limits_.emplace(cutter, aims_.material);
   tool_ = tool;
   shape_ = cutter.spec();
   diameter_mm_ = 2 * cutter.radius_mm();
@@ -75,10 +76,12 @@ void FeedSurvey::on_part(const EngagementLook& look, double length_mm) {
   if (!part.is_engaged) return;
   motion.is_engaged = true;
   if (!limits_->knows_teeth()) toothless_.emplace(tool_, shape_);
-  part.limit_mm_per_min = limits_->most_feed(aims_, look, rpm_);
-  const CutLoads loads = limits_->loads(look, rpm_, speed_mm_per_min_);
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    if (loads[i] > peaks_[i].most) peaks_[i] = {loads[i], motion.source};
+  if (!limits_->knows_stickout()) unheld_.emplace(tool_, shape_);
+  const CutLimits::Place place = limits_->place(look, rpm_);
+  part.limit_mm_per_min = CutLimits::most_feed(aims_, place);
+  const PerLimit<double> loads = CutLimits::loads(place, speed_mm_per_min_);
+  for (const CutLimit limit : kCutLimits) {
+    if (loads[limit] > peaks_[limit].most) peaks_[limit] = {loads[limit], motion.source};
   }
 }
 

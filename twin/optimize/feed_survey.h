@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -78,11 +77,13 @@ class FeedSurvey final : public MotionRecorder, public EngagementListener {
 
   const std::vector<SurveyedMotion>& motions() const { return motions_; }
   const std::vector<SurveyedPart>& parts() const { return parts_; }
-  const std::array<PeakLoad, kCutLimits.size()>& peaks() const { return peaks_; }
+  const PerLimit<PeakLoad>& peaks() const { return peaks_; }
   /// Of all motions, by tool.
   const std::map<int, double>& seconds_by_tool() const { return seconds_; }
   /// Tools that have cut whose teeth nobody has told, with their shapes.
   const std::map<int, std::string>& toothless() const { return toothless_; }
+  /// The same of tools of which it is not known how far they stick out.
+  const std::map<int, std::string>& unheld() const { return unheld_; }
 
  private:
   void soften();
@@ -90,9 +91,9 @@ class FeedSurvey final : public MotionRecorder, public EngagementListener {
   FeedAims aims_;
   std::vector<SurveyedMotion> motions_;
   std::vector<SurveyedPart> parts_;
-  std::array<PeakLoad, kCutLimits.size()> peaks_{};
+  PerLimit<PeakLoad> peaks_;
   std::map<int, double> seconds_;
-  std::map<int, std::string> toothless_;
+  std::map<int, std::string> toothless_, unheld_;
   std::size_t cut_ = 0;  ///< motions before it have no more cuts to come
   // The tool and the present motion.
   std::optional<CutLimits> limits_;

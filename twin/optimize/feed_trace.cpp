@@ -7,6 +7,7 @@
 
 #include "interp_bridge/motion_kinds.h"
 #include "twin/job/tools.h"
+#include "twin/motion/motion_geometry.h"
 #include "twin/program/session_parts.h"
 
 namespace kerf {
@@ -103,7 +104,8 @@ FeedTrace read_trace(const SessionOptions& options, std::stop_token stop,
   program->give_tools(known_tools(tools));
   const auto take = [&trace](std::span<const Motion> motions) {
     for (const Motion& m : motions) {
-      const bool is_fed = is_feed(m) || m.kind == MotionKind::kProbe;
+      const bool goes = !stands_still(m) || !m.start_known;
+      const bool is_fed = goes && (is_feed(m) || m.kind == MotionKind::kProbe);
       trace.motions.push_back(
           {print_of(m), m.source, m.kind, is_fed ? m.feed_mm_per_min : 0, m.from_mm, m.to_mm});
     }

@@ -55,12 +55,30 @@ std::string peak_words(CutLimit limit, double value) {
       return trf("{:.4f} mm", value);
     case CutLimit::kRate:
       return trf("{:.1f} mm3/s", value);
+    case CutLimit::kForce:
+      return trf("{:.0f} N", value);
+    case CutLimit::kPower:
+      return trf("{:.3f} kW", value);
+    case CutLimit::kDeflection:
+      return trf("{:.4f} mm", value);
   }
   return {};
 }
 
 std::string limit_words(CutLimit limit) {
-  return limit == CutLimit::kChip ? tr("thickest chip") : tr("removal rate");
+  switch (limit) {
+    case CutLimit::kChip:
+      return tr("thickest chip");
+    case CutLimit::kRate:
+      return tr("removal rate");
+    case CutLimit::kForce:
+      return tr("force");
+    case CutLimit::kPower:
+      return tr("power");
+    case CutLimit::kDeflection:
+      return tr("bending of the tip");
+  }
+  return {};
 }
 
 std::string line_words(const PeakLoad& peak) {
@@ -70,11 +88,10 @@ std::string line_words(const PeakLoad& peak) {
 std::string peaks_text(const OptimizeReport& report) {
   std::string out;
   for (const CutLimit limit : kCutLimits) {
-    const auto i = static_cast<std::size_t>(limit);
-    const PeakLoad& before = report.before.peaks[i];
-    const PeakLoad& after = report.after.peaks[i];
+    const PeakLoad& before = report.before.peaks[limit];
+    const PeakLoad& after = report.after.peaks[limit];
     if (before.most <= 0 && after.most <= 0) continue;
-    const auto& most = report.aims.most[i];
+    const auto& most = report.aims.most[limit];
     out += out.empty() ? tr("at most   ") : indent();
     out += trf("{}: {}{} before, {}{} after", limit_words(limit), peak_words(limit, before.most),
                line_words(before), peak_words(limit, after.most), line_words(after));
@@ -180,7 +197,7 @@ std::string optimize_text(const OptimizeReport& report) {
 std::string optimize_json(const OptimizeReport& report, const std::string& version) {
   Json limits = Json::object();
   for (const CutLimit limit : kCutLimits) {
-    if (const auto& most = report.aims.of(limit)) limits[key_of(limit)] = *most;
+    if (const auto& most = report.aims.most[limit]) limits[key_of(limit)] = *most;
   }
   if (report.aims.most_feed_mm_per_min)
     limits["feed_mm_per_min"] = *report.aims.most_feed_mm_per_min;
@@ -198,9 +215,8 @@ std::string optimize_json(const OptimizeReport& report, const std::string& versi
   }
   Json peaks = Json::object();
   for (const CutLimit limit : kCutLimits) {
-    const auto i = static_cast<std::size_t>(limit);
-    const PeakLoad& before = report.before.peaks[i];
-    const PeakLoad& after = report.after.peaks[i];
+    const PeakLoad& before = report.before.peaks[limit];
+    const PeakLoad& after = report.after.peaks[limit];
     peaks[key_of(limit)] = {{"before", rounded(before.most)},
                             {"before_line", before.at.line},
                             {"after", rounded(after.most)},

@@ -2,7 +2,6 @@
 // JSON.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -18,7 +17,7 @@ namespace kerf {
 struct OptimizedRun {
   double duration_s = 0;
   std::map<int, double> seconds_by_tool;
-  std::array<PeakLoad, kCutLimits.size()> peaks{};
+  PerLimit<PeakLoad> peaks;
 };
 
 struct OptimizeReport {
@@ -50,12 +49,12 @@ void add_plan(const FeedBlocks& blocks, const FeedPlan& plan, OptimizeReport& re
 /// A page. In mm.
 std::string optimize_text(const OptimizeReport& report);
 
-/// kerf-optimize/1: schema, version, optimize: program, out, limits (chip_mm, rate_mm3_s,
-/// feed_mm_per_min, air_feed_mm_per_min, of those that were given), blocks, changed,
-/// motions_elsewhere, time_s (before, after, model), tools (number, shape, before_s, after_s),
-/// peaks (by limit: before, before_line, after, after_line, at the speed that the planner reaches),
-/// left (reason, blocks, lines: the first kMostLines), shared (line, motions, slowest_mm_per_min,
-/// fastest_mm_per_min), digest.
+/// kerf-optimize/1: schema, version, optimize: program, out, limits (by their
+/// keys, of key_of(CutLimit); feed_mm_per_min, air_feed_mm_per_min, of those that were given),
+/// blocks, changed, motions_elsewhere, time_s (before, after, model), tools (number, shape,
+/// before_s, after_s), peaks (by limit: before, before_line, after, after_line, at the speed that
+/// the planner reaches), left (reason, blocks, lines: the first kMostLines), shared (line, motions,
+/// slowest_mm_per_min, fastest_mm_per_min), digest.
 std::string optimize_json(const OptimizeReport& report, const std::string& version);
 inline constexpr std::size_t kMostLines = 1000;
 
