@@ -11,7 +11,7 @@ namespace kerf {
 namespace {
 
 /// Of whose flutes nobody has said it: as most end mills have it.
-constexpr double kHelix_rad = 30 * kPi / 180;
+constexpr double kUsualHelix_deg = 30;
 constexpr int kArcPoints = 64;
 
 std::vector<Vec2> edge_of(const Cutter& cutter) {
@@ -41,7 +41,8 @@ double point_deg_of(const Cutter& cutter) {
 }
 
 MillingCut cut_of(const EngagementLook& look, double rpm) {
-  return {1, 0, std::min(look.angle_rad, kPi), look.deep_mm, rpm};
+  return {1, std::clamp(look.entry_rad, 0.0, kPi), std::clamp(look.exit_rad, 0.0, kPi),
+          look.deep_mm, rpm};
 }
 
 bool grows_with_power(CutLimit limit) {
@@ -72,11 +73,14 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
       shank_mm_(cutter.shank_diameter_mm().value_or(2 * cutter.radius_mm())),
       point_deg_(point_deg_of(cutter)),
       flute_mm_(cutter.flute_length_mm()),
+      rake_deg_(cutter.edge_traits().rake_deg),
       profile_(edge_of(cutter), material ? material->mc : 0),
       material_(material) {
   if (!cutter.holder().empty()) stickout_mm_ = cutter.holder().front().from_z_mm;
-  if (material_ && teeth_ > 0)
-    model_.emplace(*material_, profile_, MillingEdges{teeth_, kHelix_rad}, rake_deg_);
+  if (!material_ || teeth_ == 0) return;
+  const double helix_deg = cutter.edge_traits().helix_deg.value_or(kUsualHelix_deg);
+  const MillingEdges edges{teeth_, helix_deg * kPi / 180};
+  model_.emplace(*material_, profile_, edges, rake_deg_);
 }
 
 double CutLimits::section_mm2(const EngagementLook& look) {
