@@ -15,6 +15,7 @@
 #include "base/translate.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/progress_bar.h"
 #include "twin/cli/run_ends.h"
@@ -48,13 +49,23 @@ void ask_for(OptionReader& reader, std::string_view option, std::optional<double
 void understand_aims(OptionReader& reader, FeedAims& aims) {
   ask_for(reader, "--chip", aims.most[CutLimit::kChip]);
   ask_for(reader, "--max-rate", aims.most[CutLimit::kRate]);
+  ask_for(reader, "--max-force", aims.most[CutLimit::kForce]);
+  ask_for(reader, "--max-power", aims.most[CutLimit::kPower]);
+  const CuttingWish wish = understand_cutting(reader);
+  aims.material = wish.material;
+  if (wish.most_bend_mm > 0) aims.most[CutLimit::kDeflection] = wish.most_bend_mm;
+  for (const char* option : {"--max-force", "--max-power"}) {
+    if (!reader.text(option).empty() && reader.text("--material").empty())
+      reader.fault(option, tr("is held against forces: --material says of what"));
+  }
   ask_for(reader, "--max-feed", aims.most_feed_mm_per_min);
   ask_for(reader, "--air-feed", aims.air_feed_mm_per_min);
   aims.splits = reader.is_yes("--split");
   if (aims.limits_cutting() || aims.most_feed_mm_per_min || aims.air_feed_mm_per_min) return;
-  if (!reader.choose("--chip").text.empty() || !reader.choose("--max-rate").text.empty()) return;
+  if (has_error(reader.diagnostics())) return;  // one of them may be among the faults
   reader.fault("--chip", tr("nothing says how fast it may be"),
-               tr("--chip LENGTH, --max-rate MM3/S, --max-feed MM/MIN or --air-feed MM/MIN"));
+               tr("--chip LENGTH, --max-rate MM3/S, --max-force N, --max-power KW, "
+                  "--max-deflection LENGTH, --max-feed MM/MIN or --air-feed MM/MIN"));
 }
 
 /// Where the new program goes.
@@ -169,11 +180,17 @@ void check_subject(const OptimizeRequest& request, const CutRun& run, const Feed
   if (run.report().program.interpreter == "canon")
     diagnostics.push_back(
         error_of(trf("{} is a listing, without F words to change", run.report().program_path)));
-  if (!request.aims.most[CutLimit::kChip]) return;
+  if (!request.aims.needs_teeth()) return;
   for (const auto& [tool, shape] : survey.toothless()) {
-    diagnostics.push_back(
-        error_of(trf("--chip: how many teeth tool {} ({}) has is not known", tool, shape),
-                 trf("--tool {}={}:teeth=2, or a tool library that says it", tool, shape)));
+    diagnostics.push_back(error_of(
+        trf("how many teeth tool {} ({}) has is not known: chips and forces need it", tool, shape),
+        trf("--tool {}={}:teeth=2, or a tool library that says it", tool, shape)));
+  }
+  if (!request.aims.most[CutLimit::kDeflection]) return;
+  for (const auto& [tool, shape] : survey.unheld()) {
+    diagnostics.push_back(error_of(
+        trf("how far tool {} ({}) sticks out is not known: --max-deflection needs it", tool, shape),
+        trf("--tool {}={}:holder=40x60:stickout=35", tool, shape)));
   }
 }
 
