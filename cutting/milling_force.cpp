@@ -239,15 +239,21 @@ MillingLoad MillingModel::load_of(const MillingCut& cut) const {
   MillingLoad load;
   load.chip = chip_of(profile_, cut);
   load.speed_m_per_min = cutting_speed_m_per_min(profile_, cut);
-  const UnitForces unit = unit_forces(integrals_, profile_, edges_, cut, share_);
-  const auto same = [this](double value) { return kc11_.times(value); };
-  load.tangential_n = same(unit.tangential_most_n);
-  load.torque_nm = same(unit.torque_most_nm);
-  load.torque_mean_nm = same(unit.torque_mean_nm);
-  load.power_w = same(unit.torque_mean_nm * 2 * kPi * cut.rpm / 60);
+  if (cut.feed_per_tooth_mm <= 0) return load;
+  if (cut.entry_rad != last_.entry_rad || cut.exit_rad != last_.exit_rad ||
+      cut.deep_mm != last_.deep_mm) {
+    last_ = cut;
+    last_.feed_per_tooth_mm = 1;
+    unit_ = unit_forces(integrals_, profile_, edges_, last_, share_);
+  }
+  const ValueRange kc = kc11_.times(std::pow(cut.feed_per_tooth_mm, feed_exponent()));
+  load.tangential_n = kc.times(unit_.tangential_most_n);
+  load.torque_nm = kc.times(unit_.torque_most_nm);
+  load.torque_mean_nm = kc.times(unit_.torque_mean_nm);
+  load.power_w = load.torque_mean_nm.times(2 * kPi * cut.rpm / 60);
   const auto each = [&](double UnitForces::Sideways::*value) {
-    return range_of(kc11_,
-                    {unit.sideways[0].*value, unit.sideways[1].*value, unit.sideways[2].*value});
+    return range_of(kc,
+                    {unit_.sideways[0].*value, unit_.sideways[1].*value, unit_.sideways[2].*value});
   };
   load.force_n = each(&UnitForces::Sideways::most_n);
   load.feed_force_n = each(&UnitForces::Sideways::feed_mean_n);
