@@ -7,6 +7,7 @@
 #include "twin/job/blank_choice.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/milling/milling_stage.h"
+#include "twin/process/milling/way_profile.h"
 
 namespace kerf {
 namespace {
@@ -43,17 +44,38 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
   flight.measured = true;
 }
 
-/// Of a feed move, how the tool is engaged in what stands before it is cut.
+/// Of a feed move, how the tool is engaged in what stands before it is cut. Where it is cut as
+/// several, each of them has its share of the time.
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
-  if (divided_.size() > 1 || !LoadMeter::is_one_piece(divided_[0])) {
-    if (comes_near(m)) engagement_->take_unmeasured(step.length_mm);
+  const bool near = comes_near(m);
+  const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
+  if (!one_piece && !stock_.takes_tilted_tools()) {
+    if (near) engagement_->take_unmeasured(step.length_mm);
     engagement_->lift();
     return;
   }
-  flight.pass = engagement_->take(cutting(), divided_[0], comes_near(m), m.source, step.start_s,
-                                  step.duration_s);
-  engagement_->note(divided_[0]);
+  double ways = 0;
+  for (const CutMove& move : divided_) ways += way_length_mm(move);
+  if (ways <= 0) return;
+  EngagementSums sums;
+  bool measured = true;
+  double start_s = step.start_s;
+  for (const CutMove& move : divided_) {
+    const double duration_s = step.duration_s * way_length_mm(move) / ways;
+    const EngagementMeter::Taken& taken =
+        engagement_->take({cutting(), move, near, m.spindle == SpindleState::kCounterclockwise,
+                           m.source, start_s, duration_s});
+    start_s += duration_s;
+    if (taken.pass != EngagementLog::kNoPass) flight.pass = taken.pass;
+    measured = measured && taken.measured;
+    sums.add(taken.sums);
+    engagement_->note(move);
+  }
+  const auto count = static_cast<double>(divided_.size());
+  flight.engaged_mm = sums.in_material_mm() / count;
+  flight.engaged_s = sums.cut_s / count;
+  if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
 }
 
 /// How far before its middle the cutter meets material of that depth, and of the width that this

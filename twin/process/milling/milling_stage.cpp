@@ -370,6 +370,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
+    if (engagement_) engagement_->note_cut(move);
     pieces_.before(cutting(), move, by);
     moves_.push_back(move);
     if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
@@ -424,8 +425,9 @@ void MillingStage::collect_reports() {
     use.max_depth_mm = std::max(use.max_depth_mm, report.depth_mm);
     if (report.film.area_mm2 > 0 && !site_.holding)
       films_.take(report.film, {move.source, move.start_s, use.number});
+    if (engagement_ && (report.removed_mm3 > 0 || move.engaged_mm > 0))
+      site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s);
     if (report.removed_mm3 <= 0) continue;
-    if (engagement_) site_.engagement->add_removed(move.pass, report.removed_mm3);
     use.removed_mm3 += report.removed_mm3;
     if (move.feed_per_tooth_mm > 0) count_chip(use.chip, move, report);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {

@@ -77,8 +77,9 @@ class MillingStage final : public Process {
     MotionReach reach;
     std::uint32_t use = 0;  ///< index of ToolUse
     std::uint32_t pass = EngagementLog::kNoPass;
-    double rpm = 0;                ///< of a spindle that turns
-    double feed_per_tooth_mm = 0;  ///< 0: not known
+    double engaged_mm = 0, engaged_s = 0;  ///< of it, in material
+    double rpm = 0;                        ///< of a spindle that turns
+    double feed_per_tooth_mm = 0;          ///< 0: not known
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;

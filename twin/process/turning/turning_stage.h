@@ -75,6 +75,7 @@ class TurningStage final : public Process {
   void cut(const Motion& motion, const TimedStep& step);
   void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
   TurnCut sum_of_piece() const;
+  void note_engagement(const Motion& motion, const TimedStep& step, const TurnCut& piece);
   void note_fallen(const Motion& motion, const TimedStep& step);
   void report_nothing_cut();
 
