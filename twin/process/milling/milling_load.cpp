@@ -48,6 +48,7 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
 /// several, each of them has its share of the time.
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
+  loads_.begin({m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm});
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
