@@ -70,12 +70,15 @@ void join(std::vector<Piece>& pieces, std::size_t first) {
 
 /// Neighbours that are alike, and what is too short.
 void simplify(std::vector<Piece>& pieces, double least_mm) {
-  for (std::size_t i = 0; i + 1 < pieces.size();) {
-    if (are_alike(pieces[i].feed_mm_per_min, pieces[i + 1].feed_mm_per_min))
-      join(pieces, i);
-    else
-      ++i;
-  }
+  const auto join_alike = [&pieces] {
+    for (std::size_t i = 0; i + 1 < pieces.size();) {
+      if (are_alike(pieces[i].feed_mm_per_min, pieces[i + 1].feed_mm_per_min))
+        join(pieces, i);
+      else
+        ++i;
+    }
+  };
+  join_alike();
   while (pieces.size() > 1) {
     const auto shortest =
         std::min_element(pieces.begin(), pieces.end(),
@@ -88,6 +91,7 @@ void simplify(std::vector<Piece>& pieces, double least_mm) {
     };
     const bool to_before = has_before && (!has_next || step(at - 1) <= step(at + 1));
     join(pieces, to_before ? at - 1 : at);
+    join_alike();
   }
 }
 

@@ -32,6 +32,9 @@ std::vector<Vec2> edge_of(const Cutter& cutter) {
   return points;
 }
 
+/// Of the diameter: how far apart the places are at which a look straight down is taken.
+constexpr double kDiscStep = 1.0 / 24;
+
 /// Of its point, where that is a cone; 180: it is none.
 double point_deg_of(const Cutter& cutter) {
   const ProfilePiece& first = cutter.profile().front();
@@ -83,9 +86,10 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
   model_.emplace(*material_, profile_, edges, rake_deg_);
 }
 
-double CutLimits::section_mm2(const EngagementLook& look) {
-  if (look.is_plunge) return kPi / 4 * look.wide_mm * look.wide_mm;
-  return look.wide_mm * look.deep_mm;
+double CutLimits::section_mm2(const EngagementLook& look) const {
+  if (!look.is_plunge) return look.wide_mm * look.deep_mm;
+  const double wide_mm = std::min(2 * radius_mm_, look.wide_mm + kDiscStep * 2 * radius_mm_);
+  return kPi / 4 * wide_mm * wide_mm;
 }
 
 CutLimits::Place CutLimits::place(const EngagementLook& look, double rpm) const {

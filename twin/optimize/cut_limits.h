@@ -83,7 +83,7 @@ class CutLimits {
   static PerLimit<double> loads(const Place& place, double mm_per_min);
 
   /// Across the way; of what goes straight down its disc.
-  static double section_mm2(const EngagementLook& look);
+  double section_mm2(const EngagementLook& look) const;
 
  private:
   void add_forces(const EngagementLook& look, double rpm, Place& place) const;

@@ -19,7 +19,8 @@ bool is_same_feed(double a, double b) { return std::abs(a - b) <= kSameFeed * st
 
 /// What a motion of the program itself is to have.
 double feed_wanted(const TracedMotion& was, const FeedPlan& plan) {
-  if (was.source.file != 0) return was.feed_mm_per_min;
+  // A cycle has traverses, too.
+  if (was.source.file != 0 || was.feed_mm_per_min <= 0) return was.feed_mm_per_min;
   const auto found = plan.feeds.find(was.source.line);
   if (found == plan.feeds.end()) return was.feed_mm_per_min;
   return found->second.value_or(was.feed_mm_per_min);

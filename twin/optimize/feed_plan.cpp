@@ -145,11 +145,13 @@ class Planner {
     const FeedBlock* const block = block_at(number);
     if (line.feed == NcLine::Feed::kComputed) {
       was_ = now_ = 0;
+      is_computed_ = true;
       if (block != nullptr) leave(number, *block, block->left);
       return;
     }
     if (line.feed == NcLine::Feed::kNumber) {
       const double ahead = now_;
+      is_computed_ = false;
       was_ = now_ = line.feed_number * unit_mm(number);
       take_word(number, block, ahead);
       return;
@@ -195,6 +197,8 @@ class Planner {
     const NcLine& line = lines_[number - 1];
     // Nowhere for a word.
     if (line.is_control || line.words_end == 0) return leave(number, block, block.left);
+    if (is_computed_ && block.left == FeedLeft::kNone)
+      return leave(number, block, FeedLeft::kComputed);
     const bool is_one = is_same(block.least_feed, block.most_feed);
     const bool is_said = lessons_.said.contains(number);
     if (stays(number, block)) {
@@ -227,6 +231,7 @@ class Planner {
   const FeedLessons& lessons_;
   std::vector<std::uint32_t> followers_;
   FeedPlan plan_;
+  bool is_computed_ = false;  ///< the feed in force, by the order of the text
   double was_ = 0, now_ = 0;  ///< in force, before and now; 0: not known
 };
 

@@ -131,7 +131,8 @@ void FeedSurvey::settle() {
       soft_mm += part.soft_mm();
       motion.limit_mm_per_min = std::min(motion.limit_mm_per_min, part.limit_mm_per_min);
     }
-    if (engaged_mm > 0 && soft_mm >= kWhole * engaged_mm) motion.limit_mm_per_min *= kSoftShare;
+    const bool is_soft = engaged_mm > 0 && soft_mm >= kWhole * engaged_mm;
+    if (is_soft && !motion.goes_down) motion.limit_mm_per_min *= kSoftShare;
   }
 }
 

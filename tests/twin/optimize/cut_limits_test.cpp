@@ -21,7 +21,7 @@ double most_feed(const CutLimits& limits, const FeedAims& aims, const Engagement
 
 EngagementLook look(double angle_deg, double wide_mm, double deep_mm) {
   EngagementLook out;
-  out.angle_rad = angle_deg * kPi / 180;
+  out.angle_rad = out.exit_rad = angle_deg * kPi / 180;
   out.wide_mm = wide_mm;
   out.deep_mm = deep_mm;
   return out;

@@ -138,6 +138,14 @@ TEST_F(FeedPlanTest, OthersAreLeftAsTheyAre) {
   EXPECT_EQ(plan_.left.at(8), FeedLeft::kUnmeasured);
 }
 
+TEST_F(FeedPlanTest, BlocksBehindAFeedThatIsWorkedOutStay) {
+  move(1, 200, 900);
+  move(2, 200, 900);
+  move(3, 300, 900);
+  EXPECT_EQ(planned("G1 X1 F#1\nX2\nX3 F300\n"), "G1 X1 F#1\nX2\nX3 F900\n");
+  EXPECT_EQ(plan_.left.at(2), FeedLeft::kComputed);
+}
+
 TEST_F(FeedPlanTest, WhatIsLeftKeepsTheFeedThatItHad) {
   move(1, 200, 900);
   move(2, 200, 900).kind = MotionKind::kProbe;
