@@ -46,7 +46,11 @@ void FeedSurvey::on_step(std::uint64_t number, const Motion& m, const TimedStep&
   motion.is_per_turn = m.feed_per_rev;
   motion.goes_down = goes_down_steeply(m, step.length_mm);
   rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
-  speed_mm_per_min_ = step.peak_mm_per_min > 0 ? step.peak_mm_per_min : step.programmed_mm_per_min;
+  // Through a rounded corner LinuxCNC goes at the faster one of two feeds: the other one's cut is
+  // over by then.
+  speed_mm_per_min_ = step.programmed_mm_per_min;
+  if (step.peak_mm_per_min > 0)
+    speed_mm_per_min_ = std::min(speed_mm_per_min_, step.peak_mm_per_min);
 }
 
 void FeedSurvey::on_cut(std::uint64_t number, double removed_mm3, double /*depth_mm*/) {

@@ -49,7 +49,8 @@ TEST(CutLimits, ABallHasThinnerChipsWhereItIsShallow) {
   // 0.5 mm up a radius of 3 mm: sin(kappa) = sqrt(1 - (2.5 / 3)^2).
   const double lead = std::sqrt(1 - 2.5 * 2.5 / 9);
   EXPECT_NEAR(chip_share(limits, look(180, 3, 0.5)), lead, 0.02);
-  EXPECT_NEAR(chip_share(limits, look(180, 6, 3)), 1, 1e-9);
+  // The arc is 64 chords: the last one leans by half of 1.4 degrees.
+  EXPECT_NEAR(chip_share(limits, look(180, 6, 3)), 1, 1e-4);
   EXPECT_NEAR(chip_share(limits, look(180, 6, 5)), 1, 1e-9);
 }
 
