@@ -15,6 +15,8 @@ namespace {
 /// Short moves are looked at on their own where they are at least so much of a window long and
 /// there is enough to spend.
 constexpr double kLeastOfWindow = 0.5;
+/// A longer way in material removes some cells.
+constexpr double kLeastRemoving_cells = 4;
 
 }  // namespace
 
@@ -48,7 +50,9 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
 /// several, each of them has its share of the time.
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
-  loads_.begin({m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm});
+  part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
+  part_mm_per_min_ = step.peak_mm_per_min;
+  const std::size_t parts_before = parts_.size();
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
@@ -76,7 +80,26 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   const auto count = static_cast<double>(divided_.size());
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
+  flight.parts = parts_.size() - parts_before;
+  flight.bounds_parts = divided_.size() == 1;
   if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
+}
+
+/// What a move has removed is the least doubtful of what is known of it: ahead of a tool there may
+/// be a wall that it does not reach.
+void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
+  for (std::size_t n = 0; n < move.parts; ++n) {
+    CutLoads::Part& part = parts_[parts_taken_++];
+    if (move.bounds_parts && report.depth_mm > 0)
+      part.look.deep_mm = std::min(part.look.deep_mm, report.depth_mm);
+    if (move.bounds_parts && report.removed_mm3 <= 0 && report.depth_mm <= 0 &&
+        part.way.length_mm > kLeastRemoving_cells * stock_.cell_mm())
+      part.look = {};
+    loads_.take(part);
+  }
+  if (parts_taken_ < parts_.size()) return;
+  parts_.clear();
+  parts_taken_ = 0;
 }
 
 /// How far before its middle the cutter meets material of that depth, and of the width that this
