@@ -124,7 +124,8 @@ double EngagementScan::behind_itself(const Vec2& point, double height) const {
 }
 
 /// A move that has made one of the low cells about there has cut the point, too; or the one that is
-/// held back. Cells that no move has made are as they are.
+/// held back. Cells that no known move has made are as
+/// they are.
 bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) const {
   const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
   if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
@@ -136,7 +137,7 @@ bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) con
     for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
       if (!is_low(x, y)) continue;
       const std::uint32_t number = owners_->present_cut_id(x, y);
-      if (number == MeshPatch::kNotCut || number == asked) continue;
+      if (number == asked || !ways_->knows(number)) continue;
       asked = number;
       if (ways_->covers(number, point, z, margin)) return true;
     }
@@ -187,7 +188,7 @@ double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
     const auto own = static_cast<double>(heights_->height(x, y));
     highest = std::max(highest, own);
     const std::uint32_t number = owners_->present_cut_id(x, y);
-    if (number == MeshPatch::kNotCut) {
+    if (!ways_->knows(number)) {
       height = std::min(height, own);
     } else if (number != asked) {
       height = std::min(height, ways_->height_mm(number, point));
