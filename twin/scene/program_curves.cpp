@@ -23,8 +23,12 @@ void CurveMaker::add(std::size_t i, double removed_mm3) {
   const TimedStep step = track_->step(i);
   const bool feeds = is_feed(motion);
   const double rpm = motion.spindle == SpindleState::kStopped ? 0 : motion.spindle_rpm;
-  RunCurve::Share share{step.start_s, step.duration_s, removed_mm3, feeds ? step.length_mm : 0,
-                        rpm};
+  // What corners that are rounded save of the way is no feed.
+  const double most_mm = step.programmed_mm_per_min > 0
+                             ? step.programmed_mm_per_min / 60 * step.duration_s
+                             : step.length_mm;
+  RunCurve::Share share{step.start_s, step.duration_s, removed_mm3,
+                        feeds ? std::min(step.length_mm, most_mm) : 0, rpm};
   all_.add(share);
   if (!cuts_ || !feeds || !(removed_mm3 > 0) || !(rpm > 0)) return;
   const Cutter* const cutter = cuts_->cutter_at(i);

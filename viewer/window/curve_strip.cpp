@@ -108,8 +108,11 @@ void draw_curve(const PanelContext& context) {
     list->AddRectFilled({head_x, low.y}, {head_x + 1.0f, high.y}, theme::kHead);
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) draw_tip(context, curve, time_s);
   }
-  list->AddText({low.x + 2.0f * context.scale, low.y - 1.0f},
-                ImGui::ColorConvertFloat4ToU32(theme::kDim), label.c_str());
+  const ImVec2 at(low.x + 2.0f * context.scale, low.y - 1.0f),
+      size = ImGui::CalcTextSize(label.c_str());
+  list->AddRectFilled(at, {at.x + size.x, at.y + size.y},
+                      ImGui::GetColorU32(ImGuiCol_WindowBg, 0.75f));
+  list->AddText(at, ImGui::ColorConvertFloat4ToU32(theme::kDim), label.c_str());
 }
 
 }  // namespace kerf
