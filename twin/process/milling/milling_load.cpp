@@ -18,6 +18,12 @@ constexpr double kLeastOfWindow = 0.5;
 /// A longer way in material removes some cells.
 constexpr double kLeastRemoving_cells = 4;
 
+/// Round a corner the planner goes as fast as the faster of its two moves.
+double reached_mm_per_min(const TimedStep& step) {
+  return step.programmed_mm_per_min > 0 ? std::min(step.peak_mm_per_min, step.programmed_mm_per_min)
+                                        : step.peak_mm_per_min;
+}
+
 }  // namespace
 
 /// What a feed move counts for: where the blank never was it does not cut. Of one that lasts: how
@@ -51,7 +57,7 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
   part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
-  part_mm_per_min_ = step.peak_mm_per_min;
+  part_mm_per_min_ = reached_mm_per_min(step);
   const std::size_t parts_before = parts_.size();
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
@@ -143,11 +149,16 @@ void MillingStage::note_teeth(const Motion& m, const TimedStep& step, InFlight& 
   const std::optional<int> teeth = cutting().teeth();
   if (!teeth || !flight.feed || m.spindle == SpindleState::kStopped || m.spindle_rpm <= 0) return;
   flight.rpm = m.spindle_rpm;
-  flight.feed_per_tooth_mm = step.peak_mm_per_min / (m.spindle_rpm * *teeth);
+  const double teeth_per_min = m.spindle_rpm * *teeth;
+  const double most = reached_mm_per_min(step);
+  flight.feed_per_tooth_mm = most / teeth_per_min;
+  const double mean = step.duration_s > 0 ? 60 * step.length_mm / step.duration_s : most;
+  flight.mean_per_tooth_mm = std::min(mean, most) / teeth_per_min;
 }
 
 void MillingStage::count_chip(ChipLoad& chip, const InFlight& move, const CutReport& report) const {
-  chip.add(move.feed_per_tooth_mm, move.cut_part * move.duration_s, move.source);
+  chip.add(move.feed_per_tooth_mm, move.mean_per_tooth_mm, move.cut_part * move.duration_s,
+           move.source);
   const double wide_mm = 2 * half_width_mm(cutting(), report.depth_mm);
   chip.speed_m_per_min = std::max(chip.speed_m_per_min, kPi * wide_mm * move.rpm / 1000);
 }
