@@ -58,7 +58,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   if (!flight.feed || site_.holding || divided_.empty()) return;
   part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
   part_mm_per_min_ = reached_mm_per_min(step);
-  const std::size_t parts_before = parts_.size();
+  const std::size_t parts_before = load_parts_.size();
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
@@ -86,7 +86,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   const auto count = static_cast<double>(divided_.size());
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
-  flight.parts = parts_.size() - parts_before;
+  flight.parts = load_parts_.size() - parts_before;
   flight.bounds_parts = divided_.size() == 1;
   if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
 }
@@ -95,7 +95,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
 /// be a wall that it does not reach.
 void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
   for (std::size_t n = 0; n < move.parts; ++n) {
-    CutLoads::Part& part = parts_[parts_taken_++];
+    CutLoads::Part& part = load_parts_[load_parts_taken_++];
     if (move.bounds_parts && report.depth_mm > 0)
       part.look.deep_mm = std::min(part.look.deep_mm, report.depth_mm);
     if (move.bounds_parts && report.removed_mm3 <= 0 && report.depth_mm <= 0 &&
@@ -103,9 +103,9 @@ void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
       part.look = {};
     loads_.take(part);
   }
-  if (parts_taken_ < parts_.size()) return;
-  parts_.clear();
-  parts_taken_ = 0;
+  if (load_parts_taken_ < load_parts_.size()) return;
+  load_parts_.clear();
+  load_parts_taken_ = 0;
 }
 
 /// How far before its middle the cutter meets material of that depth, and of the width that this

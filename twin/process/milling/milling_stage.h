@@ -86,7 +86,7 @@ class MillingStage final : public Process {
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
-    std::size_t parts = 0;      ///< of parts_, those of its motion, with the first of its moves
+    std::size_t parts = 0;  ///< of load_parts_, those of its motion, with the first of its moves
     bool bounds_parts = false;  ///< it is the only one
     bool reversed = false;      ///< the spindle runs anticlockwise
   };
@@ -158,8 +158,8 @@ class MillingStage final : public Process {
   std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
   CutLoads loads_;
   /// Of moves whose reports have not come.
-  std::vector<CutLoads::Part> parts_;
-  std::size_t parts_taken_ = 0;
+  std::vector<CutLoads::Part> load_parts_;
+  std::size_t load_parts_taken_ = 0;
   double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
   std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
   LengthCheck lengths_;
