@@ -17,12 +17,12 @@ class LoadSpread {
   double most() const { return most_; }
   const SourceRef& most_at() const { return most_at_; }
   double seconds() const { return seconds_; }
-  /// What it was not above for this share of the time, to 3 %; 0 of nothing.
+  /// What it was not above for this share of the time, to 1.5 %; 0 of nothing.
   double not_above(double share) const;
 
  private:
   /// By their logarithm, kLeast to kMost.
-  static constexpr std::size_t kBins = 512;
+  static constexpr std::size_t kBins = 2048;
   static constexpr double kLeast = 1e-6, kMost = 1e7;
   std::array<double, kBins> seconds_in_{};
   double most_ = 0, seconds_ = 0;

@@ -33,6 +33,11 @@ void add_sums(Json& out, const EngagementSums& sums) {
   out["rate_mm3_per_s"] = pair_of(sums.rate_mm3_per_s(), sums.rate_most_mm3_per_s);
 }
 
+std::string air_text(double air_mm, double feed_mm, double air_s) {
+  if (air_mm <= 0 || feed_mm <= 0) return {};
+  return trf("{:.0f} % of its feeds in air, {:.1f} s", 100 * air_mm / feed_mm, air_s);
+}
+
 Json turned_row(const TurningEngagement& tool) {
   return Json{{"tool", tool.tool},
               {"shape", tool.shape},
@@ -55,10 +60,8 @@ std::string turned_text(const TurningEngagement& tool) {
           "{:.3f} at most; chips of {:.3f} mm; {:.3g} mm3/s on average",
           tool.tool, tool.mean(tool.depth_sum_mm2), tool.depth_most_mm, tool.mean(tool.feed_sum),
           tool.feed_most_mm, tool.mean(tool.chip_sum), tool.rate_mm3_per_s());
-  if (tool.air_mm > 0 && tool.feed_mm > 0)
-    out += trf("; {:.0f} % of its feeds in air, {:.1f} s", 100 * tool.air_mm / tool.feed_mm,
-               tool.air_s);
-  return out + "\n";
+  const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s);
+  return out + (air.empty() ? "" : "; " + air) + "\n";
 }
 
 /// The second line of a tool: climb, slopes, how fast, what of its feeds is in no material.
@@ -73,9 +76,8 @@ std::string more_text(const EngagementOfTool& tool) {
   if (sums.cut_s > 0)
     add(trf("{:.3g} mm3/s on average, {:.3g} at most", sums.rate_mm3_per_s(),
             sums.rate_most_mm3_per_s));
-  if (tool.air_mm > 0 && tool.feed_mm > 0)
-    add(trf("{:.0f} % of its feeds in air, {:.1f} s", 100 * tool.air_mm / tool.feed_mm,
-            tool.air_s));
+  if (const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s); !air.empty())
+    add(air);
   return out.empty() ? out : std::string(10, ' ') + out + "\n";
 }
 

@@ -106,8 +106,10 @@ void CutLoads::take(const Part& part) {
   close_air();
   tool_->cut_s += part.way.seconds;
   judge_way(part);
-  if (tool_->teeth == 0 || rpm_ <= 0) return;
-  const double feed_mm = part.way.length_mm / part.way.seconds * 60 / (rpm_ * tool_->teeth);
+  if (tool_->teeth == 0 || part.rpm <= 0) return;
+  const double mm_per_min =
+      std::min(part.way.length_mm / part.way.seconds * 60, part.most_mm_per_min);
+  const double feed_mm = mm_per_min / (part.rpm * tool_->teeth);
   if (tool_->traits.most_chip_mm && feed_mm > *tool_->traits.most_chip_mm * kOver)
     note(kChip, part, feed_mm, {});
   part.look.is_plunge ? take_plunge(part, feed_mm) : take_cut(part, feed_mm);
@@ -147,8 +149,8 @@ void CutLoads::judge_way(const Part& part) {
 void CutLoads::take_plunge(const Part& part, double feed_mm) {
   ToolLoads& loads = *tool_->loads;
   const DrillingCut cut{2 * tool_->radius_mm, tool_->teeth, tool_->point_deg,
-                        feed_mm * tool_->teeth, rpm_};
-  loads.speed_m_per_min.add(kPi * cut.diameter_mm * rpm_ / 1000, part.way.seconds, part.source);
+                        feed_mm * tool_->teeth, part.rpm};
+  loads.speed_m_per_min.add(kPi * cut.diameter_mm * part.rpm / 1000, part.way.seconds, part.source);
   if (!wish_.material) {
     loads.chip_mm.add(feed_mm * std::sin(cut.point_deg / 2 / kDegrees), part.way.seconds,
                       part.source);
@@ -164,10 +166,10 @@ void CutLoads::take_cut(const Part& part, double feed_mm) {
   ToolLoads& loads = *tool_->loads;
   // What goes down takes chips of the way that it goes sideways.
   const MillingCut cut{feed_mm * std::cos(part.way.down_rad), std::clamp(look.entry_rad, 0.0, kPi),
-                       std::clamp(look.exit_rad, 0.0, kPi), look.deep_mm, rpm_};
+                       std::clamp(look.exit_rad, 0.0, kPi), look.deep_mm, part.rpm};
   const Chip chip = chip_of(*tool_->profile, cut);
   loads.chip_mm.add(chip.most_mm, part.way.seconds, part.source);
-  const double speed = kPi * look.effective_mm * rpm_ / 1000;
+  const double speed = kPi * look.effective_mm * part.rpm / 1000;
   loads.speed_m_per_min.add(speed, part.way.seconds, part.source);
   if (!wish_.material) return;
   if (chip.most_mm < kLeastChip_mm.high) note(kThin, part, -chip.most_mm, {}, chip.most_mm);

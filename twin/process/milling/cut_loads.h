@@ -30,17 +30,14 @@ class CutLoads {
   void set_wish(const CuttingWish& wish) { wish_ = wish; }
 
   void mount(const Cutter& cutter, int tool);
-  struct Spindle {
-    double rpm = 0;  ///< 0: it stands
-  };
-  /// Of the motion whose parts come next.
-  void begin(const Spindle& spindle) { rpm_ = spindle.rpm; }
   struct Part {
     EngagementLook look;
     EngagedWay way;
     SourceRef source;
     double start_s = 0;
     Vec3 from_mm{0};
+    double rpm = 0;              ///< 0: the spindle stands
+    double most_mm_per_min = 0;  ///< the speed that its motion reaches
   };
   void take(const Part& part);
   /// The program is over: what is wrong.
@@ -115,7 +112,6 @@ class CutLoads {
   CuttingWish wish_;
   std::vector<Tool> tools_;
   Tool* tool_ = nullptr;
-  double rpm_ = 0;
   double feed_s_ = 0, air_s_ = 0;
   AirWay air_;
   std::vector<AirWay> longest_air_;  ///< five at most, the longest first

@@ -20,6 +20,8 @@ constexpr double kLeastStep = 0.1;
 constexpr double kThinnestFilm_mm = 2e-4;
 /// Four cells whose heights differ by more cells than that have a wall between them.
 constexpr double kWallCells = 3;
+/// So much of a cell is no even surface between four of them: there is an edge.
+constexpr double kTwistCells = 0.05;
 /// So far ahead of the rim, as part of the radius, is what is asked about: what the move before has
 /// left is right at it. A hundredth of that is beside a wall, and in none.
 constexpr double kAhead = 1.0 / 200, kMargin = kAhead / 100, kLeastMargin_mm = 4e-5;
@@ -122,7 +124,8 @@ double EngagementScan::behind_itself(const Vec2& point, double height) const {
 }
 
 /// A move that has made one of the low cells about there has cut the point, too; or the one that is
-/// held back. Cells that no move has made are as they are.
+/// held back. Cells that no known move has made are as
+/// they are.
 bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) const {
   const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
   if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
@@ -134,7 +137,7 @@ bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) con
     for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
       if (!is_low(x, y)) continue;
       const std::uint32_t number = owners_->present_cut_id(x, y);
-      if (number == MeshPatch::kNotCut || number == asked) continue;
+      if (number == asked || !ways_->knows(number)) continue;
       asked = number;
       if (ways_->covers(number, point, z, margin)) return true;
     }
@@ -175,8 +178,30 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
   return (own > least ? own : highest) - z;
 }
 
+/// How high the moves that made the four cells about a place have left it; where one of them is of
+/// no move, as high as that at most.
+double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
+  double height = kNeverEnds, highest = -kNeverEnds;
+  std::uint32_t asked = MeshPatch::kNotCut;
+  for (int n = 0; n < 4; ++n) {
+    const int x = i + n % 2, y = j + n / 2;
+    const auto own = static_cast<double>(heights_->height(x, y));
+    highest = std::max(highest, own);
+    const std::uint32_t number = owners_->present_cut_id(x, y);
+    if (!ways_->knows(number)) {
+      height = std::min(height, own);
+    } else if (number != asked) {
+      height = std::min(height, ways_->height_mm(number, point));
+      asked = number;
+    }
+  }
+  height = std::min(height, highest);
+  return behind_itself(point, behind_held(point, height));
+}
+
 /// Material over the cutter's surface, which between four cells is what it is at these: what this
-/// cutter has cut itself has nothing, however coarse they are. At walls the nearest cell counts.
+/// cutter has cut itself has nothing, however coarse they are. At walls and edges the moves that
+/// made them are asked, or (where nobody knows them) the nearest cell counts.
 double EngagementScan::over_surface(const Station& station, const Vec2& point) const {
   const Box& box = heights_->bounds_mm();
   const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
@@ -205,8 +230,16 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
     highest = std::max(highest, height), lowest = std::min(lowest, height);
   }
   const double right = x - 0.5 - i, up = y - 0.5 - j;
-  if (highest - lowest > kWallCells * cell_)
-    return depth[(right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2)];
+  const bool is_wall = highest - lowest > kWallCells * cell_;
+  const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
+  if (owners_ != nullptr && (is_wall || twist > kTwistCells * cell_)) {
+    const double scaled =
+        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    const double part = scaled - static_cast<double>(k);
+    return left_by_owners(point, i, j) - tip - (lift_[k] + part * (lift_[k + 1] - lift_[k]));
+  }
+  if (is_wall) return depth[(right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2)];
   return (1 - up) * ((1 - right) * depth[0] + right * depth[1]) +
          up * ((1 - right) * depth[2] + right * depth[3]);
 }

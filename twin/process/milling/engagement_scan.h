@@ -184,6 +184,7 @@ class EngagementScan {
   bool is_cut_there(const Vec2& point, double z, int i, int j) const;
   double over_surface(const Station& station, const Vec2& point) const;
   double behind_itself(const Vec2& point, double height) const;
+  double left_by_owners(const Vec2& point, int i, int j) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
   Station station_at(double part) const;
   Vec2 before_rim(const Station& station, double angle) const;

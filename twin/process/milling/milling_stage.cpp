@@ -171,7 +171,8 @@ bool MillingStage::mount_for(const Motion& m) {
   if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
     engagement_->hear_by([this](const EngagementLog::Part& part) {
-      loads_.take({part.look, part.way, part.source, part.start_s, part.move->from_mm});
+      load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,
+                             part_rpm_, part_mm_per_min_});
     });
   }
   if (engagement_ && mounted_->cutter) engagement_->mount(mounted_->number, cutting());
@@ -388,6 +389,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
     const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
     flight.duration_s = step.duration_s * share;
     in_flight_.push_back(flight);
+    flight.parts = 0;
     pieces_.after(move, by);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
@@ -424,6 +426,7 @@ void MillingStage::collect_reports() {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     const CutReport& report = reports_[i];
     const InFlight& move = in_flight_[i];
+    take_loads(move, report);
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
     site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);

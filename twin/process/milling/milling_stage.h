@@ -81,11 +81,14 @@ class MillingStage final : public Process {
     std::uint32_t pass = EngagementLog::kNoPass;
     double engaged_mm = 0, engaged_s = 0;  ///< of it, in material
     double rpm = 0;                        ///< of a spindle that turns
-    double feed_per_tooth_mm = 0;          ///< 0: not known
+    double feed_per_tooth_mm = 0;          ///< at most; 0: not known
+    double mean_per_tooth_mm = 0;
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
-    bool reversed = false;  ///< the spindle runs anticlockwise
+    std::size_t parts = 0;  ///< of load_parts_, those of its motion, with the first of its moves
+    bool bounds_parts = false;  ///< it is the only one
+    bool reversed = false;      ///< the spindle runs anticlockwise
   };
   /// The deepest place of a tool's feed moves, where they come near the workpiece.
   struct Deepest {
@@ -121,6 +124,7 @@ class MillingStage final : public Process {
   void note_contact(const CheckedMove& move);
   void note_depth(const Motion& motion, const TimedStep& step);
   void report_coarse_cells();
+  void take_loads(const InFlight& move, const CutReport& report);
   void report_reversed(const InFlight& move, int tool);
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
@@ -153,6 +157,10 @@ class MillingStage final : public Process {
   LoadMeter load_meter_;
   std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
   CutLoads loads_;
+  /// Of moves whose reports have not come.
+  std::vector<CutLoads::Part> load_parts_;
+  std::size_t load_parts_taken_ = 0;
+  double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
   std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
   LengthCheck lengths_;
   FilmEvents films_;

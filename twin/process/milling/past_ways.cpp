@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "base/golden_section.h"
 
 namespace kerf {
 namespace {
 
-constexpr std::size_t kReaches = 256;
+constexpr std::size_t kReaches = 1024;
 constexpr double kLevel_mm = 1e-9;
-constexpr int kSlopeSteps = 20;
+constexpr int kSlopeSteps = 20, kHeightSteps = 14;
+constexpr double kNotThere = std::numeric_limits<double>::infinity();
 /// An arc's ends may differ so much in their distance from its centre.
 constexpr double kRound_mm = 1e-3;
 
@@ -19,6 +21,15 @@ double between(const std::vector<double>& table, double part) {
   const double scaled = std::clamp(part, 0.0, 1.0) * static_cast<double>(table.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(scaled), table.size() - 2);
   return table[k] + (scaled - static_cast<double>(k)) * (table[k + 1] - table[k]);
+}
+
+bool is_ball_end(const Cutter& cutter) {
+  const double radius = cutter.radius_mm();
+  for (const double part : {0.2, 0.5, 0.8, 0.99}) {
+    const double ball = radius * (1 - std::sqrt(1 - part * part));
+    if (std::abs(cutter.height_mm(part * radius) - ball) > 1e-9 * radius) return false;
+  }
+  return true;
 }
 
 /// The angle of a point of a circle from where an arc begins, in its sense: 0 .. 2 pi.
@@ -61,6 +72,7 @@ void PastWays::mount(const Cutter& cutter) {
         cutter.height_mm(tool.radius_mm * (1 - 1e-12) * (static_cast<double>(k) / kReaches)));
   tool.high_mm = tool.lift.back();
   tool.is_flat = tool.high_mm <= 0;
+  tool.is_ball = !tool.is_flat && is_ball_end(cutter);
   for (std::size_t k = 0; k <= kReaches && !tool.is_flat; ++k) {
     const double part = static_cast<double>(k) / kReaches, high = part * part * tool.high_mm;
     double low = 0, wide = tool.radius_mm;
@@ -140,6 +152,76 @@ bool PastWays::line_covers(const Way& way, const Vec2& point, double z_mm, doubl
     return z + rise * t + tool.lift_mm(std::max(0.0, distance(t) - margin_mm));
   };
   return golden_section(low_at, first, last, kSlopeSteps).least <= z_mm + margin_mm;
+}
+
+double PastWays::height_mm(std::uint32_t number, const Vec2& point) const {
+  double low = kNotThere;
+  if (number >= last_.size()) return low;
+  int asked = 0;
+  for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
+    const Way& way = ways_[n];
+    low = std::min(low, way.arc == kNone ? line_height(way, point) : arc_height(way, point));
+    ++asked;
+  }
+  return low;
+}
+
+double PastWays::line_height(const Way& way, const Vec2& point) const {
+  const Tool& tool = tools_[way.tool];
+  const Vec2 from(static_cast<double>(way.from[0]), static_cast<double>(way.from[1]));
+  const Vec2 along = Vec2(static_cast<double>(way.to[0]), static_cast<double>(way.to[1])) - from;
+  const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
+  const Vec2 arm = point - from;
+  const double length2 = glm::dot(along, along), radius = tool.radius_mm;
+  const double nearest = length2 > 0 ? glm::dot(arm, along) / length2 : 0;
+  const auto surface = [&](double t) {
+    const double distance = glm::length(arm - t * along);
+    return distance > radius ? kNotThere : z + rise * t + tool.lift_mm(distance);
+  };
+  if (std::abs(rise) < kLevel_mm || length2 == 0)
+    return length2 == 0 ? std::min(surface(0), surface(0) + rise)
+                        : surface(std::clamp(nearest, 0.0, 1.0));
+  const Vec2 beside = arm - nearest * along;
+  const double half2 = radius * radius - glm::dot(beside, beside);
+  if (half2 < 0) return kNotThere;
+  const double length = std::sqrt(length2), half = std::sqrt(half2) / length;
+  const double first = std::max(0.0, nearest - half), last = std::min(1.0, nearest + half);
+  if (first > last) return kNotThere;
+  if (tool.is_flat) return z + rise * (rise < 0 ? last : first);
+  // A ball is lowest where its sphere, cut along the way, leans as the way does.
+  const double slope = rise / length;
+  if (tool.is_ball)
+    return surface(std::clamp(nearest - slope * half / std::hypot(1.0, slope), first, last));
+  return golden_section(surface, first, last, kHeightSteps).least;
+}
+
+double PastWays::arc_height(const Way& way, const Vec2& point) const {
+  const Tool& tool = tools_[way.tool];
+  const Arc& arc = arcs_[way.arc];
+  const Vec2 arm = point - arc.center;
+  const double out = glm::length(arm), sweep = std::abs(arc.sweep), radius = tool.radius_mm;
+  const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
+  if (std::abs(out - arc.radius) > radius) return kNotThere;
+  const double at = behind_start(std::atan2(arm.y, arm.x), arc.start, arc.sweep);
+  const auto surface = [&](double angle) {
+    const double distance = std::sqrt(std::max(
+        0.0, out * out + arc.radius * arc.radius - 2 * out * arc.radius * std::cos(angle - at)));
+    return distance > radius ? kNotThere : z + rise * angle / sweep + tool.lift_mm(distance);
+  };
+  if (std::abs(rise) < kLevel_mm)
+    return at <= sweep ? surface(at) : std::min(surface(0), surface(sweep));
+  const double cosine = (out * out + arc.radius * arc.radius - radius * radius) /
+                        std::max(2 * out * arc.radius, 1e-12);
+  const double half = std::acos(std::clamp(cosine, -1.0, 1.0));
+  double low = kNotThere;
+  for (int turn = -1; turn * 2 * kPi + at - half <= sweep; ++turn) {
+    const double middle = at + turn * 2 * kPi;
+    const double first = std::max(0.0, middle - half), last = std::min(sweep, middle + half);
+    if (first > last) continue;
+    low = std::min(low, tool.is_flat ? z + rise * (rise < 0 ? last : first) / sweep
+                                     : golden_section(surface, first, last, kHeightSteps).least);
+  }
+  return low;
 }
 
 bool PastWays::arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const {

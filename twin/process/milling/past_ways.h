@@ -26,9 +26,13 @@ class PastWays {
   void mount(const Cutter& cutter);
   /// Lines, and arcs about Z. Others are left out, and cover nothing.
   void add(const CutMove& move);
+  bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
   /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
+  /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
+  /// slope that is of neither a flat tool nor a ball 200.
+  double height_mm(std::uint32_t number, const Vec2& point) const;
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -36,7 +40,7 @@ class PastWays {
   struct Tool {
     std::string spec;
     double radius_mm = 0;
-    bool is_flat = false;
+    bool is_flat = false, is_ball = false;
     double high_mm = 0;          ///< where it is as wide as it gets
     std::vector<double> radius;  ///< over the height, 0 .. high_mm
     double reach_mm(double above_tip_mm) const;
@@ -57,6 +61,8 @@ class PastWays {
   bool covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
+  double line_height(const Way& way, const Vec2& point) const;
+  double arc_height(const Way& way, const Vec2& point) const;
 
   std::vector<Way> ways_;
   std::vector<Arc> arcs_;

@@ -45,9 +45,7 @@ TurningStage::TurningStage(ProcessSite& site)
       speeds_(log_),
       stops_(*stock_.turned(), log_),
       threads_(*stock_.turned(), log_),
-      fallen_before_(stock_.turned()->part().freed().size()) {
-  if (site_.engagement) site_.engagement->begin(stock_);
-}
+      fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
   checks_.set_options(options);
@@ -482,6 +480,8 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
 
 /// Threads are fed by their lead, and driven tools mill: of neither is it measured.
 void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const TurnCut& piece) {
+  if (!engagement_begun_) site_.engagement->begin(stock_);
+  engagement_begun_ = true;
   TurnedWay way;
   way.length_mm = path_length_mm(m);
   if (m.kind == MotionKind::kThread || tap_lead_mm_ != 0 || is_driven()) {

@@ -122,7 +122,8 @@ class TurningStage final : public Process {
   FloatingTap floating_;
   double tap_lead_mm_ = 0;  ///< of the present motion, if the tool is a tap; else 0
   bool touched_ = false;
-  bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
+  bool engagement_begun_ = false;  ///< ProcessSite::engagement knows the workpiece
+  bool behind_feed_ = false;       ///< the last motion that went anywhere was a feed
 };
 
 }  // namespace kerf

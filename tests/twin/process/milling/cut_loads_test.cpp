@@ -37,13 +37,19 @@ class CutLoadsTest : public testing::Test {
     loads_.emplace(log_);
     loads_->set_wish(wish);
     loads_->mount(parse_shape(shape).value(), 1);
-    loads_->begin({rpm});
+    rpm_ = rpm;
     take(look, seconds);
   }
   /// At F400.
   void take(const EngagementLook& look, double seconds, double down_rad = 0) {
     ++line_;
-    loads_->take({look, {seconds * 400 / 60, seconds, down_rad}, {0, line_}, time_s_, Vec3(line_)});
+    loads_->take({look,
+                  {seconds * 400 / 60, seconds, down_rad},
+                  {0, line_},
+                  time_s_,
+                  Vec3(line_),
+                  rpm_,
+                  400});
     time_s_ += seconds;
   }
   std::string told() {
@@ -59,7 +65,7 @@ class CutLoadsTest : public testing::Test {
   FindingLog log_;
   std::optional<CutLoads> loads_;
   std::uint32_t line_ = 0;
-  double time_s_ = 0;
+  double time_s_ = 0, rpm_ = 0;
 };
 
 /// 4 teeth, S2000, F400: 0.05 mm a tooth.
