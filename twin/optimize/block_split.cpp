@@ -117,6 +117,12 @@ std::string block_to(const NcLine& line, const TracedMotion& motion, double shar
   return out;
 }
 
+/// As the block has it.
+std::string feed_word(const NcLine& line) {
+  const std::string_view number = line.text.substr(line.feed_at, line.feed_end - line.feed_at);
+  return fmt::format("{}{}{}", line.is_spaced ? " " : "", line.is_lower ? 'f' : 'F', number);
+}
+
 /// Words of axes that lead where the motion goes: no rotation, no offset of the axes' own.
 bool names_all_ways(const NcLine& line, const TracedMotion& motion) {
   WordScanner scanner(line.text);
@@ -175,6 +181,8 @@ SplitText split_blocks(const NcText& text, std::span<const SurveyedMotion> motio
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
       done_mm += pieces[i].length_mm;
       before += block_to(line, way, done_mm / whole_mm);
+      // The feed that the block says counts from its beginning on.
+      if (i == 0 && line.feed == NcLine::Feed::kNumber) before += feed_word(line);
       before += line.text.ends_with('\r') ? "\r\n" : "\n";
     }
     edits[number].before = std::move(before);

@@ -44,7 +44,7 @@ TEST(SplitBlocks, EndsPiecesWhereAnotherFeedIsWanted) {
   // In the air, entering, in a slot, beside a wall, leaving it.
   const std::vector<SurveyedPart> parts{part(15, 0), part(45, 100, 5), part(60, 300, 0, 5)};
   EXPECT_EQ(divided(kHead + "G1 X110 F200 (all)\n", parts),
-            kHead + "G1 X5\nG1 X10\nG1 X50\nG1 X105\nG1 X110 F200 (all)\n");
+            kHead + "G1 X5 F200\nG1 X10\nG1 X50\nG1 X105\nG1 X110 F200 (all)\n");
   EXPECT_EQ(divided(kHead + "x110\r\n", parts), kHead + "x5\r\nx10\r\nx50\r\nx105\r\nx110\r\n");
 }
 
