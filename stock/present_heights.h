@@ -1,8 +1,10 @@
 // stock/present_heights.h - the heights of a model, for a look between two cuts.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
+#include "base/mesh_patch.h"
 #include "surface/height_grid.h"
 
 namespace kerf {
@@ -15,6 +17,9 @@ class PresentHeights {
   virtual ~PresentHeights() = default;
   /// None where heights do not say all (gaps below them).
   virtual std::optional<HeightGrid> present_heights() const = 0;
+  /// The move that lowered a cell of these last (StockModel::keep_cut_ids()); MeshPatch::kNotCut:
+  /// none, or nobody keeps them.
+  virtual std::uint32_t present_cut_id(int i, int j) const = 0;
 };
 
 }  // namespace kerf

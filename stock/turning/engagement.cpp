@@ -45,6 +45,7 @@ void Engagement::join(const Engagement& other) {
   way_mm = std::max(way_mm, other.way_mm);
   for (std::size_t i = 0; i < side_mm.size(); ++i)
     side_mm[i] = std::max(side_mm[i], other.side_mm[i]);
+  if (other.edge_mm > edge_mm) edge_mm = other.edge_mm, edge_across_mm = other.edge_across_mm;
 }
 
 void Engagement::extend(const Engagement& other) {
@@ -170,7 +171,12 @@ Engagement EngagementGauge::measure(const ConvexCut& cut, const GridPart::Lead& 
     for (std::size_t k = 0; k < lead.sides.size(); ++k) {
       const double met =
           std::min(span.high, lead.across[k + 1]) - std::max(span.low, lead.across[k]);
-      if (met > 0) engagement.side_mm[static_cast<std::size_t>(lead.sides[k])] += met / kUnitsPerMm;
+      if (met <= 0) continue;
+      engagement.side_mm[static_cast<std::size_t>(lead.sides[k])] += met / kUnitsPerMm;
+      const double slope =
+          (lead.along[k + 1] - lead.along[k]) / (lead.across[k + 1] - lead.across[k]);
+      engagement.edge_across_mm += met / kUnitsPerMm;
+      engagement.edge_mm += met / kUnitsPerMm * std::hypot(1.0, slope);
     }
   }
   return engagement;

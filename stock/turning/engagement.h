@@ -23,11 +23,14 @@ struct Engagement {
   double way_mm = 0;     ///< how long the front was in material
   double first = 0;      ///< share of the way after which it first was
   std::array<double, kInsertSides> side_mm{};  ///< width of material that edges of that side met
+  /// Edges that met material over the way: how long they are, and how wide across the way.
+  double edge_mm = 0, edge_across_mm = 0;
   /// Of ways one after the other: the width that front and back flank met at once, the lesser of
   /// the two.
   double flanks_mm = 0;
 
-  /// With another part of the tool on the same way: all is the greatest, `first` the least.
+  /// With another part of the tool on the same way: all is the greatest, `first` the least; edges
+  /// are those of the longer one.
   void join(const Engagement& other);
   /// Of a way that goes on: widths are the greatest, lengths add up.
   void extend(const Engagement& other);

@@ -210,6 +210,8 @@ TurnCut TurnedPart::cut(const TurningTool& tool, const TurnMove& move) {
   report.depth_mm = engagement.across_mm;
   report.way_mm = engagement.way_mm;
   report.side_mm = engagement.side_mm;
+  report.edge_mm = engagement.edge_mm;
+  report.edge_across_mm = engagement.edge_across_mm;
   report.flanks_mm = engagement.flanks_mm;
   drop_free_pieces(move.id);
   return report;

@@ -87,13 +87,19 @@ struct TurnCut {
   /// The width that front and back flank came to at once, the lesser of the two: one leads, and the
   /// other one trails.
   double flanks_mm = 0;
+  /// Cutting edges that met material: their length, and how wide they are across the way. What goes
+  /// f along its way in a turn takes chips of f * edge_across_mm / edge_mm on the average: f by the
+  /// sine of the lead angle of a straight edge.
+  double edge_mm = 0, edge_across_mm = 0;
 
-  /// With another part of the same motion: volumes and lengths add up, widths are the greatest.
+  /// With another part of the same motion: volumes and lengths add up, widths are the greatest,
+  /// edges those of the part where they are longer.
   void extend(const TurnCut& other) {
     removed_mm3 += other.removed_mm3;
     way_mm += other.way_mm;
     depth_mm = std::max(depth_mm, other.depth_mm);
     flanks_mm = std::max(flanks_mm, other.flanks_mm);
+    if (other.edge_mm > edge_mm) edge_mm = other.edge_mm, edge_across_mm = other.edge_across_mm;
     for (std::size_t i = 0; i < kInsertSides; ++i)
       side_mm[i] = std::max(side_mm[i], other.side_mm[i]);
   }

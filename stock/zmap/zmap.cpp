@@ -131,6 +131,11 @@ void ZMap::keep_cut_ids(bool keep) {
   impl_->grid().keep_cut_ids(keep);
 }
 
+std::uint32_t ZMap::present_cut_id(int i, int j) const {
+  const TileGrid& grid = impl_->grid();
+  return grid.keeps_cut_ids() ? grid.cut_id(i, j) : MeshPatch::kNotCut;
+}
+
 bool ZMap::keeps_cut_ids() const { return impl_->grid().keeps_cut_ids(); }
 
 std::optional<std::uint32_t> ZMap::cut_id_at(const Vec3& point_mm) const {

@@ -85,6 +85,7 @@ class ZMap final : public StockModel,
   std::unique_ptr<SparseSurface> sparse_surface(const SparseOptions& options) const override;
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
+  std::uint32_t present_cut_id(int i, int j) const override;
   ColumnLayout column_layout() const override;
   bool has_heights_only() const override { return true; }
   std::uint64_t column_version(std::uint32_t tile) const override;

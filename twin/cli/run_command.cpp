@@ -154,10 +154,11 @@ StdinProgram::Listings listings_of(const SessionOptions& session) {
 }
 
 /// The session tells it of its motions; null, with a diagnostic, if it cannot be written.
-std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinProgram& kept,
+std::unique_ptr<MotionTable> begin_table(const RunRequest& request, const StdinProgram& kept,
                                          Session& session, Diagnostics& diagnostics) {
   auto begun = MotionTable::create(
-      path, [&kept](std::string text) { return kept.renamed(std::move(text)); });
+      request.outputs.csv, [&kept](std::string text) { return kept.renamed(std::move(text)); },
+      request.engagement);
   if (!begun) {
     diagnostics.push_back(general_error(begun.error()));
     return nullptr;
@@ -168,12 +169,10 @@ std::unique_ptr<MotionTable> begin_table(const std::string& path, const StdinPro
 
 /// Where there is none to be measured.
 void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
-  if (!stock.sheet() && !stock.turned()) return;
+  if (!stock.sheet()) return;
   Diagnostic d;
   d.severity = Severity::kWarning;
-  d.message = stock.sheet()
-                  ? tr("--engagement: a sheet is cut by no milling tool; nothing is measured")
-                  : tr("--engagement: the workpiece turns; it is measured of milling tools alone");
+  d.message = tr("--engagement: a sheet is cut by no milling tool; nothing is measured");
   diagnostics.push_back(std::move(d));
 }
 
@@ -220,7 +219,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   rename_stdin(kept, session ? session->report() : none, diagnostics);
   std::unique_ptr<MotionTable> table;
   if (session && !request.outputs.csv.empty()) {
-    table = begin_table(request.outputs.csv, kept, *session, diagnostics);
+    table = begin_table(request, kept, *session, diagnostics);
     if (!table) session.reset();
   }
   if (session && (request.compare.is_wanted() || request.keeps_moves)) session->keep_moves();

@@ -15,20 +15,24 @@ namespace {
 constexpr std::size_t kMapMoves = 512;
 /// Names of cuts that a map can tell apart.
 constexpr std::size_t kMostCuts = 0xffff'fff0;
+/// A rate is one over so much of the tool's diameter of the way, or a whole move.
+constexpr double kWindowOfDiameter = 0.25;
 
 }  // namespace
 
 void EngagementLog::begin(const StockModel& stock) {
   passes_.clear();
   tools_.clear();
+  turned_.clear();
   tool_of_pass_.clear();
   angles_.assign(1, 0.0f);
   moves_.clear();
   cutter_.reset();
   is_open_ = false;
+  window_ = {};
   unmeasured_mm_ = unmeasured_mm3_ = 0;
   heights_.reset();
-  if (!with_map_) return;
+  if (!with_map_ || stock.turned() != nullptr) return;
   ZMapOptions options;
   BlankBody body;
   body.bounds_mm = stock.bounds_mm();
@@ -72,29 +76,34 @@ bool EngagementLog::goes_on(const CutMove& last, const CutMove& next) const {
 void EngagementLog::end_pass() { is_open_ = false; }
 
 std::uint32_t EngagementLog::add(const Part& part) {
+  EngagementOfTool& of_tool = tools_[tool_];
+  of_tool.feed_mm += part.way.length_mm;
+  of_tool.feed_s += part.way.seconds;
   if (!part.look.is_engaged()) {
-    gap_mm_ += part.length_mm;
-    if (gap_mm_ > tools_[tool_].diameter_mm) is_open_ = false;
+    of_tool.air_mm += part.way.length_mm;
+    of_tool.air_s += part.way.seconds;
+    gap_mm_ += part.way.length_mm;
+    if (gap_mm_ > of_tool.diameter_mm) is_open_ = false;
     return is_open_ ? static_cast<std::uint32_t>(passes_.size() - 1) : kNoPass;
   }
   if (!is_open_) {
     EngagementPass pass;
-    pass.tool = tools_[tool_].tool;
+    pass.tool = of_tool.tool;
     pass.from = part.source;
     pass.start_s = part.start_s;
     passes_.push_back(pass);
     tool_of_pass_.push_back(tool_);
-    ++tools_[tool_].passes;
+    ++of_tool.passes;
     is_open_ = true;
   }
   gap_mm_ = 0;
   EngagementPass& pass = passes_.back();
   pass.to = part.source;
-  pass.sums.add(part.look, part.length_mm);
+  pass.sums.add(part.look, part.way);
   const auto angle = static_cast<float>(part.look.angle_rad);
   if (!moves_.empty() && angles_.back() == angle && goes_on(moves_.back(), *part.move)) {
     moves_.back().to_mm = part.move->to_mm;
-  } else if (cutter_ && angles_.size() < kMostCuts) {
+  } else if (cutter_ && part.move->is_vertical() && angles_.size() < kMostCuts) {
     moves_.push_back(*part.move);
     moves_.back().id = angles_.size();
     angles_.push_back(angle);
@@ -103,12 +112,31 @@ std::uint32_t EngagementLog::add(const Part& part) {
   return static_cast<std::uint32_t>(passes_.size() - 1);
 }
 
-void EngagementLog::add_removed(std::uint32_t pass, double mm3) {
+void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds) {
   if (pass == kNoPass) {
     unmeasured_mm3_ += mm3;
-  } else {
-    passes_[pass].sums.removed_mm3 += mm3;
+    return;
   }
+  EngagementSums& sums = passes_[pass].sums;
+  sums.removed_mm3 += mm3;
+  if (window_.pass != pass) window_ = {pass, 0, 0, 0};
+  window_.mm3 += mm3, window_.mm += way_mm, window_.seconds += seconds;
+  const double least_mm = kWindowOfDiameter * tools_[tool_of_pass_[pass]].diameter_mm;
+  if (window_.mm < least_mm || window_.seconds <= 0) return;
+  sums.rate_most_mm3_per_s = std::max(sums.rate_most_mm3_per_s, window_.mm3 / window_.seconds);
+  window_ = {};
+}
+
+void EngagementLog::add_turned(int tool, const Cutter& cutter, const TurnedWay& way) {
+  auto found = std::find_if(turned_.begin(), turned_.end(), [&](const TurningEngagement& other) {
+    return other.tool == tool && other.shape == cutter.spec();
+  });
+  if (found == turned_.end()) {
+    TurningEngagement first;
+    first.tool = tool, first.shape = cutter.spec();
+    found = turned_.insert(turned_.end(), std::move(first));
+  }
+  found->add(way);
 }
 
 EngagementMap EngagementLog::map() const {
@@ -132,11 +160,18 @@ EngagementMap EngagementLog::map() const {
 
 Engagement EngagementLog::result() {
   cut_map();
+  // A short pass is one rate.
+  for (EngagementPass& pass : passes_) {
+    if (pass.sums.rate_most_mm3_per_s == 0)
+      pass.sums.rate_most_mm3_per_s = pass.sums.rate_mm3_per_s();
+  }
   Engagement out;
   out.tools = tools_;
   for (std::size_t n = 0; n < passes_.size(); ++n)
     out.tools[tool_of_pass_[n]].sums.add(passes_[n].sums);
   std::erase_if(out.tools, [](const EngagementOfTool& tool) { return tool.passes == 0; });
+  out.turned = turned_;
+  std::erase_if(out.turned, [](const TurningEngagement& tool) { return tool.cut_mm <= 0; });
   out.passes_in_all = passes_.size();
   out.unmeasured_mm = unmeasured_mm_;
   out.unmeasured_mm3 = unmeasured_mm_ > 0 ? unmeasured_mm3_ : 0;

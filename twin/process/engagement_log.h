@@ -34,7 +34,7 @@ class EngagementLog {
   struct Part {
     EngagementLook look;
     const CutMove* move = nullptr;  ///< the part alone
-    double length_mm = 0;
+    EngagedWay way;
     SourceRef source;
     double start_s = 0;
   };
@@ -42,8 +42,12 @@ class EngagementLog {
   std::uint32_t add(const Part& part);
   /// A feed move whose engagement nobody knows.
   void add_unmeasured(double length_mm) { unmeasured_mm_ += length_mm; }
-  /// What a move of that pass has removed.
-  void add_removed(std::uint32_t pass, double mm3);
+  /// What a move of that pass has removed, on so much of its way and time as it was in material
+  /// (EngagementSums::in_material_mm(), cut_s).
+  void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds);
+
+  /// A part of a feed move of a turning tool.
+  void add_turned(int tool, const Cutter& cutter, const TurnedWay& way);
 
   /// The run is over.
   Engagement result();
@@ -61,10 +65,16 @@ class EngagementLog {
   std::vector<CutReport> reports_;
   std::vector<EngagementPass> passes_;
   std::vector<EngagementOfTool> tools_;
+  std::vector<TurningEngagement> turned_;
   std::vector<std::uint32_t> tool_of_pass_;
   std::uint32_t tool_ = 0;
   bool is_open_ = false;
   double gap_mm_ = 0;  ///< since the pass was last in material
+  /// Moves of a pass whose removal is known, until they are long enough for a rate.
+  struct Window {
+    std::uint32_t pass = kNoPass;
+    double mm3 = 0, mm = 0, seconds = 0;
+  } window_;
   double unmeasured_mm_ = 0, unmeasured_mm3_ = 0;
 };
 

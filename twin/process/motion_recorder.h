@@ -7,6 +7,7 @@
 
 #include "interp_bridge/motion.h"
 #include "twin/machine/timeline.h"
+#include "twin/process/engagement.h"
 
 namespace kerf {
 
@@ -23,6 +24,9 @@ class MotionRecorder {
   /// A move of that motion has been cut, of which there may be several. Numbers do not fall. Also
   /// of motions that are not reported on, which on_step() has not told of.
   virtual void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) = 0;
+  /// How the tool was engaged on that motion, or a part of it, of which there may be several:
+  /// before it is cut. Only where that is measured, and of motions of which it could be.
+  virtual void on_engaged(std::uint64_t /*number*/, const EngagementSums& /*sums*/) {}
 };
 
 /// Several, each told what all are told.
@@ -42,6 +46,9 @@ class MotionRecorders final : public MotionRecorder {
   }
   void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override {
     for (MotionRecorder* const each : all_) each->on_cut(number, removed_mm3, depth_mm);
+  }
+  void on_engaged(std::uint64_t number, const EngagementSums& sums) override {
+    for (MotionRecorder* const each : all_) each->on_engaged(number, sums);
   }
 
  private:

@@ -12,17 +12,73 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / kPi;
 
+Json pair_of(double mean, double most) {
+  return Json{{"mean", rounded(mean)}, {"most", rounded(most)}};
+}
+
 void add_sums(Json& out, const EngagementSums& sums) {
   out["cut_mm"] = rounded(sums.cut_mm);
   out["plunge_mm"] = rounded(sums.plunge_mm);
   out["full_slot_mm"] = rounded(sums.full_mm);
-  const auto pair = [](double mean, double most) {
-    return Json{{"mean", rounded(mean)}, {"most", rounded(most)}};
-  };
-  out["ae_mm"] = pair(sums.mean(sums.wide_sum_mm2), sums.wide_most_mm);
-  out["angle_deg"] = pair(kDegrees * sums.mean(sums.angle_sum), kDegrees * sums.angle_most_rad);
-  out["ap_mm"] = pair(sums.mean(sums.deep_sum_mm2), sums.deep_most_mm);
+  out["ae_mm"] = pair_of(sums.mean(sums.wide_sum_mm2), sums.wide_most_mm);
+  out["angle_deg"] = pair_of(kDegrees * sums.mean(sums.angle_sum), kDegrees * sums.angle_most_rad);
+  out["ap_mm"] = pair_of(sums.mean(sums.deep_sum_mm2), sums.deep_most_mm);
+  out["climb_mm"] = rounded(sums.climb_mm);
+  out["ramp_mm"] = rounded(sums.ramp_mm);
+  out["ramp_most_deg"] = rounded(kDegrees * sums.ramp_most_rad);
+  out["contact_most_mm"] = rounded(sums.contact_most_mm);
+  out["effective_diameter_mm"] = rounded(sums.effective_most_mm);
+  out["cut_s"] = rounded(sums.cut_s);
   out["removed_mm3"] = rounded(sums.removed_mm3);
+  out["rate_mm3_per_s"] = pair_of(sums.rate_mm3_per_s(), sums.rate_most_mm3_per_s);
+}
+
+std::string air_text(double air_mm, double feed_mm, double air_s) {
+  if (air_mm <= 0 || feed_mm <= 0) return {};
+  return trf("{:.0f} % of its feeds in air, {:.1f} s", 100 * air_mm / feed_mm, air_s);
+}
+
+Json turned_row(const TurningEngagement& tool) {
+  return Json{{"tool", tool.tool},
+              {"shape", tool.shape},
+              {"cut_mm", rounded(tool.cut_mm)},
+              {"ap_mm", pair_of(tool.mean(tool.depth_sum_mm2), tool.depth_most_mm)},
+              {"feed_mm_per_rev", pair_of(tool.mean(tool.feed_sum), tool.feed_most_mm)},
+              {"chip_mm", pair_of(tool.mean(tool.chip_sum), tool.chip_most_mm)},
+              {"cut_s", rounded(tool.cut_s)},
+              {"removed_mm3", rounded(tool.removed_mm3)},
+              {"rate_mm3_per_s", pair_of(tool.rate_mm3_per_s(), tool.rate_most_mm3_per_s)},
+              {"feed_mm", rounded(tool.feed_mm)},
+              {"feed_s", rounded(tool.feed_s)},
+              {"air_mm", rounded(tool.air_mm)},
+              {"air_s", rounded(tool.air_s)}};
+}
+
+std::string turned_text(const TurningEngagement& tool) {
+  std::string out =
+      trf("T{}: {:.2f} mm deep on average, {:.2f} at most; {:.3f} mm a turn on average, "
+          "{:.3f} at most; chips of {:.3f} mm; {:.3g} mm3/s on average",
+          tool.tool, tool.mean(tool.depth_sum_mm2), tool.depth_most_mm, tool.mean(tool.feed_sum),
+          tool.feed_most_mm, tool.mean(tool.chip_sum), tool.rate_mm3_per_s());
+  const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s);
+  return out + (air.empty() ? "" : "; " + air) + "\n";
+}
+
+/// The second line of a tool: climb, slopes, how fast, what of its feeds is in no material.
+std::string more_text(const EngagementOfTool& tool) {
+  const EngagementSums& sums = tool.sums;
+  std::string out;
+  const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
+  if (sums.cut_mm > 0) add(trf("{:.0f} % in climb", 100 * sums.climb_mm / sums.cut_mm));
+  if (sums.ramp_mm > 0)
+    add(trf("{:.1f} mm down slopes of {:.1f} degrees at most", sums.ramp_mm,
+            kDegrees * sums.ramp_most_rad));
+  if (sums.cut_s > 0)
+    add(trf("{:.3g} mm3/s on average, {:.3g} at most", sums.rate_mm3_per_s(),
+            sums.rate_most_mm3_per_s));
+  if (const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s); !air.empty())
+    add(air);
+  return out.empty() ? out : std::string(10, ' ') + out + "\n";
 }
 
 }  // namespace
@@ -36,8 +92,13 @@ Json engagement_json(const Engagement& engagement, const std::vector<std::string
              {"diameter_mm", rounded(tool.diameter_mm)},
              {"passes", tool.passes}};
     add_sums(row, tool.sums);
+    row["feed_mm"] = rounded(tool.feed_mm);
+    row["feed_s"] = rounded(tool.feed_s);
+    row["air_mm"] = rounded(tool.air_mm);
+    row["air_s"] = rounded(tool.air_s);
     out["tools"].push_back(std::move(row));
   }
+  for (const TurningEngagement& tool : engagement.turned) out["tools"].push_back(turned_row(tool));
   out["passes"] = Json::array();
   for (const EngagementPass& pass : engagement.passes) {
     Json row;
@@ -72,16 +133,19 @@ std::string engagement_text(const Engagement& engagement) {
               share * sums.mean(sums.wide_sum_mm2), sums.deep_most_mm);
     if (sums.full_mm > 0) out += trf("; {:.0f} % in full slots", 100 * sums.full_mm / sums.cut_mm);
     if (sums.plunge_mm > 0) out += trf("; {:.1f} mm straight down", sums.plunge_mm);
-    out += "\n";
+    out += "\n" + more_text(tool);
     label = std::string(10, ' ');
   }
-  if (engagement.tools.empty() && engagement.unmeasured_mm <= 0)
-    out += label + tr("no tool was in material\n");
+  for (const TurningEngagement& tool : engagement.turned) {
+    out += label + turned_text(tool);
+    label = std::string(10, ' ');
+  }
+  const bool none = engagement.tools.empty() && engagement.turned.empty();
+  if (none && engagement.unmeasured_mm <= 0) out += label + tr("no tool was in material\n");
   if (engagement.unmeasured_mm > 0)
-    out += (engagement.tools.empty() ? label : std::string(10, ' ')) +
-           trf("not measured: {:.0f} mm of tilted or undercutting tools, or in a model that holds "
-               "more than heights\n",
-               engagement.unmeasured_mm);
+    out += label + trf("not measured: {:.0f} mm of undercutting tools, of tools that turn about on "
+                       "their way, or in a model that cannot be asked\n",
+                       engagement.unmeasured_mm);
   return out;
 }
 

@@ -9,10 +9,11 @@
 
 namespace kerf {
 
-/// tools and passes: tool, cut_mm, plunge_mm, full_slot_mm, removed_mm3, and mean and most of
-/// ae_mm, angle_deg, ap_mm; of tools shape, diameter_mm and the number of passes, of passes file,
-/// line, last_line and time_s. passes_total: in all, Engagement::kMostPasses of them are listed.
-/// unmeasured_mm, unmeasured_mm3.
+/// tools and passes: tool, cut_mm, plunge_mm, full_slot_mm, climb_mm, ramp_mm, ramp_most_deg,
+/// contact_most_mm, effective_diameter_mm, cut_s, removed_mm3, and mean and most of ae_mm,
+/// angle_deg, ap_mm, rate_mm3_per_s; of tools shape, diameter_mm, the number of passes, feed_mm,
+/// feed_s, air_mm and air_s, of passes file, line, last_line and time_s. passes_total: in all,
+/// Engagement::kMostPasses of them are listed. unmeasured_mm, unmeasured_mm3.
 nlohmann::ordered_json engagement_json(const Engagement& engagement,
                                        const std::vector<std::string>& files);
 

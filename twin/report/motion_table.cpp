@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::string_view kColumns =
     "line,file,type,x,y,z,a,b,c,u,v,w,feed_mm_per_min,feed_mm_per_rev,length_mm,start_s,"
-    "duration_s,tool,spindle_rpm,removed_mm3,depth_mm,removed_mm3_per_s\r\n";
+    "duration_s,tool,spindle_rpm,removed_mm3,depth_mm,removed_mm3_per_s";
+constexpr std::string_view kEngagementColumns =
+    ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s";
 /// Rows go to the file by so many bytes.
 constexpr std::size_t kTextBytes = std::size_t{1} << 16;
 
@@ -66,14 +68,16 @@ double signed_rpm(const Motion& m) {
 
 }  // namespace
 
-MotionTable::MotionTable(std::string path, std::function<std::string(std::string)> renamed)
-    : path_(std::move(path)), renamed_(std::move(renamed)) {
+MotionTable::MotionTable(std::string path, std::function<std::string(std::string)> renamed,
+                         bool with_engagement)
+    : path_(std::move(path)), renamed_(std::move(renamed)), with_engagement_(with_engagement) {
   as_it_comes_ = written_as_it_comes(path_);
 }
 
 Result<std::unique_ptr<MotionTable>> MotionTable::create(
-    const std::string& path, std::function<std::string(std::string)> renamed) {
-  std::unique_ptr<MotionTable> table(new MotionTable(path, std::move(renamed)));
+    const std::string& path, std::function<std::string(std::string)> renamed,
+    bool with_engagement) {
+  std::unique_ptr<MotionTable> table(new MotionTable(path, std::move(renamed), with_engagement));
   table->begin();
   if (!table->trouble_.empty()) return Error{table->trouble_};
   return table;
@@ -82,6 +86,8 @@ Result<std::unique_ptr<MotionTable>> MotionTable::create(
 void MotionTable::begin() {
   waiting_.clear();
   text_ = kColumns;
+  if (with_engagement_) text_ += kEngagementColumns;
+  text_ += "\r\n";
   if (as_it_comes_) return;
   file_.reset();
   Result<AtomicFile> file = AtomicFile::create(path_);
@@ -104,6 +110,7 @@ void MotionTable::on_step(std::uint64_t number, const Motion& m, const TimedStep
   Row& row = waiting_.emplace_back();
   row.number = number;
   row.duration_s = step.duration_s;
+  row.length_mm = step.length_mm;
   fmt::format_to(std::back_inserter(row.head), "{},{},{}", m.source.line,
                  m.source.file < files_.size() ? files_[m.source.file] : "", to_string(m.kind));
   append_place(m, row.head);
@@ -127,11 +134,44 @@ void MotionTable::on_cut(std::uint64_t number, double removed_mm3, double depth_
   row.depth_mm = std::max(row.depth_mm, depth_mm);
 }
 
+void MotionTable::on_engaged(std::uint64_t number, const EngagementSums& sums) {
+  if (waiting_.empty() || waiting_.back().number != number) return;
+  std::optional<EngagementSums>& engaged = waiting_.back().engaged;
+  if (!engaged) engaged.emplace();
+  engaged->add(sums);
+}
+
+void MotionTable::write_engaged(const Row& row) {
+  if (!row.engaged) {
+    text_.append(static_cast<std::size_t>(
+                     std::count(kEngagementColumns.begin(), kEngagementColumns.end(), ',')),
+                 ',');
+    return;
+  }
+  constexpr double kDegrees = 180 / kPi;
+  const EngagementSums& sums = *row.engaged;
+  const double in_mm = sums.in_material_mm();
+  const auto append = [this](bool known, double value) {
+    if (known) {
+      append_cell(value, text_);
+    } else {
+      text_ += ',';
+    }
+  };
+  for (const double sum : {sums.wide_sum_mm2, sums.deep_sum_mm2, kDegrees * sums.entry_sum,
+                           kDegrees * sums.exit_sum, sums.climb_mm})
+    append(sums.cut_mm > 0, sums.mean(sum));
+  append(in_mm > 0, sums.plunge_mm / in_mm);
+  append(row.length_mm > 0, std::min(1.0, in_mm / row.length_mm));
+  append(sums.cut_s > 0, row.removed_mm3 / sums.cut_s);
+}
+
 void MotionTable::write(const Row& row) {
   text_ += row.head;
   append_cell(row.removed_mm3, text_);
   append_cell(row.depth_mm, text_);
   append_cell(row.duration_s > 0 ? row.removed_mm3 / row.duration_s : 0, text_);
+  if (with_engagement_) write_engaged(row);
   text_ += "\r\n";
   if (as_it_comes_ || !file_ || text_.size() < kTextBytes) return;
   file_->write(text_.data(), text_.size());

@@ -22,13 +22,19 @@ namespace kerf {
 ///     ends; empty: not known), feed_mm_per_min (feed_mm_per_rev where that is in force, the other
 ///     is empty then), length_mm, start_s, duration_s, tool, spindle_rpm (negative: M4),
 ///     removed_mm3, depth_mm, removed_mm3_per_s (over its duration)
+/// and where engagement is measured, as means over its way sideways in material:
+///     ae_mm, ap_mm, entry_deg, exit_deg, climb_share,
+///     plunge_share (of its way in material, straight down), cut_share (of its way, in material),
+///     cut_mm3_per_s (over its time in material)
+/// which are empty where there is none of that way; all of them of motions that were not measured.
 /// Columns may be added behind. About 2 us a row; keeps rows of motions whose cuts have not come
 /// yet. What cannot be replaced under its name (standard output) is written by commit() alone.
 class MotionTable final : public MotionRecorder {
  public:
   /// `renamed`: how a file is called. Error: the file cannot be written.
   static Result<std::unique_ptr<MotionTable>> create(
-      const std::string& path, std::function<std::string(std::string)> renamed);
+      const std::string& path, std::function<std::string(std::string)> renamed,
+      bool with_engagement = false);
 
   /// All rows are there; once. Error: what could not be written.
   Done commit();
@@ -37,6 +43,7 @@ class MotionTable final : public MotionRecorder {
   void name_files(const std::vector<std::string>& files) override;
   void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override;
   void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override;
+  void on_engaged(std::uint64_t number, const EngagementSums& sums) override;
 
  private:
   struct Row {
@@ -45,16 +52,21 @@ class MotionTable final : public MotionRecorder {
     double duration_s = 0;
     double removed_mm3 = 0;
     double depth_mm = 0;
+    double length_mm = 0;
+    std::optional<EngagementSums> engaged;
   };
-  MotionTable(std::string path, std::function<std::string(std::string)> renamed);
+  MotionTable(std::string path, std::function<std::string(std::string)> renamed,
+              bool with_engagement);
   void begin();
   void write(const Row& row);
+  void write_engaged(const Row& row);
 
   std::string path_;
   std::function<std::string(std::string)> renamed_;
   std::optional<AtomicFile> file_;  ///< none: `text_` is kept until commit()
   std::string trouble_;             ///< why there is none, though there should
   bool as_it_comes_ = false;
+  bool with_engagement_ = false;
   std::string text_;
   std::vector<std::string> files_;  ///< quoted
   std::deque<Row> waiting_;

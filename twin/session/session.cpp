@@ -8,6 +8,7 @@
 #include "base/helper_thread.h"
 #include "base/translate.h"
 #include "interp_bridge/tool_lengths.h"
+#include "stock/present_heights.h"
 #include "twin/guess/guess_rows.h"
 #include "twin/program/batch_queue.h"
 #include "twin/program/probe_desk.h"
@@ -181,6 +182,7 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   report_.version = KERF_VERSION;
   report_.program_path = options_.program.path;
   report_.lines = options_.lines;
+  report_.material = options_.cutting.material;
   Outcome outcome = Outcome::kFinished;
   const bool look_first = !stock() || !options_.guess;
   if (look_first && !survey_program(stop, diagnostics, outcome)) return outcome;
@@ -208,10 +210,12 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (!recorders_.empty()) stage.record_by(recorders_);
   if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
   if (engagement_) stage.log_engagement(*engagement_);
-  if (labels_ && !front_.is_sheet()) {
-    front_.stock.stock->keep_cut_ids(true);
-    stage.label_by(*labels_);
-  }
+  // Heights know to a cell where a wall is; the moves that made it know it exactly.
+  const bool by_moves =
+      engagement_ && dynamic_cast<const PresentHeights*>(&front_.stock.stock->bare()) != nullptr;
+  const bool by_labels = labels_ && !front_.is_sheet();
+  if (by_moves || by_labels) front_.stock.stock->keep_cut_ids(true);
+  if (by_labels) stage.label_by(*labels_);
   work_read_ = work_done_ = 0;
   stage.count_work(work_done_);
   const double cpu_before = thread_cpu_s();

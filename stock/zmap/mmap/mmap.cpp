@@ -217,6 +217,11 @@ void MMap::keep_cut_ids(bool keep) {
   impl_->grid().keep_cut_ids(keep);
 }
 
+std::uint32_t MMap::present_cut_id(int i, int j) const {
+  const TileGrid& grid = impl_->grid();
+  return grid.keeps_cut_ids() ? grid.cut_id(i, j) : MeshPatch::kNotCut;
+}
+
 bool MMap::keeps_cut_ids() const { return impl_->grid().keeps_cut_ids(); }
 
 std::optional<std::uint32_t> MMap::cut_id_at(const Vec3& point_mm) const {

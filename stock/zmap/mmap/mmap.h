@@ -96,6 +96,7 @@ class MMap final : public StockModel, public PresentHeights, public ColumnSource
   /// Null while there are gaps: heights alone would not show them.
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
+  std::uint32_t present_cut_id(int i, int j) const override;
   ColumnLayout column_layout() const override;
   std::uint64_t column_version(std::uint32_t tile) const override;
   void read_columns(std::uint32_t tile, ColumnRuns& out) const override;

@@ -82,6 +82,23 @@ TEST(TurningCuts, parts_of_an_outline_are_one_tool) {
   EXPECT_NEAR(contact->t, 1.0 / 8, 1e-6);
 }
 
+/// Chips are as thin as the edge leans: its width across the way over its length.
+TEST(TurningCuts, edges_in_material_are_told) {
+  for (const double front_deg : {85.0, 60.0, 45.0}) {
+    TurnedPart part = bar();
+    const TurningTool sharp(*nose_insert({0, 2, radians(front_deg), radians(10), 12}));
+    const TurnCut cut = part.cut(sharp, line({2, 17.5}, {-20, 17.5}));
+    EXPECT_NEAR(cut.edge_across_mm, 2.5, 1e-3) << front_deg;
+    EXPECT_NEAR(cut.edge_mm, 2.5 / std::sin(radians(front_deg)), 1e-3) << front_deg;
+  }
+  // A nose of 0.8 mm from along the way to 5 degrees beyond the radial one, then the flank.
+  TurnedPart part = bar();
+  const TurnCut cut = part.cut(TurningTool(right_hand(0.8)), line({2, 17}, {-20, 17}));
+  const double nose = 0.8 * (1 + std::sin(radians(5)));
+  EXPECT_NEAR(cut.edge_across_mm, 3, 1e-3);
+  EXPECT_NEAR(cut.edge_mm, 0.8 * radians(95) + (3 - nose) / std::cos(radians(5)), 0.02);
+}
+
 TEST(TurningCuts, sides_that_cut_are_told) {
   // Longitudinal turning: nose, and the front flank for what is deeper than the nose.
   TurnedPart part = bar();

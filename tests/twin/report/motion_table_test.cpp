@@ -73,6 +73,47 @@ TEST(MotionTable, WhatIsNotKnownIsEmpty) {
   EXPECT_EQ(lines_of(path)[1], "1,,thread,1,,3,0,0,0,0,0,0,,1.5,0,0,0,3,-8000,0,0,0\r");
 }
 
+TEST(MotionTable, HowToolsWereEngaged) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/m.csv";
+  auto made = MotionTable::create(
+      path, [](std::string text) { return text; }, true);
+  ASSERT_TRUE(made);
+  const auto table = std::move(made.value());
+  TimedStep step;
+  step.duration_s = 2;
+  step.length_mm = 20;
+  // 4 mm of 2, 12 mm of 5 mm width; a quarter of it in climb; 2 mm in air, 2 mm straight down.
+  EngagementSums first, second;
+  EngagementLook look;
+  look.angle_rad = kPi / 2, look.wide_mm = 2, look.deep_mm = 3, look.entry_rad = kPi / 2;
+  look.exit_rad = kPi, look.climb = 1;
+  first.add(look, {4, 0.4, 0});
+  look.wide_mm = 5, look.entry_rad = 0, look.exit_rad = kPi / 2, look.climb = 0;
+  second.add(look, {12, 1.2, 0});
+  look.is_plunge = true;
+  second.add(look, {2, 0.2, 0});
+  table->on_step(4, feed_to({10, 0, 0}, 7), step);
+  table->on_engaged(4, first);
+  table->on_engaged(4, second);
+  table->on_step(5, feed_to({20, 0, 0}, 8), step);
+  table->on_engaged(5, {});
+  table->on_step(6, feed_to({20, 0, 0}, 9), step);
+  table->on_cut(4, 90, 1.5);
+  ASSERT_TRUE(table->commit());
+  const std::vector<std::string> lines = lines_of(path);
+  ASSERT_EQ(lines.size(), 4u);
+  const auto behind = [&](std::size_t n, std::string_view from) {
+    return lines[n].substr(lines[n].find(from) + from.size());
+  };
+  EXPECT_EQ(behind(0, "removed_mm3_per_s"),
+            ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s\r");
+  // (4 * 2 + 12 * 5) / 16; 90 / 1.8 s.
+  EXPECT_EQ(behind(1, ",90,1.5,45"), ",4.25,3,22.5,112.5,0.25,0.111111,0.9,50\r");
+  EXPECT_EQ(behind(2, ",0,0,0,0,0,600,,20,0,2,3,-8000,0,0,0"), ",,,,,,,0,\r");
+  EXPECT_EQ(behind(3, "-8000,0,0,0"), ",,,,,,,,\r");
+}
+
 TEST(MotionTable, ARestartForgets) {
   const TemporaryFolder folder;
   const std::string path = folder.path() + "/m.csv";

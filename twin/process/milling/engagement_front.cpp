@@ -1,8 +1,8 @@
 // EngagementScan at one place of the way: what the cutter's side has in it there.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "twin/process/milling/engagement_scan.h"
 
@@ -11,20 +11,27 @@ namespace {
 
 /// What is thinner is not there: what a pass leaves of the one before, by rounding.
 constexpr double kThinnestFront_mm = 0.002;
-/// Directions to begin with, from one side to the other; where material begins and ends they are
-/// halved.
-constexpr int kRays = 18, kRaysOfRound = 12, kRayHalvings = 5;
-/// The outermost two are so near to the sides.
-constexpr double kRim_rad = 1.0 * kPi / 180;
-/// Radii along a ray, of cutters that are not flat, and halvings between two of them.
-constexpr int kRadii = 6, kRadiusHalvings = 4;
+/// Directions to begin with, from one side to the other.
+constexpr int kRays = FrontRays::kMost, kRaysOfRound = 12;
+/// Radii along a ray, of cutters that are not flat, and steps between two of them.
+constexpr int kRadii = 6, kRadiusSteps = 3;
+constexpr double kLeastStep = 0.1;
+/// What is thinner has been cut: the model's rounding.
+constexpr double kThinnestFilm_mm = 2e-4;
+/// Four cells whose heights differ by more cells than that have a wall between them.
+constexpr double kWallCells = 3;
+/// So much of a cell is no even surface between four of them: there is an edge.
+constexpr double kTwistCells = 0.05;
+/// So far ahead of the rim, as part of the radius, is what is asked about: what the move before has
+/// left is right at it. A hundredth of that is beside a wall, and in none.
+constexpr double kAhead = 1.0 / 200, kMargin = kAhead / 100, kLeastMargin_mm = 4e-5;
+/// Of what is not flat, so many cells.
+constexpr double kAheadCells = 0.5;
+constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
 /// Rounding of the cutter's own radius.
 constexpr double kSameRadius = 1e-9;
-/// A direction counts where the cutter is in material out to this part of the farthest it is: near
-/// its tip a ball is in material all round.
-constexpr double kOuterPart = 0.5;
 /// Places across the disc of one that goes straight down, each way.
 constexpr int kDiscPlaces = 24;
 
@@ -65,7 +72,7 @@ double EngagementScan::material_at(const Station& station, const Vec2& point, do
       kThinnestFront_mm + tip +
       lift(at_rim ? least_radius * (1 - 1e-9) : std::min(glm::length(arm), radius_));
   if (height <= meets || ahead < -cell_) return 0;
-  height = behind_held(middle, height);
+  height = behind_itself(middle, behind_held(middle, height));
   return height > meets ? height - lowest : 0;
 }
 
@@ -100,41 +107,209 @@ Vec2 EngagementScan::before_rim(const Station& station, double angle) const {
   return center_ + arm * (std::cos(turn) * out + std::sin(turn) * station.ahead);
 }
 
+/// How high the material is there when what the arc itself has cut at its beginning is gone, too.
+double EngagementScan::behind_itself(const Vec2& point, double height) const {
+  if (own_until_ <= 0) return height;
+  const Place place = place_of(point);
+  const auto left_by = [&](double angle) {
+    const double r = arc_radius_, p = place.beside;
+    const double distance =
+        std::sqrt(std::max(0.0, r * r + p * p - 2 * r * p * std::cos(place.along - angle)));
+    if (distance > radius_) return kNeverEnds;
+    return z_ + rise_ * angle / sweep_ +
+           lift_[static_cast<std::size_t>(std::min(distance * lift_scale_, double{kLifts}))];
+  };
+  if (place.along <= own_until_) return std::min(height, left_by(place.along));
+  return std::min({height, left_by(0), left_by(own_until_)});
+}
+
+/// A move that has made one of the low cells about there has cut the point, too; or the one that is
+/// held back. Cells that no known move has made are as
+/// they are.
+bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) const {
+  const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
+  if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
+  const auto is_low = [&](int x, int y) {
+    return static_cast<double>(heights_->height(x, y)) <= z + kThinnestFront_mm;
+  };
+  std::uint32_t asked = MeshPatch::kNotCut;
+  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
+      if (!is_low(x, y)) continue;
+      const std::uint32_t number = owners_->present_cut_id(x, y);
+      if (number == asked || !ways_->knows(number)) continue;
+      asked = number;
+      if (ways_->covers(number, point, z, margin)) return true;
+    }
+  }
+  return asked == MeshPatch::kNotCut && is_low(i, j);
+}
+
+/// How high material stands over the end of the profile at the cutter's rim; 0: there is none.
+double EngagementScan::rim_height(const Station& station, double angle) const {
+  const Box& box = heights_->bounds_mm();
+  const double z = std::max(station.tip_z, box.min.z) + lift_[kLifts];
+  if (owners_ == nullptr) {
+    const double deep = material_at(station, before_rim(station, angle), radius_, true);
+    const double beside = radius_ * std::abs(std::sin(angle)) * lift_scale_;
+    return deep > 0 ? std::max(0.0, deep + lift_[static_cast<std::size_t>(beside)] - lift_[kLifts])
+                    : 0;
+  }
+  const Vec2 left(-station.ahead.y, station.ahead.x);
+  const Vec2 point =
+      station.center +
+      radius_ * (1 - kSameRadius) * (std::cos(angle) * station.ahead + std::sin(angle) * left);
+  const auto i = static_cast<int>(std::floor((point.x - box.min.x) / heights_->cell_x_mm()));
+  const auto j = static_cast<int>(std::floor((point.y - box.min.y) / heights_->cell_y_mm()));
+  if (i < 0 || j < 0 || i >= heights_->nx() || j >= heights_->ny()) return 0;
+  if (!is_on_way(station, point)) return 0;
+  double highest = -kNeverEnds, lowest = kNeverEnds;
+  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
+      const auto height = static_cast<double>(heights_->height(x, y));
+      highest = std::max(highest, height), lowest = std::min(lowest, height);
+    }
+  }
+  const double least = z + kThinnestFront_mm;
+  if (highest <= least) return 0;
+  const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0;
+  if (differs && is_cut_there(point, z, i, j)) return 0;
+  const auto own = static_cast<double>(heights_->height(i, j));
+  return (own > least ? own : highest) - z;
+}
+
+/// How high the moves that made the four cells about a place have left it; where one of them is of
+/// no move, as high as that at most.
+double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
+  double height = kNeverEnds, highest = -kNeverEnds;
+  std::uint32_t asked = MeshPatch::kNotCut;
+  for (int n = 0; n < 4; ++n) {
+    const int x = i + n % 2, y = j + n / 2;
+    const auto own = static_cast<double>(heights_->height(x, y));
+    highest = std::max(highest, own);
+    const std::uint32_t number = owners_->present_cut_id(x, y);
+    if (!ways_->knows(number)) {
+      height = std::min(height, own);
+    } else if (number != asked) {
+      height = std::min(height, ways_->height_mm(number, point));
+      asked = number;
+    }
+  }
+  height = std::min(height, highest);
+  return behind_itself(point, behind_held(point, height));
+}
+
+/// Material over the cutter's surface, which between four cells is what it is at these: what this
+/// cutter has cut itself has nothing, however coarse they are. At walls and edges the moves that
+/// made them are asked, or (where nobody knows them) the nearest cell counts.
+double EngagementScan::over_surface(const Station& station, const Vec2& point) const {
+  const Box& box = heights_->bounds_mm();
+  const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
+  const double x = (point.x - box.min.x) / cell_x, y = (point.y - box.min.y) / cell_y;
+  if (x < 0 || y < 0 || x >= heights_->nx() || y >= heights_->ny()) return -kNeverEnds;
+  if (!is_on_way(station, point)) return -kNeverEnds;
+  const double tip = std::max(station.tip_z, box.min.z);
+  const auto over = [&](int i, int j, double& height) {
+    const Vec2 middle(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
+    height = static_cast<double>(heights_->height(i, j));
+    if (held_.length > 0) height = behind_held(middle, height);
+    if (own_until_ > 0) height = behind_itself(middle, height);
+    const double scaled =
+        std::min(glm::length(middle - station.center) * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    const double part = scaled - static_cast<double>(k);
+    return height - tip - (lift_[k] + part * (lift_[k + 1] - lift_[k]));
+  };
+  const auto i = static_cast<int>(std::floor(x - 0.5)), j = static_cast<int>(std::floor(y - 0.5));
+  double height = 0;
+  if (i < 0 || j < 0 || i + 1 >= heights_->nx() || j + 1 >= heights_->ny())
+    return over(static_cast<int>(x), static_cast<int>(y), height);
+  double depth[4], highest = -kNeverEnds, lowest = kNeverEnds;
+  for (int n = 0; n < 4; ++n) {
+    depth[n] = over(i + n % 2, j + n / 2, height);
+    highest = std::max(highest, height), lowest = std::min(lowest, height);
+  }
+  const double right = x - 0.5 - i, up = y - 0.5 - j;
+  const bool is_wall = highest - lowest > kWallCells * cell_;
+  const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
+  if (owners_ != nullptr && (is_wall || twist > kTwistCells * cell_)) {
+    const double scaled =
+        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    const double part = scaled - static_cast<double>(k);
+    return left_by_owners(point, i, j) - tip - (lift_[k] + part * (lift_[k + 1] - lift_[k]));
+  }
+  if (is_wall) return depth[(right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2)];
+  return (1 - up) * ((1 - right) * depth[0] + right * depth[1]) +
+         up * ((1 - right) * depth[2] + right * depth[3]);
+}
+
 /// Along one direction, the angle from straight ahead: where the cutter ends in material.
-EngagementScan::Contact EngagementScan::contact_at(const Station& station, double angle) const {
+FrontContact EngagementScan::contact_at(const Station& station, double angle) const {
+  FrontContact found;
+  double wall = 0;
+  if (engaged_ >= radius_ * (1 - kSameRadius)) {
+    wall = rim_height(station, angle);
+    const double beside = radius_ * std::abs(std::sin(angle)) * lift_scale_;
+    const double under = lift_[kLifts] - lift_[static_cast<std::size_t>(beside)];
+    if (wall > 0) found = {radius_, 0, wall + under, wall};
+  }
+  if (!is_flat()) round_contact(station, angle, found);
+  found.edge_mm = wall + profile_mm(found.radius_mm) - profile_mm(found.inner_mm);
+  return found;
+}
+
+/// From the outside in: out to where it is in material, and from where.
+void EngagementScan::round_contact(const Station& station, double angle,
+                                   FrontContact& found) const {
   const Vec2 left(-station.ahead.y, station.ahead.x);
   const Vec2 out = std::cos(angle) * station.ahead + std::sin(angle) * left;
-  Contact found;
-  const auto look = [&](double radius) {
-    const double deep = material_at(station, station.center + radius * out, radius, false);
-    if (deep > 0) found = {radius, std::max(deep, found.deep_mm)};
-    return deep > 0;
+  const auto lift = [&](double radius) {
+    return lift_[static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts}))];
   };
-  if (engaged_ >= radius_ * (1 - kSameRadius)) {
-    const double deep = material_at(station, before_rim(station, angle), radius_, true);
-    if (deep > 0) return {radius_, deep};
-  }
-  if (is_flat()) return found;
-  const double step = (engaged_ - flat_radius_) / kRadii;
-  double outside = engaged_;
-  for (int k = 0; k < kRadii; ++k) {
-    const double radius = engaged_ - (k + 0.5) * step;
-    if (!look(radius)) {
-      outside = radius;
-      continue;
+  const auto over = [&](double radius) {
+    const double depth = over_surface(station, station.center + radius * out) - kThinnestFilm_mm;
+    if (depth > 0) {
+      const double lowest = lift(radius * std::abs(std::sin(angle)));
+      found.deep_mm = std::max(found.deep_mm, depth + lift(radius) - lowest);
     }
-    double inside = radius;
-    for (int n = 0; n < kRadiusHalvings; ++n) {
-      const double middle = 0.5 * (inside + outside);
-      (look(middle) ? inside : outside) = middle;
+    return depth;
+  };
+  // Between a radius in material and one in none.
+  const auto edge = [&](double in, double depth_in, double free, double depth_free) {
+    const auto between = [&] {
+      const double part = depth_in / std::max(depth_in - depth_free, kThinnestFilm_mm);
+      return in + std::clamp(part, kLeastStep, 1 - kLeastStep) * (free - in);
+    };
+    for (int n = 0; n < kRadiusSteps; ++n) {
+      const double middle = between(), depth = over(middle);
+      (depth > 0 ? in : free) = middle;
+      (depth > 0 ? depth_in : depth_free) = depth;
     }
-    found.radius_mm = 0.5 * (inside + outside);
-    // Deepest nearer to the middle.
-    const double radius_mm = found.radius_mm;
-    look(0.5 * inside);
-    return {radius_mm, found.deep_mm};
+    return between();
+  };
+  double inside = found.radius_mm, depth = 0;
+  if (inside <= 0) {
+    const double step = (engaged_ - flat_radius_) / kRadii;
+    double free = engaged_, depth_free = 0;
+    for (int k = 0; k < kRadii && inside <= 0; ++k) {
+      const double radius = engaged_ - (k + 0.5) * step;
+      depth = over(radius);
+      if (depth > 0) {
+        inside = radius;
+        if (k == 0) depth_free = std::min(over(engaged_), 0.0);
+      } else {
+        free = radius, depth_free = depth;
+      }
+    }
+    if (inside <= 0) return;
+    found.radius_mm = edge(inside, depth, free, depth_free);
   }
-  return found;
+  // Deepest nearer to the middle. Where nothing is there it begins farther out.
+  const double nearer = 0.5 * inside, depth_nearer = over(nearer);
+  if (depth_nearer > 0) return;
+  if (depth <= 0) depth = found.edge_mm;
+  found.inner_mm = edge(inside, depth, nearer, depth_nearer);
 }
 
 EngagementLook EngagementScan::plunge_at(const Station& station) const {
@@ -152,81 +327,65 @@ EngagementLook EngagementScan::plunge_at(const Station& station) const {
       if (deep > 0) widest = std::max(widest, radius);
     }
   }
-  if (look.deep_mm > 0) look.angle_rad = 2 * kPi, look.wide_mm = 2 * widest;
+  if (look.deep_mm <= 0) return look;
+  look.angle_rad = look.exit_rad = 2 * kPi;
+  look.wide_mm = look.effective_mm = 2 * widest;
+  look.contact_mm = profile_mm(widest);
+  look.cuts_centre = cuts_centre(station);
   return look;
 }
 
-EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutter& cutter,
-                                          const CutMove& move, double at, const CutMove* held) {
-  set(heights, cutter, move);
-  set_held(held);
-  engaged_ = engaged_radius();
-  Station station;
-  station.tip_z = z_ + rise_ * at;
-  const auto place = [this](double part) {
-    return point_of(arc_ ? Place{part * sweep_, arc_radius_} : Place{part * length_, 0});
+/// The tip's middle goes down into what is below it.
+bool EngagementScan::cuts_centre(const Station& station) const {
+  if (rise_ >= 0) return false;
+  const double tip = std::max(station.tip_z, heights_->bounds_mm().min.z);
+  const std::optional<double> height = height_at(station.center);
+  return height && *height > tip + kThinnestFront_mm;
+}
+
+/// Of the profile, up to that radius.
+double EngagementScan::profile_mm(double radius) const {
+  const double scaled = std::clamp(radius * lift_scale_, 0.0, double{kLifts});
+  const auto k = static_cast<std::size_t>(scaled);
+  return profile_[k] + (scaled - static_cast<double>(k)) * (profile_[k + 1] - profile_[k]);
+}
+
+EngagementScan::Station EngagementScan::station_at(double part) const {
+  const auto place = [this](double at) {
+    return point_of(arc_ ? Place{at * sweep_, arc_radius_} : Place{at * length_, 0});
   };
-  station.center = place(at);
+  Station station;
+  station.tip_z = z_ + rise_ * part;
+  station.center = place(part);
   station.end = place(1);
-  station.is_near_end = length_ > 0 && (1 - at) * length_ < 2 * radius_ + kShort_cells * cell_;
+  station.is_near_end = length_ > 0 && (1 - part) * length_ < 2 * radius_ + kShort_cells * cell_;
   station.ahead = direction_;
   if (arc_) {
     const Vec2 out = (station.center - center_) / arc_radius_;
     station.ahead = turn_ * Vec2(-out.y, out.x);
   }
+  return station;
+}
+
+EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutter& cutter,
+                                          const CutMove& move, const Look& asked) {
+  set(heights, cutter, move);
+  set_held(asked.held);
+  const bool knows_walls = asked.owners != nullptr && asked.ways != nullptr;
+  own_until_ = 0;
+  owners_ = knows_walls ? asked.owners : nullptr, ways_ = asked.ways;
+  engaged_ = engaged_radius();
   if (engaged_ <= 0) return {};
-  if (length_ == 0) return plunge_at(station);
-  EngagementLook look;
-  double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
-  const auto note = [&](const Contact& contact, double angle) {
-    if (contact.radius_mm <= 0) return;
-    look.deep_mm = std::max(look.deep_mm, contact.deep_mm);
-    low_mm = std::min(low_mm, contact.radius_mm * std::sin(angle));
-    high_mm = std::max(high_mm, contact.radius_mm * std::sin(angle));
-  };
-  const int rays = is_flat() ? kRays : kRaysOfRound;
-  const auto direction = [rays](int k) {
-    if (k == 0) return kRim_rad - kPi / 2;
-    if (k == rays) return kPi / 2 - kRim_rad;
-    return kPi * (static_cast<double>(k) / rays - 0.5);
-  };
-  // Flat cutters are in material at their rim or not at all.
-  std::array<Contact, kRays + 1> contacts;
-  double farthest_mm = 0;
-  for (int k = 0; k <= rays; ++k) {
-    contacts[static_cast<std::size_t>(k)] = contact_at(station, direction(k));
-    note(contacts[static_cast<std::size_t>(k)], direction(k));
-    farthest_mm = std::max(farthest_mm, contacts[static_cast<std::size_t>(k)].radius_mm);
-  }
-  if (farthest_mm <= 0) return {};
-  const auto counts = [&](const Contact& contact) {
-    return contact.radius_mm >= kOuterPart * farthest_mm;
-  };
-  for (int k = 1; k <= rays; ++k) {
-    const double from = k == 1 ? -kPi / 2 : direction(k - 1);
-    const double to = k == rays ? kPi / 2 : direction(k);
-    const bool was = counts(contacts[static_cast<std::size_t>(k - 1)]);
-    const bool is = counts(contacts[static_cast<std::size_t>(k)]);
-    if (is == was) {
-      if (is) look.angle_rad += to - from;
-      continue;
-    }
-    double in = is ? direction(k) : direction(k - 1), off = is ? direction(k - 1) : direction(k);
-    for (int n = 0; n < kRayHalvings; ++n) {
-      const double middle = 0.5 * (in + off);
-      const Contact contact = contact_at(station, middle);
-      note(contact, middle);
-      (counts(contact) ? in : off) = middle;
-    }
-    const double edge = 0.5 * (in + off);
-    look.angle_rad += is ? to - edge : edge - from;
-  }
-  if (look.angle_rad <= 0) return {};
-  // Up to the rim itself, where the outermost rays are in it.
-  const double rim = std::sin(kPi / 2 - kRim_rad);
-  low_mm = low_mm < 0 ? std::max(low_mm / rim, -radius_) : low_mm;
-  high_mm = high_mm > 0 ? std::min(high_mm / rim, radius_) : high_mm;
-  look.wide_mm = high_mm - low_mm;
+  if (length_ == 0) return plunge_at(station_at(asked.at));
+  // What an arc leaves behind it comes up before it again when it has gone round.
+  own_until_ = arc_ ? asked.at * sweep_ - std::min(kPi, 2 * radius_ / arc_radius_) : 0;
+  // What stands right before it is removed next.
+  const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
+  const Station station = station_at(asked.at + ahead_mm / length_);
+  FrontRays rays(is_flat() ? kRays : kRaysOfRound, radius_);
+  rays.sweep([&](double angle) { return contact_at(station, angle); });
+  EngagementLook look = rays.look(asked.anticlockwise);
+  if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));
   return look;
 }
 

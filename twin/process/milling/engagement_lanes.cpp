@@ -165,14 +165,14 @@ Vec2 EngagementScan::point_on(const Lane& lane, double along) const {
   return point_of({along, (arc_ ? arc_radius_ : 0) + lane.beside});
 }
 
-EngagementScan::Look EngagementScan::look(const Lane& lane, double along) {
+EngagementScan::LaneLook EngagementScan::look(const Lane& lane, double along) {
   return look_at(lane, point_on(lane, along));
 }
 
 /// Of the cell that is there: as the model does, its middle counts.
-EngagementScan::Look EngagementScan::look_at(const Lane& lane, const Vec2& point) {
+EngagementScan::LaneLook EngagementScan::look_at(const Lane& lane, const Vec2& point) {
   cost_.looks += 1;
-  Look found;
+  LaneLook found;
   const Box& box = heights_->bounds_mm();
   const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
   const double i = std::floor((point.x - box.min.x) / cell_x);
@@ -207,17 +207,17 @@ EngagementScan::Look EngagementScan::look_at(const Lane& lane, const Vec2& point
 }
 
 /// Between a place that is removed and one that is not: the last that is, to half a cell.
-void EngagementScan::find_edge(const Lane& lane, double removed, double free, Look& last) {
+void EngagementScan::find_edge(const Lane& lane, double removed, double free, LaneLook& last) {
   const double unit = arc_ ? std::max(arc_radius_ + lane.beside, cell_) : 1;
   while (std::abs(free - removed) * unit > cell_ / 2) {
     const double middle = 0.5 * (removed + free);
-    const Look found = look(lane, middle);
+    const LaneLook found = look(lane, middle);
     (found.removed ? removed : free) = middle;
     if (found.removed) last = found;
   }
 }
 
-void EngagementScan::note_edge(const Lane& lane, const Look& look, double removed_at,
+void EngagementScan::note_edge(const Lane& lane, const LaneLook& look, double removed_at,
                                double free_at, bool begins) {
   Edge edge{lane, removed_at, free_at, look, 0, 0, spans_.size() - 1, 0, begins};
   edge.time = begins
@@ -235,7 +235,8 @@ void EngagementScan::note_edge(const Lane& lane, const Look& look, double remove
 }
 
 /// The stretch begins or ends no later or earlier than that lane does between the edge's places.
-void EngagementScan::take_edge(const Lane& lane, const Edge& edge, Look look, WaySpan& stretch) {
+void EngagementScan::take_edge(const Lane& lane, const Edge& edge, LaneLook look,
+                               WaySpan& stretch) {
   find_edge(lane, edge.removed_at, edge.free_at, look);
   WaySpan found{look.when, look.when};
   if (edge.begins) {
@@ -278,7 +279,7 @@ void EngagementScan::find_edges(bool missed) {
     // those at the sides leave it last.
     for (const std::size_t n : {edge.begins ? last / 2 : 0, last}) {
       if (!missed || (edge.begins && n == last)) continue;
-      const Look other = look(lanes_[n], edge.removed_at);
+      const LaneLook other = look(lanes_[n], edge.removed_at);
       if (other.removed) take_edge(lanes_[n], edge, other, stretch);
     }
     if (matters(edge, stretch)) take_edge(edge.lane, edge, edge.look, stretch);
@@ -291,9 +292,9 @@ void EngagementScan::walk(const Lane& lane, double phase, double step) {
   const double unit = arc_ ? std::max(arc_radius_ + lane.beside, cell_) : 1;
   const double each = std::min(step / unit, high - low);
   const double each_mm = each * unit, ahead = length_ > 0 ? each_mm / length_ : 1;
-  Look before;
+  LaneLook before;
   double before_at = low;
-  const auto begin = [&](const Look& look, double at, double free) {
+  const auto begin = [&](const LaneLook& look, double at, double free) {
     spans_.push_back({look.when, look.when});
     note_edge(lane, look, at, free, true);
   };
@@ -327,7 +328,7 @@ void EngagementScan::walk(const Lane& lane, double phase, double step) {
     if (at <= before_at) continue;
     const bool counts = n >= 0 && at < high - rim;
     const Vec2 point = point_at(n, at);
-    Look found = look_at(lane, point);
+    LaneLook found = look_at(lane, point);
     if (found.removed) {
       const double half = length_ > 0 ? 0.5 * ahead : 0;
       add(found.when - half, length_ > 0 ? found.when + half : to_,

@@ -28,11 +28,22 @@ constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
 /// Looks along one move at most.
 constexpr double kMostNodes = 4096;
 
-/// Seen from above; 0 where it goes up or down.
-Vec2 way_of_short(const CutMove& move) {
-  const Vec2 way(move.to_mm - move.from_mm);
+Vec3 way_of_short(const CutMove& move) {
+  const Vec3 way = move.to_mm - move.from_mm;
   const double length = glm::length(way);
-  return length > 0 ? way / length : Vec2(0);
+  return length > 0 ? way / length : Vec3(0);
+}
+
+/// EngagedWay::down_rad.
+double down_of(const CutMove& move, double length_mm) {
+  const double down_mm = glm::dot(move.from_mm - move.to_mm, move.axis_from);
+  if (down_mm <= 0 || down_mm >= length_mm * (1 - 1e-9)) return 0;
+  return std::asin(down_mm / length_mm);
+}
+
+/// Along the spindle.
+bool is_steep(const CutMove& move) {
+  return !move.arc && glm::length(glm::cross(move.to_mm - move.from_mm, move.axis_from)) < 1e-9;
 }
 
 }  // namespace
@@ -45,6 +56,7 @@ EngagementMeter::EngagementMeter(const StockModel& stock, EngagementLog& log,
 
 void EngagementMeter::mount(int tool, const Cutter& cutter) {
   log_.mount(tool, cutter);
+  ways_.mount(cutter);
   diameter_mm_ = 2 * cutter.radius_mm();
   lift();
   has_held_ = false;
@@ -64,25 +76,55 @@ bool EngagementMeter::is_same(const EngagementLook& a, const EngagementLook& b) 
   const double deep = std::max(a.deep_mm, b.deep_mm);
   return a.is_plunge == b.is_plunge && a.is_engaged() == b.is_engaged() &&
          std::abs(a.angle_rad - b.angle_rad) <= kSameAngle_rad &&
+         std::abs(a.entry_rad - b.entry_rad) <= kSameAngle_rad &&
          std::abs(a.wide_mm - b.wide_mm) <= kSameOfDiameter * diameter_mm_ &&
          std::abs(a.deep_mm - b.deep_mm) <= std::max(kSameDepth_mm, kSameOfDepth * deep);
 }
 
 EngagementLook EngagementMeter::look(double at) {
-  return scan_.look_ahead(*heights_, *cutter_, *move_, at, has_held_ ? &held_ : nullptr);
+  if (points_ != nullptr)
+    return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, *move_,
+                       {at, anticlockwise_});
+  const EngagementScan::Look ahead{at, has_held_ ? &held_ : nullptr, anticlockwise_, owners_,
+                                   &ways_};
+  return scan_.look_ahead(*heights_, *cutter_, *move_, ahead);
 }
 
 void EngagementMeter::flush() {
   if (to_ <= from_) return;
-  EngagementLook mean = first_;
-  mean.angle_rad = sum_.angle_rad / (to_ - from_);
-  mean.wide_mm = sum_.wide_mm / (to_ - from_);
-  mean.deep_mm = sum_.deep_mm / (to_ - from_);
+  const EngagementLook mean = sum_.mean(first_, to_ - from_);
   const CutMove part = part_of(*move_, from_, to_);
-  const std::uint32_t pass =
-      log_.add({mean, &part, (to_ - from_) * length_mm_, source_, start_s_ + from_ * duration_s_});
-  if (pass != EngagementLog::kNoPass) pass_ = pass;
+  const EngagedWay way{(to_ - from_) * length_mm_, (to_ - from_) * duration_s_, down_rad_};
+  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from_ * duration_s_};
+  if (hearer_) hearer_(told);
+  const std::uint32_t pass = log_.add(told);
+  if (pass != EngagementLog::kNoPass) taken_.pass = pass;
+  if (mean.is_engaged()) taken_.sums.add(mean, way);
   from_ = to_;
+}
+
+void EngagementMeter::Sum::add(const EngagementLook& look, double share) {
+  angle += look.angle_rad * share;
+  wide += look.wide_mm * share;
+  deep += look.deep_mm * share;
+  entry += look.entry_rad * share;
+  exit += look.exit_rad * share;
+  climb += look.climb * share;
+  effective += look.effective_mm * share;
+  contact += look.contact_mm * share;
+}
+
+EngagementLook EngagementMeter::Sum::mean(const EngagementLook& like, double shares) const {
+  EngagementLook out = like;
+  out.angle_rad = angle / shares;
+  out.wide_mm = wide / shares;
+  out.deep_mm = deep / shares;
+  out.entry_rad = entry / shares;
+  out.exit_rad = exit / shares;
+  out.climb = climb / shares;
+  out.effective_mm = effective / shares;
+  out.contact_mm = contact / shares;
+  return out;
 }
 
 void EngagementMeter::add(double from, double to, const EngagementLook& look) {
@@ -92,9 +134,7 @@ void EngagementMeter::add(double from, double to, const EngagementLook& look) {
     first_ = look;
     sum_ = {};
   }
-  sum_.angle_rad += look.angle_rad * (to - from);
-  sum_.wide_mm += look.wide_mm * (to - from);
-  sum_.deep_mm += look.deep_mm * (to - from);
+  sum_.add(look, to - from);
   to_ = to;
 }
 
@@ -128,41 +168,57 @@ bool EngagementMeter::counts_still(const CutMove& move) {
   return way_mm <= spacing_mm_ || saved_cells_ < 0;
 }
 
-std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, bool near,
-                                    const SourceRef& source, double start_s, double duration_s) {
-  cutter_ = &cutter, move_ = &move;
-  source_ = source;
-  start_s_ = start_s, duration_s_ = duration_s;
+/// What stands where the move goes.
+bool EngagementMeter::find_material(std::optional<HeightGrid>& heights) {
+  heights_ = nullptr, points_ = nullptr;
+  const StockModel& model = stock_.bare();
+  if (const auto* const present = dynamic_cast<const PresentHeights*>(&model)) {
+    heights = present->present_heights();
+    if (!heights || !EngagementScan::takes(*cutter_, *move_)) return false;
+    heights_ = &*heights;
+    owners_ = model.keeps_cut_ids() ? present : nullptr;
+    return true;
+  }
+  points_ = dynamic_cast<const SolidPoints*>(&model);
+  return points_ != nullptr && SolidFront::takes(*cutter_, *move_);
+}
+
+const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
+  const CutMove& move = feed.move;
+  cutter_ = &feed.cutter, move_ = &move;
+  source_ = feed.source;
+  start_s_ = feed.start_s, duration_s_ = feed.duration_s;
+  anticlockwise_ = feed.anticlockwise;
   length_mm_ = way_length_mm(move);
-  pass_ = EngagementLog::kNoPass;
-  if (length_mm_ <= 0) return pass_;
+  down_rad_ = down_of(move, length_mm_);
+  taken_ = {};
+  taken_.measured = true;
+  if (length_mm_ <= 0) return taken_;
   from_ = to_ = 0;
-  if (!near) {
+  if (!feed.near) {
     add(0, 1, {});
     flush();
     since_mm_ = -1;
-    return pass_;
+    return taken_;
   }
-  const bool is_steep = !move.arc && glm::length(Vec2(move.to_mm - move.from_mm)) < 1e-9;
+  const bool steep = is_steep(move);
   const double farthest =
       std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  if (length_mm_ < farthest && !is_steep && counts_still(move)) {
+  if (length_mm_ < farthest && !steep && counts_still(move)) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
-    return pass_;
+    return taken_;
   }
   hand_over_();
-  const auto* const model = dynamic_cast<const PresentHeights*>(&stock_.bare());
-  const std::optional<HeightGrid> heights =
-      model != nullptr ? model->present_heights() : std::nullopt;
-  if (!heights || !EngagementScan::takes(cutter, move)) {
+  std::optional<HeightGrid> heights;
+  if (!find_material(heights)) {
     log_.add_unmeasured(length_mm_);
     lift();
-    return EngagementLog::kNoPass;
+    taken_.measured = false;
+    return taken_;
   }
-  heights_ = &*heights;
-  if (is_steep) {
+  if (steep) {
     // Straight down it is in material for as long as that is high there.
     const EngagementLook down = look(1);
     const double part = down.is_engaged() ? std::min(1.0, down.deep_mm / length_mm_) : 0;
@@ -195,8 +251,8 @@ std::uint32_t EngagementMeter::take(const Cutter& cutter, const CutMove& move, b
     since_mm_ = -1;
   }
   flush();
-  heights_ = nullptr;
-  return pass_;
+  heights_ = nullptr, points_ = nullptr;
+  return taken_;
 }
 
 }  // namespace kerf

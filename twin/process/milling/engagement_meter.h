@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "stock/stock_model.h"
 #include "twin/process/engagement_log.h"
 #include "twin/process/milling/engagement_scan.h"
+#include "twin/process/milling/solid_front.h"
 
 namespace kerf {
 
@@ -18,25 +21,45 @@ namespace kerf {
 /// that are shorter are taken together: each look counts until the way from it on is that long, or
 /// turns by 30 degrees; where looks one after the other are alike, for up to two diameters. Where
 /// moves are cut so quickly that looks would take more than half of that time, for up to four.
-/// Needs heights as they are (PresentHeights), upright tools without an undercut, moves that are
-/// straight or arcs about Z of up to one turn; others are told as unmeasured. One thread.
+/// Needs heights as they are (PresentHeights) and upright tools, or a model that can be asked about
+/// points (SolidPoints); tools without an undercut, moves that are straight or arcs about Z of up
+/// to one turn. Others are told as unmeasured. One thread.
 class EngagementMeter {
  public:
   /// `hand_over`: gives all moves before to the model. Both outlive this.
   EngagementMeter(const StockModel& stock, EngagementLog& log, std::function<void()> hand_over);
 
+  /// Each part of a feed move that is told to the log is told to this one, too.
+  using Hearer = std::function<void(const EngagementLog::Part&)>;
+  void hear_by(Hearer hearer) { hearer_ = std::move(hearer); }
+
   void mount(int tool, const Cutter& cutter);
   /// The tool has gone through the air, to where nobody looks.
   void lift();
 
-  /// A feed move that is going to be cut, as one piece; `near`: it may touch material. Returns the
-  /// pass that it belongs to last.
-  std::uint32_t take(const Cutter& cutter, const CutMove& move, bool near, const SourceRef& source,
-                     double start_s, double duration_s);
+  /// A feed move that is going to be cut, as one piece.
+  struct Feed {
+    const Cutter& cutter;
+    const CutMove& move;
+    bool near = true;            ///< it may touch material
+    bool anticlockwise = false;  ///< the spindle, seen from above (M4)
+    SourceRef source;
+    double start_s = 0, duration_s = 0;
+  };
+  /// What came of it: the pass that it belongs to last, and how it was engaged; without what it
+  /// removes. Good until the next call.
+  struct Taken {
+    std::uint32_t pass = EngagementLog::kNoPass;
+    bool measured = false;
+    EngagementSums sums;
+  };
+  const Taken& take(const Feed& feed);
   /// One that is cut as several, or turns.
   void take_unmeasured(double length_mm) { log_.add_unmeasured(length_mm); }
   /// The move before, if it was straight.
   void note(const CutMove& move);
+  /// A move that is cut, under its number, whatever it is.
+  void note_cut(const CutMove& move) { ways_.add(move); }
 
   static constexpr double kSameAngle_rad = 8 * kPi / 180;
 
@@ -45,17 +68,29 @@ class EngagementMeter {
     double at = 0;
     EngagementLook look;
   };
+  /// Of looks, times the parts of the way for which they stand.
+  struct Sum {
+    double angle = 0, wide = 0, deep = 0, entry = 0, exit = 0, climb = 0;
+    double effective = 0, contact = 0;
+    void add(const EngagementLook& look, double share);
+    EngagementLook mean(const EngagementLook& like, double shares) const;
+  };
   bool is_same(const EngagementLook& a, const EngagementLook& b) const;
   void add(double from, double to, const EngagementLook& look);
   void refine(const Node& from, const Node& to, int halvings);
   void flush();
   EngagementLook look(double at);
+  bool find_material(std::optional<HeightGrid>& heights);
   bool counts_still(const CutMove& move);
 
   const StockModel& stock_;
   EngagementLog& log_;
   std::function<void()> hand_over_;
+  Hearer hearer_;
   EngagementScan scan_;
+  SolidFront front_;
+  PastWays ways_;
+  const PresentHeights* owners_ = nullptr;
   double diameter_mm_ = 0;
   bool has_held_ = false;
   CutMove held_;
@@ -63,17 +98,19 @@ class EngagementMeter {
   double since_mm_ = 0;  ///< way since last_ was looked at; negative: it counts for nothing
   double saved_cells_ = 0, look_cells_ = 0;
   double spacing_mm_ = 0;  ///< as far as it counts
-  Vec2 last_ahead_{0};     ///< the way of the move that it was looked at on
+  Vec3 last_ahead_{0};     ///< the way of the move that it was looked at on
   // The present move.
   const Cutter* cutter_ = nullptr;
   const CutMove* move_ = nullptr;
   const HeightGrid* heights_ = nullptr;
-  double length_mm_ = 0, start_s_ = 0, duration_s_ = 0;
+  const SolidPoints* points_ = nullptr;  ///< where there are no heights
+  double length_mm_ = 0, start_s_ = 0, duration_s_ = 0, down_rad_ = 0;
+  bool anticlockwise_ = false;
   SourceRef source_;
-  std::uint32_t pass_ = EngagementLog::kNoPass;
+  Taken taken_;
   /// The part that is being put together, of parts that are alike.
   double from_ = 0, to_ = 0;
-  EngagementLook sum_;  ///< times length
+  Sum sum_;
   EngagementLook first_;
 };
 

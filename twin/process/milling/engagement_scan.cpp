@@ -84,6 +84,13 @@ void EngagementScan::set_cutter(const Cutter& cutter) {
     lift_[static_cast<std::size_t>(k)] = cutter.height_mm(std::min(radius_ * k / kLifts, radius_));
   }
   lift_[kLifts + 1] = lift_[kLifts];
+  profile_.assign(kLifts + 2, 0.0);
+  for (std::size_t k = 1; k <= kLifts; ++k) {
+    const bool rises = static_cast<double>(k) > flat_radius_ * lift_scale_;
+    profile_[k] =
+        profile_[k - 1] + (rises ? std::hypot(1 / lift_scale_, lift_[k] - lift_[k - 1]) : 0);
+  }
+  profile_[kLifts + 1] = profile_[kLifts];
 }
 
 void EngagementScan::set(const HeightGrid& heights, const Cutter& cutter, const CutMove& move) {

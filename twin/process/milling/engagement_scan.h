@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "interp_bridge/motion.h"
+#include "stock/present_heights.h"
 #include "stock/stock_model.h"
 #include "surface/height_grid.h"
 #include "twin/process/engagement.h"
+#include "twin/process/milling/front_rays.h"
+#include "twin/process/milling/past_ways.h"
 #include "twin/process/milling/way_spans.h"
 
 namespace kerf {
@@ -62,13 +65,22 @@ class EngagementScan {
   /// first bin has what the cutter stands in there, too.
   Cost run_part(double from, double to, int bins);
 
-  /// What the cutter's side has in it where it is at the part `at` of its way, by a ring of looks
-  /// ahead of it: angle and width to a cell (of what is not flat to a fiftieth of the radius),
-  /// the depth to the heights. Straight down: at the end of the way, whether there is anything.
-  /// On slopes the bottom's share does not count. `held`: as in Lanes. 1 us, 5 us of what is not
-  /// flat.
+  struct Look {
+    double at = 0;                  ///< part of the way
+    const CutMove* held = nullptr;  ///< as in Lanes
+    bool anticlockwise = false;     ///< the spindle, seen from above
+    /// Who knows which moves have cut which cells (of the heights that are looked at), and these
+    /// moves; or null: walls are known to a cell.
+    const PresentHeights* owners = nullptr;
+    const PastWays* ways = nullptr;
+  };
+  /// What the cutter's side has in it where it is at that part of its way, by a ring of looks ahead
+  /// of it. At its rim walls are where the moves that made them have left them, and the sides of a
+  /// box are exact; of what is not flat, surfaces are those between the heights. The depth is to
+  /// the heights. Straight down: at the end of the way, whether there is anything. On slopes the
+  /// bottom's share does not count. 1 us, 5 us of what is not flat.
   EngagementLook look_ahead(const HeightGrid& heights, const Cutter& cutter, const CutMove& move,
-                            double at, const CutMove* held);
+                            const Look& look);
 
   std::span<const WaySpan> spans() const { return spans_; }
   /// What is removed on each of equal parts of the way from `from` to `to`.
@@ -123,7 +135,7 @@ class EngagementScan {
     double lowest = 0;    ///< when the cutter is lowest, after it is nearest: part of the way
   };
   /// What a look at a lane has found.
-  struct Look {
+  struct LaneLook {
     bool removed = false;
     Place place{};  ///< the middle of the cell
     double height = 0, depth = 0;
@@ -137,24 +149,24 @@ class EngagementScan {
   double front_at_start(const Lane& lane) const;
   double outside_mm(const Vec2& point) const;
   Vec2 point_on(const Lane& lane, double along) const;
-  Look look(const Lane& lane, double along);
-  Look look_at(const Lane& lane, const Vec2& point);
+  LaneLook look(const Lane& lane, double along);
+  LaneLook look_at(const Lane& lane, const Vec2& point);
   /// A stretch of a lane begins or ends between a place that is removed and one that is free.
   struct Edge {
     Lane lane;
     double removed_at = 0, free_at = 0;
-    Look look;        ///< at the former
+    LaneLook look;    ///< at the former
     double time = 0;  ///< when it is removed at first, or left
     double most = 0;  ///< it cannot be farther than that beyond, as part of the way
     std::size_t span = 0, stretch = 0;
     bool begins = false;
   };
   void walk(const Lane& lane, double phase, double step);
-  void note_edge(const Lane& lane, const Look& look, double removed_at, double free_at,
+  void note_edge(const Lane& lane, const LaneLook& look, double removed_at, double free_at,
                  bool begins);
-  void take_edge(const Lane& lane, const Edge& edge, Look look, WaySpan& stretch);
+  void take_edge(const Lane& lane, const Edge& edge, LaneLook look, WaySpan& stretch);
   void find_edges(bool missed);
-  void find_edge(const Lane& lane, double removed, double free, Look& last);
+  void find_edge(const Lane& lane, double removed, double free, LaneLook& last);
   double begin_of(const Place& place, double height, double from, double to, double best);
   double end_of(const Place& place, double height, double from, double to, double best);
 
@@ -165,17 +177,22 @@ class EngagementScan {
     bool is_near_end = false;
     double tip_z = 0;
   };
-  struct Contact {
-    double radius_mm = 0;  ///< 0: there is none
-    double deep_mm = 0;
-  };
   void set_held(const CutMove* held);
   double material_at(const Station& station, const Vec2& point, double least_radius,
                      bool at_rim) const;
+  double rim_height(const Station& station, double angle) const;
+  bool is_cut_there(const Vec2& point, double z, int i, int j) const;
+  double over_surface(const Station& station, const Vec2& point) const;
+  double behind_itself(const Vec2& point, double height) const;
+  double left_by_owners(const Vec2& point, int i, int j) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
+  Station station_at(double part) const;
   Vec2 before_rim(const Station& station, double angle) const;
-  Contact contact_at(const Station& station, double angle) const;
+  FrontContact contact_at(const Station& station, double angle) const;
+  void round_contact(const Station& station, double angle, FrontContact& found) const;
+  double profile_mm(double radius) const;
   EngagementLook plunge_at(const Station& station) const;
+  bool cuts_centre(const Station& station) const;
 
   const HeightGrid* heights_ = nullptr;
   Motion motion_;  ///< of arcs
@@ -192,6 +209,7 @@ class EngagementScan {
   static constexpr int kLifts = 1024;
   std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
   double lift_scale_ = 0;
+  std::vector<double> profile_;  ///< its length from where it begins to rise, over the radius
 
   double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;
   Cost cost_;
@@ -199,6 +217,9 @@ class EngagementScan {
   std::vector<WaySpan> spans_;
   std::vector<Lane> lanes_;
   std::vector<Edge> edges_;
+  const PresentHeights* owners_ = nullptr;
+  const PastWays* ways_ = nullptr;
+  double own_until_ = 0;  ///< of an arc that may come back to where it began: so far it has cut
   /// The move that is held back; length 0: none.
   struct Held {
     Vec2 start{0}, direction{1, 0};

@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "interp_bridge/timing/spindle_speed.h"
 #include "stock/turning/tap.h"
 #include "stock/turning/turned_surface.h"
 #include "twin/machine/planned_pieces.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/contact_grounds.h"
+#include "twin/process/engagement_log.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/tool_tells.h"
 #include "twin/process/turning/tool_outlines.h"
@@ -473,6 +475,28 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
     add_cutting(use, cut_s, piece.removed_mm3);
   }
   whole.extend(piece);
+  if (site_.engagement && !site_.holding && is_feed(m)) note_engagement(m, step, piece);
+}
+
+/// Threads are fed by their lead, and driven tools mill: of neither is it measured.
+void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const TurnCut& piece) {
+  if (!engagement_begun_) site_.engagement->begin(stock_);
+  engagement_begun_ = true;
+  TurnedWay way;
+  way.length_mm = path_length_mm(m);
+  if (m.kind == MotionKind::kThread || tap_lead_mm_ != 0 || is_driven()) {
+    if (piece.removed_mm3 > 0) site_.engagement->add_unmeasured(way.length_mm);
+    return;
+  }
+  way.seconds = step.duration_s;
+  way.cut_mm = std::min(piece.way_mm, way.length_mm);
+  way.depth_mm = piece.depth_mm;
+  way.removed_mm3 = piece.removed_mm3;
+  const double rpm = 0.5 * (spindle_rpm_at(m, 0) + spindle_rpm_at(m, 1));
+  const bool turns = m.spindle != SpindleState::kStopped && rpm > 0 && step.duration_s > 0;
+  if (turns) way.feed_mm_per_rev = way.length_mm / (step.duration_s / 60 * rpm);
+  if (piece.edge_mm > 0) way.chip_mm = way.feed_mm_per_rev * piece.edge_across_mm / piece.edge_mm;
+  site_.engagement->add_turned(mounted_->number, *mounted_->cutter, way);
 }
 
 /// Of what has just been cut.

@@ -75,6 +75,7 @@ class TurningStage final : public Process {
   void cut(const Motion& motion, const TimedStep& step);
   void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
   TurnCut sum_of_piece() const;
+  void note_engagement(const Motion& motion, const TimedStep& step, const TurnCut& piece);
   void note_fallen(const Motion& motion, const TimedStep& step);
   void report_nothing_cut();
 
@@ -121,7 +122,8 @@ class TurningStage final : public Process {
   FloatingTap floating_;
   double tap_lead_mm_ = 0;  ///< of the present motion, if the tool is a tap; else 0
   bool touched_ = false;
-  bool behind_feed_ = false;  ///< the last motion that went anywhere was a feed
+  bool engagement_begun_ = false;  ///< ProcessSite::engagement knows the workpiece
+  bool behind_feed_ = false;       ///< the last motion that went anywhere was a feed
 };
 
 }  // namespace kerf

@@ -35,19 +35,27 @@ class EngagementFrontTest : public testing::Test {
     options.blank = parse_blank("box:0,0,-10:60,40,0").value();
     options.cell_mm = kFrontCell_mm;
     stock_ = std::move(ZMap::create(options).value());
+    stock_->keep_cut_ids(true);
   }
-  void cut(const std::string& shape, const CutMove& move) {
+  void cut(const std::string& shape, CutMove move) {
+    move.id = next_id_++;
+    const Cutter cutter = parse_shape(shape).value();
+    ways_.mount(cutter);
+    ways_.add(move);
     std::vector<CutReport> reports;
-    stock_->cut(parse_shape(shape).value(), {&move, 1}, reports);
+    stock_->cut(cutter, {&move, 1}, reports);
     stock_->finish(reports);
   }
   EngagementLook look(const std::string& shape, const CutMove& move, double at = 0.5,
-                      const CutMove* held = nullptr) {
+                      const CutMove* held = nullptr, bool anticlockwise = false) {
     const std::optional<HeightGrid> heights = stock_->present_heights();
-    return scan_.look_ahead(*heights, parse_shape(shape).value(), move, at, held);
+    return scan_.look_ahead(*heights, parse_shape(shape).value(), move,
+                            {at, held, anticlockwise, stock_.get(), &ways_});
   }
 
   std::unique_ptr<ZMap> stock_;
+  PastWays ways_;
+  std::uint64_t next_id_ = 0;
   EngagementScan scan_;
 };
 
@@ -128,16 +136,77 @@ TEST_F(EngagementFrontTest, AnArcInsideAndAroundABlock) {
   EXPECT_NEAR(wall.deep_mm, 2, 1e-3);
 }
 
+/// phi from the normal of the way, as a tooth of M3 comes round: 0 on the left.
+TEST_F(EngagementFrontTest, WhereATeethMeetsAndLeavesMaterial) {
+  for (const Vec2 ahead : {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0.6, 0.8)}) {
+    const CutMove slot =
+        way(Vec3(Vec2(30, 20) - 5.0 * ahead, -2), Vec3(Vec2(30, 20) + 5.0 * ahead, -2));
+    const EngagementLook full = look("flat:8", slot);
+    EXPECT_NEAR(full.entry_rad, 0, kDegree);
+    EXPECT_NEAR(full.exit_rad, kPi, kDegree);
+    EXPECT_NEAR(full.climb, 0.5, 0.01);
+    EXPECT_NEAR(full.effective_mm, 8, 1e-6);
+    EXPECT_NEAR(full.contact_mm, 2, 1e-3);
+    EXPECT_FALSE(full.cuts_centre);
+  }
+  // Along the upper side of the block, Y40, 2 mm of the tool in it. Toward -X the block is on the
+  // left: from 0 to acos(1 - 2 / 4) = 60 degrees, conventional. Toward +X it is on the right.
+  const double wide = std::acos(1 - 2.0 / 4);
+  const CutMove left = way({40, 42, -3}, {20, 42, -3}), right = way({20, 42, -3}, {40, 42, -3});
+  const EngagementLook up = look("flat:8", left), down = look("flat:8", right);
+  EXPECT_NEAR(up.entry_rad, 0, kDegree);
+  EXPECT_NEAR(up.exit_rad, wide, 2 * kDegree);
+  EXPECT_EQ(up.climb, 0);
+  EXPECT_NEAR(down.entry_rad, kPi - wide, 2 * kDegree);
+  EXPECT_NEAR(down.exit_rad, kPi, kDegree);
+  EXPECT_EQ(down.climb, 1);
+  // M4 turns the other way round.
+  const EngagementLook turned = look("flat:8", left, 0.5, nullptr, true);
+  EXPECT_NEAR(turned.entry_rad, kPi - wide, 2 * kDegree);
+  EXPECT_NEAR(turned.exit_rad, kPi, kDegree);
+  EXPECT_EQ(turned.climb, 1);
+  // 6 of 8 mm: past straight ahead, 90 of 120 degrees beyond it.
+  const EngagementLook most = look("flat:8", way({20, 38, -3}, {40, 38, -3}));
+  EXPECT_NEAR(most.entry_rad, kPi / 3, 2 * kDegree);
+  EXPECT_NEAR(most.exit_rad, kPi, kDegree);
+  EXPECT_NEAR(most.climb, 0.75, 0.02);
+}
+
+TEST_F(EngagementFrontTest, TheEdgeInMaterialAndItsWidestDiameter) {
+  const CutMove slot = way({20, 20, -2}, {40, 20, -2});
+  // A ball of R4 2 mm deep: out to sqrt(12), acos(1 - 2 / 4) of its arc.
+  const EngagementLook ball = look("ball:8", slot);
+  EXPECT_NEAR(ball.effective_mm, 2 * std::sqrt(12.0), 0.1);
+  EXPECT_NEAR(ball.contact_mm, 4 * std::acos(0.5), 0.06);
+  // Deeper than its half: a quarter of a circle, and what is above it.
+  const EngagementLook deep = look("ball:8", way({20, 20, -6}, {40, 20, -6}));
+  EXPECT_NEAR(deep.effective_mm, 8, 1e-6);
+  EXPECT_NEAR(deep.contact_mm, 4 * kPi / 2 + 2, 0.02);
+  const EngagementLook bull = look("bull:8:1", way({20, 20, -3}, {40, 20, -3}));
+  EXPECT_NEAR(bull.contact_mm, kPi / 2 + 2, 0.02);
+  const EngagementLook vee = look("vee:8:90", slot);
+  EXPECT_NEAR(vee.contact_mm, 2 * std::sqrt(2.0), 0.06);
+  EXPECT_NEAR(vee.effective_mm, 4, 0.1);
+}
+
 TEST_F(EngagementFrontTest, StraightDownAndDownASlope) {
   const EngagementLook down = look("flat:6", way({30, 20, 2}, {30, 20, -3}), 1);
   EXPECT_TRUE(down.is_plunge);
   EXPECT_NEAR(down.deep_mm, 3, 1e-3);
   EXPECT_NEAR(down.wide_mm, 6, 0.3);
+  EXPECT_TRUE(down.cuts_centre);
+  EXPECT_EQ(down.entry_rad, 0);
+  EXPECT_NEAR(down.exit_rad, 2 * kPi, 1e-12);
   EXPECT_FALSE(look("flat:6", way({30, 20, -3}, {30, 20, 2}), 1).is_engaged());
   EXPECT_FALSE(look("flat:6", way({30, 20, 5}, {30, 20, 1}), 1).is_engaged());
   const EngagementLook slope = look("flat:6", way({20, 20, 0}, {40, 20, -2}), 0.5);
   EXPECT_NEAR(slope.angle_rad, kPi, 2 * kDegree);
   EXPECT_NEAR(slope.deep_mm, 1, 0.02);
+  EXPECT_TRUE(slope.cuts_centre);
+  EXPECT_FALSE(look("flat:6", way({40, 20, -2}, {20, 20, 0}), 0.5).cuts_centre);
+  // Over its own slot it goes down beside nothing.
+  cut("flat:6", way({15, 20, -2}, {45, 20, -2}));
+  EXPECT_FALSE(look("flat:6", way({20, 20, 0}, {40, 20, -2}), 0.5).cuts_centre);
 }
 
 TEST_F(EngagementFrontTest, AMoveThatIsHeldBackCountsAsCut) {
@@ -194,19 +263,22 @@ TEST_F(EngagementFrontTest, IsWhatAThousandPointsOfTheRimSay) {
 /// Along moves, by the meter: what is cut, in passes.
 class EngagementMeterTest : public EngagementFrontTest {
  protected:
-  void run(const std::string& shape, const std::vector<CutMove>& moves, int lift_before = -1) {
+  void run(const std::string& shape, std::vector<CutMove> moves, int lift_before = -1) {
     const Cutter cutter = parse_shape(shape).value();
     meter_.mount(4, cutter);
     std::vector<CutReport> reports;
     for (std::size_t n = 0; n < moves.size(); ++n) {
       if (static_cast<int>(n) == lift_before) meter_.lift();
-      const std::uint32_t pass =
-          meter_.take(cutter, moves[n], true, {0, static_cast<std::uint32_t>(n + 1)}, 0, 1);
+      const EngagementMeter::Taken taken = meter_.take(
+          {cutter, moves[n], true, false, {0, static_cast<std::uint32_t>(n + 1)}, 0, 1});
+      moves[n].id = next_id_++;
       meter_.note(moves[n]);
+      meter_.note_cut(moves[n]);
       const double before = stock_->remaining_mm3();
       stock_->cut(cutter, {&moves[n], 1}, reports);
       stock_->finish(reports);
-      log_.add_removed(pass, before - stock_->remaining_mm3());
+      log_.add_removed(taken.pass, before - stock_->remaining_mm3(), taken.sums.in_material_mm(),
+                       taken.sums.cut_s);
     }
   }
   EngagementLog log_{true};
@@ -294,7 +366,9 @@ TEST_F(EngagementMeterTest, WhatIsNotMeasuredIsTold) {
   const Cutter cutter = parse_shape("tslot:10:3:4").value();
   const CutMove move = way({-10, 20, -5}, {70, 20, -5});
   meter_.mount(4, cutter);
-  EXPECT_EQ(meter_.take(cutter, move, true, {0, 1}, 0, 1), EngagementLog::kNoPass);
+  const EngagementMeter::Taken& taken = meter_.take({cutter, move, true, false, {0, 1}, 0, 1});
+  EXPECT_EQ(taken.pass, EngagementLog::kNoPass);
+  EXPECT_FALSE(taken.measured);
   const Engagement found = log_.result();
   EXPECT_TRUE(found.passes.empty());
   EXPECT_NEAR(found.unmeasured_mm, 80, 1e-9);

@@ -12,6 +12,7 @@
 #include "tests/twin/process/motions.h"
 #include "twin/job/stock_choice.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/engagement_log.h"
 #include "twin/process/process_table.h"
 
 namespace kerf {
@@ -42,11 +43,13 @@ Cutter blade(double width_mm) {
 /// and axis, and a blade of 3 mm (2).
 class LatheShop {
  public:
-  explicit LatheShop(const MotionList& program, double nose_mm = 0)
+  explicit LatheShop(const MotionList& program, double nose_mm = 0,
+                     EngagementLog* engagement = nullptr)
       : stock_(*TurnedPart::create(bar_profile(-60, 0, 40))),
         resolver_(tools(nose_mm), stock_model(StockKind::kTurning).can_cut),
         stage_(stock_, resolver_, log_, TimelineOptions{}, *choose_process(wish())) {
     stage_.judge_blank(BlankKind::kGiven);
+    if (engagement != nullptr) stage_.log_engagement(*engagement);
     stage_.take(program.list());
     stage_.finish();
   }
@@ -109,6 +112,30 @@ TEST(TurningStage, CuttingTimeIsThatInMaterial) {
   const ToolUse use = LatheShop(program).stage().tools()[0];
   EXPECT_NEAR(use.cut_s, 3, 0.06);  // 30 of 60 mm at 10 mm/s
   EXPECT_NEAR(use.peak_mm3_per_s, kPi * (400 - 225) * 10, kPi * 175 * 10 * 0.02);
+}
+
+TEST(TurningStage, HowItWasEngagedIsTold) {
+  // 30 mm in air, 30 mm 5 mm deep; 600 mm/min at 500 turns: 1.2 mm a turn, on a flank that leans by
+  // 5 degrees. A thread is fed by its lead, and not measured.
+  MotionList program = start();
+  program.rpm(500).traverse({15, 0, 30}).feed_rate(600).feed({15, 0, -30});
+  program.traverse({30, 0, -30}).traverse({30, 0, 5}).tool(4).traverse({14.9, 0, 5});
+  program.thread({14.9, 0, -10}, 1);
+  EngagementLog log(true);
+  const LatheShop shop(program, 0, &log);
+  const Engagement found = log.result();
+  ASSERT_EQ(found.turned.size(), 1U);
+  const TurningEngagement& turned = found.turned[0];
+  EXPECT_EQ(turned.tool, 1);
+  EXPECT_NEAR(turned.cut_mm, 30, 0.5);
+  EXPECT_NEAR(turned.air_mm, 30, 0.5);
+  EXPECT_NEAR(turned.cut_s, 3, 0.1);
+  EXPECT_NEAR(turned.mean(turned.depth_sum_mm2), 5, 0.01);
+  EXPECT_NEAR(turned.feed_most_mm, 1.2, 0.02);
+  EXPECT_NEAR(turned.chip_most_mm, turned.feed_most_mm * std::cos(5 * kDeg), 1e-3);
+  EXPECT_NEAR(turned.rate_mm3_per_s(), kPi * (400 - 225) * 10, kPi * 175 * 10 * 0.03);
+  EXPECT_NEAR(found.unmeasured_mm, 15, 1);
+  EXPECT_FALSE(found.map.has_value());
 }
 
 TEST(TurningStage, ATraverseThroughTheBarIsTold) {

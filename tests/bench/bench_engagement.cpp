@@ -1,0 +1,127 @@
+// bench_engagement: how near the looks of --engagement come to exact geometry, along a program.
+//
+//   bench_engagement PROGRAM --stock SPEC --tool SHAPE [--cell MM] [--looks N]
+//
+// One tool cuts all moves. N feed moves (default 100), evenly spread, are looked at in their
+// middle, before they are cut, and asked about by brute force (engagement_oracle.h).
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "interp_bridge/program.h"
+#include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
+#include "tests/twin/process/milling/engagement_oracle.h"
+#include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/engagement_scan.h"
+
+namespace kerf {
+namespace {
+
+struct Wish {
+  std::string program, stock, tool;
+  double cell_mm = 0.1;
+  std::size_t looks = 100;
+};
+
+[[noreturn]] void fail(const std::string& why) {
+  fmt::print(stderr, "bench_engagement: {}\n", why);
+  std::exit(2);
+}
+
+struct Step {
+  CutMove move;
+  bool feed = false;
+};
+
+std::vector<Step> steps_of(const Wish& wish) {
+  ProgramOptions options;
+  options.path = wish.program;
+  Diagnostics diagnostics;
+  const std::unique_ptr<Program> program = Program::open(options, diagnostics);
+  std::vector<Step> steps;
+  if (program) {
+    program->run(
+        [&](std::span<const Motion> batch) {
+          for (const Motion& m : batch) {
+            if ((!is_feed(m) && !is_traverse(m)) || !m.start_known || stands_still(m)) continue;
+            steps.push_back({cut_move_from(m, steps.size()), is_feed(m)});
+          }
+          return true;
+        },
+        {}, diagnostics);
+  }
+  for (const Diagnostic& d : diagnostics) fmt::print(stderr, "{}", to_string(d));
+  if (steps.empty()) fail(wish.program + ": no moves");
+  return steps;
+}
+
+int run(const Wish& wish) {
+  const Cutter cutter = parse_shape(wish.tool).value();
+  const std::vector<Step> steps = steps_of(wish);
+  ZMapOptions options;
+  options.blank = parse_blank(wish.stock).value();
+  options.cell_mm = wish.cell_mm;
+  const std::unique_ptr<ZMap> map = std::move(ZMap::create(options).value());
+  map->keep_cut_ids(true);
+  EngagementOracle oracle(map->bounds_mm());
+  PastWays ways;
+  ways.mount(cutter);
+  EngagementScan scan;
+  EngagementErrors errors;
+  std::vector<CutReport> reports;
+  std::size_t engaged = 0;
+  const double each = static_cast<double>(steps.size()) / static_cast<double>(wish.looks);
+  double next = 0.5 * each;
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    const Step& step = steps[n];
+    const bool sideways = step.move.arc || Vec2(step.move.to_mm) != Vec2(step.move.from_mm);
+    if (static_cast<double>(n) >= next && step.feed && sideways &&
+        EngagementScan::takes(cutter, step.move)) {
+      next += each;
+      const std::optional<HeightGrid> heights = map->present_heights();
+      EngagementScan::Look asked;
+      asked.at = 0.5, asked.owners = map.get(), asked.ways = &ways;
+      const EngagementLook look = scan.look_ahead(*heights, cutter, step.move, asked);
+      const EngagementTruth truth = oracle.look(cutter, step.move, 0.5, 180, 40);
+      const double before = errors.most;
+      errors.add(look, truth);
+      engaged += truth.arc > 0 ? 1 : 0;
+      if (errors.most > before && before > 2 * kOracleDegree)
+        fmt::print("move {}: {:.1f} ({:.1f}) from {:.1f} ({:.1f}) to {:.1f} ({:.1f})\n", n,
+                   look.angle_rad / kOracleDegree, truth.arc / kOracleDegree,
+                   look.entry_rad / kOracleDegree, truth.entry / kOracleDegree,
+                   look.exit_rad / kOracleDegree, truth.exit / kOracleDegree);
+    }
+    map->cut(cutter, {&step.move, 1}, reports);
+    map->finish(reports);
+    reports.clear();
+    ways.add(step.move);
+    oracle.add(cutter, step.move);
+  }
+  fmt::print("{}, {}, cells of {} mm: {} engaged; {}\n", wish.program, wish.tool, wish.cell_mm,
+             engaged, errors.text());
+  return 0;
+}
+
+}  // namespace
+}  // namespace kerf
+
+int main(int argc, char** argv) {
+  kerf::Wish wish;
+  if (argc < 2) kerf::fail("which program?");
+  wish.program = argv[1];
+  for (int i = 2; i + 1 < argc; i += 2) {
+    const std::string option = argv[i], value = argv[i + 1];
+    if (option == "--stock") wish.stock = value;
+    if (option == "--tool") wish.tool = value;
+    if (option == "--cell") wish.cell_mm = std::atof(value.c_str());
+    if (option == "--looks") wish.looks = static_cast<std::size_t>(std::atoi(value.c_str()));
+  }
+  if (!kerf::parse_blank(wish.stock) || !kerf::parse_shape(wish.tool))
+    kerf::fail("--stock SPEC --tool SHAPE");
+  return kerf::run(wish);
+}

@@ -1,0 +1,99 @@
+// What EngagementScan says against exact geometry.
+#include "tests/twin/process/milling/engagement_oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <random>
+
+#include "stock/cutter/shape_spec.h"
+#include "stock/zmap/zmap.h"
+#include "twin/process/milling/engagement_scan.h"
+
+namespace kerf {
+namespace {
+
+constexpr double kOracleCell_mm = 0.1;
+
+/// Moves at random, of all upright tools, each over what those before have left.
+class EngagementOracleTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
+  const std::string shape = GetParam();
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Cutter cutter = parse_shape(shape).value();
+  const Cutter other = parse_shape("flat:5").value();
+  EngagementErrors off;
+  for (int round = 0; round < 6; ++round) {
+    ZMapOptions options;
+    options.blank = parse_blank("box:0,0,-10:40,30,0").value();
+    options.cell_mm = kOracleCell_mm;
+    const std::unique_ptr<ZMap> stock = std::move(ZMap::create(options).value());
+    stock->keep_cut_ids(true);
+    EngagementOracle oracle(stock->bounds_mm());
+    PastWays ways;
+    EngagementScan scan;
+    Vec3 at(40 * unit(random), 30 * unit(random), -1 - 3 * unit(random));
+    for (std::uint64_t n = 0; n < 24; ++n) {
+      const bool by_other = n % 6 == 5;
+      CutMove move;
+      move.id = n;
+      move.from_mm = at;
+      const double kind = unit(random);
+      const double turned = 2 * kPi * unit(random), length = 3 + 25 * unit(random);
+      move.to_mm = at + Vec3(length * std::cos(turned), length * std::sin(turned), 0);
+      move.to_mm.x = std::clamp(move.to_mm.x, -3.0, 43.0);
+      move.to_mm.y = std::clamp(move.to_mm.y, -3.0, 33.0);
+      if (kind > 0.8) move.to_mm.z = std::clamp(at.z + 2 * unit(random) - 1.2, -6.0, -0.3);
+      if (kind < 0.3) {
+        const double radius = 2 + 8 * unit(random),
+                     sweep = (unit(random) < 0.5 ? -1 : 1) * (0.5 + 5.5 * unit(random));
+        const Vec2 arm = radius * Vec2(std::cos(turned), std::sin(turned));
+        move.arc = CutArc{at - Vec3(arm, 0), {0, 0, 1}, sweep};
+        move.to_mm = EngagementOracle::place(move, 1);
+      }
+      if (glm::length(Vec2(move.to_mm - at)) > 1 && !by_other) {
+        for (int k = 0; k < 2; ++k) {
+          const double part = 0.05 + 0.85 * unit(random);
+          const std::optional<HeightGrid> heights = stock->present_heights();
+          EngagementScan::Look asked;
+          asked.at = part, asked.owners = stock.get(), asked.ways = &ways;
+          const EngagementLook found = scan.look_ahead(*heights, cutter, move, asked);
+          const EngagementTruth truth = oracle.look(cutter, move, part);
+          const double before = off.most;
+          off.add(found, truth);
+          if (off.most > before && off.most > 2 * kOracleDegree) {
+            std::printf(
+                "%s round %d move %d%s%s at %.3f: arc %.2f (%.2f) entry %.2f (%.2f) exit %.2f "
+                "(%.2f)\n",
+                shape.c_str(), round, static_cast<int>(n), move.arc ? " arc" : "",
+                move.from_mm.z != move.to_mm.z ? " slope" : "", part,
+                found.angle_rad / kOracleDegree, truth.arc / kOracleDegree,
+                found.entry_rad / kOracleDegree, truth.entry / kOracleDegree,
+                found.exit_rad / kOracleDegree, truth.exit / kOracleDegree);
+          }
+        }
+      }
+      const Cutter& by = by_other ? other : cutter;
+      std::vector<CutReport> reports;
+      stock->cut(by, {&move, 1}, reports);
+      stock->finish(reports);
+      ways.mount(by);
+      ways.add(move);
+      oracle.add(by, move);
+      at = move.to_mm;
+      if (unit(random) < 0.25) at.z = -1 - 4 * unit(random);
+    }
+  }
+  std::printf("%s: %s\n", shape.c_str(), off.text().c_str());
+  EXPECT_GT(off.looks, 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, EngagementOracleTest,
+                         testing::Values("flat:8", "flat:3", "ball:8", "ball:4", "bull:8:1",
+                                         "bull:6:2", "vee:8:90", "taper:6:10:1", "drill:6:118"));
+
+}  // namespace
+}  // namespace kerf

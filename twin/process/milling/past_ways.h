@@ -1,0 +1,74 @@
+// twin/process/milling/past_ways.h - the moves that have been cut: where exactly they have left a
+// wall, which heights know to a cell.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/geometry.h"
+#include "stock/stock_model.h"
+
+namespace kerf {
+
+/// Moves of upright tools by their numbers, which a workpiece keeps for each of its cells
+/// (StockModel::keep_cut_ids). Several moves may have one number: of these the last kMostOfOne are
+/// asked. 48 bytes a move, 80 an arc. One thread.
+class PastWays {
+ public:
+  static constexpr int kMostOfOne = 64;
+  /// Numbers from there on are not kept.
+  static constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 27;
+
+  void clear();
+  /// What is added from now on is cut by this one.
+  void mount(const Cutter& cutter);
+  /// Lines, and arcs about Z. Others are left out, and cover nothing.
+  void add(const CutMove& move);
+  bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
+  /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
+  /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
+  bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
+  /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
+  /// slope that is of neither a flat tool nor a ball 200.
+  double height_mm(std::uint32_t number, const Vec2& point) const;
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// A cutter's surface: how wide it is where it is so much above its tip.
+  struct Tool {
+    std::string spec;
+    double radius_mm = 0;
+    bool is_flat = false, is_ball = false;
+    double high_mm = 0;          ///< where it is as wide as it gets
+    std::vector<double> radius;  ///< over the height, 0 .. high_mm
+    double reach_mm(double above_tip_mm) const;
+    std::vector<double> lift;  ///< over the radius
+    double lift_mm(double distance_mm) const;
+  };
+  struct Arc {
+    Vec2 center{0};
+    double radius = 0, start = 0, sweep = 0;  ///< sweep > 0 counter-clockwise
+  };
+  /// Floats tell places of a metre to 0.00006 mm.
+  struct Way {
+    float from[3], to[3];
+    std::uint32_t before = kNone;  ///< of the same number
+    std::uint32_t arc = kNone;
+    std::uint32_t tool = 0;
+  };
+  bool covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
+  bool line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
+  bool arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
+  double line_height(const Way& way, const Vec2& point) const;
+  double arc_height(const Way& way, const Vec2& point) const;
+
+  std::vector<Way> ways_;
+  std::vector<Arc> arcs_;
+  std::vector<Tool> tools_;
+  std::uint32_t tool_ = 0;
+  std::vector<std::uint32_t> last_;  ///< by number
+};
+
+}  // namespace kerf
