@@ -267,7 +267,14 @@ void EngagementScan::round_contact(const Station& station, double angle,
   const auto lift = [&](double radius) {
     return lift_[static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts}))];
   };
+  // Up a slope what it leaves beside it, and nearer to its tip, it has cut from farther back.
+  const double slope = rise_ > 0 ? rise_ / length_ : 0;
+  const auto leads = [&](double radius) {
+    const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
+    return (lift_[k + 1] - lift_[k]) * lift_scale_ * std::cos(angle) > slope;
+  };
   const auto over = [&](double radius) {
+    if (slope > 0 && !leads(radius)) return -kThinnestFilm_mm;
     const double depth = over_surface(station, station.center + radius * out) - kThinnestFilm_mm;
     if (depth > 0) {
       const double lowest = lift(radius * std::abs(std::sin(angle)));

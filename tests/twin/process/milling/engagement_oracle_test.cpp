@@ -62,9 +62,10 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
           asked.at = part, asked.owners = stock.get(), asked.ways = &ways;
           const EngagementLook found = scan.look_ahead(*heights, cutter, move, asked);
           const EngagementTruth truth = oracle.look(cutter, move, part);
-          const double before = off.most;
+          
           off.add(found, truth);
-          if (off.most > before && off.most > 2 * kOracleDegree) {
+          if (off.all.back() > 6) {
+            std::printf("   deep %.4f effective %.3f (%.3f) ", found.deep_mm, found.effective_mm, truth.effective_mm);
             std::printf(
                 "%s round %d move %d%s%s at %.3f: arc %.2f (%.2f) entry %.2f (%.2f) exit %.2f "
                 "(%.2f)\n",
