@@ -12,9 +12,9 @@ namespace {
 /// What is thinner is not there: what a pass leaves of the one before, by rounding.
 constexpr double kThinnestFront_mm = 0.002;
 /// Directions to begin with, from one side to the other.
-constexpr int kRays = FrontRays::kMost, kRaysOfRound = 12;
+constexpr int kRays = FrontRays::kMost;
 /// Radii along a ray, of cutters that are not flat, and steps between two of them.
-constexpr int kRadii = 6, kRadiusSteps = 3;
+constexpr int kRadii = 9, kRadiusSteps = 3;
 constexpr double kLeastStep = 0.1;
 /// What is thinner has been cut: the model's rounding.
 constexpr double kThinnestFilm_mm = 2e-4;
@@ -389,7 +389,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   // What stands right before it is removed next.
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
-  FrontRays rays(is_flat() ? kRays : kRaysOfRound, radius_);
+  FrontRays rays(kRays, radius_);
   rays.sweep([&](double angle) { return contact_at(station, angle); });
   EngagementLook look = rays.look(asked.anticlockwise);
   if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));

@@ -26,9 +26,7 @@ class PastWays {
   void mount(const Cutter& cutter);
   /// Lines, and arcs about Z. Others are left out, and cover nothing.
   void add(const CutMove& move);
-  bool knows(std::uint32_t number) const {
-    return number < last_.size() && last_[number] != kNone;
-  }
+  bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
   /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
