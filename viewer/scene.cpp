@@ -91,6 +91,7 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
   replace_if(&older->findings, std::move(newer.findings));
   replace_if(&older->program, std::move(newer.program));
   replace_if(&older->timeline, std::move(newer.timeline));
+  replace_if(&older->curves, std::move(newer.curves));
   replace_if(&older->machine, std::move(newer.machine));
   replace_if(&older->fixtures, std::move(newer.fixtures));
   replace_if(&older->colors, std::move(newer.colors));

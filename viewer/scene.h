@@ -172,6 +172,18 @@ struct ToolMark {
 struct ProgramTimeline {
   double duration_s = 0.0;  ///< 0: not known (a machine is watched).
   std::vector<ToolMark> tools;
+  bool has_curves = false;  ///< ProgramCurves come: there is to be room for them.
+};
+
+/// What a program does over its time, in columns of `step_s` from its start on; each vector has one
+/// value a column, 0 where there is nothing.
+struct ProgramCurves {
+  double step_s = 1.0;
+  double known_until_s = 0.0;            ///< Of what comes later nothing is known yet.
+  std::vector<float> mm3_per_s;          ///< Removal rate, over the column.
+  std::vector<float> feed_mm_per_min;    ///< Of feed moves.
+  std::vector<float> feed_per_tooth_mm;  ///< Where material was removed; empty: no teeth are known.
+  std::vector<std::uint32_t> color;      ///< Of the tool, as CutColors has it: 0xAABBGGRR.
 };
 
 enum class PlayState {
@@ -384,6 +396,7 @@ struct SceneUpdate {
   std::shared_ptr<const FindingList> findings;
   std::shared_ptr<const ProgramText> program;
   std::shared_ptr<const ProgramTimeline> timeline;
+  std::shared_ptr<const ProgramCurves> curves;
   std::shared_ptr<const SceneMachine> machine;
   /// What holds the workpiece: a link each. Where they are: Moment::fixture_poses.
   std::shared_ptr<const SceneMachine> fixtures;

@@ -38,7 +38,8 @@ inline constexpr double kFinest_mm = 0.002;
 
 /// What of the surface lies in low_z .. high_z. Chains end on these, at points that are the same
 /// for both neighbours, and whatever the tolerance; a face on `low_z` belongs to it, one on
-/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments. Of marked
+/// `high_z` where `has_high_face` says so. Round the axis there are kPatchSegments at such ends and
+/// along flats, elsewhere fewer, as long as facets keep within twice the tolerance. Of marked
 /// contours MeshPatch::cut_by are the marks.
 MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_z,
                        bool has_high_face, double tolerance_mm,
@@ -53,7 +54,10 @@ struct BandChain {
 /// The chains that revolve_band() is made of, in the contour's direction.
 std::vector<BandChain> band_chains(const Contour& contour, Unit low_z, Unit high_z,
                                    bool has_high_face);
-/// Simplified between corners where another mark begins.
+/// Simplified between corners where another mark begins. Runs of a mark that are shorter than
+/// kMarkTolerances times the tolerance are one with those after them, and have the mark of the
+/// longest: at a quarter of a pixel, such that nobody can point at.
+inline constexpr double kMarkTolerances = 4;
 BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm);
 
 }  // namespace kerf::turning

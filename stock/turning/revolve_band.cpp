@@ -90,12 +90,58 @@ Vec2 outward(const Vec2& a, const Vec2& b) {
   return {way.y, -way.x};
 }
 
+/// How far the middle of a side is from its circle that takes so many of the kPatchSegments.
+double off_circle_mm(double radius_mm, std::size_t step) {
+  return radius_mm * (1 - std::cos(kPi * static_cast<double>(step) / kPatchSegments));
+}
+
+/// As many as keep within twice the tolerance.
+std::size_t segments_a_side(double radius_mm, double tolerance_mm) {
+  std::size_t best = 1;
+  for (const std::size_t step : {2, 3, 4, 5}) {
+    static_assert(kPatchSegments % (2 * 2 * 3 * 5) == 0);
+    if (off_circle_mm(radius_mm, step) <= 2 * tolerance_mm) best = step;
+  }
+  return best;
+}
+
+/// How many segments a side takes, at the corners of a chain. The ends of an open one are corners
+/// of the neighbours' chains; it is from the first edge on that is long beside what the sides
+/// differ by that there are fewer sides, lest the strip between is steep.
+class Sides {
+ public:
+  Sides(const BandChain& chain, double tolerance_mm) : end_(chain.points.size()) {
+    double radius_mm = 0;
+    for (const Vec2& p : chain.points) radius_mm = std::max(radius_mm, p.y);
+    step_ = segments_a_side(radius_mm, tolerance_mm);
+    if (step_ == 1 || chain.points.front() == chain.points.back()) return;
+    const double long_mm = 2 * off_circle_mm(radius_mm, step_);
+    const auto is_short = [&](std::size_t edge) {
+      return glm::distance(chain.points[edge], chain.points[edge + 1]) < long_mm;
+    };
+    const std::size_t edges = chain.points.size() - 1;
+    while (begin_ < edges && is_short(begin_)) ++begin_;
+    ++begin_;
+    end_ = edges;
+    while (end_ > begin_ && is_short(end_ - 1)) --end_;
+  }
+  std::size_t at(std::size_t corner) const { return corner >= begin_ && corner < end_ ? step_ : 1; }
+
+ private:
+  std::size_t step_ = 1, begin_ = 0, end_;
+};
+
 class PatchBuilder {
   static constexpr Vec2 kNowhere{-1, -1};  // r is never negative
 
  public:
-  PatchBuilder(MeshPatch& patch, const std::optional<BarFlats>& flats, bool marked)
-      : patch_(patch), flats_(flats), is_marked_(marked), around_(directions(kPatchSegments)) {
+  PatchBuilder(MeshPatch& patch, const std::optional<BarFlats>& flats, bool marked,
+               double tolerance_mm)
+      : patch_(patch),
+        flats_(flats),
+        is_marked_(marked),
+        tolerance_mm_(tolerance_mm),
+        around_(directions(kPatchSegments)) {
     if (flats) reach_ = reaches(kPatchSegments, *flats);
   }
 
@@ -103,6 +149,7 @@ class PatchBuilder {
     const std::vector<Vec2>& chain = marked.points;
     const std::size_t edges = marked.marks.size();
     const bool closed = chain.front() == chain.back();
+    const Sides sides(marked, flats_ ? 0 : tolerance_mm_);
     const auto normal = [&](std::size_t i) { return outward(chain[i], chain[i + 1]); };
     const auto joint = [&](std::size_t edge, std::size_t other) {
       const Vec2 own = normal(edge), beside = normal(other);
@@ -119,13 +166,38 @@ class PatchBuilder {
         add_strip_with_flats(chain[i], begin, chain[i + 1], end);
         continue;
       }
-      const std::uint32_t from = ring(chain[i], begin), to = ring(chain[i + 1], end);
-      add_strip(kPatchSegments, from, 1, to, 1, false,
-                [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangle(a, b, c); });
+      const Circle from = circle(chain[i], begin, sides.at(i)),
+                   to = circle(chain[i + 1], end, sides.at(i + 1));
+      add_strip_between(from, to);
     }
   }
 
  private:
+  struct Circle {
+    std::uint32_t first = 0;
+    std::size_t step = 1;  ///< segments a side
+  };
+  /// Where one has more corners each side of the other has a fan, up to its middle from one end.
+  void add_strip_between(const Circle& from, const Circle& to) {
+    const auto emit = [&](std::size_t a, std::size_t b, std::size_t c) {
+      triangle(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+               static_cast<std::uint32_t>(c));
+    };
+    const std::size_t step = std::max(from.step, to.step), half = step / 2;
+    for (std::size_t k = 0; k < kPatchSegments; k += step) {
+      const std::size_t p = from.first + k / from.step, q = to.first + k / to.step;
+      if (from.step == to.step) {
+        emit(p, q, p + 1);
+        emit(p + 1, q, q + 1);
+      } else if (from.step < to.step) {
+        for (std::size_t i = 0; i < step; ++i) emit(p + i, i < half ? q : q + 1, p + i + 1);
+        emit(p + half, q, q + 1);
+      } else {
+        for (std::size_t i = 0; i < step; ++i) emit(i < half ? p : p + 1, q + i, q + i + 1);
+        emit(p, q + half, p + 1);
+      }
+    }
+  }
   /// Corners that a flat cuts off have the normal of what is there.
   void add_strip_with_flats(const Vec2& from, const Vec2& begin, const Vec2& to, const Vec2& end) {
     last_at_ = kNowhere;
@@ -149,15 +221,15 @@ class PatchBuilder {
       triangle(first + 2, first + 1, first + 3);
     }
   }
-  /// The ring before where it is the same.
-  std::uint32_t ring(const Vec2& at, const Vec2& normal) {
-    if (at == last_at_ && normal == last_normal_) return last_ring_;
+  /// The one before where it is the same.
+  Circle circle(const Vec2& at, const Vec2& normal, std::size_t step) {
+    if (at == last_at_ && normal == last_normal_ && step == last_circle_.step) return last_circle_;
     last_at_ = at;
     last_normal_ = normal;
-    last_ring_ = static_cast<std::uint32_t>(patch_.vertices.size());
-    for (const Vec2& direction : around_)
-      add_vertex(place(at, direction), place(normal, direction));
-    return last_ring_;
+    last_circle_ = {static_cast<std::uint32_t>(patch_.vertices.size()), step};
+    for (std::size_t k = 0; k <= kPatchSegments; k += step)
+      add_vertex(place(at, around_[k]), place(normal, around_[k]));
+    return last_circle_;
   }
   void add_vertex(const glm::vec3& at, const glm::vec3& normal) {
     patch_.vertices.push_back({at, pack_normal(normal)});
@@ -173,24 +245,40 @@ class PatchBuilder {
   MeshPatch& patch_;
   const std::optional<BarFlats>& flats_;
   bool is_marked_;
+  double tolerance_mm_;
   std::vector<Vec2> around_;
   std::vector<double> reach_;  // along them, with flats
   Vec2 last_at_ = kNowhere, last_normal_{0};
-  std::uint32_t last_ring_ = 0, mark_ = MeshPatch::kNotCut;
+  Circle last_circle_;
+  std::uint32_t mark_ = MeshPatch::kNotCut;
 };
 
 }  // namespace
 
 BandChain simplified_by_marks(const BandChain& chain, double tolerance_mm) {
+  const double least_mm = kMarkTolerances * tolerance_mm;
   BandChain result;
   for (std::size_t begin = 0; begin < chain.marks.size();) {
-    std::size_t end = begin + 1;
-    while (end < chain.marks.size() && chain.marks[end] == chain.marks[begin]) ++end;
+    // Runs of a mark, until they are together as long as is told apart.
+    double whole_mm = 0, longest_mm = -1;
+    std::size_t end = begin;
+    std::uint32_t mark = 0;
+    do {
+      const std::uint32_t next = chain.marks[end];
+      double run_mm = 0;
+      for (; end < chain.marks.size() && chain.marks[end] == next; ++end)
+        run_mm += glm::distance(chain.points[end], chain.points[end + 1]);
+      whole_mm += run_mm;
+      if (run_mm > longest_mm) {
+        longest_mm = run_mm;
+        mark = next;
+      }
+    } while (end < chain.marks.size() && whole_mm < least_mm);
     const std::vector<Vec2> part =
         simplified(std::span(chain.points).subspan(begin, end - begin + 1), tolerance_mm);
     if (result.points.empty()) result.points.push_back(part.front());
     result.points.insert(result.points.end(), part.begin() + 1, part.end());
-    result.marks.resize(result.points.size() - 1, chain.marks[begin]);
+    result.marks.resize(result.points.size() - 1, mark);
     begin = end;
   }
   return result;
@@ -207,7 +295,7 @@ MeshPatch revolve_band(std::span<const Contour> contours, Unit low_z, Unit high_
   static_assert(kPatchSegments % 12 == 0 && kPatchSegments % 8 == 0, "bars of six and four flats");
   MeshPatch patch;
   const bool is_marked = !contours.empty() && !contours[0].runs()[0]->marks.empty();
-  PatchBuilder builder(patch, flats, is_marked);
+  PatchBuilder builder(patch, flats, is_marked, tolerance_mm);
   BandChains chains(low_z, high_z, has_high_face);
   for (const Contour& contour : contours) {
     if (contour.box().max_x < low_z || contour.box().min_x > high_z) continue;

@@ -26,9 +26,6 @@ using turning::Wide;
 
 static_assert(TurnedPart::kWayReach_mm + kMaxInsertReach_mm <= turning::kMaxCoordinate_mm);
 
-/// Of level 0: what no view shows.
-constexpr double kPatchTolerance_mm = 0.002;
-
 bool is_allowed(const Vec2& p) {
   return std::abs(p.x) <= kMaxTurnedZ_mm && p.y >= 0 &&
          p.y <= kMaxTurnedRadius_mm;  // not true of NaN
@@ -423,13 +420,13 @@ TriangleMesh TurnedPart::mesh(double tolerance_mm) const {
 
 int TurnedPart::level_within(double tolerance_mm) {
   int level = 0;
-  for (double next_mm = 4 * kPatchTolerance_mm; level < 4 && next_mm <= tolerance_mm; next_mm *= 4)
+  for (double next_mm = 4 * kFinestPatch_mm; level < 4 && next_mm <= tolerance_mm; next_mm *= 4)
     ++level;
   return level;
 }
 
 MeshPatch TurnedPart::patch(std::size_t band, int level) const {
-  const double tolerance_mm = kPatchTolerance_mm * std::pow(4.0, level);
+  const double tolerance_mm = kFinestPatch_mm * std::pow(4.0, level);
   const turning::Unit low = band_low(band), high = band_low(band + 1);
   const bool is_last = band + 1 == kBands;
   const Rect wound = threads_.box();

@@ -225,9 +225,12 @@ class TurnedPart {
   /// whichever copies they come from.
   std::uint64_t band_version(std::size_t band) const { return versions_[band]; }
   double band_low_z_mm(std::size_t band) const;
-  /// The band's surface. Level n, 0 .. 4, is within 0.002 mm times 4^n of it, and so divided round
-  /// the axis that neighbours of any levels fit together: there are no skirts. `tile` is the band.
+  /// The band's surface. The contour of level n, 0 .. 4, is within 0.002 mm times 4^n of it; round
+  /// the axis it is as revolve_band() divides it: neighbours of any levels fit together, there are
+  /// no skirts. `tile` is the band.
   MeshPatch patch(std::size_t band, int level) const;
+  /// Of level 0: what no view shows; of level 4.
+  static constexpr double kFinestPatch_mm = 0.002, kCoarsestPatch_mm = 256 * kFinestPatch_mm;
   /// The coarsest level that keeps within the tolerance; 0 where none does.
   static int level_within(double tolerance_mm);
 

@@ -181,8 +181,8 @@ std::optional<Contact> TurningStock::first_contact(const Cutter& cutter, const C
 }
 
 std::optional<std::uint32_t> TurningStock::cut_id_at(const Vec3& point_mm) const {
-  /// As near as patches of level 0 are to the part, and their vertices to where they should be.
-  constexpr double kNear_mm = 0.01;
+  /// As near as patches of the coarsest level are to the part: what is nearest counts.
+  constexpr double kNear_mm = 3 * TurnedPart::kCoarsestPatch_mm;
   constexpr double kStep_rad = 2 * kPi / turning::kPatchSegments;
   const double angle = std::atan2(point_mm.y, point_mm.x) / kStep_rad;
   const double off_rad = (angle - std::floor(angle) - 0.5) * kStep_rad;

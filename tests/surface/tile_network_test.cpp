@@ -82,7 +82,8 @@ void expect_whole(const Pieces& pieces) {
 /// one, that each has.
 double farthest(const Lattice& lattice, const Pieces& pieces) {
   double worst = 0;
-  for (const auto& [a, b, c] : pieces.triangles) {
+  for (const auto& corners : pieces.triangles) {
+    const Corner a = corners[0], b = corners[1], c = corners[2];
     const double twice = (b.i - a.i) * (c.j - a.j) - (b.j - a.j) * (c.i - a.i);
     const auto z = [&](const Corner& at) {
       return static_cast<double>(lattice.z[Lattice::corner(at.i, at.j)]);
@@ -150,9 +151,9 @@ TEST(TileNetwork, CellsThatAreKeptStayWhole) {
   for (const auto& [i, j] : {Corner{0, 0}, Corner{31, 32}, Corner{63, 17}})
     lattice->cell[Lattice::at(i, j)] = TileNetwork::Cell::kKept;
   const Pieces pieces = pieces_of(TileNetwork(*lattice, 1));
-  for (const auto& [i, j] : {Corner{0, 0}, Corner{31, 32}, Corner{63, 17}}) {
-    EXPECT_TRUE(std::ranges::any_of(pieces.cells,
-                                    [&](const Corner& at) { return at.i == i && at.j == j; }));
+  for (const Corner& kept : {Corner{0, 0}, Corner{31, 32}, Corner{63, 17}}) {
+    EXPECT_TRUE(std::ranges::any_of(
+        pieces.cells, [&](const Corner& at) { return at.i == kept.i && at.j == kept.j; }));
   }
   EXPECT_EQ(pieces.area, kCells * kCells);
 }

@@ -22,11 +22,12 @@ struct ChipLoad {
 
   bool is_known() const { return seconds > 0; }
   double mean_mm() const { return is_known() ? sum_mm_s / seconds : 0; }
-  void add(double feed_per_tooth_mm, double duration_s, const SourceRef& source) {
-    sum_mm_s += feed_per_tooth_mm * duration_s;
+  /// Of a move: its most and its mean feed per tooth.
+  void add(double move_most_mm, double move_mean_mm, double duration_s, const SourceRef& source) {
+    sum_mm_s += move_mean_mm * duration_s;
     seconds += duration_s;
-    if (feed_per_tooth_mm <= most_mm) return;
-    most_mm = feed_per_tooth_mm;
+    if (move_most_mm <= most_mm) return;
+    most_mm = move_most_mm;
     most_at = source;
   }
 };

@@ -145,7 +145,8 @@ PlayerScene::PlayerScene(std::shared_ptr<const ProgramTrack> track, ViewedProgra
       draw_modes_({track_, shown_.cuts, shown_.blank, shown_.moves.path() != nullptr,
                    shown_.design != nullptr}),
       bodies_(shown_.collisions),
-      path_(track_, shown_.planned, shown_.moves) {
+      path_(track_, shown_.planned, shown_.moves),
+      curves_(track_, shown_.tools, shown_.cuts) {
   feeder_.compare_with(shown_.design, shown_.tolerance_mm);
   if (shown_.turns) diameters_ = DiameterMode(*track_, *read_program_text(shown_.files));
   if (shown_.machine)
@@ -168,6 +169,7 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   update.program = read_program_text(shown_.files);
   auto timeline = std::make_shared<ProgramTimeline>();
   timeline->duration_s = track_->duration_s();
+  timeline->has_curves = timeline->duration_s > 0;
   for (const std::uint32_t motion : track_->tool_changes()) {
     ToolMark mark;
     mark.time_s = track_->start_s(motion);
@@ -200,6 +202,12 @@ void PlayerScene::set_controls(double speed, std::vector<SourceRef> breakpoints)
 
 void PlayerScene::set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3) {
   waiting_.colors = cut_colors(command, *track_, shown_.tools, removed_mm3);
+}
+
+void PlayerScene::add_curves(const PlayerState& state, const std::vector<float>& removed_mm3) {
+  constexpr std::chrono::milliseconds kSlice{4};
+  if (auto made = curves_.make(state.motions_checked, removed_mm3, Clock::now() + kSlice))
+    waiting_.curves = std::move(made);
 }
 
 void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {
@@ -241,7 +249,7 @@ void PlayerScene::find_cut(const Vec3& point_mm, const PlayerState& state,
 bool PlayerScene::is_empty(const SceneUpdate& update) {
   return !update.moment && update.patches.empty() && update.path.empty() && !update.findings &&
          !update.tool_shape && !update.colors && !update.picked && !update.draw_mode &&
-         !update.heights && !update.cut_moves;
+         !update.heights && !update.cut_moves && !update.curves;
 }
 
 SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,

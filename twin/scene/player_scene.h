@@ -20,6 +20,7 @@
 #include "twin/scene/cut_colors.h"
 #include "twin/scene/draw_feeder.h"
 #include "twin/scene/patch_feeder.h"
+#include "twin/scene/program_curves.h"
 #include "twin/scene/punch_pose.h"
 #include "twin/scene/sheet_query.h"
 #include "twin/scene/track_path.h"
@@ -92,6 +93,12 @@ class PlayerScene {
   /// What the player does not know: speed asked for, breakpoints of the user.
   void set_controls(double speed, std::vector<SourceRef> breakpoints);
   void set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3);
+  /// Curves of what has been checked are due.
+  bool wants_curves(const PlayerState& state) const {
+    return curves_.wants(state.motions_checked, Clock::now());
+  }
+  /// Within a few milliseconds; what is new is in the next update. `removed_mm3`: by motion.
+  void add_curves(const PlayerState& state, const std::vector<float>& removed_mm3);
   /// Which motion made this point of the surface; the answer is in the next update.
   void pick(const Vec3& point_mm, const PlayerState& state);
 
@@ -100,7 +107,9 @@ class PlayerScene {
   SceneUpdate update(const std::shared_ptr<const PlayerState>& state, Clock::time_point deadline);
   static bool is_empty(const SceneUpdate& update);
   /// There is more to come without a new state.
-  bool behind() const { return (draws_mesh() && feeder_.behind()) || !path_.complete(); }
+  bool behind() const {
+    return (draws_mesh() && feeder_.behind()) || !path_.complete() || curves_.is_in_hand();
+  }
 
  private:
   bool draws_mesh() const { return draw_modes_.drawn() == DrawMode::kMesh; }
@@ -116,6 +125,7 @@ class PlayerScene {
   DrawFeeder draw_modes_;
   BodyWatch bodies_;
   TrackPath path_;
+  CurveMaker curves_;
   DiameterMode diameters_;
   double speed_ = 1;
   std::vector<SourceRef> breakpoints_;

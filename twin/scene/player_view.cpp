@@ -165,6 +165,7 @@ void PlayerView::show() {
                          state_->mode == PlayerMode::kPaused &&
                          state_->stop != PlayerStop::kProgramEnd;
   if (is_halted) plays_.reset();
+  if (scene_.wants_curves(*state_)) scene_.add_curves(*state_, player_.removed_mm3());
   SceneUpdate update = scene_.update(state_, Clock::now() + kPlayerSlice);
   if (update.moment) moment_ = update.moment;
   if (!PlayerScene::is_empty(update)) mailbox_.publish(std::move(update));

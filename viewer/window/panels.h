@@ -28,12 +28,13 @@
 
 namespace kerf {
 
-/// The values shown now; never null but `picked`, `draw_mode` and `job`.
+/// The values shown now; never null but `curves`, `picked`, `draw_mode` and `job`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
   std::shared_ptr<const ProgramText> program = std::make_shared<ProgramText>();
   std::shared_ptr<const ProgramTimeline> timeline = std::make_shared<ProgramTimeline>();
+  std::shared_ptr<const ProgramCurves> curves;
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
   std::shared_ptr<const PickedPoint> picked;
   std::shared_ptr<const DrawAnswer> draw_mode;
@@ -167,7 +168,16 @@ struct PanelRoom {
   float left = 0, right = 0, bottom = 0, top = 0;
 };
 /// Panels go where the picture would become too small.
-PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale);
+/// `has_curve`: there is a program, whose curve may be shown.
+PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale,
+                     bool has_curve);
+/// Below the time slider, as wide. Clicks go to that time.
+void draw_curve(const PanelContext& context);
+inline constexpr float kCurveHeight_px = 30.0f;
+/// Where the mouse is on a slider from `left` to `right`.
+double time_under_mouse(float left, float right, double duration_s);
+/// Asks for that time where the item before is being clicked or dragged.
+void seek_with_mouse(const PanelContext& context, double time_s);
 
 void draw_player_bar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);

@@ -138,12 +138,8 @@ void draw_time_slider(const PanelContext& context) {
   draw_marks(context, low, high, duration_s);
   const float half = std::round(2.0f * context.scale);
   list->AddRectFilled({head_x - half, low.y}, {head_x + half, high.y}, theme::kHead, 1.0f);
-  const ImGuiIO& io = ImGui::GetIO();
-  const double under_mouse =
-      std::clamp(static_cast<double>((io.MousePos.x - low.x) / width), 0.0, 1.0) * duration_s;
-  if (ImGui::IsItemActive() && (ImGui::IsItemActivated() || io.MouseDelta.x != 0.0f)) {
-    context.commands->push(SeekTimeCommand{under_mouse});
-  }
+  const double under_mouse = time_under_mouse(low.x, high.x, duration_s);
+  seek_with_mouse(context, under_mouse);
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     draw_time_tip(context, under_mouse, static_cast<double>(kNear_px / width) * duration_s);
   }
@@ -321,13 +317,27 @@ std::string clock_text(double seconds) {
   return fmt::format("{}:{:02}.{}", whole / 60, whole % 60, tenths % 10);
 }
 
-PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale) {
+double time_under_mouse(float left, float right, double duration_s) {
+  const float share = (ImGui::GetIO().MousePos.x - left) / (right - left);
+  return std::clamp(static_cast<double>(share), 0.0, 1.0) * duration_s;
+}
+
+void seek_with_mouse(const PanelContext& context, double time_s) {
+  if (ImGui::IsItemActive() && (ImGui::IsItemActivated() || ImGui::GetIO().MouseDelta.x != 0.0f)) {
+    context.commands->push(SeekTimeCommand{time_s});
+  }
+}
+
+PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale,
+                     bool has_curve) {
   constexpr float kCodeWidth_px = 290.0f;
   constexpr float kInfoWidth_px = 300.0f;
   constexpr float kSmallestPicture_px = 160.0f;
   PanelRoom room;
-  if (window_px.y >= scale * (kBarHeight_px + kSmallestPicture_px)) {
-    room.bottom = std::round(scale * kBarHeight_px);
+  const bool shows_curve = has_curve && settings.curve != CurveChoice::kNone;
+  const float bar_px = kBarHeight_px + (shows_curve ? kCurveHeight_px : 0.0f);
+  if (window_px.y >= scale * (bar_px + kSmallestPicture_px)) {
+    room.bottom = std::round(scale * bar_px);
   }
   float left_over = window_px.x - scale * kSmallestPicture_px;
   // A panel that was made wide shrinks before it goes.
@@ -389,6 +399,7 @@ void draw_player_bar(const PanelContext& context, glm::vec2 window_px, const Pan
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   draw_time_slider(context);
+  draw_curve(context);
   if (context.shown.moment->state != PlayState::kFollowing) {
     draw_buttons(context);
     draw_speed(context);

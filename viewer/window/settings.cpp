@@ -119,6 +119,10 @@ std::vector<Field> choices() {
           [](const ViewSettings& s) { return static_cast<int>(s.flat); },
           [](int choice, ViewSettings* s) { s->flat = static_cast<FlatView>(choice); }),
       choice_field(
+          "curve", {"none", "removal-rate", "feed", "feed-per-tooth"},
+          [](const ViewSettings& s) { return static_cast<int>(s.curve); },
+          [](int choice, ViewSettings* s) { s->curve = static_cast<CurveChoice>(choice); }),
+      choice_field(
           "color", {"plain", "height", "tool", "removal-rate", "line-range", "deviation"},
           [](const ViewSettings& s) { return static_cast<int>(s.drawing.color_by); },
           [](int choice, ViewSettings* s) { s->drawing.color_by = static_cast<ColorBy>(choice); }),

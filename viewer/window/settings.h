@@ -24,6 +24,10 @@ struct SectionChoice {
   double offset_mm = 0.0;  ///< along the axis
 };
 
+/// Which of ProgramCurves stands below the time slider.
+enum class CurveChoice { kNone, kRate, kFeed, kFeedPerTooth };
+inline constexpr int kCurveChoices = 4;
+
 /// Of panels and background. kSystem: as the desktop asks for; dark where it does not say.
 enum class ThemeChoice { kDark, kLight, kSystem };
 
@@ -44,6 +48,7 @@ struct ViewSettings {
   bool shows_code = true;
   bool shows_info = true;
   bool shows_counters = false;
+  CurveChoice curve = CurveChoice::kRate;
   FlatView flat = FlatView::kNone;
   double text_scale = 1.0;  ///< Of all of the panels, times the scale of the display; 0.75 to 3.
   double code_width_px = 290.0;  ///< of the panels, on a display of scale 1

@@ -48,6 +48,7 @@ constexpr std::array kShortcuts{
     Shortcut{"c", U'c', 0, Action::kCodePanel, Text::kCodePanel},
     Shortcut{"i", U'i', 0, Action::kInfoPanel, Text::kInfoPanel},
     Shortcut{"d", U'd', 0, Action::kCounters, Text::kDrawing},
+    Shortcut{"y", U'y', 0, Action::kNextCurve, Text::kNextCurve},
     Shortcut{"l", U'l', 0, Action::kLocalDrawing, Text::kLocalDrawing},
     Shortcut{"U", U'U', 0, Action::kUnits, Text::kUnits},
     Shortcut{"r", U'r', 0, Action::kNextDrawMode, Text::kNextDrawMode},

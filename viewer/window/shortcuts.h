@@ -49,6 +49,7 @@ enum class Action {
   kCodePanel,
   kInfoPanel,
   kCounters,
+  kNextCurve,
   kLocalDrawing,
   kUnits,
   kNextDrawMode,

@@ -58,9 +58,11 @@ std::string Measures::volume(double mm3) const {
                    : fmt::format("{} cm³", fixed(mm3 / kMm3PerCm3, 1));
 }
 
-std::string Measures::rate_up_to(double mm3_per_s) const {
-  return is_inch() ? fmt::format("<= {:.3g} in³/s", mm3_per_s / kMm3PerInch3)
-                   : fmt::format("<= {:.3g} mm³/s", mm3_per_s);
+std::string Measures::rate(double mm3_per_s) const {
+  return is_inch() ? fmt::format("{:.3g} in³/s", mm3_per_s / kMm3PerInch3)
+                   : fmt::format("{:.3g} mm³/s", mm3_per_s);
 }
+
+std::string Measures::rate_up_to(double mm3_per_s) const { return "<= " + rate(mm3_per_s); }
 
 }  // namespace kerf

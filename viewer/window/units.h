@@ -37,6 +37,8 @@ class Measures {
   std::string feeds(double actual_mm_per_min, double wanted_mm_per_min) const;
   /// "12.3 cm³", "0.751 in³"
   std::string volume(double mm3) const;
+  /// "120 mm³/s", "0.00732 in³/s"
+  std::string rate(double mm3_per_s) const;
   /// "<= 120 mm³/s", "<= 0.00732 in³/s"
   std::string rate_up_to(double mm3_per_s) const;
 

@@ -20,6 +20,9 @@ constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
                                  Text::kColorTool,      Text::kColorRemovalRate,
                                  Text::kColorLineRange, Text::kColorDeviation};
 
+constexpr std::array kCurves{Text::kCurveNone, Text::kCurveRate, Text::kFeed, Text::kFeedPerTooth};
+static_assert(kCurves.size() == kCurveChoices);
+
 constexpr std::array kDrawModes{Text::kDrawMesh, Text::kDrawRaycast, Text::kDrawCsg};
 
 bool header(const PanelContext& context, Text title, bool is_open) {
@@ -121,6 +124,21 @@ void draw_colors(const PanelContext& context) {
     ImGui::TextColored(theme::kDim, "%s", context.word(Text::kNoColorsYet));
   }
   draw_legend(context);
+}
+
+void draw_curve_choice(const PanelContext& context) {
+  if (!context.shown.timeline->has_curves) return;
+  CurveChoice& chosen = context.settings->curve;
+  ImGui::SetNextItemWidth(150.0f * context.scale);
+  if (!ImGui::BeginCombo(context.word(Text::kCurve),
+                         context.word(kCurves[static_cast<std::size_t>(chosen)]))) {
+    return;
+  }
+  for (std::size_t i = 0; i < kCurves.size(); ++i) {
+    const auto curve = static_cast<CurveChoice>(i);
+    if (ImGui::Selectable(context.word(kCurves[i]), curve == chosen)) chosen = curve;
+  }
+  ImGui::EndCombo();
 }
 
 void draw_section(const PanelContext& context) {
@@ -263,6 +281,7 @@ void draw_language(const PanelContext& context) {
 void draw_view_tab(const PanelContext& context) {
   draw_objects(context);
   draw_colors(context);
+  draw_curve_choice(context);
   draw_section(context);
   draw_drawing(context);
   draw_language(context);

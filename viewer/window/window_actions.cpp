@@ -122,6 +122,10 @@ void Window::Impl::act_on_panels(Action action) {
     case Action::kCounters:
       settings_.shows_counters = !settings_.shows_counters;
       break;
+    case Action::kNextCurve:
+      settings_.curve =
+          static_cast<CurveChoice>((static_cast<int>(settings_.curve) + 1) % kCurveChoices);
+      break;
     case Action::kLocalDrawing:
       settings_.drawing.is_local = !settings_.drawing.is_local;
       renderer_->reset_counters();

@@ -148,6 +148,8 @@ void Window::Impl::apply(const SceneUpdate& update) {
     state_.last_line = files.empty() ? 1 : files.front().line_count();
   }
   if (update.timeline) shown_.timeline = update.timeline;
+  if (update.clears) shown_.curves.reset();
+  if (update.curves) shown_.curves = update.curves;
   if (update.picked) shown_.picked = update.picked;
   if (update.moment) {
     // Another file comes to the front, which takes Dear ImGui more than one frame.
@@ -300,7 +302,7 @@ Done Window::Impl::draw() {
     feed_mouse();
     ImGui::NewFrame();
     const glm::vec2 display(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y);
-    const PanelRoom room = panel_room(display, settings_, scale_);
+    const PanelRoom room = panel_room(display, settings_, scale_, shown_.timeline->has_curves);
     lay_out(room, display, window_px);
     move_camera();
     draw_panels(room, display);

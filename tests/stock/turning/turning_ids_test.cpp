@@ -179,6 +179,21 @@ TEST(TurningIds, the_stock_tells_them_at_points_of_its_patches) {
       off_by_one += id != *corners.begin();
     }
   }
+  // From afar as well: points of a patch of level 3 may be 0.4 mm off.
+  int unlike = 0, far_vertices = 0;
+  for (std::uint32_t t = 0; t < frame->tile_count(); ++t) {
+    const MeshPatch patch = frame->patch(t, 3);
+    for (std::size_t i = 0; i < patch.indices.size(); i += 3) {
+      glm::vec3 middle(0);
+      for (std::size_t k = 0; k < 3; ++k)
+        middle += patch.vertices[patch.indices[i + k]].position_mm / 3.0f;
+      ++far_vertices;
+      unlike += frame->cut_id_at(Vec3(middle)).value_or(MeshPatch::kNotCut) !=
+                patch.cut_by[patch.indices[i]];
+    }
+  }
+  EXPECT_GT(far_vertices, 2000);
+  EXPECT_LT(unlike, far_vertices / 20);
   EXPECT_EQ(seen, (std::set<std::uint32_t>{7, 8, 9, MeshPatch::kNotCut}));
   EXPECT_GT(vertices, 20000);
   EXPECT_LT(off_by_one, vertices / 100) << "near corners another surface is as near";

@@ -100,6 +100,67 @@ TEST(TurningMesh, patches_of_any_levels_fit_together) {
   }
 }
 
+/// The farthest that a patch's triangles are from the contour that they show.
+double farthest_mm(const std::vector<std::vector<Vec2>>& profile, const MeshPatch& patch) {
+  double farthest = 0;
+  const auto off = [&](const glm::vec3& p) {
+    const Vec2 at(p.z, std::hypot(p.x, p.y));
+    double nearest = 1e9;
+    for (const std::vector<Vec2>& ring : profile) {
+      for (std::size_t i = 0; i < ring.size(); ++i)
+        nearest = std::min(nearest,
+                           turning::distance_to_edge_mm(at, ring[i], ring[(i + 1) % ring.size()]));
+    }
+    farthest = std::max(farthest, nearest);
+  };
+  for (std::size_t i = 0; i < patch.indices.size(); i += 3) {
+    const glm::vec3 &a = patch.vertices[patch.indices[i]].position_mm,
+                    &b = patch.vertices[patch.indices[i + 1]].position_mm,
+                    &c = patch.vertices[patch.indices[i + 2]].position_mm;
+    for (const glm::vec3& p : {a, b, c, (a + b) / 2.0f, (b + c) / 2.0f, (c + a) / 2.0f}) off(p);
+  }
+  return farthest;
+}
+
+TEST(TurningMesh, patches_keep_within_three_times_their_tolerance) {
+  const TurnedPart part = sample();
+  const std::vector<std::vector<Vec2>> profile = part.profile();
+  for (int level = 1; level < 5; ++level) {
+    double farthest = 0;
+    for (std::size_t band = 0; band < TurnedPart::kBands; band += 3)
+      farthest = std::max(farthest, farthest_mm(profile, part.patch(band, level)));
+    const double tolerance = TurnedPart::kFinestPatch_mm * std::pow(4.0, level);
+    // 120 sides are all there are, 0.007 mm off at 20 mm.
+    EXPECT_LT(farthest, 3 * tolerance + (level == 1 ? 0.002 : 0)) << level;
+    EXPECT_GT(farthest, 0.2 * tolerance) << level;
+  }
+}
+
+/// 2000 moves of 0.08 mm, each with a mark of its own, seen from where a pixel is 0.13 mm: so many
+/// triangles that a window draws them 60 times a second.
+TEST(TurningMesh, a_shaft_of_short_moves_is_coarse_from_afar) {
+  TurnedPart part = *TurnedPart::create(bar_profile(-170, 0, 60));
+  part.keep_cut_ids(true);
+  const TurningTool tool(*nose_insert({0.4, 2, radians(85), radians(30), 12}));
+  const auto at = [](int i) {
+    return Vec2{-0.08 * i, 24 + 4 * std::sin(0.02 * i) + 0.05 * std::sin(1.7 * i)};
+  };
+  for (int i = 0; i < 2000; ++i) {
+    TurnMove move = line(at(i), at(i + 1));
+    move.id = static_cast<std::uint32_t>(i);
+    part.cut(tool, move);
+  }
+  const auto triangles = [&](int level) {
+    std::size_t all = 0;
+    for (std::size_t band = 0; band < TurnedPart::kBands; ++band)
+      all += part.patch(band, level).indices.size() / 3;
+    return all;
+  };
+  EXPECT_GT(triangles(0), 450'000u);
+  EXPECT_LT(triangles(2), 150'000u);
+  EXPECT_EQ(count_patches(part, {2, 0, 1, 3}).unpaired(), 0);
+}
+
 TEST(TurningMesh, random_parts_have_patches_that_fit) {
   for (unsigned seed = 0; seed < 15; ++seed) {
     std::mt19937 random(seed);

@@ -142,15 +142,15 @@ TEST(ReportText, WhatEachToothHasToDo) {
     return summary_text(r).find(text) != std::string::npos;
   };
   EXPECT_FALSE(has("feed per tooth")) << "nothing was cut while the spindle turned";
-  use.chip.add(0.05, 3, {0, 7});
-  use.chip.add(0.1, 1, {0, 9});
-  use.chip.add(0.02, 1, {0, 11});
+  use.chip.add(0.05, 0.04, 3, {0, 7});
+  use.chip.add(0.1, 0.1, 1, {0, 9});
+  use.chip.add(0.02, 0.01, 1, {0, 11});
   use.chip.speed_m_per_min = 125.66;
   EXPECT_TRUE(
-      has("2 teeth: feed per tooth 0.054 mm, 0.1 at most (line 9), cutting speed 126 m/min"));
+      has("2 teeth: feed per tooth 0.046 mm, 0.1 at most (line 9), cutting speed 126 m/min"));
   const Json tool = Json::parse(json_text(r))["tools"][0];
   EXPECT_EQ(tool["engagement"]["feed_per_tooth_mm"], 0.1);
-  EXPECT_EQ(tool["engagement"]["feed_per_tooth_mean_mm"], 0.054);
+  EXPECT_EQ(tool["engagement"]["feed_per_tooth_mean_mm"], 0.046);
   EXPECT_EQ(tool["engagement"]["line"], 9);
 }
 

@@ -119,11 +119,19 @@ void MillingStage::note_teeth(const Motion& m, const TimedStep& step, InFlight& 
   const std::optional<int> teeth = cutting().teeth();
   if (!teeth || !flight.feed || m.spindle == SpindleState::kStopped || m.spindle_rpm <= 0) return;
   flight.rpm = m.spindle_rpm;
-  flight.feed_per_tooth_mm = step.peak_mm_per_min / (m.spindle_rpm * *teeth);
+  const double teeth_per_min = m.spindle_rpm * *teeth;
+  // Round a corner the planner goes as fast as the faster of its two moves.
+  const double most = step.programmed_mm_per_min > 0
+                          ? std::min(step.peak_mm_per_min, step.programmed_mm_per_min)
+                          : step.peak_mm_per_min;
+  flight.feed_per_tooth_mm = most / teeth_per_min;
+  const double mean = step.duration_s > 0 ? 60 * step.length_mm / step.duration_s : most;
+  flight.mean_per_tooth_mm = std::min(mean, most) / teeth_per_min;
 }
 
 void MillingStage::count_chip(ChipLoad& chip, const InFlight& move, const CutReport& report) const {
-  chip.add(move.feed_per_tooth_mm, move.cut_part * move.duration_s, move.source);
+  chip.add(move.feed_per_tooth_mm, move.mean_per_tooth_mm, move.cut_part * move.duration_s,
+           move.source);
   const double wide_mm = 2 * half_width_mm(cutting(), report.depth_mm);
   chip.speed_m_per_min = std::max(chip.speed_m_per_min, kPi * wide_mm * move.rpm / 1000);
 }

@@ -79,7 +79,8 @@ class MillingStage final : public Process {
     std::uint32_t pass = EngagementLog::kNoPass;
     double engaged_mm = 0, engaged_s = 0;  ///< of it, in material
     double rpm = 0;                        ///< of a spindle that turns
-    double feed_per_tooth_mm = 0;          ///< 0: not known
+    double feed_per_tooth_mm = 0;          ///< at most; 0: not known
+    double mean_per_tooth_mm = 0;
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
