@@ -212,7 +212,6 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
   const auto over = [&](int i, int j, double& height) {
     const Vec2 middle(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
     height = static_cast<double>(heights_->height(i, j));
-    if (held_.length > 0) height = behind_held(middle, height);
     if (own_until_ > 0) height = behind_itself(middle, height);
     const double scaled =
         std::min(glm::length(middle - station.center) * lift_scale_, double{kLifts});
@@ -222,8 +221,18 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
   };
   const auto i = static_cast<int>(std::floor(x - 0.5)), j = static_cast<int>(std::floor(y - 0.5));
   double height = 0;
+  // What is held back is asked about once, and only where there would be material without it.
+  const auto less_held = [&](double depth) {
+    if (depth <= kThinnestFilm_mm || held_.length <= 0) return depth;
+    const double scaled =
+        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    const double part = scaled - static_cast<double>(k);
+    const double surface = tip + lift_[k] + part * (lift_[k + 1] - lift_[k]);
+    return behind_held(point, depth + surface) - surface;
+  };
   if (i < 0 || j < 0 || i + 1 >= heights_->nx() || j + 1 >= heights_->ny())
-    return over(static_cast<int>(x), static_cast<int>(y), height);
+    return less_held(over(static_cast<int>(x), static_cast<int>(y), height));
   double depth[4], highest = -kNeverEnds, lowest = kNeverEnds;
   for (int n = 0; n < 4; ++n) {
     depth[n] = over(i + n % 2, j + n / 2, height);
