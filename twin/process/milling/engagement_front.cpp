@@ -12,9 +12,9 @@ namespace {
 /// What is thinner is not there: what a pass leaves of the one before, by rounding.
 constexpr double kThinnestFront_mm = 0.002;
 /// Directions to begin with, from one side to the other.
-constexpr int kRays = FrontRays::kMost, kRaysOfRound = 12;
+constexpr int kRays = FrontRays::kMost;
 /// Radii along a ray, of cutters that are not flat, and steps between two of them.
-constexpr int kRadii = 6, kRadiusSteps = 3;
+constexpr int kRadii = 9, kRadiusSteps = 3;
 constexpr double kLeastStep = 0.1;
 /// What is thinner has been cut: the model's rounding.
 constexpr double kThinnestFilm_mm = 2e-4;
@@ -212,7 +212,6 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
   const auto over = [&](int i, int j, double& height) {
     const Vec2 middle(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
     height = static_cast<double>(heights_->height(i, j));
-    if (held_.length > 0) height = behind_held(middle, height);
     if (own_until_ > 0) height = behind_itself(middle, height);
     const double scaled =
         std::min(glm::length(middle - station.center) * lift_scale_, double{kLifts});
@@ -222,8 +221,18 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
   };
   const auto i = static_cast<int>(std::floor(x - 0.5)), j = static_cast<int>(std::floor(y - 0.5));
   double height = 0;
+  // What is held back is asked about once, and only where there would be material without it.
+  const auto less_held = [&](double depth) {
+    if (depth <= kThinnestFilm_mm || held_.length <= 0) return depth;
+    const double scaled =
+        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    const double part = scaled - static_cast<double>(k);
+    const double surface = tip + lift_[k] + part * (lift_[k + 1] - lift_[k]);
+    return behind_held(point, depth + surface) - surface;
+  };
   if (i < 0 || j < 0 || i + 1 >= heights_->nx() || j + 1 >= heights_->ny())
-    return over(static_cast<int>(x), static_cast<int>(y), height);
+    return less_held(over(static_cast<int>(x), static_cast<int>(y), height));
   double depth[4], highest = -kNeverEnds, lowest = kNeverEnds;
   for (int n = 0; n < 4; ++n) {
     depth[n] = over(i + n % 2, j + n / 2, height);
@@ -267,7 +276,14 @@ void EngagementScan::round_contact(const Station& station, double angle,
   const auto lift = [&](double radius) {
     return lift_[static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts}))];
   };
+  // Up a slope what it leaves beside it, and nearer to its tip, it has cut from farther back.
+  const double slope = rise_ > 0 ? rise_ / length_ : 0;
+  const auto leads = [&](double radius) {
+    const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
+    return (lift_[k + 1] - lift_[k]) * lift_scale_ * std::cos(angle) > slope;
+  };
   const auto over = [&](double radius) {
+    if (slope > 0 && !leads(radius)) return -kThinnestFilm_mm;
     const double depth = over_surface(station, station.center + radius * out) - kThinnestFilm_mm;
     if (depth > 0) {
       const double lowest = lift(radius * std::abs(std::sin(angle)));
@@ -382,7 +398,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   // What stands right before it is removed next.
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
-  FrontRays rays(is_flat() ? kRays : kRaysOfRound, radius_);
+  FrontRays rays(kRays, radius_);
   rays.sweep([&](double angle) { return contact_at(station, angle); });
   EngagementLook look = rays.look(asked.anticlockwise);
   if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));

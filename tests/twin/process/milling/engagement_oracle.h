@@ -29,6 +29,7 @@ struct PastMove {
 /// How the tool is engaged, found by asking.
 struct EngagementTruth {
   double arc = 0, entry = 0, exit = 0;
+  double effective_mm = 0;
 };
 
 /// Cutters outlive it.
@@ -105,6 +106,7 @@ class EngagementOracle {
     }
     EngagementTruth truth;
     if (farthest <= 0) return truth;
+    truth.effective_mm = 2 * farthest;
     int first = -1, last = -1, count = 0;
     for (int k = 0; k < angles; ++k) {
       if (out[static_cast<std::size_t>(k)] < 0.5 * farthest) continue;

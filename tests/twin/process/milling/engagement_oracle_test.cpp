@@ -35,7 +35,7 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
     EngagementOracle oracle(stock->bounds_mm());
     PastWays ways;
     EngagementScan scan;
-    Vec3 at(40 * unit(random), 30 * unit(random), -1 - 3 * unit(random));
+    Vec3 at{40 * unit(random), 30 * unit(random), -1 - 3 * unit(random)};
     for (std::uint64_t n = 0; n < 24; ++n) {
       const bool by_other = n % 6 == 5;
       CutMove move;
@@ -48,8 +48,9 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
       move.to_mm.y = std::clamp(move.to_mm.y, -3.0, 33.0);
       if (kind > 0.8) move.to_mm.z = std::clamp(at.z + 2 * unit(random) - 1.2, -6.0, -0.3);
       if (kind < 0.3) {
-        const double radius = 2 + 8 * unit(random),
-                     sweep = (unit(random) < 0.5 ? -1 : 1) * (0.5 + 5.5 * unit(random));
+        const double radius = 2 + 8 * unit(random);
+        const double sense = unit(random) < 0.5 ? -1 : 1;
+        const double sweep = sense * (0.5 + 5.5 * unit(random));
         const Vec2 arm = radius * Vec2(std::cos(turned), std::sin(turned));
         move.arc = CutArc{at - Vec3(arm, 0), {0, 0, 1}, sweep};
         move.to_mm = EngagementOracle::place(move, 1);
@@ -62,18 +63,7 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
           asked.at = part, asked.owners = stock.get(), asked.ways = &ways;
           const EngagementLook found = scan.look_ahead(*heights, cutter, move, asked);
           const EngagementTruth truth = oracle.look(cutter, move, part);
-          const double before = off.most;
           off.add(found, truth);
-          if (off.most > before && off.most > 2 * kOracleDegree) {
-            std::printf(
-                "%s round %d move %d%s%s at %.3f: arc %.2f (%.2f) entry %.2f (%.2f) exit %.2f "
-                "(%.2f)\n",
-                shape.c_str(), round, static_cast<int>(n), move.arc ? " arc" : "",
-                move.from_mm.z != move.to_mm.z ? " slope" : "", part,
-                found.angle_rad / kOracleDegree, truth.arc / kOracleDegree,
-                found.entry_rad / kOracleDegree, truth.entry / kOracleDegree,
-                found.exit_rad / kOracleDegree, truth.exit / kOracleDegree);
-          }
         }
       }
       const Cutter& by = by_other ? other : cutter;
@@ -87,8 +77,12 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
       if (unit(random) < 0.25) at.z = -1 - 4 * unit(random);
     }
   }
-  std::printf("%s: %s\n", shape.c_str(), off.text().c_str());
   EXPECT_GT(off.looks, 200);
+  RecordProperty("errors", off.text());
+  // At a rim all of them. Of what is not flat material may be thinner, beside a pass, than the
+  // directions and radii of a look are apart.
+  const bool flat = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
+  EXPECT_GE(off.within, (flat ? 1.0 : 0.75) * off.looks) << off.text();
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, EngagementOracleTest,
