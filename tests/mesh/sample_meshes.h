@@ -133,12 +133,15 @@ inline TriangleMesh random_lumps(std::mt19937& random, int count) {
   TriangleMesh mesh;
   for (int n = 0; n < count; ++n) {
     TriangleMesh lump;
-    if (n % 2 == 0)
-      add_prism(lump, circle(size(random), 3 + n % 5), -size(random), size(random));
-    else
-      lump = sphere(Vec3(0), size(random), 8);
+    const double radius = size(random);
+    if (n % 2 == 0) {
+      const double low = -size(random), high = size(random);
+      add_prism(lump, circle(radius, 3 + n % 5), low, high);
+    } else {
+      lump = sphere(Vec3(0), radius, 8);
+    }
     const double a = angle(random), b = angle(random);
-    const Vec3 shift(at(random), at(random), at(random));
+    const Vec3 shift{at(random), at(random), at(random)};
     const auto base = static_cast<std::uint32_t>(mesh.positions_mm.size());
     for (const glm::vec3& p : lump.positions_mm) {
       const Vec3 q(p);

@@ -43,8 +43,8 @@ std::vector<CutReport> cut_all(ZMap& map, const Cutter& cutter, const std::vecto
 /// Level, slanting and vertical lines, and level arcs: shallow, as engravers are led.
 CutMove random_move(std::mt19937& random) {
   std::uniform_real_distribution<double> xy(2, 22), z(-0.6, 0.1), part(0, 1);
-  const Vec3 from(xy(random), xy(random), z(random));
-  Vec3 to(xy(random), xy(random), part(random) < 0.5 ? from.z : z(random));
+  const Vec3 from{xy(random), xy(random), z(random)};
+  Vec3 to{xy(random), xy(random), part(random) < 0.5 ? from.z : z(random)};
   const double kind = part(random);
   if (kind < 0.2) to = Vec3(from.x, from.y, z(random));
   CutMove move = line(from, to);
@@ -131,8 +131,8 @@ TEST(ContactOracle, AnUntouchedTopIsToldExactly) {
       const auto map = make_map(cell);
       for (int n = 0; n < 20; ++n) {
         const double depth = z(random) * (n % 2 ? 1 : 0.04);
-        const Vec3 from(xy(random), xy(random), -depth);
-        const Vec3 to = n % 3 ? Vec3(xy(random), xy(random), -depth) : from + Vec3(0, 0, 2);
+        const Vec3 from{xy(random), xy(random), -depth};
+        const Vec3 to = n % 3 ? Vec3{xy(random), xy(random), -depth} : from + Vec3(0, 0, 2);
         const auto contact = map->first_contact(*cutter, line(from, to), kTolerance_mm);
         ASSERT_EQ(contact.has_value(), depth > kTolerance_mm) << shape << " " << depth;
         if (contact) {
@@ -233,8 +233,8 @@ TEST(RoundSides, TheWayBackIsFree) {
     for (const double cell : {0.3, 1.0}) {
       const auto map = make_map(cell, "tube:12,12,-10:0:22:10");
       for (int n = 0; n < 60; ++n) {
-        CutMove move = line(Vec3(xy(random), xy(random), z(random)), Vec3(0));
-        move.to_mm = Vec3(xy(random), xy(random), part(random) < 0.5 ? move.from_mm.z : z(random));
+        CutMove move = line(Vec3{xy(random), xy(random), z(random)}, Vec3(0));
+        move.to_mm = Vec3{xy(random), xy(random), part(random) < 0.5 ? move.from_mm.z : z(random)};
         touched += map->first_contact(*cutter, move, kTolerance_mm) ? 1 : 0;
         cut_all(*map, *cutter, {move});
         const CutMove back = line(move.to_mm, move.from_mm);

@@ -170,7 +170,7 @@ TEST(MeshBlank, NothingIsToldOfWhatPassesAboveTheTriangles) {
   std::uniform_real_distribution<double> at(1, 39);
   int far = 0;
   for (int n = 0; n < 4000; ++n) {
-    Vec3 p(at(random), at(random), 0);
+    Vec3 p{at(random), at(random), 0};
     const double z = height(p);
     for (const double up : {0.05, -0.8}) {
       CutMove move;
@@ -262,7 +262,7 @@ TEST(MeshBlank, RandomLumps) {
     constexpr int kPoints = 20000;
     std::uniform_real_distribution<double> part(0, 1);
     for (int n = 0; n < kPoints; ++n) {
-      const Vec3 p = box.min + Vec3(part(random), part(random), part(random)) * box.size();
+      const Vec3 p = box.min + Vec3{part(random), part(random), part(random)} * box.size();
       inside += test::winding_number(mesh, p) > 0.5 ? 1 : 0;
     }
     const double share = inside / kPoints, volume = share * box.volume_mm3();
@@ -272,7 +272,7 @@ TEST(MeshBlank, RandomLumps) {
     EXPECT_NEAR(in_space->blank_mm3(), volume, 4 * sigma + 0.005 * volume) << round;
     int wrong = 0;
     for (int n = 0; n < 4000; ++n) {
-      const Vec3 p = box.min + Vec3(part(random), part(random), part(random)) * box.size();
+      const Vec3 p = box.min + Vec3{part(random), part(random), part(random)} * box.size();
       const double winding = test::winding_number(mesh, p);
       bool near = false;
       for (int k = 0; k < 6; ++k) {

@@ -185,7 +185,7 @@ TEST(PlacedOctree, all_24_turns_move_nodes_alone) {
         const std::unique_ptr<Octree> placed = tree->placed(turn, at);
         EXPECT_NEAR(placed->remaining_mm3(), tree->remaining_mm3(), 1e-6);
         for (int n = 0; n < 300; ++n) {
-          const Vec3 was(x(random), y(random), z(random));
+          const Vec3 was{x(random), y(random), z(random)};
           Vec3 p;
           for (int axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<std::size_t>(axis);

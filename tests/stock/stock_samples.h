@@ -47,7 +47,7 @@ inline std::vector<CutMove> random_path(std::mt19937& random, const Box& box, in
   Vec3 at = box.min + 0.5 * size;
   for (int i = 0; i < count; ++i) {
     const double reach = i % 13 == 0 ? 0.5 : 0.02;
-    Vec3 to = at + reach * Vec3(size.x * unit(random), size.y * unit(random), 0);
+    Vec3 to = at + reach * Vec3{size.x * unit(random), size.y * unit(random), 0};
     if (i % 7 == 3) to.z += 0.3 * size.z * unit(random);
     CutMove move = line(at, inside(to));
     if (i % 17 == 9) {

@@ -410,7 +410,7 @@ TEST(TilePatch, NormalsPackToATenthOfADegree) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
   for (int n = 0; n < 2000; ++n) {
-    const glm::vec3 v = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+    const glm::vec3 v = glm::normalize(glm::vec3{normal(random), normal(random), normal(random)});
     EXPECT_GT(glm::dot(unpack_normal(pack_normal(v)), v), std::cos(0.0018f));
   }
 }

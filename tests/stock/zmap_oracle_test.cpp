@@ -102,7 +102,7 @@ TEST_P(EveryShape, SingleStraightMovesMatchTheOracle) {
   std::uniform_real_distribution<double> xy(-1, 13), z(-9, 2), unit(0, 1);
   int cut_cells = 0;
   for (int round = 0; round < 42; ++round) {
-    Vec3 from(xy(random), xy(random), z(random)), to(xy(random), xy(random), z(random));
+    Vec3 from{xy(random), xy(random), z(random)}, to(xy(random), xy(random), z(random));
     switch (round % 6) {
       case 0:
         to.z = from.z;
@@ -142,7 +142,7 @@ TEST_P(EveryShape, PathsOfShortSegmentsMatchTheOracle) {
   for (int round = 0; round < 4; ++round) {
     SCOPED_TRACE(testing::Message() << "round " << round);
     std::vector<CutMove> moves;
-    Vec3 at(2, 6 + 3 * unit(random), -2 + unit(random));
+    Vec3 at{2, 6 + 3 * unit(random), -2 + unit(random)};
     double heading = 0.5 * unit(random);
     for (int i = 0; i < 40; ++i) {
       // Gentle turns, sharp corners now and then, straight runs with changing slope.
@@ -180,7 +180,7 @@ TEST_P(EveryShape, LevelArcsAndHelicesMatchTheOracle) {
     if (round % 4 == 1) sweep *= 2.5;
     if (round == 5) sweep = 2 * kPi;
     const double dz = round % 2 == 0 ? 0 : (unit(random) - 0.7) * 6;
-    const CutMove move = arc(Vec3(5 + 2 * unit(random), 6, -1 - 3 * unit(random)), radius,
+    const CutMove move = arc(Vec3{5 + 2 * unit(random), 6, -1 - 3 * unit(random)}, radius,
                              6 * unit(random), sweep, dz);
     SCOPED_TRACE(testing::Message() << "round " << round << " radius " << radius << " sweep "
                                     << sweep << " dz " << dz);

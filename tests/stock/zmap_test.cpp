@@ -74,7 +74,7 @@ std::vector<CutMove> mixed_moves(unsigned seed, int count) {
     if (move.to_mm.x < 2 || move.to_mm.x > 38 || move.to_mm.y < 2 || move.to_mm.y > 38 ||
         move.to_mm.z < -9 || move.to_mm.z > 1) {
       move.arc.reset();
-      move.to_mm = Vec3(20 + 5 * unit(random), 20 + 5 * unit(random), -2 + unit(random));
+      move.to_mm = Vec3{20 + 5 * unit(random), 20 + 5 * unit(random), -2 + unit(random)};
     }
     at = move.to_mm;
     moves.push_back(move);
@@ -488,7 +488,7 @@ TEST(ZMapContact, RequiresNoMoreThanTheSweepOfAThinnerTool) {
   int touching = 0;
   for (int round = 0; round < 20; ++round) {
     const CutMove move =
-        line(Vec3(xy(random), xy(random), z(random)), Vec3(xy(random), xy(random), z(random)));
+        line(Vec3{xy(random), xy(random), z(random)}, Vec3{xy(random), xy(random), z(random)});
     double depth = 0;
     for (int j = 0; j < map->ny(); ++j) {
       for (int i = 0; i < map->nx(); ++i) {

@@ -49,7 +49,7 @@ TEST_P(Section, ShowsItsFaceWhereThePlaneGoesThroughMaterial) {
   std::uniform_real_distribution<double> x_mm(-5, 45), z_mm(-25, 5);
   int on_face = 0, in_hollow = 0, beside = 0;
   for (int i = 0; i < 400; ++i) {
-    Vec3 p(x_mm(random), 0.0, z_mm(random));
+    Vec3 p{x_mm(random), 0.0, z_mm(random)};
     p.y = (60.0 - p.x) / 2.0;
     const bool is_material = inside(kBlock, p, -0.6) && !inside(kHollow, p, 0.6);
     const bool is_air = !inside(kBlock, p, 0.6) || inside(kHollow, p, -0.6);

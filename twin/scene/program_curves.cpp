@@ -13,9 +13,8 @@ CurveMaker::CurveMaker(std::shared_ptr<const ProgramTrack> track,
 
 bool CurveMaker::wants(std::size_t motions_checked, Clock::time_point now) const {
   if (track_->empty() || is_complete()) return false;
-  if (is_in_hand()) return true;
-  const bool has_news = motions_checked > next_ || motions_checked == track_->size();
-  return has_news && now - made_at_ >= kPeriod;
+  if (is_in_hand() || motions_checked == track_->size()) return true;
+  return motions_checked > next_ && now - made_at_ >= kPeriod;
 }
 
 void CurveMaker::add(std::size_t i, double removed_mm3) {

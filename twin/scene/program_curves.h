@@ -21,7 +21,7 @@ namespace kerf {
 class CurveMaker {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Curves come no more often; half a second costs less than one picture in thirty.
+  /// Curves come no more often, but for the last.
   static constexpr std::chrono::milliseconds kPeriod{500};
 
   /// `cuts`: knows cutters by motion; null: no feeds per tooth.

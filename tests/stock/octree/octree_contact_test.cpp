@@ -114,7 +114,7 @@ TEST(OctreeContact, TheBoundOfATurnIsNeverAboveItsPieces) {
   int sure = 0, groups_seen = 0;
   for (int round = 0; round < 40; ++round) {
     std::vector<CutMove> moves;
-    Vec3 tip(0.4 * place(engine), 0.4 * place(engine), place(engine) / 5), axis(0, 0, 1);
+    Vec3 tip{0.4 * place(engine), 0.4 * place(engine), place(engine) / 5}, axis(0, 0, 1);
     for (int i = 0; i < 3; ++i) {
       CutMove move = line(tip, tip + Vec3(0.4, 0.01 * place(engine), -0.2), 0, axis);
       axis = glm::normalize(axis + Vec3(0.04, 0.001 * place(engine), 0));

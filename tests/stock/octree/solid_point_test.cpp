@@ -18,7 +18,7 @@ int wrong_points(const Octree& tree, const Box& where, double margin_mm,
   std::uniform_real_distribution<double> part(0, 1);
   int wrong = 0;
   for (int n = 0; n < 20000; ++n) {
-    const Vec3 at = where.min + where.size() * Vec3(part(random), part(random), part(random));
+    const Vec3 at = where.min + where.size() * Vec3{part(random), part(random), part(random)};
     const double in = depth(at);
     if (std::abs(in) < margin_mm) continue;
     wrong += tree.solid_at(at, kWithin_mm) != (in > 0);

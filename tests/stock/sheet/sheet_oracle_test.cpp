@@ -15,7 +15,7 @@ TEST(SheetOracle, points_are_material_where_no_move_came_near) {
       test::cut(*sheet, kerf, moves);
       int cut = 0;
       for (int i = 0; i < 150; ++i) {
-        const Vec2 p(x(random), y(random));
+        const Vec2 p{x(random), y(random)};
         double least = 1e300;
         for (const CutMove& move : moves) least = std::min(least, test::distance_to_way(move, p));
         if (std::abs(least - kerf / 2) < 0.006) continue;
@@ -55,7 +55,7 @@ TEST(SheetOracle, piece_at_is_the_piece_whose_outline_holds_the_point) {
         outlines.emplace_back(piece.number, sheet->outline_of(piece.number));
       pieces += outlines.size();
       for (int i = 0; i < 100; ++i) {
-        const Vec2 p(x(random), y(random));
+        const Vec2 p{x(random), y(random)};
         std::optional<std::uint32_t> expected;
         for (const auto& [number, outline] : outlines) {
           if (is_within(outline, p)) expected = number;

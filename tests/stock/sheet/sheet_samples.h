@@ -89,22 +89,18 @@ inline std::vector<CutMove> random_moves(std::mt19937& random, int count) {
   std::vector<CutMove> moves;
   for (int i = 0; i < count; ++i) {
     const auto id = static_cast<std::uint64_t>(i);
-    switch (random() % 6) {
-      case 0:
-      case 1:
-        moves.push_back(line({x(random), y(random)}, {x(random), y(random)}, id));
-        break;
-      case 2:
-        moves.push_back(arc({x(random), y(random)}, radius(random), angle(random),
-                            2 * kPi * (random() % 2 ? 1 : -1), id));
-        break;
-      case 3:
-        moves.push_back(arc({x(random), y(random)}, radius(random) / 15, angle(random),
-                            angle(random) * 1.9, id));
-        break;
-      default:
-        moves.push_back(
-            arc({x(random), y(random)}, radius(random), angle(random), angle(random) * 1.9, id));
+    // Drawn one by one: the same by every compiler.
+    const auto kind = random() % 6;
+    const Vec2 from{x(random), y(random)};
+    if (kind < 2) {
+      moves.push_back(line(from, Vec2{x(random), y(random)}, id));
+      continue;
+    }
+    const double far = radius(random), begin = angle(random);
+    if (kind == 2) {
+      moves.push_back(arc(from, far, begin, 2 * kPi * (random() % 2 ? 1 : -1), id));
+    } else {
+      moves.push_back(arc(from, kind == 3 ? far / 15 : far, begin, angle(random) * 1.9, id));
     }
   }
   return moves;

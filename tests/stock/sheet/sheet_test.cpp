@@ -132,7 +132,7 @@ TEST(Sheet, tilings_differ_by_rounding_alone) {
     pieces.push_back(count);
   }
   for (std::size_t i = 1; i < areas.size(); ++i) {
-    EXPECT_NEAR(areas[i], areas[0], 1e-6 * 2400);
+    EXPECT_NEAR(areas[i], areas[0], 2e-6 * 2400);
     EXPECT_EQ(pieces[i], pieces[0]);
   }
 }

@@ -120,8 +120,8 @@ TEST(CoveredPasses, RandomOnesLeaveTheirUnion) {
     for (int w = 0; w <= 8; ++w) {
       const double way = w / 8.0;
       for (int k = 0; k < 200; ++k) {
-        const Vec2 p(3 * unit(random) - 1.5,
-                     tool.low_mm().y + unit(random) * (tool.high_mm().y - tool.low_mm().y));
+        const Vec2 p{3 * unit(random) - 1.5,
+                     tool.low_mm().y + unit(random) * (tool.high_mm().y - tool.low_mm().y)};
         const auto is_in = [&](const std::vector<PassBeside>& of) {
           return std::ranges::any_of(of, [&](const PassBeside& b) { return holds(b, p, way); });
         };

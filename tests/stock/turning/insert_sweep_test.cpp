@@ -77,7 +77,7 @@ TEST(InsertSweep, sweeps_are_hulls_whatever_the_radius_and_the_way) {
       ConvexRegion swept;
       GridPart::Lead lead;
       const double length = std::pow(10.0, -4 + 2.5 * (1 + unit(random)));
-      Vec2 way = length * Vec2(unit(random), unit(random));
+      Vec2 way = length * Vec2{unit(random), unit(random)};
       if (round % 5 == 0) way.x = 0;
       if (round % 7 == 0) way = length * Vec2(std::cos(radians(85)), std::sin(radians(85)));
       const Point from{-1'234'567, 2'345'678};

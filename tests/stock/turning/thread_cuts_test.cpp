@@ -367,12 +367,13 @@ TEST(ThreadCuts, random_passes_remove_what_a_sampler_finds) {
                                             {-6, 5.1}}});
     const TurnedProfile blank = part.profile();
     const double all = part.remaining_mm3();
-    const InsertOutline outline = vee(1.2, 0.1 * unit(random), 40 + 40 * unit(random));
+    const double nose_mm = 0.1 * unit(random), wide_deg = 40 + 40 * unit(random);
+    const InsertOutline outline = vee(1.2, nose_mm, wide_deg);
     const TurningTool tool(outline);
     std::vector<TurnMove> moves;
     for (int i = 0; i < 4; ++i) {
-      const Vec2 from(1 - 3 * unit(random), 4.2 + 0.6 * unit(random)),
-          to(-3 - 5 * unit(random), 4.2 + 0.6 * unit(random));
+      const Vec2 from{1 - 3 * unit(random), 4.2 + 0.6 * unit(random)},
+          to{-3 - 5 * unit(random), 4.2 + 0.6 * unit(random)};
       const double lead = (unit(random) < 0.3 ? -1 : 1) * (0.5 + unit(random));
       moves.push_back(thread(from, to, lead));
       if (i % 2 == 1) moves.push_back(thread(to, {to.x - 1, 5.3}, lead * 1.3));

@@ -31,7 +31,7 @@ TEST(TurningOracle, points_are_material_where_no_tool_came) {
     const TurnedProfile profile = part.profile();
     std::uniform_real_distribution<double> z(-30, 0), r(0, 20);
     for (int k = 0; k < 1000; ++k) {
-      const Vec2 p(z(random), r(random));
+      const Vec2 p{z(random), r(random)};
       double least = 1e300, t = 0;
       for (std::size_t i = 0; i < moves.size() && least > -kUnsure_mm; ++i)
         least = std::min(least, least_distance(outlines[i], moves[i], p, kStep_mm, t));
@@ -184,7 +184,7 @@ TEST(TurningOracle, depths_are_how_much_of_the_front_is_in_material) {
     const TurningTool tool(outline);
     Vec2 at(2, 24);
     for (int i = 0; i < 6; ++i) {
-      const Vec2 to(z(random), x(random));
+      const Vec2 to{z(random), x(random)};
       const TurnedProfile before = part.profile();
       const TurnCut cut = part.cut(tool, line(at, to));
       if (cut.depth_mm > 0.2) {

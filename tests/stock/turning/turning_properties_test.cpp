@@ -169,11 +169,11 @@ TEST(TurningProperties, contours_stay_simple) {
       Vec2 at(2, 22);
       double gone = 0;
       for (unsigned i = 0; i < 120; ++i) {
-        TurnMove move = line(at, at + Vec2(3 * unit(random) - 0.05, 2 * unit(random)), i);
+        TurnMove move = line(at, at + Vec2{3 * unit(random) - 0.05, 2 * unit(random)}, i);
         move.to_mm = glm::clamp(move.to_mm, Vec2(-28, 4), Vec2(3, 22));
         if (i % 3 == 0) move.to_mm.x = at.x;
         if (i % 7 == 3)
-          move = arc(at, at + 2.0 * Vec2(unit(random), unit(random)), 0.3 * unit(random), i);
+          move = arc(at, at + 2.0 * Vec2{unit(random), unit(random)}, 0.3 * unit(random), i);
         at = move.to_mm;
         const TurnCut cut = part.cut(tool, move);
         gone += cut.removed_mm3;

@@ -109,9 +109,9 @@ TEST(MeshDepth, AsBruteForceHasIt) {
   for (int i = 0; i < 60; ++i) {
     const BoxBody a{{-10, -8, -12}, {10, 8, 12}}, b{{-9, -14, -11}, {9, 14, 11}};
     Pose pose =
-        turn(glm::normalize(Vec3(draw(random), draw(random), draw(random))), 180 * draw(random));
+        turn(glm::normalize(Vec3{draw(random), draw(random), draw(random)}), 180 * draw(random));
     // They meet by an edge or a corner, and neither swallows the middle of the other.
-    pose.origin_mm = 19.0 * glm::normalize(Vec3(draw(random), draw(random), draw(random)));
+    pose.origin_mm = 19.0 * glm::normalize(Vec3{draw(random), draw(random), draw(random)});
     const double told = depth_of(a, pose, b), brute = brute_depth(a, pose, b);
     if (brute > 0.5) ++touching;
     // The grid is 0.3 to 0.5 mm; in the inside of both nothing is deeper here than on a surface.

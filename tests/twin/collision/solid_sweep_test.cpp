@@ -84,8 +84,8 @@ TEST(SolidSweep, TheGapOfTwoMeshesIsThatOfTheirNearestTriangles) {
   std::uniform_real_distribution<double> draw(-1, 1);
   const auto a = lump(10, 1), b = lump(14, 2);
   for (int i = 0; i < 12; ++i) {
-    Pose pose = turn(glm::normalize(Vec3(draw(random), draw(random), 1)), 90 * draw(random));
-    pose.origin_mm = 34.0 * glm::normalize(Vec3(draw(random), draw(random), draw(random)));
+    Pose pose = turn(glm::normalize(Vec3{draw(random), draw(random), 1}), 90 * draw(random));
+    pose.origin_mm = 34.0 * glm::normalize(Vec3{draw(random), draw(random), draw(random)});
     const double gap = gap_at(*a, pose, *b, std::numeric_limits<double>::infinity());
     const double all = gap_of_all_pairs(*a, pose, *b);
     EXPECT_LE(gap, all + 1e-9);
@@ -96,14 +96,14 @@ TEST(SolidSweep, TheGapOfTwoMeshesIsThatOfTheirNearestTriangles) {
 
 /// What is seen at a thousand places of the way is never nearer than the least gap.
 TEST(SolidSweep, NothingOnTheWayComesNearer) {
-  std::mt19937 random(9);
+  std::mt19937 random(10);
   std::uniform_real_distribution<double> draw(-1, 1);
   const auto a = lump(6, 5, 3), b = lump(9, 6, 3);
   int touching = 0;
   for (int i = 0; i < 20; ++i) {
-    const Vec3 from(25 * draw(random), 25 * draw(random), 20 + 5 * draw(random));
-    const Vec3 to(25 * draw(random), 25 * draw(random), 14 + 10 * draw(random));
-    const TurningWay way(from, to, glm::normalize(Vec3(draw(random), draw(random), 1)),
+    const Vec3 from{25 * draw(random), 25 * draw(random), 20 + 5 * draw(random)};
+    const Vec3 to{25 * draw(random), 25 * draw(random), 14 + 10 * draw(random)};
+    const TurningWay way(from, to, glm::normalize(Vec3{draw(random), draw(random), 1}),
                          170 * draw(random));
     double seen = std::numeric_limits<double>::infinity();
     for (int k = 0; k <= 100; ++k)

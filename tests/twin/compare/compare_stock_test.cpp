@@ -145,7 +145,7 @@ TEST(KeptMoves, LowestIsThatOfManyTips) {
   }
   ASSERT_TRUE(kept.is_exact());
   for (int n = 0; n < 200; ++n) {
-    const Vec2 xy(place(random), place(random));
+    const Vec2 xy{place(random), place(random)};
     double least = 1e9;
     constexpr int kSteps = 4000;
     for (const auto& [cutter, move] : moves) {

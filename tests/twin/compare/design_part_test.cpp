@@ -74,7 +74,7 @@ TEST(DesignPart, NearestIsThatOfAllTriangles) {
   for (std::uint32_t t = 0; t < 700; ++t) {
     const glm::vec3 middle(random_point(random, 20));
     for (int k = 0; k < 3; ++k) {
-      mesh.positions_mm.push_back(middle + glm::vec3(small(random), small(random), small(random)));
+      mesh.positions_mm.push_back(middle + glm::vec3{small(random), small(random), small(random)});
     }
     // Some have no area.
     if (t % 17 == 0) mesh.positions_mm.back() = middle;

@@ -110,8 +110,8 @@ TEST(PathDistance, AgreesWithDensePoints) {
     StepWriter a, b;
     double moved_mm = 0;
     for (int i = 0; i < 12; ++i) {
-      const Vec3 to(far(random), far(random), far(random) / 10);
-      const Vec3 off(little(random), little(random), little(random));
+      const Vec3 to{far(random), far(random), far(random) / 10};
+      const Vec3 off{little(random), little(random), little(random)};
       a.feed(to);
       b.feed(to + off);
       moved_mm = std::max(moved_mm, glm::length(off));

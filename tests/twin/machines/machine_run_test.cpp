@@ -77,7 +77,7 @@ Motion random_motion(std::mt19937& random, bool turns) {
   m.tool_offset_mm = {0, 0, 60 + 20 * draw(random)};
   if (draw(random) > 0.3) {
     m.kind = MotionKind::kArc;
-    m.arc.center_mm = m.from_mm + Vec3(30 * draw(random), 30 * draw(random), 0);
+    m.arc.center_mm = m.from_mm + Vec3{30 * draw(random), 30 * draw(random), 0};
     m.arc.axis = {0, 0, 1};
     m.arc.sweep_rad = 4 * draw(random);
     // Its radius grows a little, and it climbs.
@@ -171,10 +171,10 @@ TEST(LinkWay, NoPointIsOutsideOfHullAndSlack) {
       runs.follow(m, 0, run);
       const ToolChain steps(chain, one.machine.joint_letters, any(random), any(random));
       const Pose body = shift({90 * draw(random), 90 * draw(random), 90 * draw(random)});
-      const Pose still = turn(glm::normalize(Vec3(draw(random), draw(random), 1.5)), 30);
+      const Pose still = turn(glm::normalize(Vec3{draw(random), draw(random), 1.5}), 30);
       const LinkWay way(run, steps, still, body);
       const double reach = 40;
-      const Vec3 p = reach * glm::normalize(Vec3(draw(random), draw(random), draw(random)));
+      const Vec3 p = reach * glm::normalize(Vec3{draw(random), draw(random), draw(random)});
       const double from = 0.4 * (1 + draw(random)), to = from + 0.2;
       const Vec3 a = way.pose(from).point(p), b = way.pose(to).point(p);
       const double slack = way.slack_mm(from, to, reach), travel = way.travel_mm(from, to, reach);
@@ -204,10 +204,10 @@ TEST(LinkWay, NoPointGoesFartherThanTheSpanAllows) {
       runs.follow(m, 0, run);
       const AxisValues seen_at = first.axes_at(1);
       const ToolChain steps(chain, one.machine.joint_letters, any(random), any(random));
-      const Vec3 end(50 * draw(random), 50 * draw(random), 50 * draw(random));
+      const Vec3 end{50 * draw(random), 50 * draw(random), 50 * draw(random)};
       const double reach = 30;
       const double most = most_way_mm(steps, seen_at, run.span(), end, reach);
-      const Vec3 p = end + reach * glm::normalize(Vec3(draw(random), draw(random), draw(random)));
+      const Vec3 p = end + reach * glm::normalize(Vec3{draw(random), draw(random), draw(random)});
       const Vec3 was = steps.pose(seen_at).point(p);
       for (int k = 0; k <= 20; ++k)
         EXPECT_LE(glm::distance(steps.pose(run.axes_at(k / 20.0)).point(p), was), most + 1e-9);

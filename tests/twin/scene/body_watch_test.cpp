@@ -71,7 +71,7 @@ TEST(BodyWatch, ClearanceOfACylinderAndABoxIsTheClosedForm) {
   std::uniform_real_distribution<double> place(-40, 40);
   int seen = 0;
   for (int i = 0; i < 400; ++i) {
-    const Vec3 tip(place(random), place(random), place(random));
+    const Vec3 tip{place(random), place(random), place(random)};
     const double dx = std::max({-5 - tip.x, tip.x - 12, 0.0});
     const double dy = std::max({-8 - tip.y, tip.y - 9, 0.0});
     const double across = std::max(std::hypot(dx, dy) - 4, 0.0);

@@ -54,9 +54,10 @@ TEST(ProgramCurves, OfRateFeedAndTeethInTheColoursOfTools) {
   EXPECT_NEAR(sum(first->mm3_per_s, first->step_s), 120, 1e-3);
   EXPECT_FALSE(maker.is_complete());
   EXPECT_FALSE(maker.wants(half, CurveMaker::Clock::now())) << "nothing new";
-  EXPECT_FALSE(maker.wants(track->size(), CurveMaker::Clock::now())) << "too soon";
+  EXPECT_FALSE(maker.wants(half + 1, CurveMaker::Clock::now())) << "too soon";
   const auto later = CurveMaker::Clock::now() + CurveMaker::kPeriod;
-  ASSERT_TRUE(maker.wants(track->size(), later));
+  ASSERT_TRUE(maker.wants(half + 1, later));
+  ASSERT_TRUE(maker.wants(track->size(), CurveMaker::Clock::now())) << "the last";
 
   cut_along(2, 60);
   const auto whole = maker.make(track->size(), removed, kNever);

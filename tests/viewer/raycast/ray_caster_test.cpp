@@ -121,7 +121,7 @@ TEST(ToolRays, AreMetOnTheOutline) {
   std::uniform_real_distribution<double> share(-1, 1);
   int hits[3] = {};
   for (int n = 0; n < 20000; ++n) {
-    const Vec3 from = tip + 40.0 * Vec3(share(random), share(random), share(random));
+    const Vec3 from = tip + 40.0 * Vec3{share(random), share(random), share(random)};
     const Vec3 to = tip + 10 * (share(random) + 1) * axis + 3 * share(random);
     const Ray ray{from, to - from, 0.0};
     const std::optional<ToolHit> hit = tool.trace(ray, 1e9);

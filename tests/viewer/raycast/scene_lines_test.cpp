@@ -82,7 +82,7 @@ TEST_F(SceneLinesTest, CoversWhatLiesBesideTheSegment) {
   std::uniform_real_distribution<float> place(-20, 60);
   for (int i = 0; i < 200; ++i) {
     clear();
-    const glm::vec2 a(place(random), place(random)), b(place(random), place(random));
+    const glm::vec2 a{place(random), place(random)}, b(place(random), place(random));
     draw(path({glm::vec3(a, 0.5), glm::vec3(b, 0.5)}));
     const glm::vec2 way = (b - a) / glm::length(b - a);
     for (int y = 0; y < kSide_px; ++y) {

@@ -339,6 +339,9 @@ ToolPath::Run ToolPath::run_of(const Motion& motion) const {
   }
   AxisValues rate{};
   for (std::size_t i = kFirstTurn; i < kAxisCount; ++i) rate[i] = run.to[i] - run.from[i];
+  // Those of an arm in joint mode are turned by X, Y and Z.
+  const Vec3 way = run.track->slides * (motion.to_mm - motion.from_mm);
+  for (int i = 0; i < 3; ++i) rate[static_cast<std::size_t>(i)] = is_arc(motion) ? 1 : way[i];
   const int turning = run.chain.turning_steps(rate);
   run.bends = turning > 0 || (slides && is_arc(motion));
   run.single_turn = turning == 1;
@@ -352,7 +355,6 @@ ToolPath::Run ToolPath::run_of(const Motion& motion) const {
       run.bounds.jerk[i] = arc.jerk;
     }
   } else {
-    const Vec3 way = run.track->slides * (motion.to_mm - motion.from_mm);
     for (int i = 0; i < 3; ++i) run.bounds.rate[static_cast<std::size_t>(i)] = std::abs(way[i]);
   }
   return run;

@@ -171,9 +171,9 @@ TEST(DualContourVertex, IsInTheCellWherePlanesDoNotMeet) {
   for (int trial = 0; trial < 20'000; ++trial) {
     std::vector<DualSample> samples(4 + std::size_t(trial % 9));
     for (DualSample& sample : samples) {
-      sample.at_mm = glm::vec3(unit(random), unit(random), unit(random)) * cell;
+      sample.at_mm = glm::vec3{unit(random), unit(random), unit(random)} * cell;
       sample.normal =
-          glm::normalize(glm::vec3(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f) +
+          glm::normalize(glm::vec3{unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f} +
                          glm::vec3(1e-4f));
     }
     const DualPlacement placed = place_dual_vertex(samples, cell);

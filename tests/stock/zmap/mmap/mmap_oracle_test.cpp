@@ -150,7 +150,7 @@ TEST(MMapOracle, StraightMoves) {
   for (const Cutter& tool : tools()) {
     Seen seen;
     for (int round = 0; round < 12; ++round) {
-      Vec3 from(xy(random), xy(random), z(random)), to(xy(random), xy(random), z(random));
+      Vec3 from{xy(random), xy(random), z(random)}, to(xy(random), xy(random), z(random));
       if (round % 6 == 0) to.z = from.z;
       if (round % 6 == 1) to.x = from.x, to.y = from.y;
       if (round % 6 == 2) to = from + Vec3(0.01 * unit(random), 0.02, to.z - from.z);
@@ -178,7 +178,7 @@ TEST(MMapOracle, LevelArcsAndHelices) {
       double sweep = (unit(random) < 0.5 ? 1 : -1) * 2 * kPi * unit(random);
       if (round % 4 == 1) sweep *= 2.5;
       const double dz = round % 4 == 0 ? 0 : (unit(random) - 0.7) * 9;
-      const CutMove move = helix(Vec3(5 + 2 * unit(random), 6, -4 - 3 * unit(random)), radius,
+      const CutMove move = helix(Vec3{5 + 2 * unit(random), 6, -4 - 3 * unit(random)}, radius,
                                  6 * unit(random), sweep, dz);
       SCOPED_TRACE(testing::Message() << tool.spec() << " round " << round << " radius " << radius
                                       << " sweep " << sweep << " dz " << dz);

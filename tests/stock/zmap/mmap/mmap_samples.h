@@ -79,7 +79,7 @@ inline std::vector<Job> random_jobs(unsigned seed) {
                                shape("lollipop:4:2"), double_cone(), shape("dovetail:6:60:3")}) {
     Job job{cutter, random_path(random, room, cutter.undercuts() ? 14 : 30)};
     if (cutter.undercuts()) {
-      CutMove turn = helix(Vec3(24 * unit(random), 18 * unit(random), -2), 1 + 3 * unit(random),
+      CutMove turn = helix(Vec3{24 * unit(random), 18 * unit(random), -2}, 1 + 3 * unit(random),
                            6 * unit(random), 9, -3);
       turn.id = 100;
       job.moves.push_back(turn);

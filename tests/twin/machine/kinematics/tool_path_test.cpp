@@ -329,8 +329,9 @@ RandomCase random_case(std::mt19937& random) {
                                     {"pivot-length", 150.0}};
   RandomCase out;
   const auto side = random() % 2 == 0 ? RotarySide::kTable : RotarySide::kHead;
-  out.machine = machine_of(kinematics[random() % kinematics.size()], "XYZ", geometry,
-                           {side, {9 * draw(random), 30 * draw(random), 40 * draw(random)}});
+  const char* const name = kinematics[random() % kinematics.size()];
+  const Vec3 rotary{9 * draw(random), 30 * draw(random), 40 * draw(random)};
+  out.machine = machine_of(name, "XYZ", geometry, {side, rotary});
   if (random() % 3 == 0) out.machine.told_tool_mm = 0;
   out.frame.g5x_mm = {100 * draw(random), 100 * draw(random), 50 * draw(random)};
   out.frame.rotation_deg = random() % 2 == 0 ? 0 : 40 * draw(random);
@@ -339,7 +340,7 @@ RandomCase random_case(std::mt19937& random) {
   const double turn = std::pow(10.0, 1.2 * draw(random) + 1);  // 0.6 to 160 degrees
   Motion& m = out.motion;
   m = feed({60 * draw(random), 60 * draw(random), 30 * draw(random)}, Vec3(0));
-  m.to_mm = m.from_mm + Vec3(30 * draw(random), 30 * draw(random), 10 * draw(random));
+  m.to_mm = m.from_mm + Vec3{30 * draw(random), 30 * draw(random), 10 * draw(random)};
   for (std::size_t i = 0; i < 3; ++i) {
     m.from_abc_deg[i] = 90 * draw(random);
     m.to_abc_deg[i] = m.from_abc_deg[i] + (random() % 2 == 0 ? turn * draw(random) : 0);
@@ -350,7 +351,7 @@ RandomCase random_case(std::mt19937& random) {
   }
   if (random() % 4 == 0) {  // an arc, of which the end follows from centre and sweep
     m.kind = MotionKind::kArc;
-    m.arc.center_mm = m.from_mm + Vec3(20 * draw(random), 20 * draw(random), 0);
+    m.arc.center_mm = m.from_mm + Vec3{20 * draw(random), 20 * draw(random), 0};
     m.arc.sweep_rad = 6 * draw(random);
     const Pose turned = shift(m.arc.center_mm) * kerf::turn({0, 0, 1}, m.arc.sweep_rad / kRadians) *
                         shift(-m.arc.center_mm);

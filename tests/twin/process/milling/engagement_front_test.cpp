@@ -229,7 +229,7 @@ TEST_F(EngagementFrontTest, IsWhatAThousandPointsOfTheRimSay) {
     }
     const double turned = 2 * kPi * unit(random), z = -1 - 4 * unit(random);
     const Vec2 ahead(std::cos(turned), std::sin(turned));
-    const Vec2 at(10 + 40 * unit(random), 10 + 20 * unit(random));
+    const Vec2 at{10 + 40 * unit(random), 10 + 20 * unit(random)};
     const double radius = 1.5 + 2 * unit(random);
     const EngagementLook found =
         look("flat:" + std::to_string(2 * radius), way(Vec3(at - ahead, z), Vec3(at + ahead, z)));
