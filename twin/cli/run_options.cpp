@@ -55,7 +55,7 @@ RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
   source.program.torch = std::move(torch);
   session.turret = understand_turret(reader, source.program);
   // A window shows the program all the same, beside the lathe.
-  const bool refuses_lathe = reader.command() == kRun;
+  const bool refuses_lathe = reader.command() == kRun || reader.command() == kOptimize;
   if (refuses_lathe && config && config->machine.drawn.kind == MachineKind::kLathe) {
     source.program.lathe = tr("machine.model is lathe");
   }

@@ -263,7 +263,7 @@ constexpr std::array kMachineSettings{
     Setting{
         .key = "machine.chuck",
         .option = "--chuck",
-        .commands = kCutting,
+        .commands = kAnyProcess,
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("what holds a workpiece that turns, as --chuck has it: 160:80:120:30"),
@@ -275,7 +275,7 @@ constexpr std::array kMachineSettings{
     Setting{
         .key = "machine.tailstock",
         .option = "--tailstock",
-        .commands = kCutting,
+        .commands = kAnyProcess,
         .type = T::kText,
         .unit = "mm",
         .purpose = tr_noop("centre in the other end of it, as --tailstock has it: 40:60"),

@@ -169,7 +169,7 @@ constexpr std::array kOutputSettings{
     Setting{
         .key = "material",
         .option = "--material",
-        .commands = kRun,
+        .commands = kRun | kOptimize,
         .type = T::kText,
         .purpose = tr_noop("what the workpiece is made of, as --material has it"),
         .help = tr_noop("what the workpiece is made of: forces, torque, power, bending of tools "
@@ -177,7 +177,7 @@ constexpr std::array kOutputSettings{
                         "file like it"),
         .value_name = "NAME"},
     Setting{.option = "--max-deflection",
-            .commands = kRun,
+            .commands = kRun | kOptimize,
             .type = T::kNumber,
             .unit = "mm",
             .least = 0,
