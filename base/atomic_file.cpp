@@ -224,6 +224,13 @@ void AtomicFile::flush() {
   buffer_.clear();
 }
 
+Result<std::string> AtomicFile::readable_path() {
+  assert(fd_ >= 0 && !temporary_path_.empty());
+  flush();
+  if (error_number_ != 0) return failure(path_, error_number_);
+  return temporary_path_;
+}
+
 Done AtomicFile::commit() {
   assert(fd_ >= 0);
   flush();

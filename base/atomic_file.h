@@ -25,6 +25,9 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   /// Something was not written; commit() will say what.
   bool failed() const { return error_number_ != 0; }
+  /// Where all that was written can be read before commit(), to be looked at first. Error: as of
+  /// commit(). Not of what is written as it comes.
+  Result<std::string> readable_path();
   /// Flushes, closes, renames. Error: "writing part.stl: No space left on device"; the temporary
   /// file is then gone, and a file that was there before is untouched. Once per file.
   Done commit();

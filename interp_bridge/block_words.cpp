@@ -6,121 +6,13 @@
 #include <optional>
 
 #include "base/text_scan.h"
+#include "interp_bridge/word_scanner.h"
 
 namespace kerf {
 namespace {
 
 constexpr std::uint8_t kAllThree = 7;
 constexpr std::uint32_t kFirstLine = 1;
-
-/// Words of a block, one after the other: a letter, and its number unless that is computed.
-class WordScanner {
- public:
-  explicit WordScanner(std::string_view text) : p_(text.data()), end_(text.data() + text.size()) {}
-
-  /// False: no more. `number`: nothing if an expression stands there.
-  bool next(char& letter, std::optional<double>& number) {
-    for (;;) {
-      skip_blanks();
-      if (p_ == end_ || *p_ == ';') return false;
-      if (*p_ == '(') {
-        skip_past(')');
-      } else if (is_letter(*p_) || *p_ == '@' || *p_ == '^') {
-        letter = to_lower(*p_++);
-        number = read_number();
-        return true;
-      } else if (*p_ == '#' || *p_ == '[') {
-        skip_value();  // a setting of a parameter
-      } else {
-        ++p_;
-      }
-    }
-  }
-
- private:
-  void skip_blanks() {
-    while (p_ != end_ && is_line_blank(*p_)) ++p_;
-  }
-  void skip_past(char closing) {
-    while (p_ != end_ && *p_ != closing) ++p_;
-    if (p_ != end_) ++p_;
-  }
-  void skip_brackets() {
-    int depth = 0;
-    for (; p_ != end_; ++p_) {
-      if (*p_ == '[') ++depth;
-      if (*p_ == ']' && --depth == 0) {
-        ++p_;
-        return;
-      }
-    }
-  }
-  /// #5, ##5, #<name>, #[..], [..], sin[..], and what is set to it.
-  void skip_value() {
-    for (;;) {
-      skip_blanks();
-      while (p_ != end_ && (*p_ == '#' || *p_ == '+' || *p_ == '-')) ++p_;
-      skip_blanks();
-      while (p_ != end_ && is_letter(*p_)) ++p_;
-      skip_blanks();
-      if (p_ != end_ && *p_ == '[') {
-        skip_brackets();
-        skip_blanks();
-        // atan[y]/[x]
-        if (p_ != end_ && *p_ == '/') {
-          ++p_;
-          continue;
-        }
-      } else if (p_ != end_ && *p_ == '<') {
-        skip_past('>');
-      } else {
-        skip_digits();
-      }
-      skip_blanks();
-      if (p_ == end_ || *p_ != '=') return;
-      ++p_;
-    }
-  }
-  void skip_digits() {
-    while (p_ != end_ && (is_digit(*p_) || *p_ == '.' || is_line_blank(*p_))) ++p_;
-  }
-  std::optional<double> read_number() {
-    skip_blanks();
-    if (p_ == end_) return std::nullopt;
-    if (*p_ == '#' || *p_ == '[' || is_letter(*p_)) {
-      skip_value();
-      return std::nullopt;
-    }
-    const char* at = p_;
-    const bool minus = *at == '-';
-    if (*at == '+' || *at == '-') ++at;
-    while (at != end_ && is_line_blank(*at)) ++at;
-    if (at != end_ && (*at == '#' || *at == '[' || is_letter(*at))) {
-      skip_value();
-      return std::nullopt;
-    }
-    double value = 0;
-    double scale = 0;
-    for (; at != end_; ++at) {
-      if (is_line_blank(*at)) continue;
-      if (*at == '.' && scale == 0) {
-        scale = 1;
-      } else if (is_digit(*at)) {
-        value = value * 10 + (*at - '0');
-        scale *= 10;
-      } else {
-        break;
-      }
-    }
-    if (at == p_) return std::nullopt;
-    p_ = at;
-    if (scale > 0) value /= scale;
-    return minus ? -value : value;
-  }
-
-  const char* p_;
-  const char* end_;
-};
 
 /// G92.1 as 921; 0 for what is no code.
 int code_of(const std::optional<double>& number) {

@@ -46,6 +46,16 @@ struct ToolSection {
   double to_z_mm = 0;
 };
 
+/// What of a milling tool's edges counts for its forces, and what its maker allows. Mostly nobody
+/// has said it.
+struct EdgeTraits {
+  std::optional<double> helix_deg, rake_deg;
+  std::optional<double> most_chip_mm;  ///< feed per tooth at most
+  std::optional<double> most_ramp_deg;
+  bool cuts_centre = true;  ///< it may go straight down into material
+  bool operator==(const EdgeTraits&) const = default;
+};
+
 /// How the driven tool of a lathe lies: along this axis, its tip towards less of it.
 enum class LiveAxis : std::uint8_t { kX, kZ };
 
@@ -107,6 +117,8 @@ class Cutter {
   void set_neck(std::vector<ToolSection> neck) { neck_ = std::move(neck); }
   std::optional<int> teeth() const { return teeth_; }
   void set_teeth(int teeth) { teeth_ = teeth; }
+  const EdgeTraits& edge_traits() const { return edge_traits_; }
+  void set_edge_traits(const EdgeTraits& traits) { edge_traits_ = traits; }
   /// Of a lathe's tool that is driven itself, so that it mills: how it lies. None: a tool that
   /// stands still there (and any tool of a mill).
   std::optional<LiveAxis> live() const { return live_; }
@@ -137,6 +149,7 @@ class Cutter {
   std::vector<ToolSection> neck_;
   std::vector<ToolSection> holder_;
   std::optional<int> teeth_;
+  EdgeTraits edge_traits_;
   std::optional<LiveAxis> live_;
   std::shared_ptr<const Footprint> footprint_;
   std::shared_ptr<const InsertOutline> insert_;

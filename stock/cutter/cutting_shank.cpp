@@ -55,6 +55,7 @@ std::optional<Cutter> with_cutting_shank(const Cutter& cutter) {
   wider.set_neck({cutter.neck().begin(), cutter.neck().end()});
   wider.set_holder({cutter.holder().begin(), cutter.holder().end()});
   if (cutter.teeth()) wider.set_teeth(*cutter.teeth());
+  wider.set_edge_traits(cutter.edge_traits());
   return wider;
 }
 

@@ -14,8 +14,9 @@
 
 namespace kerf {
 
-inline constexpr std::array<std::string_view, 6> kShapeOptionNames = {"flute",    "shank", "holder",
-                                                                      "stickout", "teeth", "live"};
+inline constexpr std::array<std::string_view, 11> kShapeOptionNames = {
+    "flute", "shank", "holder", "stickout", "teeth", "live",
+    "helix", "rake",  "chip",   "ramp",     "centre"};
 
 struct ShapeOptions {
   std::optional<double> flute_mm;
@@ -24,7 +25,15 @@ struct ShapeOptions {
   std::optional<double> stickout_mm;
   std::optional<int> teeth;
   std::optional<LiveAxis> live;
+  EdgeTraits edges;
+  bool centre_said = false;
 };
+
+/// Its values are lengths.
+inline bool is_length_option(std::string_view name) {
+  return name == "flute" || name == "shank" || name == "holder" || name == "stickout" ||
+         name == "chip";
+}
 
 /// Of "name=value", `name` in small letters. Error: what was found and what is allowed; given
 /// twice.

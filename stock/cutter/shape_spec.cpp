@@ -43,7 +43,11 @@ constexpr const char* kHelp = tr_noop(
     "kerf:W               torch, laser or jet: width of what it takes out of a sheet\n"
     "profile:FILE         outline from a file\n"
     "each of these may add  :flute=L:shank=D[xL]:holder=NAME|DxL[+DxL..]:stickout=L:teeth=N\n"
-    "                     :live=x|z  of a lathe's driven tool: along which axis it lies");
+    "                     :live=x|z  of a lathe's driven tool: along which axis it lies\n"
+    "                     :helix=DEG:rake=DEG  of its edges, for forces (--material)\n"
+    "                     :chip=L:ramp=DEG:centre=no  what its maker allows: feed per tooth, "
+    "angle\n"
+    "                     of a ramp, no cutting straight down");
 
 /// Adds flutes, shank and holder. Each begins where the one below ends. A shank without a length
 /// below a holder counts as none: the holder then begins at the end of the flutes, the cautious
@@ -108,6 +112,7 @@ Result<Cutter> assemble(MillBody body, const ShapeOptions& options, std::string 
   }
   if (options.teeth) cutter->set_teeth(*options.teeth);
   cutter->set_live(options.live);
+  cutter->set_edge_traits(options.edges);
   std::vector<ToolSection> holder =
       sections_of(options.holder, options.stickout_mm.value_or(shank_top));
   cutter->set_holder(std::move(holder));
@@ -238,7 +243,7 @@ std::string shape_in(std::string_view spec, LengthUnit unit) {
       out += field;
     } else if (is_shape_option(field, kShapeOptionNames)) {
       const std::string_view name = field.substr(0, equals), value = field.substr(equals + 1);
-      const bool is_length = name != "teeth" && name != "live";
+      const bool is_length = is_length_option(name);
       out += fmt::format("{}={}", name, is_length ? parts_in(value, unit) : std::string(value));
     } else if (is_file || (index < form->parameters.size() &&
                            std::string_view(form->parameters[index]).find("angle") !=

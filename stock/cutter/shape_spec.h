@@ -36,6 +36,10 @@ namespace kerf {
 ///                        flutes: the cautious reading
 ///     stickout=L         from the tip to the holder, instead of the shank's length
 ///     teeth=N            1 to 99
+///     helix=DEG          0 to 70, of its flutes; rake=DEG: -45 to 45, of its edges
+///     chip=L             feed per tooth that its maker allows
+///     ramp=DEG           the steepest way down into material that its maker allows, 0 to 90
+///     centre=no          it does not cut at its centre
 ///     live=x, live=z     on a lathe: it is driven itself, and mills while the workpiece stands or
 ///                        is an axis; along X (its tip towards the axis) or along Z
 ///

@@ -69,8 +69,8 @@ constexpr std::array kTurningForms{
 
 constexpr std::array<std::string_view, 7> kTurningOptions = {"orient", "edge",   "holder", "bar",
                                                              "f",      "max_ap", "path"};
-constexpr std::array<std::string_view, 5> kMillOptions = {"flute", "shank", "stickout", "teeth",
-                                                          "live"};
+constexpr std::array<std::string_view, 10> kMillOptions = {
+    "flute", "shank", "stickout", "teeth", "live", "helix", "rake", "chip", "ramp", "centre"};
 
 constexpr const char* kTurningHelp = tr_noop(
     "turn:R:ORIENT:FRONT:BACK[:EDGE]  turning tool: nose radius, LinuxCNC's orientation and "

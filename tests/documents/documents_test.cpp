@@ -97,8 +97,9 @@ std::size_t characters(const std::string& utf8) {
 }
 
 constexpr const char* kLongOption = R"((?:^|[\s,\[`(])(--[a-z][a-z0-9-]+))";
-const char* const kCommands[] = {"run",   "view",   "shadow",  "replay", "canon", "config",
-                                 "tools", "models", "sources", "diff",   "batch", "job"};
+const char* const kCommands[] = {"run",    "view",  "shadow",  "replay",  "canon",
+                                 "config", "tools", "models",  "sources", "diff",
+                                 "batch",  "job",   "optimize"};
 
 Words options_of(const std::string& command) {
   const CommandResult help = run_kerf(command + " --help");

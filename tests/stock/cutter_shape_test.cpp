@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -175,7 +176,8 @@ TEST(Shape, UnknownNames) {
             "lollipop, tslot, dovetail, kerf, profile)");
   EXPECT_EQ(error_of("flat:10:flut=2"),
             "flat:10:flut=2: unknown option 'flut'; did you mean 'flute'? Options: flute=L, "
-            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L, teeth=N, live=x|z");
+            "shank=D[xL], holder=NAME|DxL[+DxL..], stickout=L, teeth=N, live=x|z, helix=DEG, "
+            "rake=DEG, chip=L, ramp=DEG, centre=yes|no");
 }
 
 TEST(Shape, MissingAndSurplusValues) {
@@ -361,6 +363,29 @@ TEST(Shape, Teeth) {
     const std::string spec = std::string("flat:3:teeth=") + bad;
     EXPECT_EQ(error_of(spec),
               spec + ": teeth: '" + bad + "' is not allowed; must be a whole number from 1 to 99");
+  }
+}
+
+// What counts for forces, and what the maker allows.
+TEST(Shape, Edges) {
+  EXPECT_EQ(parse_shape("flat:6")->edge_traits(), EdgeTraits{});
+  const Cutter mill =
+      parse_shape("flat:6:rake=12:teeth=3:helix=45:centre=no:ramp=3:chip=0.05").value();
+  EXPECT_EQ(mill.spec(), "flat:6:teeth=3:helix=45:rake=12:chip=0.05:ramp=3:centre=no");
+  EXPECT_EQ(mill.edge_traits(), (EdgeTraits{45, 12, 0.05, 3, false}));
+  EXPECT_EQ(parse_shape(mill.spec())->edge_traits(), mill.edge_traits());
+  EXPECT_TRUE(parse_shape("flat:6:centre=yes")->edge_traits().cuts_centre);
+  EXPECT_EQ(shape_in("flat:25.4:helix=30:chip=0.0508:centre=no", LengthUnit::kInch),
+            "flat:1:helix=30:chip=0.002:centre=no");
+  EXPECT_EQ(error_of("flat:3:helix=71"),
+            "flat:3:helix=71: helix: 71 is not allowed; must be from 0 to 70 (degrees)");
+  EXPECT_EQ(error_of("flat:3:rake=x"), "flat:3:rake=x: rake: 'x' is not a number");
+  EXPECT_EQ(error_of("flat:3:centre=maybe"),
+            "flat:3:centre=maybe: centre: 'maybe' is not allowed; no and yes are: whether it cuts "
+            "at its centre");
+  for (const char* name : {"helix", "rake", "chip", "ramp"}) {
+    const std::string spec = fmt::format("flat:3:{0}=1:{0}=2", name);
+    EXPECT_EQ(error_of(spec), fmt::format("{}: {}= is given twice", spec, name));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "twin/cli/console.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/progress_bar.h"
+#include "twin/cli/run_ends.h"
 #include "twin/cli/run_options.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/torch_options.h"
@@ -59,26 +60,6 @@ struct CutSide {
   DiffedPart part() const { return {stock(), session ? session->cut_labels() : nullptr}; }
 };
 
-int code_of(Outcome outcome, const Diagnostics& diagnostics) {
-  if (outcome == Outcome::kUsageError) return kExitUsage;
-  if (outcome == Outcome::kFailed || outcome == Outcome::kInterrupted || has_error(diagnostics)) {
-    return kExitFailure;
-  }
-  return outcome == Outcome::kLossy ? kExitLossy : kExitGood;
-}
-
-/// What stopped a program: its own errors of the interpreter.
-void print_stops(const Report& report) {
-  for (const Finding& finding : report.findings.kept()) {
-    if (finding.id != FindingId::kInterpreterError) continue;
-    print_diagnostic(stderr, diagnostic_of(finding, report.program.files));
-  }
-  if (report.partial_reason.empty()) return;
-  Diagnostic d;
-  d.message = trf("{}: not run to its end: {}", report.program_path, report.partial_reason);
-  print_diagnostic(stderr, d);
-}
-
 CutSide cut_program(const DiffRequest& request, const std::stop_token& stop) {
   CutSide out;
   Diagnostics diagnostics;
@@ -87,7 +68,7 @@ CutSide cut_program(const DiffRequest& request, const std::stop_token& stop) {
   out.session = Session::open(request.run.session, diagnostics, outcome);
   print_diagnostics(diagnostics, request.run.quiet);
   if (!out.session) {
-    out.code = code_of(outcome, diagnostics);
+    out.code = end_code(outcome, diagnostics);
     return out;
   }
   diagnostics.clear();
@@ -101,7 +82,7 @@ CutSide cut_program(const DiffRequest& request, const std::stop_token& stop) {
   print_diagnostics(diagnostics, request.run.quiet);
   const Report& report = out.session->report();
   print_stops(report);
-  out.code = code_of(outcome, diagnostics);
+  out.code = end_code(outcome, diagnostics);
   if (!report.partial_reason.empty() && out.code == kExitGood) out.code = kExitFailure;
   out.side.files = report.program.files;
   out.side.steps = std::move(collector.steps);

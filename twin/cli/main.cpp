@@ -27,6 +27,7 @@
 #include "twin/cli/job_command.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/machine_command.h"
+#include "twin/cli/optimize_command.h"
 #include "twin/cli/run_command.h"
 #include "twin/cli/tools_command.h"
 #include "twin/cli/version.h"
@@ -43,6 +44,7 @@ constexpr const char* kExamples =
     "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
     "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf diff old.ngc new.ngc\n"
+    "  kerf optimize part.ngc -o fast.ngc --max-rate 300\n"
     "  kerf batch parts --out results\n"
     "  kerf canon part.ngc\n"
     "  kerf models\n"
@@ -63,6 +65,13 @@ constexpr const char* kDiffExample = tr_noop(
     "Examples:\n"
     "  kerf diff old.ngc new.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
     "  kerf diff part.ngc part.state --json -\n");
+
+constexpr const char* kOptimizeExample = tr_noop(
+    "Only F words are changed. The new program is read and cut again: it appears if its motions\n"
+    "are the same, bit for bit, so is the workpiece, and no limit is exceeded.\n\n"
+    "Examples:\n"
+    "  kerf optimize part.ngc -o fast.ngc --chip 0.05 --tool 1=flat:10:teeth=3 --ini mill.ini\n"
+    "  kerf optimize part.ngc --in-place --max-rate 300 --max-feed 2500 --air-feed 4000\n");
 
 constexpr const char* kJobExample =
     "Example:\n"
@@ -206,6 +215,7 @@ constexpr std::array kCalls{
     CommandCall{kShadow, kShadowExample, live_command},
     CommandCall{kReplay, kReplayExample, live_command},
     CommandCall{kDiff, kDiffExample, diff_command},
+    CommandCall{kOptimize, kOptimizeExample, optimize_command},
     CommandCall{kBatch, kBatchExample, batch_command},
     CommandCall{kJob, kJobExample, job_command},
     CommandCall{kCanon, kCanonExample, canon_command},

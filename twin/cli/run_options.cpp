@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
 #include "twin/cli/option_reader.h"
 
@@ -54,7 +55,7 @@ RunRequest understand_cut(const LiveConfig* config, OptionReader& reader) {
   source.program.torch = std::move(torch);
   session.turret = understand_turret(reader, source.program);
   // A window shows the program all the same, beside the lathe.
-  const bool refuses_lathe = reader.command() == kRun;
+  const bool refuses_lathe = reader.command() == kRun || reader.command() == kOptimize;
   if (refuses_lathe && config && config->machine.drawn.kind == MachineKind::kLathe) {
     source.program.lathe = tr("machine.model is lathe");
   }
@@ -107,7 +108,9 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
   request.compare = understand_compare(reader, request.session.tools);
   // Tools may be named for what is left alone.
   if (request.compare.rest_mm > 0) request.session.tools_named = false;
-  request.engagement = reader.is_yes("--engagement") || !request.outputs.engagement_png.empty();
+  request.session.cutting = understand_cutting(reader);
+  request.engagement = reader.is_yes("--engagement") || !request.outputs.engagement_png.empty() ||
+                       request.session.cutting.is_wanted() || has_tool_limits(request.session);
   request.view = reader.is_yes("--view");
   if (request.view && request.compare.is_fitted) {
     reader.fault("--compare-fit",

@@ -160,6 +160,8 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.holding.chuck) printer.text("chuck", machine.holding.chuck->text);
   if (machine.holding.tailstock) printer.text("tailstock", machine.holding.tailstock->text);
   if (machine.spindle_max_rpm) printer.put("spindle_max_rpm", *machine.spindle_max_rpm);
+  if (machine.spindle_power_kw) printer.put("spindle_power_kw", *machine.spindle_power_kw);
+  if (machine.spindle_torque_nm) printer.put("spindle_torque_nm", *machine.spindle_torque_nm);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {
@@ -235,6 +237,7 @@ void print_work(Printer& printer, const LiveConfig& config) {
   printer.put("below_mm", config.stock.below_mm);
   printer.close();
   print_beam(printer, config.beam);
+  printer.text("material", config.material);
   printer.text("turret", config.turret);
   printer.put("units", config.units == LengthUnit::kInch ? "inch" : "mm");
   printer.open("follow");

@@ -112,6 +112,8 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   read_spindle(machine, out);
   read_holding(machine, out.holding);
   machine.number("spindle_max_rpm", out.spindle_max_rpm);
+  machine.number("spindle_power_kw", out.spindle_power_kw);
+  machine.number("spindle_torque_nm", out.spindle_torque_nm);
   read_kinematics(machine, out);
 }
 
@@ -378,6 +380,7 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_tool_libraries_key(root, config.tool_libraries);
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);
+  config.material = root.text("material");
   read_follow(root.group("follow"), config.follow);
   const GroupReader view = root.group("view");
   view.number("window", config.view.window);

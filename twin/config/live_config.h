@@ -54,7 +54,7 @@ struct ConfigMachine {
   std::string spindle_spec;  ///< the text that `spindle` was read from
   std::optional<double> spindle_accel_rpm_per_s;
   WorkHolding holding;  ///< `chuck` and `tailstock`
-  std::optional<double> spindle_max_rpm;
+  std::optional<double> spindle_max_rpm, spindle_power_kw, spindle_torque_nm;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.
@@ -127,7 +127,8 @@ struct LiveConfig {
   std::vector<std::string> tool_libraries;  ///< paths
   ConfigStock stock;
   ConfigBeam beam;
-  std::optional<std::string> turret;  ///< `turret:`, path; then beam has no more than a density
+  std::optional<std::string> material;  ///< `material:`
+  std::optional<std::string> turret;    ///< `turret:`, path; then beam has no more than a density
   ConfigFollow follow;
   ConfigView view;
   ConfigSourceCommon common;

@@ -15,6 +15,7 @@ constexpr std::array kCommands{
     CommandRow{kShadow, "shadow", tr_noop("follow a machine that runs")},
     CommandRow{kReplay, "replay", tr_noop("run a log of a machine again")},
     CommandRow{kDiff, "diff", tr_noop("what differs between two programs or workpieces")},
+    CommandRow{kOptimize, "optimize", tr_noop("give a program the feeds that its cuts allow")},
     CommandRow{kBatch, "batch",
                tr_noop("run many programs, each by itself; goes on where it stopped")},
     CommandRow{kJob, "job", tr_noop("a part in several setups, one after the other")},
@@ -32,9 +33,10 @@ constexpr std::array kCommands{
 std::span<const Setting> setting_table() {
   static const std::vector<Setting> table = [] {
     std::vector<Setting> all;
-    for (const auto topic : {call_settings, machine_settings, workpiece_settings, sheet_settings,
-                             follow_settings, output_settings, batch_settings, job_settings,
-                             view_settings, source_settings, map_settings, simulator_settings}) {
+    for (const auto topic :
+         {call_settings, machine_settings, workpiece_settings, sheet_settings, follow_settings,
+          output_settings, batch_settings, job_settings, optimize_settings, view_settings,
+          source_settings, map_settings, simulator_settings}) {
       const std::span<const Setting> rows = topic();
       all.insert(all.end(), rows.begin(), rows.end());
     }

@@ -53,9 +53,12 @@ enum Command : std::uint16_t {
   kDiff = 1024,
   kBatch = 2048,
   kJob = 4096,
+  kOptimize = 8192,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
-inline constexpr std::uint16_t kCutting = kRun | kView | kBesideMachine | kDiff;
+/// Those that take workpieces of every kind, and those that take what is milled.
+inline constexpr std::uint16_t kAnyProcess = kRun | kView | kBesideMachine | kDiff;
+inline constexpr std::uint16_t kCutting = kAnyProcess | kOptimize;
 
 /// One row. In `key`, ITEM stands for what a map may name (X..W, J0..J8, tool, line, ...), and
 /// NUMBER for a tool number, PIN for a number that kinematics take.
@@ -128,6 +131,7 @@ std::span<const Setting> follow_settings();     ///< the program that a machine 
 std::span<const Setting> output_settings();     ///< files
 std::span<const Setting> batch_settings();      ///< kerf batch
 std::span<const Setting> job_settings();        ///< kerf job
+std::span<const Setting> optimize_settings();   ///< kerf optimize
 std::span<const Setting> view_settings();       ///< window, pictures
 std::span<const Setting> source_settings();     ///< where positions come from, logs
 std::span<const Setting> map_settings();        ///< which number is which position

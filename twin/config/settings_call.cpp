@@ -54,7 +54,7 @@ constexpr std::array kCallSettings{
             .type = T::kFile,
             .help = tr_noop("the configuration; after completion the shell: bash | zsh")},
     Setting{.option = "--config",
-            .commands = kRun | kDiff,
+            .commands = kRun | kDiff | kOptimize,
             .type = T::kFile,
             .help = tr_noop("configuration: machine, beam, tools, stock"),
             .value_name = "FILE",

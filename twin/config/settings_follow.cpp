@@ -29,7 +29,7 @@ constexpr std::array kFollowSettings{
     Setting{
         .key = "follow.path",
         .option = "--path",
-        .commands = kCutting,
+        .commands = kAnyProcess,
         .key_counts_for = kBesideMachine,
         .type = T::kWord,
         .words = "programmed|planned",

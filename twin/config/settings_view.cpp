@@ -123,7 +123,7 @@ constexpr std::array kViewSettings{
         .help = tr_noop("the window's workpiece by mesh | raycast (default as it remembers it)"),
         .value_name = "NAME"},
     Setting{.option = "--quiet",
-            .commands = kRun | kDiff,
+            .commands = kRun | kDiff | kOptimize,
             .type = T::kYesNo,
             .fallback = "no",
             .help = tr_noop("no summary, no progress bar, no warnings"),

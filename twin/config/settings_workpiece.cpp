@@ -43,7 +43,7 @@ constexpr std::array kWorkpieceSettings{
             .value_name = "NAME",
             .refusal = tr_noop("'{}' is no model; allowed: {}")},
     Setting{.option = "--additive",
-            .commands = kCutting,
+            .commands = kAnyProcess,
             .type = T::kYesNo,
             .fallback = "no",
             .help = tr_noop(
@@ -206,7 +206,7 @@ constexpr std::array kWorkpieceSettings{
             .value_name = "NAME",
             .refusal = tr_noop("'{}' is no kernel; allowed: {}")},
     Setting{.option = "--no-guess",
-            .commands = kRun | kView | kDiff,
+            .commands = kRun | kView | kDiff | kOptimize,
             .type = T::kYesNo,
             .fallback = "no",
             .help = tr_noop("for scripts: a blank or a tool that nobody has described is an error "

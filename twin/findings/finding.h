@@ -99,6 +99,18 @@ enum class FindingId : std::uint8_t {
   kGouge,             ///< the workpiece is cut into the design part
   kExcess,            ///< material is left over on the design part
   kPieceFree,         ///< a piece of what is milled comes free
+  kChipLoadHigh,      ///< feed per tooth above what the tool's maker allows
+  kChipThin,          ///< chips so thin that edges rub
+  kFullSlot,          ///< a full slot, deeper than the tool is wide
+  kPlunge,            ///< straight down into material, of a tool that does not cut at its centre
+  kRampSteep,         ///< down into material on a steeper way than the tool's maker allows
+  kCuttingSpeed,      ///< above what is known of the material
+  kOverPower,         ///< cutting takes more power than the spindle has
+  kOverTorque,        ///< the same of its torque
+  kDeflection,        ///< forces bend the tool farther than is allowed
+  kConventional,      ///< milling against the feed, where climb milling is wanted
+  kAirCut,            ///< time at feed in no material
+  kSpindleReversed,   ///< cuts while the spindle runs anticlockwise
 };
 
 /// "rapid-contact", ...: the `id` of the report.

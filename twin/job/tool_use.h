@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "interp_bridge/motion.h"
+#include "twin/job/tool_loads.h"
 
 namespace kerf {
 
@@ -41,6 +43,7 @@ struct ToolUse {
   /// Its length offsets along X Y Z, of the tool table; none: no row has any.
   std::optional<std::array<double, 3>> offset_mm;
   ChipLoad chip;
+  std::shared_ptr<const ToolLoads> loads;  ///< where engagement was measured and teeth are known
   /// Its shank, its holder against the workpiece; false: nobody described them, or the model does
   /// not look.
   bool shank_checked = false, holder_checked = false;

@@ -13,6 +13,7 @@
 #include "twin/job/fixtures.h"
 #include "twin/job/work_holding.h"
 #include "twin/machines/machine_bodies.h"
+#include "twin/process/cutting_wish.h"
 
 namespace kerf {
 
@@ -45,6 +46,7 @@ struct CheckOptions {
   double spindle_max_rpm = 0;  ///< of a spindle that turns the workpiece; 0: not known
   /// Without bodies or a mesh nobody knows more of it than the stock's box.
   Blank blank{};
+  CuttingWish cutting{};
 };
 
 /// Where the blank of a run comes from, and so what it means that nothing of it is cut.

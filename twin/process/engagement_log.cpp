@@ -55,6 +55,7 @@ void EngagementLog::cut_map() {
 }
 
 void EngagementLog::mount(int tool, const Cutter& cutter) {
+  if (listener_ != nullptr) listener_->on_mount(tool, cutter);
   cut_map();
   cutter_.reset();
   if (heights_ && heights_->accepts(cutter)) cutter_ = cutter;
@@ -76,6 +77,7 @@ bool EngagementLog::goes_on(const CutMove& last, const CutMove& next) const {
 void EngagementLog::end_pass() { is_open_ = false; }
 
 std::uint32_t EngagementLog::add(const Part& part) {
+  if (listener_ != nullptr) listener_->on_part(part.look, part.way.length_mm);
   EngagementOfTool& of_tool = tools_[tool_];
   of_tool.feed_mm += part.way.length_mm;
   of_tool.feed_s += part.way.seconds;

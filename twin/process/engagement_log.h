@@ -12,6 +12,18 @@
 
 namespace kerf {
 
+/// Hears of each part of the feed moves as it is measured: between the on_step() of a motion and
+/// that of the next (MotionRecorder), parts are of that motion, in their order. One thread.
+class EngagementListener {
+ public:
+  virtual ~EngagementListener() = default;
+  /// What is told from now on is of this tool.
+  virtual void on_mount(int tool, const Cutter& cutter) = 0;
+  virtual void on_part(const EngagementLook& look, double length_mm) = 0;
+  /// A feed move whose engagement nobody knows.
+  virtual void on_unmeasured(double length_mm) = 0;
+};
+
 /// Is told of each part of a feed move how the tool was engaged on it. For the map it cuts the
 /// parts that were engaged out of heights of its own, kMostMapCells each way at most, whatever the
 /// model of the workpiece is: who cut a place last is then known. A pass takes 200 bytes, a part
@@ -22,6 +34,9 @@ class EngagementLog {
   static constexpr std::uint32_t kNoPass = ~std::uint32_t{0};
 
   explicit EngagementLog(bool with_map) : with_map_(with_map) {}
+
+  /// It hears of all that is told. Outlives the log.
+  void tell(EngagementListener& listener) { listener_ = &listener; }
 
   /// Forgets all, for another run over `stock`, which has not been cut.
   void begin(const StockModel& stock);
@@ -41,7 +56,10 @@ class EngagementLog {
   /// Returns the pass that it belongs to; kNoPass: none.
   std::uint32_t add(const Part& part);
   /// A feed move whose engagement nobody knows.
-  void add_unmeasured(double length_mm) { unmeasured_mm_ += length_mm; }
+  void add_unmeasured(double length_mm) {
+    unmeasured_mm_ += length_mm;
+    if (listener_ != nullptr) listener_->on_unmeasured(length_mm);
+  }
   /// What a move of that pass has removed, on so much of its way and time as it was in material
   /// (EngagementSums::in_material_mm(), cut_s).
   void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds);
@@ -58,6 +76,7 @@ class EngagementLog {
   EngagementMap map() const;
 
   bool with_map_;
+  EngagementListener* listener_ = nullptr;
   std::unique_ptr<StockModel> heights_;  ///< of the map
   std::vector<CutMove> moves_;           ///< of the tool, that are still to be cut out of it
   std::optional<Cutter> cutter_;

@@ -104,6 +104,7 @@ CheckOptions checks_of(const SessionOptions& options, const ProgramFront& front)
   CheckOptions checks{front.blank_guessed, options.below_mm, front.is_drawn, options.collisions};
   checks.collisions.held_by = front.held_by;
   checks.spindle_max_rpm = options.spindle_max_rpm;
+  checks.cutting = options.cutting;
   if (front.blank) checks.blank = *front.blank;
   return checks;
 }

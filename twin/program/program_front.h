@@ -39,6 +39,7 @@ struct SessionOptions {
   double below_mm = 0;         ///< CheckOptions::below_mm
   double spindle_max_rpm = 0;  ///< CheckOptions::spindle_max_rpm
   CollisionWishes collisions{};
+  CuttingWish cutting{};
   TimelineOptions timeline;
   bool tools_named = false;  ///< `tools` are those of --tool itself: each is meant for the program
   bool guess = true;         ///< what nobody has said; false: that is an error

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cutting/material.h"
 #include "interp_bridge/program.h"
 #include "twin/compare/comparison.h"
 #include "twin/compare/rest.h"
@@ -60,6 +61,7 @@ struct Report {
   std::optional<TurningReport> turning;  ///< of one that turns
   std::optional<Comparison> comparison;  ///< with the design part, where one was given
   std::optional<Rest> rest;              ///< above it, where that was asked for
+  std::optional<Material> material;      ///< of the workpiece, where that was said
   std::optional<Engagement> engagement;  ///< of milling tools, where that was asked for
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>

@@ -4,6 +4,7 @@
 #include "twin/findings/finding_json.h"
 #include "twin/report/compare_report.h"
 #include "twin/report/engagement_report.h"
+#include "twin/report/load_report.h"
 #include "twin/report/report.h"
 #include "twin/report/rest_report.h"
 #include "twin/report/run_json.h"
@@ -99,7 +100,9 @@ Json tools_json(const Report& report) {
       tool["engagement"] = {{"feed_per_tooth_mm", rounded(use.chip.most_mm)},
                             {"feed_per_tooth_mean_mm", rounded(use.chip.mean_mm())},
                             {"line", use.chip.most_at.line},
-                            {"cutting_speed_m_min", rounded(use.chip.speed_m_per_min)}};
+                            {"cutting_speed_m_min", rounded(use.chip.speed_m_per_min)},
+                            {"rate_max_mm3_s", rounded(use.peak_mm3_per_s)}};
+      if (use.loads) add_loads(tool["engagement"], *use.loads);
     }
     out.push_back(std::move(tool));
   }
@@ -241,6 +244,7 @@ std::string json_text(const Report& report) {
   out["stock"] = stock_json(report);
   if (report.sheet) out["sheet"] = sheet_json(*report.sheet, report.program.files);
   if (report.turning) out["turning"] = turning_json(*report.turning, report.program.files);
+  if (report.material) out["material"] = material_json(*report.material);
   out["tools"] = tools_json(report);
   out["collisions"] = collisions_json(report);
   if (!report.pieces.empty()) out["pieces"] = pieces_json(report);

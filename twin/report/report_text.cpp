@@ -8,6 +8,7 @@
 #include "base/translate.h"
 #include "twin/report/compare_report.h"
 #include "twin/report/engagement_report.h"
+#include "twin/report/load_report.h"
 #include "twin/report/report.h"
 #include "twin/report/report_words.h"
 #include "twin/report/rest_report.h"
@@ -96,6 +97,16 @@ void add_removed(std::string& out, const StockReport& s) {
              percent);
 }
 
+/// "T1, T3": of the tools that have cut.
+std::string without_teeth(const std::vector<ToolUse>& tools) {
+  std::string out;
+  for (const ToolUse& use : tools) {
+    if (use.teeth || use.removed_mm3 <= 0) continue;
+    out += fmt::format("{}T{}", out.empty() ? "" : ", ", use.number);
+  }
+  return out;
+}
+
 void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
   const char* head = tr("tools     ");
   for (const ToolUse& use : tools) {
@@ -112,6 +123,7 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
                 "cutting speed {:.3g} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
                 use.chip.speed_m_per_min);
+        if (use.loads) out += loads_text(*use.loads);
       }
     }
     out += "\n";
@@ -298,6 +310,13 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
   if (report.rest) out += rest_text(*report.rest);
+  if (report.material) {
+    out += trf("material  {}{}\n", report.material->name,
+               without_teeth(report.tools).empty()
+                   ? ""
+                   : trf("; forces of tools without teeth=N are not known: {}",
+                         without_teeth(report.tools)));
+  }
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);

@@ -182,6 +182,7 @@ Outcome Session::run(std::stop_token stop, Diagnostics& diagnostics) {
   report_.version = KERF_VERSION;
   report_.program_path = options_.program.path;
   report_.lines = options_.lines;
+  report_.material = options_.cutting.material;
   Outcome outcome = Outcome::kFinished;
   const bool look_first = !stock() || !options_.guess;
   if (look_first && !survey_program(stop, diagnostics, outcome)) return outcome;

@@ -74,6 +74,11 @@ class Session {
   }
   /// Before run(): how the tools are engaged is measured, for Report::engagement.
   void log_engagement(bool with_map) { engagement_.emplace(with_map); }
+  /// The same, and each part of the feed moves is told to one who outlives the session.
+  void log_engagement(EngagementListener& listener) {
+    engagement_.emplace(false);
+    engagement_->tell(listener);
+  }
   const KeptMoves* kept_moves() const { return kept_moves_ ? &*kept_moves_ : nullptr; }
 
   /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that

@@ -460,7 +460,9 @@ TEST_F(ViewWindow, AChangedProgramIsReadAgainWhereItStood) {
   const Picture at_start = kerf_->settled();
   kerf_->key("5");
   ASSERT_TRUE(kerf_->changes_from(at_start));
+  const Picture from_above = kerf_->settled();
   kerf_->key("End");
+  ASSERT_TRUE(kerf_->changes_from(from_above));
   const Picture wanted = kerf_->settled();
   kerf_->key("Q");
   expect_end(0);
@@ -468,7 +470,9 @@ TEST_F(ViewWindow, AChangedProgramIsReadAgainWhereItStood) {
   const Picture start = kerf_->settled();
   kerf_->key("5");
   ASSERT_TRUE(kerf_->changes_from(start));
+  const Picture above = kerf_->settled();
   kerf_->key("End");
+  ASSERT_TRUE(kerf_->changes_from(above));
   const Picture before = kerf_->settled();
   ASSERT_GT(different_pixels(before, wanted), 300U);
   folder_.write("part.ngc", deeper);

@@ -162,6 +162,7 @@ TEST(ConfigExamples, AreReadWithoutAWord) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(KERF_CONFIGS_FOLDER)) {
     if (entry.path().extension() != ".yaml") continue;
     if (entry.path().parent_path().filename() == "punch") continue;  // turrets: turret_test.cpp
+    if (entry.path().filename() == "materials.yaml") continue;       // material_reader_test.cpp
     Diagnostics diagnostics;
     const auto config = read_config(entry.path().string(), {}, diagnostics);
     for (const Diagnostic& one : diagnostics) ADD_FAILURE() << to_string(one);
@@ -228,6 +229,7 @@ TEST(ConfigPrint, ReadsTheSameAgain) {
 TEST(ConfigPrint, ExamplesReadTheSameAgain) {
   for (const auto& entry : std::filesystem::directory_iterator(KERF_CONFIGS_FOLDER)) {
     if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().filename() == "materials.yaml") continue;
     std::ifstream in(entry.path());
     expect_round_trip(std::string{std::istreambuf_iterator<char>(in), {}});
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <thread>
 
@@ -92,6 +93,21 @@ TEST_F(PlayerViewTest, ShowsTheBlankThePathAndTheText) {
   ASSERT_EQ(known_.timeline->tools.size(), 2u);
   EXPECT_EQ(known_.timeline->tools[1].name, "bull 4 1");
   EXPECT_GT(known_.timeline->tools[1].time_s, known_.timeline->tools[0].time_s);
+}
+
+TEST_F(PlayerViewTest, ShowsWhatTheProgramDoesWhen) {
+  open(two_slots());
+  ASSERT_TRUE(until([&] { return known_.timeline != nullptr; }));
+  EXPECT_TRUE(known_.timeline->has_curves);
+  ASSERT_TRUE(until([&] {
+    return known_.curves && known_.curves->known_until_s >= known_.timeline->duration_s - 1e-9;
+  }));
+  double removed_mm3 = 0;
+  for (const float rate : known_.curves->mm3_per_s)
+    removed_mm3 += static_cast<double>(rate) * known_.curves->step_s;
+  commands_.push(SeekEndCommand{});
+  ASSERT_TRUE(until([&] { return known_.moment && known_.moment->state == PlayState::kEnded; }));
+  EXPECT_TRUE(until([&] { return std::abs(known_.moment->removed_mm3 / removed_mm3 - 1) < 1e-3; }));
 }
 
 TEST_F(PlayerViewTest, GoesToALineAndShowsWhatIsCutThere) {

@@ -95,7 +95,9 @@ void EngagementMeter::flush() {
   const EngagementLook mean = sum_.mean(first_, to_ - from_);
   const CutMove part = part_of(*move_, from_, to_);
   const EngagedWay way{(to_ - from_) * length_mm_, (to_ - from_) * duration_s_, down_rad_};
-  const std::uint32_t pass = log_.add({mean, &part, way, source_, start_s_ + from_ * duration_s_});
+  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from_ * duration_s_};
+  if (hearer_) hearer_(told);
+  const std::uint32_t pass = log_.add(told);
   if (pass != EngagementLog::kNoPass) taken_.pass = pass;
   if (mean.is_engaged()) taken_.sums.add(mean, way);
   from_ = to_;

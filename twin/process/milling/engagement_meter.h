@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stock/stock_model.h"
@@ -27,6 +28,10 @@ class EngagementMeter {
  public:
   /// `hand_over`: gives all moves before to the model. Both outlive this.
   EngagementMeter(const StockModel& stock, EngagementLog& log, std::function<void()> hand_over);
+
+  /// Each part of a feed move that is told to the log is told to this one, too.
+  using Hearer = std::function<void(const EngagementLog::Part&)>;
+  void hear_by(Hearer hearer) { hearer_ = std::move(hearer); }
 
   void mount(int tool, const Cutter& cutter);
   /// The tool has gone through the air, to where nobody looks.
@@ -81,6 +86,7 @@ class EngagementMeter {
   const StockModel& stock_;
   EngagementLog& log_;
   std::function<void()> hand_over_;
+  Hearer hearer_;
   EngagementScan scan_;
   SolidFront front_;
   PastWays ways_;

@@ -15,6 +15,14 @@ namespace {
 /// Short moves are looked at on their own where they are at least so much of a window long and
 /// there is enough to spend.
 constexpr double kLeastOfWindow = 0.5;
+/// A longer way in material removes some cells.
+constexpr double kLeastRemoving_cells = 4;
+
+/// Round a corner the planner goes as fast as the faster of its two moves.
+double reached_mm_per_min(const TimedStep& step) {
+  return step.programmed_mm_per_min > 0 ? std::min(step.peak_mm_per_min, step.programmed_mm_per_min)
+                                        : step.peak_mm_per_min;
+}
 
 }  // namespace
 
@@ -48,6 +56,9 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
 /// several, each of them has its share of the time.
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
+  part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
+  part_mm_per_min_ = reached_mm_per_min(step);
+  const std::size_t parts_before = load_parts_.size();
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
@@ -75,7 +86,26 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   const auto count = static_cast<double>(divided_.size());
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
+  flight.parts = load_parts_.size() - parts_before;
+  flight.bounds_parts = divided_.size() == 1;
   if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
+}
+
+/// What a move has removed is the least doubtful of what is known of it: ahead of a tool there may
+/// be a wall that it does not reach.
+void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
+  for (std::size_t n = 0; n < move.parts; ++n) {
+    CutLoads::Part& part = load_parts_[load_parts_taken_++];
+    if (move.bounds_parts && report.depth_mm > 0)
+      part.look.deep_mm = std::min(part.look.deep_mm, report.depth_mm);
+    if (move.bounds_parts && report.removed_mm3 <= 0 && report.depth_mm <= 0 &&
+        part.way.length_mm > kLeastRemoving_cells * stock_.cell_mm())
+      part.look = {};
+    loads_.take(part);
+  }
+  if (load_parts_taken_ < load_parts_.size()) return;
+  load_parts_.clear();
+  load_parts_taken_ = 0;
 }
 
 /// How far before its middle the cutter meets material of that depth, and of the width that this
@@ -120,10 +150,7 @@ void MillingStage::note_teeth(const Motion& m, const TimedStep& step, InFlight& 
   if (!teeth || !flight.feed || m.spindle == SpindleState::kStopped || m.spindle_rpm <= 0) return;
   flight.rpm = m.spindle_rpm;
   const double teeth_per_min = m.spindle_rpm * *teeth;
-  // Round a corner the planner goes as fast as the faster of its two moves.
-  const double most = step.programmed_mm_per_min > 0
-                          ? std::min(step.peak_mm_per_min, step.programmed_mm_per_min)
-                          : step.peak_mm_per_min;
+  const double most = reached_mm_per_min(step);
   flight.feed_per_tooth_mm = most / teeth_per_min;
   const double mean = step.duration_s > 0 ? 60 * step.length_mm / step.duration_s : most;
   flight.mean_per_tooth_mm = std::min(mean, most) / teeth_per_min;

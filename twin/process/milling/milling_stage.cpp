@@ -49,6 +49,7 @@ MillingStage::MillingStage(ProcessSite& site)
       changes_(log_),
       program_(stock_, log_),
       load_meter_(stock_),
+      loads_(log_),
       lengths_(stock_.bounds_mm(), log_),
       films_(stock_, log_),
       parts_(stock_, log_),
@@ -79,6 +80,8 @@ void MillingStage::begin_reporting() {
   speed_unsaid_.reset();
   uses_.clear();
   shank_told_.clear();
+  reversed_told_.clear();
+  loads_.forget();
   deepest_.clear();
   mounted_ = nullptr;
   drawn_told_ = false;
@@ -92,7 +95,9 @@ void MillingStage::finish(bool whole) {
   changes_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
+  loads_.finish();
   for (ToolUse& use : uses_) {
+    use.loads = loads_.loads_of(use.number);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }
@@ -163,9 +168,15 @@ bool MillingStage::mount_for(const Motion& m) {
   announce(*mounted_, m);
   mount_shank(m);
   if (mounted_->cutter) mount_parts(m);
-  if (site_.engagement && !engagement_)
+  if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
+    engagement_->hear_by([this](const EngagementLog::Part& part) {
+      load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,
+                             part_rpm_, part_mm_per_min_});
+    });
+  }
   if (engagement_ && mounted_->cutter) engagement_->mount(mounted_->number, cutting());
+  if (engagement_ && mounted_->cutter) loads_.mount(cutting(), mounted_->number);
   uses_[use_].shank_checked = parts_.checks_shank();
   uses_[use_].holder_checked = parts_.checks_holder();
   return mounted_->cutter.has_value();
@@ -362,6 +373,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.use = use_;
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
+  flight.reversed = m.spindle == SpindleState::kCounterclockwise;
   note_teeth(m, step, flight);
   measure(m, step, flight);
   if (engagement_) engage(m, step, flight);
@@ -377,6 +389,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
     const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
     flight.duration_s = step.duration_s * share;
     in_flight_.push_back(flight);
+    flight.parts = 0;
     pieces_.after(move, by);
     ++pushed;
     if (moves_.size() < moves_per_cut_) continue;
@@ -413,6 +426,7 @@ void MillingStage::collect_reports() {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     const CutReport& report = reports_[i];
     const InFlight& move = in_flight_[i];
+    take_loads(move, report);
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
     site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);
@@ -429,6 +443,7 @@ void MillingStage::collect_reports() {
       site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
+    if (move.reversed && move.feed) report_reversed(move, use.number);
     if (move.feed_per_tooth_mm > 0) count_chip(use.chip, move, report);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);

@@ -18,6 +18,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/process/fixture_checks.h"
 #include "twin/process/milling/checks.h"
+#include "twin/process/milling/cut_loads.h"
 #include "twin/process/milling/engagement_meter.h"
 #include "twin/process/milling/film_events.h"
 #include "twin/process/milling/length_check.h"
@@ -54,6 +55,7 @@ class MillingStage final : public Process {
     fixtures_.set_obstacles(obstacles_of(options.collisions.fixtures), options.collisions);
     machine_.set_options(options);
     pieces_.set_options(options);
+    loads_.set_wish(options.cutting);
     spindle_ = options.collisions.spindle;
     cut_by_shank_ = options.collisions.cut_by_shank;
   }
@@ -84,6 +86,9 @@ class MillingStage final : public Process {
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
+    std::size_t parts = 0;  ///< of load_parts_, those of its motion, with the first of its moves
+    bool bounds_parts = false;  ///< it is the only one
+    bool reversed = false;      ///< the spindle runs anticlockwise
   };
   /// The deepest place of a tool's feed moves, where they come near the workpiece.
   struct Deepest {
@@ -119,6 +124,8 @@ class MillingStage final : public Process {
   void note_contact(const CheckedMove& move);
   void note_depth(const Motion& motion, const TimedStep& step);
   void report_coarse_cells();
+  void take_loads(const InFlight& move, const CutReport& report);
+  void report_reversed(const InFlight& move, int tool);
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
@@ -149,6 +156,12 @@ class MillingStage final : public Process {
   bool drawn_told_ = false;  ///< CheckOptions::is_drawn
   LoadMeter load_meter_;
   std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
+  CutLoads loads_;
+  /// Of moves whose reports have not come.
+  std::vector<CutLoads::Part> load_parts_;
+  std::size_t load_parts_taken_ = 0;
+  double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
+  std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
   LengthCheck lengths_;
   FilmEvents films_;
   PartChecks parts_;

@@ -74,6 +74,16 @@ void MillingStage::report_coarse_cells() {
   }
 }
 
+/// Once a tool, of the first move that removes something.
+void MillingStage::report_reversed(const InFlight& move, int tool) {
+  if (!reversed_told_.insert(tool).second) return;
+  Finding finding =
+      finding_at(FindingId::kSpindleReversed, Severity::kWarning, move.source, move.start_s);
+  finding.tool = tool;
+  finding.text = tr("cuts while the spindle runs anticlockwise (M4)");
+  log_.add(std::move(finding));
+}
+
 /// A program that never comes near its blank was written for another zero, or another blank.
 void MillingStage::report_outside_stock() {
   // A guessed blank lies where the program works: missing it says nothing of the program.
