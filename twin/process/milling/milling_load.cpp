@@ -58,7 +58,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   if (!flight.feed || site_.holding || divided_.empty()) return;
   part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
   part_mm_per_min_ = reached_mm_per_min(step);
-  const std::size_t parts_before = load_parts_.size();
+  const std::size_t told_before = load_parts_told_;
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
@@ -86,7 +86,8 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   const auto count = static_cast<double>(divided_.size());
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
-  flight.parts = load_parts_.size() - parts_before;
+  // Those before may have been taken meanwhile.
+  flight.parts = load_parts_told_ - told_before;
   flight.bounds_parts = divided_.size() == 1;
   if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
 }

@@ -171,6 +171,7 @@ bool MillingStage::mount_for(const Motion& m) {
   if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
     engagement_->hear_by([this](const EngagementLog::Part& part) {
+      ++load_parts_told_;
       load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,
                              part_rpm_, part_mm_per_min_});
     });

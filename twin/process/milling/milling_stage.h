@@ -160,6 +160,7 @@ class MillingStage final : public Process {
   /// Of moves whose reports have not come.
   std::vector<CutLoads::Part> load_parts_;
   std::size_t load_parts_taken_ = 0;
+  std::size_t load_parts_told_ = 0;            ///< in all
   double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
   std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
   LengthCheck lengths_;
