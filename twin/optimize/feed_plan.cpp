@@ -33,6 +33,8 @@ FeedLeft left_of(const SurveyedMotion& motion, const NcLine& line) {
 std::optional<double> limit_of(const SurveyedMotion& motion) {
   // What has removed something that no look has seen, and what drills, is not made faster.
   if (!motion.is_engaged && motion.removed_mm3 > 0) return motion.feed_mm_per_min;
+  // Nor what goes down to where the blank should begin, and may begin earlier.
+  if (!motion.is_engaged && motion.goes_down) return motion.feed_mm_per_min;
   if (!motion.is_engaged) return std::nullopt;
   return motion.goes_down ? std::min(motion.limit_mm_per_min, motion.feed_mm_per_min)
                           : motion.limit_mm_per_min;

@@ -98,6 +98,14 @@ TEST_F(FeedPlanTest, AirHasAFeedOfItsOwn) {
   EXPECT_EQ(planned("G1 X1 F200\nX2\n"), "G1 X1 F1500\nX2 F300\n");
 }
 
+/// The blank may begin above where it should.
+TEST_F(FeedPlanTest, DownThroughAirToTheBlankIsNotMadeFaster) {
+  move(1, 200, kAir).goes_down = true;
+  move(2, 400, kAir);
+  aims_.air_feed_mm_per_min = 2000;
+  EXPECT_EQ(planned("G1 Z1 F200\nX2 F400\n"), "G1 Z1 F200\nX2 F2000\n");
+}
+
 TEST_F(FeedPlanTest, WhatHasRemovedSomethingIsNoAir) {
   move(1, 200, kAir).removed_mm3 = 0.01;
   aims_.air_feed_mm_per_min = 2000;

@@ -117,8 +117,9 @@ TEST_F(SolidFrontTest, AnglesAreThoseOfExactGeometry) {
   EngagementErrors errors;
   for (int n = 0; n < 24; ++n) {
     const double z = -1 - 0.2 * n;
-    const CutMove move =
-        way({60 * unit(random), 40 * unit(random), z}, {60 * unit(random), 40 * unit(random), z});
+    const Vec3 from{60 * unit(random), 40 * unit(random), z};
+    const Vec3 to{60 * unit(random), 40 * unit(random), z};
+    const CutMove move = way(from, to);
     for (const double at : {0.2, 0.5, 0.8})
       errors.add(look("flat:8", move, at), oracle.look(cutter, move, at));
     cut("flat:8", move);
