@@ -4,6 +4,7 @@
 
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
+#include "twin/job/load_text.h"
 
 namespace kerf {
 namespace {
@@ -22,8 +23,8 @@ void add(Json& out, const char* name, const char* unit, const LoadSpread& spread
 }
 
 std::string most_text(const char* unit, const LoadSpread& spread, const ValueRange& most) {
-  return trf("{:.3g} {} ({:.3g} to {:.3g}, line {})", most.nominal, unit, most.low, most.high,
-             spread.most_at().line);
+  return trf("{} {} ({} to {}, line {})", load_text(most.nominal), unit, load_text(most.low),
+             load_text(most.high), spread.most_at().line);
 }
 
 }  // namespace

@@ -310,13 +310,6 @@ std::string summary_text(const Report& report, const LiveReport& live) {
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
   if (report.rest) out += rest_text(*report.rest);
-  if (report.material) {
-    out += trf("material  {}{}\n", report.material->name,
-               without_teeth(report.tools).empty()
-                   ? ""
-                   : trf("; forces of tools without teeth=N are not known: {}",
-                         without_teeth(report.tools)));
-  }
   add_tools(out, report.tools);
   add_clearances(out, report);
   add_unchecked(out, report);
@@ -355,6 +348,13 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   if (report.turning) out += turning_text(*report.turning);
   if (report.comparison) out += compare_text(*report.comparison);
   if (report.rest) out += rest_text(*report.rest);
+  if (report.material) {
+    out += trf("material  {}{}\n", report.material->name,
+               without_teeth(report.tools).empty()
+                   ? ""
+                   : trf("; forces of tools without teeth=N are not known: {}",
+                         without_teeth(report.tools)));
+  }
   add_tools(out, report.tools);
   if (report.engagement) out += engagement_text(*report.engagement);
   add_clearances(out, report);

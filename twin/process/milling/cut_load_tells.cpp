@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/job/load_text.h"
 #include "twin/process/finding_at.h"
 #include "twin/process/milling/cut_loads.h"
 
@@ -18,7 +19,8 @@ constexpr double kThinShare = 0.5;
 constexpr double kLeastAir_s = 5, kLeastAirShare = 0.1, kLeastAirPlace_s = 0.5;
 
 std::string range_text(const ValueRange& range, const char* unit) {
-  return trf("{:.3g} {} ({:.3g} to {:.3g})", range.nominal, unit, range.low, range.high);
+  return trf("{} {} ({} to {})", load_text(range.nominal), unit, load_text(range.low),
+             load_text(range.high));
 }
 
 }  // namespace
