@@ -81,6 +81,9 @@ void MillingStage::begin_reporting() {
   uses_.clear();
   shank_told_.clear();
   reversed_told_.clear();
+  reversed_down_.clear();
+  taps_.clear();
+  last_down_.reset();
   loads_.forget();
   deepest_.clear();
   mounted_ = nullptr;
@@ -95,6 +98,9 @@ void MillingStage::finish(bool whole) {
   changes_.finish(whole);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
+  for (const auto& [move, tool] : reversed_down_) {
+    if (!taps_.contains(move.motion)) report_reversed(move, tool);
+  }
   loads_.finish();
   for (ToolUse& use : uses_) {
     use.loads = loads_.loads_of(use.number);
@@ -375,6 +381,9 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   flight.feed = is_feed(m);
   flight.spindle_off = spindle_off;
   flight.reversed = m.spindle == SpindleState::kCounterclockwise;
+  const Vec3 way = m.to_mm - m.from_mm;
+  flight.straight_down = way.x == 0 && way.y == 0 && way.z < 0;
+  note_tap(m);
   note_teeth(m, step, flight);
   measure(m, step, flight);
   if (engagement_) engage(m, step, flight);
@@ -444,7 +453,10 @@ void MillingStage::collect_reports() {
       site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
-    if (move.reversed && move.feed) report_reversed(move, use.number);
+    if (move.reversed && move.feed && move.straight_down && !reversed_told_.contains(use.number))
+      reversed_down_.emplace_back(move, use.number);
+    else if (move.reversed && move.feed)
+      report_reversed(move, use.number);
     if (move.feed_per_tooth_mm > 0) count_chip(use.chip, move, report);
     if (move.spindle_off && report.depth_mm > kContactTolerance_mm) {
       checks_.deepen_spindle_event(report.depth_mm);

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "interp_bridge/motion.h"
@@ -89,6 +90,7 @@ class MillingStage final : public Process {
     std::size_t parts = 0;  ///< of load_parts_, those of its motion, with the first of its moves
     bool bounds_parts = false;  ///< it is the only one
     bool reversed = false;      ///< the spindle runs anticlockwise
+    bool straight_down = false;
   };
   /// The deepest place of a tool's feed moves, where they come near the workpiece.
   struct Deepest {
@@ -126,6 +128,9 @@ class MillingStage final : public Process {
   void report_coarse_cells();
   void take_loads(const InFlight& move, const CutReport& report);
   void report_reversed(const InFlight& move, int tool);
+  /// Of a way straight down while the spindle runs anticlockwise, that goes up again while it runs
+  /// clockwise: a left-hand tap.
+  void note_tap(const Motion& m);
   void push(const Motion& motion, const TimedStep& step, bool spindle_off);
   void push_moves(const Motion& motion, const TimedStep& step, bool spindle_off);
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
@@ -163,6 +168,11 @@ class MillingStage final : public Process {
   std::size_t load_parts_told_ = 0;            ///< in all
   double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
   std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
+  /// Moves straight down that did, and their tools; motions that are taps; the last such motion,
+  /// and where it ended.
+  std::vector<std::pair<InFlight, int>> reversed_down_;
+  std::set<std::uint64_t> taps_;
+  std::optional<std::pair<std::uint64_t, Vec3>> last_down_;
   LengthCheck lengths_;
   FilmEvents films_;
   PartChecks parts_;

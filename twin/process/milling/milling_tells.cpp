@@ -84,6 +84,17 @@ void MillingStage::report_reversed(const InFlight& move, int tool) {
   log_.add(std::move(finding));
 }
 
+void MillingStage::note_tap(const Motion& m) {
+  if (!is_feed(m)) return;
+  const Vec3 way = m.to_mm - m.from_mm;
+  const bool is_along = way.x == 0 && way.y == 0;
+  const bool goes_back = is_along && way.z > 0 && m.spindle == SpindleState::kClockwise;
+  if (goes_back && last_down_ && last_down_->second == m.from_mm) taps_.insert(last_down_->first);
+  last_down_.reset();
+  if (is_along && way.z < 0 && m.spindle == SpindleState::kCounterclockwise)
+    last_down_.emplace(site_.motion, m.to_mm);
+}
+
 /// A program that never comes near its blank was written for another zero, or another blank.
 void MillingStage::report_outside_stock() {
   // A guessed blank lies where the program works: missing it says nothing of the program.
