@@ -20,7 +20,7 @@ bool names_a_file(std::string_view text) {
   std::string lower(text);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  for (const char* const word : {"profile", "dbc", "pins_file", "\\"}) {
+  for (const char* const word : {"profile", "dbc", "pins_file", "material", "\\"}) {
     if (lower.find(word) != lower.npos) return true;
   }
   return false;
