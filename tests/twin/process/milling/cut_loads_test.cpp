@@ -71,7 +71,7 @@ class CutLoadsTest : public testing::Test {
 /// 4 teeth, S2000, F400: 0.05 mm a tooth.
 TEST_F(CutLoadsTest, ForcesAreThoseOfTheModel) {
   run(in_steel(), "flat:10:teeth=4:helix=45", slot(4));
-  const Material& steel = *in_steel().material;
+  const Material steel = *in_steel().material;
   const MillingModel model(steel, EdgeProfile::cylinder(5, 0.2), {4, kPi / 4}, {});
   const MillingLoad load = model.load_of({0.05, 0, kPi, 4, 2000});
   const auto loads = loads_->loads_of(1);
