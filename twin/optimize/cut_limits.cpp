@@ -2,46 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "cutting/drilling_force.h"
 #include "cutting/tool_bending.h"
+#include "stock/cutter/cutting_edge.h"
 
 namespace kerf {
 namespace {
 
-/// Of whose flutes nobody has said it: as most end mills have it.
-constexpr double kUsualHelix_deg = 30;
-constexpr int kArcPoints = 64;
-
-std::vector<Vec2> edge_of(const Cutter& cutter) {
-  std::vector<Vec2> points;
-  for (const ProfilePiece& piece : cutter.profile()) {
-    if (points.empty()) points.emplace_back(piece.r0, piece.z0);
-    if (piece.kind == ProfilePiece::Kind::kArc) {
-      const Vec2 center(piece.center_r, piece.center_z);
-      const double from = std::atan2(piece.z0 - center.y, piece.r0 - center.x);
-      const double to = std::atan2(piece.z1 - center.y, piece.r1 - center.x);
-      for (int k = 1; k < kArcPoints; ++k) {
-        const double angle = from + (to - from) * k / kArcPoints;
-        points.push_back(center + piece.radius * Vec2(std::cos(angle), std::sin(angle)));
-      }
-    }
-    points.emplace_back(piece.r1, piece.z1);
-  }
-  return points;
-}
-
 /// Of the diameter: how far apart the places are at which a look straight down is taken.
 constexpr double kDiscStep = 1.0 / 24;
-
-/// Of its point, where that is a cone; 180: it is none.
-double point_deg_of(const Cutter& cutter) {
-  const ProfilePiece& first = cutter.profile().front();
-  const double rise = first.z1 - first.z0, wide = first.r1 - first.r0;
-  const bool is_cone = first.kind == ProfilePiece::Kind::kLine && rise > 0 && wide > 0;
-  return is_cone ? 2 * std::atan2(wide, rise) * 180 / kPi : 180;
-}
 
 MillingCut cut_of(const EngagementLook& look, double rpm) {
   return {1, std::clamp(look.entry_rad, 0.0, kPi), std::clamp(look.exit_rad, 0.0, kPi),
@@ -74,10 +44,10 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
     : teeth_(cutter.teeth().value_or(0)),
       radius_mm_(cutter.radius_mm()),
       shank_mm_(cutter.shank_diameter_mm().value_or(2 * cutter.radius_mm())),
-      point_deg_(point_deg_of(cutter)),
+      point_deg_(point_deg(cutter)),
       flute_mm_(cutter.flute_length_mm()),
       rake_deg_(cutter.edge_traits().rake_deg),
-      profile_(edge_of(cutter), material ? material->mc : 0),
+      profile_(edge_points(cutter), material ? material->mc : 0),
       material_(material) {
   if (!cutter.holder().empty()) stickout_mm_ = cutter.holder().front().from_z_mm;
   if (!material_ || teeth_ == 0) return;

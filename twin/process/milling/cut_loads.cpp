@@ -5,47 +5,16 @@
 
 #include "cutting/drilling_force.h"
 #include "cutting/tool_bending.h"
+#include "stock/cutter/cutting_edge.h"
 
 namespace kerf {
 namespace {
 
-/// Of whose flutes nobody has said it: as most end mills have it.
-constexpr double kUsualHelix_deg = 30;
 constexpr double kDegrees = 180 / kPi;
 /// What is more than a limit by less than this is rounding.
 constexpr double kOver = 1.005;
 constexpr double kOverAngle_rad = 0.1 / kDegrees;
 constexpr std::size_t kMostAirPlaces = 5;
-
-/// Points of a cutter's profile close enough that chords of its arcs do not count.
-std::vector<Vec2> outline_of(const Cutter& cutter) {
-  std::vector<Vec2> out;
-  constexpr int kPoints = 64;
-  for (const ProfilePiece& piece : cutter.profile()) {
-    if (out.empty()) out.emplace_back(piece.r0, piece.z0);
-    if (piece.kind == ProfilePiece::Kind::kLine) {
-      out.emplace_back(piece.r1, piece.z1);
-      continue;
-    }
-    const Vec2 center(piece.center_r, piece.center_z);
-    const double from = std::atan2(piece.z0 - center.y, piece.r0 - center.x);
-    const double to = std::atan2(piece.z1 - center.y, piece.r1 - center.x);
-    for (int k = 1; k <= kPoints; ++k) {
-      const double angle = from + (to - from) * k / kPoints;
-      const Vec2 point = center + piece.radius * Vec2(std::cos(angle), std::sin(angle));
-      out.push_back(k == kPoints ? Vec2(piece.r1, piece.z1) : point);
-    }
-  }
-  return out;
-}
-
-/// The angle of its point, where that is a cone; 180: it is none.
-double point_of(const Cutter& cutter) {
-  const ProfilePiece& first = cutter.profile().front();
-  const double rise = first.z1 - first.z0, wide = first.r1 - first.r0;
-  const bool is_cone = first.kind == ProfilePiece::Kind::kLine && rise > 0 && wide > 0;
-  return is_cone ? 2 * std::atan2(wide, rise) * kDegrees : 180;
-}
 
 }  // namespace
 
@@ -68,8 +37,8 @@ void CutLoads::mount(const Cutter& cutter, int number) {
   tool.flute_mm = cutter.flute_length_mm();
   if (!cutter.holder().empty()) tool.stickout_mm = cutter.holder().front().from_z_mm;
   tool.shank_mm = cutter.shank_diameter_mm().value_or(2 * cutter.radius_mm());
-  tool.point_deg = point_of(cutter);
-  const std::vector<Vec2> outline = outline_of(cutter);
+  tool.point_deg = point_deg(cutter);
+  const std::vector<Vec2> outline = edge_points(cutter);
   tool.profile.emplace(outline, wish_.material ? wish_.material->mc : 0);
   if (!wish_.material || tool.teeth == 0) return;
   const MillingEdges edges{tool.teeth, tool.traits.helix_deg.value_or(kUsualHelix_deg) / kDegrees};
