@@ -317,6 +317,16 @@ void ConfigFaults::at_value(ConfigNode& node, const std::string& message, std::s
   add(node, node.line, node.column, message, std::move(hint));
 }
 
+void ConfigFaults::check_names(ConfigNode& group, const std::vector<std::string>& known) {
+  for (const auto& child : group.children) {
+    if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
+    const std::string near = nearest_word(child->key, known);
+    at_key(*child, tr("unknown key"),
+           near.empty() ? trf("here may be: {}", fmt::join(known, ", "))
+                        : trf("did you mean {}?", near));
+  }
+}
+
 void ConfigFaults::note_at_value(const ConfigNode& node, const std::string& message,
                                  std::string hint) {
   Diagnostic note = text_.diagnostic(node.line, node.column,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/diagnostic.h"
 #include "twin/config/config_tree.h"
@@ -21,6 +22,8 @@ class ConfigFaults {
   /// "stock.cell_mm: 0 is not allowed; ...": the path goes in front. The node becomes faulty.
   void at_value(ConfigNode& node, const std::string& message, std::string hint = {});
   void at_key(ConfigNode& node, const std::string& message, std::string hint = {});
+  /// Of a group that knows these keys alone: the others are faults, with what may be meant.
+  void check_names(ConfigNode& group, const std::vector<std::string>& known);
   /// A remark; the node stays as it is.
   void note_at_value(const ConfigNode& node, const std::string& message, std::string hint = {});
   /// True the first time: what need not be said of each file.

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/small_file.h"
-#include "base/suggest.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "twin/config/config_reader.h"
@@ -27,7 +26,7 @@ class MaterialReader {
   MaterialReader(ConfigFaults& faults, std::vector<Material>& out) : faults_(faults), out_(out) {}
 
   void read(ConfigNode& root) {
-    check_names(root, {"materials"});
+    faults_.check_names(root, {"materials"});
     ConfigNode* const list = root.child("materials");
     if (list == nullptr) {
       faults_.diagnostics().push_back(
@@ -45,16 +44,6 @@ class MaterialReader {
  private:
   static constexpr const char* kExample =
       "materials: [{name: bronze, kc11: [600, 800, 1100], mc: 0.2, source: ..}]";
-
-  void check_names(ConfigNode& node, const std::vector<std::string>& known) {
-    for (const auto& child : node.children) {
-      if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
-      const std::string near = nearest_word(child->key, known);
-      faults_.at_key(*child, tr("unknown key"),
-                     near.empty() ? trf("here may be: {}", fmt::join(known, ", "))
-                                  : trf("did you mean {}?", near));
-    }
-  }
 
   bool number(ConfigNode& node, double least, double most, double& out) {
     if (node.faulty) return false;
@@ -131,8 +120,8 @@ class MaterialReader {
       faults_.at_value(row, tr("must be a group of keys: name, kc11, mc, source"), kExample);
       return;
     }
-    check_names(row, {"name", "aliases", "kc11", "mc", "rake", "normal_share", "speed_hss",
-                      "speed_carbide", "source"});
+    faults_.check_names(row, {"name", "aliases", "kc11", "mc", "rake", "normal_share", "speed_hss",
+                              "speed_carbide", "source"});
     Material material;
     bool good = read_text(row, "name", true, material.name);
     good = read_text(row, "source", true, material.source) && good;

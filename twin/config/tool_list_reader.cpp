@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/length_unit.h"
-#include "base/suggest.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/cutter/shape_spec.h"
@@ -22,7 +21,7 @@ class ToolListReader {
   ToolListReader(ConfigFaults& faults, ToolLibrary& out) : faults_(faults), out_(out) {}
 
   void read(ConfigNode& root) {
-    check_names(root, {"tools", "units"});
+    faults_.check_names(root, {"tools", "units"});
     read_units(root);
     ConfigNode* const tools = root.child("tools");
     if (tools == nullptr) {
@@ -40,16 +39,6 @@ class ToolListReader {
 
  private:
   static constexpr const char* kExample = "tools: [{number: 3, shape: \"flat:6:flute=20\"}]";
-
-  void check_names(ConfigNode& node, const std::vector<std::string>& known) {
-    for (const auto& child : node.children) {
-      if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
-      const std::string near = nearest_word(child->key, known);
-      faults_.at_key(*child, tr("unknown key"),
-                     near.empty() ? trf("here may be: {}", fmt::join(known, ", "))
-                                  : trf("did you mean {}?", near));
-    }
-  }
 
   /// Null: it is not there, or is no plain value, which is said.
   ConfigNode* text(ConfigNode& node, std::string_view name) {
@@ -76,7 +65,7 @@ class ToolListReader {
       faults_.at_value(node, tr("must be a group of keys: number, shape, name"), kExample);
       return;
     }
-    check_names(node, {"number", "shape", "name"});
+    faults_.check_names(node, {"number", "shape", "name"});
     LibraryTool tool;
     tool.path = out_.path;
     if (const ConfigNode* const name = text(node, "name")) tool.name = trim(name->scalar);

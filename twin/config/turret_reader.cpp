@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "base/small_file.h"
-#include "base/suggest.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/sheet/punch_hits.h"
@@ -43,12 +42,12 @@ class TurretReader {
   TurretReader(ConfigFaults& faults, Turret& out) : faults_(faults), out_(out) {}
 
   void read(ConfigNode& root) {
-    check_names(root, {"stations", "index", "punch", "frame", "clamps", "regrip", "times"});
+    faults_.check_names(root, {"stations", "index", "punch", "frame", "clamps", "regrip", "times"});
     read_index(root);
     read_stations(root);
     if (ConfigNode* const punch = group(root, "punch")) read_punch(*punch);
     if (ConfigNode* const frame = group(root, "frame")) {
-      check_names(*frame, {"moves"});
+      faults_.check_names(*frame, {"moves"});
       out_.sheet_moves = word(*frame, "moves", {"sheet", "head"}) != "head";
     }
     read_clamps(root);
@@ -61,17 +60,6 @@ class TurretReader {
   }
 
  private:
-  void check_names(ConfigNode& node, std::initializer_list<const char*> names) {
-    const std::vector<std::string> known(names.begin(), names.end());
-    for (const auto& child : node.children) {
-      if (std::find(known.begin(), known.end(), child->key) != known.end()) continue;
-      const std::string near = nearest_word(child->key, known);
-      faults_.at_key(*child, tr("unknown key"),
-                     near.empty() ? trf("here may be: {}", fmt::join(known, ", "))
-                                  : trf("did you mean {}?", near));
-    }
-  }
-
   /// What has no place in it.
   void about_file(std::string message, std::string hint) {
     faults_.diagnostics().push_back(
@@ -176,7 +164,7 @@ class TurretReader {
     double pitch_mm = 0;
     bool turns = false;
     if (node.kind == NodeKind::kMap) {
-      check_names(node, {"punch", "name", "angle", "index", "pitch"});
+      faults_.check_names(node, {"punch", "name", "angle", "index", "pitch"});
       angle_deg = this->number(node, "angle", {-360, 360, tr("degrees")}).value_or(0);
       if (const ConfigNode* const given = text(node, "name")) name = given->scalar;
       pitch_mm = this->number(node, "pitch", {kLeastPitch_mm, kFarthest_mm, "mm"}).value_or(0);
@@ -211,7 +199,7 @@ class TurretReader {
   }
 
   void read_punch(ConfigNode& punch) {
-    check_names(punch, {"trigger", "hit", "nibble"});
+    faults_.check_names(punch, {"trigger", "hit", "nibble"});
     ConfigNode* const trigger = text(punch, "trigger");
     if (trigger != nullptr) {
       Result<PunchTrigger> parsed = PunchTrigger::parse(trigger->scalar);
@@ -250,7 +238,7 @@ class TurretReader {
 
   void read_nibbling(ConfigNode& node) {
     ConfigNode* const nibble = &node;
-    check_names(*nibble, {"pitch", "while"});
+    faults_.check_names(*nibble, {"pitch", "while"});
     if (nibble->child("pitch") == nullptr && !stations_nibble()) {
       faults_.at_value(*nibble, tr("pitch is missing; must be mm from stroke to stroke"));
     }
@@ -274,7 +262,7 @@ class TurretReader {
         refuse(*child, tr("a group of keys: x, y, width, depth, clearance"));
         continue;
       }
-      check_names(*child, {"x", "y", "width", "depth", "clearance"});
+      faults_.check_names(*child, {"x", "y", "width", "depth", "clearance"});
       const Range place{-kFarthest_mm, kFarthest_mm, "mm"}, size{0.1, kFarthest_mm, "mm"};
       const auto x = needed(*child, "x", place), y = needed(*child, "y", place);
       const auto width = needed(*child, "width", size), depth = needed(*child, "depth", size);
@@ -300,7 +288,7 @@ class TurretReader {
         refuse(*child, tr("a group of keys: on or line, x, y"));
         continue;
       }
-      check_names(*child, {"on", "line", "x", "y"});
+      faults_.check_names(*child, {"on", "line", "x", "y"});
       Regrip regrip;
       const bool by_code = child->child("on") != nullptr, by_line = child->child("line") != nullptr;
       if (by_code == by_line) {
@@ -325,7 +313,7 @@ class TurretReader {
   }
 
   void read_times(ConfigNode& node) {
-    check_names(node, {"stroke", "rate", "turret", "regrip"});
+    faults_.check_names(node, {"stroke", "rate", "turret", "regrip"});
     const Range seconds{0, kLongest_s, "s"};
     PunchTimes& times = out_.times;
     times.stroke_s = number(node, "stroke", seconds).value_or(0);
@@ -333,7 +321,7 @@ class TurretReader {
     if (ConfigNode* const rates = group(node, "rate")) read_rates(*rates);
     ConfigNode* const turret = group(node, "turret");
     if (turret == nullptr) return;
-    check_names(*turret, {"places", "step", "lock"});
+    faults_.check_names(*turret, {"places", "step", "lock"});
     times.step_s = number(*turret, "step", seconds).value_or(0);
     times.lock_s = number(*turret, "lock", seconds).value_or(0);
     const auto places = number(*turret, "places", {1, kLastStation, "places"});
