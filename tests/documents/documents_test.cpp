@@ -143,10 +143,14 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
   for (const std::string& option : known) EXPECT_TRUE(told.contains(option)) << option;
 }
 
+/// "\-" as it is read.
+std::string without_escapes(std::string manual) {
+  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
+  return manual;
+}
+
 /// In the order in which the shells see them: of each command its own.
 TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
-  std::string manual = run_kerf("config man").output;
-  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
   const std::string bash = run_kerf("config completion bash").output;
   const std::string zsh = run_kerf("config completion zsh").output;
   // Between "  run)" and the next command.
@@ -165,6 +169,8 @@ TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
     const Words in_zsh = find_all(part(zsh, command), R"((?:[,'*])(--[a-z-]+)[\['}])");
     EXPECT_EQ(in_bash, options) << command;
     EXPECT_EQ(in_zsh, options) << command;
+    const std::string manual = without_escapes(run_kerf("config man kerf-" + command).output);
+    EXPECT_NE(manual.find("kerf-" + command + " - "), std::string::npos);
     for (const std::string& option : options) {
       if (option == "--help") continue;
       EXPECT_NE(manual.find("\\fB" + option + "\\fR"), std::string::npos) << option;
@@ -174,8 +180,7 @@ TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
 
 TEST(Documents, EveryKeyStandsInTheManual) {
   const std::string schema = run_kerf("config schema").output;
-  std::string manual = run_kerf("config man").output;
-  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
+  const std::string manual = without_escapes(run_kerf("config man").output);
   ASSERT_GT(schema.size(), 1000u);
   EXPECT_NE(manual.find(schema), std::string::npos);
 }

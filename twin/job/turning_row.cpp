@@ -1,6 +1,7 @@
 #include "twin/job/turning_row.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,6 +1,7 @@
 #include "twin/job/work_holding.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

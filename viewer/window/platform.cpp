@@ -13,6 +13,7 @@
 #include <string>
 
 #include "base/translate.h"
+#include "viewer/window/glfw_library.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
@@ -182,6 +183,10 @@ Platform::~Platform() {
 }
 
 Done Platform::start() {
+  if (const Done opened = open_glfw(); !opened) {
+    return Error{trf("no window: it needs GLFW, Debian's package libglfw3 ({}); {}", opened.error(),
+                     tr(kWithout))};
+  }
   complaint().clear();
   glfwSetErrorCallback([](int, const char* text) { complaint() = text; });
   if (glfwInit() != GLFW_TRUE) {
