@@ -252,6 +252,7 @@ std::string json_text(const Report& report) {
     out["compare"] = compare_json(*report.comparison, report.program.files);
   }
   if (report.rest) out["rest"] = rest_json(*report.rest);
+  if (report.entry) out["entry"] = entry_json(*report.entry, report.program.files);
   if (report.engagement)
     out["engagement"] = engagement_json(*report.engagement, report.program.files);
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);
